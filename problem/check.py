@@ -1,0 +1,394 @@
+"""The only judge of feasibility: true peaks against limits, with a bound on rounding errors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .limits import QUANTITIES
+from .peak import extrema
+from .problem import Problem
+from .spline import (
+    PERM,
+    as_durations,
+    batch_peaks,
+    refined_coefficients,
+    trajectory_from_scaled,
+)
+from .trajectory import Trajectory
+
+TOLERANCE = 1e-9
+"""Relative excess over a limit that still counts as keeping it."""
+
+
+class Verdict(StrEnum):
+    """Outcome of a check, for all t."""
+
+    PASS = "pass"
+    """Every limit is kept within the tolerance, rounding errors included."""
+    VIOLATED = "violated"
+    """Some limit is exceeded by more than the tolerance, whatever the rounding errors."""
+    DISCONTINUOUS = "discontinuous"
+    """Position or velocity jumps at a break (or acceleration, where jerk is limited)."""
+    UNDECIDED = "undecided"
+    """The bound on rounding errors does not separate the peak from its limit."""
+
+
+@dataclass(frozen=True)
+class Peak:
+    """The largest value of one quantity of one joint, set beside its limit.
+
+    Attributes
+    ----------
+    joint : str or None
+        Joint label; None for a segment duration.
+    quantity : str
+        "position", "velocity", "acceleration", "jerk" or "duration".
+    segment : int
+        Segment, from 0.
+    time : float or None
+        Where on the trajectory, s.
+    value, limit : float
+        In rad, s.
+    ratio : float
+        |value|/limit; above 1 the limit is exceeded.
+    error : float
+        Bound on the rounding error of ``value``.
+    """
+
+    joint: str | None
+    quantity: str
+    segment: int
+    time: float | None
+    value: float
+    limit: float
+    ratio: float
+    error: float
+
+    @property
+    def margin(self) -> float:
+        """1 − ratio: what is left of the limit."""
+        return 1.0 - self.ratio
+
+
+@dataclass(frozen=True)
+class Jump:
+    """A derivative that differs on the two sides of a break."""
+
+    joint: str
+    order: int
+    break_index: int
+    time: float
+    size: float
+
+
+@dataclass(frozen=True, eq=False)
+class Check:
+    """What the checker found about one duration vector.
+
+    Attributes
+    ----------
+    verdict : Verdict
+    worst : Peak or None
+        Largest ratio; None if nothing is limited.
+    peaks : tuple of Peak
+        One per joint and quantity.
+    jumps : tuple of Jump
+        Discontinuities of position, velocity and acceleration.
+    total_time : float
+        Sum of the durations, s.
+    stretch : float
+        c* = max (|v|/V, √(|a|/A), ∛(|j|/J)): stretching all durations by it makes them tight.
+    feasible_time, tight_time : float or None
+        T·max(1, c*), the uniform repair; T·c*, the free rescaling. None with the reason beside.
+    tolerance : float
+        Relative excess that counts as kept.
+    """
+
+    verdict: Verdict
+    worst: Peak | None
+    peaks: tuple[Peak, ...]
+    jumps: tuple[Jump, ...]
+    total_time: float
+    stretch: float
+    feasible_time: float | None
+    feasible_why: str | None
+    tight_time: float | None
+    tight_why: str | None
+    tolerance: float
+
+    @property
+    def max_violation(self) -> float:
+        """Largest relative excess over any limit, 0 if none."""
+        return max([0.0, *(p.ratio - 1.0 for p in self.peaks)])
+
+    def __str__(self) -> str:
+        lines = [f"{self.verdict} (for all t, relative tolerance {self.tolerance:g})"]
+        lines.append(f"total time      {self.total_time:.6f} s")
+        if self.worst is not None:
+            w = self.worst
+            where = f"joint {w.joint}" if w.joint is not None else f"segment {w.segment + 1}"
+            at = f" at t = {w.time:.6f} s" if w.time is not None else ""
+            lines.append(
+                f"worst           {where} {w.quantity} {w.value:.6g} against {w.limit:.6g}"
+                f" (ratio {w.ratio:.9f}){at}"
+            )
+        for name, time, why in (
+            ("feasible time", self.feasible_time, self.feasible_why),
+            ("tight time", self.tight_time, self.tight_why),
+        ):
+            lines.append(f"{name:<15} " + (f"{time:.6f} s" if time is not None else f"none: {why}"))
+        return "\n".join(lines)
+
+
+def _ratio(value: float, limit: float, error: float) -> float:
+    if limit == 0.0:
+        return 0.0 if abs(value) <= error else np.inf
+    return abs(value) / limit
+
+
+def _derivative_peaks(
+    problem: Problem, trajectory: Trajectory, error: NDArray[np.float64]
+) -> list[Peak]:
+    limits = problem.limits.derivatives
+    peaks = []
+    for j, label in enumerate(problem.joints):
+        for r, quantity in enumerate(QUANTITIES, start=1):
+            if not np.isfinite(limits[j, r - 1]):
+                continue
+            points = extrema(trajectory, j, r)
+            bounds = [float(error[e.segment, r, j]) for e in points]
+            i = int(np.argmax([abs(e.value) for e in points]))
+            top = points[i]
+            bound = max(bounds)
+            limit = float(limits[j, r - 1])
+            ratio = _ratio(top.value, limit, bound)
+            peaks.append(
+                Peak(label, quantity, top.segment, top.time, top.value, limit, ratio, bound)
+            )
+    return peaks
+
+
+def _position_peaks(
+    problem: Problem, trajectory: Trajectory, error: NDArray[np.float64]
+) -> list[Peak]:
+    peaks = []
+    for j, label in enumerate(problem.joints):
+        low, high = problem.limits.position_lower[j], problem.limits.position_upper[j]
+        if not (np.isfinite(low) or np.isfinite(high)):
+            continue
+        points = extrema(trajectory, j, 0)
+        for limit, sign in ((low, -1.0), (high, 1.0)):
+            if not np.isfinite(limit):
+                continue
+            top = max(points, key=lambda e: sign * e.value)
+            half = (high - low) / 2 if np.isfinite(high - low) else max(1.0, abs(limit))
+            excess = sign * (top.value - limit)
+            ratio = 1.0 + excess / half if half > 0 else _ratio(excess, 0.0, 1e-12)
+            bound = float(error[:, 0, j].max())
+            peaks.append(
+                Peak(label, "position", top.segment, top.time, top.value, float(limit), ratio, bound)
+            )
+    return peaks
+
+
+def _duration_peaks(problem: Problem, h: NDArray[np.float64]) -> list[Peak]:
+    peaks = []
+    for k, d in enumerate(h):
+        low, high = problem.duration_lower[k], problem.duration_upper[k]
+        if low > 0:
+            peaks.append(
+                Peak(None, "duration", k, None, float(d), float(low), float(low / d), 0.0)
+            )
+        if np.isfinite(high):
+            peaks.append(
+                Peak(None, "duration", k, None, float(d), float(high), float(d / high), 0.0)
+            )
+    return peaks
+
+
+def _value_errors(
+    trajectory: Trajectory, coefficient_error: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Bound on the error of each derivative's extrema, shape (segments, 4, joints).
+
+    Coefficient errors, plus the rounding of Horner's scheme, plus that of the place of the
+    extremum, where the next derivative vanishes to rounding.
+    """
+    size = 32 * np.finfo(np.float64).eps * np.abs(trajectory.scaled)
+    errors = np.zeros((size.shape[0], 4, size.shape[2]))
+    for r in range(4):
+        own = np.einsum("p,kpj->kj", PERM[:, r], coefficient_error + size)
+        place = np.einsum("p,kpj->kj", PERM[:, r + 1], size)
+        errors[:, r] = (own + place) / trajectory.durations[:, None] ** r
+    return errors
+
+
+def _jumps(problem: Problem, trajectory: Trajectory, error: NDArray[np.float64]) -> list[Jump]:
+    jumps = []
+    for b in range(1, problem.segments):
+        for j, label in enumerate(problem.joints):
+            for order in range(3):
+                left = trajectory.derivative(b - 1, j, order)
+                right = trajectory.derivative(b, j, order)
+                size = float(right[0] - left.sum())
+                scale = float(np.abs(left).sum() + np.abs(right).sum())
+                bound = float(error[b - 1, order, j] + error[b, order, j]) + 1e-9 * scale
+                if abs(size) > bound:
+                    jumps.append(Jump(label, order, b, float(trajectory.breaks[b]), size))
+    return jumps
+
+
+def _rescaled(problem: Problem, h: NDArray[np.float64], factor: float, peaks: list[Peak]) -> (
+    tuple[float | None, str | None]
+):
+    stretched = h * factor
+    slack = 1 + TOLERANCE
+    if not np.isfinite(factor):
+        return None, "a joint with limit 0 moves; no stretch repairs that"
+    if factor != 1.0 and not problem.interpolant.homogeneous:
+        return None, "a prescribed end derivative is not 0; stretching would change it"
+    if any(p.quantity == "position" and p.ratio > 1 + TOLERANCE for p in peaks):
+        return None, "a position limit is exceeded; stretching does not move the path"
+    if (stretched * slack < problem.duration_lower).any():
+        return None, "a stretched duration falls below its lower bound"
+    if (stretched > problem.duration_upper * slack).any():
+        return None, "a stretched duration exceeds its upper bound"
+    if factor == 0.0:
+        return None, "nothing moves or nothing is limited; the total time can shrink to 0"
+    return float(stretched.sum()), None
+
+
+def check(
+    problem: Problem,
+    durations: ArrayLike,
+    nodal: ArrayLike | None = None,
+    tolerance: float = TOLERANCE,
+) -> Check:
+    """Judge one duration vector, for all t, knowing nothing of who produced it.
+
+    Parameters
+    ----------
+    problem : Problem
+    durations : array_like, shape (segments,)
+        Segment durations shared by all joints, s.
+    nodal : array_like, shape (free, joints), optional
+        Values of the free derivatives of an under-determined interpolant.
+    tolerance : float
+        Relative excess over a limit that still counts as keeping it.
+
+    Returns
+    -------
+    Check
+
+    Raises
+    ------
+    TrajgapError
+        If the durations have the wrong length or are not positive and finite.
+    """
+    h = as_durations(durations, problem.segments)
+    extra = None if nodal is None else np.asarray(nodal, dtype=np.float64)
+    scaled, uncertainty = refined_coefficients(problem.interpolant, problem.waypoints, h, extra)
+    trajectory = trajectory_from_scaled(scaled, problem.interpolant.degrees, h)
+    error = _value_errors(trajectory, uncertainty)
+    peaks = [
+        *_derivative_peaks(problem, trajectory, error),
+        *_position_peaks(problem, trajectory, error),
+        *_duration_peaks(problem, h),
+    ]
+    jumps = _jumps(problem, trajectory, error)
+    serious = [
+        jump
+        for jump in jumps
+        if jump.order < 2 or np.isfinite(problem.limits.jerk[problem.joints.index(jump.joint)])
+    ]
+    verdict = Verdict.PASS
+    for p in peaks:
+        slack = p.error / p.limit if p.limit else 0.0
+        if p.quantity == "position":
+            slack = p.error
+        if p.ratio - slack > 1 + tolerance:
+            verdict = Verdict.VIOLATED
+            break
+        if not p.ratio + slack <= 1 + tolerance:
+            verdict = Verdict.UNDECIDED
+    if serious and verdict is not Verdict.VIOLATED:
+        verdict = Verdict.DISCONTINUOUS
+    roots = {q: 1.0 / r for r, q in enumerate(QUANTITIES, start=1)}
+    stretch = max([0.0, *(p.ratio ** roots[p.quantity] for p in peaks if p.quantity in roots)])
+    feasible_time, feasible_why = _rescaled(problem, h, max(1.0, stretch), peaks)
+    tight_time, tight_why = _rescaled(problem, h, stretch, peaks)
+    if serious:
+        feasible_time, tight_time = None, None
+        feasible_why = tight_why = "the motion jumps at a break; stretching does not mend that"
+    return Check(
+        verdict=verdict,
+        worst=max(peaks, key=lambda p: p.ratio, default=None),
+        peaks=tuple(peaks),
+        jumps=tuple(jumps),
+        total_time=float(h.sum()),
+        stretch=float(stretch),
+        feasible_time=feasible_time,
+        feasible_why=feasible_why,
+        tight_time=tight_time,
+        tight_why=tight_why,
+        tolerance=tolerance,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Evaluation:
+    """True peak ratios of a batch of duration vectors.
+
+    Attributes
+    ----------
+    ratios : ndarray, shape (batch, joints, 3)
+        max over t of |v|/V, |a|/A, |j|/J; 0 where there is no limit, inf where a duration is
+        not positive and finite.
+    stretch : ndarray, shape (batch,)
+        c* of each vector.
+    """
+
+    ratios: NDArray[np.float64]
+    stretch: NDArray[np.float64]
+
+
+def evaluate(
+    problem: Problem, durations: ArrayLike, nodal: ArrayLike | None = None
+) -> Evaluation:
+    """Exact peak ratios for many duration vectors at once.
+
+    Parameters
+    ----------
+    problem : Problem
+    durations : array_like, shape (batch, segments)
+        Duration vectors, s.
+    nodal : array_like, shape (free, joints), optional
+        Free derivatives, the same for every vector.
+
+    Returns
+    -------
+    Evaluation
+
+    Raises
+    ------
+    TrajgapError
+        If the shape is not (batch, segments).
+    """
+    limits = problem.limits.derivatives
+    wanted = np.isfinite(limits)
+    extra = None if nodal is None else np.asarray(nodal, dtype=np.float64)
+    h = np.asarray(durations, dtype=np.float64)
+    peaks = batch_peaks(problem.interpolant, problem.waypoints, h, wanted, extra)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        ratios = np.where(wanted, peaks / limits, 0.0)
+    ratios[np.isnan(ratios)] = 0.0
+    bad = ~(np.isfinite(h) & (h > 0)).all(axis=1)
+    ratios[bad] = np.inf
+    stretch = np.maximum.reduce(
+        [ratios[:, :, 0], np.sqrt(ratios[:, :, 1]), np.cbrt(ratios[:, :, 2])]
+    ).max(axis=1)
+    return Evaluation(ratios, stretch)

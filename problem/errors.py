@@ -1,0 +1,36 @@
+"""The exceptions of trajgap: one root, and one for case files with its evidence attached."""
+
+from __future__ import annotations
+
+
+class TrajgapError(ValueError):
+    """Root of every exception that trajgap raises on purpose."""
+
+
+class CaseError(TrajgapError):
+    """A case file, or a table meant to become one, cannot be used.
+
+    Parameters
+    ----------
+    file : str
+        The file or case id as it was given.
+    field : str
+        Path of the field inside it, such as ``waypoints.joint_rows[2]``; empty if the file as a
+        whole is at fault.
+    reason : str
+        What is wrong, and after a semicolon how to mend it.
+
+    Notes
+    -----
+    The message is always one line, ``FILE: field: what is wrong; mend``.
+    """
+
+    def __init__(self, file: str, field: str, reason: str) -> None:
+        super().__init__(file, field, reason)
+        self.file = file
+        self.field = field
+        self.reason = reason
+
+    def __str__(self) -> str:
+        parts = (part for part in (self.file, self.field, self.reason) if part)
+        return " ".join(": ".join(parts).split())

@@ -1,0 +1,80 @@
+"""Exact extrema of a trajectory's derivatives: every local one, with its place and size."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import kernel
+from .trajectory import Trajectory
+
+
+@dataclass(frozen=True)
+class Extremum:
+    """One local extremum of a derivative of one joint.
+
+    Attributes
+    ----------
+    joint, segment : int
+        Indices from 0.
+    order : int
+        Derivative: 0 position, 1 velocity, 2 acceleration, 3 jerk.
+    s : float
+        Place in the segment's own parameter, 0..1.
+    time : float
+        Place in time, s.
+    value : float
+        Signed value, rad/sᵒʳᵈᵉʳ.
+    """
+
+    joint: int
+    segment: int
+    order: int
+    s: float
+    time: float
+    value: float
+
+
+def critical_points(a: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Places in (0, 1) where the polynomial with ascending coefficients ``a`` turns.
+
+    The derivative's sign changes are found on monotone pieces (roots of the next derivative cut
+    them), to the last bits of float64; nothing is sampled.
+    """
+    degree = a.size - 1
+    if degree < 2:
+        return np.empty(0)
+    derivative = a[1:] * np.arange(1, degree + 1)
+    roots = np.empty(kernel.MAX_COEFFICIENTS)
+    work = np.empty((kernel.MAX_COEFFICIENTS, kernel.MAX_COEFFICIENTS))
+    count = kernel.roots_in_unit(np.ascontiguousarray(derivative), degree - 1, work, roots)
+    return roots[:count].copy()
+
+
+def extrema(trajectory: Trajectory, joint: int, order: int) -> list[Extremum]:
+    """Ends and interior turning points of one derivative of one joint, in order of time.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+    joint : int
+        Index from 0.
+    order : int
+        0 position, 1 velocity, 2 acceleration, 3 jerk.
+
+    Returns
+    -------
+    list of Extremum
+        The largest absolute value over all t is among them.
+    """
+    found: list[Extremum] = []
+    for k, start in enumerate(trajectory.breaks[:-1]):
+        a = trajectory.derivative(k, joint, order)
+        places = np.concatenate([[0.0], critical_points(a), [1.0]])
+        for s in places:
+            value = float(np.polynomial.polynomial.polyval(s, a))
+            time = float(start + s * trajectory.durations[k])
+            found.append(Extremum(joint, k, order, float(s), time, value))
+    return found

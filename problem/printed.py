@@ -1,0 +1,167 @@
+"""Numbers as a paper prints them: digits that stand for an interval."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from decimal import Decimal
+from fractions import Fraction
+from functools import cached_property
+from typing import NamedTuple
+
+from .errors import TrajgapError
+
+_NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
+_MINUS_SIGNS = str.maketrans({"\u2212": "-", "\u2013": "-", "\ufe63": "-", "\uff0d": "-"})
+_LONGEST = 64
+_LARGEST_EXPONENT = 300
+
+
+class Interval(NamedTuple):
+    """Closed interval of exact rational numbers."""
+
+    lower: Fraction
+    upper: Fraction
+
+
+def down(number: Fraction) -> float:
+    """Largest float that is not above ``number``."""
+    nearest = float(number)
+    return nearest if Fraction(nearest) <= number else math.nextafter(nearest, -math.inf)
+
+
+def up(number: Fraction) -> float:
+    """Smallest float that is not below ``number``."""
+    return -down(-number)
+
+
+@dataclass(frozen=True)
+class Printed:
+    """A number as printed.
+
+    Parameters
+    ----------
+    text : str
+        The digits, for example ``"0.660"`` or ``"−1.6336"`` (any minus sign). The text is kept,
+        with an ASCII minus sign.
+    exact : bool
+        Whether the number is meant exactly. A printed number is not: it stands for every value
+        that rounds to its digits.
+
+    Raises
+    ------
+    TrajgapError
+        If the text is not one finite decimal number.
+
+    Examples
+    --------
+    >>> Printed("0.660").interval
+    Interval(lower=Fraction(1319, 2000), upper=Fraction(1321, 2000))
+    >>> Printed("0.66").upper
+    0.665
+    """
+
+    text: str
+    exact: bool = False
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.text, str):
+            raise TrajgapError(f"{self.text!r} is not text; printed digits are a string")
+        text = self.text.strip().translate(_MINUS_SIGNS)
+        if len(text) > _LONGEST:
+            raise TrajgapError(f"a number of {len(text)} characters; at most {_LONGEST} are read")
+        match = _NUMBER.fullmatch(text)
+        if match is None:
+            raise TrajgapError(
+                f"{self.text!r} is not a finite decimal number; write the printed digits alone, "
+                'such as "0.660"'
+            )
+        exponent = int(match[2][1:]) if match[2] else 0
+        if abs(exponent) > _LARGEST_EXPONENT or Decimal(text).adjusted() > _LARGEST_EXPONENT:
+            raise TrajgapError(
+                f"{self.text!r} is out of range; magnitudes from 1e-{_LARGEST_EXPONENT} to "
+                f"1e{_LARGEST_EXPONENT} are read"
+            )
+        object.__setattr__(self, "text", text)
+
+    @classmethod
+    def number(cls, number: int | Decimal) -> Printed:
+        """An exact number, digits as written.
+
+        Parameters
+        ----------
+        number : int or Decimal
+
+        Returns
+        -------
+        Printed
+
+        Raises
+        ------
+        TrajgapError
+            If the number is not finite or out of range.
+        """
+        if isinstance(number, int) and number.bit_length() > 1000:
+            raise TrajgapError("an integer of more than 300 digits is out of range")
+        return cls(str(number), exact=True)
+
+    @cached_property
+    def decimal(self) -> Decimal:
+        """The digits as a decimal number."""
+        return Decimal(self.text)
+
+    @property
+    def value(self) -> float:
+        """The printed number as a float."""
+        return float(self.fraction)
+
+    @cached_property
+    def fraction(self) -> Fraction:
+        """The printed number, exactly."""
+        return Fraction(self.decimal)
+
+    @cached_property
+    def unit(self) -> Fraction:
+        """One unit in the last printed place; 0 for an exact number."""
+        if self.exact:
+            return Fraction(0)
+        return Fraction(10) ** int(self.decimal.as_tuple().exponent)
+
+    @property
+    def places(self) -> int:
+        """Digits after the decimal point (negative if the last digit stands before it)."""
+        return -int(self.decimal.as_tuple().exponent)
+
+    @cached_property
+    def interval(self) -> Interval:
+        """Every value that rounds to the digits: half a unit of the last place either side.
+
+        Both ends belong to it, since ties round either way.
+        """
+        return Interval(self.fraction - self.unit / 2, self.fraction + self.unit / 2)
+
+    @cached_property
+    def truncated(self) -> Interval:
+        """Every value whose further digits, simply cut off, leave the digits printed.
+
+        For a printed zero that is one unit either side of it.
+        """
+        if self.fraction > 0:
+            return Interval(self.fraction, self.fraction + self.unit)
+        if self.fraction < 0:
+            return Interval(self.fraction - self.unit, self.fraction)
+        return Interval(-self.unit, self.unit)
+
+    @property
+    def lower(self) -> float:
+        """Lower end of `interval`, rounded outwards; `value` for an exact number."""
+        return self.value if self.exact else down(self.interval.lower)
+
+    @property
+    def upper(self) -> float:
+        """Upper end of `interval`, rounded outwards; `value` for an exact number."""
+        return self.value if self.exact else up(self.interval.upper)
+
+    def __str__(self) -> str:
+        return self.text

@@ -1,0 +1,127 @@
+"""The question: way-points, limits, interpolant, duration bounds and coupling of the joints."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .errors import TrajgapError
+from .interpolant import Interpolant
+from .limits import Limits
+
+
+class Coupling(StrEnum):
+    """How the joints share their segment durations."""
+
+    SHARED = "shared"
+    """All joints pass each way-point at the same time; their total is minimised together."""
+    PER_JOINT = "per-joint"
+    """Each joint is optimised by itself; each segment then takes the longest of them."""
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """Minimise the total time through the way-points within the limits.
+
+    Parameters
+    ----------
+    waypoints : array_like, shape (way-points, joints)
+        Joint angles, rad.
+    limits : Limits
+        Limits of every joint.
+    interpolant : Interpolant
+        Declaration of the curve.
+    duration_lower, duration_upper : array_like, shape (segments,) or scalar
+        Bounds on the segment durations, s; a lower bound of 0 means "positive".
+    coupling : Coupling
+    joints : tuple of str
+        Joint labels; "1", "2", ... by default.
+    name : str
+
+    Raises
+    ------
+    TrajgapError
+        If shapes disagree, a value is not finite, or a bound is negative or crosses its partner.
+    """
+
+    waypoints: NDArray[np.float64]
+    limits: Limits
+    interpolant: Interpolant
+    duration_lower: NDArray[np.float64] = field(default_factory=lambda: np.array(0.0))
+    duration_upper: NDArray[np.float64] = field(default_factory=lambda: np.array(np.inf))
+    coupling: Coupling = Coupling.SHARED
+    joints: tuple[str, ...] = ()
+    name: str = "problem"
+
+    def __post_init__(self) -> None:
+        q = np.array(self.waypoints, dtype=np.float64)
+        if q.ndim == 1:
+            q = q[:, None]
+        if q.ndim != 2 or 0 in q.shape:
+            raise TrajgapError(f"waypoints: expected shape (way-points, joints), got {q.shape}")
+        if not np.isfinite(q).all():
+            raise TrajgapError("waypoints: every angle must be finite")
+        wanted = len(self.interpolant.waypoint_breaks)
+        if q.shape[0] != wanted:
+            raise TrajgapError(
+                f"waypoints: {self.interpolant.name} with {self.interpolant.segments} segments "
+                f"needs {wanted}, got {q.shape[0]}"
+            )
+        q.setflags(write=False)
+        object.__setattr__(self, "waypoints", q)
+        if self.limits.joints != q.shape[1]:
+            if self.limits.joints != 1:
+                raise TrajgapError(
+                    f"limits: given for {self.limits.joints} joints, way-points for {q.shape[1]}"
+                )
+            one = self.limits
+            object.__setattr__(
+                self,
+                "limits",
+                Limits(
+                    one.velocity[0],
+                    one.acceleration[0],
+                    one.jerk[0],
+                    one.position_lower[0],
+                    one.position_upper[0],
+                    joints=q.shape[1],
+                ),
+            )
+        n = self.interpolant.segments
+        for name in ("duration_lower", "duration_upper"):
+            bound = np.asarray(getattr(self, name), dtype=np.float64)
+            if bound.ndim > 1 or (bound.ndim == 1 and bound.size != n):
+                raise TrajgapError(f"{name}: expected one value or {n}, got {bound.size}")
+            if np.isnan(bound).any() or (bound < 0).any():
+                raise TrajgapError(f"{name}: must be 0 or more and not NaN")
+            full = np.array(np.broadcast_to(bound, (n,)))
+            full.setflags(write=False)
+            object.__setattr__(self, name, full)
+        if (self.duration_lower > self.duration_upper).any():
+            raise TrajgapError("duration_lower: lies above duration_upper")
+        if np.isinf(self.duration_lower).any() or (self.duration_upper == 0).any():
+            raise TrajgapError("duration bounds: no positive finite duration lies between them")
+        object.__setattr__(self, "coupling", Coupling(self.coupling))
+        labels = self.joints or tuple(str(j + 1) for j in range(q.shape[1]))
+        if len(labels) != q.shape[1]:
+            raise TrajgapError(f"joints: {len(labels)} labels for {q.shape[1]} joints")
+        object.__setattr__(self, "joints", tuple(labels))
+
+    @property
+    def segments(self) -> int:
+        """Number of segments, the length of a duration vector."""
+        return self.interpolant.segments
+
+    def joint(self, index: int) -> Problem:
+        """The same question for one joint alone, with shared coupling."""
+        return replace(
+            self,
+            waypoints=self.waypoints[:, index : index + 1],
+            limits=self.limits.joint(index),
+            joints=(self.joints[index],),
+            coupling=Coupling.SHARED,
+            name=f"{self.name}, joint {self.joints[index]}",
+        )

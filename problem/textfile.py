@@ -1,0 +1,64 @@
+"""Text files handed in by a user, read with one clear line when they cannot be."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from .errors import CaseError
+
+LARGEST_BYTES = 5_000_000
+
+
+def read_text(path: Path) -> str:
+    """Read a small UTF-8 text file.
+
+    Parameters
+    ----------
+    path : Path
+
+    Returns
+    -------
+    str
+        Its text, without a byte order mark, lines ended by a newline.
+
+    Raises
+    ------
+    CaseError
+        If the file is missing, not a regular file, larger than 5 MB, empty, or not UTF-8 text.
+    """
+    name = str(path)
+    try:
+        if path.is_dir():
+            raise CaseError(name, "", "is a directory; name a file in it")
+        if not path.exists():
+            raise CaseError(name, "", "no such file; check the path")
+        if not path.is_file():
+            raise CaseError(name, "", "is not a regular file; name a text file")
+        size = path.stat().st_size
+        if size > LARGEST_BYTES:
+            raise CaseError(
+                name,
+                "",
+                f"has {size / 1e6:.1f} MB, the limit is {LARGEST_BYTES / 1e6:.0f} MB; "
+                "keep only the case itself",
+            )
+        data = path.read_bytes()
+    except OSError as error:
+        reason = error.strerror or type(error).__name__
+        raise CaseError(name, "", f"cannot be read ({reason}); check the path") from None
+    except ValueError as error:
+        if isinstance(error, CaseError):
+            raise
+        raise CaseError(repr(name), "", "is not a usable path; check the name") from None
+    if b"\0" in data:
+        raise CaseError(name, "", "is a binary file; a UTF-8 text file is needed")
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = data[: error.start].count(b"\n") + 1
+        raise CaseError(
+            name, f"line {line}", "is not UTF-8 text; save the file as UTF-8"
+        ) from None
+    if not text.strip():
+        raise CaseError(name, "", "is empty; `trajgap new` writes a file to start from")
+    return text.replace("\r\n", "\n").replace("\r", "\n")

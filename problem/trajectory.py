@@ -1,0 +1,58 @@
+"""A piecewise polynomial joint trajectory over scipy's ``PPoly``."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import PPoly
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """Joint angles over time, with the scaled coefficients that exact peaks are found from.
+
+    Attributes
+    ----------
+    polynomial : scipy.interpolate.PPoly
+        Values of shape (joints,), rad over s.
+    durations : ndarray, shape (segments,)
+        Segment durations, s.
+    scaled : ndarray, shape (segments, powers, joints)
+        Ascending coefficients in s = (t − t_k)/h_k.
+    degrees : tuple of int
+        Degree of each segment.
+    """
+
+    polynomial: PPoly
+    durations: NDArray[np.float64]
+    scaled: NDArray[np.float64]
+    degrees: tuple[int, ...]
+
+    def __call__(self, time: ArrayLike, order: int = 0) -> NDArray[np.float64]:
+        """Derivative ``order`` at ``time`` (s); shape of ``time`` plus (joints,)."""
+        return np.asarray(self.polynomial(time, nu=order), dtype=np.float64)
+
+    @property
+    def breaks(self) -> NDArray[np.float64]:
+        """Times at which the segments meet, s."""
+        return np.asarray(self.polynomial.x, dtype=np.float64)
+
+    @property
+    def total_time(self) -> float:
+        """Sum of the segment durations, s."""
+        return float(self.durations.sum())
+
+    @property
+    def joints(self) -> int:
+        """Number of joints."""
+        return int(self.scaled.shape[2])
+
+    def derivative(self, segment: int, joint: int, order: int) -> NDArray[np.float64]:
+        """Ascending coefficients in s of a time derivative on one segment."""
+        d = self.degrees[segment]
+        a = self.scaled[segment, : d + 1, joint].copy()
+        for _ in range(order):
+            a = a[1:] * np.arange(1, a.size) if a.size > 1 else np.zeros(1)
+        return np.asarray(a / self.durations[segment] ** order, dtype=np.float64)

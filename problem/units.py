@@ -1,0 +1,202 @@
+"""The one place where units are converted: printed units to radians and seconds."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+from types import MappingProxyType
+from typing import Literal, get_args
+
+from .errors import TrajgapError
+from .printed import Printed, down, up
+
+Quantity = Literal["position", "velocity", "acceleration", "jerk", "time"]
+PositionUnit = Literal["rad", "deg"]
+VelocityUnit = Literal["rad/s", "deg/s"]
+AccelerationUnit = Literal["rad/s^2", "deg/s^2"]
+JerkUnit = Literal["rad/s^3", "deg/s^3"]
+TimeUnit = Literal["s", "ms"]
+
+CHOICES = MappingProxyType(
+    {
+        "position": get_args(PositionUnit),
+        "velocity": get_args(VelocityUnit),
+        "acceleration": get_args(AccelerationUnit),
+        "jerk": get_args(JerkUnit),
+        "time": get_args(TimeUnit),
+    }
+)
+"""The units known for each quantity."""
+
+_PI_DIGITS = "3.14159265358979323846264338327950288419716939937510"
+_PI = (Fraction(_PI_DIGITS), Fraction(_PI_DIGITS) + Fraction(1, 10**50))
+
+
+@dataclass(frozen=True)
+class Scale:
+    """Exact factor ``rational · π**pi`` from a printed unit to radians and seconds."""
+
+    rational: Fraction
+    pi: int = 0
+
+    @property
+    def bounds(self) -> tuple[Fraction, Fraction]:
+        """Rational bounds of the factor, relative width below 1e-49 (0 without π)."""
+        if not self.pi:
+            return (self.rational, self.rational)
+        return (self.rational * _PI[0], self.rational * _PI[1])
+
+
+_ONE, _DEGREE = Scale(Fraction(1)), Scale(Fraction(1, 180), 1)
+_SCALES = MappingProxyType(
+    {
+        "rad": _ONE,
+        "deg": _DEGREE,
+        "rad/s": _ONE,
+        "deg/s": _DEGREE,
+        "rad/s^2": _ONE,
+        "deg/s^2": _DEGREE,
+        "rad/s^3": _ONE,
+        "deg/s^3": _DEGREE,
+        "s": _ONE,
+        "ms": Scale(Fraction(1, 1000)),
+    }
+)
+
+
+def scale(unit: str) -> Scale:
+    """Exact factor from ``unit`` to radians and seconds.
+
+    Parameters
+    ----------
+    unit : str
+        One of the units in `CHOICES`.
+
+    Returns
+    -------
+    Scale
+
+    Raises
+    ------
+    TrajgapError
+        If the unit is not known.
+
+    Examples
+    --------
+    >>> scale("deg/s")
+    Scale(rational=Fraction(1, 180), pi=1)
+    """
+    try:
+        return _SCALES[unit]
+    except KeyError:
+        raise TrajgapError(
+            f"unknown unit {unit!r}; use one of {', '.join(_SCALES)}"
+        ) from None
+
+
+def check_unit(unit: object, quantity: Quantity) -> str:
+    """Return ``unit`` if it measures ``quantity``.
+
+    Parameters
+    ----------
+    unit : str
+        Unit as written.
+    quantity : str
+        What it should measure.
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    TrajgapError
+        If the unit is unknown or measures something else.
+    """
+    choices = CHOICES[quantity]
+    if unit in choices:
+        return str(unit)
+    mend = f"use one of {', '.join(choices)}"
+    for other, units in CHOICES.items():
+        if unit in units:
+            raise TrajgapError(f"{unit!r} measures {other}, not {quantity}; {mend}")
+    raise TrajgapError(f"unknown unit {unit!r} for {quantity}; {mend}")
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A printed number in radians and seconds: its value and the interval it stands for.
+
+    ``lower`` and ``upper`` are rounded outwards, so that the interval contains every value that
+    prints alike. All three agree for an exact number.
+    """
+
+    value: float
+    lower: float
+    upper: float
+
+
+def to_si(number: Printed, unit: str) -> Measured:
+    """Convert a printed number to radians and seconds.
+
+    Parameters
+    ----------
+    number : Printed
+        Digits as printed.
+    unit : str
+        The unit they are printed in.
+
+    Returns
+    -------
+    Measured
+        ``value`` is the float nearest to the exact product.
+
+    Raises
+    ------
+    TrajgapError
+        If the unit is not known or the result is too large for a float.
+
+    Examples
+    --------
+    >>> to_si(Printed("80", exact=True), "deg/s").value
+    1.3962634015954636
+    """
+    factor = scale(unit).bounds
+    value = _float(number.fraction * factor[0])
+    if number.exact:
+        return Measured(value, value, value)
+    ends = [end * bound for end in number.interval for bound in factor]
+    return Measured(value, down(min(ends)), up(max(ends)))
+
+
+def _float(number: Fraction) -> float:
+    # Above 1e300 outward rounding could still overflow.
+    if abs(number) > Fraction(10) ** 300:
+        raise TrajgapError("the number is too large; at most 1e300 is read")
+    return float(number)
+
+
+def from_si(value: float, unit: str) -> float:
+    """Express a number given in radians and seconds in another unit, for display.
+
+    Parameters
+    ----------
+    value : float
+        Number in radians and seconds; infinities stay.
+    unit : str
+        The unit to show it in.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    TrajgapError
+        If the unit is not known.
+    """
+    factor = scale(unit).bounds[0]
+    if not math.isfinite(value):
+        return value
+    return float(Fraction(value) / factor)
