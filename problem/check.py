@@ -93,7 +93,7 @@ class Check:
     ----------
     verdict : Verdict
     worst : Peak or None
-        Largest ratio; None if nothing is limited.
+        Largest ratio; None if nothing is limited. A duration counts only beyond its bound.
     peaks : tuple of Peak
         One per joint and quantity.
     jumps : tuple of Jump
@@ -326,7 +326,11 @@ def check(
         feasible_why = tight_why = "the motion jumps at a break; stretching does not mend that"
     return Check(
         verdict=verdict,
-        worst=max(peaks, key=lambda p: p.ratio, default=None),
+        worst=max(
+            (p for p in peaks if p.quantity != "duration" or p.ratio > 1 + tolerance),
+            key=lambda p: p.ratio,
+            default=None,
+        ),
         peaks=tuple(peaks),
         jumps=tuple(jumps),
         total_time=float(h.sum()),
