@@ -87,7 +87,7 @@ class Printed:
 
     @classmethod
     def number(cls, number: int | Decimal) -> Printed:
-        """An exact number, digits as written.
+        """Make an exact number with the digits as written.
 
         Parameters
         ----------

@@ -56,9 +56,7 @@ def read_text(path: Path) -> str:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = data[: error.start].count(b"\n") + 1
-        raise CaseError(
-            name, f"line {line}", "is not UTF-8 text; save the file as UTF-8"
-        ) from None
+        raise CaseError(name, f"line {line}", "is not UTF-8 text; save the file as UTF-8") from None
     if not text.strip():
         raise CaseError(name, "", "is empty; `trajgap new` writes a file to start from")
     return text.replace("\r\n", "\n").replace("\r", "\n")

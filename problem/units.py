@@ -90,9 +90,7 @@ def scale(unit: str) -> Scale:
     try:
         return _SCALES[unit]
     except KeyError:
-        raise TrajgapError(
-            f"unknown unit {unit!r}; use one of {', '.join(_SCALES)}"
-        ) from None
+        raise TrajgapError(f"unknown unit {unit!r}; use one of {', '.join(_SCALES)}") from None
 
 
 def check_unit(unit: object, quantity: Quantity) -> str:

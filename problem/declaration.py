@@ -1,0 +1,126 @@
+"""How a case file declares its interpolant, and the `Interpolant` that it means."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, StrictInt, model_validator
+
+from .fields import Number, Strict, fault
+from .interpolant import (
+    Interpolant,
+    cubic_spline,
+    cubic_spline_virtual,
+    piecewise,
+    quintic_spline,
+    rest_to_rest,
+    three_five_three,
+)
+
+Family = Literal[
+    "3-5-3",
+    "polynomials",
+    "cubic-spline",
+    "quintic-spline",
+    "cubic-spline-virtual",
+    "rest-to-rest",
+]
+
+_FAMILY_KEYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
+    "3-5-3": ((), ()),
+    "polynomials": (("degrees",), ("continuity", "end_orders", "end_derivatives", "free")),
+    "cubic-spline": ((), ("end_orders", "end_derivatives", "free")),
+    "quintic-spline": ((), ()),
+    "cubic-spline-virtual": ((), ()),
+    "rest-to-rest": (("degree",), ()),
+}
+
+
+class InterpolantBlock(Strict):
+    """The curve through the way-points."""
+
+    family: Family
+    where: str = ""
+    degrees: tuple[Annotated[StrictInt, Field(ge=1, le=9)], ...] | None = None
+    """Polynomials: the degree of each segment."""
+    continuity: Annotated[StrictInt, Field(ge=0, le=8)] | None = None
+    """Polynomials: highest continuous derivative at the via-points; 2 if absent."""
+    end_orders: tuple[Annotated[StrictInt, Field(ge=1, le=8)], ...] | None = None
+    """Orders of the derivatives prescribed at both ends; [1, 2] if absent (splines: [1])."""
+    end_derivatives: tuple[Number, ...] | None = None
+    """Their values, in the units of the file; all 0 if absent."""
+    degree: Literal[3, 5, 7, 9] | None = None
+    """Rest-to-rest: degree of every segment."""
+    free: Annotated[StrictInt, Field(ge=0)] = 0
+    """Coefficients per joint that the conditions leave free."""
+
+    @model_validator(mode="after")
+    def _keys_of_family(self) -> Self:
+        needed, allowed = _FAMILY_KEYS[self.family]
+        for key in needed:
+            if getattr(self, key) is None:
+                raise fault(f".{key}", f"is missing; family {self.family!r} needs it")
+        for key in self.model_fields_set - {"family", "where", *needed, *allowed}:
+            raise fault(f".{key}", f"does not go with family {self.family!r}; leave it out")
+        if self.end_orders is not None and len(set(self.end_orders)) != len(self.end_orders):
+            raise fault(".end_orders", "names an order twice; leave one out")
+        if self.end_derivatives is not None:
+            orders = self.orders
+            if len(self.end_derivatives) != len(orders):
+                raise fault(
+                    ".end_derivatives",
+                    f"{len(self.end_derivatives)} values for the {len(orders)} orders "
+                    f"{list(orders)}; give one value per order",
+                )
+            for index, (order, value) in enumerate(zip(orders, self.end_derivatives, strict=True)):
+                if order > 3 and value.fraction != 0:
+                    raise fault(
+                        f".end_derivatives[{index}]",
+                        f"order {order} has no unit; only 0 can be prescribed above jerk",
+                    )
+        return self
+
+    @property
+    def orders(self) -> tuple[int, ...]:
+        """Orders prescribed at both ends."""
+        if self.end_orders is not None:
+            return self.end_orders
+        return (1,) if self.family == "cubic-spline" else (1, 2)
+
+
+def declare(
+    block: InterpolantBlock, count: int, ends: tuple[tuple[int, float], ...]
+) -> Interpolant:
+    """Interpolant that a block means for a number of way-points.
+
+    Parameters
+    ----------
+    block : InterpolantBlock
+    count : int
+        Number of way-points.
+    ends : tuple of (order, value)
+        Derivatives prescribed at both ends, rad/sᵒʳᵈᵉʳ, where the family leaves them open.
+
+    Returns
+    -------
+    Interpolant
+
+    Raises
+    ------
+    TrajgapError
+        If the declaration is over-determined or contradicts itself.
+    """
+    match block.family:
+        case "3-5-3":
+            return three_five_three()
+        case "polynomials":
+            continuity = 2 if block.continuity is None else block.continuity
+            return piecewise(block.degrees or (), continuity, ends)
+        case "cubic-spline":
+            return cubic_spline(count - 1, ends)
+        case "quintic-spline":
+            return quintic_spline(count - 1)
+        case "cubic-spline-virtual":
+            return cubic_spline_virtual(count)
+        case "rest-to-rest":
+            return rest_to_rest(count - 1, block.degree or 0)

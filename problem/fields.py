@@ -1,0 +1,234 @@
+"""Field types that case files are made of: printed numbers, limits, units, ids."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from decimal import Decimal
+from difflib import get_close_matches
+from typing import Annotated, Any
+
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Discriminator,
+    Field,
+    PlainSerializer,
+    PlainValidator,
+    Tag,
+    WithJsonSchema,
+    model_validator,
+)
+from pydantic_core import PydanticCustomError
+
+from .errors import TrajgapError
+from .printed import Printed
+from .units import CHOICES, Quantity, check_unit
+
+
+def fault(path: str, reason: str) -> PydanticCustomError:
+    """Make a validation error at ``path``, relative to the field being validated."""
+    return PydanticCustomError("fault", "{reason}", {"path": path, "reason": reason})
+
+
+def nearest(word: str, known: Iterable[str]) -> str:
+    """Mend for an unknown word: the nearest known one, or all of them."""
+    choices = list(known)
+    close = get_close_matches(word, choices, n=1, cutoff=0.6)
+    if close:
+        return f"did you mean {close[0]!r}?"
+    return f"known: {', '.join(choices)}" if choices else "none are declared"
+
+
+class Strict(BaseModel):
+    """Immutable block of a case file in which every key must be known."""
+
+    model_config = ConfigDict(
+        extra="forbid", frozen=True, arbitrary_types_allowed=True, use_attribute_docstrings=True
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _known_keys(cls, data: Any) -> Any:
+        if not isinstance(data, dict):
+            raise fault("", f"expected a table of keys, got {describe(data)}; write it as a table")
+        for key in data:
+            if key not in cls.model_fields:
+                raise fault(f".{key}", f"unknown key; {nearest(str(key), cls.model_fields)}")
+        return data
+
+
+def describe(raw: object) -> str:
+    """Name a raw value in the words of a TOML file."""
+    kinds = {bool: "a boolean", str: "a string", list: "a list", tuple: "a list", dict: "a table"}
+    for kind, words in kinds.items():
+        if isinstance(raw, kind):
+            return words
+    return "a number" if isinstance(raw, int | float | Decimal) else f"a {type(raw).__name__}"
+
+
+def read_number(raw: object) -> Printed:
+    """Read a printed number (a string) or an exact one (a bare number).
+
+    Raises
+    ------
+    TrajgapError
+        If it is neither, or not finite.
+    """
+    if isinstance(raw, Printed):
+        return raw
+    if isinstance(raw, str):
+        return Printed(raw)
+    if isinstance(raw, float):
+        raw = Decimal(repr(raw))
+    if isinstance(raw, int | Decimal) and not isinstance(raw, bool):
+        return Printed.number(raw)
+    raise TrajgapError(
+        f'expected a number, got {describe(raw)}; write the printed digits, such as "0.660"'
+    )
+
+
+def _infinite(raw: object) -> str | None:
+    text = str(raw).strip().lower() if isinstance(raw, str | float | Decimal) else ""
+    signs = {"inf": "+", "+inf": "+", "infinity": "+", "-inf": "-", "-infinity": "-"}
+    return signs.get(text)
+
+
+def _not_negative(number: Printed) -> Printed:
+    if number.fraction < 0:
+        raise TrajgapError(f"{number.text} is negative; give 0 or more")
+    return number
+
+
+def _positive_length(raw: object) -> Printed:
+    return _not_negative(read_number(raw))
+
+
+def _upper_limit(raw: object) -> Printed | None:
+    sign = _infinite(raw)
+    if sign == "-":
+        raise TrajgapError("-inf is negative; write inf where there is no limit")
+    return None if raw is None or sign else _not_negative(read_number(raw))
+
+
+def _position_limit(side: str) -> Any:
+    def read(raw: object) -> Printed | None:
+        sign = _infinite(raw)
+        if sign and sign != side:
+            raise TrajgapError(f"{sign}inf leaves no position; write {side}inf for no limit")
+        return None if raw is None or sign else read_number(raw)
+
+    return read
+
+
+def _plain(number: Printed | None) -> str | int | float | None:
+    if number is None or not number.exact:
+        return None if number is None else number.text
+    return int(number.fraction) if number.fraction.denominator == 1 else number.value
+
+
+_DIGITS = r"^\s*[+\-−]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?\s*$"
+_NUMBER_SCHEMA = {"anyOf": [{"type": "number"}, {"type": "string", "pattern": _DIGITS}]}
+_LIMIT_SCHEMA = {
+    "anyOf": [
+        {"type": "number"},
+        {"type": "string", "pattern": _DIGITS},
+        {"type": "null"},
+        {"enum": ["inf", "-inf"]},
+    ]
+}
+
+Number = Annotated[
+    Printed, PlainValidator(read_number), PlainSerializer(_plain), WithJsonSchema(_NUMBER_SCHEMA)
+]
+"""A string stands for every value that rounds to its digits, a bare number is exact."""
+
+Length = Annotated[
+    Printed,
+    PlainValidator(_positive_length),
+    PlainSerializer(_plain),
+    WithJsonSchema(_NUMBER_SCHEMA),
+]
+"""A `Number` of 0 or more."""
+
+UpperLimit = Annotated[
+    Printed | None,
+    PlainValidator(_upper_limit),
+    PlainSerializer(_plain),
+    WithJsonSchema(_LIMIT_SCHEMA),
+]
+"""A `Number` of 0 or more, or inf (kept as None)."""
+
+LowerPosition = Annotated[
+    Printed | None,
+    PlainValidator(_position_limit("-")),
+    PlainSerializer(_plain),
+    WithJsonSchema(_LIMIT_SCHEMA),
+]
+"""A `Number`, or -inf (kept as None)."""
+
+UpperPosition = Annotated[
+    Printed | None,
+    PlainValidator(_position_limit("+")),
+    PlainSerializer(_plain),
+    WithJsonSchema(_LIMIT_SCHEMA),
+]
+"""A `Number`, or inf (kept as None)."""
+
+
+def _form(raw: object) -> str:
+    return "list" if isinstance(raw, list | tuple) else "scalar"
+
+
+def _nonempty(raw: object) -> object:
+    if isinstance(raw, list | tuple) and not raw:
+        raise TrajgapError("is an empty list; give one value for all, or one each")
+    return raw
+
+
+UNION_TAGS = ("list", "scalar")
+"""Union tags that appear in the location of a validation error but not in the file."""
+
+OneOrEachUpper = Annotated[
+    Annotated[UpperLimit, Tag("scalar")]
+    | Annotated[tuple[UpperLimit, ...], BeforeValidator(_nonempty), Tag("list")],
+    Discriminator(_form),
+]
+OneOrEachLength = Annotated[
+    Annotated[Length, Tag("scalar")]
+    | Annotated[tuple[Length, ...], BeforeValidator(_nonempty), Tag("list")],
+    Discriminator(_form),
+]
+OneOrEachLowerPosition = Annotated[
+    Annotated[LowerPosition, Tag("scalar")]
+    | Annotated[tuple[LowerPosition, ...], BeforeValidator(_nonempty), Tag("list")],
+    Discriminator(_form),
+]
+OneOrEachUpperPosition = Annotated[
+    Annotated[UpperPosition, Tag("scalar")]
+    | Annotated[tuple[UpperPosition, ...], BeforeValidator(_nonempty), Tag("list")],
+    Discriminator(_form),
+]
+
+Row = Annotated[tuple[Number, ...], Field(min_length=1)]
+Rows = Annotated[tuple[Row, ...], Field(min_length=1)]
+
+Id = Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9.-]*$")]
+"""Lower-case letters, digits, dots and dashes."""
+
+Text = Annotated[str, Field(min_length=1)]
+
+
+def _unit(quantity: Quantity) -> tuple[PlainValidator, WithJsonSchema]:
+    def read(raw: object) -> str:
+        return check_unit(raw, quantity)
+
+    schema = {"type": "string", "enum": list(CHOICES[quantity])}
+    return PlainValidator(read), WithJsonSchema(schema)
+
+
+PositionUnit = Annotated[str | None, *_unit("position")]
+VelocityUnit = Annotated[str | None, *_unit("velocity")]
+AccelerationUnit = Annotated[str | None, *_unit("acceleration")]
+JerkUnit = Annotated[str | None, *_unit("jerk")]
+TimeUnit = Annotated[str | None, *_unit("time")]

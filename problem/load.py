@@ -1,0 +1,109 @@
+"""Loading of case files: published ones by id, others by path."""
+
+from __future__ import annotations
+
+import tomllib
+from decimal import Decimal
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from .case import Case
+from .errors import CaseError
+from .faults import first_fault
+from .fields import nearest
+from .references import check_claims, check_references
+from .schema import CaseFile
+from .textfile import read_text
+
+FORMAT = 1
+"""The version of the case file format that this module reads."""
+
+
+def published_ids() -> tuple[str, ...]:
+    """Ids of the case files shipped with the package, sorted."""
+    folder = files(f"{__package__}.published")
+    names = (entry.name for entry in folder.iterdir())
+    return tuple(sorted(n.removesuffix(".toml") for n in names if n.endswith(".toml")))
+
+
+def load_case(source: str | Path) -> Case:
+    """Load a case file.
+
+    Parameters
+    ----------
+    source : str or Path
+        Id of a published case, or path of a TOML file.
+
+    Returns
+    -------
+    Case
+
+    Raises
+    ------
+    CaseError
+        If there is no such case or file, or anything in it is wrong: one line naming the file,
+        the field and the mend.
+    """
+    known = published_ids()
+    if isinstance(source, str) and source in known:
+        text = files(f"{__package__}.published").joinpath(f"{source}.toml").read_text("utf-8")
+        return parse_case(text, source)
+    path = Path(source)
+    if not path.suffix and not path.exists():
+        raise CaseError(
+            str(source), "", f"neither a published case nor a file; {nearest(str(source), known)}"
+        )
+    return parse_case(read_text(path), str(source))
+
+
+def parse_case(text: str, file: str) -> Case:
+    """Read the text of a case file.
+
+    Parameters
+    ----------
+    text : str
+        TOML.
+    file : str
+        Name for error messages.
+
+    Returns
+    -------
+    Case
+
+    Raises
+    ------
+    CaseError
+        As `load_case`.
+    """
+    raw = _parse_toml(text, file)
+    version = raw.get("format")
+    if version is None:
+        raise CaseError(file, "format", f"is missing; add `format = {FORMAT}`")
+    if version != FORMAT or isinstance(version, bool):
+        raise CaseError(file, "format", f"is {version!r}; this version reads {FORMAT}")
+    try:
+        document = CaseFile.model_validate(raw)
+    except ValidationError as error:
+        raise CaseError(file, *first_fault(error)) from None
+    check_references(document, file)
+    case = Case(document, file)
+    for problem_id, reading_id in case.selections():
+        case.problem(problem_id, reading_id)
+    check_claims(document, file, lambda claim: case.posing(claim.problem))
+    return case
+
+
+def _parse_toml(text: str, file: str) -> dict[str, Any]:
+    try:
+        return tomllib.loads(text, parse_float=Decimal)
+    except tomllib.TOMLDecodeError as error:
+        what, _, place = str(error).partition(" (at ")
+        reason = f"not valid TOML, {what[:1].lower()}{what[1:]}"
+        raise CaseError(file, place.rstrip(")"), f"{reason}; correct the syntax") from None
+    except RecursionError:
+        raise CaseError(file, "", "is nested too deeply; flatten it") from None
+    except (ArithmeticError, ValueError):
+        raise CaseError(file, "", "holds a number that is out of range; shorten it") from None

@@ -1,0 +1,175 @@
+"""Ids in a case file: each declared once, each reference to something declared."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+from .claim import (
+    AnyClaim,
+    Claim,
+    DurationsClaim,
+    ImprovementClaim,
+    MaximumClaim,
+    PeakClaim,
+    StatementClaim,
+    TotalTimeClaim,
+)
+from .errors import CaseError
+from .fields import nearest
+from .posing import Posing
+from .schema import CaseFile
+
+_LISTS = (
+    "problems",
+    "readings",
+    "algorithms",
+    "tables",
+    "claims",
+    "assumptions",
+    "columns",
+    "not_checkable",
+)
+_BLOCKS = ("units", "waypoints", "limits", "interpolant", "durations", "coupling", "robot")
+_TIMED = (DurationsClaim, MaximumClaim, TotalTimeClaim, PeakClaim)
+
+
+def check_references(document: CaseFile, file: str) -> None:
+    """Check that ids are unique and references resolve.
+
+    Parameters
+    ----------
+    document : CaseFile
+    file : str
+        Name for error messages.
+
+    Raises
+    ------
+    CaseError
+        If an id is declared twice, or something refers to an undeclared one.
+    """
+    ids = {name: _unique(file, name, getattr(document, name)) for name in _LISTS}
+    defaults = [index for index, reading in enumerate(document.readings) if reading.default]
+    if len(defaults) > 1:
+        raise CaseError(
+            file, f"readings[{defaults[1]}].default", "a second default reading; keep one"
+        )
+
+    def known(kind: str, field: str, name: str | None) -> None:
+        if name is not None and name not in ids[kind]:
+            raise CaseError(
+                file, field, f"{name!r} is not the id of any of the {kind}; "
+                f"{nearest(name, ids[kind])}"
+            )  # fmt: skip
+
+    for index, table in enumerate(document.tables):
+        known("algorithms", f"tables[{index}].algorithm", table.algorithm)
+    for index, claim in enumerate(document.claims):
+        at = f"claims[{index}]"
+        known("problems", f"{at}.problem", claim.problem)
+        known("algorithms", f"{at}.algorithm", claim.algorithm)
+        known("tables", f"{at}.table", claim.table)
+        for position, table_id in enumerate(claim.printed_tables):
+            known("tables", f"{at}.printed_tables[{position}]", table_id)
+        if claim.joint is not None and claim.joint not in document.robot.joints:
+            joints = ", ".join(document.robot.joints)
+            raise CaseError(
+                file,
+                f"{at}.joint",
+                f"joint {claim.joint!r} is unknown; robot.joints lists {joints}",
+            )
+        for field, name in _claim_references(claim):
+            known("claims", f"{at}.{field}", name)
+        if claim.problem is None and len(document.problems) > 1 and isinstance(claim, _TIMED):
+            raise CaseError(
+                file,
+                f"{at}.problem",
+                f"is missing, and there are {len(document.problems)} problems; "
+                f"add one of {', '.join(ids['problems'])}",
+            )
+    _check_kinds(document, file)
+    everything = {name for names in ids.values() for name in names} | set(_BLOCKS)
+    for index, assumption in enumerate(document.assumptions):
+        for position, name in enumerate(assumption.affects):
+            if name not in everything:
+                raise CaseError(
+                    file,
+                    f"assumptions[{index}].affects[{position}]",
+                    f"{name!r} is neither an id in this file nor one of "
+                    f"{', '.join(_BLOCKS)}; name what it affects",
+                )
+
+
+def _unique(file: str, kind: str, blocks: Iterable[object]) -> list[str]:
+    seen: list[str] = []
+    for index, block in enumerate(blocks):
+        name = str(getattr(block, "id"))  # noqa: B009
+        if name in seen:
+            raise CaseError(
+                file, f"{kind}[{index}].id", f"{name!r} is already the id of "
+                f"{kind}[{seen.index(name)}]; rename one"
+            )  # fmt: skip
+        seen.append(name)
+    return seen
+
+
+def _claim_references(claim: Claim) -> list[tuple[str, str]]:
+    if isinstance(claim, ImprovementClaim):
+        return [("slower", claim.slower), ("faster", claim.faster)]
+    if isinstance(claim, MaximumClaim | StatementClaim):
+        return [(f"of[{position}]", name) for position, name in enumerate(claim.of)]
+    return []
+
+
+def _check_kinds(document: CaseFile, file: str) -> None:
+    by_id = {claim.id: claim for claim in document.claims}
+    totals = (DurationsClaim, MaximumClaim, TotalTimeClaim)
+    for index, claim in enumerate(document.claims):
+        wanted = totals if isinstance(claim, ImprovementClaim) else totals[:2]
+        for field, name in _claim_references(claim):
+            if not isinstance(by_id[name], wanted):
+                what = "a time" if isinstance(claim, ImprovementClaim) else "durations"
+                raise CaseError(
+                    file,
+                    f"claims[{index}].{field}",
+                    f"{name!r} is a claim of quantity {by_id[name].quantity!r}; "
+                    f"name one that states {what}",
+                )
+
+
+def check_claims(document: CaseFile, file: str, posing_of: Callable[[AnyClaim], Posing]) -> None:
+    """Check that each claim fits the problem that it speaks about.
+
+    Parameters
+    ----------
+    document : CaseFile
+    file : str
+        Name for error messages.
+    posing_of : callable
+        The problem of a claim under the default reading.
+
+    Raises
+    ------
+    CaseError
+        If a claim states another number of durations than there are segments, or names a joint
+        that takes no part.
+    """
+    for index, claim in enumerate(document.claims):
+        posing = posing_of(claim)
+        if claim.joint is not None:
+            labels = [posing.labels[j] for j in posing.joints]
+            if claim.joint not in labels:
+                raise posing.fail(
+                    f"claims[{index}].joint",
+                    f"joint {claim.joint!r} takes no part; the problem has {', '.join(labels)}",
+                )
+        if isinstance(claim, DurationsClaim | MaximumClaim):
+            segments = posing.interpolant().segments
+            if len(claim.durations) != segments:
+                raise posing.fail(
+                    f"claims[{index}].durations",
+                    f"{len(claim.durations)} values for {segments} segments; give one each",
+                )
+            for duration in claim.durations:
+                posing.si(duration, "time")
+        if isinstance(claim, PeakClaim):
+            posing.si(claim.value, claim.derivative)
