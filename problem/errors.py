@@ -33,4 +33,6 @@ class CaseError(TrajgapError):
 
     def __str__(self) -> str:
         parts = (part for part in (self.file, self.field, self.reason) if part)
-        return " ".join(": ".join(parts).split())
+        line = " ".join(": ".join(parts).split())
+        # File names and values come from outside; nothing of them may steer a terminal.
+        return "".join(c if c.isprintable() else "?" for c in line)

@@ -78,7 +78,28 @@ def parse_case(text: str, file: str) -> Case:
     CaseError
         As `load_case`.
     """
-    raw = _parse_toml(text, file)
+    return check_case(_parse_toml(text, file), file)
+
+
+def check_case(raw: dict[str, Any], file: str) -> Case:
+    """Check the raw content of a case file.
+
+    Parameters
+    ----------
+    raw : dict
+        Parsed TOML, numbers with a point as Decimal.
+    file : str
+        Name for error messages.
+
+    Returns
+    -------
+    Case
+
+    Raises
+    ------
+    CaseError
+        As `load_case`.
+    """
     version = raw.get("format")
     if version is None:
         raise CaseError(file, "format", f"is missing; add `format = {FORMAT}`")

@@ -149,17 +149,18 @@ class Posing:
             raise self.fail(
                 "limits.position_lower", "lies above limits.position_upper; exchange them"
             )
+        limits = Limits(
+            velocity=self._limit("velocity", "velocity"),
+            acceleration=self._limit("acceleration", "acceleration"),
+            jerk=self._limit("jerk", "jerk"),
+            position_lower=position_lower,
+            position_upper=position_upper,
+        )
         points = np.array([[angle.value for angle in row] for row in self.points()])
         try:
             return Problem(
                 waypoints=points,
-                limits=Limits(
-                    velocity=self._limit("velocity", "velocity"),
-                    acceleration=self._limit("acceleration", "acceleration"),
-                    jerk=self._limit("jerk", "jerk"),
-                    position_lower=position_lower,
-                    position_upper=position_upper,
-                ),
+                limits=limits,
                 interpolant=interpolant,
                 duration_lower=lower,
                 duration_upper=upper,
@@ -168,7 +169,7 @@ class Posing:
                 name=self.name,
             )
         except TrajgapError as error:
-            raise CaseError(self.file, "", str(error) + self.selected) from None
+            raise self.fail("", str(error)) from None
 
     def _limit(self, name: str, quantity: Quantity, default: float = np.inf) -> NDArray[np.float64]:
         every = self._each("limits", name, quantity, len(self.labels), "joint", default)

@@ -46,10 +46,6 @@ def read_text(path: Path) -> str:
     except OSError as error:
         reason = error.strerror or type(error).__name__
         raise CaseError(name, "", f"cannot be read ({reason}); check the path") from None
-    except ValueError as error:
-        if isinstance(error, CaseError):
-            raise
-        raise CaseError(repr(name), "", "is not a usable path; check the name") from None
     if b"\0" in data:
         raise CaseError(name, "", "is a binary file; a UTF-8 text file is needed")
     try:

@@ -1,0 +1,116 @@
+"""Printed digits against decimal rounding as the second route."""
+
+from __future__ import annotations
+
+import math
+from decimal import ROUND_DOWN, ROUND_HALF_DOWN, ROUND_HALF_UP, Decimal
+from fractions import Fraction
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from trajgap.problem.errors import CaseError, TrajgapError
+from trajgap.problem.printed import Printed, down, up
+
+numbers = st.decimals(
+    min_value=-1000, max_value=1000, allow_nan=False, allow_infinity=False, places=9
+)
+places = st.integers(min_value=0, max_value=6)
+
+
+@given(numbers, places, st.sampled_from([ROUND_HALF_UP, ROUND_HALF_DOWN]))
+def test_whatever_rounds_to_the_digits_lies_in_the_interval(number, digits, rounding):
+    printed = Printed(str(number.quantize(Decimal(1).scaleb(-digits), rounding)))
+    lower, upper = printed.interval
+    assert lower <= Fraction(number) <= upper
+    assert printed.lower <= float(number) <= printed.upper
+
+
+@given(numbers, places)
+def test_nothing_beyond_the_interval_rounds_to_the_digits(number, digits):
+    step = Decimal(1).scaleb(-digits)
+    rounded = number.quantize(step, ROUND_HALF_UP)
+    lower, upper = Printed(str(rounded)).interval
+    for outside in (lower - Fraction(1, 10**12), upper + Fraction(1, 10**12)):
+        decimal = Decimal(outside.numerator) / Decimal(outside.denominator)
+        assert decimal.quantize(step, ROUND_HALF_UP) != rounded
+
+
+@given(numbers, places)
+def test_whatever_is_cut_to_the_digits_lies_in_the_truncated_interval(number, digits):
+    printed = Printed(str(number.quantize(Decimal(1).scaleb(-digits), ROUND_DOWN)))
+    lower, upper = printed.truncated
+    assert lower <= Fraction(number) <= upper
+
+
+@given(st.fractions(min_value=-(10**6), max_value=10**6))
+def test_directed_rounding_brackets_within_one_float(number):
+    assert Fraction(down(number)) <= number <= Fraction(up(number))
+    assert up(number) in (down(number), math.nextafter(down(number), math.inf))
+
+
+def test_trailing_zeros_count():
+    assert Printed("0.660").interval == (Fraction(1319, 2000), Fraction(1321, 2000))
+    assert Printed("0.66").interval == (Fraction(131, 200), Fraction(133, 200))
+    assert Printed("0.66") != Printed("0.660")
+    assert Printed("0.660").places == 3
+
+
+@pytest.mark.parametrize("minus", ["-", "−", "–", "﹣", "－"])
+def test_any_minus_sign_is_read(minus):
+    printed = Printed(f" {minus}1.6336 ")
+    assert printed == Printed("-1.6336")
+    assert printed.value == -1.6336
+    assert (printed.lower, printed.upper) == (
+        down(Fraction(-163365, 100000)),
+        up(Fraction(-163355, 100000)),
+    )
+
+
+def test_an_exact_number_has_no_width():
+    printed = Printed.number(Decimal("0.30"))
+    assert printed.text == "0.30"
+    assert printed.lower == printed.value == printed.upper == 0.3
+    assert printed.interval == printed.truncated == (Fraction(3, 10), Fraction(3, 10))
+    assert Printed.number(80).value == 80.0
+
+
+def test_exponents_move_the_last_place():
+    assert Printed("1.5e3").interval == (1450, 1550)
+    assert Printed("80").interval == (Fraction(159, 2), Fraction(161, 2))
+    assert Printed("80").truncated == (80, 81)
+    assert Printed("0.0").truncated == (Fraction(-1, 10), Fraction(1, 10))
+
+
+@pytest.mark.parametrize(
+    "text", ["", "nan", "inf", "-inf", "1,5", "1_0", "0x1", "1 2", "1.2.3", "e5", "٣", "--1", "."]
+)
+def test_other_text_is_no_number(text):
+    with pytest.raises(TrajgapError, match="not a finite decimal number"):
+        Printed(text)
+
+
+@pytest.mark.parametrize("text", ["1e301", "1e-301", "1e999999999999", "9" * 60 + "e299"])
+def test_huge_exponents_are_refused(text):
+    with pytest.raises(TrajgapError, match="out of range; magnitudes from 1e-300 to 1e300"):
+        Printed(text)
+
+
+def test_long_and_foreign_values_are_refused():
+    with pytest.raises(TrajgapError, match="a number of 65 characters; at most 64"):
+        Printed("1" * 65)
+    with pytest.raises(TrajgapError, match="an integer of more than 300 digits is out of range"):
+        Printed.number(10**400)
+    with pytest.raises(TrajgapError, match="'NaN' is not a finite decimal number"):
+        Printed.number(Decimal("nan"))
+    with pytest.raises(TrajgapError, match=r"1\.5 is not text"):
+        Printed(1.5)
+
+
+def test_a_case_error_is_one_line_with_its_evidence():
+    error = CaseError("a.toml", "limits.velocity", "is\nnegative;  give more")
+    assert str(error) == "a.toml: limits.velocity: is negative; give more"
+    assert (error.file, error.field) == ("a.toml", "limits.velocity")
+    assert str(CaseError("a.toml", "", "is empty")) == "a.toml: is empty"
+    assert isinstance(error, TrajgapError)
+    assert isinstance(error, ValueError)

@@ -1,0 +1,197 @@
+"""Published case files against a transcription of the papers made for this test alone."""
+
+from __future__ import annotations
+
+import csv
+import tomllib
+from decimal import Decimal
+from pathlib import Path
+
+import numpy as np
+import pytest
+from trajgap.problem.claim import ConditionsClaim, DurationsClaim, MaximumClaim
+from trajgap.problem.load import load_case, published_ids
+from trajgap.problem.printed import Printed
+
+TABLES = Path(__file__).parent / "published_tables"
+PUMA, IRB = "puma560-mnam-pso-353", "irb460-pso-353"
+FOLDER = Path(__file__).parent.parent / "problem" / "published"
+
+
+def rows(name: str) -> dict[str, list[str]]:
+    """Rows of a transcribed table by their first cell, minus signs in ASCII."""
+    with (TABLES / f"{name}.csv").open(encoding="utf-8", newline="") as file:
+        table = list(csv.reader(file))
+    assert len({len(row) for row in table}) == 1
+    return {row[0]: [cell.replace("−", "-") for cell in row[1:]] for row in table[1:]}
+
+
+def texts(numbers):
+    """Digits of printed numbers; none of them may be exact."""
+    assert not any(number.exact for number in numbers)
+    return [number.text for number in numbers]
+
+
+def test_puma_waypoints():
+    case, table = load_case(PUMA), rows(f"{PUMA}.table-1")
+    assert list(case.robot.joints) == list(table)
+    for row, joint in zip(case.document.waypoints.joint_rows, case.robot.joints, strict=True):
+        assert texts(row) == table[joint]
+    expected = np.array([[float(cell) for cell in row] for row in table.values()]).T
+    np.testing.assert_array_equal(case.problem().waypoints, expected)
+
+
+@pytest.mark.parametrize("table_id", ["table-2", "table-3"])
+def test_puma_durations(table_id):
+    case, table = load_case(PUMA), rows(f"{PUMA}.{table_id}")
+    claims = case.table_claims(table_id)
+    assert [c.joint or "longest" for c in claims] == list(table)
+    for claim in claims:
+        assert isinstance(claim, DurationsClaim | MaximumClaim)
+        cells = table[claim.joint or "longest"]
+        assert texts([*claim.durations, claim.total]) == cells
+        box = case.claim_durations(claim)
+        np.testing.assert_array_equal(box.value, [float(cell) for cell in cells[:3]])
+        np.testing.assert_allclose(box.upper - box.lower, 0.001, rtol=1e-9)
+        algorithms = {t.id: t.algorithm for t in case.tables}
+        assert claim.algorithm == algorithms[table_id]
+    longest = claims[-1]
+    assert longest.of == tuple(c.id for c in claims[:-1])
+
+
+def test_puma_numbers_in_the_text():
+    case, printed = load_case(PUMA), rows(f"{PUMA}.text")
+    numbers = {
+        "total of the standard algorithm": case.claim("pso-total").value,
+        "total of the improved algorithm": case.claim("mnam-total").value,
+        "reduction in percent": case.claim("improvement").percent,
+        "iterations until most joints converge": case.claim("convergence").iterations,
+    }
+    assert {key: [number.text] for key, number in numbers.items()} == printed
+
+
+def test_puma_settings():
+    case, printed = load_case(PUMA), rows(f"{PUMA}.settings")
+    by_id = {algorithm.id: algorithm for algorithm in case.algorithms}
+    settings = {
+        key: [";".join(f"{x:g}" for x in np.atleast_1d(value))]
+        for key, value in by_id["mnam-pso"].settings.items()
+    }
+    assert settings == printed
+    assert by_id["standard-pso"].settings.items() <= by_id["mnam-pso"].settings.items()
+
+
+def test_puma_limits_and_bounds():
+    case = load_case(PUMA)
+    for reading, lower in (("durations-at-least-0.3", 0.3), ("durations-positive", 0.0)):
+        problem = case.problem("six-joints", reading)
+        np.testing.assert_array_equal(problem.limits.velocity, np.full(6, 6.0))
+        np.testing.assert_array_equal(problem.limits.acceleration, np.full(6, 8.0))
+        assert np.isinf(problem.limits.jerk).all()
+        np.testing.assert_array_equal(problem.duration_lower, np.full(3, lower))
+        assert np.isinf(problem.duration_upper).all()
+        assert problem.coupling == "per-joint"
+    assert case.default_reading.id == "durations-at-least-0.3"
+
+
+def test_irb_waypoints_and_columns():
+    case, table = load_case(IRB), rows(f"{IRB}.table-3")
+    columns = {column.id: texts(column.values) for column in case.columns}
+    assert list(table) == ["1", "3", "5"]
+    assert texts(case.document.waypoints.joint_rows[0]) == table["5"]
+    assert columns["joint-1"] == table["1"]
+    assert columns["joint-3"] == table["3"]
+    points = rows(f"{IRB}.table-2")
+    assert {k: columns[f"cartesian-{k}"] for k in points} == points
+    assert columns["link-lengths"] == [a for _, a, _ in rows(f"{IRB}.table-1").values()]
+
+
+def test_irb_durations():
+    case, table = load_case(IRB), rows(f"{IRB}.table-4")
+    for position, limit in enumerate(("80", "110")):
+        claim = case.claim(f"durations-{limit}")
+        assert texts(claim.durations) == [row[position] for row in table.values()]
+        assert claim.total is None
+        assert claim.problem == f"limit-{limit}"
+        problem = case.problem(f"limit-{limit}")
+        np.testing.assert_allclose(np.rad2deg(problem.limits.velocity), float(limit), rtol=1e-15)
+        assert np.isinf(problem.limits.acceleration).all()
+
+
+def test_irb_numbers_in_the_text():
+    case, printed = load_case(IRB), rows(f"{IRB}.text")
+    conditions = case.claim("conditions-14")
+    assert isinstance(conditions, ConditionsClaim)
+    assert {
+        "iterations until the particles converge": [case.claim("convergence").iterations.text],
+        "iterations": [str(case.algorithms[0].settings["iterations"])],
+        "conditions": [conditions.count.text],
+    } == printed
+
+
+def test_irb_readings_change_the_unit_of_the_waypoints_only():
+    case = load_case(IRB)
+    for limit in ("limit-80", "limit-110"):
+        radians = case.problem(limit, "waypoints-rad")
+        degrees = case.problem(limit, "waypoints-deg")
+        np.testing.assert_allclose(np.deg2rad(radians.waypoints), degrees.waypoints, rtol=1e-15)
+        np.testing.assert_array_equal(radians.limits.velocity, degrees.limits.velocity)
+
+
+def quoted_numbers(node: object) -> set[str]:
+    """Every string in a document that is a printed number, from claims, way-points, columns."""
+    if isinstance(node, dict):
+        skip = {"id", "joint", "joints", "labels", "settings", "chosen"}
+        return set().union(*(quoted_numbers(v) for k, v in node.items() if k not in skip), set())
+    if isinstance(node, list):
+        return set().union(*(quoted_numbers(v) for v in node), set())
+    try:
+        return {Printed(node).text} if isinstance(node, str) else set()
+    except ValueError:
+        return set()
+
+
+@pytest.mark.parametrize("case_id", [PUMA, IRB])
+def test_no_number_is_in_the_file_that_is_not_in_the_transcription(case_id):
+    document = tomllib.loads((FOLDER / f"{case_id}.toml").read_text(encoding="utf-8"))
+    transcribed = {
+        cell
+        for path in TABLES.glob(f"{case_id}.*.csv")
+        for row in rows(path.stem).values()
+        for cell in row
+    }
+    numbers = quoted_numbers(document)
+    assert len(numbers) > 15
+    assert numbers <= transcribed
+
+
+@pytest.mark.parametrize("case_id", published_ids())
+def test_the_id_is_the_file_name_and_every_selection_is_posed(case_id):
+    case = load_case(case_id)
+    assert case.id == case_id
+    assert str(case.title)
+    for problem_id, reading_id in case.selections():
+        problem = case.problem(problem_id, reading_id)
+        lower, upper = case.waypoint_box(problem_id, reading_id)
+        assert lower.shape == upper.shape == problem.waypoints.shape
+        assert (lower <= problem.waypoints).all()
+        assert (problem.waypoints <= upper).all()
+        assert (upper > lower).all()
+
+
+@pytest.mark.parametrize("case_id", published_ids())
+def test_everything_left_open_has_a_choice(case_id):
+    case = load_case(case_id)
+    assumed = {name for assumption in case.assumptions for name in assumption.affects}
+    for algorithm in case.algorithms:
+        if algorithm.chosen or algorithm.open:
+            assert algorithm.id in assumed
+    for reading in case.readings:
+        assert reading.why.endswith(".")
+    if len(case.readings) > 1:
+        assert {reading.id for reading in case.readings} <= assumed
+    # Only limits and settings are exact; a bare number anywhere else would lose its digits.
+    document = tomllib.loads(
+        (FOLDER / f"{case_id}.toml").read_text(encoding="utf-8"), parse_float=Decimal
+    )
+    assert not any(isinstance(v, Decimal) for claim in document["claims"] for v in claim.values())
