@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from trajgap.heuristics import from_settings
 from trajgap.problem.claim import ConditionsClaim, DurationsClaim, MaximumClaim
 from trajgap.problem.load import load_case, published_ids
 from trajgap.problem.printed import Printed
@@ -177,6 +178,13 @@ def test_the_id_is_the_file_name_and_every_selection_is_posed(case_id):
         assert (lower <= problem.waypoints).all()
         assert (problem.waypoints <= upper).all()
         assert (upper > lower).all()
+
+
+@pytest.mark.parametrize("case_id", published_ids())
+def test_settings_build_their_algorithm_and_choices_are_its_defaults(case_id):
+    for algorithm in load_case(case_id).algorithms:
+        built = from_settings(algorithm.kind, algorithm.parameters)
+        assert built == from_settings(algorithm.kind, algorithm.settings)
 
 
 @pytest.mark.parametrize("case_id", published_ids())
