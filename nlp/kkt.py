@@ -129,6 +129,10 @@ def kkt(
     gradients = peak_gradients(problem, durations, points, nodal)
     columns = np.zeros((n + free * joints, len(rows)))
     nodal_scale = np.ones((free, joints))
+    for i, (_, order) in enumerate(problem.interpolant.free_derivatives if free else ()):
+        if 1 <= order <= 3:
+            limit = problem.limits.derivatives[:, order - 1]
+            nodal_scale[i] = np.where(np.isfinite(limit), limit, 1.0)
     for i, c in enumerate(rows):
         columns[:n, i] = c.sign * gradients.durations[i] * durations / c.scale
         if c.extremum is not None and free:

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..problem import Interpolant, Problem, Verdict, check, fit
 from ..problem.peak import critical_points
-from ..problem.spline import layout, right_hand_sides
+from ..problem.spline import coefficient_gradient, layout, right_hand_sides
 from ..problem.trajectory import Trajectory
 from .feasibility import impossible
 from .formulation import (
@@ -354,8 +354,10 @@ def _track(
             f, scaled.values, scaled.inverse_limits, scaled.position, places, weights
         )
         low, high = wide[0].copy(), wide[1].copy()
-        low[:n] = np.maximum(low[:n], x[:n] * (1.0 - radius))
-        high[:n] = np.minimum(high[:n], x[:n] * (1.0 + 2.0 * radius))
+        room = radius * np.maximum(np.abs(x), np.where(np.arange(x.size) < n, 0.0, 1.0))
+        held = slice(None) if problem.interpolant.free else slice(n)
+        low[held] = np.maximum(low[held], (x - room)[held])
+        high[held] = np.minimum(high[held], (x + 2.0 * room)[held])
         near = duals is not None and step < 1e-2
         x_new, new_duals, success, count = _run(
             build_.warm if near else build_.cold, f, x, p, (low, high), duals if near else None
@@ -377,7 +379,8 @@ def _track(
             if moved < 1e-7:
                 converged = success
                 break
-            radius, step, duals = 0.25 * min(radius, moved), moved, None
+            shift = float((np.abs(x_new - x) / np.maximum(np.abs(x), 1.0)).max())
+            radius, step, duals = 0.25 * min(radius, max(moved, shift)), moved, None
     verdict = check(problem, h, nodal)
     return _Local(h, nodal, float(h.sum()), converged, verdict.verdict is Verdict.PASS, iterations)
 
@@ -439,6 +442,16 @@ def solve(
     reason = impossible(problem)
     if reason is not None:
         return Solution(problem, Status.INFEASIBLE, reason)
+    idle = idle_segments(problem)
+    if idle:
+        return _with_idle(problem, idle, starts, seed, initial, form)
+    return _solve_moving(problem, starts, seed, initial, form)
+
+
+def _solve_moving(
+    problem: Problem, starts: int, seed: int, initial: ArrayLike | None, form: Form | None
+) -> Solution:
+    """`solve` for a problem without idle segments."""
     build_ = compiled(structure_of(problem, form))
     began = time.perf_counter()
     generator = np.random.default_rng(seed)
@@ -453,6 +466,11 @@ def solve(
         floor = share * mean
         found = _multistart(problem, build_, points, floor)
         solution = _judged(problem, found, floor, len(points))
+        if solution.status is Status.FEASIBLE and build_.formulation.structure.form is Form.REDUCED:
+            # Eliminating across very unequal durations loses digits; the lifted form does not.
+            lifted = compiled(structure_of(problem, Form.LIFTED))
+            found += _multistart(problem, lifted, points, floor)
+            solution = _judged(problem, found, floor, len(points))
         if solution.status is not Status.NOT_ATTAINED:
             break
         if coarser is not None:
@@ -512,8 +530,8 @@ def _judged(problem: Problem, found: list[_Local], floor: float, starts: int) ->
         durations, report = polish(problem, durations, report)
     status = Status.OPTIMAL if report.residual <= KKT_TOLERANCE else Status.FEASIBLE
     why = None if status is Status.OPTIMAL else f"KKT residual {report.residual:.1e}"
-    shrinking = np.flatnonzero((problem.duration_lower == 0) & (durations <= 1.01 * floor))
-    if shrinking.size:
+    shrinking = _at_floor(problem, durations, floor)
+    if shrinking:
         status = Status.NOT_ATTAINED
         names = ", ".join(str(k + 1) for k in shrinking)
         why = f"the total falls as the duration of segment {names} goes to 0"
@@ -530,6 +548,68 @@ def _judged(problem: Problem, found: list[_Local], floor: float, starts: int) ->
         starts_at_best=sum(local.total <= best.total * (1 + SAME) for local in feasible),
         iterations=iterations,
         totals=tuple(local.total if local.feasible else float("inf") for local in found),
+    )
+
+
+def _at_floor(problem: Problem, durations: NDArray[np.float64], floor: float) -> list[int]:
+    return np.flatnonzero((problem.duration_lower == 0) & (durations <= 1.01 * floor)).tolist()
+
+
+def idle_segments(problem: Problem) -> list[int]:
+    """Segments in which nothing moves and whose duration nothing else depends on."""
+    if problem.interpolant.free:
+        return []
+    h = equal_start(problem)
+    trajectory = fit(problem.interpolant, problem.waypoints, h)
+    gradient = coefficient_gradient(problem.interpolant, problem.waypoints, h).durations
+    still = np.abs(trajectory.scaled[:, 1:]).max(axis=(1, 2)) <= 1e-14
+    apart = np.abs(gradient * h[:, None, None, None]).max(axis=(1, 2, 3)) <= 1e-14
+    return np.flatnonzero(still & apart).tolist()
+
+
+def _with_idle(
+    problem: Problem,
+    idle: list[int],
+    starts: int,
+    seed: int,
+    initial: ArrayLike | None,
+    form: Form | None,
+) -> Solution:
+    """Solve with idle segments held at an ordinary duration, then give them their least one."""
+    held = equal_start(problem)
+    low, high = problem.duration_lower.copy(), problem.duration_upper.copy()
+    low[idle] = high[idle] = held[idle]
+    if len(idle) == problem.segments:
+        h, solution = low.copy(), Solution(problem, Status.OPTIMAL)
+    else:
+        core = replace(problem, duration_lower=low, duration_upper=high)
+        solution = _solve_moving(core, starts, seed, initial, form)
+        if solution.durations is None:
+            return replace(solution, problem=problem)
+        h = solution.durations.copy()
+    h[idle] = problem.duration_lower[idle]
+    vanishing = [k for k in idle if h[k] == 0]
+    infimum = float(h.sum()) if vanishing else None
+    h[vanishing] = FLOORS[-1] * held.mean()
+    report = kkt(problem, h)
+    answer = replace(
+        solution,
+        problem=problem,
+        durations=h,
+        check=check(problem, h),
+        kkt_residual=report.residual,
+        active=report.active,
+    )
+    if not vanishing:
+        return answer
+    names = ", ".join(str(k + 1) for k in vanishing)
+    return replace(
+        answer,
+        status=Status.NOT_ATTAINED,
+        why=f"nothing moves in segment {names}: the total falls as its duration goes to 0",
+        infimum=infimum,
+        kkt_residual=solution.kkt_residual,
+        active=solution.active,
     )
 
 
