@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, StrictInt, model_validator
@@ -88,6 +89,7 @@ class InterpolantBlock(Strict):
         return (1,) if self.family == "cubic-spline" else (1, 2)
 
 
+@lru_cache(maxsize=128)
 def declare(
     block: InterpolantBlock, count: int, ends: tuple[tuple[int, float], ...]
 ) -> Interpolant:
