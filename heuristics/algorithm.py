@@ -1,0 +1,46 @@
+"""What the loop asks of an algorithm and of its state."""
+
+from __future__ import annotations
+
+from typing import ClassVar, Protocol, TypeVar
+
+import numpy as np
+
+from .objective import Array, Bounds, Objective
+
+
+class State(Protocol):
+    """What every algorithm's state shows to the loop."""
+
+    @property
+    def best(self) -> Array:
+        """Best position so far, shape (dimensions,)."""
+
+    @property
+    def best_fitness(self) -> float:
+        """Its fitness."""
+
+
+S = TypeVar("S", bound=State)
+
+
+class Algorithm(Protocol[S]):
+    """A frozen record of settings that starts a search and moves it on."""
+
+    kind: ClassVar[str]
+
+    @property
+    def iterations(self) -> int:
+        """Steps to make."""
+
+    @property
+    def penalty(self) -> float:
+        """Fitness of an infeasible position."""
+
+    def init(self, bounds: Bounds, rng: np.random.Generator, objective: Objective) -> S:
+        """Start a search; the state that it returns is judged."""
+
+    def step(
+        self, state: S, bounds: Bounds, rng: np.random.Generator, objective: Objective, /
+    ) -> S:
+        """Move the search on by one iteration."""

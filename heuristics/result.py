@@ -1,0 +1,114 @@
+"""What a search leaves behind: its answer untouched, its trace, its seed and settings."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from .algorithm import Algorithm
+from .objective import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """One search and its answer, untouched.
+
+    Attributes
+    ----------
+    algorithm : str
+        Kind of the algorithm.
+    settings : Algorithm
+        The record that ran, with the number of iterations that it ran.
+    problem : str
+        Name of the problem.
+    seed : int
+    stream : tuple of int
+        Spawn key of the random stream under the seed; empty for the seed's own.
+    durations : ndarray, shape (segments,)
+        Best segment durations as the algorithm left them, s.
+    reported_time : float
+        What the algorithm reports, Σ t by its own objective, s; inf if nothing feasible was found.
+    trace : ndarray, shape (iterations + 1,)
+        Best total so far after the initial swarm and after each iteration, s; inf before anything
+        feasible was found.
+    evaluations : int
+        Duration vectors judged by the objective.
+    iterations : int
+    feasible : bool
+        Whether the algorithm's own objective found a feasible vector. `trajgap.problem.check`
+        remains the only judge of the answer.
+    """
+
+    algorithm: str
+    settings: Algorithm[Any]
+    problem: str
+    seed: int
+    stream: tuple[int, ...]
+    durations: Array
+    reported_time: float
+    trace: Array
+    evaluations: int
+    iterations: int
+    feasible: bool
+
+    def __post_init__(self) -> None:
+        self.durations.setflags(write=False)
+        self.trace.setflags(write=False)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        # Arrays come back writable from another process.
+        self.__dict__.update(state)
+        self.__post_init__()
+
+    def __str__(self) -> str:
+        stream = "".join(f".{key}" for key in self.stream)
+        found = f"{self.reported_time:.6f} s" if self.feasible else "nothing feasible found"
+        return (
+            f"{self.algorithm} on {self.problem}, seed {self.seed}{stream}: {found}\n"
+            f"durations       {np.array2string(self.durations, precision=6)} s\n"
+            f"budget          {self.iterations} iterations, {self.evaluations} evaluations"
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class JointRuns:
+    """Each joint searched by itself; every segment then takes the longest of the joints.
+
+    Attributes
+    ----------
+    algorithm : str
+    problem : str
+    seed : int
+    runs : tuple of Run, one per joint
+    durations : ndarray, shape (segments,)
+        Longest duration of each segment, s.
+    reported_time : float
+        Their sum, s; inf if some joint found nothing feasible.
+    feasible : bool
+        Whether every joint found something feasible. That says nothing of the longest durations:
+        a joint that keeps its limits with its own may break them with longer ones.
+    """
+
+    algorithm: str
+    problem: str
+    seed: int
+    runs: tuple[Run, ...]
+    durations: Array
+    reported_time: float
+    feasible: bool
+
+    def __post_init__(self) -> None:
+        self.durations.setflags(write=False)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self.__post_init__()
+
+    def __str__(self) -> str:
+        found = f"{self.reported_time:.6f} s" if self.feasible else "some joint found nothing"
+        return (
+            f"{self.algorithm} on {self.problem}, each joint by itself, seed {self.seed}: {found}\n"
+            f"durations       {np.array2string(self.durations, precision=6)} s (longest)"
+        )
