@@ -1,0 +1,54 @@
+"""The baseline without parameters: equal durations, stretched until a limit is reached."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..problem import Problem, TrajgapError, Verdict, check, evaluate
+from .objective import Array
+
+
+def uniform_rescaling(problem: Problem) -> Array:
+    """Equal segment durations, as short as the limits allow.
+
+    Stretching all durations by c divides velocity, acceleration and jerk by c, c², c³; so one
+    evaluation of any equal durations gives the shortest ones. No search, no random numbers: what
+    a heuristic must beat to be worth its parameters.
+
+    Parameters
+    ----------
+    problem : Problem
+
+    Returns
+    -------
+    ndarray, shape (segments,)
+        In s; set to the duration bounds where they leave them, if that keeps every limit.
+
+    Raises
+    ------
+    TrajgapError
+        If no equal durations are shortest (nothing is limited, a joint with limit 0 moves, a
+        prescribed derivative is not 0), or they leave the bounds and set to them fail the checker.
+    """
+    if not problem.interpolant.homogeneous:
+        raise TrajgapError(
+            "uniform rescaling: a prescribed derivative is not 0, stretching would change it"
+        )
+    stretch = float(evaluate(problem, np.ones((1, problem.segments))).stretch[0])
+    if not np.isfinite(stretch):
+        raise TrajgapError("uniform rescaling: a joint with limit 0 moves; no stretch mends that")
+    equal = np.full(problem.segments, stretch)
+    durations: Array = np.clip(equal, problem.duration_lower, problem.duration_upper)
+    if not (durations > 0).all():
+        raise TrajgapError(
+            "uniform rescaling: nothing moves or nothing is limited, the total can shrink to 0; "
+            "give positive lower duration bounds"
+        )
+    found = check(problem, durations)
+    if found.verdict is not Verdict.PASS:
+        clipped = " set to the duration bounds" if (durations != equal).any() else ""
+        raise TrajgapError(
+            f"uniform rescaling: {stretch:g} s per segment{clipped} is {found.verdict}; "
+            "no uniform stretch mends that"
+        )
+    return durations
