@@ -1,0 +1,98 @@
+"""Algorithms from the settings of a case file: every bad one is named with its mend."""
+
+import tomllib
+from collections.abc import Mapping
+
+import pytest
+from trajgap.heuristics import KINDS, MNAMPSO, PSO, ConstrainedPSO, from_settings, open_choices
+from trajgap.problem import TrajgapError
+
+
+def test_defaults() -> None:
+    assert KINDS == ("pso", "mnam-pso", "constrained-pso")
+    assert from_settings("pso", {}) == PSO()
+    assert from_settings("mnam-pso", {}) == MNAMPSO()
+    assert from_settings("constrained-pso", {}) == ConstrainedPSO()
+
+
+def test_settings_as_a_case_file_writes_them() -> None:
+    text = """
+    particles = 20
+    c1 = 1
+    inertia_max = 0.8
+    inertia_reading = "rises"
+    position_initial = [0.5, 2]
+    niches_rule = "clusters"
+    """
+    record = from_settings("mnam-pso", tomllib.loads(text))
+    assert record == MNAMPSO(
+        particles=20,
+        c1=1.0,
+        inertia_max=0.8,
+        inertia_reading="rises",
+        position_initial=(0.5, 2.0),
+        niches_rule="clusters",
+    )
+    assert isinstance(record.c1, float)
+    assert record.position_initial == (0.5, 2.0)
+    assert hash(record) == hash(record)
+
+
+@pytest.mark.parametrize(
+    ("kind", "settings", "message"),
+    [
+        ("psoo", {}, "algorithm kind: 'psoo' is unknown; did you mean 'pso'?"),
+        ("mnam", {}, "algorithm kind: 'mnam' is unknown; did you mean 'mnam-pso'?"),
+        ("pso", {"particle": 3}, "pso: particle: unknown setting; did you mean 'particles'?"),
+        ("pso", {"omega": 3}, "pso: omega: unknown setting; did you mean "),
+        ("pso", {"particles": 0}, "pso: particles: expected a whole number of 1 or more, got 0"),
+        (
+            "pso",
+            {"particles": 2.5},
+            "pso: particles: expected a whole number of 1 or more, got 2.5",
+        ),
+        ("pso", {"particles": True}, "pso: particles: expected a whole number"),
+        ("pso", {"iterations": "many"}, "pso: iterations: expected a whole number of 0 or more, "),
+        ("pso", {"c1": -1}, "pso: c1: expected a number of 0 or more, got -1"),
+        ("pso", {"c1": "2"}, "pso: c1: expected a number of 0 or more, got '2'"),
+        ("pso", {"inertia": float("nan")}, "pso: inertia: expected a number of 0 or more, got nan"),
+        ("pso", {"inertia": float("inf")}, "pso: inertia: expected a number of 0 or more, got inf"),
+        ("pso", {"c2": 10**400}, "pso: c2: expected a number of 0 or more, got 1000"),
+        ("pso", {"penalty": 0}, "pso: penalty: expected a positive number, got 0"),
+        ("pso", {"draws": "each"}, "pso: draws: 'each' is unknown; did you mean "),
+        ("pso", {"draws": 1}, "pso: draws: expected one of coordinate, particle, iteration, got 1"),
+        ("pso", {"position_initial": 1}, "pso: position_initial: expected two numbers, the smal"),
+        ("pso", {"position_initial": [1, 2, 3]}, "pso: position_initial: expected two numbers"),
+        ("pso", {"position_initial": [2, 1]}, "pso: position_initial: expected two numbers"),
+        ("pso", {"velocity_initial": ["a", 1]}, "pso: velocity_initial: expected two numbers"),
+        ("pso", {"velocity_initial": [0, float("inf")]}, "pso: velocity_initial: expected two"),
+        ("mnam-pso", {"niches": 0}, "mnam-pso: niches: expected a whole number of 1 or more"),
+        ("mnam-pso", {"inertia_reading": "fall"}, "did you mean 'falls'?"),
+        ("mnam-pso", {"mutated": "non"}, "mnam-pso: mutated: 'non' is unknown; did you mean 'one'"),
+        (
+            "constrained-pso",
+            {"ties": "keeps"},
+            "constrained-pso: ties: 'keeps' is unknown; did you",
+        ),
+        ("constrained-pso", {"velocity_max": 0}, "velocity_max: expected a positive number, got 0"),
+    ],
+)
+def test_bad_settings(kind: str, settings: Mapping[str, object], message: str) -> None:
+    with pytest.raises(TrajgapError) as caught:
+        from_settings(kind, settings)
+    assert message in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_open_choices_name_real_parameters(kind: str) -> None:
+    """A choice that starts with a parameter's name names one that exists."""
+    fields = set(type(from_settings(kind, {})).__dataclass_fields__)
+    rules = {name for name in fields if name.endswith(("_rule", "_reading")) or name == "draws"}
+    text = "\n".join(open_choices(kind))
+    assert all(name in text for name in rules)
+
+
+def test_open_choices_of_an_unknown_kind() -> None:
+    with pytest.raises(TrajgapError, match=r"algorithm kind: 'ga' is unknown"):
+        open_choices("ga")

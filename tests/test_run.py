@@ -1,0 +1,268 @@
+"""The loop: seeds, budgets, traces, joints by themselves, and answers left to the checker."""
+
+import pickle
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from trajgap.heuristics import (
+    MNAMPSO,
+    PSO,
+    Bounds,
+    ConstrainedPSO,
+    DeathPenalty,
+    JointRuns,
+    Run,
+    run,
+    run_many,
+    run_many_per_joint,
+    run_per_joint,
+    states,
+)
+from trajgap.problem import (
+    Limits,
+    Problem,
+    TrajgapError,
+    Verdict,
+    check,
+    cubic_spline,
+    three_five_three,
+)
+
+ALGORITHMS = (PSO(), MNAMPSO(), ConstrainedPSO(iterations=200))
+each_algorithm = pytest.mark.parametrize("algorithm", ALGORITHMS, ids=lambda a: a.kind)
+
+WAYPOINTS = np.array([[0.19, -1.63], [0.82, -2.01], [0.13, -1.07], [-0.88, -1.31]])
+PROBLEM = Problem(
+    WAYPOINTS,
+    Limits([6.0, 5.0], [8.0, 9.0]),
+    three_five_three(),
+    0.3,
+    3.0,
+    joints=("waist", "elbow"),
+    name="two joints",
+)
+JERKY = Problem(WAYPOINTS, Limits([4.0, 5.0], [8.0, 9.0], [60.0, 80.0]), three_five_three())
+SPLINE = Problem(WAYPOINTS[:, 0], Limits(2.5, 6.0), cubic_spline(3), 0.05, 2.5)
+STUCK = Problem(WAYPOINTS, Limits([6.0, 0.0], joints=2), three_five_three(), 0.0, 3.0)
+
+
+def same_bits(a: Run, b: Run) -> None:
+    for name in ("durations", "trace"):
+        assert getattr(a, name).tobytes() == getattr(b, name).tobytes()
+    for name in (
+        "algorithm", "settings", "problem", "seed", "stream", "reported_time", "evaluations",
+        "iterations", "feasible",
+    ):  # fmt: skip
+        assert getattr(a, name) == getattr(b, name)
+
+
+@each_algorithm
+def test_same_seed_same_bits(algorithm: PSO) -> None:
+    same_bits(run(algorithm, PROBLEM, 7, 40), run(algorithm, PROBLEM, 7, 40))
+    other = run(algorithm, PROBLEM, 8, 40)
+    assert other.durations.tobytes() != run(algorithm, PROBLEM, 7, 40).durations.tobytes()
+
+
+def test_same_bits_for_any_number_of_workers() -> None:
+    seeds = [5, 3, 11, 3]
+    one = run_many(MNAMPSO(), PROBLEM, seeds, iterations=20)
+    two = run_many(MNAMPSO(), PROBLEM, seeds, workers=2, iterations=20)
+    assert [r.seed for r in one] == [r.seed for r in two] == seeds
+    for a, b in zip(one, two, strict=True):
+        same_bits(a, b)
+        same_bits(a, run(MNAMPSO(), PROBLEM, a.seed, 20))
+        assert not b.durations.flags.writeable
+        assert not b.trace.flags.writeable
+
+
+def test_same_bits_per_joint_for_any_number_of_workers() -> None:
+    one = run_many_per_joint(PSO(), PROBLEM, range(3), iterations=10)
+    three = run_many_per_joint(PSO(), PROBLEM, range(3), workers=3, iterations=10)
+    for a, b in zip(one, three, strict=True):
+        assert a.durations.tobytes() == b.durations.tobytes()
+        assert (a.seed, a.reported_time, a.feasible) == (b.seed, b.reported_time, b.feasible)
+        assert not b.durations.flags.writeable
+        for left, right in zip(a.runs, b.runs, strict=True):
+            same_bits(left, right)
+
+
+def test_the_random_stream_is_pinned() -> None:
+    """Seed and generator fix the first swarm; a change here changes every stored result."""
+    first = run(PSO(), PROBLEM, 2024, 0)
+    x = np.random.Generator(np.random.PCG64(2024)).random((30, 3)) * 2.7 + 0.3
+    fitness = DeathPenalty(PROBLEM)(x)
+    np.testing.assert_allclose(first.durations, x[fitness.argmin()], rtol=1e-15)
+    assert first.evaluations == 30
+
+
+@each_algorithm
+@pytest.mark.parametrize("problem", [PROBLEM, JERKY, SPLINE], ids=["va", "vaj", "spline"])
+def test_trace_and_answer(algorithm: PSO, problem: Problem) -> None:
+    for seed in range(4):
+        found = run(algorithm, problem, seed)
+        assert found.trace.shape == (found.iterations + 1,) == (201,)
+        assert (found.trace[1:] <= found.trace[:-1]).all()
+        assert found.trace[-1] == found.reported_time == found.durations.sum()
+        assert found.feasible
+        assert check(problem, found.durations).verdict is Verdict.PASS
+        assert found.trace[-1] < found.trace[0]
+        mutants = 201 if algorithm.kind == "mnam-pso" else 0
+        assert found.evaluations == 201 * 30 + mutants
+
+
+@each_algorithm
+def test_a_shorter_budget_is_named(algorithm: PSO) -> None:
+    found = run(algorithm, PROBLEM, 1, iterations=5)
+    assert found.iterations == found.settings.iterations == 5
+    assert found.trace.size == 6
+    assert algorithm.iterations == 200
+
+
+def test_a_budget_of_nothing_is_the_initial_swarm() -> None:
+    found = run(PSO(particles=12), PROBLEM, 1, iterations=0)
+    assert (found.trace.size, found.evaluations) == (1, 12)
+
+
+def test_the_trace_is_the_best_of_each_iteration() -> None:
+    rng = np.random.Generator(np.random.PCG64(6))
+    objective = DeathPenalty(PROBLEM)
+    smallest = [s.fitness.min() for s in states(PSO(), objective, Bounds.of(PROBLEM), rng)]
+    trace = run(PSO(), PROBLEM, 6).trace
+    np.testing.assert_array_equal(trace, np.minimum.accumulate(smallest))
+
+
+@each_algorithm
+@pytest.mark.parametrize("penalty", [np.inf, 1e6])
+def test_nothing_feasible(algorithm: PSO, penalty: float) -> None:
+    found = run(replace(algorithm, penalty=penalty), STUCK, 0, 20)
+    assert not found.feasible
+    assert found.reported_time == np.inf
+    assert np.isinf(found.trace).all()
+    assert np.isfinite(found.durations).all()
+    assert "nothing feasible found" in str(found)
+
+
+@each_algorithm
+def test_an_infeasible_start_is_survived(algorithm: PSO) -> None:
+    cramped = replace(algorithm, position_initial=(0.5, 0.8))
+    found = run(cramped, PROBLEM, 1)
+    assert found.trace[0] == np.inf
+    assert found.feasible
+    assert check(PROBLEM, found.durations).verdict is Verdict.PASS
+
+
+def test_a_penalty_is_not_reported_as_a_time() -> None:
+    late = run(replace(ConstrainedPSO(), position_initial=(0.5, 0.8)), PROBLEM, 1)
+    start = int(np.isinf(late.trace).sum())
+    assert 0 < start < late.trace.size
+    assert late.trace[start] < 9.0
+
+
+def test_a_swarm_that_overflows_is_only_infeasible() -> None:
+    wild = PSO(inertia=9.0, velocity_rule="free", position_rule="free", iterations=500)
+    found = run(wild, PROBLEM, 0)
+    assert found.feasible
+    assert check(PROBLEM, found.durations).verdict is Verdict.PASS
+
+
+@each_algorithm
+def test_converges_on_a_shifted_unequal_bowl(algorithm: PSO) -> None:
+    centre, weight = np.array([1.3, 0.4, 1.5, 0.75]), np.array([1.0, 20.0, 3.0, 7.0])
+
+    def bowl(x: np.ndarray) -> np.ndarray:
+        return 0.3 + weight @ (x - centre).T ** 2
+
+    box = Bounds(np.full(4, 0.1), np.full(4, 2.5))
+    for seed in range(3):
+        rng = np.random.default_rng(seed)
+        *_, last = states(replace(algorithm, iterations=400), bowl, box, rng)
+        np.testing.assert_allclose(last.best, centre, atol=2e-3)
+        assert 0.3 <= last.best_fitness == pytest.approx(0.3, abs=1e-4)
+        assert last.best_fitness == pytest.approx(float(bowl(last.best[None])[0]), rel=1e-14)
+
+
+def test_joints_by_themselves() -> None:
+    found = run_per_joint(PSO(), PROBLEM, 12, iterations=30)
+    assert isinstance(found, JointRuns)
+    children = np.random.SeedSequence(12).spawn(2)
+    for j, (one, child) in enumerate(zip(found.runs, children, strict=True)):
+        problem = PROBLEM.joint(j)
+        rng = np.random.Generator(np.random.PCG64(child))
+        record = PSO(iterations=30)
+        *_, last = states(record, DeathPenalty(problem), Bounds.of(problem), rng)
+        assert one.durations.tobytes() == last.best.tobytes()
+        assert (one.seed, one.stream, one.problem) == (12, (j,), problem.name)
+        assert check(problem, one.durations).verdict is Verdict.PASS
+    a, b = (one.durations for one in found.runs)
+    assert (a > b).any()
+    assert (b > a).any()
+    np.testing.assert_array_equal(found.durations, np.where(a > b, a, b))
+    assert found.reported_time == found.durations.sum()
+    assert found.feasible
+    assert "each joint by itself" in str(found)
+
+
+def test_a_joint_that_finds_nothing() -> None:
+    found = run_per_joint(PSO(), STUCK, 0, iterations=3)
+    assert [one.feasible for one in found.runs] == [True, False]
+    assert not found.feasible
+    assert found.reported_time == np.inf
+    assert "some joint found nothing" in str(found)
+
+
+def test_answers_cannot_be_touched() -> None:
+    found = run(PSO(), PROBLEM, 0, 2)
+    with pytest.raises(ValueError, match="read-only"):
+        found.durations[0] = 1.0
+    with pytest.raises(ValueError, match="read-only"):
+        found.trace[0] = 1.0
+    back = pickle.loads(pickle.dumps(found))
+    same_bits(found, back)
+    assert not back.trace.flags.writeable
+
+
+def test_summary_fits_a_screen() -> None:
+    text = str(run(PSO(), PROBLEM, 4, 3))
+    assert text.startswith("pso on two joints, seed 4: ")
+    assert "3 iterations, 120 evaluations" in text
+    joint = run_per_joint(PSO(), PROBLEM, 4, 3).runs[1]
+    assert str(joint).startswith("pso on two joints, joint elbow, seed 4.1: ")
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_progress_comes_in_order(workers: int) -> None:
+    seen: list[int] = []
+    run_many(PSO(), PROBLEM, [4, 2, 9], workers, 2, progress=lambda r: seen.append(r.seed))
+    assert seen == [4, 2, 9]
+
+
+def test_no_seeds() -> None:
+    assert run_many(PSO(), PROBLEM, []) == ()
+    assert run_many(PSO(), PROBLEM, [], workers=4) == ()
+
+
+def test_seeds_may_come_from_numpy() -> None:
+    same_bits(run(PSO(), PROBLEM, np.int64(3), 2), run(PSO(), PROBLEM, 3, 2))
+
+
+@pytest.mark.parametrize("seed", [-1, 1.5, "one", True, None])
+def test_seed_must_be_whole(seed: object) -> None:
+    for call in (run, run_per_joint):
+        with pytest.raises(TrajgapError, match=r"^seed: expected a whole number of 0 or more, got"):
+            call(PSO(), PROBLEM, seed, 1)
+    for many in (run_many, run_many_per_joint):
+        with pytest.raises(TrajgapError, match=r"^seed: expected a whole number of 0 or more, got"):
+            many(PSO(), PROBLEM, [0, seed], iterations=1)
+
+
+@pytest.mark.parametrize("workers", [0, -2, 1.0])
+def test_workers_must_be_whole(workers: object) -> None:
+    with pytest.raises(TrajgapError, match=r"^workers: expected a whole number of 1 or more, got"):
+        run_many(PSO(), PROBLEM, [0], workers)
+
+
+@pytest.mark.parametrize("iterations", [-1, 2.5])
+def test_budget_must_be_whole(iterations: object) -> None:
+    with pytest.raises(TrajgapError, match=r"^pso: iterations: expected a whole number of 0"):
+        run(PSO(), PROBLEM, 0, iterations)
