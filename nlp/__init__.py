@@ -2,9 +2,11 @@
 
 from .formulation import Form, Formulation, Structure, build
 from .kkt import KKT, Active, kkt
+from .per_joint import PerJointSolution, Range, solve_per_joint
 from .solution import Evidence, Solution, Status
-from .solve import solve, structure_of
+from .solve import solve
 from .starts import random_starts
+from .tracking import structure_of
 
 __all__ = [
     "KKT",
@@ -12,6 +14,8 @@ __all__ = [
     "Evidence",
     "Form",
     "Formulation",
+    "PerJointSolution",
+    "Range",
     "Solution",
     "Status",
     "Structure",
@@ -19,5 +23,6 @@ __all__ = [
     "kkt",
     "random_starts",
     "solve",
+    "solve_per_joint",
     "structure_of",
 ]

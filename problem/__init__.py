@@ -1,5 +1,6 @@
 """The question: limits, interpolants, trajectories, exact peaks, the checker, and case files."""
 
+from .case import Case, DurationBox
 from .check import Check, Evaluation, Jump, Peak, Verdict, check, evaluate
 from .errors import CaseError, TrajgapError
 from .gradient import PeakGradients, peak_gradients
@@ -13,16 +14,23 @@ from .interpolant import (
     three_five_three,
 )
 from .limits import QUANTITIES, Limits
+from .load import load_case, parse_case, published_ids
 from .peak import Extremum, extrema
+from .printed import Printed
 from .problem import Coupling, Problem
+from .scaffold import scaffold
+from .schema import CaseFile, case_schema
 from .spline import fit
 from .trajectory import Trajectory
 
 __all__ = [
     "QUANTITIES",
+    "Case",
     "CaseError",
+    "CaseFile",
     "Check",
     "Coupling",
+    "DurationBox",
     "Evaluation",
     "Extremum",
     "Interpolant",
@@ -30,19 +38,25 @@ __all__ = [
     "Limits",
     "Peak",
     "PeakGradients",
+    "Printed",
     "Problem",
     "Trajectory",
     "TrajgapError",
     "Verdict",
+    "case_schema",
     "check",
     "cubic_spline",
     "cubic_spline_virtual",
     "evaluate",
     "extrema",
     "fit",
+    "load_case",
+    "parse_case",
     "peak_gradients",
     "piecewise",
+    "published_ids",
     "quintic_spline",
     "rest_to_rest",
+    "scaffold",
     "three_five_three",
 ]

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import IntEnum
 from functools import cached_property
@@ -11,6 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import TrajgapError
+
+_DENSE = 300
 
 Prescribed = tuple[tuple[tuple[int, float], ...], ...]
 
@@ -161,6 +165,8 @@ class Interpolant:
     @cached_property
     def rank(self) -> int:
         """Rank of the conditions for equal durations."""
+        if self.conditions == self.coefficients > _DENSE:
+            return self.conditions if self._sparse_regular() else self.conditions - 1
         return int(np.linalg.matrix_rank(self._unit_matrix(self.rows)))
 
     @cached_property
@@ -214,21 +220,46 @@ class Interpolant:
             virtual=tuple(virtual),
         )
 
+    def _sparse_regular(self) -> bool:
+        """Whether a long, determined declaration has a regular system for equal durations."""
+        from scipy.sparse import csc_array
+        from scipy.sparse.linalg import splu
+
+        entries = [(i, c, v) for i, row in enumerate(self.rows) for c, v in self._entries(row)]
+        i, c, v = zip(*entries, strict=True)
+        matrix = csc_array((v, (i, c)), shape=(self.conditions, self.coefficients))
+        try:
+            pivots = np.abs(splu(matrix).U.diagonal())
+        except RuntimeError:
+            return False
+        return bool(pivots.min() > 1e-13 * pivots.max())
+
+    def _entries(self, row: Row) -> list[tuple[int, float]]:
+        """Columns and values of one row for equal durations."""
+        entries: list[tuple[int, float]] = []
+        if row.kind != RowKind.RIGHT_VALUE:
+            k = row.at - 1
+            powers = range(row.order, self.degrees[k] + 1)
+            entries += [(self._first[k] + p, float(math.perm(p, row.order))) for p in powers]
+        if row.kind != RowKind.LEFT_VALUE and row.order <= self.degrees[row.at]:
+            sign = 1.0 if row.kind == RowKind.RIGHT_VALUE else -1.0
+            entries.append((self._first[row.at] + row.order, sign * math.factorial(row.order)))
+        return entries
+
+    @cached_property
+    def _first(self) -> tuple[int, ...]:
+        """Column of each segment's constant coefficient."""
+        return tuple(itertools.accumulate((d + 1 for d in self.degrees), initial=0))
+
     def _unit_matrix(self, rows: tuple[Row, ...] | list[Row]) -> NDArray[np.float64]:
-        first = np.concatenate([[0], np.cumsum([d + 1 for d in self.degrees])])
-        matrix = np.zeros((len(rows), first[-1]))
+        matrix = np.zeros((len(rows), self.coefficients))
         for i, row in enumerate(rows):
-            if row.kind != RowKind.RIGHT_VALUE:
-                k = row.at - 1
-                for p in range(row.order, self.degrees[k] + 1):
-                    matrix[i, first[k] + p] = math.perm(p, row.order)
-            if row.kind != RowKind.LEFT_VALUE and row.order <= self.degrees[row.at]:
-                sign = 1.0 if row.kind == RowKind.RIGHT_VALUE else -1.0
-                matrix[i, first[row.at] + row.order] = sign * math.factorial(row.order)
+            for column, value in self._entries(row):
+                matrix[i, column] = value
         return matrix
 
 
-_SIDES = (
+_SIDES: tuple[tuple[RowKind, Callable[[int, int], bool]], ...] = (
     (RowKind.LEFT_VALUE, lambda b, n: b > 0),
     (RowKind.RIGHT_VALUE, lambda b, n: b < n),
 )

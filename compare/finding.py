@@ -1,0 +1,177 @@
+"""What an audit says: findings of rules with permanent ids, and a verdict on each claim."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from enum import StrEnum
+
+from ..nlp import Evidence
+from .gap import Gap
+
+
+class Severity(StrEnum):
+    """How much a finding weighs; tied to its conclusion, never to a digit."""
+
+    ERROR = "error"
+    """A printed number or statement is contradicted by a proof: of digits, counts or enclosures."""
+    WARNING = "warning"
+    """Printed things do not fit together, or a best known value speaks against a statement."""
+    INFO = "info"
+    """A fact beside the claim, or support for it."""
+
+
+class ClaimVerdict(StrEnum):
+    """What can be said of a claim."""
+
+    SUPPORTED = "supported"
+    REFUTED = "refuted"
+    NOT_CHECKABLE = "not checkable"
+    INCONSISTENT = "inconsistent"
+    """Two printed things contradict each other; neither alone is refuted."""
+
+
+class Scope(StrEnum):
+    """Under how many of the admissible readings a verdict holds."""
+
+    ALL = "all"
+    SOME = "some"
+    NO = "no"
+    """Decided under no reading."""
+
+
+class Basis(StrEnum):
+    """What a finding rests on."""
+
+    DIGITS = "printed digits"
+    """Interval arithmetic on the printed numbers alone."""
+    COUNT = "count"
+    """Conditions counted against coefficients."""
+    ENCLOSURE = "rounding box"
+    """True peaks over the box of all inputs that print alike."""
+    CHECK = "check"
+    """True peaks at the printed point."""
+    IDENTITY = "identity"
+    """A scaling law that needs no solver."""
+    OPTIMUM = "optimum"
+    """A reference value of the exact side."""
+    REPLAY = "replay"
+    """Seeded runs of the algorithm under the listed choices."""
+    TEXT = "text"
+    """What the extracted text carries or does not."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One conclusion of one rule.
+
+    Attributes
+    ----------
+    rule : str
+        Permanent id, e.g. "TG101".
+    severity : Severity
+    verdict : ClaimVerdict
+    scope : Scope
+        Under how many admissible readings the verdict of this finding holds.
+    evidence : Evidence
+        Of the reference value used; ``none`` where none is used.
+    basis : Basis
+    claim, problem, reading : str or None
+        What it is about; None means it does not depend on it.
+    printed, computed : str or None
+        The printed digits, and what was computed, with units.
+    gap : Gap or None
+    message : str
+        One or two sentences with the numbers.
+    decides : bool
+        Whether the finding enters the verdict on its claim.
+    """
+
+    rule: str
+    severity: Severity
+    verdict: ClaimVerdict
+    scope: Scope
+    evidence: Evidence
+    basis: Basis
+    claim: str | None
+    problem: str | None
+    reading: str | None
+    printed: str | None
+    computed: str | None
+    gap: Gap | None
+    message: str
+    decides: bool = True
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """The verdict on one claim over all admissible readings."""
+
+    claim: str
+    verdict: ClaimVerdict
+    scope: Scope
+    evidence: Evidence
+    why: str
+
+
+@dataclass(frozen=True)
+class Rule:
+    """A rule's permanent id and what it looks at."""
+
+    id: str
+    title: str
+
+
+RULES = (
+    Rule("TG101", "A printed total is the sum of its printed parts"),
+    Rule("TG102", "Printed longest durations are the longest of the printed rows"),
+    Rule("TG103", "A printed improvement follows from the printed totals"),
+    Rule("TG104", "Tables under different names print different digits"),
+    Rule("TG105", "Two places that print the same total agree"),
+    Rule("TG106", "Unrelated columns do not repeat each other's digits"),
+    Rule("TG107", "The conditions stated fit the number of coefficients"),
+    Rule("TG201", "Printed durations keep the limits for all t, over the rounding box"),
+    Rule("TG202", "Position, velocity and acceleration are continuous"),
+    Rule("TG203", "Printed peaks are those of the printed durations"),
+    Rule("TG204", "The limits are used up by the printed durations"),
+    Rule("TG301", "Totals of one path under two velocity limits obey the scaling law"),
+    Rule("TG302", "A printed total beside the optimum of its own formulation"),
+    Rule("TG303", "A printed total beside the optimum with shared durations"),
+    Rule("TG401", "An improvement beside the spread over seeds"),
+    Rule("TG402", "A printed total beside replays of its algorithm"),
+    Rule("TG403", "Convergence within a number of iterations, beside replays"),
+    Rule("TG501", "Not checkable from the text"),
+)
+"""Every rule; an id is never reused."""
+
+
+def judge(claim: str, findings: Iterable[Finding], readings: Iterable[str]) -> Judgement:
+    """Combine the deciding findings about one claim into its verdict.
+
+    Under each reading a claim is refuted if a deciding finding refutes it, else inconsistent if
+    one contradicts it, else supported if one supports it, else not checkable. A verdict that
+    holds under some readings only says so; what no reading decides is not checkable.
+    """
+    own = [f for f in findings if f.claim == claim and f.decides]
+    order = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT, ClaimVerdict.SUPPORTED)
+    per_reading: list[ClaimVerdict] = []
+    for reading in readings:
+        there = {f.verdict for f in own if f.reading in (None, reading)}
+        per_reading.append(next((v for v in order if v in there), ClaimVerdict.NOT_CHECKABLE))
+    decided = [v for v in per_reading if v is not ClaimVerdict.NOT_CHECKABLE]
+    if not decided:
+        why = next((f.message for f in own), "no rule applies to this claim")
+        return Judgement(claim, ClaimVerdict.NOT_CHECKABLE, Scope.NO, Evidence.NONE, why)
+    verdict = next(v for v in order if v in decided)
+    if verdict is not ClaimVerdict.SUPPORTED and decided.count(verdict) < len(per_reading):
+        supported = decided.count(ClaimVerdict.SUPPORTED)
+        if supported:
+            verdict = ClaimVerdict.SUPPORTED
+    scope = Scope.ALL if per_reading.count(verdict) == len(per_reading) else Scope.SOME
+    behind = [f for f in own if f.verdict is verdict]
+    rank = [Evidence.CERTIFIED, Evidence.BEST_KNOWN, Evidence.NONE]
+    evidence = max((f.evidence for f in behind), key=rank.index, default=Evidence.NONE)
+    if any(f.evidence is Evidence.BEST_KNOWN for f in behind):
+        evidence = Evidence.BEST_KNOWN
+    why = " ".join(dict.fromkeys(f"{f.rule}: {f.message}" for f in behind))
+    return Judgement(claim, verdict, scope, evidence, why)
