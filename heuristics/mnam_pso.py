@@ -202,7 +202,7 @@ class MNAMPSO:
 
     def mutant(self, best: Array, rng: np.random.Generator) -> Array:
         """Draw a mutant of the global best, within bounds tied to its smallest coordinate."""
-        reach = self.mutation_scale * abs(float(best.min()))
+        reach = self.mutation_scale * float(best.min())
         if self.mutated is Mutated.ONE:
             where, size = rng.random(2)
             moved = best.copy()

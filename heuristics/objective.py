@@ -105,7 +105,7 @@ class DeathPenalty:
             In s.
         """
         lower, upper = self.problem.duration_lower, self.problem.duration_upper
-        kept = ((durations >= lower) & (durations <= upper) & (durations > 0)).all(axis=1)
+        kept = ((durations >= lower) & (durations <= upper)).all(axis=1)
         fitness = np.full(durations.shape[0], self.penalty)
         inside = durations[kept]
         if inside.size:

@@ -2,6 +2,7 @@
 
 import tomllib
 from collections.abc import Mapping
+from pathlib import Path
 
 import pytest
 from trajgap.heuristics import KINDS, MNAMPSO, PSO, ConstrainedPSO, from_settings, open_choices
@@ -36,6 +37,17 @@ def test_settings_as_a_case_file_writes_them() -> None:
     assert isinstance(record.c1, float)
     assert record.position_initial == (0.5, 2.0)
     assert hash(record) == hash(record)
+
+
+def test_defaults_are_what_the_shipped_cases_say() -> None:
+    seen = set()
+    for path in sorted((Path(__file__).parent.parent / "problem" / "published").glob("*.toml")):
+        case = tomllib.loads(path.read_text(encoding="utf-8"))
+        for block in case.get("algorithms", ()):
+            given = {**block.get("settings", {}), **block.get("chosen", {})}
+            assert from_settings(block["kind"], given) == from_settings(block["kind"], {}), path
+            seen.add(block["kind"])
+    assert seen == set(KINDS)
 
 
 @pytest.mark.parametrize(

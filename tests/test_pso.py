@@ -93,6 +93,13 @@ def test_an_equally_good_position_replaces_nothing() -> None:
     np.testing.assert_array_equal(after.best, [2.0, 1.0])
 
 
+def test_an_equally_good_particle_does_not_take_the_lead() -> None:
+    still = replace(FREE, c1=0.0, c2=0.0, inertia=0.0)
+    before = replace(swarm(), best=np.array([2.0, 3.0]))
+    after = still.step(before, OPEN, Script(R1, R2), off_centre)
+    np.testing.assert_array_equal(after.best, [2.0, 3.0])
+
+
 def test_velocities_are_held_in_their_initial_range() -> None:
     held = replace(FREE, velocity_rule="clamp", velocity_initial=(-1.5, 0.5))
     after = held.step(swarm(), OPEN, Script(R1, R2), off_centre)
