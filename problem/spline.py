@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import lru_cache
@@ -218,17 +219,34 @@ def trajectory_from_scaled(
     return Trajectory(polynomial, durations, scaled, degrees)
 
 
-def batch_peaks(
+def motion_values(
     interpolant: Interpolant,
     waypoints: NDArray[np.float64],
+    nodal: NDArray[np.float64] | None = None,
+) -> NDArray[np.float64]:
+    """`right_hand_sides` with positions counted from the first way-point, for `batch_peaks`.
+
+    Derivatives do not depend on that shift; a joint that stands still gets exact zeros by it.
+    """
+    plan = layout(interpolant)
+    values = right_hand_sides(interpolant, waypoints, nodal)
+    values[(plan.orders == 0) & (plan.kinds != RowKind.MATCH)] -= waypoints[0]
+    return values
+
+
+def batch_peaks(
+    interpolant: Interpolant,
+    values: NDArray[np.float64],
     durations: NDArray[np.float64],
     wanted: NDArray[np.bool_],
-    nodal: NDArray[np.float64] | None = None,
 ) -> NDArray[np.float64]:
     """True peaks of |v|, |a|, |j| for a batch of duration vectors.
 
     Parameters
     ----------
+    interpolant : Interpolant
+    values : ndarray, shape (rows, joints)
+        From `motion_values`.
     durations : ndarray, shape (batch, segments)
         Durations, s; vectors that are not positive and finite give infinite peaks.
     wanted : ndarray of bool, shape (joints, 3)
@@ -237,16 +255,15 @@ def batch_peaks(
     Returns
     -------
     ndarray, shape (batch, joints, 3)
-        rad/s, rad/s², rad/s³.
+        rad/s, rad/s², rad/s³; the same bits whatever the order, the size or the threads.
     """
     plan = layout(interpolant)
-    values = right_hand_sides(interpolant, waypoints, nodal)
     h = np.ascontiguousarray(durations, dtype=np.float64)
     if h.ndim != 2 or h.shape[1] != interpolant.segments:
         raise TrajgapError(
             f"durations: a batch has shape (vectors, {interpolant.segments}), got {h.shape}"
         )
-    peaks = np.empty((h.shape[0], waypoints.shape[1], 3))
+    peaks = np.empty((h.shape[0], values.shape[1], 3))
 
     def run(part: slice) -> None:
         kernel.batch_peaks(
@@ -260,17 +277,18 @@ def batch_peaks(
             plan.lower,
             plan.upper,
             PERM,
-            kernel.BERNSTEIN,
             wanted,
             peaks[part],
         )
 
-    if h.shape[0] * waypoints.shape[1] < _THREAD_WORK:
+    work = h.shape[0] * values.shape[1]
+    if work < _THREAD_WORK:
         run(slice(None))
         return peaks
-    cuts = np.linspace(0, h.shape[0], 5).astype(int)
-    with ThreadPoolExecutor() as pool:
-        list(pool.map(run, [slice(a, b) for a, b in zip(cuts[:-1], cuts[1:], strict=True)]))
+    workers = os.cpu_count() or 1
+    cuts = np.linspace(0, h.shape[0], min(2 * workers, work // 1000) + 1).astype(int)
+    with ThreadPoolExecutor(workers) as pool:
+        list(pool.map(run, map(slice, cuts[:-1], cuts[1:])))
     return peaks
 
 
