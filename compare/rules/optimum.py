@@ -1,0 +1,204 @@
+"""TG302 and TG303: printed totals beside the optimum of their formulation and the shared one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ...nlp import Solution, Status
+from ...problem import Coupling
+from ...problem.claim import (
+    AnyClaim,
+    DurationsClaim,
+    MaximumClaim,
+    StatementClaim,
+    TotalTimeClaim,
+)
+from ..finding import Basis, ClaimVerdict, Finding, Scope, Severity
+from ..gap import Gap, GapKind, Reference, gap
+from ..rounding import Rounding
+from ..study import Study
+
+
+def optimum(study: Study) -> Iterator[Finding]:
+    """Findings of TG302 and TG303."""
+    for claim in study.case.claims:
+        if isinstance(claim, DurationsClaim | MaximumClaim | TotalTimeClaim):
+            for pid, rid in study.claim_pairs(claim):
+                yield from _beside_optimum(study, claim, pid, rid)
+        elif isinstance(claim, StatementClaim) and claim.checks == "optimal":
+            yield from _optimal_statement(study, claim)
+
+
+def reference_of(solution: Solution) -> Reference | None:
+    """The reference interval of a solution, or None where it has no positive time."""
+    best = solution.infimum if solution.infimum is not None else solution.total_time
+    return Reference(best, solution.lower_bound) if 0 < best < float("inf") else None
+
+
+def _kept(study: Study, claim: AnyClaim, pid: str, rid: str) -> bool:
+    if isinstance(claim, TotalTimeClaim):
+        return False
+    return study.claim_rounding(claim, pid, rid).verdict in (Rounding.KEEPS, Rounding.CONSISTENT)
+
+
+def _beside_optimum(study: Study, claim: AnyClaim, pid: str, rid: str) -> Iterator[Finding]:
+    total = study.claim_total(claim, rid)
+    if total is None:
+        return
+    problem = study.claim_problem(claim, pid, rid)
+    procedure = (
+        len(problem.joints) > 1 and study.problem(pid, rid).coupling is Coupling.PER_JOINT
+    )
+    solution = study.claim_optimum(claim, pid, rid)
+    reference = reference_of(solution)
+    if reference is not None:
+        yield _distance(study, claim, pid, rid, total, solution, reference, procedure)
+    if procedure:
+        yield from _beside_procedure(study, claim, pid, rid, total)
+
+
+def _distance(
+    study: Study,
+    claim: AnyClaim,
+    pid: str,
+    rid: str,
+    total: tuple[str, tuple[float, float]],
+    solution: Solution,
+    reference: Reference,
+    shared: bool,
+) -> Finding:
+    shown, interval = total
+    kept = _kept(study, claim, pid, rid)
+    distance = gap(interval, reference, feasible=kept)
+    which = (
+        "with shared durations" if shared or claim.joint is None else f"of joint {claim.joint}"
+    )
+    message = (
+        f"Printed {shown}; {solution.evidence} optimum {which} {reference.upper:.6f} s: "
+        f"{_percent(distance)}."
+    )
+    if not isinstance(claim, TotalTimeClaim):
+        verdict = study.claim_check(claim, pid, rid)
+        if verdict.feasible_time is not None:
+            repaired = gap(verdict.feasible_time, reference)
+            message += (
+                f" Feasible time of the printed durations {verdict.feasible_time:.6f} s "
+                f"({100 * repaired.lowest:+.3g} %)."
+            )
+    severity = Severity.INFO
+    if distance.highest < 0:
+        severity = Severity.WARNING
+        message += (
+            " The whole printed interval lies below the best known total. That value is not a "
+            "proven bound; the limits, the reading or the printed digits differ, or a better "
+            "optimum exists."
+        )
+    return Finding(
+        rule="TG303" if shared else "TG302",
+        severity=severity,
+        verdict=ClaimVerdict.SUPPORTED if kept else ClaimVerdict.NOT_CHECKABLE,
+        scope=Scope.SOME,
+        evidence=solution.evidence,
+        basis=Basis.OPTIMUM,
+        claim=claim.id,
+        problem=pid,
+        reading=rid,
+        printed=shown,
+        computed=f"{reference.upper:.6f} s",
+        gap=distance,
+        message=message,
+        decides=False,
+    )
+
+
+def _percent(distance: Gap) -> str:
+    low, high = 100 * distance.lowest, 100 * distance.highest
+    value = f"{low:+.3g} %" if abs(high - low) < 0.02 else f"{low:+.3g} to {high:+.3g} %"
+    name = "gap" if distance.kind is GapKind.OPTIMALITY else "difference of reported time"
+    return f"{name} {value}"
+
+
+def _beside_procedure(
+    study: Study, claim: AnyClaim, pid: str, rid: str, total: tuple[str, tuple[float, float]]
+) -> Iterator[Finding]:
+    answer = study.per_joint(pid, rid)
+    if not answer.ranges or answer.check is None:
+        return
+    wide = answer.ranges[0]
+    shown, (low, high) = total
+    inside = low <= wide.highest and high >= wide.lowest
+    tight = answer.check.tight_time
+    message = (
+        f"Each joint at its own {answer.evidence} optimum, then the longest per segment, gives "
+        f"{wide.lowest:.4f} to {wide.highest:.4f} s while every joint stays within {wide.slack:g} "
+        f"s of its optimum, and {answer.total_time:.4f} s at the optima found"
+        + (f" (free rescaling of that motion: {tight:.4f} s)" if tight is not None else "")
+        + f"; printed is {shown}, {'inside' if inside else 'outside'} that range."
+    )
+    yield Finding(
+        rule="TG302",
+        severity=Severity.INFO,
+        verdict=ClaimVerdict.SUPPORTED if inside else ClaimVerdict.NOT_CHECKABLE,
+        scope=Scope.SOME,
+        evidence=answer.evidence,
+        basis=Basis.OPTIMUM,
+        claim=claim.id,
+        problem=pid,
+        reading=rid,
+        printed=shown,
+        computed=f"{wide.lowest:.6f} to {wide.highest:.6f} s",
+        gap=None,
+        message=message,
+        decides=False,
+    )
+
+
+def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Finding]:
+    """A feasible shorter answer to the same problem refutes "optimal"; its absence supports it."""
+    for rid in study.readings:
+        longer, judged, apart = [], 0, 0
+        for claim in (study.case.claim(i) for i in statement.of):
+            for pid, reading in study.claim_pairs(claim):
+                total = study.claim_total(claim, rid)
+                if reading != rid or total is None:
+                    continue
+                solution = study.claim_optimum(claim, pid, rid)
+                reference = reference_of(solution)
+                if reference is None or solution.status is Status.FEASIBLE:
+                    continue
+                judged += 1
+                shown, interval = total
+                distance = gap(interval, reference, feasible=_kept(study, claim, pid, rid))
+                if distance.lowest > 1e-9:
+                    longer.append(
+                        f"{claim.id} ({pid}): printed {shown}, a checked motion through the same "
+                        f"way-points takes {reference.upper:.6f} s ({_percent(distance)})"
+                    )
+                elif distance.highest < 0:
+                    apart += 1
+        if not judged:
+            continue
+        if longer:
+            verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
+            message = "Not the shortest: " + "; ".join(longer) + "."
+        elif apart:
+            verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
+            message = f"{apart} printed totals lie below the best known value of this reading."
+        else:
+            verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
+            message = f"All {judged} printed totals agree with the best known optimum."
+        yield Finding(
+            rule="TG302",
+            severity=severity,
+            verdict=verdict,
+            scope=Scope.SOME,
+            evidence=solution.evidence,
+            basis=Basis.OPTIMUM,
+            claim=statement.id,
+            problem=None,
+            reading=rid,
+            printed=None,
+            computed=None,
+            gap=None,
+            message=message,
+        )

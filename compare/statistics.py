@@ -1,0 +1,81 @@
+"""Spreads over seeds: what one run against one run can show by luck."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True)
+class Spread:
+    """Totals of many seeds: count, failures (infinite totals) and quantiles of the rest, s."""
+
+    runs: int
+    failed: int
+    lowest: float
+    median: float
+    highest: float
+
+    def __str__(self) -> str:
+        if self.failed == self.runs:
+            return f"no feasible answer in {self.runs} runs"
+        text = f"median {self.median:.4f} s ({self.lowest:.4f} to {self.highest:.4f})"
+        return text + (f", {self.failed} of {self.runs} without answer" if self.failed else "")
+
+
+def spread(totals: NDArray[np.float64]) -> Spread:
+    """Spread of the totals of one algorithm over its seeds.
+
+    Parameters
+    ----------
+    totals : ndarray, shape (runs,)
+        Seconds; inf for a run without feasible answer, kept and counted.
+
+    Returns
+    -------
+    Spread
+    """
+    good = totals[np.isfinite(totals)]
+    if good.size == 0:
+        return Spread(totals.size, totals.size, np.inf, np.inf, np.inf)
+    return Spread(
+        runs=totals.size,
+        failed=totals.size - good.size,
+        lowest=float(good.min()),
+        median=float(np.median(good)),
+        highest=float(good.max()),
+    )
+
+
+def share_of_pairs(
+    slower: NDArray[np.float64], faster: NDArray[np.float64], reduction: float
+) -> float:
+    """Share of pairs, one run of each, in which the second is shorter by at least ``reduction``.
+
+    Parameters
+    ----------
+    slower, faster : ndarray
+        Totals, s. The same array twice asks what two runs of one algorithm show by luck; a run
+        is then never paired with itself.
+    reduction : float
+        Relative to the slower total, e.g. 0.109.
+
+    Returns
+    -------
+    float
+        In 0..1; nan if there is no pair of finite totals.
+    """
+    with np.errstate(invalid="ignore"):
+        reductions = 1.0 - faster[None, :] / slower[:, None]
+    pairs = np.isfinite(slower)[:, None] & np.isfinite(faster)[None, :]
+    if slower is faster:
+        pairs &= ~np.eye(slower.size, dtype=bool)
+    return float((reductions[pairs] >= reduction).mean()) if pairs.any() else float("nan")
+
+
+def settled_at(trace: NDArray[np.float64], tolerance: float) -> int:
+    """First iteration from which the best-so-far stays within ``tolerance`` (s) of its end."""
+    close = trace <= trace[-1] + tolerance
+    return int(np.argmax(close)) if np.isfinite(trace[-1]) else trace.size

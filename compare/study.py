@@ -1,0 +1,268 @@
+"""Everything that is computed for one case, each thing once: optima, checks, replays."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import fields, replace
+from enum import StrEnum
+from typing import Any, TypeVar, cast
+
+import numpy as np
+
+from ..heuristics import Algorithm, JointRuns, Run, from_settings, run_many, run_many_per_joint
+from ..nlp import PerJointSolution, Solution, solve, solve_per_joint
+from ..nlp.per_joint import OPTIMUM_SLACK
+from ..problem import (
+    Case,
+    Check,
+    Coupling,
+    Printed,
+    Problem,
+    TrajgapError,
+    check,
+    piecewise,
+)
+from ..problem.claim import Claim, DurationsClaim, MaximumClaim
+from .rounding import Box, RoundingVerdict, judge_rounding
+
+T = TypeVar("T")
+Pair = tuple[str, str]
+"""Problem id and reading id."""
+Replays = tuple[Run, ...] | tuple[JointRuns, ...]
+
+SEEDS = 30
+VARIANT_SEEDS = 10
+
+
+class Study:
+    """Lazily computed, cached results of one case.
+
+    Parameters
+    ----------
+    case : Case
+    seeds : int
+        Seeds of each replay, 0 to seeds − 1.
+    workers : int
+        Processes for the replays; the results do not depend on it.
+    problem, reading : str, optional
+        Keep to one problem or reading of the case.
+    progress : callable, optional
+        Called with a short text before anything that takes a while.
+    """
+
+    def __init__(
+        self,
+        case: Case,
+        seeds: int = SEEDS,
+        workers: int = 1,
+        problem: str | None = None,
+        reading: str | None = None,
+        progress: Callable[[str], None] | None = None,
+    ) -> None:
+        if seeds < 2:
+            raise TrajgapError(f"seeds: {seeds} show no spread; give 2 or more, 30 is customary")
+        self.case = case
+        self.seeds = seeds
+        self.workers = workers
+        self.pairs: tuple[Pair, ...] = tuple(case.selections(problem, reading))
+        self._progress = progress or (lambda _: None)
+        self._kept: dict[tuple[Any, ...], Any] = {}
+
+    def _once(self, key: tuple[Any, ...], compute: Callable[[], T]) -> T:
+        if key not in self._kept:
+            self._kept[key] = compute()
+        return cast(T, self._kept[key])
+
+    @property
+    def readings(self) -> tuple[str, ...]:
+        """Reading ids, in order."""
+        return tuple(dict.fromkeys(rid for _, rid in self.pairs))
+
+    @property
+    def problems(self) -> tuple[str, ...]:
+        """Problem ids, in order."""
+        return tuple(dict.fromkeys(pid for pid, _ in self.pairs))
+
+    @property
+    def main_reading(self) -> str:
+        """The case's default reading, or the only one selected."""
+        default = self.case.default_reading.id
+        return default if default in self.readings else self.readings[0]
+
+    def problem(self, pid: str, rid: str) -> Problem:
+        """Problem of the case, with its coupling."""
+        return self._once(("problem", pid, rid), lambda: self.case.problem(pid, rid))
+
+    def optimum(self, pid: str, rid: str, joint: str | None = None) -> Solution:
+        """Best known answer with shared durations, of all joints or of one."""
+
+        def compute() -> Solution:
+            problem = self.problem(pid, rid)
+            self._progress(f"{self.case.id}: optimum of {pid}, {rid}")
+            return solve(problem if joint is None else problem.joint(problem.joints.index(joint)))
+
+        if joint is not None and len(self.problem(pid, rid).joints) == 1:
+            joint = None
+        return self._once(("optimum", pid, rid, joint), compute)
+
+    def per_joint(self, pid: str, rid: str) -> PerJointSolution:
+        """Each joint by itself, with the ranges within half a printed digit and 1e-6 s."""
+
+        def compute() -> PerJointSolution:
+            self._progress(f"{self.case.id}: each joint by itself, {pid}, {rid}")
+            slacks = dict.fromkeys((*self._half_digits(pid, rid), OPTIMUM_SLACK))
+            return solve_per_joint(self.problem(pid, rid), slacks=tuple(slacks))
+
+        return self._once(("per joint", pid, rid), compute)
+
+    def _half_digits(self, pid: str, rid: str) -> tuple[float, ...]:
+        """Half a unit of the last printed place of the totals of single joints, s."""
+        halves = []
+        for claim in self.case.claims:
+            if isinstance(claim, DurationsClaim) and claim.joint and claim.total is not None:
+                if claim.problem in (None, pid) and not claim.total.exact:
+                    box = self.case.measured(claim.total, "time", pid, rid)
+                    halves.append(round((box.upper - box.lower) / 2, 12))
+        return (max(halves),) if halves else ()
+
+    def relaxed(self, pid: str, rid: str) -> Solution:
+        """Optimum of the relaxed family: quintic in every segment, C2, the rest left free."""
+
+        def compute() -> Solution:
+            problem = self.problem(pid, rid)
+            self._progress(f"{self.case.id}: relaxed family, {pid}, {rid}")
+            family = replace(
+                piecewise((5,) * problem.segments, 2, name="quintic polynomials, C2, free"),
+                prescribed=(
+                    problem.interpolant.prescribed[0],
+                    *((),) * (problem.segments - 1),
+                    problem.interpolant.prescribed[-1],
+                ),
+                virtual=problem.interpolant.virtual,
+            )
+            return solve(replace(problem, interpolant=family, coupling=Coupling.SHARED))
+
+        return self._once(("relaxed", pid, rid), compute)
+
+    def claim_pairs(self, claim: Claim) -> Iterator[Pair]:
+        """Problems and readings that a claim speaks about."""
+        return (pair for pair in self.pairs if claim.problem in (None, pair[0]))
+
+    def claim_problem(self, claim: Claim, pid: str, rid: str) -> Problem:
+        """The problem a claim's durations belong to: one joint's, or that of all joints."""
+        problem = self.problem(pid, rid)
+        if claim.joint is None or claim.joint not in problem.joints:
+            return problem
+        return problem.joint(problem.joints.index(claim.joint))
+
+    def claim_optimum(self, claim: Claim, pid: str, rid: str) -> Solution:
+        """Best known answer of `claim_problem`."""
+        return self.optimum(pid, rid, claim.joint)
+
+    def claim_check(self, claim: Claim, pid: str, rid: str) -> Check:
+        """The printed durations judged at the printed point."""
+
+        def compute() -> Check:
+            durations = self.case.claim_durations(claim, rid).value
+            return check(self.claim_problem(claim, pid, rid), durations)
+
+        return self._once(("check", claim.id, pid, rid), compute)
+
+    def claim_rounding(self, claim: Claim, pid: str, rid: str) -> RoundingVerdict:
+        """The printed durations judged over the box of all inputs that print alike."""
+
+        def compute() -> RoundingVerdict:
+            self._progress(f"{self.case.id}: rounding box of {claim.id}, {rid}")
+            problem = self.claim_problem(claim, pid, rid)
+            box = self.case.claim_durations(claim, rid)
+            lower, upper = self.case.waypoint_box(pid, rid)
+            labels = self.problem(pid, rid).joints
+            columns = [labels.index(label) for label in problem.joints]
+            return judge_rounding(
+                problem,
+                Box(box.value, box.lower, box.upper),
+                Box(problem.waypoints, lower[:, columns], upper[:, columns]),
+            )
+
+        return self._once(("rounding", claim.id, pid, rid), compute)
+
+    def claim_total(self, claim: Claim, rid: str) -> tuple[str, tuple[float, float]] | None:
+        """A claim's total as printed (or as summed), and its interval in seconds."""
+        if isinstance(claim, DurationsClaim | MaximumClaim):
+            box = self.case.claim_durations(claim, rid)
+            summed = (float(box.lower.sum()), float(box.upper.sum()))
+            if claim.total is None:
+                return f"{float(box.value.sum()):.10g} s (sum of the printed durations)", summed
+            total = self.case.measured(claim.total, "time", claim.problem, rid)
+            both = (max(summed[0], total.lower), min(summed[1], total.upper))
+            return f"{claim.total} s", both if both[0] <= both[1] else (total.lower, total.upper)
+        value: Printed | None = getattr(claim, "value", None)
+        if claim.quantity != "total_time" or value is None:
+            return None
+        total = self.case.measured(value, "time", claim.problem, rid)
+        return f"{value} s", (total.lower, total.upper)
+
+    def algorithm(self, algorithm_id: str) -> Algorithm[Any] | None:
+        """The case's algorithm, or None if its kind is not implemented."""
+        block = next(a for a in self.case.algorithms if a.id == algorithm_id)
+        try:
+            return from_settings(block.kind, block.parameters)
+        except TrajgapError as error:
+            if "is unknown" in str(error):
+                return None
+            raise TrajgapError(f"{self.case.file}: algorithms.{algorithm_id}: {error}") from None
+
+    def runs(self, algorithm_id: str, pid: str, rid: str) -> Replays:
+        """Replays of an algorithm under the listed choices, one per seed; empty if unknown."""
+        algorithm = self.algorithm(algorithm_id)
+        if algorithm is None:
+            return ()
+        return self._once(
+            ("runs", algorithm_id, pid, rid),
+            lambda: self._replay(algorithm, algorithm_id, pid, rid, self.seeds),
+        )
+
+    def _replay(
+        self, algorithm: Algorithm[Any], name: str, pid: str, rid: str, seeds: int
+    ) -> Replays:
+        problem = self.problem(pid, rid)
+        self._progress(f"{self.case.id}: {seeds} replays of {name}, {pid}, {rid}")
+        if problem.coupling is Coupling.PER_JOINT and len(problem.joints) > 1:
+            return run_many_per_joint(algorithm, problem, range(seeds), self.workers)
+        return run_many(algorithm, problem, range(seeds), self.workers)
+
+    def variants(self, algorithm_id: str) -> dict[str, Algorithm[Any]]:
+        """The algorithm under the listed choices, and with each open enumerated choice changed.
+
+        A choice is open if the paper does not print it; one is changed at a time.
+        """
+        algorithm = self.algorithm(algorithm_id)
+        if algorithm is None:
+            return {}
+        block = next(a for a in self.case.algorithms if a.id == algorithm_id)
+        found: dict[str, Algorithm[Any]] = {"as listed": algorithm}
+        for one in fields(cast(Any, algorithm)):
+            current = getattr(algorithm, one.name)
+            if not isinstance(current, StrEnum) or one.name in block.settings:
+                continue
+            for option in type(current):
+                if option is not current:
+                    changed = replace(cast(Any, algorithm), **{one.name: option})
+                    found[f"{one.name} = {option}"] = cast(Algorithm[Any], changed)
+        return found
+
+    def variant_totals(self, algorithm_id: str, pid: str, rid: str) -> dict[str, np.ndarray]:
+        """Reported totals of each variant over its seeds, s."""
+
+        def compute() -> dict[str, np.ndarray]:
+            totals: dict[str, np.ndarray] = {}
+            for name, algorithm in self.variants(algorithm_id).items():
+                if name == "as listed":
+                    runs = self.runs(algorithm_id, pid, rid)
+                else:
+                    few = min(VARIANT_SEEDS, self.seeds)
+                    runs = self._replay(algorithm, f"{algorithm_id}, {name}", pid, rid, few)
+                totals[name] = np.array([r.reported_time for r in runs])
+            return totals
+
+        return self._once(("variants", algorithm_id, pid, rid), compute)
