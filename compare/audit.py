@@ -105,7 +105,9 @@ def audit(
     chosen = [cases] if isinstance(cases, str | Path | Case) else list(cases)
     loaded = [one if isinstance(one, Case) else load_case(one) for one in chosen]
     studies = [
-        Study(one, seeds=seeds, workers=workers, problem=problem, reading=reading, progress=progress)
+        Study(
+            one, seeds=seeds, workers=workers, problem=problem, reading=reading, progress=progress
+        )
         for one in loaded
     ]
     return AuditReport(tuple(audit_case(study) for study in studies))

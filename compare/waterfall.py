@@ -110,9 +110,7 @@ def _published(study: Study, claim: AnyClaim, pid: str, rid: str) -> list[Step]:
         return [printed, Step("feasible after repair", None, None, None, Evidence.NONE, note)]
     stretch = verdict.feasible_time / verdict.total_time
     note = f"stretched by {stretch:.6g}" if stretch > 1 else "no repair needed"
-    repaired = Step(
-        "feasible after repair", verdict.feasible_time, None, None, Evidence.NONE, note
-    )
+    repaired = Step("feasible after repair", verdict.feasible_time, None, None, Evidence.NONE, note)
     return [printed, repaired]
 
 
@@ -134,9 +132,7 @@ def _retimed(relaxed: Solution) -> Step:
     if relaxed.durations is None:
         return Step(name, None, None, None, Evidence.NONE, "no path")
     problem = relaxed.problem
-    trajectory = fit(
-        problem.interpolant, problem.waypoints, relaxed.durations, relaxed.nodal
-    )
+    trajectory = fit(problem.interpolant, problem.waypoints, relaxed.durations, relaxed.nodal)
     answer = retime(trajectory, problem.limits)
     if not answer.applicable or answer.extrapolated is None:
         return Step(name, None, None, None, Evidence.NONE, answer.why or "")

@@ -124,7 +124,8 @@ def slot_groups(interpolant: Interpolant, orders: tuple[int, ...]) -> tuple[Slot
         right = [
             k
             for k in alive
-            if interpolant.degrees[k] > r and not any(o == r for o, _ in interpolant.prescribed[k + 1])
+            if interpolant.degrees[k] > r
+            and not any(o == r for o, _ in interpolant.prescribed[k + 1])
         ]
         if r == 0:
             left, right = [], []
@@ -175,7 +176,9 @@ def _lifted_rows(
         at = [rows[i].at for i in members]
         if kind == RowKind.RIGHT_VALUE:
             scale = ca.mtimes(_take(h, at) ** r, ones)
-            equation = float(PERM[r, r]) * _take(coefficients[r], at) - _take(values, members) * scale
+            equation = (
+                float(PERM[r, r]) * _take(coefficients[r], at) - _take(values, members) * scale
+            )
         else:
             before = tuple(b - 1 for b in at)
             equation = _derivative(coefficients, r, 1.0, before)

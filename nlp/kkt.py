@@ -165,13 +165,9 @@ def kkt(
         multiplier = float(w * total)
         more = MORE if quantity != "position" else MORE * abs(c.scale)
         if multiplier > 0:
-            reached.append(
-                Active(joint, quantity, segment, time, multiplier, -more * multiplier)
-            )
+            reached.append(Active(joint, quantity, segment, time, multiplier, -more * multiplier))
     for (k, sign, _), w in zip(bounds, weights[len(rows) :], strict=True):
         multiplier = float(w * total)
         if multiplier > 0:
-            reached.append(
-                Active(None, "duration", k, None, multiplier, -sign * MORE * multiplier)
-            )
+            reached.append(Active(None, "duration", k, None, multiplier, -sign * MORE * multiplier))
     return KKT(max(stationarity, slack, violation), tuple(reached))

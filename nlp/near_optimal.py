@@ -126,7 +126,9 @@ def _improve(
             new.append(np.clip(fresh, problem.duration_lower, problem.duration_upper))
             moved = max(moved, float(np.abs(fresh / own - 1).max()))
             at += size
-        if all(check(q, d).stretch <= 1 + 1e-4 * radius for q, d in zip(problems, new, strict=True)):
+        if all(
+            check(q, d).stretch <= 1 + 1e-4 * radius for q, d in zip(problems, new, strict=True)
+        ):
             h = new
             if moved < 1e-8:
                 break
@@ -163,7 +165,9 @@ def longest_per_segment_range(
     """
     caps = [float(h.sum()) + slack for h in optima]
     given = float(np.max(optima, axis=0).sum())
-    least = [_kept(p, h) for p, h in zip(problems, _improve(problems, optima, caps, None), strict=True)]
+    least = [
+        _kept(p, h) for p, h in zip(problems, _improve(problems, optima, caps, None), strict=True)
+    ]
     lowest = given
     if all(h.sum() <= cap * (1 + 1e-8) for h, cap in zip(least, caps, strict=True)):
         lowest = min(given, float(np.max(least, axis=0).sum()))

@@ -82,9 +82,7 @@ class PerJointSolution:
     def __str__(self) -> str:
         lines = [f"{self.problem.name}: each joint by itself, then the longest per segment"]
         for label, s in zip(self.problem.joints, self.joints, strict=True):
-            shown = (
-                ", ".join(f"{d:.4f}" for d in s.durations) if s.durations is not None else s.why
-            )
+            shown = ", ".join(f"{d:.4f}" for d in s.durations) if s.durations is not None else s.why
             lines.append(f"joint {label:<9} {s.total_time:.6f} s  ({shown})  {s.status}")
         if self.durations is not None and self.check is not None:
             lines.append(f"longest         {self.total_time:.6f} s, {self.check.verdict}")

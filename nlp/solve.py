@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..problem import Problem, check, fit
+from ..problem import Problem, TrajgapError, check, fit
 from ..problem.spline import coefficient_gradient
 from .feasibility import impossible
 from .formulation import Form
@@ -87,12 +87,18 @@ def _solve_moving(
     """`solve` for a problem without idle segments."""
     build_ = compiled(structure_of(problem, form))
     began = time.perf_counter()
-    generator = np.random.default_rng(seed)
-    points = (
-        screened_starts(problem, starts, generator)
-        if initial is None
-        else np.atleast_2d(np.asarray(initial, dtype=np.float64))
-    )
+    if initial is None:
+        points = screened_starts(problem, starts, np.random.default_rng(seed))
+    else:
+        points = np.atleast_2d(np.asarray(initial, dtype=np.float64))
+        if (
+            points.shape[1:] != (problem.segments,)
+            or not (np.isfinite(points) & (points > 0)).all()
+        ):
+            raise TrajgapError(
+                f"initial: expected shape (starts, {problem.segments}) of positive durations, "
+                f"got {np.asarray(initial).shape}"
+            )
     mean = float(equal_start(problem).mean())
     solution, coarser = None, None
     for share in FLOORS:

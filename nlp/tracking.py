@@ -391,5 +391,3 @@ def pack(
     top = max(interpolant.degrees) + 1
     parts = [(trajectory.scaled[:, p] / scaled.angle_unit).ravel("F") for p in range(top)]
     return np.concatenate([h / scaled.time_unit, *parts])
-
-

@@ -74,7 +74,9 @@ class Limits:
     @property
     def limits_position(self) -> bool:
         """Whether any joint has a finite position limit."""
-        return bool(np.isfinite(self.position_lower).any() or np.isfinite(self.position_upper).any())
+        return bool(
+            np.isfinite(self.position_lower).any() or np.isfinite(self.position_upper).any()
+        )
 
     def joint(self, index: int) -> Limits:
         """Limits of one joint alone."""

@@ -173,9 +173,7 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
         )
 
 
-def _box_reach(
-    study: Study, claim: AnyClaim, pid: str, rid: str, point: Extremum
-) -> float:
+def _box_reach(study: Study, claim: AnyClaim, pid: str, rid: str, point: Extremum) -> float:
     """First-order change of an extremum over the rounding box."""
     problem = study.claim_problem(claim, pid, rid)
     box = study.case.claim_durations(claim, rid)

@@ -198,9 +198,7 @@ def _improvements(study: Study) -> Iterator[Finding]:
                 yield _compared("TG103", claim, number, rounded, cut, what, unit)
         if claim.percent is None and claim.seconds is None:
             yield _unquantified(claim, slower, faster, between, seconds, _unit(study))
-        tables = [
-            _table_total(study, c.algorithm, c.problem) for c in (slower_claim, faster_claim)
-        ]
+        tables = [_table_total(study, c.algorithm, c.problem) for c in (slower_claim, faster_claim)]
         totals = [_total(t) for t in tables if t is not None]
         if claim.percent is not None and len(totals) == 2 and None not in totals:
             yield from _against_tables(claim, claim.percent, tables, totals)

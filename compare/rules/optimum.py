@@ -46,9 +46,7 @@ def _beside_optimum(study: Study, claim: AnyClaim, pid: str, rid: str) -> Iterat
     if total is None:
         return
     problem = study.claim_problem(claim, pid, rid)
-    procedure = (
-        len(problem.joints) > 1 and study.problem(pid, rid).coupling is Coupling.PER_JOINT
-    )
+    procedure = len(problem.joints) > 1 and study.problem(pid, rid).coupling is Coupling.PER_JOINT
     solution = study.claim_optimum(claim, pid, rid)
     reference = reference_of(solution)
     if reference is not None:
@@ -70,9 +68,7 @@ def _distance(
     shown, interval = total
     kept = _kept(study, claim, pid, rid)
     distance = gap(interval, reference, feasible=kept)
-    which = (
-        "with shared durations" if shared or claim.joint is None else f"of joint {claim.joint}"
-    )
+    which = "with shared durations" if shared or claim.joint is None else f"of joint {claim.joint}"
     message = (
         f"Printed {shown}; {solution.evidence} optimum {which} {reference.upper:.6f} s: "
         f"{_percent(distance)}."

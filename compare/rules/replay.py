@@ -111,7 +111,6 @@ def _improvement(study: Study, claim: ImprovementClaim) -> Iterator[Finding]:
         )
 
 
-
 def _total(study: Study, claim: AnyClaim) -> Iterator[Finding]:
     """The printed total beside the totals of all seeds and variants."""
     rid = study.main_reading
@@ -167,9 +166,7 @@ def _total(study: Study, claim: AnyClaim) -> Iterator[Finding]:
 
 
 def _traces(runs: Sequence[Run] | Sequence[JointRuns]) -> list[Run]:
-    return list(
-        chain.from_iterable(r.runs if isinstance(r, JointRuns) else (r,) for r in runs)
-    )
+    return list(chain.from_iterable(r.runs if isinstance(r, JointRuns) else (r,) for r in runs))
 
 
 def _convergence(study: Study, claim: ConvergenceClaim) -> Iterator[Finding]:

@@ -47,11 +47,11 @@ def velocity_factor(one: Problem, other: Problem) -> float | None:
         and not other.limits.limits_position
     )
     a, b = one.limits, other.limits
-    only_velocity = all(
-        np.isinf(x).all() for x in (a.acceleration, a.jerk, b.acceleration, b.jerk)
-    )
-    if not same or not only_velocity or not np.array_equal(
-        np.isfinite(a.velocity), np.isfinite(b.velocity)
+    only_velocity = all(np.isinf(x).all() for x in (a.acceleration, a.jerk, b.acceleration, b.jerk))
+    if (
+        not same
+        or not only_velocity
+        or not np.array_equal(np.isfinite(a.velocity), np.isfinite(b.velocity))
     ):
         return None
     finite = np.isfinite(a.velocity)

@@ -1,0 +1,194 @@
+"""What all pictures share: style, colours, text that is safe to draw, and deterministic SVG."""
+
+from __future__ import annotations
+
+import io
+import re
+import textwrap
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import lru_cache
+from typing import Any
+from xml.sax.saxutils import escape
+
+from matplotlib import style
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties, findfont
+from matplotlib.ft2font import FT2Font
+
+# Okabe & Ito's colours, told apart with any common colour blindness.
+INK = "#1f2933"
+MUTED = "#5b6673"
+GRID = "#d5dae1"
+PAPER = "#ffffff"
+BLUE = "#0072b2"
+ORANGE = "#e69f00"
+GREEN = "#009e73"
+PURPLE = "#cc79a7"
+SKY = "#56b4e9"
+RED = "#c8102e"
+THEME = {
+    "ink": INK,
+    "muted": MUTED,
+    "grid": GRID,
+    "paper": PAPER,
+    "blue": BLUE,
+    "orange": ORANGE,
+    "green": GREEN,
+    "purple": PURPLE,
+    "sky": SKY,
+    "red": RED,
+}
+"""Colours that a page may replace, by the name of their CSS variable."""
+SERIES = ((BLUE, "-"), (ORANGE, "--"), (GREEN, "-."), (PURPLE, ":"), (SKY, (0, (5, 1, 1, 1))))
+"""Colour and line style of the algorithms, in order; told apart without colour too."""
+
+_STYLE: dict[str, Any] = {
+    "font.family": ["DejaVu Sans"],
+    "font.size": 9.0,
+    # Labels come from case files; a dollar sign in them is no formula.
+    "text.parse_math": False,
+    "text.color": INK,
+    "axes.labelcolor": INK,
+    "axes.edgecolor": MUTED,
+    "axes.titlecolor": INK,
+    "axes.titlesize": 9.0,
+    "axes.titlelocation": "left",
+    "axes.labelsize": 8.5,
+    "axes.linewidth": 0.7,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.facecolor": PAPER,
+    "axes.unicode_minus": True,
+    "figure.facecolor": PAPER,
+    "hatch.linewidth": 0.6,
+    "xtick.color": MUTED,
+    "ytick.color": MUTED,
+    "xtick.labelcolor": INK,
+    "ytick.labelcolor": INK,
+    "xtick.labelsize": 8.0,
+    "ytick.labelsize": 8.0,
+    "grid.color": GRID,
+    "grid.linewidth": 0.6,
+    "legend.frameon": False,
+    "legend.fontsize": 8.5,
+    "svg.fonttype": "path",
+    "svg.hashsalt": "trajgap",
+    "svg.image_inline": True,
+}
+
+
+class Picture(Figure):
+    """A figure with a title and a description in words for those who cannot see it."""
+
+    def __init__(self, title: str, description: str, width: float, height: float) -> None:
+        super().__init__(figsize=(width, height), layout="constrained")
+        self.title = title
+        self.description = description
+
+
+@contextmanager
+def drawing() -> Iterator[None]:
+    """Style of every picture, whatever the user's own matplotlib settings."""
+    with style.context(["default", _STYLE]):
+        yield
+
+
+@lru_cache(maxsize=1)
+def _font() -> FT2Font:
+    return FT2Font(findfont(FontProperties(family=["DejaVu Sans"])))
+
+
+def shown(text: str, width: int | None = None, lines: int = 1) -> str:
+    """Text as a picture can draw it: on few lines, without characters that the font lacks.
+
+    Parameters
+    ----------
+    text : str
+    width : int, optional
+        Largest number of characters in a line; what does not fit is cut with an ellipsis.
+    lines : int
+        Largest number of lines.
+    """
+    flat = " ".join(text.split())
+    drawn = "".join(
+        c if c.isprintable() and _font().get_char_index(ord(c)) else "?" for c in flat
+    )
+    if width is None:
+        return drawn
+    return "\n".join(textwrap.wrap(drawn, width, max_lines=lines, placeholder="…") or [""])
+
+
+def heading(figure: Picture, note: str = "") -> None:
+    """Write the picture's title, and a note below it, over the panels."""
+    figure.suptitle(shown(figure.title, 105, 2), x=0.005, ha="left", fontsize=11, weight="bold")
+    if note:
+        figure.supxlabel(note, x=0.005, ha="left", fontsize=8, color=MUTED)
+
+
+def light_grid(axes: Axes, which: str = "both") -> None:
+    """Draw thin grid lines behind everything else of one panel."""
+    axes.grid(True, axis=which)  # type: ignore[arg-type]
+    axes.set_axisbelow(True)
+
+
+def _xml(text: str) -> str:
+    printable = "".join(c if c.isprintable() else " " for c in text)
+    return escape(printable.encode("utf-8", "replace").decode("utf-8"))
+
+
+def svg(figure: Figure) -> str:
+    """Render a figure as SVG, the same bytes each time, with title and description.
+
+    Parameters
+    ----------
+    figure : Figure
+        A `Picture` brings its own title and description.
+
+    Returns
+    -------
+    str
+        A complete SVG document. Text is drawn as outlines, so that it looks the same everywhere.
+    """
+    buffer = io.StringIO()
+    with drawing():
+        figure.savefig(buffer, format="svg", metadata={"Date": None})
+    text = buffer.getvalue()
+    title = getattr(figure, "title", "") or "Picture"
+    description = getattr(figure, "description", "")
+    text = re.sub(r"\s*<metadata>.*?</metadata>", "", text, count=1, flags=re.DOTALL)
+    text = re.sub(r"<!DOCTYPE.*?>\s*", "", text, count=1, flags=re.DOTALL)
+    # Outlines are preceded by a comment with their text, which may close it.
+    text = re.sub(r"\s*<!--.*?-->", "", text, flags=re.DOTALL)
+    # A hundredth of a point is far below what a screen or printer shows.
+    text = re.sub(r"-?\d+\.\d{3,}(?=[\s\"LMCQz,)])", lambda m: f"{float(m[0]):.2f}", text)
+    opening = re.search(r"<svg [^>]*>", text)
+    assert opening is not None
+    tag = opening[0][:-1] + ' role="img" aria-labelledby="title desc">'
+    words = f'<title id="title">{_xml(title)}</title>\n <desc id="desc">{_xml(description)}</desc>'
+    return text[: opening.start()] + tag + f"\n {words}" + text[opening.end() :]
+
+
+def embedded(document: str, prefix: str) -> str:
+    """Fit an SVG document into a page: own ids, and colours that follow the page's theme.
+
+    Parameters
+    ----------
+    document : str
+        What `svg` returned.
+    prefix : str
+        Unique in the page; letters, digits and hyphens.
+    """
+    text = document[document.index("<svg ") :]
+    text = re.sub(r'\bid="([^"]+)"', rf'id="{prefix}-\1"', text)
+    text = re.sub(r'href="#([^"]+)"', rf'href="#{prefix}-\1"', text)
+    text = re.sub(r"url\(#([^)]+)\)", rf"url(#{prefix}-\1)", text)
+    text = text.replace(
+        'aria-labelledby="title desc"', f'aria-labelledby="{prefix}-title {prefix}-desc"'
+    )
+    for name, colour in THEME.items():
+        text = text.replace(f"{colour};", f"var(--{name});").replace(
+            f'{colour}"', f'var(--{name})"'
+        )
+    return text
