@@ -36,8 +36,6 @@ def test_the_range_contains_what_random_near_optima_give() -> None:
         h = h * np.maximum(1.0, evaluate(single, h).stretch)[:, None]
         near.append(h[h.sum(axis=1) <= s.total_time + slack])
         assert len(near[-1]) > 20
-    most = np.max([h.max(axis=0) for h in near], axis=0)
-    assert most.sum() <= answer.ranges[0].highest + 3e-3
     picks = [h[rng.integers(len(h), size=4000)] for h in near]
     totals = np.max(picks, axis=0).sum(axis=1)
     assert answer.ranges[0].lowest <= totals.min()
