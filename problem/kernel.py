@@ -1,8 +1,8 @@
 """Compiled kernels: banded spline systems and the true extrema of polynomials on [0, 1].
 
 Two root finders, written apart and compared in the tests: `roots_in_unit` takes one polynomial, for
-the checker; the lanes take every joint of a block of duration vectors, in loops that become vector
-instructions. No lane looks at another: a batch's order, blocks and threads do not change a bit.
+the checker; for batches a lane is one joint of one duration vector, and the loops over lanes become
+vector instructions. No lane looks at another: order, blocks and threads do not change a bit.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ import numba
 import numpy as np
 
 MAX_COEFFICIENTS = 10
-_LANES = 96
-_SETTLED = 1e-8
+_LANES = 192
+_SETTLED = 1e-6
 
 
 def _compiled(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -24,15 +24,6 @@ def _compiled(function: Callable[..., Any]) -> Callable[..., Any]:
     except RuntimeError:  # no writable place for the cache: compile in memory
         jitted = numba.njit(nogil=True, error_model="numpy")(function)
     return cast(Callable[..., Any], jitted)
-
-
-@_compiled
-def horner(a, degree, s):  # type: ignore[no-untyped-def]
-    """Value of the polynomial with ascending coefficients ``a`` at ``s``."""
-    value = a[degree]
-    for i in range(degree - 1, -1, -1):
-        value = value * s + a[i]
-    return value
 
 
 @_compiled
@@ -81,7 +72,9 @@ def roots_in_unit(a, degree, work, roots):  # type: ignore[no-untyped-def]
         # roots[k] is read before roots[found], found <= k, is written: no break is lost.
         for k in range(count + 1):
             high = roots[k] if k < count else 1.0
-            value_high = horner(p, d, high)
+            value_high = p[d]
+            for i in range(d - 1, -1, -1):
+                value_high = value_high * high + p[i]
             if value_low == 0.0:
                 if low > 0.0:
                     roots[found] = low
@@ -96,98 +89,110 @@ def roots_in_unit(a, degree, work, roots):  # type: ignore[no-untyped-def]
 
 
 @_compiled
-def fit_coefficients(  # type: ignore[no-untyped-def]
-    h, values, kinds, breaks, orders, degrees, column, lower, upper, perm, system, right, out
+def _add_term(  # type: ignore[no-untyped-def]
+    system, right, out, equation, place, k, p, weight, factor, joints, vectors
 ):
-    """Coefficients in s = (t − t_k)/h_k of all joints, by a banded elimination with pivoting.
+    """Add ``factor · weight`` times coefficient (k, p); it is known where its place is negative."""
+    for v in range(vectors if place >= 0 else 0):
+        system[equation, place, v] += factor * weight[v]
+    for j in range(joints if place < 0 else 0):
+        for v in range(vectors):
+            x = j * vectors + v
+            right[equation, x] -= factor * weight[v] * out[k, p, x]
 
-    ``values[row, joint]`` are the right-hand sides (way-points and prescribed derivatives);
-    ``column[segment, power]`` is the unknown's index, or −1 where a row gives it at once;
-    ``perm[p, r]`` = p!/(p − r)!. ``out`` has shape (segment, power, joint). Returns False if the
-    system is singular.
+
+@_compiled
+def _raise_pivot(  # type: ignore[no-untyped-def]
+    system, right, c, i, lower, width, joints, vectors, swap
+):
+    """Swap equations ``c`` and ``i`` where that makes the pivot of column ``c`` larger."""
+    count = 0
+    for v in range(vectors):
+        swap[v] = abs(system[i, c - i + lower, v]) > abs(system[c, lower, v])
+        count += 1 if swap[v] else 0
+    if count == 0:
+        return
+    for m in range(c, width + 1):
+        for v in range(vectors):
+            one, other = system[c, m - c + lower, v], system[i, m - i + lower, v]
+            system[c, m - c + lower, v] = other if swap[v] else one
+            system[i, m - i + lower, v] = one if swap[v] else other
+    for j in range(joints):
+        for v in range(vectors):
+            one, other = right[c, j * vectors + v], right[i, j * vectors + v]
+            right[c, j * vectors + v] = other if swap[v] else one
+            right[i, j * vectors + v] = one if swap[v] else other
+
+
+@_compiled
+def fit_coefficients(  # type: ignore[no-untyped-def]
+    h, vectors, values, kinds, breaks, orders, degrees, column, lower, upper, perm,
+    system, right, out,
+):  # fmt: skip
+    """Fit the coefficients in s = (t − t_k)/h_k of all joints for vectors ``h[segment, vector]``.
+
+    A banded elimination with partial pivoting. ``values[row, joint]`` are the right-hand sides
+    (way-points and prescribed derivatives); ``column[segment, power]`` is the unknown's index, or
+    −1 where a row gives it at once; ``perm[p, r]`` = p!/(p − r)!. ``out`` has shape (segment,
+    power, lane = joint · vectors + vector); it is not finite where the system is singular.
     """
-    joints = values.shape[1]
-    unknowns = system.shape[0]
+    joints, unknowns = values.shape[1], system.shape[0]
+    weight, power, swap = np.empty(vectors), np.empty(vectors), np.empty(vectors, np.bool_)
     system[:] = 0.0
-    out[:] = 0.0
-    for row in range(kinds.size):
-        if kinds[row] == 1:
-            k, r = breaks[row], orders[row]
-            scale = h[k] ** r / perm[r, r]
-            for j in range(joints):
-                out[k, r, j] = values[row, j] * scale
-    equation = 0
-    for row in range(kinds.size):
-        if kinds[row] == 1:
-            continue
-        b, r = breaks[row], orders[row]
-        k = b - 1
-        left, own = 1.0, 0.0
-        if kinds[row] == 0:
-            scale = h[k] ** r
-            for j in range(joints):
-                right[equation, j] = values[row, j] * scale
-        else:
-            rho = h[k] / h[b]
-            if rho > 1.0:
-                left = (1.0 / rho) ** r
-                own = perm[r, r]
-            else:
-                own = rho**r * perm[r, r]
-            for j in range(joints):
-                right[equation, j] = 0.0
-            if r <= degrees[b]:
-                if column[b, r] >= 0:
-                    system[equation, column[b, r]] -= own
+    e = 0
+    for row in range(kinds.size):  # at each break: left values, right values, matches
+        kind, b, r = kinds[row], breaks[row], orders[row]
+        k = b if kind == 1 else b - 1
+        for v in range(vectors):
+            weight[v], power[v] = 1.0, 1.0
+        for _ in range(r if kind < 2 else 0):
+            for v in range(vectors):
+                power[v] *= h[k, v]
+        for j in range(joints):
+            for v in range(vectors):
+                if kind == 1:
+                    out[k, r, j * vectors + v] = values[row, j] * power[v] / perm[r, r]
                 else:
-                    for j in range(joints):
-                        right[equation, j] += own * out[b, r, j]
+                    right[e, j * vectors + v] = values[row, j] * power[v]
+        if kind == 1:
+            continue
+        for _ in range(r if kind == 2 else 0):
+            for v in range(vectors):
+                weight[v] *= min(1.0, h[b, v] / h[k, v])
+                power[v] *= min(1.0, h[k, v] / h[b, v])
+        if kind == 2 and r <= degrees[b]:
+            place = column[b, r] - e + lower if column[b, r] >= 0 else -1
+            _add_term(system, right, out, e, place, b, r, power, -perm[r, r], joints, vectors)
         for p in range(r, degrees[k] + 1):
-            weight = left * perm[p, r]
-            if column[k, p] >= 0:
-                system[equation, column[k, p]] += weight
-            else:
-                for j in range(joints):
-                    right[equation, j] -= weight * out[k, p, j]
-        equation += 1
+            place = column[k, p] - e + lower if column[k, p] >= 0 else -1
+            _add_term(system, right, out, e, place, k, p, weight, perm[p, r], joints, vectors)
+        e += 1
     for c in range(unknowns):
         last = min(c + lower, unknowns - 1)
         width = min(c + lower + upper, unknowns - 1)
-        pivot = c
         for i in range(c + 1, last + 1):
-            if abs(system[i, c]) > abs(system[pivot, c]):
-                pivot = i
-        if not abs(system[pivot, c]) > 0.0:
-            return False
-        if pivot != c:
-            for i in range(c, width + 1):
-                system[c, i], system[pivot, i] = system[pivot, i], system[c, i]
+            _raise_pivot(system, right, c, i, lower, width, joints, vectors, swap)
+        for i in range(c + 1, last + 1):
+            for v in range(vectors):
+                weight[v] = system[i, c - i + lower, v] / system[c, lower, v]
+            for m in range(c + 1, width + 1):
+                for v in range(vectors):
+                    system[i, m - i + lower, v] -= weight[v] * system[c, m - c + lower, v]
             for j in range(joints):
-                right[c, j], right[pivot, j] = right[pivot, j], right[c, j]
-        inverse = 1.0 / system[c, c]
-        for i in range(c + 1, last + 1):
-            factor = system[i, c] * inverse
-            if factor != 0.0:
-                for m in range(c + 1, width + 1):
-                    system[i, m] -= factor * system[c, m]
-                for j in range(joints):
-                    right[i, j] -= factor * right[c, j]
+                for v in range(vectors):
+                    right[i, j * vectors + v] -= weight[v] * right[c, j * vectors + v]
     for c in range(unknowns - 1, -1, -1):
-        width = min(c + lower + upper, unknowns - 1)
-        inverse = 1.0 / system[c, c]
-        for m in range(c + 1, width + 1):
-            factor = system[c, m]
-            if factor != 0.0:
-                for j in range(joints):
-                    right[c, j] -= factor * right[m, j]
         for j in range(joints):
-            right[c, j] *= inverse
+            for m in range(c + 1, min(c + lower + upper, unknowns - 1) + 1):
+                for v in range(vectors):
+                    known = right[m, j * vectors + v]
+                    right[c, j * vectors + v] -= system[c, m - c + lower, v] * known
+            for v in range(vectors):
+                right[c, j * vectors + v] /= system[c, lower, v]
     for k in range(degrees.size):
         for p in range(degrees[k] + 1):
-            if column[k, p] >= 0:
-                for j in range(joints):
-                    out[k, p, j] = right[column[k, p], j]
-    return True
+            for x in range(joints * vectors if column[k, p] >= 0 else 0):
+                out[k, p, x] = right[column[k, p], x]
 
 
 @_compiled
@@ -298,38 +303,32 @@ def batch_peaks(  # type: ignore[no-untyped-def]
 
     ``wanted[joint, order − 1]`` selects; ``peaks[vector, joint, order − 1]`` receives the largest
     absolute value over all t, infinite where a duration is not positive and finite or the value
-    overflows. A lane is one joint of one vector.
+    overflows.
     """
     n, joints, unknowns = degrees.size, values.shape[1], column.max() + 1
-    block = max(1, _LANES // joints)
-    room = block * joints
-    system = np.empty((unknowns, unknowns))
-    right = np.empty((unknowns, joints))
-    out = np.empty((n, MAX_COEFFICIENTS, joints))
-    scaled = np.empty((n, MAX_COEFFICIENTS, room))
-    a = np.empty((MAX_COEFFICIENTS, room))
-    cuts = np.empty((MAX_COEFFICIENTS, room))
-    peak = np.empty(room)
-    e = np.empty((8, room))
-    state = (e[0], e[1], e[2], e[3], e[4], e[5], e[6], e[7])
-    for first in range(0, durations.shape[0], block):
+    block = min(max(1, _LANES // joints), durations.shape[0])
+    h = np.empty((n, block))
+    system = np.empty((unknowns, 2 * lower + upper + 1, block))
+    right = np.empty((unknowns, joints * block))
+    scaled = np.empty((n, MAX_COEFFICIENTS, joints * block))
+    a = np.empty((MAX_COEFFICIENTS, joints * block))
+    cuts = np.empty((MAX_COEFFICIENTS, joints * block))
+    peak = np.empty(joints * block)
+    room = np.empty((8, joints * block))
+    state = (room[0], room[1], room[2], room[3], room[4], room[5], room[6], room[7])
+    for first in range(0, durations.shape[0], max(1, block)):
         vectors = min(block, durations.shape[0] - first)
-        lanes = vectors * joints
-        for b in range(vectors):
-            h = durations[first + b]
+        for v in range(vectors):
             valid = True
             for k in range(n):
-                valid = valid and h[k] > 0.0 and h[k] < np.inf
-            if valid:
-                valid = fit_coefficients(
-                    h, values, kinds, breaks, orders, degrees, column, lower, upper, perm,
-                    system, right, out,
-                )  # fmt: skip
+                valid = valid and 0.0 < durations[first + v, k] < np.inf
             for k in range(n):
-                for p in range(degrees[k] + 1):
-                    for j in range(joints):
-                        scaled[k, p, b * joints + j] = out[k, p, j] if valid else 0.0
-            peaks[first + b] = 0.0 if valid else np.inf
+                h[k, v] = durations[first + v, k] if valid else 1.0
+            peaks[first + v] = 0.0 if valid else np.inf
+        fit_coefficients(
+            h, vectors, values, kinds, breaks, orders, degrees, column, lower, upper, perm,
+            system, right, scaled,
+        )  # fmt: skip
         for r in range(1, 4):
             if not wanted[:, r - 1].any():
                 continue
@@ -338,12 +337,12 @@ def batch_peaks(  # type: ignore[no-untyped-def]
                 if degree < 0:
                     continue
                 for i in range(degree + 1):
-                    for x in range(lanes):
+                    for x in range(joints * vectors):
                         a[i, x] = perm[i + r, r] * scaled[k, i + r, x]
-                _lane_peaks(a, degree, perm, lanes, cuts, state, peak)
-                for b in range(vectors):
-                    rate = (1.0 / durations[first + b, k]) ** r
+                _lane_peaks(a, degree, perm, joints * vectors, cuts, state, peak)
+                for v in range(vectors):
+                    rate = (1.0 / h[k, v]) ** r
                     for j in range(joints):
-                        top = peak[b * joints + j] * rate
-                        if wanted[j, r - 1] and not top <= peaks[first + b, j, r - 1]:
-                            peaks[first + b, j, r - 1] = top if top == top else np.inf
+                        top = peak[j * vectors + v] * rate
+                        if wanted[j, r - 1] and not top <= peaks[first + v, j, r - 1]:
+                            peaks[first + v, j, r - 1] = top if top == top else np.inf

@@ -129,9 +129,10 @@ def coefficients(
     plan = layout(interpolant)
     values = right_hand_sides(interpolant, waypoints, nodal)
     joints = waypoints.shape[1]
-    out = np.empty((interpolant.segments, kernel.MAX_COEFFICIENTS, joints))
-    solved = kernel.fit_coefficients(
-        durations,
+    out = np.zeros((interpolant.segments, kernel.MAX_COEFFICIENTS, joints))
+    kernel.fit_coefficients(
+        np.ascontiguousarray(durations).reshape(-1, 1),
+        1,
         values,
         plan.kinds,
         plan.breaks,
@@ -141,11 +142,11 @@ def coefficients(
         plan.lower,
         plan.upper,
         PERM,
-        np.empty((plan.unknowns, plan.unknowns)),
+        np.empty((plan.unknowns, 2 * plan.lower + plan.upper + 1, 1)),
         np.empty((plan.unknowns, joints)),
         out,
     )
-    if not solved:
+    if not np.isfinite(out).all():
         raise TrajgapError(f"interpolant {interpolant.name}: singular for durations {durations}")
     return out
 
