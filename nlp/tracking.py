@@ -89,7 +89,7 @@ def compiled(structure: Structure) -> Compiled:
 
 def best_form(interpolant: Interpolant, joints: int) -> Form:
     """Reduced where few coefficients are eliminated, lifted otherwise (benchmarks/nlp_forms.py)."""
-    small = layout(interpolant).unknowns <= 24 and interpolant.free * joints <= 6
+    small = layout(interpolant).unknowns <= 16 and interpolant.free * joints <= 6
     return Form.REDUCED if small else Form.LIFTED
 
 
