@@ -137,7 +137,7 @@ def judge_rounding(
     -----
     `keeps` and `consistent` rest on `check` at one point. `breaks` rests on a proof that no
     rounding can upset (`bound` and `interval`). A velocity that jumps is no excess over a limit:
-    there the answer is at best `undecided`.
+    where nothing else is wrong, the answer is `undecided`.
     """
     q = Box.exact(problem.waypoints) if waypoints is None else waypoints
     if q.value.shape != problem.waypoints.shape:

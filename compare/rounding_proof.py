@@ -79,12 +79,17 @@ class _MeanValue:
         return np.where(low > 0.0, np.nextafter(low / width, -np.inf), -np.inf)
 
     def moves_where_it_must_not(self) -> NDArray[np.bool_]:
-        """Rows with limit 0 whose derivative is not 0 anywhere in the box, beyond rounding."""
+        """Rows with limit 0 whose derivative is not 0 anywhere in the box, beyond rounding.
+
+        The relative slack of 1e-9 exceeds the few roundings of this sum by far.
+        """
         sway = self.by_duration.magnitude() @ self.radius
         sway += (self.by_waypoint.magnitude() * self.waypoint_radius.T[self.joint]).sum(axis=1)
         low = np.abs(self.value.mid) - self.value.rad - sway * (1.0 + 1e-9)
         derivative = np.array([e.order > 0 for e in self.rows.points])
-        return derivative & (self.rows.width == 0.0) & (low > 1e-9 * self.amplitude)
+        found: NDArray[np.bool_] = low > 1e-9 * self.amplitude
+        found &= derivative & (self.rows.width == 0.0)
+        return found
 
 
 def _mean_value(problem: Problem, h: Ball, q: Ball, more: Rows | None) -> _MeanValue | None:
