@@ -1,0 +1,150 @@
+"""Declarations: their conditions counted by hand, and every contradiction refused by name."""
+
+import numpy as np
+import pytest
+from trajgap.problem import (
+    Interpolant,
+    TrajgapError,
+    cubic_spline,
+    cubic_spline_virtual,
+    fit,
+    piecewise,
+    quintic_spline,
+    rest_to_rest,
+    three_five_three,
+)
+
+REST = ((1, 0.0), (2, 0.0))
+
+
+@pytest.mark.parametrize(
+    ("interpolant", "conditions", "coefficients", "waypoints"),
+    [
+        (three_five_three(), 14, 14, 4),
+        (piecewise((4, 3, 4)), 14, 14, 4),
+        # n segments: 2n positions, 2(n − 1) from C2, 2 at the ends
+        (cubic_spline(5), 20, 20, 6),
+        # 2n positions, 4(n − 1) from C4, 4 at the ends
+        (quintic_spline(7), 42, 42, 8),
+        # as the cubic, 2 end conditions more, and one position less for each of 2 virtual breaks
+        (cubic_spline_virtual(4), 20, 20, 4),
+        (cubic_spline_virtual(2), 12, 12, 2),
+        (rest_to_rest(3, 3), 12, 12, 4),
+        (rest_to_rest(3, 5), 18, 18, 4),
+        (rest_to_rest(3, 7), 24, 24, 4),
+        (rest_to_rest(1, 9), 10, 10, 2),
+        (piecewise((5, 5, 5), 2), 14, 18, 4),
+        (piecewise((1, 1), 0, ()), 4, 4, 3),
+    ],
+)
+def test_counts(
+    interpolant: Interpolant, conditions: int, coefficients: int, waypoints: int
+) -> None:
+    assert (interpolant.conditions, interpolant.coefficients) == (conditions, coefficients)
+    assert interpolant.free == coefficients - conditions
+    assert interpolant.rank == conditions
+    assert len(interpolant.waypoint_breaks) == waypoints
+    assert len(interpolant.free_derivatives) == interpolant.free
+
+
+def test_rest_at_every_waypoint_is_over_determined() -> None:
+    # "velocity and acceleration 0 at the ends and the intermediate points" for 3-5-3
+    message = "3-5-3: over-determined, 18 conditions on 14 coefficients; raise a degree or drop"
+    with pytest.raises(TrajgapError, match=message):
+        Interpolant((3, 5, 3), (2, 2), (REST,) * 4, name="3-5-3")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (((), (), ((),)), r"interpolant.degrees: at least one segment is needed"),
+        (((3, 3), (), ((),) * 3), r"continuity: 2 segments have 1 via-points, got 0 orders"),
+        (((3, 3), (2,), ((),) * 2), r"prescribed: 2 segments have 3 breaks, got 2 entries"),
+        (((10,), (), ((), ())), r"degrees: every degree must lie in 1..9"),
+        (((3, 0), (0,), ((),) * 3), r"degrees: every degree must lie in 1..9"),
+        (((3, 3), (-1,), ((),) * 3), r"continuity: every order must be 0 or more"),
+        (((3, 3), (2,), ((),) * 3, (2,)), r"virtual: only interior breaks can be virtual"),
+        (((3, 3), (2,), ((),) * 3, (0,)), r"virtual: only interior breaks can be virtual"),
+        (((3,), (), (((1, 0.0), (1, 1.0)), ())), r"prescribed\[0\]: orders must be distinct"),
+        (((3,), (), ((), ((0, 1.0),))), r"prescribed\[1\]: orders must be distinct and at least 1"),
+        (((3,), (), ((), ((1, np.inf),))), r"prescribed\[1\]: values must be finite"),
+        (((3,), (), (REST, REST)), r"over-determined, 6 conditions on 4 coefficients"),
+        # v at the start of a straight line is not free: the two way-points fix it
+        (
+            ((1, 5), (0,), (((1, 0.0),), (), ())),
+            r"5 conditions on 8 coefficients contradict each other \(rank 4\); spread the degrees",
+        ),
+    ],
+)
+def test_refusals(arguments: tuple[object, ...], message: str) -> None:
+    with pytest.raises(TrajgapError, match=message):
+        Interpolant(*arguments)  # type: ignore[arg-type]
+
+
+def test_constructors_refuse() -> None:
+    with pytest.raises(TrajgapError, match="at least two way-points are needed"):
+        cubic_spline_virtual(1)
+    for degree in (1, 4, 11):
+        with pytest.raises(TrajgapError, match="rest-to-rest needs degree 3, 5, 7 or 9"):
+            rest_to_rest(2, degree)
+    with pytest.raises(TrajgapError, match="at least one segment"):
+        piecewise(())
+
+
+def test_long_declarations_are_judged_too() -> None:
+    start, end = ((1, 0.0),), ((1, 0.0),)
+    assert cubic_spline(200).rank == 800
+    # As many conditions as coefficients, but the first line has three of them and two coefficients.
+    with pytest.raises(TrajgapError, match="318 conditions on 318 coefficients contradict"):
+        Interpolant((1, *(3,) * 79), (0, *(2,) * 78), (start, *((),) * 79, end))
+
+
+@pytest.mark.parametrize(
+    ("interpolant", "homogeneous"),
+    [
+        (three_five_three(), True),
+        (piecewise((5, 5, 5), 2), True),
+        (cubic_spline(3, ((1, 0.25),)), False),
+        (Interpolant((3, 3), (2,), (((1, 0.0),), (), ((2, -1.0),))), False),
+    ],
+)
+def test_homogeneous(interpolant: Interpolant, homogeneous: bool) -> None:
+    assert interpolant.homogeneous is homogeneous
+
+
+def test_free_derivatives_complete_a_declaration() -> None:
+    quintics = piecewise((5, 5, 5), 2)
+    assert quintics.free_derivatives == ((1, 1), (2, 1), (1, 2), (2, 2))
+    full = quintics.completed()
+    assert (full.free, full.conditions) == (0, 18)
+    assert full.prescribed[1] == ((1, 0.0), (2, 0.0))
+    # with v = a = 0 at all breaks that is the rest-to-rest quintic
+    q = np.array([[0.3, -1.0], [1.1, 0.4], [0.9, 2.0], [-0.5, 2.5]])
+    h = [0.7, 1.1, 0.4]
+    mine, rest = fit(full, q, h), fit(rest_to_rest(3, 5), q, h)
+    np.testing.assert_allclose(mine.scaled, rest.scaled, atol=1e-13)
+
+
+def test_free_virtual_position_becomes_a_waypoint() -> None:
+    open_position = Interpolant(
+        (5, 5), (2,), (REST, (), REST), virtual=(1,), name="quintics with a free break"
+    )
+    assert open_position.free == 3
+    assert (1, 0) in open_position.free_derivatives
+    assert open_position.completed().virtual == ()
+
+
+def test_free_coefficients_that_are_not_nodal() -> None:
+    loose = Interpolant((9,), (), (((1, 0.0),), ((1, 0.0),)))
+    assert loose.free_derivatives == tuple((b, order) for order in (2, 3, 4) for b in (0, 1))
+    torn = piecewise((3, 3, 3), 0, ())
+    with pytest.raises(
+        TrajgapError, match="6 free coefficients, of which only 4 are nodal derivatives; raise"
+    ):
+        torn.completed()
+
+
+def test_declarations_compare_by_value() -> None:
+    assert three_five_three() == three_five_three()
+    assert hash(three_five_three()) == hash(three_five_three())
+    assert piecewise((3, 5, 3)).name == "3-5-3 polynomials, C2"
