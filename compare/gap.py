@@ -58,10 +58,17 @@ class Gap:
     kind: GapKind
     reference: Reference
 
-    def __str__(self) -> str:
+    @property
+    def percent(self) -> str:
+        """The interval in percent; a factor instead where the time is many times the reference."""
+        if self.lowest > 10:
+            return f"{1 + self.lowest:.4g} times the reference"
         low, high = 100 * self.lowest, 100 * self.highest
-        shown = f"{low:+.3g} %" if abs(high - low) < 5e-4 else f"{low:+.3g} to {high:+.3g} %"
-        return f"{shown} ({self.kind}, reference {self.reference.evidence})"
+        narrow = high - low < max(0.005 * abs(low), 5e-4)
+        return f"{low:+.3g} %" if narrow else f"{low:+.3g} to {high:+.3g} %"
+
+    def __str__(self) -> str:
+        return f"{self.percent} ({self.kind}, reference {self.reference.evidence})"
 
 
 def gap(

@@ -16,13 +16,12 @@ from ..problem import (
     Case,
     Check,
     Coupling,
-    Printed,
     Problem,
     TrajgapError,
     check,
     piecewise,
 )
-from ..problem.claim import Claim, DurationsClaim, MaximumClaim
+from ..problem.claim import Claim, DurationsClaim, MaximumClaim, TotalTimeClaim
 from .rounding import Box, RoundingVerdict, judge_rounding
 
 T = TypeVar("T")
@@ -98,7 +97,8 @@ class Study:
 
         def compute() -> Solution:
             problem = self.problem(pid, rid)
-            self._progress(f"{self.case.id}: optimum of {pid}, {rid}")
+            which = "all joints" if joint is None else f"joint {joint}"
+            self._progress(f"{self.case.id}: optimum of {which}, {pid}, {rid}")
             return solve(problem if joint is None else problem.joint(problem.joints.index(joint)))
 
         if joint is not None and len(self.problem(pid, rid).joints) == 1:
@@ -119,10 +119,11 @@ class Study:
         """Half a unit of the last printed place of the totals of single joints, s."""
         halves = []
         for claim in self.case.claims:
-            if isinstance(claim, DurationsClaim) and claim.joint and claim.total is not None:
-                if claim.problem in (None, pid) and not claim.total.exact:
-                    box = self.case.measured(claim.total, "time", pid, rid)
-                    halves.append(round((box.upper - box.lower) / 2, 12))
+            if not isinstance(claim, DurationsClaim) or claim.problem not in (None, pid):
+                continue
+            if claim.joint and claim.total is not None and not claim.total.exact:
+                box = self.case.measured(claim.total, "time", pid, rid)
+                halves.append(round((box.upper - box.lower) / 2, 12))
         return (max(halves),) if halves else ()
 
     def relaxed(self, pid: str, rid: str) -> Solution:
@@ -196,11 +197,10 @@ class Study:
             total = self.case.measured(claim.total, "time", claim.problem, rid)
             both = (max(summed[0], total.lower), min(summed[1], total.upper))
             return f"{claim.total} s", both if both[0] <= both[1] else (total.lower, total.upper)
-        value: Printed | None = getattr(claim, "value", None)
-        if claim.quantity != "total_time" or value is None:
+        if not isinstance(claim, TotalTimeClaim):
             return None
-        total = self.case.measured(value, "time", claim.problem, rid)
-        return f"{value} s", (total.lower, total.upper)
+        total = self.case.measured(claim.value, "time", claim.problem, rid)
+        return f"{claim.value} s", (total.lower, total.upper)
 
     def algorithm(self, algorithm_id: str) -> Algorithm[Any] | None:
         """The case's algorithm, or None if its kind is not implemented."""

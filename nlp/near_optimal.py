@@ -195,7 +195,7 @@ def _best_assignment(
     reach: dict[tuple[int, tuple[int, ...]], float], joints: int, segments: int
 ) -> float:
     """Largest total over all ways to give each segment to one joint (dynamic programme)."""
-    best = {(): 0.0}
+    best: dict[tuple[int, ...], float] = {(): 0.0}
     for j in range(joints):
         extended = dict(best)
         for done, total in best.items():

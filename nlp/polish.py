@@ -80,7 +80,8 @@ def _nearest(
     quantity: str,
     time: float | None,
 ) -> Extremum:
-    assert joint is not None and time is not None
+    assert joint is not None
+    assert time is not None
     points = extrema(
         fit(problem.interpolant, problem.waypoints, h),
         problem.joints.index(joint),

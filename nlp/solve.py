@@ -128,7 +128,7 @@ def _solve_moving(
 def _multistart(
     problem: Problem, build_: Compiled, points: NDArray[np.float64], floor: float
 ) -> list[Local]:
-    """Local optima of all starts; a coarse solution that was tracked before is not tracked again."""
+    """Local optima of all starts; the same coarse solution is tracked only once."""
     tracked: list[tuple[NDArray[np.float64], Local]] = []
     found: list[Local] = []
     for start in points:

@@ -118,6 +118,7 @@ class Scaled:
 
 
 def scaled_problem(problem: Problem, formulation: Formulation, time_unit: float) -> Scaled:
+    """Row values, limits and position bounds of a problem in units of order one."""
     interpolant = problem.interpolant
     joints = problem.waypoints.shape[1]
     span = np.ptp(problem.waypoints, axis=0)
@@ -213,6 +214,7 @@ def _follow(
 def variable_bounds(
     problem: Problem, formulation: Formulation, time_unit: float, floor: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Bounds on the variables; durations stay above ``floor`` (s), padded powers are held at 0."""
     size = formulation.sizes["variables"]
     n, joints = problem.segments, problem.waypoints.shape[1]
     low, high = np.full(size, -np.inf), np.full(size, np.inf)
@@ -242,7 +244,7 @@ def unpack(
         return h, nodal * scaled.angle_unit / scaled.time_unit**orders
     top = max(interpolant.degrees) + 1
     c = x[n:].reshape((top, joints, n)).transpose(2, 0, 1) * scaled.angle_unit
-    trajectory = Trajectory(None, h, c, interpolant.degrees)  # type: ignore[arg-type]
+    trajectory = Trajectory(None, h, c, interpolant.degrees)
     nodal = np.empty((interpolant.free, joints))
     for i, (b, order) in enumerate(interpolant.free_derivatives):
         for j in range(joints):
@@ -253,6 +255,8 @@ def unpack(
 
 @dataclass(frozen=True, eq=False)
 class Local:
+    """Where one start ended."""
+
     durations: NDArray[np.float64]
     nodal: NDArray[np.float64] | None
     total: float
@@ -269,6 +273,7 @@ def run(
     bounds: tuple[NDArray[np.float64], NDArray[np.float64]],
     duals: tuple[Any, Any] | None = None,
 ) -> tuple[NDArray[np.float64], tuple[Any, Any], bool, int]:
+    """Call a solver once: variables, multipliers, success, iterations."""
     sizes = formulation.sizes
     low = np.concatenate([np.zeros(sizes["equalities"]), np.full(sizes["inequalities"], -np.inf)])
     arguments: dict[str, Any] = {

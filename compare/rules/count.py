@@ -1,4 +1,4 @@
-"""TG107: do the stated conditions fit the number of coefficients?"""
+"""TG107: stated conditions counted against the number of coefficients."""
 
 from __future__ import annotations
 

@@ -71,7 +71,7 @@ def _distance(
     which = "with shared durations" if shared or claim.joint is None else f"of joint {claim.joint}"
     message = (
         f"Printed {shown}; {solution.evidence} optimum {which} {reference.upper:.6f} s: "
-        f"{_percent(distance)}."
+        f"{_named(distance)}."
     )
     if not isinstance(claim, TotalTimeClaim):
         verdict = study.claim_check(claim, pid, rid)
@@ -79,7 +79,7 @@ def _distance(
             repaired = gap(verdict.feasible_time, reference)
             message += (
                 f" Feasible time of the printed durations {verdict.feasible_time:.6f} s "
-                f"({100 * repaired.lowest:+.3g} %)."
+                f"({repaired.percent})."
             )
     severity = Severity.INFO
     if distance.highest < 0:
@@ -107,11 +107,9 @@ def _distance(
     )
 
 
-def _percent(distance: Gap) -> str:
-    low, high = 100 * distance.lowest, 100 * distance.highest
-    value = f"{low:+.3g} %" if abs(high - low) < 0.02 else f"{low:+.3g} to {high:+.3g} %"
+def _named(distance: Gap) -> str:
     name = "gap" if distance.kind is GapKind.OPTIMALITY else "difference of reported time"
-    return f"{name} {value}"
+    return f"{name} {distance.percent}"
 
 
 def _beside_procedure(
@@ -168,7 +166,7 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
                 if distance.lowest > 1e-9:
                     longer.append(
                         f"{claim.id} ({pid}): printed {shown}, a checked motion through the same "
-                        f"way-points takes {reference.upper:.6f} s ({_percent(distance)})"
+                        f"way-points takes {reference.upper:.6f} s ({_named(distance)})"
                     )
                 elif distance.highest < 0:
                     apart += 1

@@ -92,7 +92,7 @@ def _stretched(
     message = (
         f"The durations of {source.id}, stretched by {factor:.6g}, keep the limit of "
         f"{target.id} and take {reachable:.6g} s; printed for {target.id} is {shown}, "
-        f"{100 * distance.lowest:.3g} % more. With velocity limits only, shortest time times "
+        f"{distance.percent} from there. With velocity limits only, shortest time times "
         "limit is a constant, so the two printed results cannot both be shortest."
     )
     common = {
