@@ -169,9 +169,10 @@ def judge(claim: str, findings: Iterable[Finding], readings: Iterable[str]) -> J
             verdict = ClaimVerdict.SUPPORTED
     scope = Scope.ALL if per_reading.count(verdict) == len(per_reading) else Scope.SOME
     behind = [f for f in own if f.verdict is verdict]
-    rank = [Evidence.CERTIFIED, Evidence.BEST_KNOWN, Evidence.NONE]
+    rank = [Evidence.NONE, Evidence.CERTIFIED, Evidence.BEST_KNOWN]
     evidence = max((f.evidence for f in behind), key=rank.index, default=Evidence.NONE)
-    if any(f.evidence is Evidence.BEST_KNOWN for f in behind):
-        evidence = Evidence.BEST_KNOWN
-    why = " ".join(dict.fromkeys(f"{f.rule}: {f.message}" for f in behind))
+    against = [f for f in own if f.verdict in order[:2] and f.verdict is not verdict]
+    said = [f"{f.rule}: {f.message}" for f in behind]
+    said += [f"But {f.verdict} under {f.reading or 'all'}, {f.rule}: {f.message}" for f in against]
+    why = " ".join(dict.fromkeys(said))
     return Judgement(claim, verdict, scope, evidence, why)
