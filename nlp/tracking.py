@@ -25,7 +25,7 @@ from .formulation import (
 )
 from .starts import first_nodal
 
-_PASSES = 25
+_PASSES = 40
 
 
 @dataclass(frozen=True, eq=False)
@@ -365,6 +365,7 @@ def track(
         if total < best * (1.0 + 1e-13):
             x = pack(problem, f, scaled, h_new, nodal_new)
             h, nodal, best, duals, step = h_new, nodal_new, total, new_duals, moved
+            radius = min(0.5, 2.0 * radius)
             if success and moved < 1e-9:
                 converged = True
                 break

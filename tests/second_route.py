@@ -23,7 +23,7 @@ def _rows(t1: float, t2: float, t3: float) -> np.ndarray:
         blocks = [first, second, third]
         sizes = (4, 6, 4)
         rows.append(
-            np.concatenate([np.zeros(n) if b is None else b for b, n in zip(blocks, sizes)])
+            np.concatenate([np.zeros(n) if b is None else b for b, n in zip(blocks, sizes, strict=True)])
         )
 
     add(power(0, 3, 0), None, None)
@@ -74,7 +74,7 @@ def ratios(
     """Largest |v|/V and |a|/A of every joint and segment."""
     out = []
     for joint in curves(durations, waypoints):
-        for polynomial, duration in zip(joint, durations):
+        for polynomial, duration in zip(joint, durations, strict=True):
             for order, limit in ((1, velocity), (2, acceleration)):
                 if np.isfinite(limit):
                     out.append(signed_peak(polynomial, duration, order) / limit)

@@ -68,7 +68,7 @@ def test_a_reference_must_be_a_positive_finite_time(reference: float) -> None:
         gap(1.0, reference)
 
 
-S, R, I, N = (
+S, R, X, N = (
     ClaimVerdict.SUPPORTED,
     ClaimVerdict.REFUTED,
     ClaimVerdict.INCONSISTENT,
@@ -87,7 +87,7 @@ S, R, I, N = (
         ([(N, "a"), (N, "b")], N, Scope.NO),
         ([], N, Scope.NO),
         ([(S, None), (R, "a"), (R, "b")], R, Scope.ALL),
-        ([(S, None), (I, None)], I, Scope.ALL),
+        ([(S, None), (X, None)], X, Scope.ALL),
         ([(S, None)], S, Scope.ALL),
     ],
 )

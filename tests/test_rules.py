@@ -147,7 +147,17 @@ def test_only_an_enclosure_breaks_and_only_under_its_reading() -> None:
 
 
 def test_a_printed_peak_is_compared_with_the_rebuilt_one() -> None:
-    claim = '\n[[claims]]\nid = "peak"\nquantity = "peak"\nwhere = "test"\nproblem = "limit-110"\njoint = "5"\nalgorithm = "constrained-pso"\nderivative = "velocity"\nvalue = "{}"\n'
+    claim = """
+[[claims]]
+id = "peak"
+quantity = "peak"
+where = "test"
+problem = "limit-110"
+joint = "5"
+algorithm = "constrained-pso"
+derivative = "velocity"
+value = "{}"
+"""
     for value, verdict in (("119", ClaimVerdict.SUPPORTED), ("110", ClaimVerdict.INCONSISTENT)):
         study = changed(IRB, tail=claim.format(value))
         found = {f.reading: f.verdict for f in of(continuous(study), "TG203")}

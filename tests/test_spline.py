@@ -224,6 +224,11 @@ def test_stretching_time_leaves_the_scaled_coefficients(factor: float, seed: int
         ([1.0, -0.5, 2.0], "must all be positive and finite"),
         ([1.0, np.nan, 2.0], "must all be positive and finite"),
         ([1.0, np.inf, 2.0], "must all be positive and finite"),
+        (
+            [1.0, 1e-31, 2.0],
+            r"durations: \[1.0, 1e-31, 2.0\] s must all lie between 1e-30 and 1e\+30",
+        ),
+        ([1e31, 1.0, 2.0], "must all lie between 1e-30 and 1e.30 s"),
     ],
 )
 def test_durations_refused(durations: object, message: str) -> None:
@@ -362,3 +367,36 @@ def test_motion_values_count_from_the_first_waypoint() -> None:
     still = np.full((4, 1), 61.7)
     peaks = batch_peaks(interpolant, motion_values(interpolant, still), h, np.ones((1, 3), bool))
     assert not peaks.any()
+
+
+def test_error_bound_near_a_singular_system() -> None:
+    interpolant = singular_at_two_to_three()
+    q = np.array([[0.3], [1.1], [-0.4]])
+    widest = 0.0
+    for gap in (1e-3, 1e-6, 1e-9, 1e-12):
+        h = np.array([2.0, 3.0 * (1 + gap)])
+        found, error = refined_coefficients(interpolant, q, h)
+        for k, piece in enumerate(exact_route.fitted(interpolant, q[:, 0], h)):
+            for p, c in enumerate(piece):
+                truth = c * Fraction(float(h[k])) ** p
+                assert abs(Fraction(found[k, p, 0]) - truth) <= Fraction(error[k, p, 0])
+        widest = error.max() / np.abs(found).max()
+    assert widest > 1e-6
+    for h in (np.array([2.0, 3.0]), np.array([2.0, 3.0 * (1 + 1e-15)])):
+        with pytest.raises(TrajgapError, match=r"two quartics: singular for durations \[2. 3.\] s"):
+            refined_coefficients(interpolant, q, h)
+    with pytest.raises(TrajgapError, match=r"two quartics: singular for durations \[2. 3.\] s"):
+        coefficient_gradient(interpolant, q, np.array([2.0, 3.0]))
+
+
+def test_error_bound_at_extreme_durations() -> None:
+    for name in ("3-5-3", "cubic", "quintic", "uneven"):
+        interpolant = DECLARATIONS[name]
+        problem, h = posed(interpolant, 3, joints=1)
+        for k, extreme in ((0, 1e-12), (1, 1e-12), (0, 1e9), (1, 1e9)):
+            h[k] = extreme
+            found, error = refined_coefficients(interpolant, problem.waypoints, h)
+            exact = exact_scaled(interpolant, problem, h, 0, None)
+            for s, piece in enumerate(exact):
+                for p, c in enumerate(piece):
+                    assert abs(Fraction(found[s, p, 0]) - c) <= Fraction(error[s, p, 0])
