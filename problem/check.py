@@ -175,6 +175,11 @@ def _derivative_peaks(
     return peaks
 
 
+def _half_range(low: float, high: float, limit: float) -> float:
+    """What an excess of position is set beside, so that its ratio is 1 at the limit."""
+    return float((high - low) / 2) if np.isfinite(high - low) else max(1.0, abs(limit))
+
+
 def _position_peaks(
     problem: Problem, trajectory: Trajectory, error: NDArray[np.float64]
 ) -> list[Peak]:
@@ -188,16 +193,25 @@ def _position_peaks(
             if not np.isfinite(limit):
                 continue
             top = max(points, key=lambda e: sign * e.value)
-            half = (high - low) / 2 if np.isfinite(high - low) else max(1.0, abs(limit))
             excess = sign * (top.value - limit)
-            ratio = 1.0 + excess / half if half > 0 else _ratio(excess, 0.0, 1e-12)
+            half = _half_range(low, high, limit)
             bound = float(error[:, 0, j].max())
+            ratio = 1.0 + excess / half if half > 0 else _ratio(excess, 0.0, bound)
             peaks.append(
                 Peak(
                     label, "position", top.segment, top.time, top.value, float(limit), ratio, bound
                 )
             )
     return peaks
+
+
+def _slack(problem: Problem, peak: Peak) -> float:
+    """Bound on the rounding error of a peak's ratio."""
+    scale = peak.limit
+    if peak.quantity == "position":
+        limits, j = problem.limits, problem.joints.index(str(peak.joint))
+        scale = _half_range(limits.position_lower[j], limits.position_upper[j], peak.limit)
+    return peak.error / scale if scale else 0.0
 
 
 def _duration_peaks(problem: Problem, h: NDArray[np.float64]) -> list[Peak]:
@@ -310,9 +324,7 @@ def check(
     ]
     verdict = Verdict.PASS
     for p in peaks:
-        slack = p.error / p.limit if p.limit else 0.0
-        if p.quantity == "position":
-            slack = p.error
+        slack = _slack(problem, p)
         if p.ratio - slack > 1 + tolerance:
             verdict = Verdict.VIOLATED
             break

@@ -21,6 +21,7 @@ PERM = np.array(
     [[float(math.perm(p, r)) for r in range(kernel.MAX_COEFFICIENTS)] for p in range(10)]
 )
 _THREAD_WORK = 4000
+_LONGEST = 1e30
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,8 +148,12 @@ def coefficients(
         out,
     )
     if not np.isfinite(out).all():
-        raise TrajgapError(f"interpolant {interpolant.name}: singular for durations {durations}")
+        raise _singular(interpolant, durations)
     return out
+
+
+def _singular(interpolant: Interpolant, durations: NDArray[np.float64]) -> TrajgapError:
+    return TrajgapError(f"interpolant {interpolant.name}: singular for durations {durations} s")
 
 
 def as_durations(durations: ArrayLike, segments: int) -> NDArray[np.float64]:
@@ -157,7 +162,7 @@ def as_durations(durations: ArrayLike, segments: int) -> NDArray[np.float64]:
     Raises
     ------
     TrajgapError
-        On a wrong length, NaN, infinite, zero or negative entries.
+        On a wrong length, NaN, infinite, zero or negative entries, or such that powers overflow.
     """
     try:
         h = np.ascontiguousarray(durations, dtype=np.float64)
@@ -170,6 +175,10 @@ def as_durations(durations: ArrayLike, segments: int) -> NDArray[np.float64]:
         )
     if not np.isfinite(h).all() or (h <= 0).any():
         raise TrajgapError(f"durations: {h.tolist()} s must all be positive and finite")
+    if h.min() < 1 / _LONGEST or h.max() > _LONGEST:
+        raise TrajgapError(
+            f"durations: {h.tolist()} s must all lie between {1 / _LONGEST:g} and {_LONGEST:g} s"
+        )
     return h
 
 
@@ -346,7 +355,9 @@ def refined_coefficients(
     """Coefficients after iterative refinement in extended precision, with an error bound.
 
     The residual is taken in ``longdouble``; its rounding is bounded by that type's own epsilon,
-    so the bound holds (only wider) where ``longdouble`` is float64.
+    so the bound holds (only wider) where ``longdouble`` is float64. The approximate inverse B of
+    the matrix A bounds the error by (I − |BA − I|)⁻¹ |B| |residual|, entry by entry; an ``error``
+    that contains its own image is above that.
 
     Returns
     -------
@@ -355,20 +366,38 @@ def refined_coefficients(
     """
     wide = np.longdouble
     values = right_hand_sides(interpolant, waypoints, nodal).astype(wide)
+    flat = _flat(interpolant, coefficients(interpolant, waypoints, durations, nodal)).astype(wide)
     matrix, factor, _ = dense_system(interpolant, durations.astype(wide))
     right = factor[:, None] * values
-    inverse = np.linalg.inv(matrix.astype(np.float64))
-    flat = _flat(interpolant, coefficients(interpolant, waypoints, durations, nodal)).astype(wide)
+    narrow = matrix.astype(np.float64)
+    inverse = _inverse(interpolant, narrow, durations)
     for _ in range(2):
         residual = (right - matrix @ flat).astype(np.float64)
         flat = flat + inverse @ residual
     residual = np.abs(right - matrix @ flat)
     rounding = np.finfo(wide).eps * (matrix.shape[0] + 24)
     rounding = rounding * (np.abs(matrix) @ np.abs(flat) + np.abs(right))
-    error = 2.0 * np.abs(inverse) @ (residual + rounding).astype(np.float64)
+    first = np.abs(inverse) @ (residual + rounding).astype(np.float64)
+    epsilon = np.finfo(np.float64).eps
+    defect = np.abs(inverse @ narrow - np.eye(len(narrow)))
+    defect += epsilon * (len(narrow) + 2) * (np.abs(inverse) @ np.abs(narrow))
+    error = first
+    for _ in range(3):
+        error = first + 1.1 * (defect @ error)
+    if not (first + defect @ error <= error).all():
+        raise _singular(interpolant, durations)
     rounded = flat.astype(np.float64)
-    error += np.finfo(np.float64).eps * np.abs(rounded)
+    error = error + epsilon * np.abs(rounded)
     return _unflat(interpolant, rounded), _unflat(interpolant, error)
+
+
+def _inverse(
+    interpolant: Interpolant, matrix: NDArray[np.floating], durations: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    try:
+        return np.asarray(np.linalg.inv(matrix), dtype=np.float64)
+    except np.linalg.LinAlgError:
+        raise _singular(interpolant, durations) from None
 
 
 @dataclass(frozen=True, eq=False)
@@ -402,7 +431,7 @@ def coefficient_gradient(
     matrix, factor, first = dense_system(interpolant, durations)
     n, joints = interpolant.segments, waypoints.shape[1]
     flat = _flat(interpolant, coefficients(interpolant, waypoints, durations, nodal))
-    inverse = np.linalg.inv(matrix)
+    inverse = _inverse(interpolant, matrix, durations)
     by_duration = np.zeros((n, matrix.shape[0], joints))
     for i in range(matrix.shape[0]):
         kind, b, r = plan.kinds[i], plan.breaks[i], plan.orders[i]
