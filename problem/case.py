@@ -9,14 +9,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .claim import AnyClaim, Claim, DurationsClaim, MaximumClaim
+from .dh import DhTable
 from .errors import CaseError
 from .fields import nearest
 from .posing import Posing, pose
 from .printed import Printed
 from .problem import Coupling, Problem
+from .robot import Chain, Convention
+from .robot_file import robot_file, robot_ids
 from .schema import (
     Algorithm,
     Assumption,
+    Cartesian,
     CaseFile,
     Column,
     NotCheckable,
@@ -115,6 +119,11 @@ class Case:
         return self.document.columns
 
     @property
+    def cartesian(self) -> tuple[Cartesian, ...]:
+        """Printed positions of the robot's end."""
+        return self.document.cartesian
+
+    @property
     def not_checkable(self) -> tuple[NotCheckable, ...]:
         """What cannot be checked from the extracted text."""
         return self.document.not_checkable
@@ -123,6 +132,59 @@ class Case:
     def default_reading(self) -> Reading:
         """The reading marked as default, else the first."""
         return next((r for r in self.readings if r.default), self.readings[0])
+
+    @cached_property
+    def dh(self) -> DhTable | None:
+        """The robot's Denavit-Hartenberg table: printed in the paper, or the shipped model's.
+
+        Raises
+        ------
+        CaseError
+            If the model is unknown.
+        """
+        model = self.robot.model
+        if model is None:
+            return self.robot.dh
+        if model not in robot_ids():
+            raise CaseError(
+                self.file,
+                "robot.model",
+                f"no robot {model!r} is shipped; {nearest(model, robot_ids())}",
+            )
+        return robot_file(model).dh
+
+    def chain(
+        self, convention: Convention | None = None, flipped: tuple[int, ...] = ()
+    ) -> Chain | None:
+        """The robot's chain, or None if the case has no table.
+
+        Parameters
+        ----------
+        convention : Convention, optional
+            Instead of the one stated.
+        flipped : tuple of int
+            Rows whose twist is taken with the other sign.
+
+        Returns
+        -------
+        Chain or None
+
+        Raises
+        ------
+        CaseError
+            If the model is unknown, or the table has not one row per joint.
+        """
+        if self.dh is None:
+            return None
+        labels = self.robot.joints if self.robot.model is None else ()
+        if self.dh.joints is None and labels and len(self.dh.d) != len(labels):
+            raise CaseError(
+                self.file,
+                "robot.dh.d",
+                f"has {len(self.dh.d)} entries for {len(labels)} joints; "
+                "give one each, or name the table's joints",
+            )
+        return self.dh.chain(self.robot.name, labels, convention, flipped)
 
     def claim(self, claim_id: str) -> AnyClaim:
         """Look a claim up by its id.

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
-from decimal import Decimal
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -14,9 +12,9 @@ from .case import Case
 from .errors import CaseError
 from .faults import first_fault
 from .fields import nearest
-from .references import check_claims, check_references
+from .references import check_claims, check_kinematics, check_references
 from .schema import CaseFile
-from .textfile import read_text
+from .textfile import parse_toml, read_text
 
 FORMAT = 1
 """The version of the case file format that this module reads."""
@@ -78,7 +76,7 @@ def parse_case(text: str, file: str) -> Case:
     CaseError
         As `load_case`.
     """
-    return check_case(_parse_toml(text, file), file)
+    return check_case(parse_toml(text, file), file)
 
 
 def check_case(raw: dict[str, Any], file: str) -> Case:
@@ -111,20 +109,8 @@ def check_case(raw: dict[str, Any], file: str) -> Case:
         raise CaseError(file, *first_fault(error)) from None
     check_references(document, file)
     case = Case(document, file)
+    check_kinematics(document, file, case.chain())
     for problem_id, reading_id in case.selections():
         case.problem(problem_id, reading_id)
     check_claims(document, file, lambda claim: case.posing(claim.problem))
     return case
-
-
-def _parse_toml(text: str, file: str) -> dict[str, Any]:
-    try:
-        return tomllib.loads(text, parse_float=Decimal)
-    except tomllib.TOMLDecodeError as error:
-        what, _, place = str(error).partition(" (at ")
-        reason = f"not valid TOML, {what[:1].lower()}{what[1:]}"
-        raise CaseError(file, place.rstrip(")"), f"{reason}; correct the syntax") from None
-    except RecursionError:
-        raise CaseError(file, "", "is nested too deeply; flatten it") from None
-    except (ArithmeticError, ValueError):
-        raise CaseError(file, "", "holds a number that is out of range; shorten it") from None

@@ -17,6 +17,7 @@ from .claim import (
 from .errors import CaseError
 from .fields import nearest
 from .posing import Posing
+from .robot import Chain
 from .schema import CaseFile
 
 _LISTS = (
@@ -27,6 +28,7 @@ _LISTS = (
     "claims",
     "assumptions",
     "columns",
+    "cartesian",
     "not_checkable",
 )
 _BLOCKS = ("units", "waypoints", "limits", "interpolant", "durations", "coupling", "robot")
@@ -173,3 +175,73 @@ def check_claims(document: CaseFile, file: str, posing_of: Callable[[AnyClaim], 
                 posing.si(duration, "time")
         if isinstance(claim, PeakClaim):
             posing.si(claim.value, claim.derivative)
+
+
+def check_kinematics(document: CaseFile, file: str, chain: Chain | None) -> None:
+    """Check that joints and positions of the end fit the robot and its way-points.
+
+    Parameters
+    ----------
+    document : CaseFile
+    file : str
+        Name for error messages.
+    chain : Chain or None
+        The robot's chain, if it has one.
+
+    Raises
+    ------
+    CaseError
+        If a joint is unknown or printed twice, or a position belongs to no way-point.
+    """
+    labels = document.robot.joints if chain is None else chain.labels
+    for index, label in enumerate(document.robot.joints):
+        if label not in labels:
+            raise CaseError(
+                file,
+                f"robot.joints[{index}]",
+                f"joint {label!r} is not in the robot's table; it has {', '.join(labels)}",
+            )
+    waypoints = document.waypoints
+    printed = list(document.robot.joints)
+    for index, column in enumerate(document.columns):
+        if column.joint is None:
+            continue
+        field = f"columns[{index}]"
+        if column.joint in printed:
+            raise CaseError(
+                file, f"{field}.joint", f"joint {column.joint!r} is printed twice; keep one"
+            )
+        if chain is not None and column.joint not in labels:
+            raise CaseError(
+                file,
+                f"{field}.joint",
+                f"joint {column.joint!r} is unknown; the robot has {', '.join(labels)}",
+            )
+        printed.append(column.joint)
+        if waypoints is not None and len(column.values) != len(waypoints.points):
+            raise CaseError(
+                file,
+                f"{field}.values",
+                f"{len(column.values)} values for {len(waypoints.points)} way-points; "
+                "give one each",
+            )
+    named = [entry.waypoint for entry in document.cartesian]
+    for index, name in enumerate(named):
+        if name is None and any(named):
+            raise CaseError(
+                file, f"cartesian[{index}].waypoint", "is missing, others name theirs; add it"
+            )
+        known = () if waypoints is None else waypoints.labels
+        if name is not None and name not in known:
+            raise CaseError(
+                file,
+                f"cartesian[{index}].waypoint",
+                f"{name!r} is no label of a way-point; {nearest(name, known)}",
+            )
+    if named and None in named and waypoints is not None and len(named) != len(waypoints.points):
+        raise CaseError(
+            file,
+            "cartesian",
+            f"{len(named)} positions for {len(waypoints.points)} way-points; "
+            "give one each, or name the way-point of each",
+        )

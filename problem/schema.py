@@ -9,6 +9,7 @@ from pydantic import BeforeValidator, Field, StrictBool, StrictInt, WithJsonSche
 
 from .claim import AnyClaim
 from .declaration import InterpolantBlock
+from .dh import DhTable
 from .errors import TrajgapError
 from .fields import (
     AccelerationUnit,
@@ -30,6 +31,7 @@ from .fields import (
 )
 from .printed import Printed
 from .problem import Coupling
+from .units import LengthUnit
 
 
 class Source(Strict):
@@ -48,13 +50,29 @@ class Robot(Strict):
 
     name: Text
     joints: Annotated[tuple[Text, ...], Field(min_length=1)]
+    dh: DhTable | None = None
+    """Its Denavit-Hartenberg table as printed."""
+    model: Id | None = None
+    """A robot shipped with the package, instead of `dh`."""
 
     @model_validator(mode="after")
     def _distinct(self) -> Self:
         for index, label in enumerate(self.joints):
             if label in self.joints[:index]:
                 raise fault(f".joints[{index}]", f"joint {label!r} is named twice; rename one")
+        if self.dh is not None and self.model is not None:
+            raise fault(".model", "stands beside dh; keep one of the two")
         return self
+
+
+class RobotFile(Strict):
+    """A robot as data: where its table stands, and the table."""
+
+    format: Literal[1]
+    id: Id
+    name: Text
+    source: Source
+    dh: DhTable
 
 
 class Units(Strict):
@@ -237,7 +255,29 @@ class Column(Strict):
     where: Text
     unit: str = ""
     values: Annotated[tuple[Number, ...], Field(min_length=1)]
+    joint: Text | None = None
+    """The robot's joint whose angles at the way-points these are, in the unit of position."""
     note: str = ""
+
+
+class Cartesian(Strict):
+    """A printed position of the robot's end at one way-point."""
+
+    id: Id
+    where: Text
+    label: str = ""
+    waypoint: Text | None = None
+    """Label of the joint way-point that it belongs to; by position in both lists if absent."""
+    unit: LengthUnit
+    values: tuple[Number, ...]
+    """x, y, z in the base frame."""
+    note: str = ""
+
+    @model_validator(mode="after")
+    def _three(self) -> Self:
+        if len(self.values) != 3:
+            raise fault(".values", f"has {len(self.values)} numbers; give x, y and z")
+        return self
 
 
 class NotCheckable(Strict):
@@ -264,6 +304,7 @@ class CaseFile(Pose):
     claims: tuple[AnyClaim, ...] = ()
     assumptions: tuple[Assumption, ...] = ()
     columns: tuple[Column, ...] = ()
+    cartesian: tuple[Cartesian, ...] = ()
     not_checkable: tuple[NotCheckable, ...] = ()
 
 

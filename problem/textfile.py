@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import tomllib
+from decimal import Decimal
 from pathlib import Path
+from typing import Any
 
 from .errors import CaseError
 
@@ -56,3 +59,33 @@ def read_text(path: Path) -> str:
     if not text.strip():
         raise CaseError(name, "", "is empty; `trajgap new` writes a file to start from")
     return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def parse_toml(text: str, file: str) -> dict[str, Any]:
+    """Parse TOML, numbers with a point as Decimal.
+
+    Parameters
+    ----------
+    text : str
+    file : str
+        Name for error messages.
+
+    Returns
+    -------
+    dict
+
+    Raises
+    ------
+    CaseError
+        If the text is no TOML, is nested too deeply, or holds a number out of range.
+    """
+    try:
+        return tomllib.loads(text, parse_float=Decimal)
+    except tomllib.TOMLDecodeError as error:
+        what, _, place = str(error).partition(" (at ")
+        reason = f"not valid TOML, {what[:1].lower()}{what[1:]}"
+        raise CaseError(file, place.rstrip(")"), f"{reason}; correct the syntax") from None
+    except RecursionError:
+        raise CaseError(file, "", "is nested too deeply; flatten it") from None
+    except (ArithmeticError, ValueError):
+        raise CaseError(file, "", "holds a number that is out of range; shorten it") from None

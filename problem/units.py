@@ -1,4 +1,4 @@
-"""The one place where units are converted: printed units to radians and seconds."""
+"""The one place where units are converted: printed units to radians, seconds and metres."""
 
 from __future__ import annotations
 
@@ -17,6 +17,8 @@ VelocityUnit = Literal["rad/s", "deg/s"]
 AccelerationUnit = Literal["rad/s^2", "deg/s^2"]
 JerkUnit = Literal["rad/s^3", "deg/s^3"]
 TimeUnit = Literal["s", "ms"]
+LengthUnit = Literal["m", "cm", "mm"]
+"""Of links and positions of the end; everything else of a case is an angle or a time."""
 
 CHOICES = MappingProxyType(
     {
@@ -35,7 +37,7 @@ _PI = (Fraction(_PI_DIGITS), Fraction(_PI_DIGITS) + Fraction(1, 10**50))
 
 @dataclass(frozen=True)
 class Scale:
-    """Exact factor ``rational · π**pi`` from a printed unit to radians and seconds."""
+    """Exact factor ``rational · π**pi`` from a printed unit to radians, seconds and metres."""
 
     rational: Fraction
     pi: int = 0
@@ -61,6 +63,9 @@ _SCALES = MappingProxyType(
         "deg/s^3": _DEGREE,
         "s": _ONE,
         "ms": Scale(Fraction(1, 1000)),
+        "m": _ONE,
+        "cm": Scale(Fraction(1, 100)),
+        "mm": Scale(Fraction(1, 1000)),
     }
 )
 
@@ -71,7 +76,7 @@ def scale(unit: str) -> Scale:
     Parameters
     ----------
     unit : str
-        One of the units in `CHOICES`.
+        One of the units in `CHOICES`, or a `LengthUnit`.
 
     Returns
     -------

@@ -102,9 +102,24 @@ def test_irb_waypoints_and_columns():
     assert texts(case.document.waypoints.joint_rows[0]) == table["5"]
     assert columns["joint-1"] == table["1"]
     assert columns["joint-3"] == table["3"]
-    points = rows(f"{IRB}.table-2")
-    assert {k: columns[f"cartesian-{k}"] for k in points} == points
-    assert columns["link-lengths"] == [a for _, a, _ in rows(f"{IRB}.table-1").values()]
+    assert [c.joint for c in case.columns] == ["1", "3"]
+
+
+def test_irb_cartesian_waypoints():
+    case, points = load_case(IRB), rows(f"{IRB}.table-2")
+    printed = {c.label.replace(" ", "-"): [v.text for v in c.values] for c in case.cartesian}
+    assert printed == points
+    assert [c.waypoint for c in case.cartesian] == list(case.document.waypoints.labels)
+    # Zeros without decimals are meant exactly, an assumption of the file; nothing else is.
+    assert all(v.exact == (v.text == "0") for c in case.cartesian for v in c.values)
+
+
+def test_irb_table():
+    dh, table = load_case(IRB).dh, rows(f"{IRB}.table-1")
+    assert list(table) == list(dh.joints)
+    assert dh.convention == "modified"
+    printed = [[entry.text for entry in row] for row in (dh.d, dh.a, dh.alpha)]
+    assert [list(row) for row in zip(*printed, strict=True)] == list(table.values())
 
 
 def test_irb_durations():

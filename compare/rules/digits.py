@@ -324,7 +324,7 @@ def _repeated_digits(study: Study) -> Iterator[Finding]:
     posing = case.posing()
     for j, label in zip(posing.joints, posing.labels, strict=False):
         entries = [row[j] for row in posing.waypoints.points]
-        for group in _column_groups(case.columns):
+        for group in _column_groups([*case.columns, *case.cartesian]):
             where, values = group
             repeated = [
                 w.text

@@ -1,0 +1,1 @@
+"""One file per robot: its Denavit–Hartenberg table and where it stands."""
