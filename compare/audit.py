@@ -12,6 +12,7 @@ from .finding import ClaimVerdict, Finding, Judgement, Scope, Severity, judge
 from .rules.continuous import continuous
 from .rules.count import count
 from .rules.digits import digits
+from .rules.kinematics import kinematics
 from .rules.optimum import optimum
 from .rules.replay import replay
 from .rules.scaling import scaling
@@ -19,7 +20,7 @@ from .rules.text import text
 from .study import SEEDS, Study
 from .waterfall import Waterfall, waterfalls
 
-_GROUPS = (digits, count, continuous, scaling, optimum, replay, text)
+_GROUPS = (digits, count, continuous, scaling, optimum, replay, text, kinematics)
 _ORDER = {Severity.ERROR: 0, Severity.WARNING: 1, Severity.INFO: 2}
 
 

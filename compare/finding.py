@@ -57,6 +57,8 @@ class Basis(StrEnum):
     """A reference value of the exact side."""
     REPLAY = "replay"
     """Seeded runs of the algorithm under the listed choices."""
+    KINEMATICS = "kinematics"
+    """Forward kinematics of the printed table of the robot."""
     TEXT = "text"
     """What the extracted text carries or does not."""
 
@@ -141,6 +143,7 @@ RULES = (
     Rule("TG402", "A printed total beside replays of its algorithm"),
     Rule("TG403", "Convergence within a number of iterations, beside replays"),
     Rule("TG501", "Not checkable from the text"),
+    Rule("TG601", "Joint and Cartesian way-points are consistent with the printed chain"),
 )
 """Every rule; an id is never reused."""
 
