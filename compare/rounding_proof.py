@@ -7,10 +7,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from trajgap.problem import QUANTITIES, Problem
+from trajgap.problem import QUANTITIES, Interpolant, Problem
+from trajgap.problem.uniform import StretchedUniformBSpline, TimedUniformBSpline
 
 from .interval import EPS, Array, Ball, enclose_spline, place_basis, quotient_power, raised
 from .places import Rows, linear_program, rows_at
+from .rounding_uniform import centred, covered
 
 MOST_BOXES = 100
 _NAMES = ("position", *QUANTITIES)
@@ -98,9 +100,13 @@ def _mean_value(problem: Problem, h: Ball, q: Ball, more: Rows | None) -> _MeanV
     By the durations the gradient holds over all of the box; by the way-points, in which f is
     linear for fixed durations, it is needed at the central durations only.
     """
+    curve = problem.interpolant
+    if not isinstance(curve, Interpolant):
+        uniform = isinstance(curve, StretchedUniformBSpline | TimedUniformBSpline)
+        return _uniform_mean_value(problem, h, q, more) if uniform else None
     still = Ball.exact(h.mid)
-    at_centre = enclose_spline(problem.interpolant, still, Ball.exact(q.mid))
-    over_box = enclose_spline(problem.interpolant, h, q)
+    at_centre = enclose_spline(curve, still, Ball.exact(q.mid))
+    over_box = enclose_spline(curve, h, q)
     if at_centre is None or over_box is None:
         return None
     rows = rows_at(replace(problem, waypoints=q.mid), h.mid)
@@ -112,7 +118,7 @@ def _mean_value(problem: Problem, h: Ball, q: Ball, more: Rows | None) -> _MeanV
     joint = np.array([e.joint for e in rows.points])
     segment = np.array([e.segment for e in rows.points])
     order = np.array([e.order for e in rows.points])
-    basis = place_basis(problem.interpolant, segment, order, np.array([e.s for e in rows.points]))
+    basis = place_basis(curve, segment, order, np.array([e.s for e in rows.points]))
     one = Ball.exact(np.ones(count))
     scale = quotient_power(one, still[segment], order)
     value = (basis @ at_centre.coefficients)[each, joint] * scale
@@ -133,6 +139,32 @@ def _mean_value(problem: Problem, h: Ball, q: Ball, more: Rows | None) -> _MeanV
         by_duration,
         by_waypoint,
         amplitude[each, joint] * scale.mid,
+        h.rad,
+        q.rad,
+    )
+
+
+def _uniform_mean_value(problem: Problem, h: Ball, q: Ball, more: Rows | None) -> _MeanValue | None:
+    curve = problem.interpolant
+    assert isinstance(curve, StretchedUniformBSpline | TimedUniformBSpline)
+    rows = rows_at(replace(problem, waypoints=q.mid), h.mid)
+    rows = rows if more is None else rows + more
+    order = np.array([e.order for e in rows.points], dtype=np.int64)
+    rows = rows.pick(np.flatnonzero(covered(curve, order)))
+    if not rows.points:
+        return None
+    joint = np.array([e.joint for e in rows.points])
+    segment = np.array([e.segment for e in rows.points])
+    order = np.array([e.order for e in rows.points])
+    place = np.array([e.s for e in rows.points])
+    form = centred(curve, joint, segment, order, place, h, q)
+    return _MeanValue(
+        rows,
+        joint,
+        form.value,
+        form.by_duration,
+        form.by_waypoint,
+        form.amplitude,
         h.rad,
         q.rad,
     )

@@ -16,12 +16,14 @@ from ..problem import (
     Case,
     Check,
     Coupling,
+    Interpolant,
     Problem,
     TrajgapError,
     check,
     piecewise,
 )
 from ..problem.claim import Claim, DurationsClaim, MaximumClaim, TotalTimeClaim
+from ..problem.curve import end_conditions
 from .rounding import Box, RoundingVerdict, judge_rounding
 
 T = TypeVar("T")
@@ -132,14 +134,12 @@ class Study:
         def compute() -> Solution:
             problem = self.problem(pid, rid)
             self._progress(f"{self.case.id}: relaxed family, {pid}, {rid}")
+            curve = problem.interpolant
+            start, end = end_conditions(curve)
             family = replace(
                 piecewise((5,) * problem.segments, 2, name="quintic polynomials, C2, free"),
-                prescribed=(
-                    problem.interpolant.prescribed[0],
-                    *((),) * (problem.segments - 1),
-                    problem.interpolant.prescribed[-1],
-                ),
-                virtual=problem.interpolant.virtual,
+                prescribed=(start, *((),) * (problem.segments - 1), end),
+                virtual=curve.virtual if isinstance(curve, Interpolant) else (),
             )
             return solve(replace(problem, interpolant=family, coupling=Coupling.SHARED))
 

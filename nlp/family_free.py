@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..problem import Problem, TrajgapError
+from ..problem.curve import end_conditions
 from .family_free_nlp import KEPT, Question, local_optimum, starting_points
 from .reach import profile
 from .solution import Evidence
@@ -171,8 +172,8 @@ def _initial(problem: Problem, initial: ArrayLike | None) -> NDArray[np.float64]
 
 
 def _ends(problem: Problem) -> tuple[float | None, float | None]:
-    prescribed = problem.interpolant.prescribed
-    return dict(prescribed[0]).get(1), dict(prescribed[-1]).get(1)
+    start, end = end_conditions(problem.interpolant)
+    return dict(start).get(1), dict(end).get(1)
 
 
 def _restless(problem: Problem) -> NDArray[np.bool_]:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..problem import QUANTITIES, Problem
+from ..problem import QUANTITIES, Interpolant, Problem
+from ..problem.curve import end_conditions
 
 
 def impossible(problem: Problem) -> str | None:
@@ -22,7 +23,9 @@ def impossible(problem: Problem) -> str | None:
 
 def _limit_zero(problem: Problem) -> str | None:
     moves = np.ptp(problem.waypoints, axis=0) > 0
-    orders = {order for entries in problem.interpolant.prescribed for order, _ in entries}
+    orders = {order for end in end_conditions(problem.interpolant) for order, _ in end}
+    if isinstance(problem.interpolant, Interpolant):
+        orders |= {order for entries in problem.interpolant.prescribed for order, _ in entries}
     for r, quantity in enumerate(QUANTITIES, start=1):
         # A joint that must not accelerate may still glide, unless it is at rest somewhere.
         pinned = all(lower in orders for lower in range(1, r))
@@ -42,6 +45,8 @@ def _outside_range(problem: Problem) -> str | None:
 
 
 def _prescribed_beyond_limit(problem: Problem) -> str | None:
+    if not isinstance(problem.interpolant, Interpolant):
+        return None
     for b, entries in enumerate(problem.interpolant.prescribed):
         for order, value in entries:
             if order > 3:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.optimize import nnls
 
 from ..problem import QUANTITIES, Extremum, Problem, extrema, fit, peak_gradients
+from ..problem.curve import segment_of, smooth_order
 
 ACTIVE = 1e-7
 """Relative distance to a limit within which a peak counts as active."""
@@ -70,6 +71,8 @@ def _peaks_near_limit(
 ) -> list[_Constraint]:
     trajectory = fit(problem.interpolant, problem.waypoints, durations, nodal)
     limits = problem.limits
+    curve = problem.interpolant
+    every_break = len(curve.waypoint_breaks) == curve.segments + 1
     found: list[_Constraint] = []
     for j, name in enumerate(problem.joints):
         for r, quantity in enumerate(QUANTITIES, start=1):
@@ -77,15 +80,11 @@ def _peaks_near_limit(
             if not np.isfinite(limit) or limit == 0:
                 continue
             for e in extrema(trajectory, j, r):
-                repeated = (
-                    e.s == 0.0
-                    and e.segment > 0
-                    and problem.interpolant.continuity[e.segment - 1] >= r
-                )
+                repeated = e.s == 0.0 and e.segment > 0 and smooth_order(curve, e.segment) >= r
                 excess = abs(e.value) / limit - 1
                 if excess >= -near and not repeated:
                     sign = float(np.sign(e.value))
-                    label = (name, quantity, e.segment, e.time)
+                    label = (name, quantity, segment_of(curve, durations, e), e.time)
                     found.append(_Constraint(e, label, excess, sign, limit))
         low, high = float(limits.position_lower[j]), float(limits.position_upper[j])
         if np.isfinite(low) or np.isfinite(high):
@@ -93,9 +92,9 @@ def _peaks_near_limit(
             for e in extrema(trajectory, j, 0):
                 for limit, sign in ((low, -1.0), (high, 1.0)):
                     excess = sign * (e.value - limit) / size
-                    given = e.s in (0.0, 1.0) and not problem.interpolant.virtual
+                    given = e.s in (0.0, 1.0) and every_break
                     if np.isfinite(limit) and excess >= -near and not given:
-                        label = (name, "position", e.segment, e.time)
+                        label = (name, "position", segment_of(curve, durations, e), e.time)
                         found.append(_Constraint(e, label, excess, sign, size))
     return found
 
@@ -129,7 +128,7 @@ def kkt(
     gradients = peak_gradients(problem, durations, points, nodal)
     columns = np.zeros((n + free * joints, len(rows)))
     nodal_scale = np.ones((free, joints))
-    for i, (_, order) in enumerate(problem.interpolant.free_derivatives if free else ()):
+    for i, (_, order) in enumerate(problem.piecewise.free_derivatives if free else ()):
         if 1 <= order <= 3:
             limit = problem.limits.derivatives[:, order - 1]
             nodal_scale[i] = np.where(np.isfinite(limit), limit, 1.0)

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..problem import Extremum, Problem, check, extrema, fit, peak_gradients
-from .kkt import KKT, kkt
+from ..problem.curve import segment_of
+from .kkt import KKT, Active, kkt
 
 _STEPS = 4
 _DIFFERENCE = 1e-6
@@ -39,7 +40,7 @@ def polish(
     if problem.interpolant.free or len(limited) < len(report.active) - len(pinned):
         return durations, report
     moving = np.setdiff1d(np.arange(problem.segments), pinned)
-    active = [_nearest(problem, durations, a.joint, a.quantity, a.time) for a in limited]
+    active = [_nearest(problem, durations, a) for a in limited]
     weights = np.array([a.multiplier for a in limited])
     h = durations.copy()
     for _ in range(_STEPS):
@@ -73,21 +74,18 @@ def polish(
 _ORDERS = {"velocity": 1, "acceleration": 2, "jerk": 3}
 
 
-def _nearest(
-    problem: Problem,
-    h: NDArray[np.float64],
-    joint: str | None,
-    quantity: str,
-    time: float | None,
-) -> Extremum:
-    assert joint is not None
-    assert time is not None
+def _nearest(problem: Problem, h: NDArray[np.float64], active: Active) -> Extremum:
+    assert active.joint is not None
+    assert active.time is not None
+    time, curve = active.time, problem.interpolant
     points = extrema(
-        fit(problem.interpolant, problem.waypoints, h),
-        problem.joints.index(joint),
-        _ORDERS[quantity],
+        fit(curve, problem.waypoints, h),
+        problem.joints.index(active.joint),
+        _ORDERS[active.quantity],
     )
-    return min(points, key=lambda e: abs(e.time - time))
+    # Where a derivative jumps, two extrema share a time.
+    own = [e for e in points if segment_of(curve, h, e) == active.segment]
+    return min(own, key=lambda e: abs(e.time - time))
 
 
 def _conditions(

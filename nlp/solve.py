@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..problem import Problem, TrajgapError, check, fit
+from ..problem import Interpolant, Problem, TrajgapError, Verdict, check, fit
 from ..problem.spline import coefficient_gradient
+from ..problem.stretched import segment_peaks
+from .curve_formulation import compiled_curve, curve_structure
+from .curve_symbols import shape_key
+from .curve_tracking import curve_multistart
 from .feasibility import impossible
 from .formulation import Form
 from .kkt import kkt
@@ -85,7 +91,7 @@ def _solve_moving(
     problem: Problem, starts: int, seed: int, initial: ArrayLike | None, form: Form | None
 ) -> Solution:
     """`solve` for a problem without idle segments."""
-    build_ = compiled(structure_of(problem, form))
+    search, build_seconds = _search(problem, form)
     began = time.perf_counter()
     if initial is None:
         points = screened_starts(problem, starts, np.random.default_rng(seed))
@@ -103,9 +109,9 @@ def _solve_moving(
     solution, coarser = None, None
     for share in FLOORS:
         floor = share * mean
-        found = _multistart(problem, build_, points, floor)
+        found = search(points, floor)
         solution = _judged(problem, found, floor, len(points))
-        if solution.status is Status.FEASIBLE and build_.formulation.structure.form is Form.REDUCED:
+        if solution.status is Status.FEASIBLE and _reduced(problem, form):
             # Eliminating across very unequal durations loses digits; the lifted form does not.
             lifted = compiled(structure_of(problem, Form.LIFTED))
             found += _multistart(problem, lifted, points, floor)
@@ -120,9 +126,25 @@ def _solve_moving(
     assert solution is not None
     return replace(
         solution,
-        build_seconds=build_.build_seconds,
+        build_seconds=build_seconds,
         solve_seconds=time.perf_counter() - began,
     )
+
+
+def _search(
+    problem: Problem, form: Form | None
+) -> tuple[Callable[[NDArray[np.float64], float], list[Local]], float]:
+    """Local search from starts above a floor, and the time its build took, s."""
+    if isinstance(problem.interpolant, Interpolant):
+        build_ = compiled(structure_of(problem, form))
+        return partial(_multistart, problem, build_), build_.build_seconds
+    built = compiled_curve(curve_structure(problem))
+    return partial(curve_multistart, problem, built), built.build_seconds
+
+
+def _reduced(problem: Problem, form: Form | None) -> bool:
+    declared = isinstance(problem.interpolant, Interpolant)
+    return declared and structure_of(problem, form).form is Form.REDUCED
 
 
 def _multistart(
@@ -169,6 +191,11 @@ def _judged(problem: Problem, found: list[Local], floor: float, starts: int) -> 
         durations, report = polish(problem, durations, report)
     status = Status.OPTIMAL if report.residual <= KKT_TOLERANCE else Status.FEASIBLE
     why = None if status is Status.OPTIMAL else f"KKT residual {report.residual:.1e}"
+    verdict = check(problem, durations, best.nodal)
+    if verdict.verdict is Verdict.DISCONTINUOUS:
+        jumps = sum(jump.order < 2 for jump in verdict.jumps)
+        note = f"limits kept inside the segments; {jumps} jumps of velocity between them"
+        why = note if why is None else f"{why}; {note}"
     shrinking = _at_floor(problem, durations, floor)
     if shrinking:
         status = Status.NOT_ATTAINED
@@ -180,7 +207,7 @@ def _judged(problem: Problem, found: list[Local], floor: float, starts: int) -> 
         why,
         durations=durations,
         nodal=best.nodal,
-        check=check(problem, durations, best.nodal),
+        check=verdict,
         kkt_residual=report.residual,
         active=report.active,
         starts=starts,
@@ -198,9 +225,14 @@ def idle_segments(problem: Problem) -> list[int]:
     """Segments in which nothing moves and whose duration nothing else depends on."""
     if problem.interpolant.free:
         return []
+    if not isinstance(problem.interpolant, Interpolant):
+        if not shape_key(problem):
+            return []
+        still = segment_peaks(problem.interpolant, problem.waypoints).max(axis=(1, 2)) == 0.0
+        return np.flatnonzero(still).tolist()
     h = equal_start(problem)
     trajectory = fit(problem.interpolant, problem.waypoints, h)
-    gradient = coefficient_gradient(problem.interpolant, problem.waypoints, h).durations
+    gradient = coefficient_gradient(problem.piecewise, problem.waypoints, h).durations
     still = np.abs(trajectory.scaled[:, 1:]).max(axis=(1, 2)) <= 1e-14
     apart = np.abs(gradient * h[:, None, None, None]).max(axis=(1, 2, 3)) <= 1e-14
     return np.flatnonzero(still & apart).tolist()

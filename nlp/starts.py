@@ -17,9 +17,9 @@ GRID_POINTS = {2: 400, 3: 2500}
 
 def first_nodal(problem: Problem) -> NDArray[np.float64] | None:
     """Free derivatives to start from: at rest, virtual breaks on the chord of their neighbours."""
-    interpolant = problem.interpolant
-    if not interpolant.free:
+    if not problem.interpolant.free:
         return None
+    interpolant = problem.piecewise
     nodal = np.zeros((interpolant.free, problem.waypoints.shape[1]))
     breaks = interpolant.waypoint_breaks
     for i, (b, order) in enumerate(interpolant.free_derivatives):

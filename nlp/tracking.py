@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any
+from typing import Any, Protocol
 
 import casadi as ca
 import numpy as np
@@ -38,7 +38,8 @@ class Compiled:
     build_seconds: float
 
 
-def _options(warm: bool) -> dict[str, Any]:
+def ipopt_options(warm: bool) -> dict[str, Any]:
+    """Options of IPOPT that reach 1e-9, from a cold or a warm start."""
     options: dict[str, Any] = {
         "print_time": False,
         "ipopt.print_level": 0,
@@ -82,8 +83,8 @@ def compiled(structure: Structure) -> Compiled:
         "f": f.objective,
         "g": ca.vertcat(f.equalities, f.inequalities),
     }
-    cold = ca.nlpsol("cold", "ipopt", nlp, _options(False))
-    warm = ca.nlpsol("warm", "ipopt", nlp, _options(True))
+    cold = ca.nlpsol("cold", "ipopt", nlp, ipopt_options(False))
+    warm = ca.nlpsol("warm", "ipopt", nlp, ipopt_options(True))
     return Compiled(f, cold, warm, time.perf_counter() - began)
 
 
@@ -101,8 +102,8 @@ def structure_of(problem: Problem, form: Form | None = None) -> Structure:
     if problem.limits.limits_position:
         orders = (0, *orders)
     joints = problem.waypoints.shape[1]
-    chosen = form or best_form(problem.interpolant, joints)
-    return Structure(problem.interpolant, joints, orders, chosen)
+    chosen = form or best_form(problem.piecewise, joints)
+    return Structure(problem.piecewise, joints, orders, chosen)
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,7 +120,7 @@ class Scaled:
 
 def scaled_problem(problem: Problem, formulation: Formulation, time_unit: float) -> Scaled:
     """Row values, limits and position bounds of a problem in units of order one."""
-    interpolant = problem.interpolant
+    interpolant = problem.piecewise
     joints = problem.waypoints.shape[1]
     span = np.ptp(problem.waypoints, axis=0)
     angle = np.where(span > 0, span, 1.0)
@@ -221,8 +222,8 @@ def variable_bounds(
     low[:n] = np.maximum(problem.duration_lower, floor) / time_unit
     high[:n] = np.maximum(problem.duration_upper / time_unit, low[:n])
     if formulation.structure.form is Form.LIFTED:
-        for p in range(max(problem.interpolant.degrees) + 1):
-            for k, d in enumerate(problem.interpolant.degrees):
+        for p in range(max(problem.piecewise.degrees) + 1):
+            for k, d in enumerate(problem.piecewise.degrees):
                 if p > d:
                     at = n + p * n * joints + k + n * np.arange(joints)
                     low[at] = high[at] = 0.0
@@ -233,7 +234,7 @@ def unpack(
     problem: Problem, formulation: Formulation, scaled: Scaled, x: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
     """Durations (s) and free nodal derivatives (rad, s) of a vector of variables."""
-    interpolant, n = problem.interpolant, problem.segments
+    interpolant, n = problem.piecewise, problem.segments
     joints = problem.waypoints.shape[1]
     h = x[:n] * scaled.time_unit
     if not interpolant.free:
@@ -265,9 +266,17 @@ class Local:
     iterations: int
 
 
+class Sized(Protocol):
+    """An NLP that can tell how large it is."""
+
+    @property
+    def sizes(self) -> dict[str, int]:
+        """Number of variables, equalities and inequalities."""
+
+
 def run(
     solver: Any,
-    formulation: Formulation,
+    formulation: Sized,
     x: NDArray[np.float64],
     p: NDArray[np.float64],
     bounds: tuple[NDArray[np.float64], NDArray[np.float64]],
@@ -319,7 +328,7 @@ def merit(
     if verdict.feasible_time is None:
         return total * (1.0 + 10.0 * verdict.max_violation), h, nodal
     if problem.interpolant.free and nodal is not None:
-        orders = np.array([r for _, r in problem.interpolant.free_derivatives])[:, None]
+        orders = np.array([r for _, r in problem.piecewise.free_derivatives])[:, None]
         nodal = nodal / verdict.stretch**orders
     return verdict.feasible_time, h * verdict.stretch, nodal
 
@@ -387,7 +396,7 @@ def pack(
     nodal: NDArray[np.float64] | None,
 ) -> NDArray[np.float64]:
     """Variables of a formulation at given durations and free nodal derivatives."""
-    interpolant = problem.interpolant
+    interpolant = problem.piecewise
     free = np.zeros((0, problem.waypoints.shape[1])) if nodal is None else nodal
     if formulation.structure.form is Form.REDUCED:
         units = np.array([scaled.time_unit**r for _, r in interpolant.free_derivatives])

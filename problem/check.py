@@ -9,18 +9,12 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .errors import TrajgapError
+from .curve import batch_peaks, enclosed, motion_values, segment_of
+from .errors import CurveError, TrajgapError
 from .limits import QUANTITIES
 from .peak import extrema
 from .problem import Problem
-from .spline import (
-    PERM,
-    as_durations,
-    batch_peaks,
-    motion_values,
-    refined_coefficients,
-    trajectory_from_scaled,
-)
+from .spline import as_durations
 from .trajectory import Trajectory
 
 TOLERANCE = 1e-9
@@ -49,7 +43,8 @@ class Peak:
     joint : str or None
         Joint label; None for a segment duration.
     quantity : str
-        "position", "velocity", "acceleration", "jerk" or "duration".
+        "position", "velocity", "acceleration", "jerk", "duration"; or "curve" where the durations
+        define none.
     segment : int
         Segment, from 0.
     time : float or None
@@ -79,13 +74,29 @@ class Peak:
 
 @dataclass(frozen=True)
 class Jump:
-    """A derivative that differs on the two sides of a break."""
+    """A derivative that differs on the two sides of a break.
+
+    Attributes
+    ----------
+    joint : str
+    order : int
+        0 position, 1 velocity, 2 acceleration.
+    break_index : int
+        Break between two pieces of the trajectory, from 1.
+    time : float
+        s.
+    size : float
+        Value after the break less the value before it, rad/sᵒʳᵈᵉʳ.
+    """
 
     joint: str
     order: int
     break_index: int
     time: float
     size: float
+
+
+_DERIVATIVES = ("position", *QUANTITIES)
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,6 +106,9 @@ class Check:
     Attributes
     ----------
     verdict : Verdict
+    limits : Verdict
+        The verdict about the limits alone, jumps apart: pass, violated or undecided. Inside the
+        pieces every limit may be kept while the motion jumps between them.
     worst : Peak or None
         Largest ratio; None if nothing is limited. A duration counts only beyond its bound.
     peaks : tuple of Peak
@@ -112,6 +126,7 @@ class Check:
     """
 
     verdict: Verdict
+    limits: Verdict
     worst: Peak | None
     peaks: tuple[Peak, ...]
     jumps: tuple[Jump, ...]
@@ -122,6 +137,11 @@ class Check:
     tight_time: float | None
     tight_why: str | None
     tolerance: float
+
+    @property
+    def continuous(self) -> bool:
+        """Whether position, velocity and acceleration agree on both sides of every break."""
+        return not self.jumps
 
     @property
     def max_violation(self) -> float:
@@ -139,6 +159,13 @@ class Check:
                 f"worst           {where} {w.quantity} {w.value:.6g} against {w.limit:.6g}"
                 f" (ratio {w.ratio:.9f}){at}"
             )
+        if self.jumps:
+            top = max(self.jumps, key=lambda jump: (-jump.order, abs(jump.size)))
+            lines.append(
+                f"jumps           {len(self.jumps)}, the largest of {_DERIVATIVES[top.order]} by "
+                f"{top.size:.6g} at t = {top.time:.6f} s (joint {top.joint}); "
+                f"limits, apart from jumps: {self.limits}"
+            )
         for name, time, why in (
             ("feasible time", self.feasible_time, self.feasible_why),
             ("tight time", self.tight_time, self.tight_why),
@@ -154,7 +181,10 @@ def _ratio(value: float, limit: float, error: float) -> float:
 
 
 def _derivative_peaks(
-    problem: Problem, trajectory: Trajectory, error: NDArray[np.float64]
+    problem: Problem,
+    h: NDArray[np.float64],
+    trajectory: Trajectory,
+    error: NDArray[np.float64],
 ) -> list[Peak]:
     limits = problem.limits.derivatives
     peaks = []
@@ -169,9 +199,8 @@ def _derivative_peaks(
             bound = max(bounds)
             limit = float(limits[j, r - 1])
             ratio = _ratio(top.value, limit, bound)
-            peaks.append(
-                Peak(label, quantity, top.segment, top.time, top.value, limit, ratio, bound)
-            )
+            at = segment_of(problem.interpolant, h, top)
+            peaks.append(Peak(label, quantity, at, top.time, top.value, limit, ratio, bound))
     return peaks
 
 
@@ -181,7 +210,10 @@ def _half_range(low: float, high: float, limit: float) -> float:
 
 
 def _position_peaks(
-    problem: Problem, trajectory: Trajectory, error: NDArray[np.float64]
+    problem: Problem,
+    h: NDArray[np.float64],
+    trajectory: Trajectory,
+    error: NDArray[np.float64],
 ) -> list[Peak]:
     peaks = []
     for j, label in enumerate(problem.joints):
@@ -197,10 +229,9 @@ def _position_peaks(
             half = _half_range(low, high, limit)
             bound = float(error[:, 0, j].max())
             ratio = 1.0 + excess / half if half > 0 else _ratio(excess, 0.0, bound)
+            at = segment_of(problem.interpolant, h, top)
             peaks.append(
-                Peak(
-                    label, "position", top.segment, top.time, top.value, float(limit), ratio, bound
-                )
+                Peak(label, "position", at, top.time, top.value, float(limit), ratio, bound)
             )
     return peaks
 
@@ -227,36 +258,36 @@ def _duration_peaks(problem: Problem, h: NDArray[np.float64]) -> list[Peak]:
     return peaks
 
 
-def _value_errors(
-    trajectory: Trajectory, coefficient_error: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Bound on the error of each derivative's extrema, shape (segments, 4, joints).
-
-    Coefficient errors, plus the rounding of Horner's scheme, plus that of the place of the
-    extremum, where the next derivative vanishes to rounding.
-    """
-    size = 32 * np.finfo(np.float64).eps * np.abs(trajectory.scaled)
-    errors = np.zeros((size.shape[0], 4, size.shape[2]))
-    for r in range(4):
-        own = np.einsum("p,kpj->kj", PERM[:, r], coefficient_error + size)
-        place = np.einsum("p,kpj->kj", PERM[:, r + 1], size)
-        errors[:, r] = (own + place) / trajectory.durations[:, None] ** r
-    return errors
-
-
 def _jumps(problem: Problem, trajectory: Trajectory, error: NDArray[np.float64]) -> list[Jump]:
     jumps = []
-    for b in range(1, problem.segments):
+    for b in range(1, len(trajectory.durations)):
         for j, label in enumerate(problem.joints):
             for order in range(3):
-                left = trajectory.derivative(b - 1, j, order)
-                right = trajectory.derivative(b, j, order)
-                size = float(right[0] - left.sum())
-                scale = float(np.abs(left).sum() + np.abs(right).sum())
+                left, right, scale = trajectory.sides(b, j, order)
+                size = right - left
                 bound = float(error[b - 1, order, j] + error[b, order, j]) + 1e-9 * scale
                 if abs(size) > bound:
                     jumps.append(Jump(label, order, b, float(trajectory.breaks[b]), size))
     return jumps
+
+
+def _no_curve(problem: Problem, h: NDArray[np.float64], why: CurveError, tolerance: float) -> Check:
+    """Durations that define no curve keep no limit."""
+    peak = Peak(None, "curve", why.segment, None, why.value, 0.0, np.inf, 0.0)
+    return Check(
+        verdict=Verdict.VIOLATED,
+        limits=Verdict.VIOLATED,
+        worst=peak,
+        peaks=(peak, *_duration_peaks(problem, h)),
+        jumps=(),
+        total_time=float(h.sum()),
+        stretch=np.inf,
+        feasible_time=None,
+        feasible_why=str(why),
+        tight_time=None,
+        tight_why=str(why),
+        tolerance=tolerance,
+    )
 
 
 def _rescaled(
@@ -308,12 +339,14 @@ def check(
     """
     h = as_durations(durations, problem.segments)
     extra = None if nodal is None else np.asarray(nodal, dtype=np.float64)
-    scaled, uncertainty = refined_coefficients(problem.interpolant, problem.waypoints, h, extra)
-    trajectory = trajectory_from_scaled(scaled, problem.interpolant.degrees, h)
-    error = _value_errors(trajectory, uncertainty)
+    try:
+        found = enclosed(problem.interpolant, problem.waypoints, h, extra)
+    except CurveError as why:
+        return _no_curve(problem, h, why, tolerance)
+    trajectory, error = found.trajectory, found.error
     peaks = [
-        *_derivative_peaks(problem, trajectory, error),
-        *_position_peaks(problem, trajectory, error),
+        *_derivative_peaks(problem, h, trajectory, error),
+        *_position_peaks(problem, h, trajectory, error),
         *_duration_peaks(problem, h),
     ]
     jumps = _jumps(problem, trajectory, error)
@@ -330,6 +363,7 @@ def check(
             break
         if not p.ratio + slack <= 1 + tolerance:
             verdict = Verdict.UNDECIDED
+    about_limits = verdict
     if serious and verdict is not Verdict.VIOLATED:
         verdict = Verdict.DISCONTINUOUS
     roots = {q: 1.0 / r for r, q in enumerate(QUANTITIES, start=1)}
@@ -341,6 +375,7 @@ def check(
         feasible_why = tight_why = "the motion jumps at a break; stretching does not mend that"
     return Check(
         verdict=verdict,
+        limits=about_limits,
         worst=max(
             (p for p in peaks if p.quantity != "duration" or p.ratio > 1 + tolerance),
             key=lambda p: p.ratio,

@@ -7,6 +7,28 @@ class TrajgapError(ValueError):
     """Root of every exception that trajgap raises on purpose."""
 
 
+class CurveError(TrajgapError):
+    """Durations that define no curve: time would run backwards, or no spline passes.
+
+    Parameters
+    ----------
+    reason : str
+    segment : int
+        Segment in which it shows, from 0.
+    value : float
+        The number that must be positive, at its worst place.
+    """
+
+    def __init__(self, reason: str, segment: int, value: float) -> None:
+        super().__init__(reason, segment, value)
+        self.reason = reason
+        self.segment = segment
+        self.value = value
+
+    def __str__(self) -> str:
+        return self.reason
+
+
 class CaseError(TrajgapError):
     """A case file, or a table meant to become one, cannot be used.
 

@@ -344,3 +344,12 @@ def rest_to_rest(segments: int, degree: int) -> Interpolant:
         (orders,) * (segments + 1),
         name=f"rest-to-rest polynomials of degree {degree}",
     )
+
+
+def jtraj(segments: int) -> Interpolant:
+    """Quintic from rest to rest in every segment, as the robot toolboxes' ``jtraj`` joins points.
+
+    The same curve as ``rest_to_rest(segments, 5)`` under the name that papers compare with:
+    velocity and acceleration are 0 at every way-point.
+    """
+    return replace(rest_to_rest(segments, 5), name="jtraj (rest-to-rest quintics)")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import singledispatch
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,11 +19,12 @@ class Extremum:
     Attributes
     ----------
     joint, segment : int
-        Indices from 0.
+        Indices from 0; the segment is a piece of the trajectory, and a segment between
+        way-points except where a curve has its knots elsewhere.
     order : int
         Derivative: 0 position, 1 velocity, 2 acceleration, 3 jerk.
     s : float
-        Place in the segment's own parameter, 0..1.
+        Place in its own parameter, 0..1.
     time : float
         Place in time, s.
     value : float
@@ -53,6 +55,7 @@ def critical_points(a: NDArray[np.float64]) -> NDArray[np.float64]:
     return roots[:count].copy()
 
 
+@singledispatch
 def extrema(trajectory: Trajectory, joint: int, order: int) -> list[Extremum]:
     """Ends and interior turning points of one derivative of one joint, in order of time.
 

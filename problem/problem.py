@@ -8,6 +8,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from .curve import Curve, for_joint
 from .errors import TrajgapError
 from .interpolant import Interpolant
 from .limits import Limits
@@ -32,8 +33,8 @@ class Problem:
         Joint angles, rad.
     limits : Limits
         Limits of every joint.
-    interpolant : Interpolant
-        Declaration of the curve.
+    interpolant : Curve
+        Declaration of the curve: an `Interpolant` or any other kind.
     duration_lower, duration_upper : array_like, shape (segments,) or scalar
         Bounds on the segment durations, s; a lower bound of 0 means "positive".
     coupling : Coupling
@@ -49,7 +50,7 @@ class Problem:
 
     waypoints: NDArray[np.float64]
     limits: Limits
-    interpolant: Interpolant
+    interpolant: Curve
     duration_lower: NDArray[np.float64] = field(default_factory=lambda: np.array(0.0))
     duration_upper: NDArray[np.float64] = field(default_factory=lambda: np.array(np.inf))
     coupling: Coupling = Coupling.SHARED
@@ -115,10 +116,27 @@ class Problem:
         """Number of segments, the length of a duration vector."""
         return self.interpolant.segments
 
+    @property
+    def piecewise(self) -> Interpolant:
+        """The curve as a declared piecewise polynomial.
+
+        Raises
+        ------
+        TrajgapError
+            If it is of another kind.
+        """
+        if not isinstance(self.interpolant, Interpolant):
+            raise TrajgapError(
+                f"interpolant: {self.interpolant.name} is no piecewise polynomial with breaks at "
+                "the way-points, which is needed here"
+            )
+        return self.interpolant
+
     def joint(self, index: int) -> Problem:
         """The same question for one joint alone, with shared coupling."""
         return replace(
             self,
+            interpolant=for_joint(self.interpolant, self.waypoints, index),
             waypoints=self.waypoints[:, index : index + 1],
             limits=self.limits.joint(index),
             joints=(self.joints[index],),

@@ -17,12 +17,12 @@ class Trajectory:
     ----------
     polynomial : scipy.interpolate.PPoly
         Values of shape (joints,), rad over s.
-    durations : ndarray, shape (segments,)
-        Segment durations, s.
-    scaled : ndarray, shape (segments, powers, joints)
+    durations : ndarray, shape (pieces,)
+        Durations of the pieces, s: the segments, except where a curve has its knots elsewhere.
+    scaled : ndarray, shape (pieces, powers, joints)
         Ascending coefficients in s = (t − t_k)/h_k.
     degrees : tuple of int
-        Degree of each segment.
+        Degree of each piece.
     """
 
     polynomial: PPoly
@@ -36,12 +36,12 @@ class Trajectory:
 
     @property
     def breaks(self) -> NDArray[np.float64]:
-        """Times at which the segments meet, s."""
+        """Times at which the pieces meet, s."""
         return np.asarray(self.polynomial.x, dtype=np.float64)
 
     @property
     def total_time(self) -> float:
-        """Sum of the segment durations, s."""
+        """Sum of the durations, s."""
         return float(self.durations.sum())
 
     @property
@@ -50,9 +50,16 @@ class Trajectory:
         return int(self.scaled.shape[2])
 
     def derivative(self, segment: int, joint: int, order: int) -> NDArray[np.float64]:
-        """Ascending coefficients in s of a time derivative on one segment."""
+        """Ascending coefficients in s of a time derivative on one piece."""
         d = self.degrees[segment]
         a = self.scaled[segment, : d + 1, joint].copy()
         for _ in range(order):
             a = a[1:] * np.arange(1, a.size) if a.size > 1 else np.zeros(1)
         return np.asarray(a / self.durations[segment] ** order, dtype=np.float64)
+
+    def sides(self, break_index: int, joint: int, order: int) -> tuple[float, float, float]:
+        """Derivative just before and just after an inner break, and the size of their terms."""
+        left = self.derivative(break_index - 1, joint, order)
+        right = self.derivative(break_index, joint, order)
+        scale = float(np.abs(left).sum() + np.abs(right).sum())
+        return float(left.sum()), float(right[0]), scale

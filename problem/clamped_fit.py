@@ -1,0 +1,454 @@
+"""From a clamped B-spline's declaration to polynomial pieces between its knots."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from math import comb, perm
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import clamped_kernel, kernel, stretched
+from . import curve as kinds
+from .clamped import ClampedBSpline, average_matrix, fractions_of
+from .curve import Array, Enclosed, PeakGradients, derivative_row, value_errors
+from .errors import CurveError, TrajgapError
+from .peak import Extremum
+from .spline import as_durations, trajectory_from_scaled
+from .stretched import Shape, as_waypoints
+from .trajectory import Trajectory
+from .uniform import Timing
+
+Numbers = NDArray[Any]
+_EPS = np.finfo(np.float64).eps
+
+
+def span_bases(knots: Numbers, degree: int, sign: int = -1) -> Numbers:
+    """Powers of the basis functions on every span, shape (pieces, functions, powers).
+
+    Cox–de Boor (2) on polynomials in the span's own 0..1, for all spans at once and any kind of
+    number. With ``sign`` + the terms are added instead, which bounds their sizes.
+    """
+    p = degree
+    pieces = knots.size - 2 * p - 1
+    at = p + np.arange(pieces)
+    start, width = knots[at], knots[at + 1] - knots[at]
+    bases = np.zeros((pieces, p + 1, p + 1), dtype=knots.dtype)
+    bases[:, 0, 0] = 1
+    for q in range(1, p + 1):
+        raised = np.zeros_like(bases)
+        for a in range(q):
+            left, right = knots[at - q + 1 + a], knots[at + 1 + a]
+            c = bases[:, a, :q] / (right - left)[:, None]
+            raised[:, a + 1, :q] += (start - left)[:, None] * c
+            raised[:, a + 1, 1 : q + 1] += width[:, None] * c
+            raised[:, a, :q] += (right - start)[:, None] * c
+            raised[:, a, 1 : q + 1] += sign * width[:, None] * c
+        bases = raised
+    return bases
+
+
+def _places(knots: Numbers, degree: int, sites: Numbers) -> tuple[NDArray[np.int64], Numbers]:
+    """Span of each site, and where in it."""
+    p = degree
+    inner = np.asarray(knots.real[p : knots.size - p], dtype=np.float64)
+    span = np.searchsorted(inner, np.asarray(sites.real, dtype=np.float64), side="right") - 1
+    span = np.clip(span, 0, inner.size - 2)
+    low, high = knots[p + span], knots[p + span + 1]
+    return span, np.asarray((sites - low) / (high - low))
+
+
+def _system(
+    bases: Numbers, span: NDArray[np.int64], place: Numbers, end_orders: tuple[int, ...]
+) -> Numbers:
+    """Conditions (3) at the sites and of the ends on the control points, one row each."""
+    pieces, functions, _ = bases.shape
+    matrix = np.zeros((span.size + 2 * len(end_orders), pieces + functions - 1), bases.dtype)
+    for w, (k, s) in enumerate(zip(span, place, strict=True)):
+        matrix[w, k : k + functions] = bases[k] @ s ** np.arange(functions)
+    for i, r in enumerate(end_orders):
+        row = span.size + 2 * i
+        # Scaled by the span's width to the order, which does not matter for a derivative of 0.
+        matrix[row, :functions] = bases[0, :, r]
+        falling = np.array([perm(m, r) for m in range(functions)])
+        matrix[row + 1, pieces - 1 :] = bases[-1] @ falling
+    return matrix
+
+
+@dataclass(frozen=True, eq=False)
+class Spline:
+    """Polynomial pieces of the joints that share one knot vector.
+
+    Attributes
+    ----------
+    knots : ndarray, shape (pieces + 1,)
+        Where the pieces meet, without repetition.
+    scaled, error : ndarray, shape (pieces, degree + 1, joints)
+        Ascending coefficients in the piece's own 0..1, and a bound on their error.
+    by_waypoint : ndarray, shape (pieces, degree + 1, way-points)
+        Their derivatives by the way-points.
+    control : ndarray, shape (control points, joints)
+    """
+
+    knots: Numbers
+    scaled: Numbers
+    error: Array
+    by_waypoint: Numbers
+    control: Numbers
+
+
+def _knot_vector(inner: Numbers, end: Numbers, degree: int) -> Numbers:
+    zero = np.zeros(degree + 1, dtype=inner.dtype)
+    return np.concatenate([zero, inner, np.repeat(end, degree + 1)])
+
+
+def interpolated(
+    curve: ClampedBSpline, sites: Numbers, inner: Numbers, waypoints: Numbers
+) -> Spline:
+    """Solve for the control points of the B-spline through the way-points at the sites.
+
+    In extended precision where the sites are: an approximate inverse B of the system A in float64
+    refines the solution, and (I − |BA − I|)⁻¹ |B| |residual| bounds its error, entry by entry.
+
+    Raises
+    ------
+    CurveError
+        If a site leaves the support of its basis function (Schoenberg and Whitney).
+    """
+    p = curve.degree
+    knots = _knot_vector(inner, sites[-1:], p)
+    bases = span_bases(knots, p)
+    span, place = _places(knots, p, sites)
+    matrix = _system(bases, span, place, curve.end_orders)
+    _schoenberg_whitney(curve, knots, sites)
+    right = np.zeros((matrix.shape[0], waypoints.shape[1]), dtype=matrix.dtype)
+    right[: sites.size] = waypoints
+    index = np.arange(bases.shape[0])[:, None] + np.arange(p + 1)
+
+    def powers(control: Numbers, of: Numbers) -> Numbers:
+        return np.asarray(np.einsum("pam,paj->pmj", of, control[index]))
+
+    if np.iscomplexobj(matrix):
+        inverse = np.linalg.inv(matrix)
+        return Spline(
+            knots[p : knots.size - p],
+            powers(inverse @ right, bases),
+            np.empty(0),
+            np.empty(0),
+            inverse @ right,
+        )
+    narrow = matrix.astype(np.float64)
+    try:
+        inverse = np.linalg.inv(narrow)
+    except np.linalg.LinAlgError:
+        raise _not_passing(curve, sites, 0) from None
+    control = inverse @ right.astype(np.float64)
+    for _ in range(2):
+        control = control + inverse @ (right - matrix @ control).astype(np.float64)
+    sizes = span_bases(knots, p, 1)
+    absolute = np.abs(_system(sizes, span, np.abs(place), curve.end_orders))
+    gap = float(np.diff(knots[p : knots.size - p]).min() / sites[-1])
+    # Knots carry a rounding of their own, which counts against the smallest gap between them.
+    rounding = float(np.finfo(matrix.dtype).eps) * (4 * p + 12 + matrix.shape[0]) * (1 + 2 / gap)
+    residual = np.abs(right - matrix @ control) + rounding * (
+        absolute @ np.abs(control) + np.abs(right)
+    )
+    first = np.abs(inverse) @ residual.astype(np.float64)
+    defect = np.abs(inverse @ narrow - np.eye(len(narrow)))
+    defect += _EPS * (len(narrow) + 2) * (np.abs(inverse) @ np.abs(narrow))
+    unsure = first
+    for _ in range(3):
+        unsure = first + 1.1 * (defect @ unsure)
+    if not (first + defect @ unsure <= unsure).all():
+        raise _not_passing(curve, sites, 0)
+    scaled = powers(control, bases)
+    error = powers(unsure.astype(matrix.dtype), sizes) + rounding * powers(np.abs(control), sizes)
+    rounded = np.asarray(scaled, dtype=np.float64)
+    return Spline(
+        np.asarray(knots[p : knots.size - p], dtype=np.float64),
+        rounded,
+        np.asarray(error, dtype=np.float64) + _EPS * np.abs(rounded),
+        np.asarray(powers(inverse[:, : sites.size].astype(matrix.dtype), bases), dtype=np.float64),
+        np.asarray(control, dtype=np.float64),
+    )
+
+
+def _schoenberg_whitney(curve: ClampedBSpline, knots: Numbers, sites: Numbers) -> None:
+    p, repeats = curve.degree, len(curve.end_orders)
+    u = np.asarray(knots.real, dtype=np.float64)
+    x = np.asarray(sites.real, dtype=np.float64)
+    x = np.concatenate([np.repeat(x[:1], repeats), x, np.repeat(x[-1:], repeats)])
+    inside = (u[: x.size] < x) & (x < u[p + 1 : p + 1 + x.size])
+    inside |= (x == x[0]) & (u[: x.size] == x[0]) | (x == x[-1]) & (u[p + 1 :] == x[-1])
+    if not inside.all():
+        raise _not_passing(curve, sites, int(np.argmin(inside)) - repeats)
+
+
+def _not_passing(curve: ClampedBSpline, sites: Numbers, waypoint: int) -> CurveError:
+    k = min(max(waypoint, 0), curve.segments - 1)
+    return CurveError(
+        f"durations: no {curve.name} passes the way-points at these times (way-point {waypoint} "
+        "lies outside the support of its basis function); bring the durations nearer to the "
+        "proportions of the knots",
+        k,
+        0.0,
+    )
+
+
+def _times(durations: Numbers) -> Numbers:
+    return np.concatenate([np.zeros(1, dtype=durations.dtype), np.cumsum(durations)])
+
+
+def _splines(curve: ClampedBSpline, waypoints: Numbers, durations: Numbers) -> list[Spline]:
+    """Splines of the joints in time: one for all, or one for each."""
+    times = _times(durations)
+    average = average_matrix(curve)
+    fractions = fractions_of(curve, waypoints.real)
+    if fractions is None:
+        return [interpolated(curve, times, average @ times, waypoints)]
+    rows = [average @ np.array(row) * times[-1] for row in fractions]
+    if len(rows) == 1:
+        return [interpolated(curve, times, rows[0], waypoints)]
+    return [
+        interpolated(curve, times, inner, waypoints[:, j : j + 1]) for j, inner in enumerate(rows)
+    ]
+
+
+def clamped_control_points(
+    curve: ClampedBSpline, waypoints: ArrayLike, durations: ArrayLike
+) -> tuple[Array, Array]:
+    """Control points of each joint, and the knots they belong to.
+
+    Parameters
+    ----------
+    curve : ClampedBSpline
+        With time "timed".
+    waypoints : array_like, shape (way-points, joints)
+        rad.
+    durations : array_like, shape (segments,)
+        s.
+
+    Returns
+    -------
+    control : ndarray, shape (control points, joints)
+        rad.
+    knots : ndarray, shape (control points + degree + 1, joints)
+        s.
+
+    Raises
+    ------
+    TrajgapError
+        If shapes disagree, a duration is not positive, or no such curve passes the way-points.
+    """
+    q = as_waypoints(curve, waypoints)
+    h = as_durations(durations, curve.segments)
+    splines = _splines(curve, q, h)
+    p = curve.degree
+    columns = [
+        np.concatenate([np.zeros(p), s.knots, np.full(p, s.knots[-1])])
+        for s in splines
+        for _ in range(s.scaled.shape[2])
+    ]
+    return np.concatenate([s.control for s in splines], axis=1), np.stack(columns, axis=1)
+
+
+def _cut(spline: Spline, breaks: Numbers) -> tuple[Numbers, Array, Numbers]:
+    """Coefficients, errors and derivatives by way-points on finer pieces."""
+    real = np.asarray(breaks.real, dtype=np.float64)
+    own = np.asarray(spline.knots.real, dtype=np.float64)
+    middle = 0.5 * (real[:-1] + real[1:])
+    parent = np.clip(np.searchsorted(own, middle, side="right") - 1, 0, own.size - 2)
+    width = spline.knots[parent + 1] - spline.knots[parent]
+    low = (breaks[:-1] - spline.knots[parent]) / width
+    high = (breaks[1:] - spline.knots[parent]) / width
+    size = spline.scaled.shape[1]
+    shift = np.zeros((middle.size, size, size), dtype=breaks.dtype)
+    for m in range(size):
+        for k in range(m, size):
+            shift[:, m, k] = comb(k, m) * low ** (k - m) * (high - low) ** m
+    moved = np.einsum("pmk,pkj->pmj", shift, spline.scaled[parent])
+    if np.iscomplexobj(moved):
+        return moved, np.empty(0), np.empty(0)
+    error = np.einsum("pmk,pkj->pmj", np.abs(shift), spline.error[parent])
+    error = error + 4 * size * _EPS * np.einsum(
+        "pmk,pkj->pmj", np.abs(shift), np.abs(spline.scaled[parent])
+    )
+    return moved, error, np.einsum("pmk,pkw->pmw", shift, spline.by_waypoint[parent])
+
+
+@dataclass(frozen=True, eq=False)
+class Pieces:
+    """All joints on common pieces.
+
+    ``breaks`` (pieces + 1,), ``scaled`` and ``error`` (pieces, 10, joints), ``by_waypoint``
+    (joints, pieces, 10, way-points).
+    """
+
+    breaks: Numbers
+    scaled: Numbers
+    error: Array
+    by_waypoint: Numbers
+
+
+def _union(breaks: list[Numbers]) -> Numbers:
+    together = np.concatenate(breaks)
+    together = together[np.argsort(together.real, kind="stable")]
+    keep = np.append(np.diff(together.real) > 0, True)
+    # Of equal breaks the last stays; a zero-length piece carries nothing.
+    return together[keep]
+
+
+def _joined(splines: list[Spline], joints: int, cuts: Numbers | None = None) -> Pieces:
+    """Common pieces of splines with different knots, also cut at ``cuts``."""
+    parts = [s.knots for s in splines] + ([] if cuts is None else [cuts])
+    if len(parts) == 1:
+        breaks, cut = parts[0], [(s.scaled, s.error, s.by_waypoint) for s in splines]
+    else:
+        breaks = _union(parts)
+        cut = [_cut(s, breaks) for s in splines]
+    pieces, size = breaks.size - 1, cut[0][0].shape[1]
+    scaled = np.zeros((pieces, kernel.MAX_COEFFICIENTS, joints), dtype=cut[0][0].dtype)
+    scaled[:, :size] = np.concatenate([c[0] for c in cut], axis=2)
+    if np.iscomplexobj(scaled):
+        return Pieces(breaks, scaled, np.empty(0), np.empty(0))
+    error = np.zeros(scaled.shape)
+    error[:, :size] = np.concatenate([c[1] for c in cut], axis=2)
+    waypoints = cut[0][2].shape[2]
+    by_waypoint = np.zeros((len(cut), pieces, kernel.MAX_COEFFICIENTS, waypoints))
+    by_waypoint[:, :, :size] = np.array([c[2] for c in cut])
+    by_waypoint = np.broadcast_to(by_waypoint, (joints, *by_waypoint.shape[1:]))
+    return Pieces(breaks, scaled, error, by_waypoint)
+
+
+def _pieces(curve: ClampedBSpline, waypoints: Array, durations: Numbers) -> Pieces:
+    return _joined(_splines(curve, waypoints, durations), waypoints.shape[1])
+
+
+@stretched.shape.register
+def _(curve: ClampedBSpline, waypoints: Array) -> Shape:
+    fractions = fractions_of(curve, waypoints)
+    assert fractions is not None
+    average, joints = average_matrix(curve), waypoints.shape[1]
+    wide = waypoints.astype(np.longdouble)
+    # Every segment has its own 0..1 on the axis of e, so that joints with other parameters meet.
+    axis = np.arange(curve.waypoints, dtype=np.longdouble)
+    splines, groups = [], len(fractions)
+    for g, row in enumerate(fractions):
+        sites = np.array(row, dtype=np.longdouble)
+        columns = slice(None) if groups == 1 else slice(g, g + 1)
+        spline = interpolated(curve, sites, average @ sites, wide[:, columns])
+        splines.append(_on_axis(spline, np.asarray(sites, dtype=np.float64)))
+    found = _joined(splines, joints, axis.astype(np.float64))
+    lengths = np.diff(found.breaks)
+    middle = 0.5 * (found.breaks[:-1] + found.breaks[1:])
+    return Shape(
+        segment=np.asarray(middle, dtype=np.int64),
+        share=np.asarray(lengths, dtype=np.float64),
+        degree=curve.degree,
+        scaled=np.asarray(found.scaled, dtype=np.float64),
+        error=found.error,
+        by_waypoint=np.asarray(found.by_waypoint, dtype=np.float64),
+    )
+
+
+def _on_axis(spline: Spline, sites: Array) -> Spline:
+    """The spline cut at its sites, its parameter replaced by the segment's number plus 0..1."""
+    breaks = _union([spline.knots, sites])
+    scaled, error, by_waypoint = _cut(spline, breaks)
+    mapped = np.interp(np.asarray(breaks, dtype=np.float64), sites, np.arange(sites.size))
+    return Spline(mapped, scaled, error, by_waypoint, spline.control)
+
+
+@kinds.fit.register
+def _(
+    curve: ClampedBSpline,
+    waypoints: ArrayLike,
+    durations: ArrayLike,
+    nodal: ArrayLike | None = None,
+) -> Trajectory:
+    q = as_waypoints(curve, waypoints)
+    return _enclosed(curve, q, as_durations(durations, curve.segments)).trajectory
+
+
+@kinds.enclosed.register
+def _enclosed(
+    curve: ClampedBSpline, waypoints: Array, durations: Array, nodal: Array | None = None
+) -> Enclosed:
+    if curve.time is Timing.STRETCHED:
+        return stretched.stretched_enclosed(curve, waypoints, durations)
+    wide = waypoints.astype(np.longdouble)
+    found = _joined(_splines(curve, wide, durations.astype(np.longdouble)), waypoints.shape[1])
+    lengths = np.diff(np.asarray(found.breaks, dtype=np.float64))
+    scaled = np.asarray(found.scaled, dtype=np.float64)
+    trajectory = trajectory_from_scaled(scaled, (curve.degree,) * lengths.size, lengths)
+    return Enclosed(trajectory, value_errors(trajectory, found.error))
+
+
+@kinds.motion_values.register
+def _(curve: ClampedBSpline, waypoints: Array, nodal: Array | None = None) -> Array:
+    if curve.time is Timing.STRETCHED:
+        return stretched.stretched_values(curve, waypoints)
+    return waypoints
+
+
+@lru_cache(maxsize=64)
+def _plan(curve: ClampedBSpline) -> tuple[Array, NDArray[np.int64]]:
+    return average_matrix(curve), np.array(curve.end_orders, dtype=np.int64)
+
+
+@kinds.batch_peaks.register
+def _(curve: ClampedBSpline, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
+    if curve.time is Timing.STRETCHED:
+        return stretched.stretched_peaks(curve, values, durations, wanted)
+    h = np.ascontiguousarray(durations, dtype=np.float64)
+    if h.ndim != 2 or h.shape[1] != curve.segments:
+        raise TrajgapError(
+            f"durations: a batch has shape (vectors, {curve.segments}), got {h.shape}"
+        )
+    average, orders = _plan(curve)
+    rows = fractions_of(curve, values)
+    fractions = np.empty((0, curve.waypoints)) if rows is None else np.array(rows)
+    peaks = np.empty((h.shape[0], values.shape[1], 3))
+    clamped_kernel.batch_peaks(
+        h, np.ascontiguousarray(values), average, fractions, curve.degree, orders, wanted, peaks
+    )
+    return peaks
+
+
+@kinds.value_gradients.register
+def _(
+    curve: ClampedBSpline,
+    waypoints: Array,
+    durations: Array,
+    points: list[Extremum],
+    nodal: Array | None = None,
+) -> PeakGradients:
+    """By complex steps in the durations; by the way-points with knots and parameters held."""
+    if curve.time is Timing.STRETCHED:
+        return stretched.stretched_gradients(curve, waypoints, durations, points)
+    found = _pieces(curve, waypoints, durations)
+    lengths = np.diff(found.breaks)
+    n = curve.segments
+    by_duration = np.empty((len(points), n))
+    by_waypoint = np.empty((len(points), curve.waypoints))
+    rows = [derivative_row(e.s, e.order) for e in points]
+    for k in range(n):
+        step = durations.astype(np.complex128)
+        step[k] += 1e-30j
+        moved = _pieces(curve, waypoints, step)
+        scaled, widths = moved.scaled.imag / 1e-30, np.diff(moved.breaks).imag / 1e-30
+        for i, (e, row) in enumerate(zip(points, rows, strict=True)):
+            change = row @ scaled[e.segment, :, e.joint] / lengths[e.segment] ** e.order
+            fade = e.order * e.value * widths[e.segment] / lengths[e.segment]
+            by_duration[i, k] = change - fade
+    for i, (e, row) in enumerate(zip(points, rows, strict=True)):
+        by_waypoint[i] = row @ found.by_waypoint[e.joint, e.segment] / lengths[e.segment] ** e.order
+    return PeakGradients(by_duration, by_waypoint, np.empty((len(points), 0)))
+
+
+@kinds.segment_of.register
+def _(curve: ClampedBSpline, durations: Array, point: Extremum) -> int:
+    inner = np.cumsum(durations)[:-1]
+    return int(np.searchsorted(inner, point.time, side="left"))
