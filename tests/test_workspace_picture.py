@@ -1,0 +1,68 @@
+"""The picture of a workspace: what it draws, what it says, the same bytes each time."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+from trajgap.compare.drawing import svg
+from trajgap.compare.workspace_picture import workspace_picture
+from trajgap.problem.errors import TrajgapError
+from trajgap.problem.robot_file import load_robot
+from trajgap.problem.workspace import sample_workspace
+
+CLOUD = sample_workspace(load_robot("puma560"), 500, 7)
+PATH = np.array([[0.1, 0.2, 0.9], [-0.3, 0.1, 0.7], [0.2, -0.4, 1.1]])
+
+
+def test_three_views_of_the_same_points():
+    figure = workspace_picture(CLOUD, waypoints=PATH, labels=["A", "B", "C"])
+    assert len(figure.axes) == 3
+    for axes, (across, up) in zip(figure.axes, [(0, 1), (0, 2), (1, 2)], strict=True):
+        np.testing.assert_allclose(
+            axes.collections[0].get_offsets(), CLOUD.points[:, [across, up]], rtol=1e-12
+        )
+        box = axes.patches[0]
+        np.testing.assert_allclose(box.get_xy(), CLOUD.lower[[across, up]])
+        size = (CLOUD.upper - CLOUD.lower)[[across, up]]
+        np.testing.assert_allclose([box.get_width(), box.get_height()], size)
+        np.testing.assert_array_equal(axes.lines[1].get_xydata(), PATH[:, [across, up]])
+        assert [text.get_text() for text in axes.texts] == ["A", "B", "C"]
+    assert figure.axes[0].get_xlabel() == "x (m)"
+    assert "500 positions, seed 7" in figure.description
+    assert "3 way-points" in figure.description
+    assert figure.title == "Workspace of PUMA 560"
+
+
+def test_numbers_are_of_all_samples_though_fewer_are_drawn(monkeypatch):
+    from trajgap.compare import workspace_picture as module
+
+    monkeypatch.setattr(module, "_LARGEST_CLOUD", 50)
+    figure = workspace_picture(CLOUD, title="cloud")
+    assert len(figure.axes[0].collections[0].get_offsets()) == 50
+    assert "500 positions" in figure.description
+    assert "way-points" not in figure.description
+    assert figure.title == "cloud"
+
+
+def test_same_bytes_each_time():
+    one, two = (svg(workspace_picture(CLOUD, waypoints=PATH)) for _ in range(2))
+    assert one == two
+    assert "<title" in one
+    assert len(one) < 400_000
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"waypoints": [[1, 2]]}, "waypoints: shape (1, 2), or not finite; give (way-points, 3)"),
+        ({"waypoints": [[1, 2, np.nan]]}, "waypoints: shape (1, 3), or not finite; give"),
+        ({"waypoints": [["a", 1, 2]]}, "waypoints: not numbers; give positions, m"),
+        ({"waypoints": PATH, "labels": ["A"]}, "labels: 1 for 3 way-points; give one each"),
+        ({"labels": ["A"]}, "labels: 1 for 0 way-points; give one each"),
+    ],
+)
+def test_faults(options, message):
+    with pytest.raises(TrajgapError, match=re.escape(message)):
+        workspace_picture(CLOUD, **options)
