@@ -20,7 +20,8 @@ POSE = (*POSITION, "rx", "ry", "rz")
 
 TOLERANCE = 1e-9
 """Largest residual that counts as reached, m and rad."""
-_DAMPING = (1e-10, 1e-3, 1e12)
+_DAMPING = (1e-14, 1e-3, 1e12)
+"""Least, first and largest damping, in units of the normal matrix's largest entry."""
 _FASTER, _SLOWER = 0.1, 6.0
 _ROTATION_TOLERANCE = 1e-6
 
@@ -268,7 +269,9 @@ def _descend(
         held = ((q[at] <= chain.lower) & (pull < 0)) | ((q[at] >= chain.upper) & (pull > 0))
         slopes, pull = np.where(held[:, None], 0.0, slopes), np.where(held, 0.0, pull)
         normal = np.swapaxes(slopes, 1, 2) @ slopes
-        normal += damping[at][:, None, None] * np.eye(chain.joints)
+        largest = np.einsum("sjj->sj", normal).max(axis=1)
+        scale = np.where(largest > 0, largest, 1.0)
+        normal += (damping[at] * scale)[:, None, None] * np.eye(chain.joints)
         step = np.linalg.solve(normal, pull[..., None])[..., 0] * size
         trial = np.clip(q[at] + step, chain.lower, chain.upper)
         trial_poses = link_frames(chain, trial)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import re
 
 import numpy as np
@@ -93,8 +94,7 @@ def test_radial_compares_distances_from_the_base_alone():
 
 
 def test_many_free_joints_end_with_a_valid_bound(monkeypatch):
-    from trajgap.problem import proximity as module
-
+    module = importlib.import_module("trajgap.problem.proximity")
     monkeypatch.setattr(module, "_MOST_BOXES", 2000)
     chain = load_robot("puma560")
     found = proximity(chain, [2.5, 0, 0], np.full(6, NAN))
