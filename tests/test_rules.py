@@ -106,7 +106,7 @@ def test_digits_that_stand_in_an_unrelated_column_are_mentioned_and_decide_nothi
     assert found.printed == "-1.0392, -0.5196"
     assert not found.decides
     assert not of(
-        digits(changed(IRB, ('values = ["-1.0392", "0", "0"]', 'values = ["-1.0391", "0", "0"]'))),
+        digits(changed(IRB, ('values = ["-1.0392", 0, 0]', 'values = ["-1.0391", 0, 0]'))),
         "TG106",
     )
 
