@@ -10,6 +10,7 @@ from pathlib import Path
 from ..problem import Case, load_case, published_ids
 from .finding import ClaimVerdict, Finding, Judgement, Scope, Severity, judge
 from .rules.continuous import continuous
+from .rules.control_vertices import control_vertices
 from .rules.count import count
 from .rules.digits import digits
 from .rules.kinematics import kinematics
@@ -20,7 +21,18 @@ from .rules.text import text
 from .study import SEEDS, Study
 from .waterfall import Waterfall, waterfalls
 
-_GROUPS = (digits, count, continuous, scaling, optimum, replay, text, kinematics)
+_GROUPS = (
+    digits,
+    count,
+    continuous,
+    control_vertices,
+    scaling,
+    optimum,
+    replay,
+    text,
+    kinematics,
+)
+_WITHOUT_WAYPOINTS = (digits, text)
 _ORDER = {Severity.ERROR: 0, Severity.WARNING: 1, Severity.INFO: 2}
 
 
@@ -116,11 +128,13 @@ def audit(
 
 def audit_case(study: Study) -> CaseAudit:
     """Run every rule on one case."""
-    found = [finding for group in _GROUPS for finding in group(study)]
+    groups = _GROUPS if study.posed else _WITHOUT_WAYPOINTS
+    found = [finding for group in groups for finding in group(study)]
     scoped = _with_scopes(found, study)
     ordered = sorted(scoped, key=lambda f: (_ORDER[f.severity], f.rule))
     judgements = tuple(judge(claim.id, ordered, study.readings) for claim in study.case.claims)
-    return CaseAudit(study.case, study, tuple(ordered), judgements, waterfalls(study))
+    steps = waterfalls(study) if study.posed else ()
+    return CaseAudit(study.case, study, tuple(ordered), judgements, steps)
 
 
 def _with_scopes(findings: list[Finding], study: Study) -> list[Finding]:

@@ -136,6 +136,8 @@ RULES = (
     Rule("TG202", "Position, velocity and acceleration are continuous"),
     Rule("TG203", "Printed peaks are those of the printed durations"),
     Rule("TG204", "The limits are used up by the printed durations"),
+    Rule("TG205", "Printed control vertices follow from the printed way-points"),
+    Rule("TG206", "Acceleration jumps where it is said to"),
     Rule("TG301", "Totals of one path under two velocity limits obey the scaling law"),
     Rule("TG302", "A printed total beside the optimum of its own formulation"),
     Rule("TG303", "A printed total beside the optimum with shared durations"),

@@ -75,6 +75,11 @@ class Study:
         return cast(T, self._kept[key])
 
     @property
+    def posed(self) -> bool:
+        """Whether way-points are printed, so that there are problems to solve."""
+        return self.case.posed
+
+    @property
     def readings(self) -> tuple[str, ...]:
         """Reading ids, in order."""
         return tuple(dict.fromkeys(rid for _, rid in self.pairs))

@@ -4,6 +4,7 @@ from .case import Case, DurationBox
 from .check import Check, Evaluation, Jump, Peak, Verdict, check, evaluate
 from .clamped import ClampedBSpline, Knots, Parameters
 from .clamped_fit import clamped_control_points
+from .clamped_readings import ClampedReading, Count, clamped_readings
 from .curve import Curve, PeakGradients, fit
 from .errors import CaseError, CurveError, TrajgapError
 from .gradient import peak_gradients
@@ -49,8 +50,10 @@ __all__ = [
     "Chain",
     "Check",
     "ClampedBSpline",
+    "ClampedReading",
     "ClockedTrajectory",
     "Convention",
+    "Count",
     "Coupling",
     "Curve",
     "CurveError",
@@ -79,6 +82,7 @@ __all__ = [
     "case_schema",
     "check",
     "clamped_control_points",
+    "clamped_readings",
     "closed_form",
     "control_vertices",
     "cubic_spline",

@@ -133,6 +133,11 @@ class Case:
         """The reading marked as default, else the first."""
         return next((r for r in self.readings if r.default), self.readings[0])
 
+    @property
+    def posed(self) -> bool:
+        """Whether every problem has way-points under every reading, so that it can be solved."""
+        return all(self.posing(*pair).posed for pair in self.selections())
+
     @cached_property
     def dh(self) -> DhTable | None:
         """The robot's Denavit-Hartenberg table: printed in the paper, or the shipped model's.
@@ -254,7 +259,8 @@ class Case:
         Raises
         ------
         CaseError
-            If an id or the coupling is unknown, or the numbers don't fit together.
+            If an id or the coupling is unknown, the numbers don't fit together, or the paper
+            prints no way-points.
         """
         posing = self.posing(problem_id, reading_id)
         problem = posing.problem()

@@ -6,7 +6,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Discriminator, Field, StrictInt, model_validator
 
-from .fields import Id, Length, Number, Strict, Text, fault
+from .fields import Id, Length, Number, Rows, Strict, Text, fault
 from .problem import Coupling
 
 
@@ -117,12 +117,23 @@ class ConditionsClaim(Claim):
     """Number of conditions, where it is printed."""
 
 
+class ControlVerticesClaim(Claim):
+    """Control vertices of the uniform cubic B-spline through the way-points.
+
+    In the unit of the way-points, in the same order of joints.
+    """
+
+    quantity: Literal["control_vertices"]
+    joint_rows: Rows
+    """One row per joint: two more numbers than way-points."""
+
+
 class StatementClaim(Claim):
     """A claim in words."""
 
     quantity: Literal["statement"]
-    checks: Literal["within_limits", "continuous", "optimal", "none"]
-    """How it can be checked on the claims named in ``of``."""
+    checks: Literal["within_limits", "continuous", "jumps", "optimal", "none"]
+    """How it can be checked on the claims named in ``of``; "jumps" says that acceleration does."""
     of: tuple[Id, ...] = ()
     """The claims whose durations it speaks about."""
     not_checkable: str | None = None
@@ -147,6 +158,7 @@ AnyClaim = Annotated[
     | PeakClaim
     | ConvergenceClaim
     | ConditionsClaim
+    | ControlVerticesClaim
     | StatementClaim,
     Discriminator("quantity"),
 ]
@@ -160,6 +172,7 @@ QUANTITY_KINDS = (
     "peak",
     "convergence",
     "conditions",
+    "control_vertices",
     "statement",
 )
 """The values of ``quantity``."""

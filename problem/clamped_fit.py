@@ -130,6 +130,7 @@ def interpolated(
     def powers(control: Numbers, of: Numbers) -> Numbers:
         return np.asarray(np.einsum("pam,paj->pmj", of, control[index]))
 
+    inverse: Numbers
     if np.iscomplexobj(matrix):
         inverse = np.linalg.inv(matrix)
         return Spline(
@@ -144,7 +145,7 @@ def interpolated(
         inverse = np.linalg.inv(narrow)
     except np.linalg.LinAlgError:
         raise _not_passing(curve, sites, 0) from None
-    control = inverse @ right.astype(np.float64)
+    control: Numbers = inverse @ right.astype(np.float64)
     for _ in range(2):
         control = control + inverse @ (right - matrix @ control).astype(np.float64)
     sizes = span_bases(knots, p, 1)
@@ -297,7 +298,7 @@ def _union(breaks: list[Numbers]) -> Numbers:
     together = together[np.argsort(together.real, kind="stable")]
     keep = np.append(np.diff(together.real) > 0, True)
     # Of equal breaks the last stays; a zero-length piece carries nothing.
-    return together[keep]
+    return np.asarray(together[keep])
 
 
 def _joined(splines: list[Spline], joints: int, cuts: Numbers | None = None) -> Pieces:

@@ -1,4 +1,4 @@
-"""How a case file declares its interpolant, and the `Interpolant` that it means."""
+"""How a case file declares its interpolant, and the curve that it means."""
 
 from __future__ import annotations
 
@@ -7,16 +7,19 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, StrictInt, model_validator
 
+from .clamped import ClampedBSpline, Knots, Parameters
+from .curve import Curve
 from .fields import Number, Strict, fault
 from .interpolant import (
-    Interpolant,
     cubic_spline,
     cubic_spline_virtual,
+    jtraj,
     piecewise,
     quintic_spline,
     rest_to_rest,
     three_five_three,
 )
+from .uniform import Timing, uniform_cubic_b_spline
 
 Family = Literal[
     "3-5-3",
@@ -25,6 +28,9 @@ Family = Literal[
     "quintic-spline",
     "cubic-spline-virtual",
     "rest-to-rest",
+    "jtraj",
+    "uniform-cubic-b-spline",
+    "clamped-b-spline",
 ]
 
 _FAMILY_KEYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
@@ -34,6 +40,9 @@ _FAMILY_KEYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "quintic-spline": ((), ()),
     "cubic-spline-virtual": ((), ()),
     "rest-to-rest": (("degree",), ()),
+    "jtraj": ((), ()),
+    "uniform-cubic-b-spline": (("time",), ()),
+    "clamped-b-spline": (("degree", "knots", "parameters"), ("time", "end_orders")),
 }
 
 
@@ -47,11 +56,17 @@ class InterpolantBlock(Strict):
     continuity: Annotated[StrictInt, Field(ge=0, le=8)] | None = None
     """Polynomials: highest continuous derivative at the via-points; 2 if absent."""
     end_orders: tuple[Annotated[StrictInt, Field(ge=1, le=8)], ...] | None = None
-    """Orders of the derivatives prescribed at both ends; [1, 2] if absent (splines: [1])."""
+    """Orders of the derivatives prescribed at both ends; [1, 2] if absent (cubic-spline: [1])."""
     end_derivatives: tuple[Number, ...] | None = None
     """Their values, in the units of the file; all 0 if absent."""
-    degree: Literal[3, 5, 7, 9] | None = None
-    """Rest-to-rest: degree of every segment."""
+    degree: StrictInt | None = None
+    """Rest-to-rest: degree of every segment, 3, 5, 7 or 9. Clamped B-spline: 3 to 7."""
+    knots: Literal["waypoints", "averaged", "averaged-continued"] | None = None
+    """Clamped B-spline: where the inner knots lie."""
+    parameters: Literal["times", "chord", "joint-chord"] | None = None
+    """Clamped B-spline: what the knots are placed by."""
+    time: Literal["stretched", "timed"] | None = None
+    """B-splines: whether each segment is stretched in time by itself, or time is smooth."""
     free: Annotated[StrictInt, Field(ge=0)] = 0
     """Coefficients per joint that the conditions leave free."""
 
@@ -63,6 +78,14 @@ class InterpolantBlock(Strict):
                 raise fault(f".{key}", f"is missing; family {self.family!r} needs it")
         for key in self.model_fields_set - {"family", "where", *needed, *allowed}:
             raise fault(f".{key}", f"does not go with family {self.family!r}; leave it out")
+        if self.degree is not None:
+            allowed_degrees = (3, 5, 7, 9) if self.family == "rest-to-rest" else range(3, 8)
+            if self.degree not in allowed_degrees:
+                words = ", ".join(map(str, allowed_degrees[:-1]))
+                raise fault(
+                    ".degree",
+                    f"{self.degree} is not allowed; use {words} or {allowed_degrees[-1]}",
+                )
         if self.end_orders is not None and len(set(self.end_orders)) != len(self.end_orders):
             raise fault(".end_orders", "names an order twice; leave one out")
         if self.end_derivatives is not None:
@@ -90,10 +113,8 @@ class InterpolantBlock(Strict):
 
 
 @lru_cache(maxsize=128)
-def declare(
-    block: InterpolantBlock, count: int, ends: tuple[tuple[int, float], ...]
-) -> Interpolant:
-    """Interpolant that a block means for a number of way-points.
+def declare(block: InterpolantBlock, count: int, ends: tuple[tuple[int, float], ...]) -> Curve:
+    """Curve that a block means for a number of way-points.
 
     Parameters
     ----------
@@ -105,12 +126,12 @@ def declare(
 
     Returns
     -------
-    Interpolant
+    Curve
 
     Raises
     ------
     TrajgapError
-        If the declaration is over-determined or contradicts itself.
+        If the declaration is over- or under-determined or contradicts itself.
     """
     match block.family:
         case "3-5-3":
@@ -126,3 +147,16 @@ def declare(
             return cubic_spline_virtual(count)
         case "rest-to-rest":
             return rest_to_rest(count - 1, block.degree or 0)
+        case "jtraj":
+            return jtraj(count - 1)
+        case "uniform-cubic-b-spline":
+            return uniform_cubic_b_spline(count, block.time or "")
+        case "clamped-b-spline":
+            return ClampedBSpline(
+                count,
+                block.degree or 0,
+                Knots(block.knots or ""),
+                Parameters(block.parameters or ""),
+                Timing(block.time or "timed"),
+                block.orders,
+            )

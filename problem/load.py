@@ -111,6 +111,10 @@ def check_case(raw: dict[str, Any], file: str) -> Case:
     case = Case(document, file)
     check_kinematics(document, file, case.chain())
     for problem_id, reading_id in case.selections():
-        case.problem(problem_id, reading_id)
+        posing = case.posing(problem_id, reading_id)
+        if posing.posed:
+            posing.problem()
+        else:
+            posing.data()
     check_claims(document, file, lambda claim: case.posing(claim.problem))
     return case

@@ -9,6 +9,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from .curve import Curve
 from .declaration import InterpolantBlock, declare
 from .errors import CaseError, TrajgapError
 from .fields import Strict
@@ -76,6 +77,12 @@ class Posing:
     def points(self) -> list[list[Measured]]:
         """Way-points in radians, one row per way-point, one entry per joint that takes part."""
         rows = self.waypoints.points
+        if not rows:
+            raise self.fail(
+                "waypoints",
+                f"are not printed ({self.waypoints.not_printed}); add them as joint_rows or "
+                "waypoint_rows",
+            )
         if len(rows[0]) != len(self.labels):
             field = "joint_rows" if self.waypoints.joint_rows is not None else "waypoint_rows"
             raise self.fail(
@@ -85,7 +92,12 @@ class Posing:
             )
         return [[self.si(row[j], "position") for j in self.joints] for row in rows]
 
-    def interpolant(self) -> Interpolant:
+    @property
+    def posed(self) -> bool:
+        """Whether the way-points are printed, so that there is a problem to solve."""
+        return bool(self.waypoints.points)
+
+    def interpolant(self) -> Curve:
         """Declare the curve for the number of way-points.
 
         Raises
@@ -93,7 +105,7 @@ class Posing:
         CaseError
             If the conditions don't determine the curve, or it needs another number of way-points.
         """
-        block, count = self.declaration, len(self.waypoints.points)
+        block, count = self.declaration, self.waypoints.number
         ends = tuple((order, self._end_value(order)) for order in block.orders)
         try:
             interpolant = declare(block, count, ends)
@@ -106,7 +118,7 @@ class Posing:
                 f"{len(interpolant.waypoint_breaks)} way-points, but {count} are given; "
                 "change the family, the degrees or the way-points",
             )
-        if interpolant.free != block.free:
+        if isinstance(interpolant, Interpolant) and interpolant.free != block.free:
             raise self.fail(
                 "interpolant",
                 f"under-determined, {interpolant.conditions} conditions on "
@@ -125,6 +137,30 @@ class Posing:
 
     def problem(self) -> Problem:
         """Problem in radians and seconds.
+
+        Raises
+        ------
+        CaseError
+            If the numbers don't fit together, or the way-points are not printed.
+        """
+        interpolant, limits, lower, upper = self.data()
+        points = np.array([[angle.value for angle in row] for row in self.points()])
+        try:
+            return Problem(
+                waypoints=points,
+                limits=limits,
+                interpolant=interpolant,
+                duration_lower=lower,
+                duration_upper=upper,
+                coupling=self.coupling,
+                joints=tuple(self.labels[j] for j in self.joints),
+                name=self.name,
+            )
+        except TrajgapError as error:
+            raise self.fail("", str(error)) from None
+
+    def data(self) -> tuple[Curve, Limits, NDArray[np.float64], NDArray[np.float64]]:
+        """All but the way-points: curve, limits, and bounds on the durations, rad and s.
 
         Raises
         ------
@@ -156,20 +192,7 @@ class Posing:
             position_lower=position_lower,
             position_upper=position_upper,
         )
-        points = np.array([[angle.value for angle in row] for row in self.points()])
-        try:
-            return Problem(
-                waypoints=points,
-                limits=limits,
-                interpolant=interpolant,
-                duration_lower=lower,
-                duration_upper=upper,
-                coupling=self.coupling,
-                joints=tuple(self.labels[j] for j in self.joints),
-                name=self.name,
-            )
-        except TrajgapError as error:
-            raise self.fail("", str(error)) from None
+        return interpolant, limits, lower, upper
 
     def _limit(self, name: str, quantity: Quantity, default: float = np.inf) -> NDArray[np.float64]:
         every = self._each("limits", name, quantity, len(self.labels), "joint", default)
@@ -219,7 +242,8 @@ def pose(document: CaseFile, file: str, problem: ProblemBlock, reading: Reading)
     coupling, chosen = document.coupling, None
     for layer in layers:
         waypoints = layer.waypoints or waypoints
-        interpolant = layer.interpolant or interpolant
+        if not isinstance(layer, Reading) or problem.id in (layer.interpolant_of or (problem.id,)):
+            interpolant = layer.interpolant or interpolant
         coupling = layer.coupling or coupling
         chosen = layer.joints or chosen
     if waypoints is None:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable
 from .claim import (
     AnyClaim,
     Claim,
+    ControlVerticesClaim,
     DurationsClaim,
     ImprovementClaim,
     MaximumClaim,
@@ -32,7 +33,7 @@ _LISTS = (
     "not_checkable",
 )
 _BLOCKS = ("units", "waypoints", "limits", "interpolant", "durations", "coupling", "robot")
-_TIMED = (DurationsClaim, MaximumClaim, TotalTimeClaim, PeakClaim)
+_POSED = (DurationsClaim, MaximumClaim, TotalTimeClaim, PeakClaim, ControlVerticesClaim)
 
 
 def check_references(document: CaseFile, file: str) -> None:
@@ -63,6 +64,9 @@ def check_references(document: CaseFile, file: str) -> None:
                 f"{nearest(name, ids[kind])}"
             )  # fmt: skip
 
+    for index, reading in enumerate(document.readings):
+        for position, problem_id in enumerate(reading.interpolant_of):
+            known("problems", f"readings[{index}].interpolant_of[{position}]", problem_id)
     for index, table in enumerate(document.tables):
         known("algorithms", f"tables[{index}].algorithm", table.algorithm)
     for index, claim in enumerate(document.claims):
@@ -81,7 +85,7 @@ def check_references(document: CaseFile, file: str) -> None:
             )
         for field, name in _claim_references(claim):
             known("claims", f"{at}.{field}", name)
-        if claim.problem is None and len(document.problems) > 1 and isinstance(claim, _TIMED):
+        if claim.problem is None and len(document.problems) > 1 and isinstance(claim, _POSED):
             raise CaseError(
                 file,
                 f"{at}.problem",
@@ -175,6 +179,22 @@ def check_claims(document: CaseFile, file: str, posing_of: Callable[[AnyClaim], 
                 posing.si(duration, "time")
         if isinstance(claim, PeakClaim):
             posing.si(claim.value, claim.derivative)
+        if isinstance(claim, ControlVerticesClaim):
+            _check_vertices(claim, posing, f"claims[{index}].joint_rows")
+
+
+def _check_vertices(claim: ControlVerticesClaim, posing: Posing, field: str) -> None:
+    joints, count = len(posing.labels), posing.waypoints.number
+    if len(claim.joint_rows) != joints:
+        raise posing.fail(
+            field, f"gives {len(claim.joint_rows)} joints, but robot.joints lists {joints}"
+        )
+    for position, row in enumerate(claim.joint_rows):
+        if len(row) != count + 2:
+            raise posing.fail(
+                f"{field}[{position}]",
+                f"{len(row)} control vertices for {count} way-points; give {count + 2}",
+            )
 
 
 def check_kinematics(document: CaseFile, file: str, chain: Chain | None) -> None:
@@ -218,12 +238,11 @@ def check_kinematics(document: CaseFile, file: str, chain: Chain | None) -> None
                 f"joint {column.joint!r} is unknown; the robot has {', '.join(labels)}",
             )
         printed.append(column.joint)
-        if waypoints is not None and len(column.values) != len(waypoints.points):
+        if waypoints is not None and len(column.values) != waypoints.number:
             raise CaseError(
                 file,
                 f"{field}.values",
-                f"{len(column.values)} values for {len(waypoints.points)} way-points; "
-                "give one each",
+                f"{len(column.values)} values for {waypoints.number} way-points; give one each",
             )
     named = [entry.waypoint for entry in document.cartesian]
     for index, name in enumerate(named):
@@ -238,10 +257,10 @@ def check_kinematics(document: CaseFile, file: str, chain: Chain | None) -> None
                 f"cartesian[{index}].waypoint",
                 f"{name!r} is no label of a way-point; {nearest(name, known)}",
             )
-    if named and None in named and waypoints is not None and len(named) != len(waypoints.points):
+    if named and None in named and waypoints is not None and len(named) != waypoints.number:
         raise CaseError(
             file,
             "cartesian",
-            f"{len(named)} positions for {len(waypoints.points)} way-points; "
+            f"{len(named)} positions for {waypoints.number} way-points; "
             "give one each, or name the way-point of each",
         )

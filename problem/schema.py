@@ -95,9 +95,16 @@ class Waypoints(Strict):
     """One row per joint, one number per way-point."""
     waypoint_rows: Rows | None = None
     """One row per way-point, one number per joint."""
+    not_printed: Text | None = None
+    """Why there are no rows, where the paper prints none; with `count`."""
+    count: Annotated[StrictInt, Field(ge=2)] | None = None
+    """How many way-points there are, where none is printed."""
 
     @model_validator(mode="after")
     def _rectangular(self) -> Self:
+        if self.not_printed is not None or self.count is not None:
+            self._check_absent()
+            return self
         if (self.joint_rows is None) == (self.waypoint_rows is None):
             raise fault("", "needs joint_rows or waypoint_rows, and not both; give one of them")
         name = "joint_rows" if self.joint_rows is not None else "waypoint_rows"
@@ -113,15 +120,32 @@ class Waypoints(Strict):
         count = len(self.points)
         if count < 2:
             raise fault(f".{name}", "holds one way-point only; give at least two")
-        if self.labels and len(self.labels) != count:
-            raise fault(
-                ".labels", f"{len(self.labels)} labels for {count} way-points; give one each"
-            )
+        self._check_labels()
         return self
+
+    def _check_absent(self) -> None:
+        if self.joint_rows is not None or self.waypoint_rows is not None:
+            name = "count" if self.not_printed is None else "not_printed"
+            raise fault(f".{name}", "goes without rows only; leave it out, or the rows")
+        for name in ("not_printed", "count"):
+            if getattr(self, name) is None:
+                raise fault(f".{name}", "is missing; way-points without rows need both")
+        self._check_labels()
+
+    def _check_labels(self) -> None:
+        if self.labels and len(self.labels) != self.number:
+            raise fault(
+                ".labels", f"{len(self.labels)} labels for {self.number} way-points; give one each"
+            )
+
+    @property
+    def number(self) -> int:
+        """How many way-points there are, printed or not."""
+        return len(self.points) or self.count or 0
 
     @property
     def points(self) -> tuple[tuple[Printed, ...], ...]:
-        """One row per way-point, one number per joint."""
+        """One row per way-point, one number per joint; empty where none is printed."""
         if self.waypoint_rows is not None:
             return self.waypoint_rows
         return tuple(zip(*(self.joint_rows or ()), strict=True))
@@ -181,6 +205,14 @@ class Reading(Override):
     id: Id
     why: Text
     default: StrictBool = False
+    interpolant_of: tuple[Id, ...] = ()
+    """Problems whose interpolant it changes; every problem if empty."""
+
+    @model_validator(mode="after")
+    def _changes_one(self) -> Self:
+        if self.interpolant_of and self.interpolant is None:
+            raise fault(".interpolant_of", "goes with an interpolant; add it, or leave this out")
+        return self
 
 
 def _setting(raw: object) -> object:

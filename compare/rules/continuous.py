@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ...nlp import Evidence
-from ...problem import QUANTITIES, Extremum, extrema, fit, peak_gradients
+from ...problem import QUANTITIES, Extremum, Verdict, extrema, fit, peak_gradients
 from ...problem.claim import AnyClaim, DurationsClaim, MaximumClaim, PeakClaim, StatementClaim
 from ..finding import Basis, ClaimVerdict, Finding, Scope, Severity
 from ..rounding import Rounding
@@ -27,11 +27,14 @@ def continuous(study: Study) -> Iterator[Finding]:
     for claim in study.case.claims:
         if isinstance(claim, DurationsClaim | MaximumClaim):
             yield from _limits(study, claim)
+            yield from _jumps(study, claim)
             yield from _used_up(study, claim)
         elif isinstance(claim, StatementClaim) and claim.checks == "within_limits":
             yield from _limits_statement(study, claim)
         elif isinstance(claim, StatementClaim) and claim.checks == "continuous":
             yield from _continuity(study, claim)
+        elif isinstance(claim, StatementClaim) and claim.checks == "jumps":
+            yield from _said_to_jump(study, claim)
         elif isinstance(claim, PeakClaim):
             yield from _peak(study, claim)
 
@@ -45,6 +48,8 @@ def _ratio(study: Study, claim: AnyClaim, pid: str, rid: str) -> str:
     worst = study.claim_check(claim, pid, rid).worst
     if worst is None:
         return "nothing is limited"
+    if worst.quantity == "curve":
+        return "the printed durations define no curve"
     where = f"joint {worst.joint} " if worst.joint is not None else f"segment {worst.segment + 1} "
     unit = "s" if worst.quantity == "duration" else _UNITS[worst.quantity]
     return f"{where}{worst.quantity} {abs(worst.value):.6g} against {worst.limit:.6g} {unit}"
@@ -62,6 +67,13 @@ def _judged(
         Rounding.BREAKS: "Every input that prints alike breaks a limit",
         Rounding.UNDECIDED: "The printed digits do not decide whether the limits are kept",
     }[rounding.verdict]
+    found = study.claim_check(claim, pid, rid)
+    if found.verdict is Verdict.DISCONTINUOUS and rounding.verdict is Rounding.UNDECIDED:
+        jumps = sum(jump.order == 1 for jump in found.jumps)
+        explained = (
+            "discontinuous: the printed point keeps every limit inside the segments, and the "
+            f"velocity jumps {jumps} times between them, which no finite acceleration does"
+        )
     message = f"{explained} ({rounding.verdict}); largest at the printed point: {at_print}."
     bound = rounding.lower_bound_of_worst
     if rounding.verdict is Rounding.BREAKS and bound is not None:
@@ -89,6 +101,36 @@ def _limits(study: Study, claim: AnyClaim) -> Iterator[Finding]:
         )
 
 
+def _jumps(study: Study, claim: AnyClaim) -> Iterator[Finding]:
+    """Name a motion that jumps under a reading; no word of the paper is judged by that."""
+    for pid, rid in study.claim_pairs(claim):
+        found = study.claim_check(claim, pid, rid).jumps
+        velocity = [jump for jump in found if jump.order == 1]
+        if not velocity:
+            continue
+        top = max(velocity, key=lambda jump: abs(jump.size))
+        yield Finding(
+            rule="TG202",
+            severity=Severity.INFO,
+            verdict=ClaimVerdict.NOT_CHECKABLE,
+            scope=Scope.SOME,
+            evidence=Evidence.NONE,
+            basis=Basis.CHECK,
+            claim=claim.id,
+            problem=pid,
+            reading=rid,
+            printed=f"{_durations_text(claim)} s",
+            computed=f"{len(velocity)} jumps of velocity, up to {abs(top.size):.6g} rad/s",
+            gap=None,
+            message=(
+                f"discontinuous under this reading: the velocity jumps {len(velocity)} times at "
+                f"the via-points, most in joint {top.joint} at t = {top.time:.6g} s by "
+                f"{top.size:.6g} rad/s. Limits are judged apart from jumps."
+            ),
+            decides=False,
+        )
+
+
 def _limits_statement(study: Study, claim: StatementClaim) -> Iterator[Finding]:
     about = [study.case.claim(i) for i in claim.of]
     for rid in study.readings:
@@ -113,8 +155,14 @@ def _limits_statement(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             )
         else:
             verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
-            open_ = [c.id for c, _, (v, _, _) in judged if v is ClaimVerdict.NOT_CHECKABLE]
-            message = f"The printed digits do not decide {', '.join(open_)}."
+            open_ = [(c, p, m) for c, p, (v, _, m) in judged if v is ClaimVerdict.NOT_CHECKABLE]
+            message = f"The printed digits do not decide {', '.join(c.id for c, _, _ in open_)}."
+            jumping = [
+                f"{c.id} ({pid}): {m}"
+                for c, pid, m in open_
+                if study.claim_check(c, pid, rid).verdict is Verdict.DISCONTINUOUS
+            ]
+            message = " ".join(jumping) or message
         yield Finding(
             rule="TG201",
             severity=severity,
@@ -159,6 +207,49 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
         yield Finding(
             rule="TG202",
             severity=severity,
+            verdict=verdict,
+            scope=Scope.SOME,
+            evidence=Evidence.NONE,
+            basis=Basis.CHECK,
+            claim=claim.id,
+            problem=None,
+            reading=rid,
+            printed=None,
+            computed=None,
+            gap=None,
+            message=message,
+        )
+
+
+def _said_to_jump(study: Study, claim: StatementClaim) -> Iterator[Finding]:
+    """A reading under which acceleration does not jump speaks against itself, not the paper."""
+    for rid in study.readings:
+        jumps, judged = [], 0
+        for other in (study.case.claim(i) for i in claim.of):
+            for pid, reading in study.claim_pairs(other):
+                if reading == rid:
+                    judged += 1
+                    found = study.claim_check(other, pid, rid).jumps
+                    jumps += [j for j in found if j.order == 2 and claim.joint in (None, j.joint)]
+        if not judged:
+            continue
+        whose = "" if claim.joint is None else f" of joint {claim.joint}"
+        if jumps:
+            top = max(jumps, key=lambda j: abs(j.size))
+            verdict = ClaimVerdict.SUPPORTED
+            message = (
+                f"Under this reading the acceleration{whose} jumps at {len(jumps)} breaks, most at "
+                f"t = {top.time:.6g} s by {top.size:.6g} rad/s²."
+            )
+        else:
+            verdict = ClaimVerdict.NOT_CHECKABLE
+            message = (
+                f"Under this reading the acceleration{whose} agrees on both sides of every break; "
+                "steep is not the same as discontinuous, and the figures are not in the text."
+            )
+        yield Finding(
+            rule="TG206",
+            severity=Severity.INFO,
             verdict=verdict,
             scope=Scope.SOME,
             evidence=Evidence.NONE,

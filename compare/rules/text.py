@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ...nlp import Evidence
-from ...problem.claim import StatementClaim
+from ...problem.claim import ImprovementClaim, StatementClaim, TotalTimeClaim
 from ..finding import Basis, ClaimVerdict, Finding, Scope, Severity
 from ..study import Study
 
@@ -15,8 +15,24 @@ def text(study: Study) -> Iterator[Finding]:
     for claim in study.case.claims:
         if isinstance(claim, StatementClaim) and claim.not_checkable:
             yield _listed(claim.id, f"{claim.where}: {claim.not_checkable}.")
+    if not study.posed:
+        yield from _without_waypoints(study)
     for item in study.case.not_checkable:
         yield _listed(None, f"{item.where}: {item.what} {item.why}")
+
+
+def _without_waypoints(study: Study) -> Iterator[Finding]:
+    """What cannot be said of claims while the way-points are missing."""
+    for claim in study.case.claims:
+        if isinstance(claim, StatementClaim | ImprovementClaim):
+            continue
+        why = study.case.posing(claim.problem).waypoints.not_printed
+        what = "An absolute time" if isinstance(claim, TotalTimeClaim) else "This"
+        yield _listed(
+            claim.id,
+            f"{claim.where}: {what} cannot be computed without the way-points: {why}. Added to "
+            "the case file, they make it checkable.",
+        )
 
 
 def _listed(claim: str | None, message: str) -> Finding:
