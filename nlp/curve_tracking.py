@@ -19,13 +19,15 @@ def curve_merit(problem: Problem, h: Array) -> tuple[float, Array]:
     Jumps between segments do not count: they are a verdict of their own.
     """
     total, stretch, outside = float(h.sum()), float(evaluate(problem, h[None]).stretch[0]), 0.0
+    if not np.isfinite(stretch):
+        return np.inf, h
     if problem.limits.limits_position:
         peaks = check(problem, h).peaks
         outside = max(p.ratio - 1.0 for p in peaks if p.quantity in ("position", "curve"))
     short = float((problem.duration_lower / h).max()) - 1.0
     repaired = h * max(1.0, stretch)
     over = float((repaired / problem.duration_upper).max()) - 1.0
-    if np.isfinite(stretch) and max(outside, short, over) <= 1e-12:
+    if max(outside, short, over) <= 1e-12:
         return float(repaired.sum()), repaired
     return total * (1.0 + 10.0 * max(outside, short, over, stretch - 1.0)), h
 

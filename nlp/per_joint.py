@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..problem import Check, Problem, check
+from ..problem import Check, Interpolant, Problem, check
 from .near_optimal import longest_per_segment_range
 from .solution import Evidence, Solution, Status
 from .solve import STARTS, solve
@@ -135,7 +135,9 @@ def solve_per_joint(
         verdict = check(problem, durations)
         why = None
         settled = all(s.status is Status.OPTIMAL for s in solutions)
-        if problem.segments > _MOST_SEGMENTS:
+        if not isinstance(problem.interpolant, Interpolant):
+            why = "ranges are computed for declared piecewise polynomials only"
+        elif problem.segments > _MOST_SEGMENTS:
             why = f"ranges are computed for at most {_MOST_SEGMENTS} segments"
         elif not settled:
             why = "ranges need an attained optimum of every joint"

@@ -23,6 +23,7 @@ from .uniform import Timing
 
 Numbers = NDArray[Any]
 _EPS = np.finfo(np.float64).eps
+_SLIVER = 1e-12
 
 
 def span_bases(knots: Numbers, degree: int, sign: int = -1) -> Numbers:
@@ -294,11 +295,19 @@ class Pieces:
 
 
 def _union(breaks: list[Numbers]) -> Numbers:
+    """All breaks in order, those that differ by rounding only once.
+
+    A sliver between two such breaks would be as long as its own rounding error, and a derivative
+    divides by that; its polynomial is that of a neighbour up to the jump at one of its ends.
+    """
     together = np.concatenate(breaks)
     together = together[np.argsort(together.real, kind="stable")]
-    keep = np.append(np.diff(together.real) > 0, True)
-    # Of equal breaks the last stays; a zero-length piece carries nothing.
-    return np.asarray(together[keep])
+    least = _SLIVER * float(together.real[-1] - together.real[0])
+    keep = np.append(np.diff(together.real) > least, True)
+    # The first break of all must stay, whatever follows it closely.
+    kept = together[keep]
+    kept[0] = together[0]
+    return np.asarray(kept)
 
 
 def _joined(splines: list[Spline], joints: int, cuts: Numbers | None = None) -> Pieces:
