@@ -10,7 +10,7 @@ from typing import Any, TypeVar, cast
 import numpy as np
 
 from ..heuristics import Algorithm, JointRuns, Run, from_settings, run_many, run_many_per_joint
-from ..nlp import PerJointSolution, Solution, solve, solve_per_joint
+from ..nlp import PerJointSolution, Solution, Status, solve, solve_per_joint
 from ..nlp.per_joint import OPTIMUM_SLACK
 from ..problem import (
     Case,
@@ -23,7 +23,6 @@ from ..problem import (
     piecewise,
 )
 from ..problem.claim import Claim, DurationsClaim, MaximumClaim, TotalTimeClaim
-from ..problem.curve import end_conditions
 from .rounding import Box, RoundingVerdict, judge_rounding
 
 T = TypeVar("T")
@@ -138,13 +137,19 @@ class Study:
 
         def compute() -> Solution:
             problem = self.problem(pid, rid)
+            given = problem.interpolant
+            if not isinstance(given, Interpolant):
+                why = "only a declared piecewise polynomial is a member of its relaxed family"
+                return Solution(problem, Status.FAILED, why)
             self._progress(f"{self.case.id}: relaxed family, {pid}, {rid}")
-            curve = problem.interpolant
-            start, end = end_conditions(curve)
             family = replace(
                 piecewise((5,) * problem.segments, 2, name="quintic polynomials, C2, free"),
-                prescribed=(start, *((),) * (problem.segments - 1), end),
-                virtual=curve.virtual if isinstance(curve, Interpolant) else (),
+                prescribed=(
+                    given.prescribed[0],
+                    *((),) * (problem.segments - 1),
+                    given.prescribed[-1],
+                ),
+                virtual=given.virtual,
             )
             return solve(replace(problem, interpolant=family, coupling=Coupling.SHARED))
 
