@@ -1,5 +1,6 @@
 """The question: limits, interpolants, trajectories, exact peaks, the checker, and case files."""
 
+from .cartesian_line import CartesianLine, ctraj
 from .case import Case, DurationBox
 from .check import Check, Evaluation, Jump, Peak, Verdict, check, evaluate
 from .clamped import ClampedBSpline, Knots, Parameters
@@ -44,6 +45,7 @@ from .workspace import StepKind, Workspace, sample_workspace, waypoint_family
 
 __all__ = [
     "QUANTITIES",
+    "CartesianLine",
     "Case",
     "CaseError",
     "CaseFile",
@@ -85,6 +87,7 @@ __all__ = [
     "clamped_readings",
     "closed_form",
     "control_vertices",
+    "ctraj",
     "cubic_spline",
     "cubic_spline_virtual",
     "evaluate",
