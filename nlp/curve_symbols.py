@@ -211,7 +211,7 @@ def _(curve: ClampedBSpline, waypoints: Array) -> Array:
 
 
 def _span_bases(knots: list[Any], p: int) -> list[list[Polynomial]]:
-    """Powers of the basis functions on every span, as `clamped_fit.span_bases`."""
+    """Powers of the basis functions on every span, as `clamped_system.span_bases`."""
     found = []
     for at in range(p, len(knots) - p - 1):
         start, width = knots[at], knots[at + 1] - knots[at]
