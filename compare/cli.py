@@ -7,11 +7,12 @@ import os
 import sys
 import traceback
 from collections.abc import Sequence
-from importlib.metadata import version
 from pathlib import Path
 from typing import Annotated
 
 import typer
+
+from .cli_interrupt import INTERRUPTED, catch_interrupts
 
 # Whatever computes is imported inside the commands, so that --help answers at once.
 
@@ -30,7 +31,7 @@ Exit codes:
   70   a fault of trajgap itself
   130  interrupted
 """
-BAD_INPUT, FAULT, INTERRUPTED, CLOSED_PIPE = 2, 70, 130, 141
+BAD_INPUT, FAULT, CLOSED_PIPE = 2, 70, 141
 
 Source = Annotated[
     str, typer.Argument(metavar="CASE|FILE", help="Id of a published case, or a case file.")
@@ -55,6 +56,8 @@ Coupled = Annotated[
 
 def _version(asked: bool) -> None:
     if asked:
+        from importlib.metadata import version
+
         typer.echo(f"trajgap {version('trajgap')}")
         raise typer.Exit
 
@@ -218,7 +221,6 @@ def new(
     }
     limits = {"velocity": velocity, "acceleration": acceleration, "jerk": jerk}
     new_case(out, table, units, limits, case_id, family)
-    typer.echo(f"written: {out}")
     return 0
 
 
@@ -235,19 +237,34 @@ def main(arguments: Sequence[str] | None = None) -> int:
     int
         Exit code.
     """
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is None:
+            setattr(sys, name, io.StringIO())
+        elif isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")
+    if arguments is None:
+        catch_interrupts()
     try:
-        code = _run(sys.argv[1:] if arguments is None else list(arguments))
+        code = _run(sys.argv[1:] if arguments is None else arguments)
         sys.stdout.flush()
         return code
     except BrokenPipeError:
-        # The interpreter flushes once more at its end.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return CLOSED_PIPE
+    except OSError as error:
+        return _unwritten(error)
     except KeyboardInterrupt:
         return _fail("interrupted", INTERRUPTED)
+    finally:
+        _settle()
+
+
+def _settle() -> None:
+    """Drop what standard output did not take: the interpreter would try again at its end."""
+    try:
+        sys.stdout.flush()
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _run(arguments: Sequence[str]) -> int:
@@ -265,12 +282,18 @@ def _run(arguments: Sequence[str]) -> int:
         if usage is not None:
             about = getattr(getattr(error, "ctx", None), "command_path", "trajgap")
             return _fail(f"{str(usage()).rstrip('.')}; see `{about} --help`", BAD_INPUT)
+        if isinstance(error, OSError) and error.filename is None:
+            return _unwritten(error)
         from ..problem import TrajgapError
 
         if isinstance(error, TrajgapError):
             return _fail(str(error), BAD_INPUT)
         traceback.print_exc()
         return _fail("a fault of trajgap itself, please report the lines above", FAULT)
+
+
+def _unwritten(error: OSError) -> int:
+    return _fail(f"standard output: cannot be written ({error.strerror})", BAD_INPUT)
 
 
 def _fail(message: str, code: int) -> int:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -23,7 +22,8 @@ from .cli_input import (
     select,
     waypoint_box,
 )
-from .cli_output import emit, json_text, new_file, progress, report_folder
+from .cli_interrupt import unwinding
+from .cli_output import check_folder, emit, json_text, new_file, progress, say
 from .rounding import Box, RoundingVerdict, judge_rounding
 from .study import Study
 
@@ -62,11 +62,11 @@ def check_durations(
     """Judge printed durations under each selected problem and reading."""
     case = read_case(source)
     posed = select(case, problem, reading, coupling)
-    printed = read_durations(text)
+    printed = read_durations(text, case.file)
     boxes = [duration_box(case, one, printed) for one in posed]
     with new_file(out) as write:
         results = []
-        with progress("check", len(posed)) as step, naming(case.file, "--durations"):
+        with progress("check", len(posed)) as step, naming(case.file):
             for one, box in zip(posed, boxes, strict=True):
                 step(f"{one.problem_id}, {one.reading_id}")
                 results.append(_checked(case, one, box))
@@ -157,25 +157,28 @@ def audit_cases(
         for algorithm in case.algorithms:
             study.algorithm(algorithm.id)
     folder = out if out is not None or as_json else AUDIT_FOLDER
-    with report_folder(folder) as fill:
-        from .audit import audit
-        from .report import write_report
+    if folder is not None:
+        check_folder(folder, chosen)
+    from .audit import audit
 
-        with progress("audit") as step:
-            report = audit(
-                chosen,
-                seeds=seeds,
-                workers=workers or _processors(),
-                problem=problem,
-                reading=reading,
-                progress=step,
-            )
+    with progress("audit") as step:
+        report = audit(
+            chosen,
+            seeds=seeds,
+            workers=workers or _processors(),
+            problem=problem,
+            reading=reading,
+            progress=step,
+        )
+        if folder is not None:
+            from .report import write_report
+
             step("pages and pictures")
-            fill(lambda draft: write_report(report, draft))
-    document = documents.audit_document(report)
-    emit(document, cli_summary.audited, as_json)
+            with unwinding():
+                write_report(report, folder)
+    emit(documents.audit_document(report), cli_summary.audited, as_json)
     if folder is not None and not as_json:
-        sys.stdout.write(f"pages: {folder / 'index.html'}\n")
+        say(f"pages: {folder / 'index.html'}\n")
     return 1 if strict and report.errors else 0
 
 

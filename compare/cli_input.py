@@ -43,6 +43,8 @@ def read_case(source: str) -> Case:
     CaseError
         If it cannot be loaded.
     """
+    if not source:
+        raise CaseError("CASE", "", "is empty; name a published case or a file")
     try:
         return load_case(source)
     except OSError as error:
@@ -99,13 +101,15 @@ def select(
     ]
 
 
-def read_durations(text: str) -> tuple[Printed, ...]:
+def read_durations(text: str, file: str) -> tuple[Printed, ...]:
     """Read durations as a paper prints them.
 
     Parameters
     ----------
     text : str
         Separated by commas or blanks.
+    file : str
+        The case that they are for, for messages.
 
     Returns
     -------
@@ -118,17 +122,16 @@ def read_durations(text: str) -> tuple[Printed, ...]:
     """
     words = [word for word in re.split(r"[,;\s]+", text) if word]
     if not words:
-        raise CaseError("--durations", "", "is empty; give one number per segment")
+        raise CaseError(file, "--durations", "is empty; give one number per segment")
     numbers = []
     for position, word in enumerate(words, 1):
+        field = f"--durations: number {position}"
         try:
             number = Printed(word)
         except TrajgapError as error:
-            raise CaseError("--durations", f"number {position}", str(error)) from None
+            raise CaseError(file, field, str(error)) from None
         if number.fraction <= 0:
-            raise CaseError(
-                "--durations", f"number {position}", f"{word!r} is not positive; give more than 0"
-            )
+            raise CaseError(file, field, f"{word!r} is not positive; give more than 0")
         numbers.append(number)
     return tuple(numbers)
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ..problem import CaseError, scaffold
 from ..problem.units import CHOICES
-from .cli_output import new_file
+from .cli_output import new_file, say
 
 
 def new_case(
@@ -49,6 +49,7 @@ def new_case(
             if name not in given:
                 given[name] = _ask(name, str(table))
         write(scaffold(table, given, case_id=case_id, family=family, **limits))
+    say(f"written: {out}\n")
 
 
 def _ask(quantity: str, table: str) -> str:

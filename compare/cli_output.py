@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
-import shutil
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..problem import CaseError
+from ..problem import Case, CaseError
+from .cli_interrupt import draft
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -32,8 +33,27 @@ def emit(
         text = json_text(document, ascii_only=plain)
     else:
         text = rendered(summary(document))
-    sys.stdout.write(text)
-    sys.stdout.flush()
+    say(text)
+
+
+def say(text: str) -> None:
+    """Write text to standard output.
+
+    Raises
+    ------
+    CaseError
+        If that fails for another reason than a closed pipe.
+    """
+    try:
+        sys.stdout.write(text)
+        sys.stdout.flush()
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        reason = error.strerror or type(error).__name__
+        raise CaseError(
+            "standard output", "", f"cannot be written ({reason}); send it elsewhere"
+        ) from None
 
 
 def json_text(document: dict[str, Any], ascii_only: bool = False) -> str:
@@ -46,8 +66,10 @@ def rendered(parts: Sequence[RenderableType]) -> str:
     from rich.console import Console
     from rich.measure import Measurement
 
-    terminal = sys.stdout.isatty()
+    terminal, encoding = sys.stdout.isatty(), sys.stdout.encoding or "utf-8"
+    page = io.TextIOWrapper(io.BytesIO(), encoding, errors="replace", newline="")
     console = Console(
+        file=page,
         color_system="auto" if terminal and not os.environ.get("NO_COLOR") else None,
         force_terminal=terminal,
         width=None if terminal or "COLUMNS" in os.environ else _PIPE_WIDTH,
@@ -59,10 +81,10 @@ def rendered(parts: Sequence[RenderableType]) -> str:
     unbounded = console.options.update(max_width=10_000)
     needed = (Measurement.get(console, unbounded, part).minimum for part in parts)
     console.width = max(console.width, *needed)
-    with console.capture() as captured:
-        for part in parts:
-            console.print(part)
-    return "\n".join(line.rstrip() for line in captured.get().split("\n"))
+    for part in parts:
+        console.print(part)
+    page.seek(0)
+    return "\n".join(line.rstrip() for line in page.read().split("\n"))
 
 
 @contextmanager
@@ -131,73 +153,45 @@ def new_file(path: Path | None, field: str = "--out") -> Iterator[Callable[[str]
             raise CaseError(name, field, "is a directory; name a file in it")
         if os.path.lexists(path):
             raise CaseError(name, field, "exists already; name another file or delete this one")
-        draft = path.parent / f".trajgap-{os.getpid()}.tmp"
-        draft.open("x", encoding="utf-8").close()
+        file = path.parent / f".trajgap-{os.getpid()}.tmp"
+        file.open("x", encoding="utf-8").close()
 
     def write(text: str) -> None:
         with _writing(name, field):
-            draft.write_text(text, encoding="utf-8")
-            draft.replace(path)
+            file.write_text(text, encoding="utf-8")
+            file.replace(path)
 
-    try:
+    with draft(file):
         yield write
-    finally:
-        draft.unlink(missing_ok=True)
 
 
-@contextmanager
-def report_folder(path: Path | None) -> Iterator[Callable[[Callable[[Path], object]], None]]:
-    """Reserve a folder for a report; its files appear together, when all are complete.
-
-    Parameters
-    ----------
-    path : Path or None
-        A new folder, an empty one, or one with an earlier report; nothing is written if None.
-
-    Yields
-    ------
-    callable
-        To be called with a function that fills a folder.
+def check_folder(path: Path, cases: Sequence[Case]) -> None:
+    """Find out whether a report can be written before computing what goes into it.
 
     Raises
     ------
     CaseError
-        If the folder holds anything else, or cannot be written.
+        If the folder holds anything but an earlier report or cannot be written, or if the id of
+        a case is the name of another page.
     """
-    if path is None:
-        yield lambda _: None
-        return
+    from .report import MARK, _foreign
+
     name = str(path)
+    for case in cases:
+        if case.id in ("index", Path(MARK).stem):
+            raise CaseError(case.file, "id", f"{case.id!r} is the name of another page; rename it")
     with _writing(name, "--out"):
         if os.path.lexists(path) and not path.is_dir():
             raise CaseError(name, "--out", "is a file; name a folder")
-        if path.is_dir() and any(path.iterdir()) and not (path / REPORT_MARK).is_file():
+        found = _foreign(path)
+        if found is not None:
             raise CaseError(
-                name, "--out", "holds files that are no audit; name a new or an empty folder"
+                name, "--out", f"holds {found}, which is no audit; name a new or an empty folder"
             )
-        inside = path if path.is_dir() else path.parent
-        draft = inside / f".trajgap-{os.getpid()}.tmp"
-        draft.mkdir()
-
-    def fill(write: Callable[[Path], object]) -> None:
-        with _writing(name, "--out"):
-            write(draft)
-            path.mkdir(exist_ok=True)
-            for file in sorted(draft.rglob("*")):
-                target = path / file.relative_to(draft)
-                if file.is_dir():
-                    target.mkdir(exist_ok=True)
-                else:
-                    file.replace(target)
-
-    try:
-        yield fill
-    finally:
-        shutil.rmtree(draft, ignore_errors=True)
-
-
-REPORT_MARK = "audit.json"
-"""The file by which the folder of an earlier report is known."""
+        path.parent.mkdir(parents=True, exist_ok=True)
+        trial = path.parent / f".trajgap-{os.getpid()}.tmp"
+        trial.mkdir()
+        trial.rmdir()
 
 
 @contextmanager

@@ -201,15 +201,27 @@ def audited(document: Document) -> list[RenderableType]:
         keys = ("claim", "verdict", "scope", "evidence", "why")
         rows = [[verdict[key] for key in keys] for verdict in case["verdicts"]]
         parts.append(_Columns(("claim", "verdict", "readings", "evidence", "…why"), rows))
-        for fall in case["waterfalls"]:
-            steps = ", ".join(
-                f"{s['name']} {_seconds(s['time'])}" for s in fall["steps"] if s["time"]
-            )
-            parts.append(_line(f"{fall['problem']}, {fall['reading']}, s: {steps}"))
+        parts += _time_goes(case["waterfalls"])
         errors = [f for f in case["findings"] if f["severity"] == "error"]
-        parts += [_line(f"error {f['rule']} {f['claim'] or ''}: {f['message']}") for f in errors]
+        said_once = dict.fromkeys(f"{f['rule']} {f['claim'] or ''}: {f['message']}" for f in errors)
+        parts += [_line(f"error {text}") for text in said_once]
         parts.append(_line(""))
     return parts
+
+
+def _time_goes(waterfalls: Sequence[Document]) -> list[RenderableType]:
+    """Where the time goes, for each problem under its first reading."""
+    first = {fall["problem"]: fall for fall in reversed(waterfalls)}
+    falls = [fall for fall in waterfalls if first[fall["problem"]] is fall]
+    times = [{step["name"]: step["time"] for step in fall["steps"]} for fall in falls]
+    names = dict.fromkeys(name for one in times for name in one)
+    if not names:
+        return []
+    rows = [
+        (name, *(_seconds(one[name]) if name in one else "" for one in times)) for name in names
+    ]
+    columns = [f">{fall['problem']}" for fall in falls]
+    return [_Columns((f"where the time goes, s ({falls[0]['reading']})", *columns), rows)]
 
 
 # --- cells ----------------------------------------------------------------------------------------

@@ -119,12 +119,17 @@ def _solution(answer: Solution, path: Retiming | str) -> Document:
 def _per_joint(answer: PerJointSolution, paths: Sequence[Retiming | str]) -> Document:
     singles = zip(answer.problem.joints, answer.joints, paths, strict=True)
     none = answer.why or str(answer.status)
+    unsettled = [
+        f"joint {label}: {s.why}"
+        for label, s in zip(answer.problem.joints, answer.joints, strict=True)
+        if s.why
+    ]
     residuals = [s.kkt_residual for s in answer.joints]
     known = [r for r in residuals if r is not None]
     return {
         "coupling": str(Coupling.PER_JOINT),
         "status": str(answer.status),
-        "status_why": answer.why,
+        "status_why": "; ".join(unsettled) or None,
         **_number("total_time", answer.total_time if answer.check else None, none),
         "segment_durations": None,
         "segment_durations_why": "each joint has durations of its own, see joints",
