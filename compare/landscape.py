@@ -191,11 +191,12 @@ def _map(axes: Axes, problem: Problem, corner: Array, best: float, colours: Arra
     mesh = Triangulation(x, y, triangles)
     top = 10 * best
     excess = 100 * (np.minimum(total, top) / best - 1)
-    axes.tricontourf(mesh, excess, levels=[-101.0, *LEVELS[1:], 1e9], colors=list(colours))
+    bands = axes.tricontourf(mesh, excess, levels=[-101.0, *LEVELS[1:], 1e9], colors=list(colours))
+    bands.set_edgecolor(_DARK)
+    bands.set_linewidth(0.4)
     below = bool(excess.min() < -_BELOW)
     if below:
         axes.tricontourf(mesh, excess, levels=[-101.0, -_BELOW], colors=_LIGHT)
-    axes.tricontour(mesh, excess, levels=list(LEVELS[1:]), colors=_DARK, linewidths=0.5)
     low, high = problem.duration_lower, problem.duration_upper
     if (low > 0).any() or np.isfinite(high).any():
         tight = shares * total[:, None]
