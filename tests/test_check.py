@@ -333,6 +333,9 @@ def test_tolerance_decides() -> None:
     assert check(problem, [1 - 1e-4], tolerance=1e-3).verdict is Verdict.PASS
     assert check(problem, [1 - 1e-12], tolerance=0.0).verdict is Verdict.VIOLATED
     assert check(problem, [1.0], tolerance=0.0).verdict is Verdict.UNDECIDED
+    # what is violated stays violated, whatever is undecided beside it
+    pair = Problem([[0.2, 0.2], [1.4, 1.2]], Limits(1.5), rest_to_rest(1, 3))
+    assert check(pair, [1.0], tolerance=0.0).verdict is Verdict.VIOLATED
 
 
 def test_rounding_that_hides_the_limit_is_undecided() -> None:
@@ -538,6 +541,10 @@ def test_duration_bounds() -> None:
     assert at_bound.verdict is Verdict.PASS
     assert at_bound.worst is not None
     assert at_bound.worst.quantity in QUANTITIES
+    slow = judged(2 * tight, 2 * tight, 2 * tight)
+    assert slow.worst is not None
+    assert slow.worst.quantity in QUANTITIES
+    assert slow.worst.ratio < 0.6
     short = judged(tight * [1, 1.25, 1], np.inf)
     assert short.verdict is Verdict.VIOLATED
     assert short.worst is not None

@@ -96,6 +96,22 @@ def test_tilted_chebyshev_has_its_peak_inside(degree: int) -> None:
         np.testing.assert_allclose(peaks, expected, rtol=1e-9)
 
 
+@pytest.mark.parametrize("degree", range(9))
+def test_random_waves(degree: int) -> None:
+    rng = np.random.default_rng(degree)
+    for _ in range(12):
+        wave = chebyshev(0) * 0
+        for k in range(degree + 1):
+            wave = wave + rng.normal() * chebyshev(k)
+        for sign in (1, -1):
+            coefficients = sign * np.asarray(wave.coef)
+            orders = [wave, wave.deriv(), wave.deriv(2)]
+            expected = np.array([companion_peak(p) for p in orders])
+            room = 1e-11 * np.array([np.abs(p.coef).sum() for p in orders]) + 1e-12
+            for peaks in peaks_by_both(coefficients):
+                assert (np.abs(peaks - expected) <= room).all()
+
+
 @given(st.lists(st.floats(-10, 10, width=32), min_size=1, max_size=9))
 @example([0.0] * 9)
 @example([1.0, 0.0, 0.0])
