@@ -116,7 +116,10 @@ def shown(text: str, width: int | None = None, lines: int = 1) -> str:
     drawn = "".join(c if c.isprintable() and _font().get_char_index(ord(c)) else "?" for c in flat)
     if width is None:
         return drawn
-    wrapped = textwrap.wrap(drawn, width, max_lines=lines, placeholder="…", break_on_hyphens=False)
+    cut = [w if len(w) <= width else w[: width - 1] + "…" for w in drawn.split(" ")]
+    wrapped = textwrap.wrap(
+        " ".join(cut), width, max_lines=lines, placeholder="…", break_on_hyphens=False
+    )
     return "\n".join(wrapped or [""])
 
 
