@@ -13,6 +13,7 @@ from xml.sax.saxutils import escape
 
 from matplotlib import style
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties, findfont
 from matplotlib.ft2font import FT2Font
@@ -182,8 +183,12 @@ def svg(figure: Figure) -> str:
         A complete SVG document. Text is drawn as outlines, so that it looks the same everywhere.
     """
     buffer = io.StringIO()
+    canvas, dots = figure.canvas, figure.dpi
     with drawing():
-        figure.savefig(buffer, format="svg", metadata={"Date": None})
+        # `savefig` would draw twice: once to lay out what is laid out already.
+        FigureCanvasSVG(figure).print_svg(buffer, metadata={"Date": None})
+    figure.set_canvas(canvas)
+    figure.set_dpi(dots)
     text = buffer.getvalue()
     title = getattr(figure, "title", "") or "Picture"
     description = getattr(figure, "description", "")
