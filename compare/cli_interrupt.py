@@ -53,8 +53,12 @@ def unwinding() -> Iterator[None]:
 
 
 def _end(signum: int, frame: FrameType | None) -> None:
-    for process in multiprocessing.active_children():
+    workers = multiprocessing.active_children()
+    for process in workers:
         process.terminate()
+    if workers:
+        # Nothing but the pool runs here, and it must give back its semaphores.
+        raise KeyboardInterrupt
     for path in _drafts:
         _remove(path)
     # A progress bar hides the cursor.
