@@ -152,13 +152,13 @@ def audit(
     reading: ReadingId = None,
     seeds: Annotated[int, typer.Option(min=2, help="Seeds of each replay.")] = 30,
     workers: Annotated[
-        int | None,
+        int,
         typer.Option(
             min=1,
-            help="Processes; the result does not depend on it.",
-            show_default="one per processor",
+            help="Processes for the replays; the result does not depend on it. Starting one takes "
+            "longer than a few dozen short replays.",
         ),
-    ] = None,
+    ] = 1,
     strict: Annotated[
         bool, typer.Option("--strict", help="Exit with 1 if a finding has severity error.")
     ] = False,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -145,7 +144,7 @@ def audit_cases(
     problem: str | None,
     reading: str | None,
     seeds: int,
-    workers: int | None,
+    workers: int,
     strict: bool,
     as_json: bool,
     out: Path | None,
@@ -165,7 +164,7 @@ def audit_cases(
         report = audit(
             chosen,
             seeds=seeds,
-            workers=workers or _processors(),
+            workers=workers,
             problem=problem,
             reading=reading,
             progress=step,
@@ -180,7 +179,3 @@ def audit_cases(
     if folder is not None and not as_json:
         say(f"pages: {folder / 'index.html'}\n")
     return 1 if strict and report.errors else 0
-
-
-def _processors() -> int:
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -186,7 +186,8 @@ def svg(figure: Figure) -> str:
     canvas, dots = figure.canvas, figure.dpi
     with drawing():
         # `savefig` would draw twice: once to lay out what is laid out already.
-        FigureCanvasSVG(figure).print_svg(buffer, metadata={"Date": None})
+        untyped: Any = FigureCanvasSVG(figure)
+        untyped.print_svg(buffer, metadata={"Date": None})
     figure.set_canvas(canvas)
     figure.set_dpi(dots)
     text = buffer.getvalue()

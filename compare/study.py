@@ -30,7 +30,7 @@ Pair = tuple[str, str]
 Replays = tuple[Run, ...] | tuple[JointRuns, ...]
 
 SEEDS = 30
-VARIANT_SEEDS = 10
+VARIANT_SEEDS = 6
 
 
 class Study:

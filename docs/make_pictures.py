@@ -16,7 +16,7 @@ def waterfall_puma560() -> str:
     case = load_case("puma560-mnam-pso-353")
     study = Study(case, reading=case.default_reading.id)
     (waterfall,) = waterfalls(study)
-    return svg(waterfall_picture(waterfall, title="PUMA 560, 3-5-3 polynomials: where the time goes"))
+    return svg(waterfall_picture(waterfall, title="PUMA 560, 3-5-3: where the time goes"))
 
 
 if __name__ == "__main__":
