@@ -123,7 +123,7 @@ def solve_case(
 def _solved(case: Case, one: Posed, starts: int, seed: int) -> documents.Document:
     ids = (case.id, one.problem_id, one.reading_id)
     if one.problem.coupling is Coupling.PER_JOINT:
-        halves = Study(case)._half_digits(one.problem_id, one.reading_id)
+        halves = Study(case).half_digits(one.problem_id, one.reading_id)
         slacks = tuple(dict.fromkeys((*halves, OPTIMUM_SLACK)))
         apart = solve_per_joint(one.problem, starts=starts, seed=seed, slacks=slacks)
         return documents.solve_result(*ids, apart, [_retimed(s) for s in apart.joints])

@@ -174,7 +174,7 @@ def check_folder(path: Path, cases: Sequence[Case]) -> None:
         If the folder holds anything but an earlier report or cannot be written, or if the id of
         a case is the name of another page.
     """
-    from .report import MARK, _foreign
+    from .report import MARK, foreign
 
     name = str(path)
     for case in cases:
@@ -183,7 +183,7 @@ def check_folder(path: Path, cases: Sequence[Case]) -> None:
     with _writing(name, "--out"):
         if os.path.lexists(path) and not path.is_dir():
             raise CaseError(name, "--out", "is a file; name a folder")
-        found = _foreign(path)
+        found = foreign(path)
         if found is not None:
             raise CaseError(
                 name, "--out", f"holds {found}, which is no audit; name a new or an empty folder"

@@ -424,6 +424,7 @@ def _verdict(judgement: Judgement) -> Document:
         "scope": str(judgement.scope),
         "evidence": str(judgement.evidence),
         "why": judgement.why,
+        "readings": {reading: str(verdict) for reading, verdict in judgement.readings},
     }
 
 

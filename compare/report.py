@@ -69,10 +69,10 @@ def write_report(report: AuditReport, out: Path) -> None:
         if name in (Path(_INDEX).stem, Path(MARK).stem):
             raise TrajgapError(f"{out}: a case cannot be called {name!r}; rename it")
     try:
-        foreign = _foreign(out)
-        if foreign is not None:
+        other = foreign(out)
+        if other is not None:
             raise TrajgapError(
-                f"{out}: {foreign} is not part of a trajgap report; name a new or an empty folder"
+                f"{out}: {other} is not part of a trajgap report; name a new or an empty folder"
             )
         _replace(out, _files(report))
     except OSError as error:
@@ -80,7 +80,7 @@ def write_report(report: AuditReport, out: Path) -> None:
         raise TrajgapError(f"{out}: cannot be written ({reason}); name another place") from None
 
 
-def _foreign(out: Path) -> str | None:
+def foreign(out: Path) -> str | None:
     """Name of the first thing in a folder that no report has written; None if there is none."""
     if not os.path.lexists(out):
         return None

@@ -224,7 +224,8 @@ def _best(problem: Problem, lower: Array, upper: Array, form: _MeanValue) -> Bou
     value, weights = float(alone[top]), np.eye(count)[top]
     some = np.flatnonzero(rows.width > 0.0)
     remainder = form.by_duration.rad * form.radius
-    if value < np.inf and (form.radius.any() or form.waypoint_radius.any()):
+    wide = form.radius.any() or form.waypoint_radius.any()
+    if value < np.inf and some.size and wide:
         found = _weights(form, some, remainder)
         if found is not None:
             shared = float(form.forced(found[None, :])[0])

@@ -110,12 +110,12 @@ class Study:
 
         def compute() -> PerJointSolution:
             self._progress(f"{self.case.id}: each joint by itself, {pid}, {rid}")
-            slacks = dict.fromkeys((*self._half_digits(pid, rid), OPTIMUM_SLACK))
+            slacks = dict.fromkeys((*self.half_digits(pid, rid), OPTIMUM_SLACK))
             return solve_per_joint(self.problem(pid, rid), slacks=tuple(slacks))
 
         return self._once(("per joint", pid, rid), compute)
 
-    def _half_digits(self, pid: str, rid: str) -> tuple[float, ...]:
+    def half_digits(self, pid: str, rid: str) -> tuple[float, ...]:
         """Half a unit of the last printed place of the totals of single joints, s."""
         halves = []
         for claim in self.case.claims:

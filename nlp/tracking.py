@@ -26,6 +26,8 @@ from .formulation import (
 from .starts import first_nodal
 
 _PASSES = 40
+_PATIENCE = 8
+"""Passes without a gain after which a start is given up."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -339,6 +341,7 @@ def track(
     best, h, nodal = merit(problem, h, nodal)
     x = pack(problem, f, scaled, h, nodal)
     radius, step, iterations, converged, duals = 0.5, np.inf, 0, False, None
+    stale = 0
     for _ in range(_PASSES):
         trajectory = fit(problem.interpolant, problem.waypoints, h, nodal)
         c = trajectory.scaled / scaled.angle_unit
@@ -362,6 +365,9 @@ def track(
         moved = float(np.abs(x_new[:n] / x[:n] - 1.0).max())
         h_new, nodal_new = unpack(problem, f, scaled, x_new)
         total, h_new, nodal_new = merit(problem, h_new, nodal_new)
+        stale = 0 if total < best * (1.0 - 1e-7) else stale + 1
+        if stale > _PATIENCE:
+            break
         if total < best * (1.0 + 1e-13):
             x = pack(problem, f, scaled, h_new, nodal_new)
             h, nodal, best, duals, step = h_new, nodal_new, total, new_duals, moved

@@ -663,3 +663,10 @@ def test_bad_boxes_are_refused():
     free = Problem(problem.waypoints, problem.limits, piecewise((5, 5, 5), 2))
     with pytest.raises(TrajgapError, match="give nodal derivatives"):
         judge_rounding(free, Box.exact(h))
+
+
+def test_a_moving_joint_with_limit_zero_alone_is_judged() -> None:
+    points = np.array([[0.1], [0.4], [0.2], [0.6]])
+    problem = Problem(points, Limits(0.0, np.inf, joints=1), three_five_three())
+    durations = Box(np.ones(3), np.full(3, 0.99), np.full(3, 1.01))
+    assert judge_rounding(problem, durations, None).verdict is Rounding.BREAKS
