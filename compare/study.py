@@ -16,10 +16,10 @@ from ..problem import (
     Case,
     Check,
     Coupling,
+    Interpolant,
     Problem,
     TrajgapError,
     check,
-    piecewise,
 )
 from ..problem.claim import Claim, DurationsClaim, MaximumClaim, TotalTimeClaim
 from .rounding import Box, RoundingVerdict, judge_rounding
@@ -127,19 +127,18 @@ class Study:
         return (max(halves),) if halves else ()
 
     def relaxed(self, pid: str, rid: str) -> Solution:
-        """Optimum of the relaxed family: quintic in every segment, C2, the rest left free."""
+        """Optimum of the relaxed family: at least quintic everywhere, C2, the rest left free."""
 
         def compute() -> Solution:
             problem = self.problem(pid, rid)
             self._progress(f"{self.case.id}: relaxed family, {pid}, {rid}")
-            family = replace(
-                piecewise((5,) * problem.segments, 2, name="quintic polynomials, C2, free"),
-                prescribed=(
-                    problem.interpolant.prescribed[0],
-                    *((),) * (problem.segments - 1),
-                    problem.interpolant.prescribed[-1],
-                ),
-                virtual=problem.interpolant.virtual,
+            given, inner = problem.interpolant, problem.segments - 1
+            family = Interpolant(
+                tuple(max(5, degree) for degree in given.degrees),
+                (2,) * inner,
+                (given.prescribed[0], *((),) * inner, given.prescribed[-1]),
+                virtual=given.virtual,
+                name="relaxed family",
             )
             return solve(replace(problem, interpolant=family, coupling=Coupling.SHARED))
 

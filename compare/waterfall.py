@@ -84,7 +84,7 @@ def _waterfall(study: Study, pid: str, rid: str) -> Waterfall:
     steps.append(_known("optimum of the same curve, shared durations", shared))
     relaxed = study.relaxed(pid, rid)
     steps.append(
-        _known("relaxed family", relaxed, "quintic in every segment, C2, remaining freedom used")
+        _known("relaxed family", relaxed, "degree 5 or more in every segment, C2, freedom used")
     )
     steps.append(_retimed(relaxed))
     steps.append(_free(study, pid, rid))
