@@ -129,7 +129,8 @@ def _per_joint(answer: PerJointSolution, paths: Sequence[Retiming | str]) -> Doc
     return {
         "coupling": str(Coupling.PER_JOINT),
         "status": str(answer.status),
-        "status_why": "; ".join(unsettled) or None,
+        "status_why": "; ".join(unsettled)
+        or "of the joints' own optima; the total is what their longest durations add up to",
         **_number("total_time", answer.total_time if answer.check else None, none),
         "segment_durations": None,
         "segment_durations_why": "each joint has durations of its own, see joints",

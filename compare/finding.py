@@ -14,7 +14,8 @@ class Severity(StrEnum):
     """How much a finding weighs; tied to its conclusion, never to a digit."""
 
     ERROR = "error"
-    """A printed number or statement is contradicted by a proof: of digits, counts or enclosures."""
+    """A proof of digits, counts, enclosures or a shorter motion contradicts something printed, or
+    shows that two printed things contradict each other."""
     WARNING = "warning"
     """Printed things do not fit together, or a best known value speaks against a statement."""
     INFO = "info"

@@ -8,6 +8,7 @@ from enum import StrEnum
 from typing import Any, TypeVar, cast
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..heuristics import Algorithm, JointRuns, Run, from_settings, run_many, run_many_per_joint
 from ..nlp import PerJointSolution, Solution, solve, solve_per_joint
@@ -20,6 +21,7 @@ from ..problem import (
     Problem,
     TrajgapError,
     check,
+    reachable_total,
 )
 from ..problem.claim import Claim, DurationsClaim, MaximumClaim, TotalTimeClaim
 from .rounding import Box, RoundingVerdict, judge_rounding
@@ -30,6 +32,7 @@ Pair = tuple[str, str]
 Replays = tuple[Run, ...] | tuple[JointRuns, ...]
 
 SEEDS = 30
+Array = NDArray[np.float64]
 VARIANT_SEEDS = 6
 
 
@@ -155,6 +158,20 @@ class Study:
             return problem
         return problem.joint(problem.joints.index(claim.joint))
 
+    def _box_columns(self, problem: Problem, pid: str, rid: str) -> tuple[Array, Array]:
+        """Bounds of the way-points that print alike, for the joints of ``problem``."""
+        lower, upper = self.case.waypoint_box(pid, rid)
+        labels = self.problem(pid, rid).joints
+        columns = [labels.index(label) for label in problem.joints]
+        return lower[:, columns], upper[:, columns]
+
+    def reachable(self, problem: Problem, durations: Array, pid: str, rid: str) -> float | None:
+        """A total (s) that some stretch of ``durations`` keeps whatever the way-points round from.
+
+        None if there is no such stretch.
+        """
+        return reachable_total(problem, durations, *self._box_columns(problem, pid, rid))
+
     def claim_optimum(self, claim: Claim, pid: str, rid: str) -> Solution:
         """Best known answer of `claim_problem`."""
         return self.optimum(pid, rid, claim.joint)
@@ -169,22 +186,26 @@ class Study:
         return self._once(("check", claim.id, pid, rid), compute)
 
     def claim_rounding(self, claim: Claim, pid: str, rid: str) -> RoundingVerdict:
-        """The printed durations judged over the box of all inputs that print alike."""
+        """The printed durations judged over the box of all inputs that round to the digits."""
+        return self._once(
+            ("rounding", claim.id, pid, rid), lambda: self._judged_box(claim, pid, rid, cut=False)
+        )
 
-        def compute() -> RoundingVerdict:
-            self._progress(f"{self.case.id}: rounding box of {claim.id}, {rid}")
-            problem = self.claim_problem(claim, pid, rid)
-            box = self.case.claim_durations(claim, rid)
-            lower, upper = self.case.waypoint_box(pid, rid)
-            labels = self.problem(pid, rid).joints
-            columns = [labels.index(label) for label in problem.joints]
-            return judge_rounding(
-                problem,
-                Box(box.value, box.lower, box.upper),
-                Box(problem.waypoints, lower[:, columns], upper[:, columns]),
-            )
+    def claim_cut(self, claim: Claim, pid: str, rid: str) -> RoundingVerdict:
+        """The same over a wider box, of inputs whose digits were rounded or cut off."""
+        return self._once(
+            ("cut", claim.id, pid, rid), lambda: self._judged_box(claim, pid, rid, cut=True)
+        )
 
-        return self._once(("rounding", claim.id, pid, rid), compute)
+    def _judged_box(self, claim: Claim, pid: str, rid: str, cut: bool) -> RoundingVerdict:
+        self._progress(f"{self.case.id}: rounding box of {claim.id}, {rid}")
+        problem = self.claim_problem(claim, pid, rid)
+        printed = self.case.claim_durations(claim, rid)
+        durations = Box(printed.value, printed.lower, printed.upper)
+        waypoints = Box(problem.waypoints, *self._box_columns(problem, pid, rid))
+        if cut:
+            durations, waypoints = _or_cut_off(durations), _or_cut_off(waypoints)
+        return judge_rounding(problem, durations, waypoints)
 
     def claim_total(self, claim: Claim, rid: str) -> tuple[str, tuple[float, float]] | None:
         """A claim's total as printed (or as summed), and its interval in seconds."""
@@ -250,11 +271,11 @@ class Study:
                     found[f"{one.name} = {option}"] = cast(Algorithm[Any], changed)
         return found
 
-    def variant_totals(self, algorithm_id: str, pid: str, rid: str) -> dict[str, np.ndarray]:
+    def variant_totals(self, algorithm_id: str, pid: str, rid: str) -> dict[str, Array]:
         """Reported totals of each variant over its seeds, s."""
 
-        def compute() -> dict[str, np.ndarray]:
-            totals: dict[str, np.ndarray] = {}
+        def compute() -> dict[str, Array]:
+            totals: dict[str, Array] = {}
             for name, algorithm in self.variants(algorithm_id).items():
                 if name == "as listed":
                     runs = self.runs(algorithm_id, pid, rid)
@@ -265,3 +286,12 @@ class Study:
             return totals
 
         return self._once(("variants", algorithm_id, pid, rid), compute)
+
+
+def _or_cut_off(box: Box) -> Box:
+    """The box widened by the inputs whose further digits were cut off instead of rounded."""
+    up, down = 2.0 * (box.upper - box.value), 2.0 * (box.value - box.lower)
+    wide = 1.0 + 1e-9
+    lower = np.where(box.value > 0, box.lower, box.value - down * wide)
+    upper = np.where(box.value < 0, box.upper, box.value + up * wide)
+    return Box(box.value, np.minimum(lower, box.lower), np.maximum(upper, box.upper))

@@ -320,10 +320,11 @@ def merit(
         return total, h, nodal
     if verdict.feasible_time is None:
         return total * (1.0 + 10.0 * verdict.max_violation), h, nodal
+    factor = max(1.0, verdict.stretch)
     if problem.interpolant.free and nodal is not None:
         orders = np.array([r for _, r in problem.interpolant.free_derivatives])[:, None]
-        nodal = nodal / verdict.stretch**orders
-    return verdict.feasible_time, h * verdict.stretch, nodal
+        nodal = nodal / factor**orders
+    return verdict.feasible_time, h * factor, nodal
 
 
 def track(
@@ -352,8 +353,8 @@ def track(
         low, high = wide[0].copy(), wide[1].copy()
         room = radius * np.maximum(np.abs(x), np.where(np.arange(x.size) < n, 0.0, 1.0))
         held = slice(None) if problem.interpolant.free else slice(n)
-        low[held] = np.maximum(low[held], (x - room)[held])
-        high[held] = np.minimum(high[held], (x + 2.0 * room)[held])
+        low[held] = np.clip((x - room)[held], low[held], high[held])
+        high[held] = np.clip((x + 2.0 * room)[held], low[held], high[held])
         near = duals is not None and step < 1e-2
         x_new, new_duals, success, count = run(
             build_.warm if near else build_.cold, f, x, p, (low, high), duals if near else None

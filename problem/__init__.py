@@ -1,7 +1,16 @@
 """The question: limits, interpolants, trajectories, exact peaks, the checker, and case files."""
 
 from .case import Case, DurationBox
-from .check import Check, Evaluation, Jump, Peak, Verdict, check, evaluate
+from .check import (
+    Check,
+    Evaluation,
+    Jump,
+    Peak,
+    Verdict,
+    check,
+    evaluate,
+    reachable_total,
+)
 from .errors import CaseError, TrajgapError
 from .gradient import PeakGradients, peak_gradients
 from .interpolant import (
@@ -56,6 +65,7 @@ __all__ = [
     "piecewise",
     "published_ids",
     "quintic_spline",
+    "reachable_total",
     "rest_to_rest",
     "scaffold",
     "three_five_three",

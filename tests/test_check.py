@@ -616,3 +616,26 @@ def test_check_refuses_durations() -> None:
     ):
         with pytest.raises(TrajgapError, match=message):
             check(problem, wrong)
+
+
+def test_a_reachable_total_holds_for_every_waypoint_of_the_box() -> None:
+    from trajgap.problem import reachable_total
+
+    rng = np.random.default_rng(11)
+    q = np.array([[0.2, -1.0], [0.9, 0.3], [0.4, 1.1], [1.3, 0.6]])
+    limits = Limits([1.5, 2.0], [4.0, 6.0], [60.0, 90.0])
+    h = np.array([0.8, 0.9, 1.1])
+    for interpolant in (three_five_three(), quintic_spline(3)):
+        problem = Problem(q, limits, interpolant)
+        total = reachable_total(problem, h, q - 0.03, q + 0.05)
+        assert total is not None
+        stretched = h * total / h.sum()
+        for _ in range(300):
+            other = Problem(q + rng.uniform(-0.03, 0.05, q.shape), limits, interpolant)
+            assert check(other, stretched).verdict is Verdict.PASS
+        exact = reachable_total(problem, h, q, q)
+        assert exact == pytest.approx(check(problem, h).feasible_time, rel=1e-8)
+    bounded = Problem(q, limits, three_five_three(), 0.0, 0.5)
+    assert reachable_total(bounded, h, q, q) is None
+    ranged = Problem(q, Limits(1.5, 4.0, np.inf, -2.0, 2.0, joints=2), three_five_three())
+    assert reachable_total(ranged, h, q, q) is None
