@@ -1,0 +1,299 @@
+"""Branch and bound over the directions of the durations: a proved interval of the optimum."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from enum import StrEnum
+from fractions import Fraction
+
+import numpy as np
+
+from ..problem import Problem, TrajgapError
+from .boxes import Boxes, Proof, Proposer
+from .exact import ExactProblem, exact_problem
+from .incumbent import float_problem, prove_feasible
+from .solve import solve
+from .three_piece import STRICT
+
+GAP = 1e-6
+_BATCH = 256
+_STAGES = (0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6)
+_SAFE = Fraction(9, 10)
+_DEEPEST = 44
+
+
+class Outcome(StrEnum):
+    """How a certification ended."""
+
+    CERTIFIED = "certified"
+    """The optimum lies in the interval, whose relative width is at most the gap asked for."""
+    INFEASIBLE = "infeasible"
+    """No durations within their bounds keep the limits: proved."""
+    INTERVAL = "interval"
+    """Stopped early: the optimum lies in the interval, which is wider than asked for."""
+    OPEN = "open"
+    """Nothing is proved."""
+
+
+@dataclass(frozen=True)
+class Progress:
+    """What a long run reports: bounds in s, relative gap, open boxes, boxes per second."""
+
+    lower: float
+    upper: float
+    gap: float
+    open_boxes: int
+    nodes: int
+    rate: float
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """Boxes with their proofs, and boxes still open, for the total ``target``.
+
+    Together they cover the unit square. ``level`` and ``index`` have shape (boxes, 2).
+    """
+
+    target: Fraction
+    boxes: Boxes
+    proofs: tuple[Proof | None, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Certified:
+    """A proved interval of the optimum.
+
+    Attributes
+    ----------
+    problem : ExactProblem
+    outcome : Outcome
+    lower : Fraction
+        No feasible total is below it, s.
+    upper : Fraction or None
+        Total of ``durations``, s; None without an answer.
+    durations : tuple of Fraction or None
+        Feasible, proved in rational numbers.
+    state : State or None
+        Proof of ``lower``: every box carries one.
+    resume : State or None
+        Where a stopped run can go on.
+    nodes, open_boxes : int
+    seconds : float
+    """
+
+    problem: ExactProblem
+    outcome: Outcome
+    lower: Fraction
+    upper: Fraction | None
+    durations: tuple[Fraction, ...] | None
+    state: State | None
+    resume: State | None
+    nodes: int
+    open_boxes: int
+    seconds: float
+
+    @property
+    def gap(self) -> float:
+        """Relative width of the interval, (upper − lower)/upper; inf without an answer."""
+        if self.upper is None:
+            return float("inf")
+        return float((self.upper - self.lower) / self.upper)
+
+    def __str__(self) -> str:
+        if self.outcome is Outcome.INFEASIBLE:
+            head = "no durations within their bounds keep the limits: proved"
+        elif self.upper is None:
+            head = "nothing proved"
+        else:
+            head = (
+                f"optimum in [{float(self.lower):.9f}, {float(self.upper):.9f}] s, "
+                f"gap {self.gap:.1e}, {self.outcome}"
+            )
+        return f"{self.problem.name}: {head}; {self.nodes} boxes, {self.seconds:.1f} s"
+
+
+@dataclass
+class _Run:
+    problem: ExactProblem
+    deadline: float
+    began: float
+    upper: Fraction | None
+    report: Callable[[Progress], None] | None
+    nodes: int = 0
+    lower: Fraction = Fraction(0)
+    state: State | None = None
+    stopped: bool = False
+    pending: State | None = field(default=None)
+
+    def stage(self, target: Fraction, boxes: Boxes, proofs: list[Proof | None]) -> State | None:
+        """Prove that no total is below ``target``; None if stopped, with `pending` set."""
+        proposer = Proposer(self.problem, target)
+        done: list[tuple[Boxes, list[Proof | None]]] = []
+        kept = np.zeros(len(boxes), dtype=np.bool_)
+        for n, proof in enumerate(proofs):
+            kept[n] = proof is not None and proposer.prover.proves(*proof, *boxes.sides(n))
+        done.append((boxes.pick(kept), [p for p, k in zip(proofs, kept, strict=True) if k]))
+        queue = [boxes.pick(~kept)] if not kept.all() else []
+        try:
+            while queue:
+                if time.perf_counter() > self.deadline:
+                    raise KeyboardInterrupt
+                work = queue[-1]
+                head = work.pick(np.arange(min(_BATCH, len(work))))
+                found, axis = proposer.propose(head)
+                proved = np.array([p is not None for p in found])
+                if (head.level[~proved] >= _DEEPEST).any():
+                    raise KeyboardInterrupt
+                queue.pop()
+                if len(work) > _BATCH:
+                    queue.append(work.pick(np.arange(_BATCH, len(work))))
+                self.nodes += len(head)
+                done.append((head.pick(proved), [p for p in found if p is not None]))
+                if not proved.all():
+                    queue.append(head.pick(~proved).halves(axis[~proved]))
+                self._tell(sum(map(len, queue)))
+        except KeyboardInterrupt:
+            self.stopped = True
+            self.pending = _gathered(target, done, queue)
+            return None
+        return _gathered(target, done, [])
+
+    def _tell(self, open_boxes: int) -> None:
+        if self.report is None:
+            return
+        seconds = time.perf_counter() - self.began
+        upper = float("inf") if self.upper is None else float(self.upper)
+        lower = float(self.lower)
+        gap = (upper - lower) / upper if self.upper is not None else float("inf")
+        self.report(Progress(lower, upper, gap, open_boxes, self.nodes, self.nodes / seconds))
+
+
+def _gathered(
+    target: Fraction, done: list[tuple[Boxes, list[Proof | None]]], queue: list[Boxes]
+) -> State:
+    every = [b for b, _ in done] + queue
+    proofs = [p for _, found in done for p in found] + [None] * sum(map(len, queue))
+    boxes = Boxes(np.vstack([b.level for b in every]), np.vstack([b.index for b in every]))
+    return State(target, boxes, tuple(proofs))
+
+
+def covered(problem: ExactProblem) -> str | None:
+    """Why a problem is not covered, or None."""
+    interpolant = problem.interpolant
+    rest = ((1, 0.0), (2, 0.0))
+    if (
+        interpolant.degrees != (3, 5, 3)
+        or interpolant.continuity != (2, 2)
+        or interpolant.prescribed != (rest, (), (), rest)
+        or interpolant.virtual
+    ):
+        return f"{interpolant.name}: only 3-5-3 polynomials, C2, at rest at both ends, are covered"
+    usable = any(x is not None and x.high > 0 for row in problem.limits for x in row)
+    if not usable and not any(problem.duration_lower):
+        return "nothing limits the total from below"
+    return None
+
+
+def certify(
+    problem: Problem | ExactProblem,
+    *,
+    gap: float = GAP,
+    seconds: float = 60.0,
+    seed: int = 0,
+    resume: State | None = None,
+    report: Callable[[Progress], None] | None = None,
+) -> Certified:
+    """Prove an interval of the least total of a 3-5-3 problem with shared durations.
+
+    Parameters
+    ----------
+    problem : Problem or ExactProblem
+        The floats of a `Problem` are taken as exact; `printed_problem` gives the printed one. Its
+        coupling is not looked at.
+    gap : float
+        Relative width of the interval to reach.
+    seconds : float
+        Time limit. At the limit, or at Ctrl-C, the best interval proved so far is returned.
+    seed : int
+        Of the starts of the local solver that finds the answer.
+    resume : State, optional
+        ``resume`` of a stopped run.
+    report : callable, optional
+        Called with a `Progress` after every batch of boxes.
+
+    Returns
+    -------
+    Certified
+
+    Raises
+    ------
+    TrajgapError
+        If the interpolant is not covered, or nothing limits the total.
+    """
+    exact = exact_problem(problem) if isinstance(problem, Problem) else problem
+    why = covered(exact)
+    if why is not None:
+        raise TrajgapError(f"certify: {why}")
+    began = time.perf_counter()
+    answer = _answer(exact, seed)
+    upper = sum(answer, Fraction(0)) if answer is not None else None
+    run = _Run(exact, began + seconds, began, upper, report)
+    boxes = Boxes(np.zeros((1, 2), np.int64), np.zeros((1, 2), np.int64))
+    proofs: list[Proof | None] = [None]
+    if resume is not None:
+        boxes, proofs = resume.boxes, list(resume.proofs)
+    for target in _targets(exact, upper, gap, resume):
+        state = run.stage(target, boxes, proofs)
+        if state is None:
+            break
+        run.state, run.lower = state, target
+        boxes, proofs = state.boxes, list(state.proofs)
+    pending = run.pending
+    left = 0 if pending is None else sum(p is None for p in pending.proofs)
+    if run.state is None:
+        outcome = Outcome.OPEN if upper is None else Outcome.INTERVAL
+    elif upper is None:
+        outcome = Outcome.INFEASIBLE if not run.stopped else Outcome.OPEN
+    else:
+        outcome = Outcome.INTERVAL if run.stopped else Outcome.CERTIFIED
+    return Certified(
+        exact,
+        outcome,
+        run.lower,
+        upper,
+        answer,
+        run.state,
+        pending,
+        run.nodes,
+        left,
+        time.perf_counter() - began,
+    )
+
+
+def _answer(exact: ExactProblem, seed: int) -> tuple[Fraction, ...] | None:
+    solution = solve(float_problem(exact), seed=seed)
+    return None if solution.durations is None else prove_feasible(exact, solution.durations)
+
+
+def _targets(
+    exact: ExactProblem, upper: Fraction | None, gap: float, resume: State | None
+) -> list[Fraction]:
+    """Totals to prove one after the other; above every admissible total if there is no answer."""
+    if upper is None:
+        longest = [u for u in exact.duration_upper if u is not None]
+        if len(longest) < exact.segments:
+            return []
+        return [sum(longest, Fraction(0)) * (1 + STRICT)]
+    last = float(_SAFE) * gap
+    found = [_down(upper * (1 - Fraction(g))) for g in (*(g for g in _STAGES if g > last), last)]
+    return [t for t in found if resume is None or t >= resume.target]
+
+
+def _down(total: Fraction) -> Fraction:
+    """A little less, in 12 decimals after the first digit."""
+    digits = 12 - len(str(int(total))) if total >= 1 else 12
+    while total * 10**digits < 10**11:
+        digits += 1
+    return Fraction(int(total * 10**digits), 10**digits)
