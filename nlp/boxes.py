@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -47,7 +48,7 @@ class Boxes:
     def __len__(self) -> int:
         return len(self.level)
 
-    def pick(self, which: NDArray[np.bool_] | Ints) -> Boxes:
+    def pick(self, which: NDArray[np.bool_] | Ints | slice) -> Boxes:
         """Some of the boxes."""
         return Boxes(self.level[which], self.index[which])
 
@@ -115,7 +116,9 @@ class Proposer:
         self._grid = s
         self._on_grid = [h @ s[None, :] ** np.arange(h.shape[1])[:, None] for h in self._hermite]
         n = self.size - 1
-        self._comb = np.array([[math.comb(j, k) for j in range(n + 1)] for k in range(n + 1)], float)
+        self._comb = np.array(
+            [[math.comb(j, k) for j in range(n + 1)] for k in range(n + 1)], float
+        )
         self._to_bernstein = np.array(
             [[math.comb(i, k) / math.comb(n, k) for k in range(n + 1)] for i in range(n + 1)]
         )
@@ -243,7 +246,7 @@ class Proposer:
                     break
             if proof is None and hopeful[n]:
                 flat = table[n].reshape(table.shape[1], -1)
-                found = _game(flat, axis_hint=None)
+                found = _game(flat)
                 if found is not None:
                     natural = found / np.where(scale[n, :, 0, 0] > 0, scale[n, :, 0, 0], np.inf)
                     proof = self._rounded(n, natural, row_of)
@@ -252,13 +255,13 @@ class Proposer:
             proofs.append(proof)
         return proofs, axis.astype(np.int64)
 
-    def _rounded(self, n: int, weights: Array, row_of: object) -> Proof | None:
+    def _rounded(self, n: int, weights: Array, row_of: Callable[[int, int], Row]) -> Proof | None:
         top = float(weights.max())
         if not top > 0:
             return None
         kept = [int(k) for k in np.flatnonzero(weights > 1e-7 * top)]
         values = tuple(Fraction(f"{weights[k] / top:.{_DIGITS - 1}e}") for k in kept)
-        return tuple(row_of(n, k) for k in kept), values  # type: ignore[operator]
+        return tuple(row_of(n, k) for k in kept), values
 
 
 def _at(coefficients: Array, s: Array) -> Array:
@@ -269,7 +272,7 @@ def _at(coefficients: Array, s: Array) -> Array:
     return total
 
 
-def _game(table: Array, axis_hint: None = None) -> Array | None:
+def _game(table: Array) -> Array | None:
     """Weights ≥ 0 of the rows of ``table`` whose sum has the largest least entry, if positive."""
     rows, columns = table.shape
     cost = np.append(np.zeros(rows), -1.0)

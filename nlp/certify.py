@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ..problem import Problem, TrajgapError
+from ..problem import Problem, TrajgapError, evaluate
 from .boxes import Boxes, Proof, Proposer
 from .exact import ExactProblem, exact_problem
 from .incumbent import float_problem, prove_feasible
@@ -53,12 +54,14 @@ class Progress:
 class State:
     """Boxes with their proofs, and boxes still open, for the total ``target``.
 
-    Together they cover the unit square. ``level`` and ``index`` have shape (boxes, 2).
+    Together the boxes cover the unit square of directions.
     """
 
     target: Fraction
     boxes: Boxes
     proofs: tuple[Proof | None, ...]
+    proved: Fraction = Fraction(0)
+    """Lower bound proved before."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,51 +117,77 @@ class Certified:
         return f"{self.problem.name}: {head}; {self.nodes} boxes, {self.seconds:.1f} s"
 
 
-@dataclass
+class _Stop(Exception):
+    """Time is up, or boxes are as small as they may get."""
+
+
+@dataclass(eq=False)
 class _Run:
     problem: ExactProblem
     deadline: float
     began: float
     upper: Fraction | None
     report: Callable[[Progress], None] | None
-    nodes: int = 0
     lower: Fraction = Fraction(0)
+    nodes: int = 0
     state: State | None = None
+    pending: State | None = None
     stopped: bool = False
-    pending: State | None = field(default=None)
+    better: NDArray[np.float64] | None = None
 
-    def stage(self, target: Fraction, boxes: Boxes, proofs: list[Proof | None]) -> State | None:
-        """Prove that no total is below ``target``; None if stopped, with `pending` set."""
+    def __post_init__(self) -> None:
+        self.floats = float_problem(self.problem)
+
+    def stage(self, target: Fraction, boxes: Boxes, proofs: Sequence[Proof | None]) -> State | None:
+        """Prove that no total is below ``target``.
+
+        None if stopped, with `pending` set, or if durations with a smaller total turned up, with
+        `better` set as well.
+        """
         proposer = Proposer(self.problem, target)
-        done: list[tuple[Boxes, list[Proof | None]]] = []
-        kept = np.zeros(len(boxes), dtype=np.bool_)
-        for n, proof in enumerate(proofs):
-            kept[n] = proof is not None and proposer.prover.proves(*proof, *boxes.sides(n))
-        done.append((boxes.pick(kept), [p for p, k in zip(proofs, kept, strict=True) if k]))
+        kept = np.array(
+            [
+                proof is not None and proposer.prover.proves(*proof, *boxes.sides(n))
+                for n, proof in enumerate(proofs)
+            ]
+        )
+        done = [(boxes.pick(kept), [p for p, k in zip(proofs, kept, strict=True) if k])]
         queue = [boxes.pick(~kept)] if not kept.all() else []
         try:
             while queue:
-                if time.perf_counter() > self.deadline:
-                    raise KeyboardInterrupt
-                work = queue[-1]
-                head = work.pick(np.arange(min(_BATCH, len(work))))
+                head = queue[-1].pick(np.arange(min(_BATCH, len(queue[-1]))))
+                self._look(head, target)
                 found, axis = proposer.propose(head)
                 proved = np.array([p is not None for p in found])
-                if (head.level[~proved] >= _DEEPEST).any():
-                    raise KeyboardInterrupt
-                queue.pop()
-                if len(work) > _BATCH:
-                    queue.append(work.pick(np.arange(_BATCH, len(work))))
-                self.nodes += len(head)
-                done.append((head.pick(proved), [p for p in found if p is not None]))
+                rest = queue.pop().pick(np.s_[len(head) :])
+                if len(rest):
+                    queue.append(rest)
                 if not proved.all():
                     queue.append(head.pick(~proved).halves(axis[~proved]))
+                done.append((head.pick(proved), [p for p in found if p is not None]))
+                self.nodes += len(head)
                 self._tell(sum(map(len, queue)))
-        except KeyboardInterrupt:
-            self.stopped = True
-            self.pending = _gathered(target, done, queue)
+        except (KeyboardInterrupt, _Stop):
+            self.stopped = self.better is None
+            self.pending = _gathered(target, done, queue, self.lower)
             return None
-        return _gathered(target, done, [])
+        return _gathered(target, done, [], self.lower)
+
+    def _look(self, boxes: Boxes, target: Fraction) -> None:
+        """Stop where there is reason to."""
+        if time.perf_counter() > self.deadline or (boxes.level >= _DEEPEST).any():
+            raise _Stop
+        a, b = ((boxes.index + 0.5) * 0.5**boxes.level).T
+        shares = np.stack([a * (1 - b), (1 - a) * (1 - b), b * (1 - a)], axis=1)
+        shares /= (1 - a * b)[:, None]
+        stretch = evaluate(self.floats, shares).stretch
+        stretch = np.maximum(stretch, (self.floats.duration_lower / shares).max(axis=1))
+        outside = (shares * stretch[:, None] > self.floats.duration_upper).any(axis=1)
+        stretch = np.where(outside, np.inf, stretch)
+        best = int(np.argmin(stretch))
+        if stretch[best] < float(target) * (1 - 1e-9):
+            self.better = shares[best] * stretch[best]
+            raise _Stop
 
     def _tell(self, open_boxes: int) -> None:
         if self.report is None:
@@ -171,12 +200,15 @@ class _Run:
 
 
 def _gathered(
-    target: Fraction, done: list[tuple[Boxes, list[Proof | None]]], queue: list[Boxes]
+    target: Fraction,
+    done: list[tuple[Boxes, list[Proof | None]]],
+    queue: list[Boxes],
+    proved: Fraction,
 ) -> State:
     every = [b for b, _ in done] + queue
     proofs = [p for _, found in done for p in found] + [None] * sum(map(len, queue))
     boxes = Boxes(np.vstack([b.level for b in every]), np.vstack([b.index for b in every]))
-    return State(target, boxes, tuple(proofs))
+    return State(target, boxes, tuple(proofs), proved)
 
 
 def covered(problem: ExactProblem) -> str | None:
@@ -237,19 +269,32 @@ def certify(
     if why is not None:
         raise TrajgapError(f"certify: {why}")
     began = time.perf_counter()
-    answer = _answer(exact, seed)
-    upper = sum(answer, Fraction(0)) if answer is not None else None
-    run = _Run(exact, began + seconds, began, upper, report)
-    boxes = Boxes(np.zeros((1, 2), np.int64), np.zeros((1, 2), np.int64))
-    proofs: list[Proof | None] = [None]
+    run = _Run(exact, began + seconds, began, None, report)
+    answer = _answer(run.floats, exact, seed, None)
+    start = np.zeros((1, 2), np.int64)
+    proofs: tuple[Proof | None, ...] = (None,)
+    boxes = Boxes(start, start)
     if resume is not None:
-        boxes, proofs = resume.boxes, list(resume.proofs)
-    for target in _targets(exact, upper, gap, resume):
-        state = run.stage(target, boxes, proofs)
-        if state is None:
-            break
-        run.state, run.lower = state, target
-        boxes, proofs = state.boxes, list(state.proofs)
+        boxes, proofs, run.lower = resume.boxes, resume.proofs, resume.proved
+    searching = True
+    while searching:
+        run.upper = upper = sum(answer, Fraction(0)) if answer is not None else None
+        run.better = None
+        for target in _targets(exact, upper, gap, run.lower):
+            state = run.stage(target, boxes, proofs)
+            if state is None:
+                break
+            run.state, run.lower = state, target
+            boxes, proofs = state.boxes, state.proofs
+        searching = run.better is not None
+        if run.better is not None:
+            assert run.pending is not None
+            boxes, proofs = run.pending.boxes, run.pending.proofs
+            found = _answer(run.floats, exact, seed, run.better)
+            if found is None or (upper is not None and sum(found) >= upper):
+                run.stopped, searching = True, False  # the improvement is too slight to prove
+            else:
+                answer, run.pending = found, None
     pending = run.pending
     left = 0 if pending is None else sum(p is None for p in pending.proofs)
     if run.state is None:
@@ -272,13 +317,18 @@ def certify(
     )
 
 
-def _answer(exact: ExactProblem, seed: int) -> tuple[Fraction, ...] | None:
-    solution = solve(float_problem(exact), seed=seed)
-    return None if solution.durations is None else prove_feasible(exact, solution.durations)
+def _answer(
+    floats: Problem, exact: ExactProblem, seed: int, initial: NDArray[np.float64] | None
+) -> tuple[Fraction, ...] | None:
+    """Feasible durations of the local solver, or else the ones it started from."""
+    solution = solve(floats, seed=seed, initial=initial)
+    tries = [h for h in (solution.durations, initial) if h is not None]
+    found = [h for h in (prove_feasible(exact, h) for h in tries) if h is not None]
+    return min(found, key=sum, default=None)
 
 
 def _targets(
-    exact: ExactProblem, upper: Fraction | None, gap: float, resume: State | None
+    exact: ExactProblem, upper: Fraction | None, gap: float, lower: Fraction
 ) -> list[Fraction]:
     """Totals to prove one after the other; above every admissible total if there is no answer."""
     if upper is None:
@@ -288,7 +338,7 @@ def _targets(
         return [sum(longest, Fraction(0)) * (1 + STRICT)]
     last = float(_SAFE) * gap
     found = [_down(upper * (1 - Fraction(g))) for g in (*(g for g in _STAGES if g > last), last)]
-    return [t for t in found if resume is None or t >= resume.target]
+    return [t for t in found if t > lower] or [found[-1]]
 
 
 def _down(total: Fraction) -> Fraction:

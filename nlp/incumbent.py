@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from fractions import Fraction
@@ -50,7 +51,9 @@ def solve_exactly(
         for i in range(n):
             factor = rows[i][k]
             if i != k and factor:
-                rows[i] = [x - factor * y if y else x for x, y in zip(rows[i], rows[k], strict=True)]
+                rows[i] = [
+                    x - factor * y if y else x for x, y in zip(rows[i], rows[k], strict=True)
+                ]
     return [row[n:] for row in rows]
 
 
@@ -96,7 +99,8 @@ def never_above(coefficients: Sequence[Fraction], bound: Fraction) -> bool:
     """Whether a polynomial is ≤ bound on [0, 1]: Bernstein form, halved until it shows."""
     n = len(coefficients) - 1
     start = [
-        bound - sum(Fraction(math.comb(i, k), math.comb(n, k)) * coefficients[k] for k in range(i + 1))
+        bound
+        - sum(Fraction(math.comb(i, k), math.comb(n, k)) * coefficients[k] for k in range(i + 1))
         for i in range(n + 1)
     ]
     pieces = [(start, 0)]
@@ -108,7 +112,7 @@ def never_above(coefficients: Sequence[Fraction], bound: Fraction) -> bool:
             return False
         left, right, row = [control[0]], [control[-1]], control
         while len(row) > 1:
-            row = [(x + y) / 2 for x, y in zip(row, row[1:], strict=False)]
+            row = [(x + y) / 2 for x, y in itertools.pairwise(row)]
             left.append(row[0])
             right.append(row[-1])
         pieces += [(left, depth + 1), (right[::-1], depth + 1)]
@@ -117,9 +121,7 @@ def never_above(coefficients: Sequence[Fraction], bound: Fraction) -> bool:
 
 def keeps_limits(problem: ExactProblem, durations: Sequence[Fraction]) -> bool:
     """Whether durations are within their bounds and their trajectory keeps every limit, exactly."""
-    for h, low, high in zip(
-        durations, problem.duration_lower, problem.duration_upper, strict=True
-    ):
+    for h, low, high in zip(durations, problem.duration_lower, problem.duration_upper, strict=True):
         if h <= 0 or h < low or (high is not None and h > high):
             return False
     curve = exact_coefficients(problem.interpolant, problem.waypoints, durations)

@@ -8,10 +8,10 @@ derivative h₂ʳq⁽ʳ⁾(s) is α + β₁x + γ₁x² + β₂y + γ₂y² (Her
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
-import math
 
 import numpy as np
 from numpy.typing import NDArray
@@ -215,9 +215,7 @@ def _bernstein(level: int, index: int, size: int) -> Poly:
     return out
 
 
-def never_negative(
-    poly: Poly, a: tuple[int, int], b: tuple[int, int]
-) -> bool:
+def never_negative(poly: Poly, a: tuple[int, int], b: tuple[int, int]) -> bool:
     """Whether the Bernstein coefficients on a dyadic box, given as (level, index), are all ≥ 0."""
     size = poly.shape[0]
     unit = math.lcm(*(Fraction(value).denominator for value in poly.flat))
