@@ -117,6 +117,7 @@ def certificate(certified: Certified) -> dict[str, Any]:
             "durations": None if durations is None else [decimal(h) for h in durations],
         },
         "proof": {
+            "total": decimal(state.target),
             "rows": [[r.kind, r.joint, r.order, r.sign, r.place, r.cap] for r in rows],
             "tree": tree,
             "leaves": leaves,
@@ -150,6 +151,30 @@ def write_certificate(certified: Certified, path: str | Path) -> int:
     text = text.replace(',"leaves"', ',\n"leaves"').replace(',"seal"', ',\n"seal"') + "\n"
     Path(path).write_text(text, encoding="utf-8")
     return len(text.encode())
+
+
+def shipped_folder() -> Path:
+    """Folder of the certificates that come with the package."""
+    return Path(__file__).parent / "certificates"
+
+
+def shipped(problem: ExactProblem) -> dict[str, Any] | None:
+    """Certificate of exactly this problem that comes with the package, not yet proved again.
+
+    Parameters
+    ----------
+    problem : ExactProblem
+
+    Returns
+    -------
+    dict or None
+    """
+    wanted = seal(problem_document(problem))
+    for path in sorted(shipped_folder().glob("*.json")):
+        document: dict[str, Any] = json.loads(path.read_text("utf-8"))
+        if document.get("problem_hash") == wanted:
+            return document
+    return None
 
 
 def _weight(weight: Fraction) -> str:

@@ -177,6 +177,13 @@ class _Run:
         """Stop where there is reason to."""
         if time.perf_counter() > self.deadline or (boxes.level >= _DEEPEST).any():
             raise _Stop
+        better = self.improve(boxes, target)
+        if better is not None:
+            self.better = better
+            raise _Stop
+
+    def improve(self, boxes: Boxes, target: Fraction) -> NDArray[np.float64] | None:
+        """Durations in the direction of a box's centre that are shorter than ``target``, if any."""
         a, b = ((boxes.index + 0.5) * 0.5**boxes.level).T
         shares = np.stack([a * (1 - b), (1 - a) * (1 - b), b * (1 - a)], axis=1)
         shares /= (1 - a * b)[:, None]
@@ -186,8 +193,8 @@ class _Run:
         stretch = np.where(outside, np.inf, stretch)
         best = int(np.argmin(stretch))
         if stretch[best] < float(target) * (1 - 1e-9):
-            self.better = shares[best] * stretch[best]
-            raise _Stop
+            return np.asarray(shares[best] * stretch[best], dtype=np.float64)
+        return None
 
     def _tell(self, open_boxes: int) -> None:
         if self.report is None:

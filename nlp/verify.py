@@ -335,7 +335,8 @@ def _row(
 
 def _covers(poly: Poly, box: tuple[Fraction, ...]) -> bool:
     """Whether all Bernstein coefficients on a box (a low, a high, b low, b high) are ≥ 0."""
-    size = 1 + max(max(key) for key in poly)
+    size = 6  # no row has a higher degree, and raising the degree only tightens the coefficients
+    _need(all(max(key) < size for key in poly), "a row has too high a degree")
     table = [[poly.get((i, j), Fraction(0)) for j in range(size)] for i in range(size)]
     for low, high in (box[2:], box[:2]):
         table = [_control(line, low, high) for line in table]
@@ -382,13 +383,13 @@ def _leaves(tree: str) -> list[tuple[Fraction, ...]]:
 def _prove(document: dict[str, Any]) -> tuple[Fraction, Fraction | None]:
     _need(document["format"] == FORMAT, "unknown format")
     problem, claim, proof = _read(document["problem"]), document["claim"], document["proof"]
-    total = _number(claim["lower"])
-    _need(total > 0, "the lower bound is not positive")
+    total, lower = _number(proof["total"]), _number(claim["lower"])
+    _need(0 < total and lower <= total, "the lower bound exceeds the total that is proved")
     upper = None
     if claim["durations"] is None:
         _need(claim["upper"] is None, "an upper bound without durations")
         longest = [x for x in problem.longest if x is not None]
-        _need(len(longest) == 3 and total > sum(longest), "infeasible only above all upper bounds")
+        _need(len(longest) == 3 and lower > sum(longest), "infeasible only above all upper bounds")
     else:
         h = [_number(x) for x in claim["durations"]]
         upper = _number(claim["upper"])
@@ -405,4 +406,4 @@ def _prove(document: dict[str, Any]) -> tuple[Fraction, Fraction | None]:
         _need(min(weights) >= 0 and any(weights), f"leaf {number}: weights")
         mixed = _plus(*((w, polys[k]) for k, w in zip(which, weights, strict=True)))
         _need(_covers(mixed, box), f"leaf {number} is not proved")
-    return total, upper
+    return lower, upper
