@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,10 +31,11 @@ from .three_piece import (
     times,
 )
 
-MOST_PLACES = 6
+MOST_PLACES = 8
 _GRID = 65
 _SLACK = 1e-13
-_DIGITS = 4
+_DIGITS = (4, 9)
+"""Digits of the weights: few, or enough for steep rows."""
 
 Ints = NDArray[np.int64]
 
@@ -134,6 +136,8 @@ class Proposer:
                 self._limits.append((j, 0, 1, float(high.high)))
             if low is not None:
                 self._limits.append((j, 0, -1, -float(low.low)))
+        # Twice: for the highest and the next highest peak.
+        self._limits = [limit for limit in self._limits for _ in range(2)]
 
     def _maps(self, boxes: Boxes) -> Array:
         """Matrices from power to local Bernstein coefficients, (boxes, 2, size, size)."""
@@ -164,6 +168,13 @@ class Proposer:
                 curves[j, r] = weights @ self._on_grid[r]
             curve = sign * curves[j, r]
             top = curve.argmax(axis=1)
+            if i % 2:  # the next highest of the local maxima
+                edge = np.full((len(boxes), 1), -np.inf)
+                before = np.hstack([edge, curve[:, :-1]])
+                after = np.hstack([curve[:, 1:], edge])
+                peak = np.where((curve >= before) & (curve >= after), curve, -np.inf)
+                peak[each, top] = -np.inf
+                top = np.where(np.isfinite(peak.max(axis=1)), peak.argmax(axis=1), top)
             s = self._grid[top]
             # Two Newton steps towards the interior extremum, kept near the grid's best.
             for _ in range(2):
@@ -249,19 +260,22 @@ class Proposer:
                 found = _game(flat)
                 if found is not None:
                     natural = found / np.where(scale[n, :, 0, 0] > 0, scale[n, :, 0, 0], np.inf)
-                    proof = self._rounded(n, natural, row_of)
-                    if proof is not None and not self.prover.proves(*proof, *sides):
-                        proof = None
+                    for digits in _DIGITS:
+                        tried = _rounded(natural, digits, partial(row_of, n))
+                        if tried is not None and self.prover.proves(*tried, *sides):
+                            proof = tried
+                            break
             proofs.append(proof)
         return proofs, axis.astype(np.int64)
 
-    def _rounded(self, n: int, weights: Array, row_of: Callable[[int, int], Row]) -> Proof | None:
-        top = float(weights.max())
-        if not top > 0:
-            return None
-        kept = [int(k) for k in np.flatnonzero(weights > 1e-7 * top)]
-        values = tuple(Fraction(f"{weights[k] / top:.{_DIGITS - 1}e}") for k in kept)
-        return tuple(row_of(n, k) for k in kept), values
+
+def _rounded(weights: Array, digits: int, row_of: Callable[[int], Row]) -> Proof | None:
+    top = float(weights.max())
+    if not top > 0:
+        return None
+    kept = [int(k) for k in np.flatnonzero(weights > 10.0 ** (-digits - 3) * top)]
+    values = tuple(Fraction(f"{weights[k] / top:.{digits - 1}e}") for k in kept)
+    return tuple(row_of(k) for k in kept), values
 
 
 def _at(coefficients: Array, s: Array) -> Array:

@@ -20,7 +20,7 @@ from .three_piece import STRICT
 
 GAP = 1e-6
 _BATCH = 256
-_STAGES = (0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6)
+_STAGES = tuple(x * 10.0**-k for k in range(1, 9) for x in (3.0, 1.0))
 _SAFE = Fraction(9, 10)
 _DEEPEST = 44
 

@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 Poly = NDArray[np.object_]
 """Coefficients of aⁱbʲ, exact."""
 
-PLACES = 2**14
+PLACES = 2**20
 """Places on the quintic are multiples of 1/PLACES."""
 STRICT = Fraction(1, 2**40)
 """Relaxation that makes a limit without the total time strict."""

@@ -18,7 +18,7 @@ from typing import Any
 FORMAT = "trajgap-certificate-1"
 PI = (Fraction(314159265358979, 10**14), Fraction(314159265358980, 10**14))
 STRICT = Fraction(1, 2**40)
-PLACES = 2**14
+PLACES = 2**20
 _NUMBER = re.compile(r"-?\d{1,400}(/[1-9]\d{0,400}|\.\d{1,400})?(e-?\d{1,2})?")
 _LARGEST = 200_000_000
 
@@ -384,7 +384,7 @@ def _prove(document: dict[str, Any]) -> tuple[Fraction, Fraction | None]:
     _need(document["format"] == FORMAT, "unknown format")
     problem, claim, proof = _read(document["problem"]), document["claim"], document["proof"]
     total, lower = _number(proof["total"]), _number(claim["lower"])
-    _need(0 < total and lower <= total, "the lower bound exceeds the total that is proved")
+    _need(total > 0 and lower <= total, "the lower bound exceeds the total that is proved")
     upper = None
     if claim["durations"] is None:
         _need(claim["upper"] is None, "an upper bound without durations")
