@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..problem import Problem, TrajgapError, evaluate
+from ..problem import Problem, TrajgapError, Verdict, check, evaluate
 from .boxes import Boxes, Proof, Proposer
 from .exact import ExactProblem, exact_problem
 from .incumbent import float_problem, prove_feasible
@@ -20,6 +20,9 @@ from .three_piece import STRICT
 
 GAP = 1e-6
 _BATCH = 256
+_LOOKS = 3
+_ENDLESS = Fraction(10**12)
+"""A total that stands for "whatever the total": only rows without it may be used."""
 _STAGES = tuple(x * 10.0**-k for k in range(1, 9) for x in (3.0, 1.0))
 _SAFE = Fraction(9, 10)
 _DEEPEST = 44
@@ -144,7 +147,8 @@ class _Run:
         None if stopped, with `pending` set, or if durations with a smaller total turned up, with
         `better` set as well.
         """
-        proposer = Proposer(self.problem, target)
+        rows = self.problem if target < _ENDLESS else _positions_alone(self.problem)
+        proposer = Proposer(rows, target)
         kept = np.array(
             [
                 proof is not None and proposer.prover.proves(*proof, *boxes.sides(n))
@@ -191,9 +195,13 @@ class _Run:
         stretch = np.maximum(stretch, (self.floats.duration_lower / shares).max(axis=1))
         outside = (shares * stretch[:, None] > self.floats.duration_upper).any(axis=1)
         stretch = np.where(outside, np.inf, stretch)
-        best = int(np.argmin(stretch))
-        if stretch[best] < float(target) * (1 - 1e-9):
-            return np.asarray(shares[best] * stretch[best], dtype=np.float64)
+        for best in np.argsort(stretch)[:_LOOKS]:
+            if not stretch[best] < float(target) * (1 - 1e-9):
+                break
+            durations = np.asarray(shares[best] * stretch[best], dtype=np.float64)
+            # The stretch knows nothing of positions.
+            if check(self.floats, durations).verdict is Verdict.PASS:
+                return durations
         return None
 
     def _tell(self, open_boxes: int) -> None:
@@ -341,11 +349,18 @@ def _targets(
     if upper is None:
         longest = [u for u in exact.duration_upper if u is not None]
         if len(longest) < exact.segments:
-            return []
+            anywhere = (*exact.position_lower, *exact.position_upper)
+            return [_ENDLESS] if any(x is not None for x in anywhere) else []
         return [sum(longest, Fraction(0)) * (1 + STRICT)]
     last = float(_SAFE) * gap
     found = [_down(upper * (1 - Fraction(g))) for g in (*(g for g in _STAGES if g > last), last)]
     return [t for t in found if t > lower] or [found[-1]]
+
+
+def _positions_alone(exact: ExactProblem) -> ExactProblem:
+    """The problem without anything that more time could mend."""
+    nothing = ((None, None, None),) * len(exact.joints)
+    return replace(exact, limits=nothing, duration_lower=(Fraction(0),) * exact.segments)
 
 
 def _down(total: Fraction) -> Fraction:

@@ -6,6 +6,7 @@ import copy
 import json
 from fractions import Fraction
 from functools import lru_cache
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -227,9 +228,7 @@ def test_a_malformed_file_is_refused(tmp_path: Path, text: str) -> None:
 
 
 def test_the_verifier_imports_nothing_of_ours() -> None:
-    import trajgap.nlp.verify as module
-
-    source = Path(str(module.__file__)).read_text("utf-8")
+    source = Path(str(import_module("trajgap.nlp.verify").__file__)).read_text("utf-8")
     assert "trajgap." not in source.replace("trajgap-certificate", "")
     assert "from ." not in source
     assert "numpy" not in source
