@@ -11,6 +11,7 @@ from typing import Any
 from ..problem import TrajgapError
 from .certify import Certified, State
 from .exact import ExactProblem, Real
+from .rest_to_rest import SegmentBound
 from .three_piece import Row
 from .verify import FORMAT, seal
 
@@ -91,9 +92,34 @@ def certificate(certified: Certified) -> dict[str, Any]:
     TrajgapError
         If nothing is proved.
     """
-    state = certified.state
-    if state is None:
+    if certified.segments is not None:
+        proof = _closed_form(certified.segments)
+    elif certified.state is not None:
+        proof = _boxes(certified.state)
+    else:
         raise TrajgapError("certificate: nothing is proved; give more time")
+    problem = problem_document(certified.problem)
+    durations, upper = certified.durations, certified.upper
+    document: dict[str, Any] = {
+        "format": FORMAT,
+        "made_by": f"trajgap {importlib.metadata.version('trajgap')}",
+        "problem": problem,
+        "problem_hash": seal(problem),
+        "claim": {
+            "lower": decimal(certified.lower),
+            "upper": None if upper is None else decimal(upper),
+            "durations": None if durations is None else [decimal(h) for h in durations],
+        },
+        "proof": proof,
+    }
+    return {**document, "seal": seal(document)}
+
+
+def _closed_form(bounds: tuple[SegmentBound, ...]) -> dict[str, Any]:
+    return {"segments": [[b.joint, b.order, b.place, decimal(b.least)] for b in bounds]}
+
+
+def _boxes(state: State) -> dict[str, Any]:
     tree, order = _tree(state)
     rows: dict[Row, int] = {}
     leaves = []
@@ -104,26 +130,12 @@ def certificate(certified: Certified) -> dict[str, Any]:
         for row, weight in zip(*proof, strict=True):
             leaf += [rows.setdefault(row, len(rows)), _weight(weight)]
         leaves.append(leaf)
-    problem = problem_document(certified.problem)
-    durations, upper = certified.durations, certified.upper
-    document: dict[str, Any] = {
-        "format": FORMAT,
-        "made_by": f"trajgap {importlib.metadata.version('trajgap')}",
-        "problem": problem,
-        "problem_hash": seal(problem),
-        "claim": {
-            "lower": decimal(state.target),
-            "upper": None if upper is None else decimal(upper),
-            "durations": None if durations is None else [decimal(h) for h in durations],
-        },
-        "proof": {
-            "total": decimal(state.target),
-            "rows": [[r.kind, r.joint, r.order, r.sign, r.place, r.cap] for r in rows],
-            "tree": tree,
-            "leaves": leaves,
-        },
+    return {
+        "total": decimal(state.target),
+        "rows": [[r.kind, r.joint, r.order, r.sign, r.place, r.cap] for r in rows],
+        "tree": tree,
+        "leaves": leaves,
     }
-    return {**document, "seal": seal(document)}
 
 
 def write_certificate(certified: Certified, path: str | Path) -> int:

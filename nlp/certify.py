@@ -15,6 +15,7 @@ from ..problem import Problem, TrajgapError, Verdict, check, evaluate
 from .boxes import Boxes, Proof, Proposer
 from .exact import ExactProblem, exact_problem
 from .incumbent import float_problem, prove_feasible
+from .rest_to_rest import SegmentBound, closed_form, is_rest_to_rest
 from .solve import solve
 from .three_piece import STRICT
 
@@ -87,6 +88,8 @@ class Certified:
         Where a stopped run can go on.
     nodes, open_boxes : int
     seconds : float
+    segments : tuple of SegmentBound or None
+        Proof of ``lower`` in closed form, instead of ``state``.
     """
 
     problem: ExactProblem
@@ -99,6 +102,7 @@ class Certified:
     nodes: int
     open_boxes: int
     seconds: float
+    segments: tuple[SegmentBound, ...] | None = None
 
     @property
     def gap(self) -> float:
@@ -229,6 +233,8 @@ def _gathered(
 def covered(problem: ExactProblem) -> str | None:
     """Why a problem is not covered, or None."""
     interpolant = problem.interpolant
+    if is_rest_to_rest(problem):
+        return None
     rest = ((1, 0.0), (2, 0.0))
     if (
         interpolant.degrees != (3, 5, 3)
@@ -236,7 +242,7 @@ def covered(problem: ExactProblem) -> str | None:
         or interpolant.prescribed != (rest, (), (), rest)
         or interpolant.virtual
     ):
-        return f"{interpolant.name}: only 3-5-3 polynomials, C2, at rest at both ends, are covered"
+        return f"{interpolant.name}: only rest-to-rest polynomials and C2 3-5-3 are covered"
     usable = any(x is not None and x.high > 0 for row in problem.limits for x in row)
     if not usable and not any(problem.duration_lower):
         return "nothing limits the total from below"
@@ -252,7 +258,9 @@ def certify(
     resume: State | None = None,
     report: Callable[[Progress], None] | None = None,
 ) -> Certified:
-    """Prove an interval of the least total of a 3-5-3 problem with shared durations.
+    """Prove an interval of the least total of a problem with shared durations.
+
+    Covered are C2 3-5-3 polynomials, and rest-to-rest polynomials in closed form.
 
     Parameters
     ----------
@@ -284,6 +292,8 @@ def certify(
     if why is not None:
         raise TrajgapError(f"certify: {why}")
     began = time.perf_counter()
+    if is_rest_to_rest(exact):
+        return _in_closed_form(exact, gap, began)
     run = _Run(exact, began + seconds, began, None, report)
     answer = _answer(run.floats, exact, seed, None)
     start = np.zeros((1, 2), np.int64)
@@ -329,6 +339,33 @@ def certify(
         run.nodes,
         left,
         time.perf_counter() - began,
+    )
+
+
+def _in_closed_form(exact: ExactProblem, gap: float, began: float) -> Certified:
+    bounds, durations = closed_form(exact)
+    lower = sum((b.least for b in bounds), Fraction(0))
+    answer = prove_feasible(exact, np.array(durations))
+    upper = sum(answer, Fraction(0)) if answer is not None else None
+    late = any(
+        u is not None and b.least > u for b, u in zip(bounds, exact.duration_upper, strict=True)
+    )
+    if upper is None:
+        outcome = Outcome.INFEASIBLE if late else Outcome.OPEN
+    else:
+        outcome = Outcome.CERTIFIED if upper - lower <= upper * Fraction(gap) else Outcome.INTERVAL
+    return Certified(
+        exact,
+        outcome,
+        lower,
+        upper,
+        answer,
+        None,
+        None,
+        0,
+        0,
+        time.perf_counter() - began,
+        tuple(bounds) if upper is not None or late else None,
     )
 
 

@@ -119,6 +119,16 @@ def never_above(coefficients: Sequence[Fraction], bound: Fraction) -> bool:
     return True
 
 
+def _smooth(pieces: list[list[Fraction]], durations: Sequence[Fraction]) -> bool:
+    """Whether the acceleration is continuous: no jerk limit survives a jump of it."""
+    ends = [
+        sum(p * (p - 1) * c for p, c in enumerate(piece)) / h**2
+        for piece, h in zip(pieces, durations, strict=True)
+    ]
+    starts = [2 * piece[2] / h**2 for piece, h in zip(pieces, durations, strict=True)]
+    return ends[:-1] == starts[1:]
+
+
 def keeps_limits(problem: ExactProblem, durations: Sequence[Fraction]) -> bool:
     """Whether durations are within their bounds and their trajectory keeps every limit, exactly."""
     for h, low, high in zip(durations, problem.duration_lower, problem.duration_upper, strict=True):
@@ -128,6 +138,8 @@ def keeps_limits(problem: ExactProblem, durations: Sequence[Fraction]) -> bool:
     if curve is None:
         return False
     for j, pieces in enumerate(curve):
+        if problem.limits[j][2] is not None and not _smooth(pieces, durations):
+            return False
         low, high = problem.position_lower[j], problem.position_upper[j]
         for piece, h in zip(pieces, durations, strict=True):
             if high is not None and not never_above(piece, high.low):

@@ -131,15 +131,24 @@ class _Problem:
     position: list[list[tuple[Fraction, Fraction] | None]]
     shortest: list[Fraction]
     longest: list[Fraction | None]
+    degree: int | None  # of every rest-to-rest segment; None: 3-5-3
 
 
 def _read(data: dict[str, Any]) -> _Problem:
-    rest = [[1, "0"], [2, "0"]]
-    _need(data["degrees"] == [3, 5, 3] and data["continuity"] == [2, 2], "not C2 3-5-3")
-    _need(data["prescribed"] == [rest, [], [], rest] and data["virtual"] == [], "not at rest")
+    degrees, n = [_whole(d, 1, 9) for d in data["degrees"]], len(data["degrees"])
+    rest = [[r, "0"] for r in range(1, (degrees[0] + 1) // 2)]
+    declared = (data["continuity"], data["prescribed"], data["virtual"])
+    if degrees == [3, 5, 3] and declared[0] == [2, 2]:
+        rest = [[1, "0"], [2, "0"]]
+        _need(declared == ([2, 2], [rest, [], [], rest], []), "3-5-3, but not at rest at the ends")
+        degree = None
+    else:
+        _need(declared == ([0] * (n - 1), [rest] * (n + 1), []), "declaration not covered")
+        _need(degrees == [2 * len(rest) + 1] * n and rest != [], "declaration not covered")
+        degree = degrees[0]
     joints = len(data["joints"])
     q = [[_number(x) for x in row] for row in data["waypoints"]]
-    _need(len(q) == 4 and joints > 0 and all(len(r) == joints for r in q), "way-points: shape")
+    _need(len(q) == n + 1 and joints > 0 and all(len(r) == joints for r in q), "way-points: shape")
     limits = [[_bounds(x) for x in row] for row in data["limits"]]
     _need(len(limits) == joints and all(len(r) == 3 for r in limits), "limits: shape")
     _need(all(x is None or x[0] >= 0 for r in limits for x in r), "limits: negative")
@@ -147,9 +156,9 @@ def _read(data: dict[str, Any]) -> _Problem:
     _need(all(len(side) == joints for side in position), "position limits: shape")
     shortest = [_number(x) for x in data["duration_lower"]]
     longest = [None if x is None else _number(x) for x in data["duration_upper"]]
-    _need(len(shortest) == len(longest) == 3 and min(shortest) >= 0, "duration bounds")
+    _need(len(shortest) == len(longest) == n and min(shortest) >= 0, "duration bounds")
     _need(all(x is None or x > 0 for x in longest), "duration bounds")
-    return _Problem(q, limits, position, shortest, longest)
+    return _Problem(q, limits, position, shortest, longest, degree)
 
 
 def _spline(q: Sequence[Fraction], h: Sequence[Fraction]) -> list[list[Fraction]]:
@@ -185,6 +194,27 @@ def _spline(q: Sequence[Fraction], h: Sequence[Fraction]) -> list[list[Fraction]
     return [values[0:4], values[4:10], values[10:14]]
 
 
+def _from_rest(degree: int) -> list[Fraction]:
+    """From 0 to 1 with half of the derivatives 0 at both ends: the integral of (s(1 − s))ᵐ."""
+    m = degree // 2
+    inside = [Fraction(0)] * m + [Fraction((-1) ** k * comb(m, k)) for k in range(m + 1)]
+    total = sum(c / (p + 1) for p, c in enumerate(inside))
+    return [Fraction(0)] + [c / (p + 1) / total for p, c in enumerate(inside)]
+
+
+def _pieces(
+    problem: _Problem, q: Sequence[Fraction], h: Sequence[Fraction]
+) -> list[list[Fraction]]:
+    if problem.degree is None:
+        return _spline(q, h)
+    form = _from_rest(problem.degree)
+    pieces = []
+    for k, x in enumerate(h):
+        piece = [(q[k + 1] - q[k]) * c / x**p for p, c in enumerate(form)]
+        pieces.append([piece[0] + q[k], *piece[1:]])
+    return pieces
+
+
 def _derivative(poly: Sequence[Fraction], order: int) -> list[Fraction]:
     return [perm(p, order) * c for p, c in enumerate(poly)][order:] or [Fraction(0)]
 
@@ -216,7 +246,12 @@ def _check_answer(problem: _Problem, h: Sequence[Fraction]) -> None:
         inside = x > 0 and x >= problem.shortest[k] and (top is None or x <= top)
         _need(inside, f"answer: duration {k + 1} is outside its bounds")
     for j, limits in enumerate(problem.limits):
-        for k, piece in enumerate(_spline([row[j] for row in problem.waypoints], h)):
+        pieces = _pieces(problem, [row[j] for row in problem.waypoints], h)
+        bends = [_derivative(piece, 2) for piece in pieces]
+        for k in range(len(h) - 1):
+            end = sum(c * h[k] ** p for p, c in enumerate(bends[k]))
+            _need(limits[2] is None or end == bends[k + 1][0], "answer: the acceleration jumps")
+        for k, piece in enumerate(pieces):
             bounds = [(r, s, x[0]) for r, x in enumerate(limits, 1) if x for s in (1, -1)]
             low, high = problem.position[0][j], problem.position[1][j]
             bounds += [(0, 1, high[0])] if high else []
@@ -380,14 +415,43 @@ def _leaves(tree: str) -> list[tuple[Fraction, ...]]:
     return found
 
 
+def _least(problem: _Problem, degree: int, bounds: Any) -> list[Fraction]:
+    """Least duration of every rest-to-rest segment: limit·hʳ ≥ |Δq|·|derivative at a place|."""
+    _need(len(bounds) == len(problem.longest), "one bound per segment")
+    out = []
+    for k, (joint, order, place, text) in enumerate(bounds):
+        x = _number(text)
+        if joint == -1:
+            _need(x <= problem.shortest[k], f"segment {k + 1}: above its lower bound")
+        else:
+            _whole(joint, 0, len(problem.limits) - 1)
+            bound = problem.limits[joint][_whole(order, 1, 3) - 1]
+            _need(bound is not None and bound[1] > 0, "a limit that is not there")
+            assert bound is not None
+            s = Fraction(_whole(place, 0, PLACES), PLACES)
+            shape = _derivative(_from_rest(degree), order)
+            peak = abs(sum(c * s**p for p, c in enumerate(shape)))
+            way = abs(problem.waypoints[k + 1][joint] - problem.waypoints[k][joint])
+            proved = x >= 0 and bound[1] * x**order <= way * peak
+            _need(proved, f"segment {k + 1}: its least duration is not proved")
+        out.append(x)
+    return out
+
+
 def _prove(document: dict[str, Any]) -> tuple[Fraction, Fraction | None]:
     _need(document["format"] == FORMAT, "unknown format")
     problem, claim, proof = _read(document["problem"]), document["claim"], document["proof"]
-    total, lower = _number(proof["total"]), _number(claim["lower"])
-    _need(total > 0 and lower <= total, "the lower bound exceeds the total that is proved")
+    least = None if problem.degree is None else _least(problem, problem.degree, proof["segments"])
+    total = _number(proof["total"]) if least is None else sum(least, Fraction(0))
+    lower = _number(claim["lower"])
+    _need(total >= 0 and lower <= total, "the lower bound exceeds the total that is proved")
     upper = None
     if claim["durations"] is None:
         _need(claim["upper"] is None, "an upper bound without durations")
+        if least is not None:
+            late = any(u is not None and x > u for x, u in zip(least, problem.longest, strict=True))
+            _need(late, "infeasible only if a segment needs more than its upper bound")
+            return lower, upper
         longest = [x for x in problem.longest if x is not None]
         timeless = all(row[5] >= 0 or (row[0] == "place" and row[2] == 0) for row in proof["rows"])
         above = len(longest) == 3 and lower > sum(longest)
@@ -395,8 +459,14 @@ def _prove(document: dict[str, Any]) -> tuple[Fraction, Fraction | None]:
     else:
         h = [_number(x) for x in claim["durations"]]
         upper = _number(claim["upper"])
-        _need(len(h) == 3 and sum(h) <= upper, "the durations exceed the upper bound")
+        _need(
+            len(h) == len(problem.longest) and sum(h) <= upper,
+            "the durations exceed the upper bound",
+        )
         _check_answer(problem, h)
+    if least is not None:
+        return lower, upper
+    _need(total > 0, "the total is not positive")
     quintics = [_quintic(list(column)) for column in zip(*problem.waypoints, strict=True)]
     polys = [_row(problem, quintics, row, total) for row in proof["rows"]]
     boxes = _leaves(proof["tree"])

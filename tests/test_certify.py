@@ -9,7 +9,7 @@ from importlib import import_module
 
 import numpy as np
 import pytest
-from trajgap.nlp import three_piece
+from trajgap.nlp import solve, three_piece
 from trajgap.nlp.boxes import Boxes
 from trajgap.nlp.certificate import certificate, decimal, problem_document, shipped
 from trajgap.nlp.certify import Certified, Outcome, Progress, certify
@@ -28,6 +28,7 @@ from trajgap.problem import (
     fit,
     load_case,
     published_ids,
+    rest_to_rest,
     three_five_three,
 )
 
@@ -242,6 +243,51 @@ def test_limits_that_no_duration_meets_are_proved_infeasible() -> None:
     assert "proved" in str(found)
 
 
+@pytest.mark.parametrize("degree", [3, 5, 7, 9])
+def test_rest_to_rest_is_certified_in_closed_form(degree: int) -> None:
+    q = np.array([[0.3, -0.2], [1.4, 0.1], [1.4, 2.3], [0.9, 2.2]])
+    # A cubic's acceleration jumps at the way-points, which no jerk limit survives.
+    jerk = np.inf if degree == 3 else 9.0
+    limits = Limits([1.1, 0.8], [2.0, np.inf], [np.inf, jerk])
+    problem = Problem(q, limits, rest_to_rest(3, degree), (0.2, 0.2, 0.4))
+    found = certify(problem)
+    assert found.outcome is Outcome.CERTIFIED
+    assert found.gap < 1e-9
+    solved = solve(problem)
+    assert float(found.lower) == pytest.approx(solved.total_time, rel=1e-8)
+    document = certificate(found)
+    verdict = verify(document)
+    assert verdict.proves
+    assert verdict.lower == found.lower
+    for k in range(3):
+        wrong = copy.deepcopy(document)
+        least = Fraction(wrong["proof"]["segments"][k][3]) * (1 + Fraction(1, 10**9))
+        wrong["proof"]["segments"][k][3] = decimal(least)
+        assert not verify(wrong).proves
+    document["claim"]["lower"] = decimal(found.lower * (1 + Fraction(1, 10**12)))
+    assert "exceeds the total" in verify(document).reason
+
+
+def test_a_jump_of_the_acceleration_keeps_no_jerk_limit() -> None:
+    q = [[0.0], [1.0], [1.5]]
+    jumps = Problem(q, Limits(1.0, jerk=100.0), rest_to_rest(2, 3))
+    assert certify(jumps).upper is None
+    document = certificate(certify(Problem(q, Limits(1.0), rest_to_rest(2, 3))))
+    assert verify(document).proves
+    document["problem"]["limits"][0][2] = "1000000"
+    assert "acceleration jumps" in verify(document).reason
+
+
+def test_a_rest_to_rest_segment_that_is_too_short_is_proved_infeasible() -> None:
+    problem = Problem([[0.0], [1.0]], Limits(1.0), rest_to_rest(1, 5), 0.1, 1.8)
+    found = certify(problem)
+    assert found.outcome is Outcome.INFEASIBLE
+    document = certificate(found)
+    assert verify(document).proves
+    document["problem"]["duration_upper"] = ["1.9"]
+    assert not verify(document).proves
+
+
 def test_positions_that_no_direction_keeps_are_proved_infeasible() -> None:
     # It enters the middle piece from below at a way-point that is too high already.
     q = np.array([[0.0], [1.0], [0.75], [0.0]])
@@ -257,7 +303,7 @@ def test_positions_that_no_direction_keeps_are_proved_infeasible() -> None:
 
 def test_what_is_not_covered_is_said() -> None:
     q = np.array([[0.2], [1.1], [-0.4], [0.7]])
-    with pytest.raises(TrajgapError, match="only 3-5-3"):
+    with pytest.raises(TrajgapError, match="only rest-to-rest"):
         certify(Problem(q, Limits(1.0), cubic_spline(3)))
     with pytest.raises(TrajgapError, match="nothing limits"):
         certify(Problem(q, Limits(), three_five_three()))
