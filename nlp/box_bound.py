@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from trajgap.problem import QUANTITIES, Problem
 
+from ..problem import QUANTITIES, Problem
 from .interval import EPS, Array, Ball, enclose_spline, place_basis, quotient_power, raised
 from .places import Rows, linear_program, rows_at
 
