@@ -194,20 +194,20 @@ class Proposer:
         chosen = np.argsort(-heavy, axis=1)[:, :count]
         s = place[each[:, None], chosen] / PLACES
         coefficients = np.zeros((len(boxes), len(self._caps), count, 6))
-        order = np.array([r for _, r, _, _ in self._limits])[chosen]
-        joint = np.array([j for j, _, _, _ in self._limits])[chosen]
-        sign = np.array([g for _, _, g, _ in self._limits], dtype=float)[chosen]
-        limit = np.array([v for _, _, _, v in self._limits])[chosen]
+        orders = np.array([r for _, r, _, _ in self._limits])[chosen]
+        joints = np.array([j for j, _, _, _ in self._limits])[chosen]
+        signs = np.array([g for _, _, g, _ in self._limits], dtype=float)[chosen]
+        bounds = np.array([v for _, _, _, v in self._limits])[chosen]
         for r in self._orders:
             powers = s[..., None] ** np.arange(self._hermite[r].shape[1])
-            weights = (powers @ self._hermite[r].T) * self._steps.T[joint] * sign[..., None]
+            weights = (powers @ self._hermite[r].T) * self._steps.T[joints] * signs[..., None]
             if r == 0:
-                weights[..., 0] += sign * self._start[joint]
+                weights[..., 0] += signs * self._start[joints]
             for c, cap in enumerate(self._cap_values):
-                scale = np.where(order > 0, limit * cap**r, 1.0)
-                right = np.where(order > 0, 1.0, limit + float(STRICT))
+                scale = np.where(orders > 0, bounds * cap**r, 1.0)
+                right = np.where(orders > 0, 1.0, bounds + float(STRICT))
                 part = np.concatenate([weights / scale[..., None], -right[..., None]], axis=-1)
-                coefficients[:, c] = np.where((order == r)[..., None], part, coefficients[:, c])
+                coefficients[:, c] = np.where((orders == r)[..., None], part, coefficients[:, c])
         return coefficients, chosen, place[each[:, None], chosen]
 
     def propose(self, boxes: Boxes) -> tuple[list[Proof | None], Ints]:
@@ -302,4 +302,5 @@ def _game(table: Array) -> Array | None:
     )
     if result.status != 0 or result.x[-1] < -_SLACK:
         return None
-    return np.maximum(result.x[:-1], 0.0)
+    weights: Array = np.maximum(result.x[:-1], 0.0)
+    return weights

@@ -140,11 +140,11 @@ def keeps_limits(problem: ExactProblem, durations: Sequence[Fraction]) -> bool:
     for j, pieces in enumerate(curve):
         if problem.limits[j][2] is not None and not _smooth(pieces, durations):
             return False
-        low, high = problem.position_lower[j], problem.position_upper[j]
+        floor, roof = problem.position_lower[j], problem.position_upper[j]
         for piece, h in zip(pieces, durations, strict=True):
-            if high is not None and not never_above(piece, high.low):
+            if roof is not None and not never_above(piece, roof.low):
                 return False
-            if low is not None and not never_above([-c for c in piece], -low.high):
+            if floor is not None and not never_above([-c for c in piece], -floor.high):
                 return False
             derivative, scale = piece, Fraction(1)
             for limit in problem.limits[j]:

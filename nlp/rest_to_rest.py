@@ -83,7 +83,7 @@ def _root_below(value: Fraction, order: int) -> Fraction:
     whole = math.floor(guess * 10.0**digits) + 8
     while Fraction(whole, 1) ** order > value * Fraction(10) ** (digits * order):
         whole -= 1
-    return whole / Fraction(10) ** digits
+    return Fraction(whole / Fraction(10) ** digits)
 
 
 def closed_form(problem: ExactProblem) -> tuple[list[SegmentBound], list[float]]:

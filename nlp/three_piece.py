@@ -218,8 +218,10 @@ def _bernstein(level: int, index: int, size: int) -> Poly:
 def never_negative(poly: Poly, a: tuple[int, int], b: tuple[int, int]) -> bool:
     """Whether the Bernstein coefficients on a dyadic box, given as (level, index), are all ≥ 0."""
     size = poly.shape[0]
-    unit = math.lcm(*(Fraction(value).denominator for value in poly.flat))
-    whole = np.array([int(value * unit) for value in poly.flat], dtype=object).reshape(size, size)
+    entries = [Fraction(value) for row in poly.tolist() for value in row]
+    unit = math.lcm(*(value.denominator for value in entries))
+    integers = [int(value * unit) for value in entries]
+    whole = np.array(integers, dtype=np.object_).reshape(size, size)
     local = _bernstein(*a, size) @ whole @ _bernstein(*b, size).T
     return bool(min(local.flat) >= 0)
 
