@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, Protocol, TypeVar
+from typing import ClassVar, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 
@@ -44,3 +44,27 @@ class Algorithm(Protocol[S]):
         self, state: S, bounds: Bounds, rng: np.random.Generator, objective: Objective, /
     ) -> S:
         """Move the search on by one iteration."""
+
+
+@runtime_checkable
+class Search(Protocol):
+    """A frozen record of settings for a search that owns its loop, such as a library's."""
+
+    @property
+    def kind(self) -> str:
+        """Name of the search."""
+
+    @property
+    def iterations(self) -> int:
+        """Blocks of ``per_iteration`` evaluations after the first one."""
+
+    @property
+    def per_iteration(self) -> int:
+        """Evaluations that count as one iteration."""
+
+    @property
+    def penalty(self) -> float:
+        """Fitness of an infeasible position."""
+
+    def search(self, bounds: Bounds, rng: np.random.Generator, objective: Objective) -> None:
+        """Search until done or until the objective stops it; what counts is what it judged."""

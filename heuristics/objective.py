@@ -91,6 +91,10 @@ class DeathPenalty:
                 "derivatives per joint free, heuristics search durations only; prescribe them"
             )
 
+    def decode(self, durations: Array) -> Array:
+        """Durations that positions stand for: themselves."""
+        return durations
+
     def __call__(self, durations: Array) -> Array:
         """Fitness of a batch of duration vectors.
 

@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from .algorithm import Algorithm
+from .algorithm import Algorithm, Search
 from .objective import Array
+from .repair import Handling
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,7 +20,7 @@ class Run:
     ----------
     algorithm : str
         Kind of the algorithm.
-    settings : Algorithm
+    settings : Algorithm or Search
         The record that ran, with the number of iterations that it ran.
     problem : str
         Name of the problem.
@@ -27,7 +28,8 @@ class Run:
     stream : tuple of int
         Spawn key of the random stream under the seed; empty for the seed's own.
     durations : ndarray, shape (segments,)
-        Best segment durations as the algorithm left them, s.
+        Best segment durations as the algorithm left them, s; under a stretch, what its best
+        position stands for.
     reported_time : float
         What the algorithm reports, Σ t by its own objective, s; inf if nothing feasible was found.
     trace : ndarray, shape (iterations + 1,)
@@ -39,10 +41,14 @@ class Run:
     feasible : bool
         Whether the algorithm's own objective found a feasible vector. `trajgap.problem.check`
         remains the only judge of the answer.
+    objective : Handling
+        What was done with vectors that break a limit.
+    position : ndarray, shape (segments,)
+        Best position as searched, s; it differs from the durations only under a stretch.
     """
 
     algorithm: str
-    settings: Algorithm[Any]
+    settings: Algorithm[Any] | Search
     problem: str
     seed: int
     stream: tuple[int, ...]
@@ -52,10 +58,12 @@ class Run:
     evaluations: int
     iterations: int
     feasible: bool
+    objective: Handling
+    position: Array
 
     def __post_init__(self) -> None:
-        self.durations.setflags(write=False)
-        self.trace.setflags(write=False)
+        for array in (self.durations, self.trace, self.position):
+            array.setflags(write=False)
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         # Arrays come back writable from another process.

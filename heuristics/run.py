@@ -13,8 +13,10 @@ from typing import Any, TypeVar, cast
 import numpy as np
 
 from ..problem import Problem, TrajgapError
-from .algorithm import Algorithm, S, State
-from .objective import Bounds, Counted, DeathPenalty, Objective
+from .algorithm import Algorithm, S, Search, State
+from .budget import searched
+from .objective import Array, Bounds, Counted, Objective
+from .repair import Handling, pose
 from .result import JointRuns, Run
 from .settings import whole
 
@@ -50,53 +52,81 @@ def _whole(name: str, value: object, least: int) -> int:
         raise TrajgapError(f"{name}: {error}") from None
 
 
-def _with_budget(algorithm: Algorithm[S], iterations: int | None) -> Algorithm[S]:
+Method = Algorithm[Any] | Search
+"""What can be run: an algorithm step by step, or a search that owns its loop."""
+
+M = TypeVar("M", bound=Method)
+
+
+def _with_budget(method: M, iterations: int | None) -> M:
     if iterations is None:
-        return algorithm
-    return cast(Algorithm[S], replace(cast(Any, algorithm), iterations=iterations))
+        return method
+    return cast(M, replace(cast(Any, method), iterations=iterations))
 
 
-def _run(algorithm: Algorithm[Any], problem: Problem, seed: int, stream: tuple[int, ...]) -> Run:
-    objective = Counted(DeathPenalty(problem, algorithm.penalty))
-    # Named, not numpy's default, which may change: the same seed must give the same bits.
-    rng = np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed, spawn_key=stream)))
+def _stepped(
+    algorithm: Algorithm[Any], objective: Objective, bounds: Bounds, rng: np.random.Generator
+) -> tuple[Array, Array, int]:
+    """Trace, best position and number of evaluations of an algorithm."""
+    counted = Counted(objective)
     trace = np.empty(algorithm.iterations + 1)
     state: State
-    for i, state in enumerate(states(algorithm, objective, Bounds.of(problem), rng)):
+    for i, state in enumerate(states(algorithm, counted, bounds, rng)):
         trace[i] = state.best_fitness
-    trace[trace >= algorithm.penalty] = np.inf
-    feasible = bool(np.isfinite(trace[-1]))
-    durations = np.array(state.best)
+    return trace, np.array(state.best), counted.evaluations
+
+
+def _run(
+    method: Method, problem: Problem, seed: int, stream: tuple[int, ...], handling: str
+) -> Run:
+    judge = pose(problem, method.penalty, handling)
+    bounds = Bounds.of(problem)
+    # Named, not numpy's default, which may change: the same seed must give the same bits.
+    rng = np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed, spawn_key=stream)))
+    if isinstance(method, Search):
+        trace, position, evaluations = searched(method, judge, bounds, rng)
+    else:
+        trace, position, evaluations = _stepped(method, judge, bounds, rng)
+    trace[trace >= method.penalty] = np.inf
     return Run(
-        algorithm=algorithm.kind,
-        settings=algorithm,
+        algorithm=method.kind,
+        settings=method,
         problem=problem.name,
         seed=seed,
         stream=stream,
-        durations=durations,
+        durations=judge.decode(position[None])[0],
         reported_time=float(trace[-1]),
         trace=trace,
-        evaluations=objective.evaluations,
-        iterations=algorithm.iterations,
-        feasible=feasible,
+        evaluations=evaluations,
+        iterations=method.iterations,
+        feasible=bool(np.isfinite(trace[-1])),
+        objective=Handling(handling),
+        position=position,
     )
 
 
 def run(
-    algorithm: Algorithm[Any], problem: Problem, seed: int, iterations: int | None = None
+    algorithm: Method,
+    problem: Problem,
+    seed: int,
+    iterations: int | None = None,
+    objective: str = Handling.DEATH_PENALTY,
 ) -> Run:
     """Search one duration vector for all joints of a problem.
 
     Parameters
     ----------
-    algorithm : Algorithm
-        Such as ``PSO()``, or what `from_settings` returns.
+    algorithm : Algorithm or Search
+        Such as ``PSO()``, what `from_settings` returns, or an adapted library.
     problem : Problem
         Its coupling is not looked at; see `run_per_joint`.
     seed : int
         0 or more.
     iterations : int, optional
         Replaces the algorithm's own.
+    objective : str
+        What happens to vectors that break a limit: "death-penalty", "stretch" or "rescale", see
+        `Handling`. Under the latter two the durations and times of the run are stretched ones.
 
     Returns
     -------
@@ -105,8 +135,8 @@ def run(
     Raises
     ------
     TrajgapError
-        If the seed or budget is not a whole number, or the objective cannot judge the problem
-        (see `DeathPenalty`).
+        If the seed or budget is not a whole number, or the objective is unknown or cannot judge
+        the problem (see `DeathPenalty` and `Stretch`).
 
     Examples
     --------
@@ -117,11 +147,16 @@ def run(
     >>> run(PSO(), problem, seed=1).feasible
     True
     """
-    return _run(_with_budget(algorithm, iterations), problem, _whole("seed", seed, 0), ())
+    record = _with_budget(algorithm, iterations)
+    return _run(record, problem, _whole("seed", seed, 0), (), objective)
 
 
 def run_per_joint(
-    algorithm: Algorithm[Any], problem: Problem, seed: int, iterations: int | None = None
+    algorithm: Method,
+    problem: Problem,
+    seed: int,
+    iterations: int | None = None,
+    objective: str = Handling.DEATH_PENALTY,
 ) -> JointRuns:
     """Search each joint by itself; each segment then takes the longest duration.
 
@@ -129,12 +164,14 @@ def run_per_joint(
 
     Parameters
     ----------
-    algorithm : Algorithm
+    algorithm : Algorithm or Search
     problem : Problem
     seed : int
         Joint ``i`` draws from child stream ``i`` of the seed, as ``SeedSequence(seed).spawn``.
     iterations : int, optional
         Replaces the algorithm's own.
+    objective : str
+        As `run`.
 
     Returns
     -------
@@ -147,7 +184,9 @@ def run_per_joint(
     """
     root = _whole("seed", seed, 0)
     record = _with_budget(algorithm, iterations)
-    runs = tuple(_run(record, problem.joint(j), root, (j,)) for j in range(len(problem.joints)))
+    runs = tuple(
+        _run(record, problem.joint(j), root, (j,), objective) for j in range(len(problem.joints))
+    )
     durations = np.max([one.durations for one in runs], axis=0)
     feasible = all(one.feasible for one in runs)
     return JointRuns(
@@ -190,30 +229,31 @@ def _each(
 
 
 def _run_seed(
-    algorithm: Algorithm[Any], problem: Problem, iterations: int | None, seed: int
+    algorithm: Method, problem: Problem, iterations: int | None, objective: str, seed: int
 ) -> Run:
-    return run(algorithm, problem, seed, iterations)
+    return run(algorithm, problem, seed, iterations, objective)
 
 
 def _joints_seed(
-    algorithm: Algorithm[Any], problem: Problem, iterations: int | None, seed: int
+    algorithm: Method, problem: Problem, iterations: int | None, objective: str, seed: int
 ) -> JointRuns:
-    return run_per_joint(algorithm, problem, seed, iterations)
+    return run_per_joint(algorithm, problem, seed, iterations, objective)
 
 
 def run_many(
-    algorithm: Algorithm[Any],
+    algorithm: Method,
     problem: Problem,
     seeds: Iterable[int],
     workers: int = 1,
     iterations: int | None = None,
     progress: Callable[[Run], None] | None = None,
+    objective: str = Handling.DEATH_PENALTY,
 ) -> tuple[Run, ...]:
     """`run` with each seed, in the order given; the same bits for any number of workers.
 
     Parameters
     ----------
-    algorithm : Algorithm
+    algorithm : Algorithm or Search
     problem : Problem
     seeds : iterable of int
     workers : int
@@ -223,6 +263,8 @@ def run_many(
         Replaces the algorithm's own.
     progress : callable, optional
         Called with each run, in order, in the calling process.
+    objective : str
+        As `run`.
 
     Returns
     -------
@@ -233,16 +275,19 @@ def run_many(
     TrajgapError
         As `run`, or if workers is not a whole number of 1 or more.
     """
-    return _each(partial(_run_seed, algorithm, problem, iterations), seeds, workers, progress)
+    one = partial(_run_seed, algorithm, problem, iterations, objective)
+    return _each(one, seeds, workers, progress)
 
 
 def run_many_per_joint(
-    algorithm: Algorithm[Any],
+    algorithm: Method,
     problem: Problem,
     seeds: Iterable[int],
     workers: int = 1,
     iterations: int | None = None,
     progress: Callable[[JointRuns], None] | None = None,
+    objective: str = Handling.DEATH_PENALTY,
 ) -> tuple[JointRuns, ...]:
     """`run_per_joint` with each seed, in the order given; parameters as `run_many`."""
-    return _each(partial(_joints_seed, algorithm, problem, iterations), seeds, workers, progress)
+    one = partial(_joints_seed, algorithm, problem, iterations, objective)
+    return _each(one, seeds, workers, progress)

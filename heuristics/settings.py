@@ -60,6 +60,31 @@ def number(*, positive: bool = False, infinite: bool = False) -> Reader:
     return read
 
 
+def above(bound: float) -> Reader:
+    """Reader of finite numbers above a bound."""
+
+    def read(value: object) -> float:
+        clean = _as_float(value)
+        if not (clean > bound and math.isfinite(clean)):
+            raise TrajgapError(f"expected a number above {bound:g}, got {_shown(value)}")
+        return clean
+
+    return read
+
+
+def share(*, ends: bool = True) -> Reader:
+    """Reader of numbers from 0 to 1, the ends included or not."""
+    wanted = "a number from 0 to 1" if ends else "a number between 0 and 1"
+
+    def read(value: object) -> float:
+        clean = _as_float(value)
+        if not (0 <= clean <= 1 if ends else 0 < clean < 1):
+            raise TrajgapError(f"expected {wanted}, got {_shown(value)}")
+        return clean
+
+    return read
+
+
 def interval() -> Reader:
     """Reader of two finite numbers in ascending order."""
 
