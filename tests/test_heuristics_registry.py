@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from enum import StrEnum
 from pathlib import Path
 
+import numpy as np
 import pytest
 from trajgap.heuristics import (
     GA,
@@ -17,8 +18,9 @@ from trajgap.heuristics import (
     ImprovedWOA,
     from_settings,
     open_choices,
+    run,
 )
-from trajgap.problem import TrajgapError
+from trajgap.problem import Limits, Problem, TrajgapError, three_five_three
 
 
 def test_defaults() -> None:
@@ -164,3 +166,18 @@ def test_open_choices_name_real_parameters(kind: str) -> None:
 def test_open_choices_of_an_unknown_kind() -> None:
     with pytest.raises(TrajgapError, match=r"algorithm kind: 'sa' is unknown"):
         open_choices("sa")
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_word_of_every_choice_runs(kind: str) -> None:
+    """Replays change one open choice at a time, so no word may contradict the other defaults."""
+    way = np.array([[0.19, -1.63], [0.82, -2.01], [0.13, -1.07], [-0.88, -1.31]])
+    problem = Problem(way, Limits(6.0, 8.0), three_five_three(), 0.1, 3.0)
+    record = from_settings(kind, {})
+    for field in type(record).__dataclass_fields__:
+        current = getattr(record, field)
+        if isinstance(current, StrEnum):
+            for option in type(current):
+                found = run(from_settings(kind, {field: option}), problem, 1, 3)
+                assert found.trace.size == 4
+                assert getattr(found.settings, field) is option
