@@ -30,7 +30,8 @@ one, _ = timed(lambda: solve(problem, starts=1))
 theirs, durations = timed(lambda: plain_opti.solve(problem.waypoints, 6.0, 8.0, 0.3))
 judged = check(problem, durations)
 print(
-    f"solve, once built, {solution.starts} starts   {1e3 * ours:8.1f} ms  {solution.total_time:.9f} s"
+    f"solve, once built, {solution.starts} starts   {1e3 * ours:8.1f} ms  "
+    f"{solution.total_time:.9f} s"
 )
 print(f"solve, once built, 1 start    {1e3 * one:8.1f} ms")
 print(f"plain Opti, built each time   {1e3 * theirs:8.1f} ms  {durations.sum():.9f} s")

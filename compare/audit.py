@@ -132,7 +132,8 @@ def audit_case(study: Study) -> CaseAudit:
     found = [finding for group in groups for finding in group(study)]
     scoped = _with_scopes(found, study)
     ordered = sorted(scoped, key=lambda f: (_ORDER[f.severity], f.rule))
-    judgements = tuple(judge(claim.id, ordered, study.readings) for claim in study.case.claims)
+    admissible = [reading.id for reading in study.case.readings]
+    judgements = tuple(judge(claim.id, ordered, admissible) for claim in study.case.claims)
     steps = waterfalls(study) if study.posed else ()
     return CaseAudit(study.case, study, tuple(ordered), judgements, steps)
 
@@ -152,6 +153,6 @@ def _with_scopes(findings: list[Finding], study: Study) -> list[Finding]:
             scoped.append(replace(f, scope=Scope.ALL))
         else:
             there = said[f.rule, f.claim, f.problem]
-            everywhere = all(f.verdict in there.get(rid, set()) for rid in study.readings)
+            everywhere = all(f.verdict in there.get(r.id, set()) for r in study.case.readings)
             scoped.append(replace(f, scope=Scope.ALL if everywhere else Scope.SOME))
     return scoped

@@ -26,6 +26,7 @@ Document: TypeAlias = dict[str, Any]
 SCHEMA = "trajgap/1"
 """Version of the documents; keys may be added within a version, none is removed or changed."""
 _UNCERTIFIED = "not certified"
+_NOT_ASKED = "not asked for"
 
 
 def results_document(results: Iterable[Document]) -> Document:
@@ -66,7 +67,7 @@ def solve_result(
     problem: str,
     reading: str,
     answer: Solution | PerJointSolution,
-    retiming: Retiming | str = "not asked for",
+    retimings: Sequence[Retiming | str] = (),
 ) -> Document:
     """Result of `solve` for one problem under one reading.
 
@@ -76,8 +77,9 @@ def solve_result(
         Ids.
     answer : Solution or PerJointSolution
         The latter for joints that do not share their durations.
-    retiming : Retiming or str
-        TOPPRA on the path of the answer, or why there is none.
+    retimings : sequence of Retiming or str, optional
+        TOPPRA on the path of the answer, or why there is none; for a PerJointSolution one per
+        joint.
 
     Returns
     -------
@@ -85,16 +87,13 @@ def solve_result(
     """
     head = {"case": case, "problem": problem, "reading": reading}
     if isinstance(answer, PerJointSolution):
-        return {**head, **_per_joint(answer)}
-    return {
-        **head,
-        "coupling": str(Coupling.SHARED),
-        **_solution(answer),
-        **_toppra(retiming),
-    }
+        paths = retimings or [_NOT_ASKED] * len(answer.joints)
+        return {**head, **_per_joint(answer, paths)}
+    path = retimings[0] if retimings else _NOT_ASKED
+    return {**head, "coupling": str(Coupling.SHARED), **_solution(answer, path)}
 
 
-def _solution(answer: Solution) -> Document:
+def _solution(answer: Solution, path: Retiming | str) -> Document:
     """What one solve says, whether of all joints or of one."""
     none = answer.why or str(answer.status)
     attained = none if answer.durations is None else "the total time is attained"
@@ -113,24 +112,30 @@ def _solution(answer: Solution) -> Document:
         "starts_at_best": answer.starts_at_best,
         "build_seconds": answer.build_seconds,
         "solve_seconds": answer.solve_seconds,
+        **_toppra(path),
     }
 
 
-def _per_joint(answer: PerJointSolution) -> Document:
-    labels = answer.problem.joints
+def _per_joint(answer: PerJointSolution, paths: Sequence[Retiming | str]) -> Document:
+    singles = zip(answer.problem.joints, answer.joints, paths, strict=True)
     none = answer.why or str(answer.status)
+    unsettled = [
+        f"joint {label}: {s.why}"
+        for label, s in zip(answer.problem.joints, answer.joints, strict=True)
+        if s.why
+    ]
     residuals = [s.kkt_residual for s in answer.joints]
     known = [r for r in residuals if r is not None]
-    separate = "each joint has durations of its own, see joints"
     return {
         "coupling": str(Coupling.PER_JOINT),
         "status": str(answer.status),
-        "status_why": answer.why,
+        "status_why": "; ".join(unsettled)
+        or "of the joints' own optima; the total is what their longest durations add up to",
         **_number("total_time", answer.total_time if answer.check else None, none),
         "segment_durations": None,
-        "segment_durations_why": separate,
+        "segment_durations_why": "each joint has durations of its own, see joints",
         "joints": [
-            {"joint": label, **_solution(s)} for label, s in zip(labels, answer.joints, strict=True)
+            {"joint": label, **_solution(solution, path)} for label, solution, path in singles
         ],
         "longest_per_segment": _longest(answer),
         **_number("infimum", None, "the longest durations of a procedure, not an optimum"),
@@ -145,7 +150,7 @@ def _per_joint(answer: PerJointSolution) -> Document:
         "build_seconds": max(s.build_seconds for s in answer.joints),
         "solve_seconds": sum(s.solve_seconds for s in answer.joints),
         "toppra": None,
-        "toppra_why": "each joint has a path of its own; ask with shared coupling",
+        "toppra_why": "each joint has a path of its own, see joints",
     }
 
 
@@ -420,6 +425,7 @@ def _verdict(judgement: Judgement) -> Document:
         "scope": str(judgement.scope),
         "evidence": str(judgement.evidence),
         "why": judgement.why,
+        "readings": {reading: str(verdict) for reading, verdict in judgement.readings},
     }
 
 

@@ -8,11 +8,12 @@ import textwrap
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import lru_cache
-from typing import Any
+from typing import Any, Literal
 from xml.sax.saxutils import escape
 
 from matplotlib import style
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties, findfont
 from matplotlib.ft2font import FT2Font
@@ -41,7 +42,8 @@ THEME = {
     "red": RED,
 }
 """Colours that a page may replace, by the name of their CSS variable."""
-SERIES = ((BLUE, "-"), (ORANGE, "--"), (GREEN, "-."), (PURPLE, ":"), (SKY, (0, (5, 1, 1, 1))))
+Line = Literal["-", "--", "-.", ":"]
+SERIES: tuple[tuple[str, Line], ...] = ((BLUE, "-"), (ORANGE, "--"), (GREEN, "-."), (PURPLE, ":"))
 """Colour and line style of the algorithms, in order; told apart without colour too."""
 
 _STYLE: dict[str, Any] = {
@@ -112,19 +114,24 @@ def shown(text: str, width: int | None = None, lines: int = 1) -> str:
         Largest number of lines.
     """
     flat = " ".join(text.split())
-    drawn = "".join(
-        c if c.isprintable() and _font().get_char_index(ord(c)) else "?" for c in flat
-    )
+    drawn = "".join(c if c.isprintable() and _font().get_char_index(ord(c)) else "?" for c in flat)
     if width is None:
         return drawn
-    return "\n".join(textwrap.wrap(drawn, width, max_lines=lines, placeholder="…") or [""])
+    cut = [w if len(w) <= width else w[: width - 1] + "…" for w in drawn.split(" ")]
+    wrapped = textwrap.wrap(
+        " ".join(cut), width, max_lines=lines, placeholder="…", break_on_hyphens=False
+    )
+    return "\n".join(wrapped or [""])
 
 
-def heading(figure: Picture, note: str = "") -> None:
-    """Write the picture's title, and a note below it, over the panels."""
+def finish(figure: Picture, note: str = "") -> None:
+    """Write the picture's title and a note below the panels, and settle the layout."""
     figure.suptitle(shown(figure.title, 105, 2), x=0.005, ha="left", fontsize=11, weight="bold")
     if note:
         figure.supxlabel(note, x=0.005, ha="left", fontsize=8, color=MUTED)
+    # The layout moves a little with every drawing; frozen, the same figure gives the same bytes.
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")
 
 
 def light_grid(axes: Axes, which: str = "both") -> None:
@@ -136,6 +143,30 @@ def light_grid(axes: Axes, which: str = "both") -> None:
 def _xml(text: str) -> str:
     printable = "".join(c if c.isprintable() else " " for c in text)
     return escape(printable.encode("utf-8", "replace").decode("utf-8"))
+
+
+def _coarser(match: re.Match[str]) -> str:
+    # A hundredth of a point is far below what a screen or printer shows.
+    return re.sub(r"-?\d+\.\d{3,}", lambda m: f"{float(m[0]):.2f}", match[0])
+
+
+def _shorter(match: re.Match[str]) -> str:
+    """Path data without repeated coordinates: L becomes H or V where it can."""
+    found = re.findall(r"([A-Za-z])([^A-Za-z]*)", _coarser(match)[3:-1])
+    if not {command for command, _ in found} <= {"M", "L", "z"}:
+        return _coarser(match)
+    parts: list[str] = []
+    last = ("", "")
+    for command, numbers in found:
+        x, y = numbers.split() if command != "z" else ("", "")
+        if command != "L" or last == ("", "") or (x != last[0] and y != last[1]):
+            parts.append(f"{command}{x} {y}".rstrip())
+        elif x != last[0]:
+            parts.append(f"H{x}")
+        elif y != last[1]:
+            parts.append(f"V{y}")
+        last = (x, y)
+    return f'd="{"".join(parts)}"'
 
 
 def svg(figure: Figure) -> str:
@@ -152,8 +183,13 @@ def svg(figure: Figure) -> str:
         A complete SVG document. Text is drawn as outlines, so that it looks the same everywhere.
     """
     buffer = io.StringIO()
+    canvas, dots = figure.canvas, figure.dpi
     with drawing():
-        figure.savefig(buffer, format="svg", metadata={"Date": None})
+        # `savefig` would draw twice: once to lay out what is laid out already.
+        untyped: Any = FigureCanvasSVG(figure)
+        untyped.print_svg(buffer, metadata={"Date": None})
+    figure.set_canvas(canvas)
+    figure.set_dpi(dots)
     text = buffer.getvalue()
     title = getattr(figure, "title", "") or "Picture"
     description = getattr(figure, "description", "")
@@ -161,8 +197,9 @@ def svg(figure: Figure) -> str:
     text = re.sub(r"<!DOCTYPE.*?>\s*", "", text, count=1, flags=re.DOTALL)
     # Outlines are preceded by a comment with their text, which may close it.
     text = re.sub(r"\s*<!--.*?-->", "", text, flags=re.DOTALL)
-    # A hundredth of a point is far below what a screen or printer shows.
-    text = re.sub(r"-?\d+\.\d{3,}(?=[\s\"LMCQz,)])", lambda m: f"{float(m[0]):.2f}", text)
+    text = re.sub(r"\n\s+", "\n", text)
+    text = re.sub(r'\bd="[^"]*"', _shorter, text)
+    text = re.sub(r"translate\([^)]*\)", _coarser, text)
     opening = re.search(r"<svg [^>]*>", text)
     assert opening is not None
     tag = opening[0][:-1] + ' role="img" aria-labelledby="title desc">'

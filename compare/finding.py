@@ -14,7 +14,8 @@ class Severity(StrEnum):
     """How much a finding weighs; tied to its conclusion, never to a digit."""
 
     ERROR = "error"
-    """A printed number or statement is contradicted by a proof: of digits, counts or enclosures."""
+    """A proof of digits, counts, enclosures or a shorter motion contradicts something printed, or
+    shows that two printed things contradict each other."""
     WARNING = "warning"
     """Printed things do not fit together, or a best known value speaks against a statement."""
     INFO = "info"
@@ -114,6 +115,8 @@ class Judgement:
     scope: Scope
     evidence: Evidence
     why: str
+    readings: tuple[tuple[str, ClaimVerdict], ...] = ()
+    """The verdict under each reading by itself."""
 
 
 @dataclass(frozen=True)
@@ -159,14 +162,17 @@ def judge(claim: str, findings: Iterable[Finding], readings: Iterable[str]) -> J
     """
     own = [f for f in findings if f.claim == claim and f.decides]
     order = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT, ClaimVerdict.SUPPORTED)
-    per_reading: list[ClaimVerdict] = []
+    each: list[tuple[str, ClaimVerdict]] = []
     for reading in readings:
         there = {f.verdict for f in own if f.reading in (None, reading)}
-        per_reading.append(next((v for v in order if v in there), ClaimVerdict.NOT_CHECKABLE))
+        found = next((v for v in order if v in there), ClaimVerdict.NOT_CHECKABLE)
+        each.append((reading, found))
+    per_reading = [v for _, v in each]
     decided = [v for v in per_reading if v is not ClaimVerdict.NOT_CHECKABLE]
     if not decided:
         why = next((f.message for f in own), "no rule applies to this claim")
-        return Judgement(claim, ClaimVerdict.NOT_CHECKABLE, Scope.NO, Evidence.NONE, why)
+        nothing = ClaimVerdict.NOT_CHECKABLE
+        return Judgement(claim, nothing, Scope.NO, Evidence.NONE, why, tuple(each))
     verdict = next(v for v in order if v in decided)
     if verdict is not ClaimVerdict.SUPPORTED and decided.count(verdict) < len(per_reading):
         supported = decided.count(ClaimVerdict.SUPPORTED)
@@ -180,4 +186,4 @@ def judge(claim: str, findings: Iterable[Finding], readings: Iterable[str]) -> J
     said = [f"{f.rule}: {f.message}" for f in behind]
     said += [f"But {f.verdict} under {f.reading or 'all'}, {f.rule}: {f.message}" for f in against]
     why = " ".join(dict.fromkeys(said))
-    return Judgement(claim, verdict, scope, evidence, why)
+    return Judgement(claim, verdict, scope, evidence, why, tuple(each))

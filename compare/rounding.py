@@ -6,12 +6,11 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 
 import numpy as np
+from trajgap.nlp.box_bound import Place, bound, bound_by_bisection
+from trajgap.nlp.interval import EPS, Array, Ball
+from trajgap.nlp.places import linear_program, rows_at
 from trajgap.problem import Check, Problem, TrajgapError, Verdict, check, peak_gradients
 from trajgap.problem.check import TOLERANCE
-
-from .interval import EPS, Array, Ball
-from .places import linear_program, rows_at
-from .rounding_proof import Place, bound, bound_by_bisection
 
 _MOST_STEPS = 12
 _MOST_ROWS = 300

@@ -8,6 +8,7 @@ from enum import StrEnum
 from typing import Any, TypeVar, cast
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..heuristics import Algorithm, JointRuns, Run, from_settings, run_many, run_many_per_joint
 from ..nlp import PerJointSolution, Solution, Status, solve, solve_per_joint
@@ -20,7 +21,7 @@ from ..problem import (
     Problem,
     TrajgapError,
     check,
-    piecewise,
+    reachable_total,
 )
 from ..problem.claim import Claim, DurationsClaim, MaximumClaim, TotalTimeClaim
 from .rounding import Box, RoundingVerdict, judge_rounding
@@ -31,7 +32,8 @@ Pair = tuple[str, str]
 Replays = tuple[Run, ...] | tuple[JointRuns, ...]
 
 SEEDS = 30
-VARIANT_SEEDS = 10
+Array = NDArray[np.float64]
+VARIANT_SEEDS = 6
 
 
 class Study:
@@ -116,12 +118,12 @@ class Study:
 
         def compute() -> PerJointSolution:
             self._progress(f"{self.case.id}: each joint by itself, {pid}, {rid}")
-            slacks = dict.fromkeys((*self._half_digits(pid, rid), OPTIMUM_SLACK))
+            slacks = dict.fromkeys((*self.half_digits(pid, rid), OPTIMUM_SLACK))
             return solve_per_joint(self.problem(pid, rid), slacks=tuple(slacks))
 
         return self._once(("per joint", pid, rid), compute)
 
-    def _half_digits(self, pid: str, rid: str) -> tuple[float, ...]:
+    def half_digits(self, pid: str, rid: str) -> tuple[float, ...]:
         """Half a unit of the last printed place of the totals of single joints, s."""
         halves = []
         for claim in self.case.claims:
@@ -133,7 +135,7 @@ class Study:
         return (max(halves),) if halves else ()
 
     def relaxed(self, pid: str, rid: str) -> Solution:
-        """Optimum of the relaxed family: quintic in every segment, C2, the rest left free."""
+        """Optimum of the relaxed family: at least quintic everywhere, C2, the rest left free."""
 
         def compute() -> Solution:
             problem = self.problem(pid, rid)
@@ -142,14 +144,17 @@ class Study:
                 why = "only a declared piecewise polynomial is a member of its relaxed family"
                 return Solution(problem, Status.FAILED, why)
             self._progress(f"{self.case.id}: relaxed family, {pid}, {rid}")
-            family = replace(
-                piecewise((5,) * problem.segments, 2, name="quintic polynomials, C2, free"),
-                prescribed=(
-                    given.prescribed[0],
-                    *((),) * (problem.segments - 1),
-                    given.prescribed[-1],
-                ),
+            given, inner = problem.interpolant, problem.segments - 1
+            if not isinstance(given, Interpolant):
+                why = "only a declared piecewise polynomial is a member of its relaxed family"
+                return Solution(problem, Status.FAILED, why)
+            self._progress(f"{self.case.id}: relaxed family, {pid}, {rid}")
+            family = Interpolant(
+                tuple(max(5, degree) for degree in given.degrees),
+                (2,) * inner,
+                (given.prescribed[0], *((),) * inner, given.prescribed[-1]),
                 virtual=given.virtual,
+                name="relaxed family",
             )
             return solve(replace(problem, interpolant=family, coupling=Coupling.SHARED))
 
@@ -166,6 +171,20 @@ class Study:
             return problem
         return problem.joint(problem.joints.index(claim.joint))
 
+    def _box_columns(self, problem: Problem, pid: str, rid: str) -> tuple[Array, Array]:
+        """Bounds of the way-points that print alike, for the joints of ``problem``."""
+        lower, upper = self.case.waypoint_box(pid, rid)
+        labels = self.problem(pid, rid).joints
+        columns = [labels.index(label) for label in problem.joints]
+        return lower[:, columns], upper[:, columns]
+
+    def reachable(self, problem: Problem, durations: Array, pid: str, rid: str) -> float | None:
+        """A total (s) that some stretch of ``durations`` keeps whatever the way-points round from.
+
+        None if there is no such stretch.
+        """
+        return reachable_total(problem, durations, *self._box_columns(problem, pid, rid))
+
     def claim_optimum(self, claim: Claim, pid: str, rid: str) -> Solution:
         """Best known answer of `claim_problem`."""
         return self.optimum(pid, rid, claim.joint)
@@ -180,22 +199,26 @@ class Study:
         return self._once(("check", claim.id, pid, rid), compute)
 
     def claim_rounding(self, claim: Claim, pid: str, rid: str) -> RoundingVerdict:
-        """The printed durations judged over the box of all inputs that print alike."""
+        """The printed durations judged over the box of all inputs that round to the digits."""
+        return self._once(
+            ("rounding", claim.id, pid, rid), lambda: self._judged_box(claim, pid, rid, cut=False)
+        )
 
-        def compute() -> RoundingVerdict:
-            self._progress(f"{self.case.id}: rounding box of {claim.id}, {rid}")
-            problem = self.claim_problem(claim, pid, rid)
-            box = self.case.claim_durations(claim, rid)
-            lower, upper = self.case.waypoint_box(pid, rid)
-            labels = self.problem(pid, rid).joints
-            columns = [labels.index(label) for label in problem.joints]
-            return judge_rounding(
-                problem,
-                Box(box.value, box.lower, box.upper),
-                Box(problem.waypoints, lower[:, columns], upper[:, columns]),
-            )
+    def claim_cut(self, claim: Claim, pid: str, rid: str) -> RoundingVerdict:
+        """The same over a wider box, of inputs whose digits were rounded or cut off."""
+        return self._once(
+            ("cut", claim.id, pid, rid), lambda: self._judged_box(claim, pid, rid, cut=True)
+        )
 
-        return self._once(("rounding", claim.id, pid, rid), compute)
+    def _judged_box(self, claim: Claim, pid: str, rid: str, cut: bool) -> RoundingVerdict:
+        self._progress(f"{self.case.id}: rounding box of {claim.id}, {rid}")
+        problem = self.claim_problem(claim, pid, rid)
+        printed = self.case.claim_durations(claim, rid)
+        durations = Box(printed.value, printed.lower, printed.upper)
+        waypoints = Box(problem.waypoints, *self._box_columns(problem, pid, rid))
+        if cut:
+            durations, waypoints = _or_cut_off(durations), _or_cut_off(waypoints)
+        return judge_rounding(problem, durations, waypoints)
 
     def claim_total(self, claim: Claim, rid: str) -> tuple[str, tuple[float, float]] | None:
         """A claim's total as printed (or as summed), and its interval in seconds."""
@@ -261,11 +284,11 @@ class Study:
                     found[f"{one.name} = {option}"] = cast(Algorithm[Any], changed)
         return found
 
-    def variant_totals(self, algorithm_id: str, pid: str, rid: str) -> dict[str, np.ndarray]:
+    def variant_totals(self, algorithm_id: str, pid: str, rid: str) -> dict[str, Array]:
         """Reported totals of each variant over its seeds, s."""
 
-        def compute() -> dict[str, np.ndarray]:
-            totals: dict[str, np.ndarray] = {}
+        def compute() -> dict[str, Array]:
+            totals: dict[str, Array] = {}
             for name, algorithm in self.variants(algorithm_id).items():
                 if name == "as listed":
                     runs = self.runs(algorithm_id, pid, rid)
@@ -276,3 +299,12 @@ class Study:
             return totals
 
         return self._once(("variants", algorithm_id, pid, rid), compute)
+
+
+def _or_cut_off(box: Box) -> Box:
+    """The box widened by the inputs whose further digits were cut off instead of rounded."""
+    up, down = 2.0 * (box.upper - box.value), 2.0 * (box.value - box.lower)
+    wide = 1.0 + 1e-9
+    lower = np.where(box.value > 0, box.lower, box.value - down * wide)
+    upper = np.where(box.value < 0, box.upper, box.value + up * wide)
+    return Box(box.value, np.minimum(lower, box.lower), np.maximum(upper, box.upper))

@@ -84,7 +84,7 @@ def _waterfall(study: Study, pid: str, rid: str) -> Waterfall:
     steps.append(_known("optimum of the same curve, shared durations", shared))
     relaxed = study.relaxed(pid, rid)
     steps.append(
-        _known("relaxed family", relaxed, "quintic in every segment, C2, remaining freedom used")
+        _known("relaxed family", relaxed, "degree 5 or more in every segment, C2, freedom used")
     )
     steps.append(_retimed(relaxed))
     steps.append(_free(study, pid, rid))
@@ -95,11 +95,13 @@ def _published(study: Study, claim: AnyClaim, pid: str, rid: str) -> list[Step]:
     total = study.claim_total(claim, rid)
     assert total is not None
     shown, (low, high) = total
+    number = claim.total if isinstance(claim, DurationsClaim | MaximumClaim) else None
+    value = None if number is None else study.case.measured(number, "time", pid, rid).value
     verdict = study.claim_check(claim, pid, rid)
     rounding = study.claim_rounding(claim, pid, rid)
     printed = Step(
         "published",
-        verdict.total_time,
+        verdict.total_time if value is None else value,
         low,
         high,
         Evidence.NONE,

@@ -1,5 +1,8 @@
 """The exact side: the NLP over durations and coefficients, its solutions, and TOPPRA."""
 
+from .certificate import certificate, shipped, write_certificate
+from .certify import Certified, Outcome, Progress, State, certify
+from .exact import ExactProblem, exact_problem, printed_problem
 from .family_free import FamilyFree, family_free
 from .formulation import Form, Formulation, Structure, build
 from .kkt import KKT, Active, kkt
@@ -9,27 +12,40 @@ from .solution import Evidence, Solution, Status
 from .solve import solve
 from .starts import random_starts
 from .tracking import structure_of
+from .verify import verify
 
 __all__ = [
     "KKT",
     "Active",
+    "Certified",
     "Evidence",
+    "ExactProblem",
     "FamilyFree",
     "Form",
     "Formulation",
+    "Outcome",
     "PerJointSolution",
+    "Progress",
     "Range",
     "Retiming",
     "Solution",
+    "State",
     "Status",
     "Structure",
     "build",
+    "certificate",
+    "certify",
+    "exact_problem",
     "family_free",
     "kkt",
+    "printed_problem",
     "random_starts",
     "retime",
     "retime_joints",
+    "shipped",
     "solve",
     "solve_per_joint",
     "structure_of",
+    "verify",
+    "write_certificate",
 ]

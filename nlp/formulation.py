@@ -116,10 +116,8 @@ def slot_groups(interpolant: Interpolant, orders: tuple[int, ...]) -> tuple[Slot
         left = [
             k
             for k in alive
-            if (k == 0
-            and not any(o == r for o, _ in interpolant.prescribed[0]))
-            or (k > 0
-            and (interpolant.continuity[k - 1] < r or k - 1 not in alive))
+            if (k == 0 and not any(o == r for o, _ in interpolant.prescribed[0]))
+            or (k > 0 and (interpolant.continuity[k - 1] < r or k - 1 not in alive))
         ]
         right = [
             k

@@ -130,6 +130,12 @@ def solve_per_joint(
             for label, s in zip(problem.joints, solutions, strict=True)
             if s.durations is None
         )
+    elif problem.interpolant.free:
+        durations, verdict = None, None
+        why = (
+            f"the longest durations do not determine the motion: {problem.interpolant.name} "
+            f"leaves {problem.interpolant.free} derivatives of each joint free"
+        )
     else:
         durations = np.max(answers, axis=0)
         verdict = check(problem, durations)

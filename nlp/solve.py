@@ -122,7 +122,7 @@ def _solve_moving(
             solution = _approached(coarser, solution)
         coarser = solution
         assert solution.durations is not None
-        points = np.vstack([solution.durations, points])
+        points = solution.durations[None]
     assert solution is not None
     return replace(
         solution,
@@ -233,8 +233,9 @@ def idle_segments(problem: Problem) -> list[int]:
     h = equal_start(problem)
     trajectory = fit(problem.interpolant, problem.waypoints, h)
     gradient = coefficient_gradient(problem.piecewise, problem.waypoints, h).durations
-    still = np.abs(trajectory.scaled[:, 1:]).max(axis=(1, 2)) <= 1e-14
-    apart = np.abs(gradient * h[:, None, None, None]).max(axis=(1, 2, 3)) <= 1e-14
+    size = 1e-12 * max(1.0, float(np.abs(trajectory.scaled).max()))
+    still = np.abs(trajectory.scaled[:, 1:]).max(axis=(1, 2)) <= size
+    apart = np.abs(gradient * h[:, None, None, None]).max(axis=(1, 2, 3)) <= size
     return np.flatnonzero(still & apart).tolist()
 
 

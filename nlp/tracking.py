@@ -26,6 +26,8 @@ from .formulation import (
 from .starts import first_nodal
 
 _PASSES = 40
+_PATIENCE = 8
+"""Passes without a gain after which a start is given up."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -327,10 +329,11 @@ def merit(
         return total, h, nodal
     if verdict.feasible_time is None:
         return total * (1.0 + 10.0 * verdict.max_violation), h, nodal
+    factor = max(1.0, verdict.stretch)
     if problem.interpolant.free and nodal is not None:
         orders = np.array([r for _, r in problem.piecewise.free_derivatives])[:, None]
-        nodal = nodal / verdict.stretch**orders
-    return verdict.feasible_time, h * verdict.stretch, nodal
+        nodal = nodal / factor**orders
+    return verdict.feasible_time, h * factor, nodal
 
 
 def track(
@@ -348,6 +351,7 @@ def track(
     best, h, nodal = merit(problem, h, nodal)
     x = pack(problem, f, scaled, h, nodal)
     radius, step, iterations, converged, duals = 0.5, np.inf, 0, False, None
+    stale = 0
     for _ in range(_PASSES):
         trajectory = fit(problem.interpolant, problem.waypoints, h, nodal)
         c = trajectory.scaled / scaled.angle_unit
@@ -358,8 +362,8 @@ def track(
         low, high = wide[0].copy(), wide[1].copy()
         room = radius * np.maximum(np.abs(x), np.where(np.arange(x.size) < n, 0.0, 1.0))
         held = slice(None) if problem.interpolant.free else slice(n)
-        low[held] = np.maximum(low[held], (x - room)[held])
-        high[held] = np.minimum(high[held], (x + 2.0 * room)[held])
+        low[held] = np.clip((x - room)[held], low[held], high[held])
+        high[held] = np.clip((x + 2.0 * room)[held], low[held], high[held])
         near = duals is not None and step < 1e-2
         x_new, new_duals, success, count = run(
             build_.warm if near else build_.cold, f, x, p, (low, high), duals if near else None
@@ -371,6 +375,9 @@ def track(
         moved = float(np.abs(x_new[:n] / x[:n] - 1.0).max())
         h_new, nodal_new = unpack(problem, f, scaled, x_new)
         total, h_new, nodal_new = merit(problem, h_new, nodal_new)
+        stale = 0 if total < best * (1.0 - 1e-7) else stale + 1
+        if stale > _PATIENCE:
+            break
         if total < best * (1.0 + 1e-13):
             x = pack(problem, f, scaled, h_new, nodal_new)
             h, nodal, best, duals, step = h_new, nodal_new, total, new_duals, moved

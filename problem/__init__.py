@@ -2,7 +2,16 @@
 
 from .cartesian_line import CartesianLine, ctraj
 from .case import Case, DurationBox
-from .check import Check, Evaluation, Jump, Peak, Verdict, check, evaluate
+from .check import (
+    Check,
+    Evaluation,
+    Jump,
+    Peak,
+    Verdict,
+    check,
+    evaluate,
+    reachable_total,
+)
 from .clamped import ClampedBSpline, Knots, Parameters
 from .clamped_fit import clamped_control_points
 from .clamped_readings import ClampedReading, Count, clamped_readings
@@ -106,6 +115,7 @@ __all__ = [
     "proximity",
     "published_ids",
     "quintic_spline",
+    "reachable_total",
     "rest_to_rest",
     "robot_ids",
     "sample_workspace",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import lru_cache
 
@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .curve import batch_peaks, enclosed, motion_values, segment_of
 from .errors import CurveError, TrajgapError
-from .limits import QUANTITIES
+from .limits import QUANTITIES, Limits
 from .peak import extrema
 from .problem import Problem
 from .spline import as_durations
@@ -391,6 +391,61 @@ def check(
         tight_why=tight_why,
         tolerance=tolerance,
     )
+
+
+def reachable_total(
+    problem: Problem, durations: ArrayLike, lower: ArrayLike, upper: ArrayLike
+) -> float | None:
+    """A total that these durations, stretched, keep for every way-point in a box.
+
+    For fixed durations the curve is linear in the way-points, so its peaks over the box are at
+    most those at ``problem.waypoints`` plus, for each way-point, its deviation times the peaks of
+    the cardinal curve (that way-point 1, the others 0).
+
+    Parameters
+    ----------
+    problem : Problem
+        With a determined, homogeneous interpolant.
+    durations : array_like, shape (segments,)
+        s.
+    lower, upper : array_like, shape (way-points, joints)
+        Box around ``problem.waypoints``, rad.
+
+    Returns
+    -------
+    float or None
+        An upper bound, s, on the optimum of every problem in the box, rounding errors of the
+        peaks included; None if no stretch is known to repair all of them.
+    """
+    h = as_durations(durations, problem.segments)
+    q, points = problem.waypoints, len(problem.waypoints)
+    plain = not problem.interpolant.free and problem.interpolant.homogeneous
+    if not plain or problem.limits.limits_position:
+        return None
+    away = np.maximum(np.asarray(upper) - q, q - np.asarray(lower))
+    unlimited = Limits(joints=points)
+    cardinal = replace(
+        problem,
+        waypoints=np.eye(points),
+        limits=unlimited.with_derivatives(np.ones((points, 3))),
+        joints=(),
+    )
+    unit = evaluate(cardinal, h[None]).ratios[0]
+    own = evaluate(problem, h[None]).ratios[0]
+    limits = problem.limits.derivatives
+    moves = away.T @ unit
+    with np.errstate(invalid="ignore", divide="ignore"):
+        ratios = own + np.where(np.isfinite(limits), moves / limits, 0.0)
+    if not np.isfinite(ratios).all():
+        return None
+    slack = 1.0 + TOLERANCE
+    roots = [ratios[:, 0], np.sqrt(ratios[:, 1]), np.cbrt(ratios[:, 2])]
+    stretch = max(1.0, float(np.max(roots)) * slack)
+    stretched = h * stretch
+    inside = (stretched * slack >= problem.duration_lower).all()
+    if not inside or (stretched > problem.duration_upper * slack).any():
+        return None
+    return float(stretched.sum())
 
 
 @dataclass(frozen=True, eq=False)

@@ -30,7 +30,7 @@ class Limits:
     Raises
     ------
     TrajgapError
-        If a limit is NaN or negative, the range is empty, or the lengths differ.
+        If a limit is not a number, NaN or negative, the range is empty, or the lengths differ.
     """
 
     velocity: NDArray[np.float64] = field(default_factory=lambda: np.array(np.inf))
@@ -42,7 +42,14 @@ class Limits:
 
     def __post_init__(self) -> None:
         names = (*QUANTITIES, "position_lower", "position_upper")
-        arrays = {name: np.asarray(getattr(self, name), dtype=np.float64) for name in names}
+        arrays = {}
+        for name in names:
+            try:
+                arrays[name] = np.asarray(getattr(self, name), dtype=np.float64)
+            except (TypeError, ValueError):
+                raise TrajgapError(
+                    f"limits.{name}: not numbers; give one value, or one per joint"
+                ) from None
         sizes = {a.size for a in arrays.values() if a.ndim} | (
             {self.joints} if self.joints is not None else set()
         )

@@ -58,7 +58,12 @@ class Problem:
     name: str = "problem"
 
     def __post_init__(self) -> None:
-        q = np.array(self.waypoints, dtype=np.float64)
+        try:
+            q = np.array(self.waypoints, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise TrajgapError(
+                "waypoints: not a table of numbers; give one row per way-point, a column per joint"
+            ) from None
         if q.ndim == 1:
             q = q[:, None]
         if q.ndim != 2 or 0 in q.shape:
@@ -93,7 +98,10 @@ class Problem:
             )
         n = self.interpolant.segments
         for name in ("duration_lower", "duration_upper"):
-            bound = np.asarray(getattr(self, name), dtype=np.float64)
+            try:
+                bound = np.asarray(getattr(self, name), dtype=np.float64)
+            except (TypeError, ValueError):
+                raise TrajgapError(f"{name}: not numbers; give seconds") from None
             if bound.ndim > 1 or (bound.ndim == 1 and bound.size != n):
                 raise TrajgapError(f"{name}: expected one value or {n}, got {bound.size}")
             if np.isnan(bound).any() or (bound < 0).any():
@@ -105,10 +113,16 @@ class Problem:
             raise TrajgapError("duration_lower: lies above duration_upper")
         if np.isinf(self.duration_lower).any() or (self.duration_upper == 0).any():
             raise TrajgapError("duration bounds: no positive finite duration lies between them")
+        if self.coupling not in tuple(Coupling):
+            raise TrajgapError(
+                f"coupling: {self.coupling!r} is none of {', '.join(map(str, Coupling))}"
+            )
         object.__setattr__(self, "coupling", Coupling(self.coupling))
         labels = self.joints or tuple(str(j + 1) for j in range(q.shape[1]))
         if len(labels) != q.shape[1]:
             raise TrajgapError(f"joints: {len(labels)} labels for {q.shape[1]} joints")
+        if len(set(labels)) < len(labels):
+            raise TrajgapError(f"joints: a label occurs twice in {', '.join(labels)}")
         object.__setattr__(self, "joints", tuple(labels))
 
     @property

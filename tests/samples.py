@@ -27,6 +27,7 @@ DECLARATIONS: dict[str, Interpolant] = {
     "rest 7": rest_to_rest(1, 7),
     "4-2-3": piecewise((4, 2, 3), 1),
     "3-1-3": piecewise((3, 1, 3), 1, ((1, 0.0),)),
+    "4-1-4": piecewise((4, 1, 4), 2, ((1, 0.0),)),
     "lines": piecewise((1, 1), 0, ()),
     "uneven": Interpolant(
         (4, 6, 3),

@@ -23,7 +23,9 @@ def _rows(t1: float, t2: float, t3: float) -> np.ndarray:
         blocks = [first, second, third]
         sizes = (4, 6, 4)
         rows.append(
-            np.concatenate([np.zeros(n) if b is None else b for b, n in zip(blocks, sizes, strict=True)])
+            np.concatenate(
+                [np.zeros(n) if b is None else b for b, n in zip(blocks, sizes, strict=True)]
+            )
         )
 
     add(power(0, 3, 0), None, None)

@@ -9,14 +9,14 @@ from importlib.resources import files
 import numpy as np
 import pytest
 from trajgap.compare.finding import ClaimVerdict, Finding, Severity
-from trajgap.compare.interval import Ball
 from trajgap.compare.rounding import Box, Rounding, judge_rounding
-from trajgap.compare.rounding_uniform import centred, covered
 from trajgap.compare.rules.continuous import continuous
 from trajgap.compare.rules.control_vertices import control_vertices, vertices
 from trajgap.compare.rules.digits import digits
 from trajgap.compare.rules.text import text
 from trajgap.compare.study import Study
+from trajgap.nlp.interval import Ball
+from trajgap.nlp.uniform_enclosure import centred, covered
 from trajgap.problem import (
     CaseError,
     Verdict,

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 from trajgap.nlp import Status, solve, solve_per_joint
-from trajgap.problem import Limits, Problem, load_case, rest_to_rest
+from trajgap.problem import Limits, Problem, load_case, piecewise, rest_to_rest
 
 
 def puma(reading: str) -> Problem:
@@ -40,6 +40,14 @@ def test_the_range_contains_what_random_near_optima_give() -> None:
     totals = np.max(picks, axis=0).sum(axis=1)
     assert answer.ranges[0].lowest <= totals.min()
     assert totals.max() <= answer.ranges[0].highest
+
+
+def test_a_curve_with_free_derivatives_has_joint_optima_but_no_longest_motion() -> None:
+    q = np.array([[0.2, -1.0], [0.9, 0.3], [0.4, 1.1], [1.3, 0.6]])
+    answer = solve_per_joint(Problem(q, Limits(1.5, 4.0, joints=2), piecewise((5, 5, 5), 2)))
+    assert answer.durations is None
+    assert all(s.durations is not None for s in answer.joints)
+    assert "leaves 4 derivatives of each joint free" in answer.why
 
 
 def test_a_joint_without_answer_leaves_the_procedure_without_one() -> None:

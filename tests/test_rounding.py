@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from trajgap.compare import interval, rounding_proof
-from trajgap.compare.interval import Ball, enclose_spline
 from trajgap.compare.rounding import Box, Place, Point, Rounding, RoundingVerdict, judge_rounding
+from trajgap.nlp import box_bound, interval
+from trajgap.nlp.interval import Ball, enclose_spline
 from trajgap.problem import (
     Interpolant,
     Limits,
@@ -317,7 +317,7 @@ def test_no_point_of_the_box_contradicts_a_verdict():
 
 @pytest.mark.parametrize("fault", ["gradient", "remainder"])
 def test_a_fault_in_the_bound_is_seen(monkeypatch, fault):
-    true = rounding_proof._mean_value
+    true = box_bound._mean_value
 
     def planted(*given):
         form = true(*given)
@@ -328,7 +328,7 @@ def test_a_fault_in_the_bound_is_seen(monkeypatch, fault):
             return replace(form, by_duration=gradient)
         return replace(form, value=Ball(form.value.mid * 1.05, form.value.rad))
 
-    monkeypatch.setattr(rounding_proof, "_mean_value", planted)
+    monkeypatch.setattr(box_bound, "_mean_value", planted)
     found = [
         contradiction(problem, h, q, judge_rounding(problem, h, q), seed)
         for problem, h, q, seed in judged_families()
@@ -635,9 +635,9 @@ def test_bisection_tightens():
     problem, h = posed(4, three_five_three())
     h = 0.9 * check(problem, h).stretch * h
     ball = Ball.exact(problem.waypoints)
-    root = rounding_proof.bound(problem, 0.98 * h, 1.02 * h, ball)
+    root = box_bound.bound(problem, 0.98 * h, 1.02 * h, ball)
     finer = [
-        rounding_proof.bound_by_bisection(problem, root, ball, target)
+        box_bound.bound_by_bisection(problem, root, ball, target)
         for target in (0.0, root.value + 1e-4, np.inf)
     ]
     assert finer[0].value == root.value
@@ -663,3 +663,10 @@ def test_bad_boxes_are_refused():
     free = Problem(problem.waypoints, problem.limits, piecewise((5, 5, 5), 2))
     with pytest.raises(TrajgapError, match="give nodal derivatives"):
         judge_rounding(free, Box.exact(h))
+
+
+def test_a_moving_joint_with_limit_zero_alone_is_judged() -> None:
+    points = np.array([[0.1], [0.4], [0.2], [0.6]])
+    problem = Problem(points, Limits(0.0, np.inf, joints=1), three_five_three())
+    durations = Box(np.ones(3), np.full(3, 0.99), np.full(3, 1.01))
+    assert judge_rounding(problem, durations, None).verdict is Rounding.BREAKS

@@ -247,6 +247,15 @@ def test_a_segment_without_motion_is_named_and_its_infimum_is_the_rest() -> None
     assert bounded.total_time == pytest.approx(sum(parts) + 0.25, rel=1e-9)
 
 
+@pytest.mark.parametrize("joints", [1, 2])
+def test_a_still_first_segment_of_any_angle_is_named(joints: int) -> None:
+    q = np.array([[0.3, 1.0], [0.3, 1.0], [0.9, 0.5], [1.4, 0.8]])[:, :joints]
+    solution = solve(Problem(q, Limits(1.0, 3.0, joints=joints), three_five_three()))
+    assert solution.status is Status.NOT_ATTAINED
+    assert solution.infimum < solution.total_time
+    assert "nothing moves in segment 1" in solution.why
+
+
 def test_nothing_that_moves_or_nothing_that_limits_has_infimum_zero() -> None:
     q = np.array([[0.3], [0.9], [0.1], [1.4]])
     assert solve(Problem(q, Limits(), three_five_three())).infimum == pytest.approx(0, abs=1e-9)

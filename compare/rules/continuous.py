@@ -19,6 +19,8 @@ _VERDICTS = {
     Rounding.BREAKS: (ClaimVerdict.REFUTED, Severity.ERROR),
     Rounding.UNDECIDED: (ClaimVerdict.NOT_CHECKABLE, Severity.INFO),
 }
+_NARROW = 0.01
+"""Share of a limit above which rounding blurs a peak too much to call the limit reached."""
 _UNITS = {"position": "rad", "velocity": "rad/s", "acceleration": "rad/s²", "jerk": "rad/s³"}
 
 
@@ -78,6 +80,14 @@ def _judged(
     bound = rounding.lower_bound_of_worst
     if rounding.verdict is Rounding.BREAKS and bound is not None:
         message += f" Over the whole rounding box the ratio is at least {bound:.6g}."
+    if rounding.verdict is Rounding.BREAKS:
+        cut = study.claim_cut(claim, pid, rid).verdict
+        if cut is not Rounding.BREAKS:
+            kept = cut is not Rounding.UNDECIDED
+            verdict = ClaimVerdict.SUPPORTED if kept else ClaimVerdict.NOT_CHECKABLE
+            message += f" With digits cut off instead of rounded: {cut}."
+            return verdict, Severity.WARNING, message
+        message += " So does every input with digits cut off instead of rounded."
     return verdict, severity, message
 
 
@@ -199,7 +209,7 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
         if jumps:
             top = max(jumps, key=lambda j: abs(j.size))
             names = ("position", "velocity", "acceleration")
-            verdict, severity = ClaimVerdict.REFUTED, Severity.WARNING
+            verdict, severity = ClaimVerdict.INCONSISTENT, Severity.WARNING
             message = (
                 f"discontinuous: {len(jumps)} jumps, the largest in {names[top.order]} of joint "
                 f"{top.joint} at t = {top.time:.6g} s by {top.size:.6g}."
@@ -298,7 +308,7 @@ def _used_up(study: Study, claim: AnyClaim) -> Iterator[Finding]:
                 if not np.isfinite(limit):
                     continue
                 reach = _box_reach(study, claim, pid, rid, top)
-                if abs(abs(top.value) - limit) <= reach:
+                if abs(abs(top.value) - limit) <= reach <= _NARROW * limit:
                     tight.append(
                         f"joint {problem.joints[top.joint]} {quantity} {abs(top.value):.6g} "
                         f"± {reach:.1g} at its limit {limit:.6g} {_UNITS[quantity]}"
@@ -317,7 +327,7 @@ def _used_up(study: Study, claim: AnyClaim) -> Iterator[Finding]:
                 printed=f"{_durations_text(claim)} s",
                 computed="; ".join(tight),
                 gap=None,
-                message="Within the rounding of the printed inputs a limit is reached: "
+                message="To first order in the rounding of the printed inputs, a limit is reached: "
                 + "; ".join(tight)
                 + ".",
                 decides=False,

@@ -65,6 +65,12 @@ def _meet(a: Interval, b: Interval) -> bool:
     return a.lower <= b.upper and b.lower <= a.upper
 
 
+def _hull(number: Printed) -> Interval:
+    """Every value whose digits, rounded or cut off, are the printed ones."""
+    a, b = number.interval, number.truncated
+    return Interval(min(a.lower, b.lower), max(a.upper, b.upper))
+
+
 def _sum(parts: Sequence[Interval]) -> Interval:
     zero = Fraction(0)
     return Interval(sum((p.lower for p in parts), zero), sum((p.upper for p in parts), zero))
@@ -131,9 +137,9 @@ def _maxima(study: Study) -> Iterator[Finding]:
         rows = [study.case.printed_durations(study.case.claim(i)) for i in claim.of]
         wrong = []
         for k, printed in enumerate(claim.durations):
-            column = [row[k].interval for row in rows if len(row) > k]
+            column = [_hull(row[k]) for row in rows if len(row) > k]
             longest = Interval(max(c.lower for c in column), max(c.upper for c in column))
-            if not _meet(printed.interval, longest):
+            if not _meet(_hull(printed), longest):
                 wrong.append(f"segment {k + 1}: printed {printed}, longest {_range(longest)}")
         shown = ", ".join(str(d) for d in claim.durations)
         if wrong:
@@ -221,7 +227,7 @@ def _unquantified(
     elif seconds.lower > 0:
         message = f"The printed totals are {between}."
         verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
-    elif seconds.upper < 0:
+    elif _hull(slower).upper < _hull(faster).lower:
         message = f"The printed totals are {between}: the one called better is the longer."
         verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
     else:
@@ -239,8 +245,8 @@ def _against_tables(
     slower, faster = totals
     assert slower is not None
     assert faster is not None
-    _, allowed = _reduction(slower.interval, faster.interval)
-    if _meet(percent.interval, allowed):
+    _, allowed = _reduction(_hull(slower), _hull(faster))
+    if _meet(_hull(percent), allowed):
         return
     where = " and ".join(t.where for t in tables if t is not None)
     yield _finding(
@@ -297,7 +303,7 @@ def _same_total(study: Study) -> Iterator[Finding]:
         total = None if table is None else _total(table)
         if table is None or total is None:
             continue
-        agree = _meet(claim.value.interval, total.interval)
+        agree = _meet(_hull(claim.value), _hull(total))
         unit = _unit(study)
         message = (
             f"{claim.where} prints {claim.value} {unit} and {table.where} prints {total} {unit} "

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ...nlp import Solution, Status
+from ...nlp import Evidence, Solution
 from ...problem import Coupling
 from ...problem.claim import (
     AnyClaim,
@@ -148,36 +148,46 @@ def _beside_procedure(
 
 
 def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Finding]:
-    """A feasible shorter answer to the same problem refutes "optimal"; its absence supports it."""
+    """A feasible shorter answer to the same problem refutes "optimal"; its absence supports it.
+
+    Shorter means: for every way-point that prints alike, the same checked durations, stretched as
+    far as those way-points may need, take less than the low end of the printed total.
+    """
     for rid in study.readings:
-        longer, judged, apart = [], 0, 0
+        longer, judged, open_ = [], 0, 0
         for claim in (study.case.claim(i) for i in statement.of):
             for pid, reading in study.claim_pairs(claim):
                 total = study.claim_total(claim, rid)
-                if reading != rid or total is None:
-                    continue
-                solution = study.claim_optimum(claim, pid, rid)
-                reference = reference_of(solution)
-                if reference is None or solution.status is Status.FEASIBLE:
+                solution = study.claim_optimum(claim, pid, rid) if reading == rid else None
+                if total is None or solution is None or solution.durations is None:
                     continue
                 judged += 1
                 shown, interval = total
-                distance = gap(interval, reference, feasible=_kept(study, claim, pid, rid))
-                if distance.lowest > 1e-9:
-                    longer.append(
-                        f"{claim.id} ({pid}): printed {shown}, a checked motion through the same "
-                        f"way-points takes {reference.upper:.6f} s ({_named(distance)})"
+                problem = study.claim_problem(claim, pid, rid)
+                reached = study.reachable(problem, solution.durations, pid, rid)
+                best = solution.infimum or solution.total_time
+                if reached is not None and interval[0] > reached:
+                    distance = gap(
+                        interval, Reference(reached), feasible=_kept(study, claim, pid, rid)
                     )
-                elif distance.highest < 0:
-                    apart += 1
+                    longer.append(
+                        f"{claim.id} ({pid}): printed {shown}; a checked motion takes "
+                        f"{reached:.6f} s for every way-point that prints alike "
+                        f"({_named(distance)})"
+                    )
+                elif not interval[0] <= best <= interval[1]:
+                    open_ += 1
         if not judged:
             continue
         if longer:
             verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
             message = "Not the shortest: " + "; ".join(longer) + "."
-        elif apart:
+        elif open_:
             verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
-            message = f"{apart} printed totals lie below the best known value of this reading."
+            message = (
+                f"{open_} of {judged} printed totals differ from the best known optimum by no "
+                "more than the rounding of the inputs explains, or lie below it."
+            )
         else:
             verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
             message = f"All {judged} printed totals agree with the best known optimum."
@@ -186,7 +196,7 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
             severity=severity,
             verdict=verdict,
             scope=Scope.SOME,
-            evidence=solution.evidence,
+            evidence=Evidence.BEST_KNOWN,
             basis=Basis.OPTIMUM,
             claim=statement.id,
             problem=None,

@@ -46,7 +46,6 @@ def _finding(
     printed: str | None,
     computed: str | None,
     message: str,
-    decides: bool = False,
 ) -> Finding:
     return Finding(
         rule=rule,
@@ -62,7 +61,7 @@ def _finding(
         computed=computed,
         gap=None,
         message=message,
-        decides=decides,
+        decides=False,
     )
 
 
@@ -199,5 +198,4 @@ def _convergence(study: Study, claim: ConvergenceClaim) -> Iterator[Finding]:
             f"{claim.iterations} iterations",
             f"median {np.median(settled):.0f} iterations",
             message,
-            decides=True,
         )

@@ -12,7 +12,6 @@ from ...problem import Problem
 from ...problem.claim import AnyClaim, DurationsClaim, MaximumClaim, StatementClaim
 from ..finding import Basis, ClaimVerdict, Finding, Scope, Severity
 from ..gap import Reference, gap
-from ..rounding import Rounding
 from ..study import Study
 
 
@@ -77,18 +76,15 @@ def _stretched(
     other = study.claim_problem(target, pairs[1][0], rid)
     factor = velocity_factor(one, other)
     total = study.claim_total(target, rid)
-    feasible = study.claim_check(source, pairs[0][0], rid).feasible_time
+    durations = study.case.claim_durations(source, rid).value
+    feasible = study.reachable(one, durations, pairs[0][0], rid)
     if factor is None or total is None or feasible is None:
         return
     reachable = feasible * factor
     shown, (low, high) = total
     if low <= reachable * (1 + 1e-9):
         return
-    kept = study.claim_rounding(target, pairs[1][0], rid).verdict in (
-        Rounding.KEEPS,
-        Rounding.CONSISTENT,
-    )
-    distance = gap((low, high), Reference(reachable), feasible=kept)
+    distance = gap((low, high), Reference(reachable), feasible=False)
     message = (
         f"The durations of {source.id}, stretched by {factor:.6g}, keep the limit of "
         f"{target.id} and take {reachable:.6g} s; printed for {target.id} is {shown}, "
@@ -104,7 +100,7 @@ def _stretched(
         "reading": rid,
         "printed": shown,
         "computed": f"{reachable:.6g} s",
-        "gap": distance,
+        "gap": None,
         "message": message,
     }
     yield Finding(

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linprog
-from trajgap.problem import Extremum, Problem, extrema, fit
 
+from ..problem import Extremum, Problem, extrema, fit
 from .interval import Array
 
 _MOST_PLACES = 100

@@ -6,15 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from trajgap.problem import Curve
-from trajgap.problem.spline import PERM
-from trajgap.problem.uniform import (
+
+from ..problem import Curve
+from ..problem.spline import PERM
+from ..problem.uniform import (
     StretchedUniformBSpline,
     TimedUniformBSpline,
     clock_matrix,
     shape_matrix,
 )
-
 from .interval import EPS, Array, Ball, quotient_power
 
 _POWERS = 4

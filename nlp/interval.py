@@ -18,9 +18,10 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from trajgap.problem import Interpolant
-from trajgap.problem.interpolant import RowKind
-from trajgap.problem.spline import PERM, layout, right_hand_sides
+
+from ..problem import Interpolant
+from ..problem.interpolant import RowKind
+from ..problem.spline import PERM, layout, right_hand_sides
 
 Array = NDArray[np.float64]
 

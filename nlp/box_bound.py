@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from trajgap.problem import QUANTITIES, Interpolant, Problem
-from trajgap.problem.uniform import StretchedUniformBSpline, TimedUniformBSpline
 
+from ..problem import QUANTITIES, Interpolant, Problem
+from ..problem.uniform import StretchedUniformBSpline, TimedUniformBSpline
 from .interval import EPS, Array, Ball, enclose_spline, place_basis, quotient_power, raised
 from .places import Rows, linear_program, rows_at
-from .rounding_uniform import centred, covered
+from .uniform_enclosure import centred, covered
 
 MOST_BOXES = 100
 _NAMES = ("position", *QUANTITIES)
@@ -256,7 +256,8 @@ def _best(problem: Problem, lower: Array, upper: Array, form: _MeanValue) -> Bou
     value, weights = float(alone[top]), np.eye(count)[top]
     some = np.flatnonzero(rows.width > 0.0)
     remainder = form.by_duration.rad * form.radius
-    if value < np.inf and (form.radius.any() or form.waypoint_radius.any()):
+    wide = form.radius.any() or form.waypoint_radius.any()
+    if value < np.inf and some.size and wide:
         found = _weights(form, some, remainder)
         if found is not None:
             shared = float(form.forced(found[None, :])[0])

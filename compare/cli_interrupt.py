@@ -1,0 +1,75 @@
+"""Ctrl-C ends the program at once, whatever runs, and leaves no draft of a file behind."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import shutil
+import signal
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from types import FrameType
+
+INTERRUPTED = 130
+
+_drafts: set[Path] = set()
+
+
+@contextmanager
+def draft(path: Path) -> Iterator[Path]:
+    """Remove a file or folder at the end, or when the program is interrupted."""
+    _drafts.add(path)
+    try:
+        yield path
+    finally:
+        _remove(path)
+        _drafts.discard(path)
+
+
+def catch_interrupts() -> None:
+    """Answer Ctrl-C with one line and exit code 130.
+
+    CasADi takes a KeyboardInterrupt for the failure of one solve and goes on, so raising one is
+    not enough.
+    """
+    if threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGINT, _end)
+
+
+@contextmanager
+def unwinding() -> Iterator[None]:
+    """Let Ctrl-C raise KeyboardInterrupt, for what cleans up after itself."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def _end(signum: int, frame: FrameType | None) -> None:
+    workers = multiprocessing.active_children()
+    for process in workers:
+        process.terminate()
+    if workers:
+        # Nothing but the pool runs here, and it must give back its semaphores.
+        raise KeyboardInterrupt
+    for path in _drafts:
+        _remove(path)
+    # A progress bar hides the cursor.
+    restored = "\x1b[?25h\r\x1b[K" if sys.stderr.isatty() else ""
+    with suppress(OSError):
+        os.write(2, f"{restored}trajgap: interrupted\n".encode())
+    os._exit(INTERRUPTED)
+
+
+def _remove(path: Path) -> None:
+    if path.is_dir():
+        shutil.rmtree(path, ignore_errors=True)
+    else:
+        path.unlink(missing_ok=True)

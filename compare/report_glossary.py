@@ -1,0 +1,97 @@
+"""How to read a verdict: the words of a report page and what they mean."""
+
+from __future__ import annotations
+
+from .finding import RULES, Basis
+from .report_blocks import Block, Folded, Prose, Section, Terms
+
+_CLAIMS = (
+    ("supported", "The computation agrees with the claim."),
+    (
+        "refuted",
+        "A proof contradicts the claim: interval arithmetic on the printed digits, a count of "
+        "conditions, an enclosure over all inputs that print alike, a scaling law, or a checked "
+        "motion that is shorter than one called optimal.",
+    ),
+    ("inconsistent", "Two printed things contradict each other; neither alone is refuted."),
+    ("not checkable", "Nothing that the text carries decides it, and the reason is given."),
+    ("all, some, no readings", "Under how many admissible readings of the text the verdict holds."),
+)
+_ROUNDING = (
+    ("keeps", "The printed point itself keeps every limit for all t."),
+    ("consistent", "Some input that prints alike keeps every limit, and it is exhibited."),
+    (
+        "breaks",
+        "No input that prints alike keeps every limit: a rigorous lower bound of the worst ratio "
+        "over the whole rounding box exceeds 1.",
+    ),
+    ("undecided", "Neither was shown."),
+)
+_CHECKS = (
+    ("pass", "At the given point every limit is kept for all t, rounding errors included."),
+    ("violated", "At the given point some limit is exceeded; what that says of printed digits is "
+     "the rounding verdict's to say."),
+    ("discontinuous", "Position or velocity jumps at a way-point."),
+)  # fmt: skip
+_EVIDENCE = (
+    ("certified", "Lower and upper bound lie within the stated gap, re-checked."),
+    (
+        "best known",
+        "The best value found and checked, with nothing proved below it. A gap against it is a "
+        "lower estimate of the true one.",
+    ),
+    ("none", "No reference value was needed."),
+)
+_DISTANCES = (
+    (
+        "optimality gap",
+        "(T − U)/U for a motion that keeps its limits, with U the reference total; the whole "
+        "interval where T is printed. Never clipped: below the reference it is negative.",
+    ),
+    (
+        "difference of reported time",
+        "The same number for a time whose motion is not shown to keep its limits.",
+    ),
+    ("feasible time", "T·max(1, c*): all durations stretched until every limit is kept."),
+    ("tight time", "T·c*: all durations rescaled until a limit is just reached."),
+)
+_SEVERITIES = (
+    ("error", "A printed number or statement is contradicted by a proof."),
+    (
+        "warning",
+        "Printed things do not fit together, or a best known value speaks against a statement.",
+    ),
+    ("info", "A fact beside the claim, or support for it."),
+)
+_BASES = {
+    Basis.DIGITS: "Interval arithmetic on the printed numbers alone.",
+    Basis.COUNT: "Conditions counted against coefficients.",
+    Basis.ENCLOSURE: "True peaks over the box of all inputs that print alike.",
+    Basis.CHECK: "True peaks at the printed point.",
+    Basis.IDENTITY: "A scaling law that needs no solver.",
+    Basis.OPTIMUM: "A reference value of the exact side.",
+    Basis.REPLAY: "Seeded runs of the algorithm under the listed choices. It can say that "
+    "something is not reproduced, never that it is refuted.",
+    Basis.TEXT: "What the extracted text carries or does not.",
+}
+
+
+def glossary() -> Section:
+    """The last but one section of every page: the vocabulary, and the rules by their ids."""
+    groups = (
+        ("On a claim", _CLAIMS),
+        ("On printed durations, over everything that prints alike", _ROUNDING),
+        ("On one motion", _CHECKS),
+        ("On a reference value", _EVIDENCE),
+        ("On a distance", _DISTANCES),
+        ("Severity of a finding", _SEVERITIES),
+        ("Basis of a finding", tuple((str(b), meaning) for b, meaning in _BASES.items())),
+    )
+    blocks: list[Block] = [
+        Prose("A verdict is about a printed number or sentence, under named readings of the text.")
+    ]
+    for title, pairs in groups:
+        blocks += [Prose(title, "heading"), Terms(pairs, anchored=True)]
+    rules = tuple((rule.id, rule.title + ".") for rule in RULES)
+    blocks.append(Folded("Rules by their permanent ids", (Terms(rules, anchored=True),)))
+    return Section("how-to-read", "How to read a verdict", tuple(blocks))

@@ -1,0 +1,383 @@
+"""Certified intervals: attacked by dense search, broken rows, stops, and an unlucky answer."""
+
+from __future__ import annotations
+
+import copy
+import json
+from fractions import Fraction
+from importlib import import_module
+
+import numpy as np
+import pytest
+from trajgap.nlp import solve, three_piece
+from trajgap.nlp.boxes import Boxes
+from trajgap.nlp.certificate import certificate, decimal, problem_document, shipped
+from trajgap.nlp.certify import Certified, Outcome, Progress, certify
+from trajgap.nlp.exact import ExactProblem, exact_problem, printed_problem
+from trajgap.nlp.incumbent import exact_coefficients, keeps_limits, never_above
+from trajgap.nlp.three_piece import PLACES, Prover, Row, exact_row
+from trajgap.nlp.verify import verify
+from trajgap.problem import (
+    Limits,
+    Problem,
+    TrajgapError,
+    Verdict,
+    check,
+    cubic_spline,
+    evaluate,
+    fit,
+    load_case,
+    published_ids,
+    rest_to_rest,
+    three_five_three,
+)
+
+module = import_module("trajgap.nlp.certify")
+
+
+def posed() -> list[tuple[str, ExactProblem]]:
+    """Every shipped 3-5-3 problem: joints together, and each by itself."""
+    found = []
+    for case_id in published_ids():
+        case = load_case(case_id)
+        for problem in case.problems:
+            for reading in case.readings:
+                exact = printed_problem(case.posing(problem.id, reading.id))
+                if module.covered(exact) is not None:
+                    continue
+                found.append((f"{case_id}.{problem.id}.{reading.id}", exact))
+                if len(exact.joints) > 1:
+                    for j, label in enumerate(exact.joints):
+                        name = f"{case_id}.{problem.id}.{reading.id}.joint-{label}"
+                        found.append((name, exact.joint(j)))
+    return found
+
+
+POSED = dict(posed())
+
+
+def random_problem(seed: int) -> Problem:
+    """Small 3-5-3 problem with unequal joints; every kind of limit and bound turns up."""
+    rng = np.random.default_rng(seed)
+    joints = int(rng.integers(1, 4))
+    q = rng.normal(0.3, 1.0, (4, joints))
+    scale = rng.uniform(0.3, 3.0, (3, joints))
+    some = rng.random(3) < 0.6
+    some[rng.integers(0, 3)] = True
+    v, a, j = (scale[i] if some[i] else np.full(joints, np.inf) for i in range(3))
+    low = np.full(joints, -np.inf)
+    if rng.random() < 0.25:
+        low = q.min(axis=0) - rng.uniform(0.05, 0.4)
+    lower = rng.uniform(0.1, 1.5, 3) if rng.random() < 0.4 else 0.0
+    upper = rng.uniform(4.0, 9.0, 3) if rng.random() < 0.3 else np.inf
+    return Problem(
+        q, Limits(v, a, j, low, np.full(joints, np.inf)), three_five_three(), lower, upper
+    )
+
+
+def dense_best(problem: Problem, count: int = 161) -> float:
+    """Smallest total over a grid of directions, each stretched as little as it may be."""
+    count = min(count, 41) if problem.limits.limits_position else count
+    side = (np.arange(count) + 0.5) / count
+    a, b = (g.ravel() for g in np.meshgrid(side, side))
+    shares = np.stack([a * (1 - b), (1 - a) * (1 - b), b * (1 - a)], axis=1)
+    with np.errstate(divide="ignore"):
+        stretch = np.maximum(
+            evaluate(problem, shares).stretch, (problem.duration_lower / shares).max(axis=1)
+        )
+    totals = stretch * shares.sum(axis=1)
+    totals[(shares * stretch[:, None] > problem.duration_upper).any(axis=1)] = np.inf
+    if not problem.limits.limits_position:
+        return float(totals.min())
+    for i in np.argsort(totals):
+        if not np.isfinite(totals[i]):
+            break
+        h = shares[i] * stretch[i]
+        curve = fit(problem.interpolant, problem.waypoints, h)
+        angle = np.stack([curve(x) for x in np.linspace(0.0, h.sum(), 60)])
+        inside = (angle >= problem.limits.position_lower).all()
+        if inside and check(problem, h).verdict is Verdict.PASS:
+            return float(totals[i])
+    return np.inf
+
+
+def attack(seed: int) -> Outcome:
+    problem = random_problem(seed)
+    found = certify(problem, gap=1e-3, seconds=20.0)
+    best = dense_best(problem)
+    if found.outcome is Outcome.INFEASIBLE:
+        assert best == np.inf
+    else:
+        assert float(found.lower) <= best * (1 + 1e-9)
+        if found.upper is not None:
+            assert found.lower <= found.upper
+            assert found.durations is not None
+            assert keeps_limits(exact_problem(problem), found.durations)
+    if found.state is not None:
+        assert verify(certificate(found)).proves
+    return found.outcome
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_dense_search_never_leaves_the_interval(seed: int) -> None:
+    attack(seed)
+
+
+@pytest.mark.slow
+def test_dense_search_never_leaves_the_interval_of_two_hundred_problems() -> None:
+    outcomes = [attack(seed) for seed in range(8, 208)]
+    decided = outcomes.count(Outcome.CERTIFIED) + outcomes.count(Outcome.INFEASIBLE)
+    assert decided >= 195
+
+
+def test_shipped_certificates_are_fresh_and_prove() -> None:
+    assert POSED
+    for name, exact in POSED.items():
+        document = shipped(exact)
+        assert document is not None, f"{name}: no certificate; run benchmarks/certificates.py"
+        assert document["problem"] == problem_document(exact)
+        verdict = verify(document)
+        assert verdict.proves, f"{name}: {verdict}"
+        assert not verdict.altered
+        assert verdict.lower is not None
+        assert verdict.upper is not None
+        assert verdict.upper - verdict.lower <= verdict.upper / 10**6
+        assert len(json.dumps(document)) < 200_000
+
+
+def unlucky(monkeypatch: pytest.MonkeyPatch, seconds: float = 2.0) -> tuple[float, Certified]:
+    """Certify with an answer 5 % above the optimum and no search for a better one."""
+    exact = POSED["puma560-mnam-pso-353.six-joints.durations-positive"]
+    true = shipped(exact)
+    assert true is not None
+    upper = Fraction(true["claim"]["upper"])
+    worse = tuple(Fraction(h) * Fraction(21, 20) for h in true["claim"]["durations"])
+    monkeypatch.setattr(module, "_answer", lambda *_: worse)
+    monkeypatch.setattr(module._Run, "improve", lambda *_: None)
+    return float(upper), certify(exact, seconds=seconds)
+
+
+def test_an_answer_that_is_not_optimal_is_never_certified(monkeypatch: pytest.MonkeyPatch) -> None:
+    optimum, found = unlucky(monkeypatch)
+    assert found.outcome is Outcome.INTERVAL
+    assert 0.9 * optimum < found.lower <= optimum
+
+
+def test_a_broken_relaxation_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(problem: ExactProblem, row: Row, total: Fraction) -> three_piece.Poly:
+        return exact_row(problem, row, total * Fraction(9, 10))
+
+    monkeypatch.setattr(three_piece, "exact_row", broken)
+    optimum, found = unlucky(monkeypatch, seconds=20.0)
+    assert found.lower > optimum, "the attack above would not have seen it"
+    assert not verify(certificate(found)).proves
+
+
+def test_a_local_answer_is_replaced_by_a_better_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    exact = POSED["puma560-mnam-pso-353.six-joints.durations-positive.joint-6"]
+    true = shipped(exact)
+    assert true is not None
+    answer, calls = module._answer, []
+
+    def local(*arguments: object) -> tuple[Fraction, ...] | None:
+        calls.append(arguments)
+        if len(calls) == 1:
+            return tuple(Fraction(h) * 2 for h in true["claim"]["durations"])
+        return answer(*arguments)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(module, "_answer", local)
+    found = certify(exact)
+    assert len(calls) > 1
+    assert found.outcome is Outcome.CERTIFIED
+    assert found.upper is not None
+    assert float(found.upper) == pytest.approx(float(Fraction(true["claim"]["upper"])), rel=1e-6)
+
+
+def test_a_stopped_run_goes_on_where_it_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
+    exact = POSED["puma560-mnam-pso-353.six-joints.durations-positive.joint-1"]
+
+    def interrupt(progress: Progress) -> None:
+        if progress.nodes > 150 and progress.open_boxes > 0:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(module, "_BATCH", 16)
+    first = certify(exact, report=interrupt)
+    assert first.outcome is Outcome.INTERVAL
+    assert first.resume is not None
+    assert first.open_boxes > 0
+    assert first.lower > 0
+    assert 1e-6 < first.gap < 1
+    assert verify(certificate(first)).proves
+    second = certify(exact, resume=first.resume)
+    assert second.outcome is Outcome.CERTIFIED
+    assert second.nodes < 400
+    assert verify(certificate(second)).proves
+
+
+def test_no_time_gives_no_lower_bound() -> None:
+    exact = POSED["irb460-pso-353.limit-80.waypoints-rad"]
+    found = certify(exact, seconds=0.0)
+    assert (found.outcome, found.lower) == (Outcome.INTERVAL, 0)
+    with pytest.raises(TrajgapError, match="nothing is proved"):
+        certificate(found)
+
+
+def test_velocity_limits_alone_scale_the_optimum() -> None:
+    # With velocity limits only, T·V is constant: 80 against 110 °/s.
+    slow, fast = (shipped(POSED[f"irb460-pso-353.limit-{v}.waypoints-rad"]) for v in (80, 110))
+    assert slow is not None
+    assert fast is not None
+    product = [Fraction(x["claim"]["upper"]) * v for x, v in ((slow, 80), (fast, 110))]
+    assert float(product[0]) == pytest.approx(float(product[1]), rel=1e-9)
+
+
+def test_limits_that_no_duration_meets_are_proved_infeasible() -> None:
+    q = np.array([[0.2], [1.1], [-0.4], [0.7]])
+    problem = Problem(q, Limits(1.0, 2.0), three_five_three(), 0.1, (4.0, 1.4, 4.0))
+    found = certify(problem)
+    assert found.outcome is Outcome.INFEASIBLE
+    verdict = verify(certificate(found))
+    assert verdict.proves
+    assert verdict.upper is None
+    assert "infeasible" in str(verdict)
+    assert "proved" in str(found)
+
+
+@pytest.mark.parametrize("degree", [3, 5, 7, 9])
+def test_rest_to_rest_is_certified_in_closed_form(degree: int) -> None:
+    q = np.array([[0.3, -0.2], [1.4, 0.1], [1.4, 2.3], [0.9, 2.2]])
+    # A cubic's acceleration jumps at the way-points, which no jerk limit survives.
+    jerk = np.inf if degree == 3 else 9.0
+    limits = Limits([1.1, 0.8], [2.0, np.inf], [np.inf, jerk])
+    problem = Problem(q, limits, rest_to_rest(3, degree), (0.2, 0.2, 0.4))
+    found = certify(problem)
+    assert found.outcome is Outcome.CERTIFIED
+    assert found.gap < 1e-9
+    solved = solve(problem)
+    assert float(found.lower) == pytest.approx(solved.total_time, rel=1e-8)
+    document = certificate(found)
+    verdict = verify(document)
+    assert verdict.proves
+    assert verdict.lower == found.lower
+    for k in range(3):
+        wrong = copy.deepcopy(document)
+        least = Fraction(wrong["proof"]["segments"][k][3]) * (1 + Fraction(1, 10**9))
+        wrong["proof"]["segments"][k][3] = decimal(least)
+        assert not verify(wrong).proves
+    document["claim"]["lower"] = decimal(found.lower * (1 + Fraction(1, 10**12)))
+    assert "exceeds the total" in verify(document).reason
+
+
+def test_a_jump_of_the_acceleration_keeps_no_jerk_limit() -> None:
+    q = [[0.0], [1.0], [1.5]]
+    jumps = Problem(q, Limits(1.0, jerk=100.0), rest_to_rest(2, 3))
+    assert certify(jumps).upper is None
+    document = certificate(certify(Problem(q, Limits(1.0), rest_to_rest(2, 3))))
+    assert verify(document).proves
+    document["problem"]["limits"][0][2] = "1000000"
+    assert "acceleration jumps" in verify(document).reason
+
+
+def test_a_rest_to_rest_segment_that_is_too_short_is_proved_infeasible() -> None:
+    problem = Problem([[0.0], [1.0]], Limits(1.0), rest_to_rest(1, 5), 0.1, 1.8)
+    found = certify(problem)
+    assert found.outcome is Outcome.INFEASIBLE
+    document = certificate(found)
+    assert verify(document).proves
+    document["problem"]["duration_upper"] = ["1.9"]
+    assert not verify(document).proves
+
+
+def test_positions_that_no_direction_keeps_are_proved_infeasible() -> None:
+    # It enters the middle piece from below at a way-point that is too high already.
+    q = np.array([[0.0], [1.0], [0.75], [0.0]])
+    limits = Limits(1.0, position_upper=0.9375)
+    found = certify(Problem(q, limits, three_five_three()))
+    assert found.outcome is Outcome.INFEASIBLE
+    document = certificate(found)
+    assert verify(document).proves
+    wider = copy.deepcopy(document)
+    wider["problem"]["position_upper"] = ["1.5"]
+    assert not verify(wider).proves
+
+
+def test_what_is_not_covered_is_said() -> None:
+    q = np.array([[0.2], [1.1], [-0.4], [0.7]])
+    with pytest.raises(TrajgapError, match="only rest-to-rest"):
+        certify(Problem(q, Limits(1.0), cubic_spline(3)))
+    with pytest.raises(TrajgapError, match="nothing limits"):
+        certify(Problem(q, Limits(), three_five_three()))
+
+
+def test_rows_are_the_limits_of_the_curve() -> None:
+    # Second route: the row's sign against the curve's derivative over its limit, for many points.
+    exact = POSED["puma560-mnam-pso-353.six-joints.durations-positive"]
+    q = np.array([[float(x) for x in row] for row in exact.waypoints])
+    rng = np.random.default_rng(5)
+    for _ in range(20):
+        h = rng.uniform(0.2, 1.5, 3)
+        curve = fit(exact.interpolant, q, h)
+        joint, order = int(rng.integers(0, 6)), int(rng.integers(1, 3))
+        place, sign = int(rng.integers(0, PLACES + 1)), int(rng.choice([-1, 1]))
+        total = Fraction(float(h.sum()))
+        poly = exact_row(exact, Row("place", joint, order, sign, place), total)
+        a, b = h[0] / (h[0] + h[1]), h[2] / (h[1] + h[2])
+        powers = np.arange(len(poly))
+        value = float((a**powers) @ poly.astype(float) @ (b**powers))
+        ratio = sign * curve(h[0] + h[1] * place / PLACES, order)[joint] / [6.0, 8.0][order - 1]
+        share = (a * b) ** 2 * ((1 - a) * (1 - b)) ** order
+        assert value == pytest.approx((ratio - 1.0) * share, abs=1e-12)
+
+
+def test_exact_coefficients_agree_with_the_fit() -> None:
+    q = np.array([[0.3, -1.2], [1.1, 0.4], [0.6, 0.9], [-0.7, 0.1]])
+    h = np.array([0.75, 1.25, 0.5])
+    interpolant = three_five_three()
+    curve = exact_coefficients(
+        interpolant,
+        [[Fraction(float(x)) for x in row] for row in q],
+        [Fraction(float(x)) for x in h],
+    )
+    assert curve is not None
+    second = np.array(curve[1][1], dtype=float)
+    expected = fit(interpolant, q, h)(0.75 + 0.5 * 1.25)[1]
+    assert second @ 0.5 ** np.arange(6) == pytest.approx(expected, rel=1e-12)
+
+
+def test_peaks_are_judged_exactly() -> None:
+    # 4s(1 − s) touches 1 in the middle.
+    parabola = [Fraction(0), Fraction(4), Fraction(-4)]
+    assert never_above(parabola, Fraction(1))
+    assert not never_above(parabola, 1 - Fraction(1, 10**15))
+
+
+def test_a_proof_needs_weights() -> None:
+    exact = POSED["irb460-pso-353.limit-80.waypoints-rad"]
+    row, side = Row("first", 0, 1), (3, 0)
+    prover = Prover(exact, Fraction(1))
+    assert prover.proves((row,), (Fraction(1),), side, side)
+    assert not prover.proves((row,), (Fraction(0),), side, side)
+    assert not prover.proves((row,), (Fraction(-1),), side, side)
+    assert not prover.proves((), (), side, side)
+
+
+def test_boxes_halve() -> None:
+    whole = Boxes(np.zeros((1, 2), np.int64), np.zeros((1, 2), np.int64))
+    parts = whole.halves(np.array([1])).halves(np.array([0, 0]))
+    area = (0.5**parts.level).prod(axis=1).sum()
+    assert area == 1.0
+    assert len({parts.sides(n) for n in range(4)}) == 4
+
+
+@pytest.mark.parametrize(
+    ("number", "text"),
+    [
+        (Fraction(-5, 4), "-1.25"),
+        (Fraction(4, 9), "4/9"),
+        (Fraction(12), "12"),
+        (Fraction(1, 1000), "0.001"),
+    ],
+)
+def test_exact_numbers_are_written_exactly(number: Fraction, text: str) -> None:
+    assert decimal(number) == text
+    assert Fraction(text) == number

@@ -1,0 +1,19 @@
+"""The pictures in the documents show what the code computes today."""
+
+import re
+import runpy
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+
+
+def described(svg: str) -> str:
+    found = re.search(r"<desc[^>]*>(.*?)</desc>", svg, re.DOTALL)
+    assert found is not None
+    return found[1]
+
+
+def test_the_waterfall_in_the_readme_carries_todays_numbers() -> None:
+    shown = (ROOT / "docs/pictures/waterfall-puma560.svg").read_text(encoding="utf-8")
+    made = runpy.run_path(str(ROOT / "docs/make_pictures.py"))["waterfall_puma560"]()
+    assert described(shown) == described(made), "run `python docs/make_pictures.py`"

@@ -1,0 +1,88 @@
+"""Cases on which a careless rule would accuse a sound paper."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from trajgap.compare import audit
+from trajgap.compare.finding import ClaimVerdict, Scope, Severity
+from trajgap.nlp import Status, solve
+from trajgap.problem import Limits, Problem, cubic_spline, parse_case
+
+HEAD = """
+format = 1
+id = "fair"
+title = "one joint from rest to rest"
+[source]
+year = 2024
+[robot]
+name = "arm"
+joints = ["1"]
+[units]
+position = "rad"
+velocity = "rad/s"
+time = "s"
+[waypoints]
+where = "Table 1"
+joint_rows = [[{points}]]
+[limits]
+velocity = {limit}
+[interpolant]
+family = "rest-to-rest"
+degree = 5
+[[claims]]
+id = "d"
+quantity = "durations"
+where = "Table 2"
+durations = ["{time}"]
+[[claims]]
+id = "s"
+quantity = "statement"
+where = "abstract"
+checks = "{checks}"
+of = ["d"]
+"""
+
+
+def verdicts(points: str, limit: str, time: str, checks: str) -> dict[str, ClaimVerdict]:
+    text = HEAD.format(points=points, limit=limit, time=time, checks=checks)
+    one = audit(parse_case(text, "fair.toml"), seeds=2).cases[0]
+    assert not [f for f in one.findings if f.severity is Severity.ERROR]
+    return {j.claim: j.verdict for j in one.judgements}
+
+
+def test_an_optimum_of_waypoints_that_print_alike_is_not_refuted() -> None:
+    """7.125 s is exactly optimal from -0.4 to 3.4, which print as 0 and 3."""
+    found = verdicts('"0", "3"', "1", "7.125", "optimal")
+    assert found["s"] is ClaimVerdict.NOT_CHECKABLE
+
+
+def test_durations_with_digits_cut_off_break_nothing() -> None:
+    """The optimum 0.961736 s printed as 0.961."""
+    found = verdicts("0, 1", "1.9496", "0.961", "within_limits")
+    assert found == {"d": ClaimVerdict.SUPPORTED, "s": ClaimVerdict.SUPPORTED}
+
+
+def test_what_is_plainly_broken_is_still_refuted() -> None:
+    text = HEAD.format(points="0, 1", limit="1.9496", time="0.95", checks="within_limits")
+    one = audit(parse_case(text, "fair.toml"), seeds=2).cases[0]
+    assert {j.verdict for j in one.judgements} == {ClaimVerdict.REFUTED}
+    slow = HEAD.format(points="0, 1", limit="1.9496", time="1.2", checks="optimal")
+    one = audit(parse_case(slow, "fair.toml"), seeds=2).cases[0]
+    assert {j.claim: j.verdict for j in one.judgements}["s"] is ClaimVerdict.REFUTED
+
+
+def test_a_selected_reading_does_not_speak_for_all() -> None:
+    one = audit("irb460-pso-353", seeds=2, reading="waypoints-rad").cases[0]
+    kept = next(j for j in one.judgements if j.claim == "limits-kept")
+    assert (kept.verdict, kept.scope) == (ClaimVerdict.REFUTED, Scope.SOME)
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_bounds_above_the_unbounded_optimum_are_the_optimum(seed: int) -> None:
+    """A repair once shrank durations below their bounds, and the solver was given an empty box."""
+    q = np.array([[-1.84], [-0.2], [-0.35], [0.27]])
+    lower = [2.87, 2.847, 1.655]
+    solution = solve(Problem(q, Limits(4.0, joints=1), cubic_spline(3), lower), seed=seed)
+    assert solution.status is Status.OPTIMAL
+    assert solution.total_time == pytest.approx(sum(lower), rel=1e-9)
