@@ -64,7 +64,9 @@ class Study:
         self.case = case
         self.seeds = seeds
         self.workers = workers
-        self.pairs: tuple[Pair, ...] = tuple(case.selections(problem, reading))
+        selected = case.selections(problem, reading)
+        self.readings: tuple[str, ...] = tuple(dict.fromkeys(rid for _, rid in selected))
+        self.pairs: tuple[Pair, ...] = tuple(p for p in selected if case.posing(*p).posed)
         self._progress = progress or (lambda _: None)
         self._kept: dict[tuple[Any, ...], Any] = {}
 
@@ -76,16 +78,11 @@ class Study:
     @property
     def posed(self) -> bool:
         """Whether way-points are printed, so that there are problems to solve."""
-        return self.case.posed
-
-    @property
-    def readings(self) -> tuple[str, ...]:
-        """Reading ids, in order."""
-        return tuple(dict.fromkeys(rid for _, rid in self.pairs))
+        return bool(self.pairs)
 
     @property
     def problems(self) -> tuple[str, ...]:
-        """Problem ids, in order."""
+        """Ids of the problems that are posed, in order."""
         return tuple(dict.fromkeys(pid for pid, _ in self.pairs))
 
     @property
