@@ -9,7 +9,7 @@ from trajgap.nlp.certificate import shipped_folder, write_certificate
 from trajgap.nlp.certify import certify, covered
 from trajgap.nlp.exact import ExactProblem, printed_problem
 from trajgap.nlp.verify import verify
-from trajgap.problem import load_case, published_ids
+from trajgap.problem import Interpolant, load_case, published_ids
 
 
 def main() -> None:
@@ -21,7 +21,10 @@ def main() -> None:
         case = load_case(case_id)
         for problem in case.problems:
             for reading in case.readings:
-                exact = printed_problem(case.posing(problem.id, reading.id))
+                posing = case.posing(problem.id, reading.id)
+                if not (posing.posed and isinstance(posing.interpolant(), Interpolant)):
+                    continue
+                exact = printed_problem(posing)
                 if covered(exact) is not None:
                     continue
                 name = f"{case_id}.{problem.id}.{reading.id}"

@@ -18,6 +18,7 @@ from trajgap.nlp.incumbent import exact_coefficients, keeps_limits, never_above
 from trajgap.nlp.three_piece import PLACES, Prover, Row, exact_row
 from trajgap.nlp.verify import verify
 from trajgap.problem import (
+    Interpolant,
     Limits,
     Problem,
     TrajgapError,
@@ -42,7 +43,10 @@ def posed() -> list[tuple[str, ExactProblem]]:
         case = load_case(case_id)
         for problem in case.problems:
             for reading in case.readings:
-                exact = printed_problem(case.posing(problem.id, reading.id))
+                posing = case.posing(problem.id, reading.id)
+                if not (posing.posed and isinstance(posing.interpolant(), Interpolant)):
+                    continue
+                exact = printed_problem(posing)
                 if module.covered(exact) is not None:
                     continue
                 found.append((f"{case_id}.{problem.id}.{reading.id}", exact))
