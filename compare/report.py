@@ -23,7 +23,8 @@ from .audit import AuditReport, CaseAudit
 from .documents import audit_document
 from .drawing import embedded
 from .finding import ClaimVerdict
-from .report_blocks import Page, Section, Terms, slug
+from .report_blocks import Page, Prose, Section, Terms, slug
+from .report_exhibits import exhibits_of_motion, exhibits_of_search
 from .report_glossary import glossary
 from .report_markdown import markdown
 from .report_numbers import optima, sensitivities, where_time_goes
@@ -183,17 +184,38 @@ def case_page(one: CaseAudit) -> Page:
         (
             audited(one),
             claim_table(one),
-            where_time_goes(one),
-            findings(one),
-            optima(one),
-            sensitivities(one),
-            report_pictures.motions(one),
-            report_pictures.searches(one),
-            report_pictures.landscapes(one),
+            *_computed(one),
             *foundations(one),
             glossary(),
             _reproduced(one),
         ),
+    )
+
+
+def _computed(one: CaseAudit) -> tuple[Section, ...]:
+    """What is computed from way-points, and what needs none."""
+    if not one.study.posed:
+        why = one.case.posing().waypoints.not_printed or "none of its readings poses a problem"
+        left_out = Prose(
+            f"No problem is posed: way-points are not printed ({why}). Optima, motions, replays "
+            "and landscapes appear here as soon as the case file has way-points."
+        )
+        return (
+            findings(one),
+            *exhibits_of_motion(one.study),
+            *exhibits_of_search(one.study),
+            Section("not-computed", "Not computed", (left_out,)),
+        )
+    return (
+        where_time_goes(one),
+        findings(one),
+        optima(one),
+        sensitivities(one),
+        report_pictures.motions(one),
+        *exhibits_of_motion(one.study),
+        report_pictures.searches(one),
+        *exhibits_of_search(one.study),
+        report_pictures.landscapes(one),
     )
 
 

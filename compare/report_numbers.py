@@ -76,7 +76,8 @@ def _answer(solution: Solution) -> tuple[Cell, ...]:
         text(solution.status + (f"\n{solution.why}" if solution.why else "")),
         number(total),
         word(solution.evidence),
-        number(None if solution.durations is None else listed(list(solution.durations))),
+        # Free text, so that many durations wrap.
+        text(None if solution.durations is None else listed(list(solution.durations))),
         word(check.verdict) if check is not None else text(None),
         number(None if residual is None else f"{residual:.1e}"),
         number(f"{solution.starts_at_best} of {solution.starts}" if solution.starts else None),
