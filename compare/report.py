@@ -184,39 +184,33 @@ def case_page(one: CaseAudit) -> Page:
         (
             audited(one),
             claim_table(one),
-            *_computed(one),
+            where_time_goes(one),
+            findings(one),
+            optima(one),
+            sensitivities(one),
+            report_pictures.motions(one),
+            *exhibits_of_motion(one.study),
+            report_pictures.searches(one),
+            *exhibits_of_search(one.study),
+            report_pictures.landscapes(one),
+            _not_computed(one),
             *foundations(one),
             glossary(),
             _reproduced(one),
         ),
-    )
+    ).filled
 
 
-def _computed(one: CaseAudit) -> tuple[Section, ...]:
-    """What is computed from way-points, and what needs none."""
-    if not one.study.posed:
-        why = one.case.posing().waypoints.not_printed or "none of its readings poses a problem"
-        left_out = Prose(
-            f"No problem is posed: way-points are not printed ({why}). Optima, motions, replays "
-            "and landscapes appear here as soon as the case file has way-points."
-        )
-        return (
-            findings(one),
-            *exhibits_of_motion(one.study),
-            *exhibits_of_search(one.study),
-            Section("not-computed", "Not computed", (left_out,)),
-        )
-    return (
-        where_time_goes(one),
-        findings(one),
-        optima(one),
-        sensitivities(one),
-        report_pictures.motions(one),
-        *exhibits_of_motion(one.study),
-        report_pictures.searches(one),
-        *exhibits_of_search(one.study),
-        report_pictures.landscapes(one),
+def _not_computed(one: CaseAudit) -> Section:
+    """Why there are no optima; nothing where there are some."""
+    if one.study.posed:
+        return Section("not-computed", "Not computed", ())
+    why = one.case.posing().waypoints.not_printed or "none of its readings poses a problem"
+    said = Prose(
+        f"No problem is posed: way-points are not printed ({why}). Optima, motions, replays and "
+        "landscapes appear here as soon as the case file has way-points."
     )
+    return Section("not-computed", "Not computed", (said,))
 
 
 def _version(package: str) -> str:

@@ -21,7 +21,11 @@ from .report_numbers import REPLAY_COLUMNS, replay_rows
 from .study import Study
 
 Array = NDArray[np.float64]
-_NOTHING = Prose("None.")
+
+
+def _nothing(one: CaseAudit) -> tuple[Block, ...]:
+    """What a section without pictures says: nothing at all where no problem is posed."""
+    return (Prose("None."),) if one.study.posed else ()
 
 
 def motions(one: CaseAudit) -> Section:
@@ -41,7 +45,7 @@ def motions(one: CaseAudit) -> Section:
                 nodal=solution.nodal,
             )
             blocks.append(_drawn(f"optimum-{pid}", picture, f"Reading {rid}."))
-    return Section("motions", "Motions, with limits and peaks", tuple(blocks) or (_NOTHING,))
+    return Section("motions", "Motions, with limits and peaks", tuple(blocks) or _nothing(one))
 
 
 def _drawn(name: str, picture: Picture, caption: str) -> Drawn:
@@ -149,7 +153,7 @@ def searches(one: CaseAudit) -> Section:
         "note",
     )
     return Section(
-        "searches", "Replays of the algorithms", (lead, *blocks) if blocks else (_NOTHING,)
+        "searches", "Replays of the algorithms", (lead, *blocks) if blocks else _nothing(one)
     )
 
 
@@ -261,7 +265,7 @@ def landscapes(one: CaseAudit) -> Section:
             break
         if single:
             blocks.append(Folded(f"Each joint by itself, {pid}", tuple(single)))
-    return Section("landscapes", "Landscapes of the total time", tuple(blocks) or (_NOTHING,))
+    return Section("landscapes", "Landscapes of the total time", tuple(blocks) or _nothing(one))
 
 
 def _landscape(
