@@ -165,6 +165,9 @@ def _shorter(match: re.Match[str]) -> str:
             parts.append(f"H{x}")
         elif y != last[1]:
             parts.append(f"V{y}")
+        elif parts[-1][0] == "M":
+            # A stroke without length is a dot.
+            parts.append("h0")
         last = (x, y)
     return f'd="{"".join(parts)}"'
 

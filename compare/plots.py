@@ -132,7 +132,7 @@ def _panel(
     axes: Axes, problem: Problem, trajectory: Trajectory, column: int, joint: int, order: int
 ) -> None:
     quantity = _name(order)
-    times, values = _sampled(trajectory, column, order)
+    times, values = sampled(trajectory, column, order)
     low, high = _limits_of(problem, joint, order)
     for b in trajectory.breaks:
         axes.axvline(float(b), color=GRID, linewidth=0.7, zorder=0)
@@ -185,10 +185,22 @@ def _mark_peak(axes: Axes, top: Extremum, limit: float) -> None:
     axes.set_title(text, color=colour, fontsize=8, loc="right")
 
 
-def _sampled(
+def sampled(
     trajectory: Trajectory, column: int, order: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Times and values, with the exact extrema among them and a gap where the curve jumps."""
+    """Times and values, with the exact extrema among them and a gap where the curve jumps.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+    column, order : int
+        Joint and derivative.
+
+    Returns
+    -------
+    times, values : ndarray, shape (samples,)
+        s and rad/sᵒʳᵈᵉʳ; a value is NaN at a jump.
+    """
     times: list[NDArray[np.float64]] = []
     values: list[NDArray[np.float64]] = []
     scale = max(abs(e.value) for e in extrema(trajectory, column, order)) or 1.0

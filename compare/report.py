@@ -23,7 +23,8 @@ from .audit import AuditReport, CaseAudit
 from .documents import audit_document
 from .drawing import embedded
 from .finding import ClaimVerdict
-from .report_blocks import Page, Section, Terms, slug
+from .report_blocks import Page, Prose, Section, Terms, slug
+from .report_exhibits import exhibits_of_motion, exhibits_of_search
 from .report_glossary import glossary
 from .report_markdown import markdown
 from .report_numbers import optima, sensitivities, where_time_goes
@@ -188,13 +189,28 @@ def case_page(one: CaseAudit) -> Page:
             optima(one),
             sensitivities(one),
             report_pictures.motions(one),
+            *exhibits_of_motion(one.study),
             report_pictures.searches(one),
+            *exhibits_of_search(one.study),
             report_pictures.landscapes(one),
+            _not_computed(one),
             *foundations(one),
             glossary(),
             _reproduced(one),
         ),
+    ).filled
+
+
+def _not_computed(one: CaseAudit) -> Section:
+    """Why there are no optima; nothing where there are some."""
+    if one.study.posed:
+        return Section("not-computed", "Not computed", ())
+    why = one.case.posing().waypoints.not_printed or "none of its readings poses a problem"
+    said = Prose(
+        f"No problem is posed: way-points are not printed ({why}). Optima, motions, replays and "
+        "landscapes appear here as soon as the case file has way-points."
     )
+    return Section("not-computed", "Not computed", (said,))
 
 
 def _version(package: str) -> str:

@@ -131,6 +131,11 @@ class Page:
     sections: tuple[Section, ...]
 
     @property
+    def filled(self) -> Page:
+        """The same page without sections that hold nothing."""
+        return replace(self, sections=tuple(s for s in self.sections if s.blocks))
+
+    @property
     def pictures(self) -> tuple[Drawn, ...]:
         """All pictures, folded or not, in order."""
         found: list[Drawn] = []

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from ..nlp import PerJointSolution, Solution
+from ..nlp import Evidence, PerJointSolution, Solution
 from ..problem import Coupling
 from ..problem.claim import DurationsClaim
 from .audit import CaseAudit
@@ -31,27 +31,59 @@ from .report_blocks import (
 from .rules.optimum import reference_of
 from .statistics import spread
 from .study import Study
-from .waterfall import Waterfall
+from .waterfall import Step, Waterfall
 from .waterfall_picture import seconds as interval
 from .waterfall_picture import waterfall_picture
 
+_ON_A_LINE = 3
+_FEW = 3
+"""Other readings of a problem that still get a picture each."""
+
 
 def where_time_goes(one: CaseAudit) -> Section:
-    """Waterfall pictures and tables, the default reading first and the others folded."""
+    """Waterfall pictures and tables of the default reading; the others folded, or in a table."""
+    main = one.study.main_reading
     blocks: list[Block] = []
-    for fall in one.waterfalls:
-        title = f"Where the time goes: {fall.problem}, {fall.reading}"
-        picture = waterfall_picture(fall, title=title)
-        name = f"waterfall-{fall.problem}-{fall.reading}"
-        caption = "Bars start at 0; best known values are hatched, certified ones solid." + (
-            f" The first bar is claim {fall.claim}." if fall.claim else ""
-        )
-        own: tuple[Plain, ...] = (Drawn(name, svg(picture), title, caption), _steps(fall))
-        if fall.reading == one.study.main_reading:
-            blocks += own
-        else:
-            blocks.append(Folded(f"Other reading: {fall.problem}, {fall.reading}", own))
+    for pid in dict.fromkeys(fall.problem for fall in one.waterfalls):
+        own = [fall for fall in one.waterfalls if fall.problem == pid]
+        others = [fall for fall in own if fall.reading != main]
+        for fall in own:
+            if fall.reading == main:
+                blocks += _drawn(fall)
+            elif len(others) <= _FEW:
+                blocks.append(Folded(f"Other reading: {pid}, {fall.reading}", _drawn(fall)))
+        if len(others) > _FEW:
+            blocks.append(_side_by_side(pid, others))
     return Section("waterfall", "Where the time goes", tuple(blocks))
+
+
+def _drawn(fall: Waterfall) -> tuple[Plain, ...]:
+    title = f"Where the time goes: {fall.problem}, {fall.reading}"
+    picture = waterfall_picture(fall, title=title)
+    caption = "Bars start at 0; best known values are hatched, certified ones solid." + (
+        f" The first bar is claim {fall.claim}." if fall.claim else ""
+    )
+    name = f"waterfall-{fall.problem}-{fall.reading}"
+    return Drawn(name, svg(picture), title, caption), _steps(fall)
+
+
+def _side_by_side(pid: str, falls: Sequence[Waterfall]) -> Grid:
+    """Steps of many readings, one row each; steps that no reading has are left out."""
+    names = dict.fromkeys(s.name for fall in falls for s in fall.steps)
+    rows = []
+    for fall in falls:
+        steps = {s.name: s for s in fall.steps}
+        cells = [_step(steps.get(name)) for name in names]
+        rows.append((text(fall.reading), *cells))
+    caption = f"Other readings of {pid}; an empty cell was not computed"
+    return Grid(("reading", *names), tuple(rows), caption).filled
+
+
+def _step(step: Step | None) -> Cell:
+    if step is None or step.time is None:
+        return number(None)
+    evidence = "" if step.evidence is Evidence.NONE else f"\n{step.evidence}"
+    return number(interval(step) + evidence)
 
 
 def _steps(fall: Waterfall) -> Grid:
@@ -63,7 +95,14 @@ def _steps(fall: Waterfall) -> Grid:
 
 # --- optima ---------------------------------------------------------------------------------------
 
+_OPTIMA = "Optimum of each formulation"
 _ANSWER = ("status", "total", "evidence", "durations, s", "check", "KKT residual", "starts at best")
+
+
+def _durations(values: list[float]) -> str:
+    """Durations, a few on each line: nine on one would push the table off the page."""
+    lines = [listed(values[i : i + _ON_A_LINE]) for i in range(0, len(values), _ON_A_LINE)]
+    return ",\n".join(lines)
 
 
 def _answer(solution: Solution) -> tuple[Cell, ...]:
@@ -76,7 +115,7 @@ def _answer(solution: Solution) -> tuple[Cell, ...]:
         text(solution.status + (f"\n{solution.why}" if solution.why else "")),
         number(total),
         word(solution.evidence),
-        number(None if solution.durations is None else listed(list(solution.durations))),
+        number(None if solution.durations is None else _durations(list(solution.durations))),
         word(check.verdict) if check is not None else text(None),
         number(None if residual is None else f"{residual:.1e}"),
         number(f"{solution.starts_at_best} of {solution.starts}" if solution.starts else None),
@@ -88,16 +127,27 @@ def optima(one: CaseAudit) -> Section:
     study = one.study
     rows: list[tuple[Cell, ...]] = []
     blocks: list[Block] = []
+    without: defaultdict[str, list[str]] = defaultdict(list)
     for pid, rid in study.pairs:
         own = study.optimum(pid, rid)
         rows.append((text(pid), text(rid), text("printed curve, shared durations"), *_answer(own)))
-        rows.append(
-            (text(pid), text(rid), text("relaxed family"), *_answer(study.relaxed(pid, rid)))
-        )
+        relaxed = study.relaxed(pid, rid)
+        if relaxed.durations is None:
+            without[relaxed.why or str(relaxed.status)].append(rid)
+        else:
+            rows.append((text(pid), text(rid), text("relaxed family"), *_answer(relaxed)))
         if _by_joint(study, pid, rid):
             blocks += _joints(study, pid, rid)
+    if not rows:
+        return Section("optima", _OPTIMA, ())
+    notes = [
+        Prose(
+            f"No relaxed family for {len(found)} of {len(study.pairs)} rows above: {why}.", "note"
+        )
+        for why, found in without.items()
+    ]
     names = ("problem", "reading", "formulation", *_ANSWER)
-    return Section("optima", "Optimum of each formulation", (Grid(names, tuple(rows)), *blocks))
+    return Section("optima", _OPTIMA, (Grid(names, tuple(rows)), *notes, *blocks))
 
 
 def _by_joint(study: Study, pid: str, rid: str) -> bool:
@@ -161,6 +211,9 @@ def _procedure(answer: PerJointSolution) -> str:
 
 def sensitivities(one: CaseAudit) -> Section:
     """What 10 % more of each active limit buys, to first order."""
+    title = "What 10 % more of a limit buys"
+    if not one.study.posed:
+        return Section("sensitivities", title, ())
     rows = []
     for pid, rid in one.study.pairs:
         solution = one.study.optimum(pid, rid)
@@ -188,7 +241,7 @@ def sensitivities(one: CaseAudit) -> Section:
     )
     names = ("problem", "reading", "limit of", "quantity", "peaks at it", "changes the total", "by")
     body: Block = Grid(names, tuple(rows)) if rows else Prose("No limit is reached.")
-    return Section("sensitivities", "What 10 % more of a limit buys", (note, body))
+    return Section("sensitivities", title, (note, body))
 
 
 # --- replays --------------------------------------------------------------------------------------

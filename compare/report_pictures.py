@@ -21,7 +21,11 @@ from .report_numbers import REPLAY_COLUMNS, replay_rows
 from .study import Study
 
 Array = NDArray[np.float64]
-_NOTHING = Prose("None.")
+
+
+def _nothing(one: CaseAudit) -> tuple[Block, ...]:
+    """What a section without pictures says: nothing at all where no problem is posed."""
+    return (Prose("None."),) if one.study.posed else ()
 
 
 def motions(one: CaseAudit) -> Section:
@@ -41,14 +45,14 @@ def motions(one: CaseAudit) -> Section:
                 nodal=solution.nodal,
             )
             blocks.append(_drawn(f"optimum-{pid}", picture, f"Reading {rid}."))
-    return Section("motions", "Motions, with limits and peaks", tuple(blocks) or (_NOTHING,))
+    return Section("motions", "Motions, with limits and peaks", tuple(blocks) or _nothing(one))
 
 
 def _drawn(name: str, picture: Picture, caption: str) -> Drawn:
     return Drawn(name, svg(picture), picture.title, caption)
 
 
-def _whole(study: Study, pid: str) -> list[DurationsClaim | MaximumClaim]:
+def whole_claims(study: Study, pid: str) -> list[DurationsClaim | MaximumClaim]:
     """Claims that print durations for all joints of a problem."""
     joints = study.problem(pid, study.main_reading).joints
     return [
@@ -62,7 +66,7 @@ def _whole(study: Study, pid: str) -> list[DurationsClaim | MaximumClaim]:
 
 def _printed_motions(study: Study, pid: str, rid: str) -> Iterator[Block]:
     alike: dict[tuple[str, ...], list[AnyClaim]] = {}
-    for claim in _whole(study, pid):
+    for claim in whole_claims(study, pid):
         alike.setdefault(tuple(map(str, claim.durations)), []).append(claim)
     for claims in alike.values():
         first = claims[0]
@@ -149,7 +153,7 @@ def searches(one: CaseAudit) -> Section:
         "note",
     )
     return Section(
-        "searches", "Replays of the algorithms", (lead, *blocks) if blocks else (_NOTHING,)
+        "searches", "Replays of the algorithms", (lead, *blocks) if blocks else _nothing(one)
     )
 
 
@@ -171,7 +175,7 @@ def _convergence(study: Study, pid: str, rid: str, runs: dict[str, Runs]) -> Ite
     groups: dict[str, list[DurationsClaim | MaximumClaim]] = (
         {tables: list(claims) for tables, claims in _tables_by_joint(study, pid).items()}
         if by_joint
-        else {c.id: [c] for c in _whole(study, pid)}
+        else {c.id: [c] for c in whole_claims(study, pid)}
     )
     for label, claims in groups.items():
         boxes = [total[1] for c in claims if (total := study.claim_total(c, rid)) is not None]
@@ -212,7 +216,7 @@ def _totals(study: Study, pid: str, rid: str) -> tuple[dict[str, float], dict[st
     values: dict[str, float] = {}
     for claim in study.case.claims:
         whole = isinstance(claim, TotalTimeClaim) and claim.joint is None
-        if claim in _whole(study, pid) or (whole and claim.problem in (None, pid)):
+        if claim in whole_claims(study, pid) or (whole and claim.problem in (None, pid)):
             total = study.claim_total(claim, rid)
             if total is not None:
                 printed.setdefault(total[0], []).append(claim.id)
@@ -235,7 +239,9 @@ def landscapes(one: CaseAudit) -> Section:
             )
             continue
         runs = _runs(study, pid)
-        printed = [(c.id, study.case.claim_durations(c, rid).value) for c in _whole(study, pid)]
+        printed = [
+            (c.id, study.case.claim_durations(c, rid).value) for c in whole_claims(study, pid)
+        ]
         ends = {name: np.array([r.durations for r in many]) for name, many in runs.items()}
         blocks += _landscape(
             f"landscape-{pid}", problem, study.optimum(pid, rid), printed, ends, pid
@@ -259,7 +265,7 @@ def landscapes(one: CaseAudit) -> Section:
             break
         if single:
             blocks.append(Folded(f"Each joint by itself, {pid}", tuple(single)))
-    return Section("landscapes", "Landscapes of the total time", tuple(blocks) or (_NOTHING,))
+    return Section("landscapes", "Landscapes of the total time", tuple(blocks) or _nothing(one))
 
 
 def _landscape(

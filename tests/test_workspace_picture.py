@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 import pytest
+from matplotlib.patches import PathPatch, Rectangle
 from trajgap.compare.drawing import svg
 from trajgap.compare.workspace_picture import workspace_picture
 from trajgap.problem.errors import TrajgapError
@@ -16,22 +17,33 @@ CLOUD = sample_workspace(load_robot("puma560"), 500, 7)
 PATH = np.array([[0.1, 0.2, 0.9], [-0.3, 0.1, 0.7], [0.2, -0.4, 1.1]])
 
 
+def dots(axes):
+    (cloud,) = (p for p in axes.patches if isinstance(p, PathPatch))
+    return cloud.get_path().vertices[::2]
+
+
 def test_three_views_of_the_same_points():
-    figure = workspace_picture(CLOUD, waypoints=PATH, labels=["A", "B", "C"])
+    figure = workspace_picture(
+        CLOUD, waypoints=PATH, labels=["A", "B", "C"], missed=[False, True, False]
+    )
     assert len(figure.axes) == 3
+    spans = []
     for axes, (across, up) in zip(figure.axes, [(0, 1), (0, 2), (1, 2)], strict=True):
-        np.testing.assert_allclose(
-            axes.collections[0].get_offsets(), CLOUD.points[:, [across, up]], rtol=1e-12
-        )
-        box = axes.patches[0]
+        np.testing.assert_allclose(dots(axes), CLOUD.points[:, [across, up]], rtol=1e-12)
+        (box,) = (p for p in axes.patches if isinstance(p, Rectangle))
         np.testing.assert_allclose(box.get_xy(), CLOUD.lower[[across, up]])
         size = (CLOUD.upper - CLOUD.lower)[[across, up]]
         np.testing.assert_allclose([box.get_width(), box.get_height()], size)
-        np.testing.assert_array_equal(axes.lines[1].get_xydata(), PATH[:, [across, up]])
-        assert [text.get_text() for text in axes.texts] == ["A", "B", "C"]
-    assert figure.axes[0].get_xlabel() == "x (m)"
-    assert "500 positions, seed 7" in figure.description
-    assert "3 way-points" in figure.description
+        _, joined, reached, missed = axes.lines
+        np.testing.assert_array_equal(joined.get_xydata(), PATH[:, [across, up]])
+        np.testing.assert_array_equal(reached.get_xydata(), PATH[::2, [across, up]])
+        np.testing.assert_array_equal(missed.get_xydata(), PATH[1:2, [across, up]])
+        assert sorted(text.get_text() for text in axes.texts) == ["A", "B", "C"]
+        spans += [np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim())]
+    np.testing.assert_allclose(spans, spans[0])
+    assert figure.axes[0].get_xlabel() == "x, m"
+    assert "500 positions, seed 7;" in figure.description
+    assert "3 way-points, 1 of them out of reach" in figure.description
     assert figure.title == "Workspace of PUMA 560"
 
 
@@ -40,17 +52,29 @@ def test_numbers_are_of_all_samples_though_fewer_are_drawn(monkeypatch):
 
     monkeypatch.setattr(module, "_LARGEST_CLOUD", 50)
     figure = workspace_picture(CLOUD, title="cloud")
-    assert len(figure.axes[0].collections[0].get_offsets()) == 50
-    assert "500 positions" in figure.description
+    assert len(dots(figure.axes[0])) == 50
+    assert "500 positions, seed 7, the first 50 drawn;" in figure.description
     assert "way-points" not in figure.description
     assert figure.title == "cloud"
+
+
+def test_every_dot_reaches_the_svg_and_no_raster_does():
+    document = svg(workspace_picture(CLOUD))
+    assert max(path.count("h0") for path in re.findall(r'\bd="([^"]*)"', document)) == 500
+    # A page may fetch no image, not even one of its own.
+    assert "<image" not in document
 
 
 def test_same_bytes_each_time():
     one, two = (svg(workspace_picture(CLOUD, waypoints=PATH)) for _ in range(2))
     assert one == two
     assert "<title" in one
-    assert len(one) < 400_000
+    assert len(one) < 200_000
+
+
+def test_a_flat_workspace_has_no_minus_zero():
+    flat = sample_workspace(load_robot("irb460"), 200, 1)
+    assert "y 0.000 to 0.000" in workspace_picture(flat).description
 
 
 @pytest.mark.parametrize(
@@ -61,6 +85,7 @@ def test_same_bytes_each_time():
         ({"waypoints": [["a", 1, 2]]}, "waypoints: not numbers; give positions, m"),
         ({"waypoints": PATH, "labels": ["A"]}, "labels: 1 for 3 way-points; give one each"),
         ({"labels": ["A"]}, "labels: 1 for 0 way-points; give one each"),
+        ({"waypoints": PATH, "missed": [True]}, "missed: 1 for 3 way-points; give one each"),
     ],
 )
 def test_faults(options, message):
