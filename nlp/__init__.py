@@ -1,7 +1,8 @@
 """The exact side: the NLP over durations and coefficients, its solutions, and TOPPRA."""
 
 from .certificate import certificate, shipped, write_certificate
-from .certify import Certified, Outcome, Progress, State, certify
+from .certified import Certified, Outcome, Progress
+from .certify import certify
 from .exact import ExactProblem, exact_problem, printed_problem
 from .family_free import FamilyFree, family_free
 from .formulation import Form, Formulation, Structure, build
@@ -12,7 +13,7 @@ from .solution import Evidence, Solution, Status
 from .solve import solve
 from .starts import random_starts
 from .tracking import structure_of
-from .verify import verify
+from .verify import Subject, verify
 
 __all__ = [
     "KKT",
@@ -29,9 +30,9 @@ __all__ = [
     "Range",
     "Retiming",
     "Solution",
-    "State",
     "Status",
     "Structure",
+    "Subject",
     "build",
     "certificate",
     "certify",

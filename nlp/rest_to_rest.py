@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
+import time
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 
-from .exact import ExactProblem
-from .incumbent import solve_exactly
+from ..problem import Interpolant
+from .certified import Certified, Certifier, Outcome, Request
+from .exact import ExactProblem, decimal
+from .incumbent import prove_feasible, solve_exactly
 from .three_piece import PLACES
 
 _STILL = 1e-9
@@ -29,9 +33,23 @@ class SegmentBound:
     place: int = 0
 
 
+@dataclass(frozen=True)
+class ClosedForm:
+    """Bounds of all segments, as the proof of a certificate."""
+
+    bounds: tuple[SegmentBound, ...]
+
+    def document(self) -> dict[str, Any]:
+        """Kind "rest-to-rest" of docs/certificates.md."""
+        rows = [[b.joint, b.order, b.place, decimal(b.least)] for b in self.bounds]
+        return {"kind": "rest-to-rest", "segments": rows}
+
+
 def is_rest_to_rest(problem: ExactProblem) -> bool:
     """Whether every segment starts and ends at rest, which then determines it."""
-    interpolant = problem.interpolant
+    interpolant = problem.curve
+    if not isinstance(interpolant, Interpolant):
+        return False
     orders = tuple((r, 0.0) for r in range(1, (interpolant.degrees[0] + 1) // 2))
     return (
         set(interpolant.degrees) == {2 * len(orders) + 1}
@@ -118,3 +136,25 @@ def closed_form(problem: ExactProblem) -> tuple[list[SegmentBound], list[float]]
         durations.append(longest)
     still = max(sum(durations), 1e-3) * _STILL
     return bounds, [max(h, still) for h in durations]
+
+
+def _certify(exact: ExactProblem, request: Request) -> Certified:
+    began = time.perf_counter()
+    bounds, durations = closed_form(exact)
+    lower = sum((b.least for b in bounds), Fraction(0))
+    answer = prove_feasible(exact, np.array(durations))
+    upper = sum(answer, Fraction(0)) if answer is not None else None
+    late = any(
+        u is not None and b.least > u for b, u in zip(bounds, exact.duration_upper, strict=True)
+    )
+    if upper is None:
+        outcome = Outcome.INFEASIBLE if late else Outcome.OPEN
+    else:
+        within = upper - lower <= upper * Fraction(request.gap)
+        outcome = Outcome.CERTIFIED if within else Outcome.INTERVAL
+    seconds = time.perf_counter() - began
+    proof = ClosedForm(tuple(bounds))
+    return Certified(exact, outcome, lower, upper, answer, 0, 0, seconds, proof)
+
+
+CERTIFIER = Certifier("rest-to-rest polynomials", is_rest_to_rest, lambda _: None, _certify)
