@@ -6,11 +6,15 @@ from collections.abc import Callable
 from typing import Any
 
 from ..problem import Problem, TrajgapError
-from . import rest_to_rest, three_piece_search
+from . import rest_to_rest, stretched_bound, three_piece_search
 from .certified import GAP, Argument, Certified, Certifier, Progress, Request
 from .exact import ExactProblem, exact_problem
 
-CERTIFIERS: tuple[Certifier, ...] = (rest_to_rest.CERTIFIER, three_piece_search.CERTIFIER)
+CERTIFIERS: tuple[Certifier, ...] = (
+    rest_to_rest.CERTIFIER,
+    three_piece_search.CERTIFIER,
+    stretched_bound.CERTIFIER,
+)
 
 
 def covered(problem: ExactProblem) -> str | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -16,7 +17,7 @@ from .exact import ExactProblem, decimal
 from .incumbent import prove_feasible, solve_exactly
 from .three_piece import PLACES
 
-_STILL = 1e-9
+STILL = 1e-9
 """Duration, as a share of the total, of a segment in which nothing moves."""
 
 
@@ -35,14 +36,15 @@ class SegmentBound:
 
 @dataclass(frozen=True)
 class ClosedForm:
-    """Bounds of all segments, as the proof of a certificate."""
+    """Bounds of all segments, as the proof of a certificate of kind ``kind``."""
 
+    kind: str
     bounds: tuple[SegmentBound, ...]
 
     def document(self) -> dict[str, Any]:
-        """Kind "rest-to-rest" of docs/certificates.md."""
+        """Kinds "rest-to-rest" and "stretched" of docs/certificates.md."""
         rows = [[b.joint, b.order, b.place, decimal(b.least)] for b in self.bounds]
-        return {"kind": "rest-to-rest", "segments": rows}
+        return {"kind": self.kind, "segments": rows}
 
 
 def is_rest_to_rest(problem: ExactProblem) -> bool:
@@ -94,7 +96,7 @@ def _at(poly: list[Fraction], s: Fraction) -> Fraction:
     return sum((c * s**p for p, c in enumerate(poly)), Fraction(0))
 
 
-def _root_below(value: Fraction, order: int) -> Fraction:
+def root_below(value: Fraction, order: int) -> Fraction:
     """A rational at most the root of a positive number, in 15 digits."""
     guess = float(value) ** (1 / order)
     digits = 15 - math.ceil(math.log10(guess))
@@ -128,19 +130,25 @@ def closed_form(problem: ExactProblem) -> tuple[list[SegmentBound], list[float]]
             for order, (limit, (place, top)) in enumerate(zip(limits, tops, strict=True), start=1):
                 if limit is None or limit.low <= 0 or way == 0:
                     continue
-                least = _root_below(way * top / limit.high, order)
+                least = root_below(way * top / limit.high, order)
                 longest = max(longest, float(way * top / limit.low) ** (1 / order))
                 if least > best.least:
                     best = SegmentBound(least, j, order, place)
         bounds.append(best)
         durations.append(longest)
-    still = max(sum(durations), 1e-3) * _STILL
+    still = max(sum(durations), 1e-3) * STILL
     return bounds, [max(h, still) for h in durations]
 
 
-def _certify(exact: ExactProblem, request: Request) -> Certified:
+def answered(
+    exact: ExactProblem,
+    request: Request,
+    kind: str,
+    closed: Callable[[ExactProblem], tuple[list[SegmentBound], list[float]]],
+) -> Certified:
+    """A proved interval from bounds of the segments and durations to try as the answer."""
     began = time.perf_counter()
-    bounds, durations = closed_form(exact)
+    bounds, durations = closed(exact)
     lower = sum((b.least for b in bounds), Fraction(0))
     answer = prove_feasible(exact, np.array(durations))
     upper = sum(answer, Fraction(0)) if answer is not None else None
@@ -153,8 +161,12 @@ def _certify(exact: ExactProblem, request: Request) -> Certified:
         within = upper - lower <= upper * Fraction(request.gap)
         outcome = Outcome.CERTIFIED if within else Outcome.INTERVAL
     seconds = time.perf_counter() - began
-    proof = ClosedForm(tuple(bounds))
+    proof = ClosedForm(kind, tuple(bounds))
     return Certified(exact, outcome, lower, upper, answer, 0, 0, seconds, proof)
+
+
+def _certify(exact: ExactProblem, request: Request) -> Certified:
+    return answered(exact, request, "rest-to-rest", closed_form)
 
 
 CERTIFIER = Certifier("rest-to-rest polynomials", is_rest_to_rest, lambda _: None, _certify)

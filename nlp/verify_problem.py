@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-PI = (Fraction(314159265358979, 10**14), Fraction(314159265358980, 10**14))
+_DIGITS = 314159265358979323846264338327950288419716939937510
+PI = (Fraction(_DIGITS, 10**50), Fraction(_DIGITS + 1, 10**50))
 _NUMBER = re.compile(r"-?\d{1,400}(/[1-9]\d{0,400}|\.\d{1,400})?(e-?\d{1,2})?")
 
 Bounds = tuple[Fraction, Fraction] | None

@@ -8,7 +8,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
-from math import comb, perm
+from math import comb, lcm, perm
+from operator import mul
 from typing import Any
 
 from .verify_answer import at, check_answer, derivative, pieces, read_answer
@@ -16,6 +17,9 @@ from .verify_problem import Proved, Refused, Stated, need, number, read_problem,
 
 STRICT = Fraction(1, 2**40)
 PLACES = 2**20
+SIZE = 6
+"""Coefficients per variable: no row has a higher degree, and raising it only tightens the test."""
+BINOMIALS = lcm(*(comb(SIZE - 1, p) for p in range(SIZE)))
 
 Poly = dict[tuple[int, int], Fraction]
 
@@ -180,27 +184,32 @@ def _row(problem: Stated, quintics: list[list[list[Fraction]]], row: Any, total:
 
 def _covers(poly: Poly, box: Sequence[Fraction]) -> bool:
     """Whether all Bernstein coefficients on a box (a low, a high, b low, b high) are ≥ 0."""
-    size = 6  # no row has a higher degree, and raising the degree only tightens the coefficients
-    need(all(max(key) < size for key in poly), "a row has too high a degree")
-    table = [[poly.get((i, j), Fraction(0)) for j in range(size)] for i in range(size)]
+    need(all(max(key) < SIZE for key in poly), "a row has too high a degree")
+    unit = lcm(*(x.denominator for x in poly.values()))
+    table = [[int(poly.get((i, j), 0) * unit) for j in range(SIZE)] for i in range(SIZE)]
     for low, high in (box[2:], box[:2]):
-        table = [_control(line, low, high) for line in table]
+        blossom = _blossom(low, high)
+        table = [[sum(map(mul, line, row)) for row in blossom] for line in table]
         table = [list(line) for line in zip(*table, strict=True)]
     return all(x >= 0 for line in table for x in line)
 
 
-def _control(line: list[Fraction], low: Fraction, high: Fraction) -> list[Fraction]:
-    """Bernstein coefficients as blossoms: i arguments ``high``, the others ``low``."""
-    n = len(line) - 1
+def _blossom(low: Fraction, high: Fraction) -> list[list[int]]:
+    """Weights of the powers in each Bernstein coefficient, times a positive number.
+
+    Coefficient i is the blossom of the polynomial at i arguments ``high``, the others ``low``.
+    """
+    n, scale = SIZE - 1, lcm(low.denominator, high.denominator)
+    first, last = int(low * scale), int(high * scale)
     out = []
     for i in range(n + 1):
-        # Elementary symmetric means of the arguments, by the product of (1 + argument·z).
-        sums = [Fraction(1)] + [Fraction(0)] * n
-        for argument in [high] * i + [low] * (n - i):
+        # Elementary symmetric sums of the arguments, by the product of (1 + argument·z).
+        sums = [1] + [0] * n
+        for argument in [last] * i + [first] * (n - i):
             for p in range(n, 0, -1):
                 sums[p] += argument * sums[p - 1]
-        terms = (c * e / comb(n, p) for p, (c, e) in enumerate(zip(line, sums, strict=True)))
-        out.append(sum(terms, Fraction(0)))
+        units = (scale ** (n - p) * BINOMIALS // comb(n, p) for p in range(n + 1))
+        out.append([e * unit for e, unit in zip(sums, units, strict=True)])
     return out
 
 

@@ -19,7 +19,7 @@ from trajgap.nlp.incumbent import exact_coefficients, keeps_limits, never_above
 from trajgap.nlp.three_piece import PLACES, Prover, Row, exact_row
 from trajgap.nlp.verify import verify
 from trajgap.problem import (
-    Interpolant,
+    Coupling,
     Limits,
     Problem,
     TrajgapError,
@@ -38,20 +38,20 @@ module = import_module("trajgap.nlp.three_piece_search")
 
 
 def posed() -> list[tuple[str, ExactProblem]]:
-    """Every shipped 3-5-3 problem: joints together, and each by itself."""
+    """Every shipped problem that is covered; each joint too where joints are optimised alone."""
     found = []
     for case_id in published_ids():
         case = load_case(case_id)
         for problem in case.problems:
             for reading in case.readings:
                 posing = case.posing(problem.id, reading.id)
-                if not (posing.posed and isinstance(posing.interpolant(), Interpolant)):
+                if not posing.posed:
                     continue
                 exact = printed_problem(posing)
                 if covered(exact) is not None:
                     continue
                 found.append((f"{case_id}.{problem.id}.{reading.id}", exact))
-                if len(exact.joints) > 1:
+                if len(exact.joints) > 1 and posing.coupling is Coupling.PER_JOINT:
                     for j, label in enumerate(exact.joints):
                         name = f"{case_id}.{problem.id}.{reading.id}.joint-{label}"
                         found.append((name, exact.joint(j)))
