@@ -102,6 +102,29 @@ def certificate(certified: Certified) -> dict[str, Any]:
     return {**document, "seal": seal(document)}
 
 
+def certificate_text(certified: Certified) -> str:
+    """`certificate` as the text of a file.
+
+    Parameters
+    ----------
+    certified : Certified
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    TrajgapError
+        If nothing is proved.
+    """
+    text = json.dumps(certificate(certified), separators=(",", ":"), ensure_ascii=False)
+    # One key a line keeps a diff readable.
+    text = text.replace(',"problem', ',\n"problem').replace(',"claim"', ',\n"claim"')
+    text = text.replace(',"proof"', ',\n"proof"').replace(',"tree"', ',\n"tree"')
+    return text.replace(',"leaves"', ',\n"leaves"').replace(',"seal"', ',\n"seal"') + "\n"
+
+
 def write_certificate(certified: Certified, path: str | Path) -> int:
     """Write a certificate.
 
@@ -120,11 +143,7 @@ def write_certificate(certified: Certified, path: str | Path) -> int:
     TrajgapError
         If nothing is proved.
     """
-    text = json.dumps(certificate(certified), separators=(",", ":"), ensure_ascii=False)
-    # One key a line keeps a diff readable.
-    text = text.replace(',"problem', ',\n"problem').replace(',"claim"', ',\n"claim"')
-    text = text.replace(',"proof"', ',\n"proof"').replace(',"tree"', ',\n"tree"')
-    text = text.replace(',"leaves"', ',\n"leaves"').replace(',"seal"', ',\n"seal"') + "\n"
+    text = certificate_text(certified)
     Path(path).write_text(text, encoding="utf-8")
     return len(text.encode())
 
@@ -148,10 +167,10 @@ def shipped(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> dict[
     -------
     dict or None
     """
-    wanted = _question(problem_document(problem))
+    wanted = question(problem_document(problem))
     for document in _all_shipped():
         same = document["claim"]["subject"] == subject
-        if same and _question(document["problem"]) == wanted:
+        if same and question(document["problem"]) == wanted:
             return copy.deepcopy(document)
     return None
 
@@ -162,5 +181,6 @@ def _all_shipped() -> tuple[dict[str, Any], ...]:
     return tuple(json.loads(path.read_text("utf-8")) for path in paths)
 
 
-def _question(problem: dict[str, Any]) -> dict[str, Any]:
+def question(problem: dict[str, Any]) -> dict[str, Any]:
+    """What a problem asks, whatever it is called."""
     return {key: value for key, value in problem.items() if key != "name"}
