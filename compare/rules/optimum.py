@@ -17,6 +17,7 @@ from ..finding import Basis, ClaimVerdict, Finding, Scope, Severity
 from ..gap import Gap, GapKind, Reference, gap
 from ..rounding import Rounding
 from ..study import Study
+from .continuous import broken
 
 _BELOW = (
     " The whole printed interval lies below the best known total. That value is not a proven "
@@ -91,7 +92,12 @@ def _distance(
                 f"({repaired.percent})."
             )
     severity = Severity.INFO
-    if distance.highest < 0:
+    if distance.highest < 0 and broken(study, claim, pid, rid) is not None:
+        message += (
+            f" Below the {reference.evidence} total, which keeps the limits; these durations do "
+            "not."
+        )
+    elif distance.highest < 0:
         severity = Severity.WARNING
         message += _BELOW if reference.lower is None else _BELOW_BOUND
     return Finding(
@@ -121,7 +127,9 @@ def _bounded(reference: Reference) -> str:
 
 def _named(distance: Gap) -> str:
     name = "gap" if distance.kind is GapKind.OPTIMALITY else "difference of reported time"
-    return f"{name} {distance.percent}"
+    return (
+        distance.percent if distance.percent.endswith("reference") else f"{name} {distance.percent}"
+    )
 
 
 def _beside_procedure(
@@ -160,13 +168,14 @@ def _beside_procedure(
 
 
 def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Finding]:
-    """A feasible shorter answer to the same problem refutes "optimal"; its absence supports it.
+    """Refuted by a feasible shorter answer, or by durations that no rounding lets keep the limits.
 
     Shorter means: for every way-point that prints alike, the same checked durations, stretched as
-    far as those way-points may need, take less than the low end of the printed total.
+    far as those way-points may need, take less than the low end of the printed total. The shortest
+    answer within the limits is within the limits, so that durations which break them are not it.
     """
     for rid in study.readings:
-        longer, judged, open_ = [], 0, 0
+        longer, breaking, judged, open_ = [], [], 0, 0
         evidence: list[Evidence] = []
         for claim in (study.case.claim(i) for i in statement.of):
             for pid, reading in study.claim_pairs(claim):
@@ -176,29 +185,26 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
                     continue
                 judged += 1
                 evidence.append(solution.evidence)
-                shown, interval = total
-                problem = study.claim_problem(claim, pid, rid)
-                reached = study.reachable(problem, solution.durations, pid, rid)
+                interval = total[1]
+                shorter = _shorter(study, claim, pid, rid, solution, total)
+                proof = broken(study, claim, pid, rid)
                 best = solution.best
-                if reached is not None and interval[0] > reached:
-                    distance = gap(
-                        interval, Reference(reached), feasible=_kept(study, claim, pid, rid)
-                    )
-                    longer.append(
-                        f"{claim.id} ({pid}): printed {shown}; a checked motion takes "
-                        f"{reached:.6f} s for every way-point that prints alike "
-                        f"({_named(distance)})"
-                    )
+                if shorter is not None:
+                    longer.append(shorter)
+                elif proof is not None:
+                    breaking.append(f"{claim.id} ({pid}): {proof}")
                 elif not interval[0] <= best <= interval[1]:
                     open_ += 1
         if not judged:
             continue
         known = weakest(evidence)
-        if longer:
+        if longer or breaking:
             # What refutes is a motion that was checked, whatever is proved below it.
-            known = Evidence.BEST_KNOWN
+            known = Evidence.BEST_KNOWN if longer else Evidence.NONE
             verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
-            message = "Not the shortest: " + "; ".join(longer) + "."
+            said = [f"Not the shortest: {'; '.join(longer)}."] if longer else []
+            said += [f"Not an answer within the limits: {' '.join(breaking)}"] if breaking else []
+            message = " ".join(said)
         elif open_:
             verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
             message = (
@@ -207,14 +213,14 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
             )
         else:
             verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
-            message = f"All {judged} printed totals agree with the {known} optimum."
+            message = f"Every printed total agrees with the {known} optimum."
         yield Finding(
             rule="TG302",
             severity=severity,
             verdict=verdict,
             scope=Scope.SOME,
             evidence=known,
-            basis=Basis.OPTIMUM,
+            basis=Basis.ENCLOSURE if breaking and not longer else Basis.OPTIMUM,
             claim=statement.id,
             problem=None,
             reading=rid,
@@ -223,3 +229,27 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
             gap=None,
             message=message,
         )
+
+
+def _shorter(
+    study: Study,
+    claim: AnyClaim,
+    pid: str,
+    rid: str,
+    solution: Solution,
+    total: tuple[str, tuple[float, float]],
+) -> str | None:
+    """A checked motion that is shorter whatever the way-points round from, if there is one."""
+    assert solution.durations is not None
+    shown, interval = total
+    problem = study.claim_problem(claim, pid, rid)
+    reached = study.reachable(problem, solution.durations, pid, rid)
+    if reached is None or interval[0] <= reached:
+        return None
+    distance = gap(interval, Reference(reached), feasible=_kept(study, claim, pid, rid))
+    jumps = solution.check is not None and any(j.order == 1 for j in solution.check.jumps)
+    kind = "a checked motion, whose velocity may jump at the via-points under this reading,"
+    return (
+        f"{claim.id} ({pid}): printed {shown}; {kind if jumps else 'a checked motion'} takes "
+        f"{reached:.6f} s for every way-point that prints alike ({_named(distance)})"
+    )
