@@ -1,38 +1,21 @@
-"""Certificates as JSON: the problem, the claim, and for every box the rows that prove it."""
+"""Certificates as JSON files: the problem, the claim and its proof; and those that are shipped."""
 
 from __future__ import annotations
 
+import copy
 import importlib.metadata
 import json
 from fractions import Fraction
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from ..problem import TrajgapError
-from .certify import Certified, State
-from .exact import ExactProblem, Real
-from .rest_to_rest import SegmentBound
-from .three_piece import Row
-from .verify import FORMAT, seal
+from ..problem import Interpolant, TrajgapError
+from .certified import Certified, Outcome
+from .exact import ExactProblem, Real, decimal
+from .verify import FORMAT, Subject, seal
 
 MOST_BYTES = 200_000
-
-
-def decimal(number: Fraction) -> str:
-    """Exact text of a rational: a decimal where it ends, a quotient otherwise."""
-    digits, rest = 0, number.denominator
-    for prime in (2, 5):
-        count = 0
-        while rest % prime == 0:
-            rest //= prime
-            count += 1
-        digits = max(digits, count)
-    if rest != 1 or digits > 60:
-        return f"{number.numerator}/{number.denominator}"
-    whole = abs(number) * 10**digits
-    text = str(whole.numerator).rjust(digits + 1, "0")
-    sign = "-" if number < 0 else ""
-    return sign + (f"{text[:-digits]}.{text[-digits:]}" if digits else text)
 
 
 def _real(value: Real | None) -> str | dict[str, Any] | None:
@@ -54,18 +37,12 @@ def problem_document(problem: ExactProblem) -> dict[str, Any]:
     dict
         JSON-ready; every number as exact text.
     """
-    interpolant = problem.interpolant
+    curve = problem.curve
     return {
         "name": problem.name,
         "unit": problem.unit,
         "joints": list(problem.joints),
-        "degrees": list(interpolant.degrees),
-        "continuity": list(interpolant.continuity),
-        "prescribed": [
-            [[order, decimal(Fraction(value))] for order, value in entries]
-            for entries in interpolant.prescribed
-        ],
-        "virtual": list(interpolant.virtual),
+        **(_declaration(curve) if isinstance(curve, Interpolant) else {"curve": curve.name}),
         "waypoints": [[decimal(q) for q in row] for row in problem.waypoints],
         "limits": [[_real(x) for x in row] for row in problem.limits],
         "position_lower": [_real(x) for x in problem.position_lower],
@@ -75,13 +52,25 @@ def problem_document(problem: ExactProblem) -> dict[str, Any]:
     }
 
 
+def _declaration(interpolant: Interpolant) -> dict[str, Any]:
+    return {
+        "degrees": list(interpolant.degrees),
+        "continuity": list(interpolant.continuity),
+        "prescribed": [
+            [[order, decimal(Fraction(value))] for order, value in entries]
+            for entries in interpolant.prescribed
+        ],
+        "virtual": list(interpolant.virtual),
+    }
+
+
 def certificate(certified: Certified) -> dict[str, Any]:
     """Certificate of a proved interval, ready for JSON.
 
     Parameters
     ----------
     certified : Certified
-        With a proof (``state``).
+        With a proof.
 
     Returns
     -------
@@ -92,11 +81,7 @@ def certificate(certified: Certified) -> dict[str, Any]:
     TrajgapError
         If nothing is proved.
     """
-    if certified.segments is not None:
-        proof = _closed_form(certified.segments)
-    elif certified.state is not None:
-        proof = _boxes(certified.state)
-    else:
+    if certified.proof is None:
         raise TrajgapError("certificate: nothing is proved; give more time")
     problem = problem_document(certified.problem)
     durations, upper = certified.durations, certified.upper
@@ -106,36 +91,38 @@ def certificate(certified: Certified) -> dict[str, Any]:
         "problem": problem,
         "problem_hash": seal(problem),
         "claim": {
+            "subject": str(certified.subject),
+            "infeasible": certified.outcome is Outcome.INFEASIBLE,
             "lower": decimal(certified.lower),
             "upper": None if upper is None else decimal(upper),
             "durations": None if durations is None else [decimal(h) for h in durations],
         },
-        "proof": proof,
+        "proof": certified.proof.document(),
     }
     return {**document, "seal": seal(document)}
 
 
-def _closed_form(bounds: tuple[SegmentBound, ...]) -> dict[str, Any]:
-    return {"segments": [[b.joint, b.order, b.place, decimal(b.least)] for b in bounds]}
+def certificate_text(certified: Certified) -> str:
+    """`certificate` as the text of a file.
 
+    Parameters
+    ----------
+    certified : Certified
 
-def _boxes(state: State) -> dict[str, Any]:
-    tree, order = _tree(state)
-    rows: dict[Row, int] = {}
-    leaves = []
-    for n in order:
-        proof = state.proofs[n]
-        assert proof is not None
-        leaf: list[int | str] = []
-        for row, weight in zip(*proof, strict=True):
-            leaf += [rows.setdefault(row, len(rows)), _weight(weight)]
-        leaves.append(leaf)
-    return {
-        "total": decimal(state.target),
-        "rows": [[r.kind, r.joint, r.order, r.sign, r.place, r.cap] for r in rows],
-        "tree": tree,
-        "leaves": leaves,
-    }
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    TrajgapError
+        If nothing is proved.
+    """
+    text = json.dumps(certificate(certified), separators=(",", ":"), ensure_ascii=False)
+    # One key a line keeps a diff readable.
+    text = text.replace(',"problem', ',\n"problem').replace(',"claim"', ',\n"claim"')
+    text = text.replace(',"proof"', ',\n"proof"').replace(',"tree"', ',\n"tree"')
+    return text.replace(',"leaves"', ',\n"leaves"').replace(',"seal"', ',\n"seal"') + "\n"
 
 
 def write_certificate(certified: Certified, path: str | Path) -> int:
@@ -156,11 +143,7 @@ def write_certificate(certified: Certified, path: str | Path) -> int:
     TrajgapError
         If nothing is proved.
     """
-    text = json.dumps(certificate(certified), separators=(",", ":"), ensure_ascii=False)
-    # One key a line keeps a diff readable.
-    text = text.replace(',"problem', ',\n"problem').replace(',"claim"', ',\n"claim"')
-    text = text.replace(',"proof"', ',\n"proof"').replace(',"tree"', ',\n"tree"')
-    text = text.replace(',"leaves"', ',\n"leaves"').replace(',"seal"', ',\n"seal"') + "\n"
+    text = certificate_text(certified)
     Path(path).write_text(text, encoding="utf-8")
     return len(text.encode())
 
@@ -170,52 +153,34 @@ def shipped_folder() -> Path:
     return Path(__file__).parent / "certificates"
 
 
-def shipped(problem: ExactProblem) -> dict[str, Any] | None:
-    """Certificate of exactly this problem that comes with the package, not yet proved again.
+def shipped(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> dict[str, Any] | None:
+    """Certificate of exactly this question that comes with the package, not yet proved again.
 
     Parameters
     ----------
     problem : ExactProblem
+        Its name does not matter.
+    subject : Subject
+        What the certificate is to speak about.
 
     Returns
     -------
     dict or None
     """
-    wanted = seal(problem_document(problem))
-    for path in sorted(shipped_folder().glob("*.json")):
-        document: dict[str, Any] = json.loads(path.read_text("utf-8"))
-        if document.get("problem_hash") == wanted:
-            return document
+    wanted = question(problem_document(problem))
+    for document in _all_shipped():
+        same = document["claim"]["subject"] == subject
+        if same and question(document["problem"]) == wanted:
+            return copy.deepcopy(document)
     return None
 
 
-def _weight(weight: Fraction) -> str:
-    text = decimal(weight)
-    short = f"{float(weight):.4g}"
-    return short if len(short) < len(text) and Fraction(short) == weight else text
+@lru_cache(maxsize=1)
+def _all_shipped() -> tuple[dict[str, Any], ...]:
+    paths = sorted(shipped_folder().glob("*.json"))
+    return tuple(json.loads(path.read_text("utf-8")) for path in paths)
 
 
-def _tree(state: State) -> tuple[str, list[int]]:
-    """Bisection tree in preorder, and the leaves in its order."""
-    letters: list[str] = []
-    order: list[int] = []
-    boxes = [(*state.boxes.level[n], *state.boxes.index[n]) for n in range(len(state.boxes))]
-    stack = [((0, 0), (0, 0), list(range(len(boxes))))]
-    while stack:
-        level, index, members = stack.pop()
-        if len(members) == 1:
-            letters.append(".")
-            order.append(members[0])
-            continue
-        axis = next(x for x in (0, 1) if all(boxes[n][x] > level[x] for n in members))
-        halves: tuple[list[int], list[int]] = ([], [])
-        deeper = level[axis] + 1
-        for n in members:
-            halves[(boxes[n][2 + axis] >> (boxes[n][axis] - deeper)) & 1].append(n)
-        for side in (1, 0):
-            where = list(index)
-            where[axis] = 2 * index[axis] + side
-            depth = (deeper, level[1]) if axis == 0 else (level[0], deeper)
-            stack.append((depth, (where[0], where[1]), halves[side]))
-        letters.append("ab"[axis])
-    return "".join(letters), order
+def question(problem: dict[str, Any]) -> dict[str, Any]:
+    """What a problem asks, whatever it is called."""
+    return {key: value for key, value in problem.items() if key != "name"}

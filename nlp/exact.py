@@ -9,11 +9,28 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..problem import Interpolant, Printed, Problem, TrajgapError
+from ..problem import Curve, Interpolant, Printed, Problem, TrajgapError
 from ..problem.posing import Posing
 from ..problem.units import Scale, scale
 
 _PI = Scale(Fraction(1), 1).bounds
+
+
+def decimal(number: Fraction) -> str:
+    """Exact text of a rational: a decimal where it ends, a quotient otherwise."""
+    digits, rest = 0, number.denominator
+    for prime in (2, 5):
+        count = 0
+        while rest % prime == 0:
+            rest //= prime
+            count += 1
+        digits = max(digits, count)
+    if rest != 1 or digits > 60:
+        return f"{number.numerator}/{number.denominator}"
+    whole = abs(number) * 10**digits
+    text = str(whole.numerator).rjust(digits + 1, "0")
+    sign = "-" if number < 0 else ""
+    return sign + (f"{text[:-digits]}.{text[-digits:]}" if digits else text)
 
 
 @dataclass(frozen=True)
@@ -51,7 +68,7 @@ class ExactProblem:
     Attributes
     ----------
     name : str
-    interpolant : Interpolant
+    curve : Curve
     joints : tuple of str
     waypoints : tuple of tuple of Fraction
         One row per way-point, in ``unit``.
@@ -68,7 +85,7 @@ class ExactProblem:
     """
 
     name: str
-    interpolant: Interpolant
+    curve: Curve
     joints: tuple[str, ...]
     waypoints: tuple[tuple[Fraction, ...], ...]
     limits: tuple[tuple[Real | None, ...], ...]
@@ -81,14 +98,27 @@ class ExactProblem:
     @property
     def segments(self) -> int:
         """Number of segments."""
-        return self.interpolant.segments
+        return self.curve.segments
+
+    @property
+    def interpolant(self) -> Interpolant:
+        """The curve as a declared piecewise polynomial.
+
+        Raises
+        ------
+        TrajgapError
+            If it is of another kind.
+        """
+        if not isinstance(self.curve, Interpolant):
+            raise TrajgapError(f"certify: {self.curve.name} is no declared piecewise polynomial")
+        return self.curve
 
     def joint(self, index: int) -> ExactProblem:
         """The same question for one joint alone."""
         one = slice(index, index + 1)
         return ExactProblem(
             f"{self.name}, joint {self.joints[index]}",
-            self.interpolant,
+            self.curve,
             self.joints[one],
             tuple(row[one] for row in self.waypoints),
             self.limits[one],
@@ -124,7 +154,7 @@ def exact_problem(problem: Problem) -> ExactProblem:
 
     return ExactProblem(
         problem.name,
-        problem.piecewise,
+        problem.interpolant,
         problem.joints,
         tuple(tuple(Fraction(float(q)) for q in row) for row in problem.waypoints),
         tuple(tuple(point(float(x)) for x in row) for row in limits.derivatives),
@@ -186,7 +216,7 @@ def printed_problem(posing: Posing) -> ExactProblem:
     shortest, longest = each(posing.durations.lower, n), each(posing.durations.upper, n)
     return ExactProblem(
         problem.name,
-        problem.piecewise,
+        problem.interpolant,
         problem.joints,
         tuple(tuple(row[j].fraction for j in posing.joints) for row in rows),
         tuple(zip(*columns, strict=True)),

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from ..problem import Interpolant, Limits, Problem
 from ..problem.interpolant import RowKind
+from ..problem.uniform import StretchedUniformBSpline, vertex_matrix
 from .exact import ExactProblem
 
 _STRETCHES = tuple(Fraction(1, 10**k) for k in (13, 12, 11, 10, 9, 8, 7))
@@ -27,7 +28,7 @@ def float_problem(exact: ExactProblem) -> Problem:
     return Problem(
         np.array([[float(q) for q in row] for row in exact.waypoints]),
         Limits(v, a, j, np.array(low), np.array(high)),
-        exact.interpolant,
+        exact.curve,
         np.array([float(x) for x in exact.duration_lower]),
         np.array([np.inf if x is None else float(x) for x in exact.duration_upper]),
         joints=exact.joints,
@@ -95,6 +96,23 @@ def exact_coefficients(
     ]
 
 
+def uniform_coefficients(waypoints: Sequence[Sequence[Fraction]]) -> list[list[list[Fraction]]]:
+    """Coefficients [joint][segment][power] in e of the uniform cubic B-spline through way-points.
+
+    Source: `irb1600-ga-cubic-bspline`, (1) to (3).
+    """
+    matrix, found = vertex_matrix(len(waypoints)), []
+    for column in zip(*waypoints, strict=True):
+        v = [sum((x * q for x, q in zip(row, column, strict=True)), Fraction(0)) for row in matrix]
+        pieces = []
+        for k in range(len(waypoints) - 1):
+            a, b, c, d = v[k : k + 4]
+            third = (d - 3 * c + 3 * b - a) / 6
+            pieces.append([(a + 4 * b + c) / 6, (c - a) / 2, (a - 2 * b + c) / 2, third])
+        found.append(pieces)
+    return found
+
+
 def never_above(coefficients: Sequence[Fraction], bound: Fraction) -> bool:
     """Whether a polynomial is ≤ bound on [0, 1]: Bernstein form, halved until it shows."""
     n = len(coefficients) - 1
@@ -119,26 +137,36 @@ def never_above(coefficients: Sequence[Fraction], bound: Fraction) -> bool:
     return True
 
 
-def _smooth(pieces: list[list[Fraction]], durations: Sequence[Fraction]) -> bool:
-    """Whether the acceleration is continuous: no jerk limit survives a jump of it."""
-    ends = [
-        sum(p * (p - 1) * c for p, c in enumerate(piece)) / h**2
+def _smooth(pieces: list[list[Fraction]], durations: Sequence[Fraction], order: int) -> bool:
+    """Whether a derivative is continuous: no limit on the next one survives a jump of it."""
+    scaled = [
+        ([math.perm(p, order) * c / h**order for p, c in enumerate(piece)][order:])
         for piece, h in zip(pieces, durations, strict=True)
     ]
-    starts = [2 * piece[2] / h**2 for piece, h in zip(pieces, durations, strict=True)]
+    ends = [sum(piece, Fraction(0)) for piece in scaled]
+    starts = [piece[0] if piece else Fraction(0) for piece in scaled]
     return ends[:-1] == starts[1:]
 
 
 def keeps_limits(problem: ExactProblem, durations: Sequence[Fraction]) -> bool:
-    """Whether durations are within their bounds and their trajectory keeps every limit, exactly."""
+    """Whether durations are within their bounds and their trajectory keeps every limit, exactly.
+
+    A limit on a derivative asks for a continuous one below it; only a curve that is stretched
+    segment by segment is judged inside its segments alone.
+    """
     for h, low, high in zip(durations, problem.duration_lower, problem.duration_upper, strict=True):
         if h <= 0 or h < low or (high is not None and h > high):
             return False
-    curve = exact_coefficients(problem.interpolant, problem.waypoints, durations)
+    stretched = isinstance(problem.curve, StretchedUniformBSpline)
+    if stretched:
+        curve: list[list[list[Fraction]]] | None = uniform_coefficients(problem.waypoints)
+    else:
+        curve = exact_coefficients(problem.interpolant, problem.waypoints, durations)
     if curve is None:
         return False
     for j, pieces in enumerate(curve):
-        if problem.limits[j][2] is not None and not _smooth(pieces, durations):
+        limited = [order for order in (2, 3) if problem.limits[j][order - 1] is not None]
+        if not stretched and not all(_smooth(pieces, durations, r - 1) for r in limited):
             return False
         floor, roof = problem.position_lower[j], problem.position_upper[j]
         for piece, h in zip(pieces, durations, strict=True):

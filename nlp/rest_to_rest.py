@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import math
+import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 
-from .exact import ExactProblem
-from .incumbent import solve_exactly
+from ..problem import Interpolant
+from .certified import Certified, Certifier, Outcome, Request
+from .exact import ExactProblem, decimal
+from .incumbent import prove_feasible, solve_exactly
 from .three_piece import PLACES
 
-_STILL = 1e-9
+STILL = 1e-9
 """Duration, as a share of the total, of a segment in which nothing moves."""
 
 
@@ -29,9 +34,24 @@ class SegmentBound:
     place: int = 0
 
 
+@dataclass(frozen=True)
+class ClosedForm:
+    """Bounds of all segments, as the proof of a certificate of kind ``kind``."""
+
+    kind: str
+    bounds: tuple[SegmentBound, ...]
+
+    def document(self) -> dict[str, Any]:
+        """Kinds "rest-to-rest" and "stretched" of docs/certificates.md."""
+        rows = [[b.joint, b.order, b.place, decimal(b.least)] for b in self.bounds]
+        return {"kind": self.kind, "segments": rows}
+
+
 def is_rest_to_rest(problem: ExactProblem) -> bool:
     """Whether every segment starts and ends at rest, which then determines it."""
-    interpolant = problem.interpolant
+    interpolant = problem.curve
+    if not isinstance(interpolant, Interpolant):
+        return False
     orders = tuple((r, 0.0) for r in range(1, (interpolant.degrees[0] + 1) // 2))
     return (
         set(interpolant.degrees) == {2 * len(orders) + 1}
@@ -76,7 +96,7 @@ def _at(poly: list[Fraction], s: Fraction) -> Fraction:
     return sum((c * s**p for p, c in enumerate(poly)), Fraction(0))
 
 
-def _root_below(value: Fraction, order: int) -> Fraction:
+def root_below(value: Fraction, order: int) -> Fraction:
     """A rational at most the root of a positive number, in 15 digits."""
     guess = float(value) ** (1 / order)
     digits = 15 - math.ceil(math.log10(guess))
@@ -110,11 +130,45 @@ def closed_form(problem: ExactProblem) -> tuple[list[SegmentBound], list[float]]
             for order, (limit, (place, top)) in enumerate(zip(limits, tops, strict=True), start=1):
                 if limit is None or limit.low <= 0 or way == 0:
                     continue
-                least = _root_below(way * top / limit.high, order)
+                least = root_below(way * top / limit.high, order)
                 longest = max(longest, float(way * top / limit.low) ** (1 / order))
                 if least > best.least:
                     best = SegmentBound(least, j, order, place)
         bounds.append(best)
         durations.append(longest)
-    still = max(sum(durations), 1e-3) * _STILL
+    still = max(sum(durations), 1e-3) * STILL
     return bounds, [max(h, still) for h in durations]
+
+
+def answered(
+    exact: ExactProblem,
+    request: Request,
+    kind: str,
+    closed: Callable[[ExactProblem], tuple[list[SegmentBound], list[float]]],
+) -> Certified:
+    """A proved interval from bounds of the segments and durations to try as the answer."""
+    began = time.perf_counter()
+    bounds, durations = closed(exact)
+    lower = sum((b.least for b in bounds), Fraction(0))
+    answer = prove_feasible(exact, np.array(durations))
+    upper = sum(answer, Fraction(0)) if answer is not None else None
+    late = any(
+        u is not None and b.least > u for b, u in zip(bounds, exact.duration_upper, strict=True)
+    )
+    if upper is None:
+        outcome = Outcome.INFEASIBLE if late else Outcome.OPEN
+    else:
+        within = upper - lower <= upper * Fraction(request.gap)
+        outcome = Outcome.CERTIFIED if within else Outcome.INTERVAL
+    seconds = time.perf_counter() - began
+    proof = ClosedForm(kind, tuple(bounds))
+    return Certified(exact, outcome, lower, upper, answer, 0, 0, seconds, proof)
+
+
+def _certify(exact: ExactProblem, request: Request) -> Certified:
+    return answered(exact, request, "rest-to-rest", closed_form)
+
+
+CERTIFIER = Certifier(
+    "rest-to-rest polynomials", is_rest_to_rest, lambda _: None, _certify, instant=True
+)

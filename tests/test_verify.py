@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import ast
 import copy
 import json
+import sys
 from fractions import Fraction
 from functools import lru_cache
 from importlib import import_module
@@ -227,8 +229,21 @@ def test_a_malformed_file_is_refused(tmp_path: Path, text: str) -> None:
     assert not verify(tmp_path / "missing.json").proves
 
 
-def test_the_verifier_imports_nothing_of_ours() -> None:
-    source = Path(str(import_module("trajgap.nlp.verify").__file__)).read_text("utf-8")
-    assert "trajgap." not in source.replace("trajgap-certificate", "")
-    assert "from ." not in source
-    assert "numpy" not in source
+def test_the_verifiers_share_no_code_with_the_solver() -> None:
+    folder = Path(str(import_module("trajgap.nlp.verify").__file__)).parent
+    modules = sorted(folder.glob("verify*.py"))
+    assert len(modules) > 3
+    for path in modules:
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if isinstance(node, ast.Import):
+                names = [alias.name.partition(".")[0] for alias in node.names]
+            elif isinstance(node, ast.ImportFrom) and node.level == 0:
+                names = [str(node.module).partition(".")[0]]
+            elif isinstance(node, ast.ImportFrom):
+                inner = [node.module] if node.module else [alias.name for alias in node.names]
+                assert node.level == 1, path
+                assert all(str(name).startswith("verify") for name in inner), path
+                continue
+            else:
+                continue
+            assert set(names) <= {*sys.stdlib_module_names, "numpy"}, path

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ...nlp import Evidence, Solution
+from ...nlp import Evidence, Solution, weakest
 from ...problem import Coupling
 from ...problem.claim import (
     AnyClaim,
@@ -19,6 +19,15 @@ from ..rounding import Rounding
 from ..study import Study
 from .continuous import broken
 
+_BELOW = (
+    " The whole printed interval lies below the best known total. That value is not a proven "
+    "bound; the limits, the reading or the printed digits differ, or a better optimum exists."
+)
+_BELOW_BOUND = (
+    " The whole printed interval lies below the proved lower bound of this problem as printed: "
+    "the limits, the reading or the digits of the way-points differ."
+)
+
 
 def optimum(study: Study) -> Iterator[Finding]:
     """Findings of TG302 and TG303."""
@@ -32,7 +41,7 @@ def optimum(study: Study) -> Iterator[Finding]:
 
 def reference_of(solution: Solution) -> Reference | None:
     """The reference interval of a solution, or None where it has no positive time."""
-    best = solution.infimum if solution.infimum is not None else solution.total_time
+    best = solution.best
     return Reference(best, solution.lower_bound) if 0 < best < float("inf") else None
 
 
@@ -71,8 +80,8 @@ def _distance(
     distance = gap(interval, reference, feasible=kept)
     which = "with shared durations" if shared or claim.joint is None else f"of joint {claim.joint}"
     message = (
-        f"Printed {shown}; {solution.evidence} optimum {which} {reference.upper:.6f} s: "
-        f"{_named(distance)}."
+        f"Printed {shown}; {reference.evidence} optimum {which} {reference.upper:.6f} s"
+        f"{_bounded(reference)}: {_named(distance)}."
     )
     if not isinstance(claim, TotalTimeClaim):
         verdict = study.claim_check(claim, pid, rid)
@@ -84,14 +93,13 @@ def _distance(
             )
     severity = Severity.INFO
     if distance.highest < 0 and broken(study, claim, pid, rid) is not None:
-        message += " Below the best known total, which keeps the limits; these durations do not."
+        message += (
+            f" Below the {reference.evidence} total, which keeps the limits; these durations do "
+            "not."
+        )
     elif distance.highest < 0:
         severity = Severity.WARNING
-        message += (
-            " The whole printed interval lies below the best known total. That value is not a "
-            "proven bound; the limits, the reading or the printed digits differ, or a better "
-            "optimum exists."
-        )
+        message += _BELOW if reference.lower is None else _BELOW_BOUND
     return Finding(
         rule="TG303" if shared else "TG302",
         severity=severity,
@@ -108,6 +116,13 @@ def _distance(
         message=message,
         decides=False,
     )
+
+
+def _bounded(reference: Reference) -> str:
+    if reference.lower is None:
+        return ""
+    width = (reference.upper - reference.lower) / reference.upper
+    return f" (proved, gap {width:.1e})"
 
 
 def _named(distance: Gap) -> str:
@@ -128,9 +143,9 @@ def _beside_procedure(
     inside = low <= wide.highest and high >= wide.lowest
     tight = answer.check.tight_time
     message = (
-        f"Each joint at its own {answer.evidence} optimum, then the longest per segment, gives "
-        f"{wide.lowest:.4f} to {wide.highest:.4f} s while every joint stays within {wide.slack:g} "
-        f"s of its optimum, and {answer.total_time:.4f} s at the optima found"
+        f"Each joint at its own {answer.joint_evidence} optimum, then the longest per segment, "
+        f"gives {wide.lowest:.4f} to {wide.highest:.4f} s while every joint stays within "
+        f"{wide.slack:g} s of its optimum, and {answer.total_time:.4f} s at the optima found"
         + (f" (free rescaling of that motion: {tight:.4f} s)" if tight is not None else "")
         + f"; printed is {shown}, {'inside' if inside else 'outside'} that range."
     )
@@ -161,6 +176,7 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
     """
     for rid in study.readings:
         longer, breaking, judged, open_ = [], [], 0, 0
+        evidence: list[Evidence] = []
         for claim in (study.case.claim(i) for i in statement.of):
             for pid, reading in study.claim_pairs(claim):
                 total = study.claim_total(claim, rid)
@@ -168,10 +184,11 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
                 if total is None or solution is None or solution.durations is None:
                     continue
                 judged += 1
+                evidence.append(solution.evidence)
                 interval = total[1]
                 shorter = _shorter(study, claim, pid, rid, solution, total)
                 proof = broken(study, claim, pid, rid)
-                best = solution.infimum or solution.total_time
+                best = solution.best
                 if shorter is not None:
                     longer.append(shorter)
                 elif proof is not None:
@@ -180,7 +197,10 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
                     open_ += 1
         if not judged:
             continue
+        known = weakest(evidence)
         if longer or breaking:
+            # What refutes is a motion that was checked, whatever is proved below it.
+            known = Evidence.BEST_KNOWN if longer else Evidence.NONE
             verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
             said = [f"Not the shortest: {'; '.join(longer)}."] if longer else []
             said += [f"Not an answer within the limits: {' '.join(breaking)}"] if breaking else []
@@ -188,20 +208,19 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
         elif open_:
             verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
             message = (
-                f"{open_} of {judged} printed totals differ from the best known optimum by no "
+                f"{open_} of {judged} printed totals differ from the {known} optimum by no "
                 "more than the rounding of the inputs explains, or lie below it."
             )
         else:
             verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
-            message = "Every printed total agrees with the best known optimum."
-        by_proof_alone = bool(breaking) and not longer
+            message = f"Every printed total agrees with the {known} optimum."
         yield Finding(
             rule="TG302",
             severity=severity,
             verdict=verdict,
             scope=Scope.SOME,
-            evidence=Evidence.NONE if by_proof_alone else Evidence.BEST_KNOWN,
-            basis=Basis.ENCLOSURE if by_proof_alone else Basis.OPTIMUM,
+            evidence=known,
+            basis=Basis.ENCLOSURE if breaking and not longer else Basis.OPTIMUM,
             claim=statement.id,
             problem=None,
             reading=rid,
