@@ -199,8 +199,9 @@ def test_every_claim_stands_with_its_digits_and_verdict(
 
 
 def test_where_readings_differ_each_has_its_verdict(page: Seen) -> None:
-    assert "some waypoints-rad: refuted waypoints-deg: supported" in page.words
-    assert "Refuted under waypoints-rad only: durations-110, limits-kept." in page.words
+    assert "some refuted under waypoints-rad supported under waypoints-deg" in page.words
+    said = "durations-110, limits-kept supported under waypoints-deg, refuted under waypoints-rad."
+    assert f"Refuted: time-optimal, rest-at-all-points. Of 2 readings: {said}" in page.words
 
 
 def test_every_finding_stands_with_rule_basis_and_numbers(page: Seen, report: AuditReport) -> None:
@@ -218,6 +219,7 @@ def test_sections_stand_in_their_order(page: Seen) -> None:
     order = [
         "audited",
         "verdicts",
+        "side-by-side",
         "waterfall",
         "findings",
         "optima",
