@@ -18,6 +18,7 @@ from trajgap.compare.readings import Excess, Keeping, ReadingsSummary, readings_
 from trajgap.compare.report_blocks import Page
 from trajgap.compare.report_markdown import markdown
 from trajgap.compare.report_readings import side_by_side
+from trajgap.compare.rules.continuous import continuous
 from trajgap.compare.study import Study
 from trajgap.compare.waterfall import Waterfall
 from trajgap.nlp import Evidence
@@ -220,16 +221,17 @@ def test_a_selected_reading_counts_as_one_of_all() -> None:
     assert not found.answers[-1].startswith("Every reading")
 
 
-def test_durations_that_define_no_curve_exceed_without_a_joint() -> None:
-    printed = (
-        '["0.66", "0.82", "0.70", "0.68", "0.74", "0.78", "0.84", "0.86", "0.73"]\ntotal = "6.81"'
-    )
-    hasty = '["5", "0.01", "5", "0.01", "5", "0.01", "5", "0.01", "5"]'
-    study = Study(changed((printed, hasty)).case, seeds=2, reading="angles-deg-v-rad-a-rad-timed")
+def test_durations_that_define_no_curve_are_not_decided() -> None:
+    printed = """"0.66", "0.82", "0.70", "0.68", "0.74", "0.78", "0.84", "0.86", "0.73"]
+total = "6.81\""""
+    hasty = '"5", "0.01", "5", "0.01", "5", "0.01", "5", "0.01", "5"]'
+    case = changed((printed, hasty)).case
+    study = Study(case, seeds=2, reading="angles-deg-v-rad-a-rad-timed")
     (outcome,) = summary_of(laid_out(study, {"nine-segments": "after"})).outcomes
-    assert outcome.keeping is Keeping.BREAKS
-    assert [(e.joint, e.quantity) for e in outcome.excesses] == [(None, "curve")]
-    assert outcome.stretch is None
+    assert outcome.keeping is Keeping.UNDECIDED
+    assert (outcome.excesses, outcome.stretch) == ((), None)
+    found = [f for f in continuous(study) if f.claim == "after"]
+    assert "the printed durations define no curve" in found[0].message
 
 
 # --- documents and pages --------------------------------------------------------------------------
