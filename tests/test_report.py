@@ -12,6 +12,8 @@ from pathlib import Path
 
 import pytest
 from trajgap.compare import AuditReport, audit, write_report
+from trajgap.compare.finding import Basis
+from trajgap.compare.readings import Keeping
 from trajgap.compare.report import MARK, case_page
 from trajgap.compare.report_blocks import Cell, Drawn, Grid, Page, Prose, Section, Terms, slug
 from trajgap.compare.report_markdown import markdown, plain
@@ -266,7 +268,7 @@ def test_every_word_of_the_vocabulary_is_explained(page: Seen) -> None:
         "optimality gap",
         "difference of reported time",
     ]
-    for word in vocabulary:
+    for word in (*vocabulary, *Basis, *Keeping):
         assert f"word-{slug(word)}" in anchors
 
 
