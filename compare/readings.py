@@ -322,12 +322,15 @@ def _of_gaps(own: Sequence[Outcome]) -> str:
             high = 1 + max(g.highest for g in gaps)
             low_, high_ = f"{low:.3g}", f"{high:.3g}"
             parts.append(f"{where} {low_ if low_ == high_ else f'{low_} to {high_}'} times")
-    return f" Printed total: {', '.join(parts)} the best known optimum." if parts else ""
+    evidence = Evidence.CERTIFIED
+    if any(o.evidence is not Evidence.CERTIFIED for o in own):
+        evidence = Evidence.BEST_KNOWN
+    return f" Printed total: {', '.join(parts)} the {evidence} optimum." if parts else ""
 
 
 def _of_fit(summary: ReadingsSummary) -> Iterable[str]:
     nearest = summary.nearest
-    if not nearest:
+    if len(summary.fits) < 2:
         return
     own = [o for o in summary.outcomes if o.reading == nearest[0] and o.stretch is not None]
     worst = max(own, key=lambda o: abs(log(o.stretch or 1.0)))
@@ -335,7 +338,7 @@ def _of_fit(summary: ReadingsSummary) -> Iterable[str]:
         *(["the limits are broken there"] if any(o.keeping is Keeping.BREAKS for o in own) else []),
         *(["the velocity jumps there"] if any(o.jumps for o in own) else []),
     ]
-    if len(nearest) == len(summary.fits) > 1:
+    if len(nearest) == len(summary.fits):
         which = "Every reading fits the printed durations alike"
     else:
         which = f"The printed durations fit best under {named(nearest, 3)}"

@@ -38,9 +38,9 @@ def _outcomes(one: CaseAudit, summary: ReadingsSummary) -> list[Block]:
         rows = tuple(_row(outcome, default) for outcome in own)
         grids.append(Grid(names, rows, f"{claim} ({problem})" if claim else problem).filled)
     note = (
-        "Limits hold over everything that prints alike, digits rounded or cut off; jumps and the "
-        "segments over a limit are those of the printed point. × to limits: all durations times "
-        "this just reach the limits, jumps apart. The printed total stands beside the optimum."
+        "Limits are judged over everything that prints alike, digits rounded or cut off; jumps and "
+        "the segments over a limit are those of the printed point. × to limits: all durations "
+        "times this just reach the limits, jumps apart. The printed total stands beside the optimum."
     )
     return [*grids, Prose(note, "note")]
 

@@ -58,11 +58,7 @@ def summary(one: CaseAudit) -> str:
     said = ", ".join(f"{counts[v]} {v}" for v in ClaimVerdict if counts[v])
     sentences = [f"{_count(len(one.judgements), 'claim')}: {said or 'none to judge'}."]
     sentences += _against(one)
-    if one.errors:
-        sentences.append(
-            f"{_count(one.errors, 'finding')} of severity error: a proof speaks against something "
-            "printed."
-        )
+    sentences += _errors(one)
     for fall in one.waterfalls:
         if fall.reading == one.study.main_reading:
             sentences += _down(one, fall)
@@ -90,6 +86,21 @@ def _against(one: CaseAudit) -> Iterable[str]:
             under.setdefault(verdict, []).append(reading)
         said = ", ".join(f"{v} under {_which(under[v])}" for v in ClaimVerdict if v in under)
         yield f"Of {len(readings)} readings: {', '.join(claims)} {said}."
+
+
+def _errors(one: CaseAudit) -> Iterable[str]:
+    """Rules whose findings are errors, with the claim; readings count as one."""
+    places: dict[str, set[str]] = {}
+    for f in one.findings:
+        if f.severity is Severity.ERROR:
+            place = f"{f.rule} on {f.claim}" if f.claim else f.rule
+            places.setdefault(place, set()).update([f.reading] if f.reading else [])
+    shown = [
+        place + (f" under {len(readings)} readings" if len(readings) > 1 else "")
+        for place, readings in places.items()
+    ]
+    if shown:
+        yield f"A proof speaks against something printed: {', '.join(shown)}."
 
 
 def _which(readings: list[str]) -> str:

@@ -204,6 +204,11 @@ def test_where_readings_differ_each_has_its_verdict(page: Seen) -> None:
     assert "some refuted under waypoints-rad supported under waypoints-deg" in page.words
     said = "durations-110, limits-kept supported under waypoints-deg, refuted under waypoints-rad."
     assert f"Refuted: time-optimal, rest-at-all-points. Of 2 readings: {said}" in page.words
+    proved = (
+        "TG107 on rest-at-all-points, TG301 on time-optimal under 2 readings, "
+        "TG302 on time-optimal under 2 readings."
+    )
+    assert f"A proof speaks against something printed: {proved}" in page.words
 
 
 def test_every_finding_stands_with_rule_basis_and_numbers(page: Seen, report: AuditReport) -> None:
