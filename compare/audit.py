@@ -9,6 +9,7 @@ from pathlib import Path
 
 from ..problem import Case, load_case, published_ids
 from .finding import ClaimVerdict, Finding, Judgement, Scope, Severity, judge, weigh
+from .readings import ReadingsSummary, readings_summary
 from .rules.continuous import continuous
 from .rules.control_vertices import control_vertices
 from .rules.count import count
@@ -45,6 +46,8 @@ class CaseAudit:
     findings: tuple[Finding, ...]
     judgements: tuple[Judgement, ...]
     waterfalls: tuple[Waterfall, ...]
+    readings: ReadingsSummary | None = None
+    """The readings side by side; None if the case has only one."""
 
     @property
     def errors(self) -> int:
@@ -136,7 +139,8 @@ def audit_case(study: Study) -> CaseAudit:
     judgements = tuple(judge(claim.id, by_rule, admissible) for claim in study.case.claims)
     ordered = sorted(weigh(by_rule, judgements), key=lambda f: (_ORDER[f.severity], f.rule))
     steps = waterfalls(study) if study.posed else ()
-    return CaseAudit(study.case, study, tuple(ordered), judgements, steps)
+    readings = readings_summary(study, steps, judgements)
+    return CaseAudit(study.case, study, tuple(ordered), judgements, steps, readings)
 
 
 def _with_scopes(findings: list[Finding], study: Study) -> list[Finding]:

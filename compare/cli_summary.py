@@ -13,6 +13,8 @@ from rich.measure import Measurement
 from rich.table import Table
 from rich.text import Text
 
+from .finding import gist
+
 Document = dict[str, Any]
 
 _NARROWEST = 16
@@ -198,15 +200,67 @@ def audited(document: Document) -> list[RenderableType]:
         counts = Counter(v["verdict"] for v in case["verdicts"])
         said = ", ".join(f"{counts[v]} {v}" for v in dict.fromkeys(counts))
         parts.append(_line(f"{case['case']}: {len(case['verdicts'])} claims; {said}", "bold"))
-        keys = ("claim", "verdict", "scope", "evidence", "why")
-        rows = [[verdict[key] for key in keys] for verdict in case["verdicts"]]
+        rows = [
+            (v["claim"], v["verdict"], _under(v), v["evidence"], v["why"]) for v in case["verdicts"]
+        ]
         parts.append(_Columns(("claim", "verdict", "readings", "evidence", "…why"), rows))
         parts += _time_goes(case["waterfalls"])
-        errors = [f for f in case["findings"] if f["severity"] == "error"]
-        said_once = dict.fromkeys(f"{f['rule']} {f['claim'] or ''}: {f['message']}" for f in errors)
-        parts += [_line(f"error {text}") for text in said_once]
+        parts += _side_by_side(case["readings"])
+        parts += [_line(line) for line in _said_once(case["findings"], "error")]
+        warned = _places(case["findings"], "warning")
+        parts += [_line(f"warnings: {', '.join(warned)}", "dim")] if warned else []
         parts.append(_line(""))
     return parts
+
+
+def _under(verdict: Document) -> str:
+    """Under how many readings a verdict holds."""
+    readings = list(verdict["readings"].values())
+    if verdict["scope"] != "some" or not readings:
+        return str(verdict["scope"])
+    return f"{readings.count(verdict['verdict'])} of {len(readings)}"
+
+
+def _side_by_side(readings: Document | None) -> list[RenderableType]:
+    """What the readings make of the printed answers; the claims stand in the table above."""
+    return [_line(one) for one in (*readings["answers"], "")] if readings else []
+
+
+def _grouped(
+    findings: Sequence[Document], severity: str, by: Callable[[str], str] | None = None
+) -> dict[tuple[str, ...], list[Document]]:
+    """Findings of one severity by rule and claim, and by what they say."""
+    groups: dict[tuple[str, ...], list[Document]] = {}
+    for f in findings:
+        if f["severity"] == severity:
+            key = (f["rule"], f["claim"] or "", by(f["message"]) if by else "")
+            groups.setdefault(key, []).append(f)
+    return groups
+
+
+def _said_once(findings: Sequence[Document], severity: str) -> list[str]:
+    """Findings that say the same in other numbers as one line, with the number of readings."""
+    lines = []
+    for (rule, claim, _), own in _grouped(findings, severity, gist).items():
+        where = f"{severity} {rule} {claim}".rstrip()
+        readings = list(dict.fromkeys(f["reading"] for f in own if f["reading"]))
+        messages = list(dict.fromkeys(f["message"] for f in own))
+        if len(readings) < 2:
+            lines += [f"{where}: {message}" for message in messages]
+            continue
+        shown = "" if len(messages) == 1 else f"; as follows under {readings[0]}"
+        lines.append(f"{where} ({len(readings)} readings{shown}): {messages[0]}")
+    return lines
+
+
+def _places(findings: Sequence[Document], severity: str) -> list[str]:
+    """Rule and claim of the findings, with the number of readings."""
+    places = []
+    for (rule, claim, _), own in _grouped(findings, severity).items():
+        readings = {f["reading"] for f in own if f["reading"]}
+        count = f" ({len(readings)} readings)" if len(readings) > 1 else ""
+        places.append(f"{rule} {claim}".rstrip() + count)
+    return places
 
 
 def _time_goes(waterfalls: Sequence[Document]) -> list[RenderableType]:

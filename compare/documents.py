@@ -20,6 +20,7 @@ from .waterfall import Waterfall
 
 if TYPE_CHECKING:
     from .audit import AuditReport, CaseAudit
+    from .readings import Outcome, ReadingsSummary
 
 Document: TypeAlias = dict[str, Any]
 
@@ -380,6 +381,7 @@ def _case_audit(one: CaseAudit) -> Document:
         "findings": [_finding(f) for f in one.findings],
         "verdicts": [_verdict(j) for j in one.judgements],
         "waterfalls": [_waterfall(w) for w in one.waterfalls],
+        **_readings(one.readings),
     }
 
 
@@ -427,6 +429,61 @@ def _verdict(judgement: Judgement) -> Document:
         "why": judgement.why,
         "readings": {reading: str(verdict) for reading, verdict in judgement.readings},
     }
+
+
+def _readings(summary: ReadingsSummary | None) -> Document:
+    """The readings side by side."""
+    if summary is None:
+        return {"readings": None, "readings_why": "the case has one reading"}
+    return {
+        "readings": {
+            "admissible": list(summary.admissible),
+            "answers": list(summary.answers),
+            "holding": list(summary.holding),
+            "nearest": list(summary.nearest),
+            "fits": [{"reading": r, **_number("factor", f, None)} for r, f in summary.fits],
+            "outcomes": [_outcome(o) for o in summary.outcomes],
+            **({"outcomes_why": summary.why} if summary.why else {}),
+            "claims": [
+                {
+                    "claim": t.claim,
+                    "verdict": str(t.verdict),
+                    "scope": str(t.scope),
+                    "readings": {str(verdict): count for verdict, count in t.counts},
+                }
+                for t in summary.tallies
+            ],
+        }
+    }
+
+
+def _outcome(outcome: Outcome) -> Document:
+    none = "no durations are printed for all joints of this problem"
+    document: Document = {
+        "reading": outcome.reading,
+        "problem": outcome.problem,
+        "claim": outcome.claim,
+        "keeping": None if outcome.keeping is None else str(outcome.keeping),
+        "jumps": outcome.jumps,
+        "excesses": [
+            {
+                "segment": e.segment,
+                "joint": e.joint,
+                "quantity": e.quantity,
+                **_number("ratio", e.ratio, None),
+            }
+            for e in outcome.excesses
+        ],
+        **_number("stretch", outcome.stretch, "no uniform stretch reaches the limits"),
+        **_number("optimum", outcome.optimum, "no positive time is known"),
+        "evidence": str(outcome.evidence),
+        "gap": None if outcome.gap is None else _gap(outcome.gap),
+    }
+    if outcome.keeping is None:
+        document["keeping_why"] = none
+    if outcome.gap is None:
+        document["gap_why"] = "no printed total stands beside an optimum"
+    return document
 
 
 def _waterfall(waterfall: Waterfall) -> Document:

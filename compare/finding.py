@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from enum import StrEnum
@@ -105,6 +106,17 @@ class Finding:
     gap: Gap | None
     message: str
     decides: bool = True
+
+
+def gist(message: str) -> str:
+    """What a message says apart from its numbers: its words up to the first colon.
+
+    Examples
+    --------
+    >>> gist("Jumps at 8 breaks, by 0.5 rad/s: joint 2") == gist("Jumps at 9 breaks, by 2 rad/s.")
+    True
+    """
+    return re.sub(r"\d[\d.]*", "#", message.partition(":")[0]).rstrip(".")
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,7 @@ from ..problem import (
     fit,
 )
 from ..problem.check import TOLERANCE
+from ..problem.timed import ClockedTrajectory, numerators
 from .drawing import BLUE, GRID, INK, PAPER, RED, Picture, drawing, finish, shown
 
 UNITS = {"position": "rad", "velocity": "rad/s", "acceleration": "rad/s²", "jerk": "rad/s³"}
@@ -205,16 +206,48 @@ def sampled(
     values: list[NDArray[np.float64]] = []
     scale = max(abs(e.value) for e in extrema(trajectory, column, order)) or 1.0
     for k, start in enumerate(trajectory.breaks[:-1]):
-        a = trajectory.derivative(k, column, order)
         own = [e.s for e in extrema(trajectory, column, order) if e.segment == k]
         s = np.unique(np.concatenate([np.linspace(0.0, 1.0, _SAMPLES + 1), own]))
-        v = np.polynomial.polynomial.polyval(s, a)
+        v = _valued(trajectory, k, column, order, s)
         if values and abs(values[-1][-1] - v[0]) > 1e-6 * scale:
             times.append(np.array([start]))
             values.append(np.array([np.nan]))
-        times.append(start + s * trajectory.durations[k])
-        values.append(np.asarray(v, dtype=np.float64))
+        times.append(_times(trajectory, k, s))
+        values.append(v)
     return np.concatenate(times), np.concatenate(values)
+
+
+def _valued(
+    trajectory: Trajectory, piece: int, column: int, order: int, s: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Derivative in time at places of a piece."""
+    if isinstance(trajectory, ClockedTrajectory):
+        return np.array([trajectory.value(piece, column, order, float(x)) for x in s])
+    found = np.polynomial.polynomial.polyval(s, trajectory.derivative(piece, column, order))
+    return np.asarray(found, dtype=np.float64)
+
+
+def _times(trajectory: Trajectory, piece: int, s: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Times of places of a piece, s."""
+    if isinstance(trajectory, ClockedTrajectory):
+        found = np.polynomial.polynomial.polyval(s, trajectory.clock[piece])
+        return np.asarray(found, dtype=np.float64)
+    return np.asarray(trajectory.breaks[piece] + s * trajectory.durations[piece])
+
+
+def _excess(
+    trajectory: Trajectory, piece: int, column: int, order: int, level: float
+) -> NDArray[np.float64]:
+    """Polynomial on a piece that vanishes where a derivative has the value ``level``."""
+    if order == 0 or not isinstance(trajectory, ClockedTrajectory):
+        found = np.asarray(trajectory.derivative(piece, column, order), dtype=np.float64).copy()
+        found[0] -= level
+        return found
+    # With a clock the derivative is N/t′²ʳ⁻¹, and t′ > 0.
+    clock = trajectory.clock[piece]
+    above = numerators(trajectory.scaled[piece, :4, column], clock, order)[-1]
+    below = np.polynomial.polynomial.polypow(clock[1:] * np.arange(1, clock.size), 2 * order - 1)
+    return np.asarray(np.polynomial.polynomial.polysub(np.real(above), level * below))
 
 
 def beyond(
@@ -237,21 +270,18 @@ def beyond(
     """
     found: list[tuple[float, float]] = []
     slack = TOLERANCE * max((abs(x) for x in (low, high) if np.isfinite(x)), default=0.0)
-    for k, start in enumerate(trajectory.breaks[:-1]):
-        a = trajectory.derivative(k, column, order)
+    for k in range(len(trajectory.durations)):
         cuts = [0.0, 1.0]
         for limit in (low - slack, high + slack):
             if np.isfinite(limit):
-                shifted = a.copy()
-                shifted[0] -= limit
+                shifted = _excess(trajectory, k, column, order, limit)
                 roots = np.polynomial.polynomial.polyroots(np.trim_zeros(shifted, "b"))
                 cuts += [float(r.real) for r in roots if abs(r.imag) < 1e-9 and 0 < r.real < 1]
         cuts.sort()
         for s0, s1 in pairwise(cuts):
-            v = float(np.polynomial.polynomial.polyval((s0 + s1) / 2, a))
+            v = float(_valued(trajectory, k, column, order, np.array([(s0 + s1) / 2]))[0])
             if s1 > s0 and not low - slack <= v <= high + slack:
-                t0 = float(start + s0 * trajectory.durations[k])
-                t1 = float(start + s1 * trajectory.durations[k])
+                t0, t1 = map(float, _times(trajectory, k, np.array([s0, s1])))
                 if found and t0 - found[-1][1] <= 1e-12 * trajectory.total_time:
                     found[-1] = (found[-1][0], t1)
                 else:

@@ -28,6 +28,7 @@ from .report_exhibits import exhibits_of_motion, exhibits_of_search
 from .report_glossary import glossary
 from .report_markdown import markdown
 from .report_numbers import optima, sensitivities, where_time_goes
+from .report_readings import side_by_side
 from .report_verdicts import audited, claim_table, findings, foundations, summary
 
 MARK = "audit.json"
@@ -184,6 +185,7 @@ def case_page(one: CaseAudit) -> Page:
         (
             audited(one),
             claim_table(one),
+            side_by_side(one),
             where_time_goes(one),
             findings(one),
             optima(one),

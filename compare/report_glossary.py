@@ -15,7 +15,11 @@ _CLAIMS = (
     ),
     ("inconsistent", "Two printed things contradict each other; neither alone is refuted."),
     ("not checkable", "Nothing that the text carries decides it, and the reason is given."),
-    ("all, some, no readings", "Under how many admissible readings of the text the verdict holds."),
+    (
+        "all, some, no readings",
+        "Under how many admissible readings of the text the verdict holds. Where they disagree the "
+        "claim is called supported under some, with the counts beside the word.",
+    ),
 )
 _ROUNDING = (
     ("keeps", "The printed point itself keeps every limit for all t."),
@@ -56,10 +60,11 @@ _DISTANCES = (
     ("tight time", "T·c*: all durations rescaled until a limit is just reached."),
 )
 _SEVERITIES = (
-    ("error", "A printed number or statement is contradicted by a proof."),
+    ("error", "A printed number or statement is contradicted by a proof, whatever the reading."),
     (
         "warning",
-        "Printed things do not fit together, or a best known value speaks against a statement.",
+        "A proof contradicts it under some readings and not under all, printed things do not fit "
+        "together, or a best known value speaks against a statement.",
     ),
     ("info", "A fact beside the claim, or support for it."),
 )
@@ -72,6 +77,7 @@ _BASES = {
     Basis.OPTIMUM: "A reference value of the exact side.",
     Basis.REPLAY: "Seeded runs of the algorithm under the listed choices. It can say that "
     "something is not reproduced, never that it is refuted.",
+    Basis.KINEMATICS: "Forward kinematics of the printed table of the robot.",
     Basis.TEXT: "What the extracted text carries or does not.",
 }
 

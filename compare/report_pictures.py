@@ -73,6 +73,10 @@ def _printed_motions(study: Study, pid: str, rid: str) -> Iterator[Block]:
         problem = study.problem(pid, rid)
         rounding = study.claim_rounding(first, pid, rid).verdict
         title = f"Printed durations of {', '.join(c.id for c in claims)}"
+        worst = study.claim_check(first, pid, rid).worst
+        if worst is not None and worst.quantity == "curve":
+            yield Prose(f"{title} define no curve. Reading {rid}.", "note")
+            continue
         picture = curves(
             problem,
             study.case.claim_durations(first, rid).value,

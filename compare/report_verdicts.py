@@ -19,13 +19,16 @@ from ..problem.claim import (
     TotalTimeClaim,
 )
 from .audit import CaseAudit
-from .finding import RULES, ClaimVerdict, Finding, Judgement, Scope, Severity, judge
+from .finding import RULES, ClaimVerdict, Finding, Judgement, Scope, Severity, gist
+from .readings import named
 from .report_blocks import Block, Cell, Folded, Grid, Prose, Section, Terms, text, word
 from .study import Study
 from .waterfall import Waterfall
 from .waterfall_picture import seconds as interval
 
 _DECIDED = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT, ClaimVerdict.SUPPORTED)
+_FEW = 4
+"""Problems and readings that stand in the open."""
 _TITLES = {rule.id: rule.title for rule in RULES}
 
 
@@ -43,7 +46,9 @@ def audited(one: CaseAudit) -> Section:
         ("joints", ", ".join(case.robot.joints)),
     ]
     blocks: list[Block] = [Prose(summary(one), "lead"), Terms(tuple(f for f in facts if f[1]))]
-    blocks.append(_problems(one.study))
+    posed = _problems(one.study)
+    title = f"{len(posed.rows)} problems posed"
+    blocks.append(Folded(title, (posed,)) if len(posed.rows) > _FEW else posed)
     return Section("audited", "What was audited", tuple(blocks))
 
 
@@ -53,11 +58,7 @@ def summary(one: CaseAudit) -> str:
     said = ", ".join(f"{counts[v]} {v}" for v in ClaimVerdict if counts[v])
     sentences = [f"{_count(len(one.judgements), 'claim')}: {said or 'none to judge'}."]
     sentences += _against(one)
-    if one.errors:
-        sentences.append(
-            f"{_count(one.errors, 'finding')} of severity error: a proof speaks against something "
-            "printed."
-        )
+    sentences += _errors(one)
     for fall in one.waterfalls:
         if fall.reading == one.study.main_reading:
             sentences += _down(one, fall)
@@ -69,19 +70,41 @@ def _count(size: int, noun: str) -> str:
 
 
 def _against(one: CaseAudit) -> Iterable[str]:
-    """Claims that are refuted or inconsistent, under every reading or under the default one."""
-    main = one.study.main_reading
-    for verdict in (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT):
+    """What speaks against claims: under every admissible reading, then under some of them."""
+    against = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT)
+    for verdict in against:
         every = [j.claim for j in one.judgements if j.verdict is verdict and j.scope is Scope.ALL]
-        here = [
-            j.claim
-            for j in one.judgements
-            if j.claim not in every and judge(j.claim, one.findings, [main]).verdict is verdict
-        ]
         if every:
             yield f"{verdict.capitalize()}: {', '.join(every)}."
-        if here:
-            yield f"{verdict.capitalize()} under {main} only: {', '.join(here)}."
+    alike: dict[tuple[tuple[str, ClaimVerdict], ...], list[str]] = {}
+    for j in one.judgements:
+        if j.scope is not Scope.ALL and any(v in against for _, v in j.readings):
+            alike.setdefault(j.readings, []).append(j.claim)
+    for readings, claims in alike.items():
+        under: dict[ClaimVerdict, list[str]] = {}
+        for reading, verdict in readings:
+            under.setdefault(verdict, []).append(reading)
+        said = ", ".join(f"{v} under {_which(under[v])}" for v in ClaimVerdict if v in under)
+        yield f"Of {len(readings)} readings: {', '.join(claims)} {said}."
+
+
+def _errors(one: CaseAudit) -> Iterable[str]:
+    """Rules whose findings are errors, with the claim; readings count as one."""
+    places: dict[str, set[str]] = {}
+    for f in one.findings:
+        if f.severity is Severity.ERROR:
+            place = f"{f.rule} on {f.claim}" if f.claim else f.rule
+            places.setdefault(place, set()).update([f.reading] if f.reading else [])
+    shown = [
+        place + (f" under {len(readings)} readings" if len(readings) > 1 else "")
+        for place, readings in places.items()
+    ]
+    if shown:
+        yield f"A proof speaks against something printed: {', '.join(shown)}."
+
+
+def _which(readings: list[str]) -> str:
+    return readings[0] if len(readings) == 1 else str(len(readings))
 
 
 def _down(one: CaseAudit, fall: Waterfall) -> Iterable[str]:
@@ -166,14 +189,14 @@ def claim_table(one: CaseAudit) -> Section:
                 text(claim.where),
                 text(printed(one.case, claim)),
                 word(judgement.verdict),
-                _readings(one, judgement),
+                _readings(judgement),
                 word(judgement.evidence),
                 text(_why(one, judgement)),
             )
         )
     names = ("claim", "where", "printed", "verdict", "readings", "evidence", "why")
-    readings = ", ".join(one.study.readings)
-    note = Prose(f"Readings: {readings}. Words are explained at the end of the page.", "note")
+    readings = f"{_count(len(one.study.readings), 'reading')}: {named(one.study.readings, _FEW)}"
+    note = Prose(f"{readings}. Words are explained at the end of the page.", "note")
     return Section(
         "verdicts", "Verdicts on the claims", (note, Grid(names, tuple(rows), prose=True))
     )
@@ -210,30 +233,36 @@ def printed(case: Case, claim: AnyClaim) -> str:
     return ""
 
 
-def _readings(one: CaseAudit, judgement: Judgement) -> Cell:
-    """Under how many readings the verdict holds; where they differ, the verdict under each."""
+def _readings(judgement: Judgement) -> Cell:
+    """Under how many readings the verdict holds; where they differ, those of each verdict."""
     lines = [str(judgement.scope)]
     if judgement.scope is Scope.SOME:
-        lines += [
-            f"{rid}: {judge(judgement.claim, one.findings, [rid]).verdict}"
-            for rid in one.study.readings
-        ]
+        under: dict[ClaimVerdict, list[str]] = {}
+        for reading, verdict in judgement.readings:
+            under.setdefault(verdict, []).append(reading)
+        lines += [f"{verdict} under {_which(r)}" for verdict, r in under.items()]
     return Cell("\n".join(lines), target="word-all-some-no-readings")
 
 
 def _why(one: CaseAudit, judgement: Judgement) -> str:
-    """One line for each finding that decides, with its reading where they differ."""
-    lines: dict[tuple[str, str], list[str]] = {}
+    """What decides: findings that say the same in other numbers share a line."""
+    lines: dict[tuple[str, str], list[Finding]] = {}
     for f in one.findings:
         if f.claim == judgement.claim and f.decides and f.verdict in _DECIDED:
-            lines.setdefault((f.rule, f.message), []).extend([f.reading] if f.reading else [])
+            lines.setdefault((f.rule, gist(f.message)), []).append(f)
     if not lines:
         return judgement.why
-    every = set(one.study.readings)
     shown = []
-    for (rule, message), under in lines.items():
-        where = "" if not under or set(under) == every else f" ({', '.join(under)})"
-        shown.append(f"{rule}{where}: {message}")
+    for (rule, _), own in sorted(
+        lines.items(), key=lambda line: line[1][0].verdict is not judgement.verdict
+    ):
+        messages = list(dict.fromkeys(f.message for f in own))
+        readings = list(dict.fromkeys(f.reading for f in own if f.reading))
+        every = not readings or len(readings) == len(one.study.readings)
+        where = "" if every and len(messages) == 1 else f" ({named(readings)})"
+        others = _count(len(messages) - 1, "more finding")
+        more = f" In other numbers: {others}." if len(messages) > 1 else ""
+        shown.append(f"{rule}{where}: {messages[0]}{more}")
     return "\n".join(shown)
 
 

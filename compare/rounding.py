@@ -154,6 +154,9 @@ def judge_rounding(
     outside = _outside_bounds(problem, durations, tolerance)
     if outside is not None:
         return RoundingVerdict(Rounding.BREAKS, worst, outside, outside.lower_bound)
+    if at_print.worst is not None and at_print.worst.quantity == "curve":
+        # Bounds are built around the printed point, which defines no curve here.
+        return RoundingVerdict(Rounding.UNDECIDED, worst, None, None)
     ball = Ball.between(q.lower, q.upper)
     target = 1.0 + tolerance
     least, most = _admissible(problem, durations, tolerance)

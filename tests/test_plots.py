@@ -29,6 +29,33 @@ from trajgap.problem import (
     quintic_spline,
     three_five_three,
 )
+from trajgap.problem.uniform import TimedUniformBSpline
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_a_curve_with_a_clock_is_drawn_and_marked_in_time(order: int) -> None:
+    """Where time is no polynomial of e, the crossings still are exact."""
+    rng = np.random.default_rng(5)
+    h = rng.uniform(0.7, 1.3, 5)
+    problem = Problem(
+        rng.normal(0.3, 1.0, (6, 2)), Limits([1.0, 1.2], [2.0, 3.0]), TimedUniformBSpline(6)
+    )
+    trajectory = fit(problem.interpolant, problem.waypoints, h)
+    limit = float(problem.limits.derivatives[1, order - 1])
+    found = beyond(trajectory, 1, order, -limit, limit)
+    assert found
+    ends = np.array(found)
+    inside = (ends > 1e-9) & (ends < h.sum() - 1e-9)
+    values = np.abs(trajectory(ends[inside], order)[:, 1])
+    np.testing.assert_allclose(values, limit, rtol=1e-6)
+    times = np.linspace(0.0, h.sum(), 1500)[1:-1]
+    over = np.abs(trajectory(times, order)[:, 1]) > limit
+    marked = ((times[:, None] > ends[:, 0]) & (times[:, None] < ends[:, 1])).any(axis=1)
+    near = (np.abs(times[:, None] - ends.ravel()) < 1e-6).any(axis=1)
+    assert (over == marked)[~near].all()
+    picture = curves(problem, h, title="clock")
+    assert "clock" in svg(picture)
+
 
 SVG = "{http://www.w3.org/2000/svg}"
 HOSTILE = '$\\frac{1}{ </title><script>alert("x")</script> --> 轨迹 \x07 _x'

@@ -13,6 +13,8 @@ from pathlib import Path
 
 import pytest
 from trajgap.compare import AuditReport, audit, write_report
+from trajgap.compare.finding import Basis
+from trajgap.compare.readings import Keeping
 from trajgap.compare.report import _TEMPLATES, MARK, _environment, case_page
 from trajgap.compare.report_blocks import Cell, Drawn, Grid, Page, Prose, Section, Terms, slug
 from trajgap.compare.report_markdown import markdown, plain
@@ -201,8 +203,14 @@ def test_every_claim_stands_with_its_digits_and_verdict(
 
 
 def test_where_readings_differ_each_has_its_verdict(page: Seen) -> None:
-    assert "some waypoints-rad: refuted waypoints-deg: supported" in page.words
-    assert "Refuted under waypoints-rad only: durations-110, limits-kept." in page.words
+    assert "some refuted under waypoints-rad supported under waypoints-deg" in page.words
+    said = "durations-110, limits-kept supported under waypoints-deg, refuted under waypoints-rad."
+    assert f"Refuted: time-optimal, rest-at-all-points. Of 2 readings: {said}" in page.words
+    proved = (
+        "TG107 on rest-at-all-points, TG301 on time-optimal under 2 readings, "
+        "TG302 on time-optimal under 2 readings."
+    )
+    assert f"A proof speaks against something printed: {proved}" in page.words
 
 
 def test_every_finding_stands_with_rule_basis_and_numbers(page: Seen, report: AuditReport) -> None:
@@ -220,6 +228,7 @@ def test_sections_stand_in_their_order(page: Seen) -> None:
     order = [
         "audited",
         "verdicts",
+        "side-by-side",
         "waterfall",
         "findings",
         "optima",
@@ -266,7 +275,7 @@ def test_every_word_of_the_vocabulary_is_explained(page: Seen) -> None:
         "optimality gap",
         "difference of reported time",
     ]
-    for word in vocabulary:
+    for word in (*vocabulary, *Basis, *Keeping):
         assert f"word-{slug(word)}" in anchors
 
 

@@ -325,8 +325,16 @@ def _largest(study: Study, claim: AnyClaim, pid: str, rid: str, order: int) -> l
     ]
 
 
+def _has_curve(study: Study, claim: AnyClaim, pid: str, rid: str) -> bool:
+    """Whether the printed durations define a curve under a reading."""
+    worst = study.claim_check(claim, pid, rid).worst
+    return worst is None or worst.quantity != "curve"
+
+
 def _used_up(study: Study, claim: AnyClaim) -> Iterator[Finding]:
     for pid, rid in study.claim_pairs(claim):
+        if not _has_curve(study, claim, pid, rid):
+            continue
         problem = study.claim_problem(claim, pid, rid)
         tight = []
         for r, quantity in enumerate(QUANTITIES, start=1):
@@ -373,7 +381,7 @@ def _peak(study: Study, claim: PeakClaim) -> Iterator[Finding]:
     ]
     order = QUANTITIES.index(claim.derivative) + 1
     for pid, rid in study.claim_pairs(claim):
-        for source in sources[:1]:
+        for source in (s for s in sources[:1] if _has_curve(study, s, pid, rid)):
             problem = study.claim_problem(source, pid, rid)
             tops = _largest(study, source, pid, rid, order)
             if claim.joint is not None and claim.joint in problem.joints:

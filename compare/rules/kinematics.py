@@ -213,6 +213,10 @@ def _finding(
         if all(m.misses for m in matches):
             verdict, severity = ClaimVerdict.INCONSISTENT, Severity.WARNING
             message += _whatever(matches)
+            message += (
+                " Taken as the table has them: the base frame, the zeros of the angles, and the "
+                "origin of the last frame as the end."
+            )
         else:
             verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
             signed = any(_fits(near, m.slack) for m in matches for near in m.signed)
