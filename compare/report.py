@@ -24,6 +24,7 @@ from .documents import audit_document
 from .drawing import embedded
 from .finding import ClaimVerdict
 from .report_blocks import Page, Section, Terms, slug
+from .report_families import families
 from .report_glossary import glossary
 from .report_markdown import markdown
 from .report_numbers import optima, sensitivities, where_time_goes
@@ -184,6 +185,7 @@ def case_page(one: CaseAudit) -> Page:
             audited(one),
             claim_table(one),
             where_time_goes(one),
+            *families(one),
             findings(one),
             optima(one),
             sensitivities(one),
