@@ -14,6 +14,7 @@ from .rules.continuous import continuous
 from .rules.control_vertices import control_vertices
 from .rules.count import count
 from .rules.digits import digits
+from .rules.family import family
 from .rules.kinematics import kinematics
 from .rules.optimum import optimum
 from .rules.replay import replay
@@ -30,10 +31,11 @@ _GROUPS = (
     scaling,
     optimum,
     replay,
+    family,
     text,
     kinematics,
 )
-_WITHOUT_WAYPOINTS = (digits, text)
+_WITHOUT_WAYPOINTS = (digits, family, text)
 _ORDER = {Severity.ERROR: 0, Severity.WARNING: 1, Severity.INFO: 2}
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -13,9 +12,11 @@ from ..nlp import PerJointSolution, Solution
 from ..nlp.kkt import Active
 from ..nlp.retime import Retiming
 from ..problem import Case, Check, Coupling, Peak
+from .family_document import family_document
 from .finding import Finding, Judgement
 from .gap import Gap
 from .rounding import Point, RoundingVerdict
+from .undefined import number_or_why as _number
 from .waterfall import Waterfall
 
 if TYPE_CHECKING:
@@ -43,15 +44,6 @@ def results_document(results: Iterable[Document]) -> Document:
     dict
     """
     return {"schema": SCHEMA, "results": list(results)}
-
-
-def _number(key: str, value: float | None, why: str | None) -> Document:
-    """A number, or null with the reason beside it; JSON knows no infinity and no NaN."""
-    if value is not None and math.isfinite(value):
-        return {key: float(value)}
-    if value is not None:
-        why = "beyond the range of floating point" if math.isnan(value) else "unbounded"
-    return {key: None, f"{key}_why": why or "not computed"}
 
 
 def _durations(durations: np.ndarray | None, why: str | None) -> Document:
@@ -382,6 +374,7 @@ def _case_audit(one: CaseAudit) -> Document:
         "verdicts": [_verdict(j) for j in one.judgements],
         "waterfalls": [_waterfall(w) for w in one.waterfalls],
         **_readings(one.readings),
+        "families": [family_document(one.study.family(b)) for b in one.study.families],
     }
 
 

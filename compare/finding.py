@@ -160,6 +160,7 @@ RULES = (
     Rule("TG401", "An improvement beside the spread over seeds"),
     Rule("TG402", "A printed total beside replays of its algorithm"),
     Rule("TG403", "Convergence within a number of iterations, beside replays"),
+    Rule("TG404", "A relative claim beside a family of instances drawn from the robot's workspace"),
     Rule("TG501", "Not checkable from the text"),
     Rule("TG601", "Joint and Cartesian way-points are consistent with the printed chain"),
 )

@@ -25,6 +25,7 @@ from .drawing import embedded
 from .finding import ClaimVerdict
 from .report_blocks import Page, Prose, Section, Terms, slug
 from .report_exhibits import exhibits_of_motion, exhibits_of_search
+from .report_families import families
 from .report_glossary import glossary
 from .report_markdown import markdown
 from .report_numbers import optima, sensitivities, where_time_goes
@@ -187,6 +188,7 @@ def case_page(one: CaseAudit) -> Page:
             claim_table(one),
             side_by_side(one),
             where_time_goes(one),
+            *families(one),
             findings(one),
             optima(one),
             sensitivities(one),

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from .claim import AnyClaim, Claim, DurationsClaim, MaximumClaim
 from .dh import DhTable
 from .errors import CaseError
+from .family import FamilyBlock
 from .fields import nearest
 from .posing import Posing, pose
 from .printed import Printed
@@ -107,6 +108,11 @@ class Case:
     def algorithms(self) -> tuple[Algorithm, ...]:
         """The paper's algorithms and their settings."""
         return self.document.algorithms
+
+    @property
+    def families(self) -> tuple[FamilyBlock, ...]:
+        """Families of instances on which relative claims are examined."""
+        return self.document.families
 
     @property
     def assumptions(self) -> tuple[Assumption, ...]:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from .curve import Array, Curve, Ends, end_conditions, for_joint, smooth_order
 from .errors import TrajgapError
+from .interpolant import piecewise, quintic_spline
 from .uniform import Timing
 
 
@@ -182,6 +183,31 @@ class ClampedBSpline:
     def free(self) -> int:
         """Control points less conditions: 0 for every declaration that can be made."""
         return self.control_points - self.conditions
+
+
+def polynomial_form(curve: Curve) -> Curve:
+    """The same curve declared as polynomials with breaks at the way-points, where it is one.
+
+    A clamped B-spline of degree p with its inner knots at the times of the inner way-points is
+    the C(p−1) spline of degree p; in that form it is evaluated several times faster.
+
+    Parameters
+    ----------
+    curve : Curve
+
+    Returns
+    -------
+    Curve
+        The given one where it is anything else.
+    """
+    if not isinstance(curve, ClampedBSpline) or curve.knots is not Knots.WAYPOINTS:
+        return curve
+    if curve.parameters is not Parameters.TIMES:
+        return curve
+    if (curve.degree, curve.end_orders) == (5, (1, 2)):
+        return quintic_spline(curve.segments)
+    ends = tuple((order, 0.0) for order in curve.end_orders)
+    return piecewise((curve.degree,) * curve.segments, curve.degree - 1, ends)
 
 
 def nearest(curve: ClampedBSpline) -> str:

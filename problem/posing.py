@@ -30,6 +30,8 @@ from .schema import (
 from .units import CHOICES, Measured, Quantity, to_si
 
 Block = TypeVar("Block", bound=Strict)
+Data = tuple[Curve, Limits, NDArray[np.float64], NDArray[np.float64]]
+"""Curve, limits, and bounds on the durations."""
 _DERIVATIVES: tuple[Quantity, ...] = ("velocity", "acceleration", "jerk")
 
 
@@ -143,11 +145,33 @@ class Posing:
         CaseError
             If the numbers don't fit together, or the way-points are not printed.
         """
-        interpolant, limits, lower, upper = self.data()
-        points = np.array([[angle.value for angle in row] for row in self.points()])
+        data = self.data()
+        return self._at(data, np.array([[angle.value for angle in row] for row in self.points()]))
+
+    def problem_at(self, waypoints: NDArray[np.float64]) -> Problem:
+        """The same question through other way-points.
+
+        Parameters
+        ----------
+        waypoints : ndarray, shape (way-points, joints of the robot)
+            rad; as many way-points as the file states.
+
+        Returns
+        -------
+        Problem
+
+        Raises
+        ------
+        CaseError
+            If the numbers don't fit together.
+        """
+        return self._at(self.data(), waypoints[:, list(self.joints)])
+
+    def _at(self, data: Data, waypoints: NDArray[np.float64]) -> Problem:
+        interpolant, limits, lower, upper = data
         try:
             return Problem(
-                waypoints=points,
+                waypoints=waypoints,
                 limits=limits,
                 interpolant=interpolant,
                 duration_lower=lower,
@@ -159,7 +183,7 @@ class Posing:
         except TrajgapError as error:
             raise self.fail("", str(error)) from None
 
-    def data(self) -> tuple[Curve, Limits, NDArray[np.float64], NDArray[np.float64]]:
+    def data(self) -> Data:
         """All but the way-points: curve, limits, and bounds on the durations, rad and s.
 
         Raises

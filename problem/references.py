@@ -16,6 +16,7 @@ from .claim import (
     TotalTimeClaim,
 )
 from .errors import CaseError
+from .family import FamilyBlock
 from .fields import nearest
 from .posing import Posing
 from .robot import Chain
@@ -25,6 +26,7 @@ _LISTS = (
     "problems",
     "readings",
     "algorithms",
+    "families",
     "tables",
     "claims",
     "assumptions",
@@ -93,6 +95,12 @@ def check_references(document: CaseFile, file: str) -> None:
                 f"add one of {', '.join(ids['problems'])}",
             )
     _check_kinds(document, file)
+    for index, family in enumerate(document.families):
+        at = f"families[{index}]"
+        known("claims", f"{at}.claim", family.claim)
+        for position, reading_id in enumerate(family.readings):
+            known("readings", f"{at}.readings[{position}]", reading_id)
+        _check_family(document, file, family, at)
     everything = {name for names in ids.values() for name in names} | set(_BLOCKS)
     for index, assumption in enumerate(document.assumptions):
         for position, name in enumerate(assumption.affects):
@@ -140,6 +148,28 @@ def _check_kinds(document: CaseFile, file: str) -> None:
                     f"{name!r} is a claim of quantity {by_id[name].quantity!r}; "
                     f"name one that states {what}",
                 )
+
+
+def _check_family(document: CaseFile, file: str, family: FamilyBlock, at: str) -> None:
+    by_id = {claim.id: claim for claim in document.claims}
+    claim = by_id[family.claim]
+    if not isinstance(claim, ImprovementClaim):
+        raise CaseError(
+            file,
+            f"{at}.claim",
+            f"{claim.id!r} is a claim of quantity {claim.quantity!r}; name an improvement",
+        )
+    for side in (by_id[claim.slower], by_id[claim.faster]):
+        if side.algorithm is None or (side.problem is None and document.problems):
+            raise CaseError(
+                file,
+                f"{at}.claim",
+                f"claim {side.id!r} does not name its problem and its algorithm; add both there",
+            )
+    if document.robot.dh is None and document.robot.model is None:
+        raise CaseError(
+            file, f"{at}.id", "way-points are drawn from the robot's workspace; add robot.dh"
+        )
 
 
 def check_claims(document: CaseFile, file: str, posing_of: Callable[[AnyClaim], Posing]) -> None:

@@ -11,6 +11,7 @@ from .claim import AnyClaim
 from .declaration import InterpolantBlock
 from .dh import DhTable
 from .errors import TrajgapError
+from .family import FamilyBlock
 from .fields import (
     AccelerationUnit,
     Id,
@@ -332,6 +333,7 @@ class CaseFile(Pose):
     problems: tuple[ProblemBlock, ...] = ()
     readings: tuple[Reading, ...] = ()
     algorithms: tuple[Algorithm, ...] = ()
+    families: tuple[FamilyBlock, ...] = ()
     tables: tuple[Table, ...] = ()
     claims: tuple[AnyClaim, ...] = ()
     assumptions: tuple[Assumption, ...] = ()

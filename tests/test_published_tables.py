@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from trajgap.heuristics import from_settings
-from trajgap.problem import CaseError, jtraj, uniform_cubic_b_spline
+from trajgap.problem import CaseError, jtraj, quintic_spline, uniform_cubic_b_spline
 from trajgap.problem.claim import ConditionsClaim, DurationsClaim, MaximumClaim
 from trajgap.problem.load import load_case, parse_case, published_ids
 from trajgap.problem.printed import Printed
@@ -261,7 +261,7 @@ def test_whale_readings_change_the_b_spline_and_leave_the_quintic():
     assert len(set(curves.values())) == 10
     assert all(curve.segments == 7 for curve in curves.values())
     quintics = {case.posing(*pair).interpolant() for pair in case.selections("quintic")}
-    assert quintics == {jtraj(7)}
+    assert quintics == {jtraj(7), quintic_spline(7)}
 
 
 def test_whale_has_no_waypoints_and_says_so():
@@ -282,7 +282,7 @@ def test_whale_waypoints_dropped_into_the_file_pose_every_problem():
     case = parse_case(text[:start] + f"joint_rows = [\n{table}\n]\n\n" + text[end:], "found.toml")
     assert case.posed
     problems = [case.problem(*pair) for pair in case.selections()]
-    assert len(problems) == 26
+    assert len(problems) == 28
     assert all(problem.waypoints[3, 2] == 1.2345 for problem in problems)
 
 
