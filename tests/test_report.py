@@ -482,3 +482,22 @@ def test_long_tables_of_readings_scroll_in_a_box_and_print_whole() -> None:
     assert re.findall(r'<div class="(scroll[^"]*)"', html_page) == ["scroll tall", "scroll"]
     style = (_TEMPLATES / "style.css").read_text(encoding="utf-8")
     assert "max-height: none" in style.split("@media print")[1]
+
+
+def test_what_is_null_alone_is_named_in_the_documents(folder: Path) -> None:
+    page = (Path(__file__).parents[1] / "docs/command-line.md").read_text(encoding="utf-8")
+    named = page[page.index("Words that do not apply are null alone.") :].split("\n- ")[0]
+    alone = set()
+
+    def walk(value: object) -> None:
+        if isinstance(value, dict):
+            for key, inner in value.items():
+                if inner is None and not value.get(f"{key}_why"):
+                    alone.add(key)
+                walk(inner)
+        elif isinstance(value, list):
+            for inner in value:
+                walk(inner)
+
+    walk(json.loads((folder / MARK).read_text(encoding="utf-8"))["cases"])
+    assert {"claim", "problem", "printed"} <= alone <= set(re.findall(r"`([a-z]+)`", named))
