@@ -147,7 +147,7 @@ def _xml(text: str) -> str:
 
 def _coarser(match: re.Match[str]) -> str:
     # A hundredth of a point is far below what a screen or printer shows.
-    return re.sub(r"-?\d+\.\d{3,}", lambda m: f"{float(m[0]):.2f}", match[0])
+    return re.sub(r"-?\d+\.\d{3,}", lambda m: f"{round(float(m[0]), 2):g}", match[0])
 
 
 def _shorter(match: re.Match[str]) -> str:

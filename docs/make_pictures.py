@@ -1,8 +1,11 @@
 """Make the pictures that the documents show: `python docs/make_pictures.py`."""
 
+from collections.abc import Iterator
 from pathlib import Path
 
 from trajgap.compare.drawing import svg
+from trajgap.compare.report_blocks import Drawn
+from trajgap.compare.report_exhibits import exhibits_of_motion, exhibits_of_search
 from trajgap.compare.study import Study
 from trajgap.compare.waterfall import waterfalls
 from trajgap.compare.waterfall_picture import waterfall_picture
@@ -19,6 +22,29 @@ def waterfall_puma560() -> str:
     return svg(waterfall_picture(waterfall, title="PUMA 560, 3-5-3: where the time goes"))
 
 
+EXHIBITS = {
+    "jumps-irb1600": ("irb1600-ga-cubic-bspline", "jumps-nine-segments-after"),
+    "polygon-irb1600": ("irb1600-ga-cubic-bspline", "polygon-control-vertices"),
+    "workspace-irb460": ("irb460-pso-353", "workspace-modified"),
+    "tent-z1": ("z1-woa-bspline", "tent-improved-woa"),
+}
+"""Pictures of the report pages that the documents show too: case, and name in its page."""
+
+
+def exhibits() -> Iterator[tuple[str, str]]:
+    """Name and document of each picture in `EXHIBITS`."""
+    found = {}
+    for case_id in dict.fromkeys(case for case, _ in EXHIBITS.values()):
+        study = Study(load_case(case_id))
+        for section in (*exhibits_of_motion(study), *exhibits_of_search(study)):
+            for block in section.blocks:
+                if isinstance(block, Drawn):
+                    found[case_id, block.name] = block.document
+    return ((name, found[place]) for name, place in EXHIBITS.items())
+
+
 if __name__ == "__main__":
     PICTURES.mkdir(exist_ok=True)
     (PICTURES / "waterfall-puma560.svg").write_text(waterfall_puma560(), encoding="utf-8")
+    for name, document in exhibits():
+        (PICTURES / f"{name}.svg").write_text(document, encoding="utf-8")

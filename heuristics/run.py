@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import ExitStack
@@ -218,7 +219,15 @@ def _each(
             # Threads would be slower than one: half of each iteration holds the interpreter.
             # Spawned, because a fork copies the locks of the compiled libraries.
             context = get_context("spawn")
-            pool = stack.enter_context(ProcessPoolExecutor(workers, mp_context=context))
+            # A terminal sends Ctrl-C to the workers too; the parent alone answers it.
+            pool = stack.enter_context(
+                ProcessPoolExecutor(
+                    workers,
+                    mp_context=context,
+                    initializer=signal.signal,
+                    initargs=(signal.SIGINT, signal.SIG_IGN),
+                )
+            )
             share = -(-len(checked) // (4 * workers))
             results = pool.map(one, checked, chunksize=share)
         for result in results:

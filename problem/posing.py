@@ -33,6 +33,9 @@ Block = TypeVar("Block", bound=Strict)
 Data = tuple[Curve, Limits, NDArray[np.float64], NDArray[np.float64]]
 """Curve, limits, and bounds on the durations."""
 _DERIVATIVES: tuple[Quantity, ...] = ("velocity", "acceleration", "jerk")
+_LARGEST = 1e12
+"""Largest number of a case file, rad and s: squares and quotients stay far from overflow."""
+_LOWER = "durations.lower"
 
 
 @dataclass(frozen=True)
@@ -58,13 +61,21 @@ class Posing:
         """Make an error at a field, naming the problem and reading under which it shows."""
         return CaseError(self.file, field, reason + self.selected)
 
-    def si(self, number: Printed, quantity: Quantity) -> Measured:
+    def si(self, number: Printed, quantity: Quantity, field: str = "") -> Measured:
         """Convert printed digits with this reading's unit of ``quantity``.
+
+        Parameters
+        ----------
+        number : Printed
+        quantity : str
+        field : str
+            Where the number stands in the file, for messages.
 
         Raises
         ------
         CaseError
-            If the unit is not stated, or the number is too large.
+            If the unit is not stated, or the number is so large or small that no motion can be
+            computed with it.
         """
         unit = getattr(self.units, quantity)
         if unit is None:
@@ -72,9 +83,19 @@ class Posing:
                 f"units.{quantity}", f"is missing; add one of {', '.join(CHOICES[quantity])}"
             )
         try:
-            return to_si(number, unit)
+            measured = to_si(number, unit)
         except TrajgapError as error:
-            raise self.fail(quantity, str(error)) from None
+            raise self.fail(field or quantity, str(error)) from None
+        size = abs(measured.value)
+        # An angle may be near 0, and so may a lower bound that says "positive".
+        near_zero = quantity == "position" or field == _LOWER
+        if size > _LARGEST or (0 < size < 1 / _LARGEST and not near_zero):
+            raise self.fail(
+                field or quantity,
+                f"{number} {unit} lies outside the magnitudes from {1 / _LARGEST:g} to "
+                f"{_LARGEST:g} rad and s that are computed with; correct digits or unit",
+            )
+        return measured
 
     def points(self) -> list[list[Measured]]:
         """Way-points in radians, one row per way-point, one entry per joint that takes part."""
@@ -92,7 +113,20 @@ class Posing:
                 f"gives {len(rows[0])} joints, but robot.joints lists {len(self.labels)}; "
                 "list every joint in both",
             )
-        return [[self.si(row[j], "position") for j in self.joints] for row in rows]
+        by_joint = self.waypoints.joint_rows is not None
+        return [
+            [
+                self.si(
+                    row[j],
+                    "position",
+                    f"waypoints.joint_rows[{j}][{k}]"
+                    if by_joint
+                    else f"waypoints.waypoint_rows[{k}][{j}]",
+                )
+                for j in self.joints
+            ]
+            for k, row in enumerate(rows)
+        ]
 
     @property
     def posed(self) -> bool:
@@ -229,13 +263,18 @@ class Posing:
         if given is None:
             return np.full(count, default)
         if isinstance(given, Printed):
-            return np.full(count, self.si(given, quantity).value)
+            return np.full(count, self.si(given, quantity, f"{block}.{name}").value)
         if len(given) != count:
             raise self.fail(
                 f"{block}.{name}",
                 f"{len(given)} values for {count} {item}s; give one for all, or one each",
             )
-        return np.array([default if one is None else self.si(one, quantity).value for one in given])
+        return np.array(
+            [
+                default if one is None else self.si(one, quantity, f"{block}.{name}").value
+                for one in given
+            ]
+        )
 
 
 def pose(document: CaseFile, file: str, problem: ProblemBlock, reading: Reading) -> Posing:

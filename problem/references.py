@@ -187,7 +187,7 @@ def check_claims(document: CaseFile, file: str, posing_of: Callable[[AnyClaim], 
     ------
     CaseError
         If a claim states another number of durations than there are segments, or names a joint
-        that takes no part.
+        that takes no part, or a number lies outside the magnitudes that are computed with.
     """
     for index, claim in enumerate(document.claims):
         posing = posing_of(claim)
@@ -205,10 +205,17 @@ def check_claims(document: CaseFile, file: str, posing_of: Callable[[AnyClaim], 
                     f"claims[{index}].durations",
                     f"{len(claim.durations)} values for {segments} segments; give one each",
                 )
-            for duration in claim.durations:
-                posing.si(duration, "time")
+            for segment, duration in enumerate(claim.durations):
+                field = f"claims[{index}].durations[{segment}]"
+                if duration.fraction == 0:
+                    raise posing.fail(field, "is 0; a duration is positive, give its digits")
+                posing.si(duration, "time", field)
+            if claim.total is not None:
+                posing.si(claim.total, "time", f"claims[{index}].total")
+        if isinstance(claim, TotalTimeClaim):
+            posing.si(claim.value, "time", f"claims[{index}].value")
         if isinstance(claim, PeakClaim):
-            posing.si(claim.value, claim.derivative)
+            posing.si(claim.value, claim.derivative, f"claims[{index}].value")
         if isinstance(claim, ControlVerticesClaim):
             _check_vertices(claim, posing, f"claims[{index}].joint_rows")
 

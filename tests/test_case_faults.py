@@ -15,6 +15,7 @@ from trajgap.problem.claim import QUANTITY_KINDS
 from trajgap.problem.errors import CaseError
 from trajgap.problem.faults import first_fault
 from trajgap.problem.load import check_case, load_case, parse_case
+from trajgap.problem.posing import _LARGEST
 from trajgap.problem.schema import CaseFile
 from trajgap.problem.textfile import read_text
 
@@ -114,7 +115,21 @@ FAULTS = [
     (("lower = 0.1", f"lower = 1{'0' * 400}"), "durations.lower: an integer of more than 300 digits is out of range"),
     (("lower = 0.1", f"lower = 1{'0' * 5000}"), "holds a number that is out of range; shorten it"),
     (("lower = 0.1", f"lower = 1e{'9' * 30}"), "holds a number that is out of range; shorten it"),
-    (("lower = 0.1", "lower = 9e300"), "time: the number is too large; at most 1e300 is read (problem 'one', reading 'plain')"),
+    (("lower = 0.1", "lower = 9e300"), "durations.lower: the number is too large; at most 1e300 is read (problem 'one', reading 'plain')"),
+    (("[source]\nyear = 2020\n", ""), "source: is missing; add it"),
+    (('"1.258", "1.078"]', '"0.00", "1.078"]'), "claims[0].durations[1]: is 0; a duration is positive, give its digits (problem 'one', reading 'rad')"),
+]  # fmt: skip
+
+SIZES = [
+    (('"1.258", "1.078"]', '"1.258", "1e-200"]'), "claims[0].durations[2]: 1e-200 s"),
+    (('"1.258", "1.078"]', '"1e200", "1.078"]'), "claims[0].durations[1]: 1e200 s"),
+    (('total = "3.298"', 'total = "2e13"'), "claims[0].total: 2e13 s"),
+    (('value = "94.8"', 'value = "1e-13"'), "claims[3].value: 1e-13 deg/s"),
+    (("[100, ", "[1e300, "), "limits.velocity: 1E+300 deg/s"),
+    (("acceleration = 60", "acceleration = 1e-60"), "limits.acceleration: 1E-60 deg/s^2"),
+    (("acceleration = 60", "position_upper = 2e15"), "limits.position_upper: 2E+15 rad"),
+    (('"10.5"', '"1e150"'), "waypoints.joint_rows[0][1]: 1e150 rad"),
+    (("upper = [3, 4, inf]", "upper = [3, 4, 1e13]"), "durations.upper: 1E+13 s"),
 ]  # fmt: skip
 
 
@@ -125,6 +140,22 @@ def test_each_fault_has_its_line(change, message):
     with pytest.raises(CaseError) as caught:
         parse_case(BASE.replace(old, new, 1), "base.toml")
     assert str(caught.value) == f"base.toml: {message}"
+
+
+@pytest.mark.parametrize(("change", "number"), SIZES, ids=[n for _, n in SIZES])
+def test_numbers_beyond_computing_name_their_field(change, number):
+    assert change[0] in BASE
+    with pytest.raises(CaseError) as caught:
+        parse_case(BASE.replace(*change, 1), "base.toml")
+    said = "lies outside the magnitudes from 1e-12 to 1e+12 rad and s that are computed with"
+    assert str(caught.value).startswith(f"base.toml: {number} {said}; correct digits or unit (")
+
+
+def test_small_angles_and_small_lower_bounds_are_read():
+    text = BASE.replace('"10.5"', '"6.1e-17"').replace("lower = 0.1", "lower = 1e-300")
+    assert parse_case(text, "base.toml").problem("one", "rad").waypoints[1, 0] == 6.1e-17
+    digits = (Path(__file__).parents[1] / "docs/case-files.md").read_text(encoding="utf-8")
+    assert f"sizes from {1 / _LARGEST:g} to {_LARGEST:g} are computed with" in digits
 
 
 @pytest.mark.parametrize(

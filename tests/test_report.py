@@ -6,7 +6,6 @@ import re
 import shutil
 import tomllib
 import xml.etree.ElementTree as ElementTree
-from dataclasses import replace
 from decimal import Decimal
 from importlib.resources import files
 from pathlib import Path
@@ -15,11 +14,10 @@ import pytest
 from trajgap.compare import AuditReport, audit, write_report
 from trajgap.compare.finding import Basis
 from trajgap.compare.readings import Keeping
-from trajgap.compare.report import _TEMPLATES, MARK, _environment, case_page
+from trajgap.compare.report import MARK, case_page
 from trajgap.compare.report_blocks import Cell, Drawn, Grid, Page, Prose, Section, Terms, slug
 from trajgap.compare.report_markdown import markdown, plain
-from trajgap.compare.report_numbers import where_time_goes
-from trajgap.problem import Case, TrajgapError, load_case
+from trajgap.problem import Case, TrajgapError
 from trajgap.problem.load import check_case
 
 ID = "irb460-pso-353"
@@ -447,47 +445,20 @@ def test_columns_without_any_entry_are_left_out() -> None:
     assert Grid(("a", "b", "c"), rows).filled.columns == ("a", "c")
 
 
-# --- long and empty sections ----------------------------------------------------------------------
+def test_what_is_null_alone_is_named_in_the_documents(folder: Path) -> None:
+    page = (Path(__file__).parents[1] / "docs/command-line.md").read_text(encoding="utf-8")
+    named = page[page.index("Words that do not apply are null alone.") :].split("\n- ")[0]
+    alone = set()
 
+    def walk(value: object) -> None:
+        if isinstance(value, dict):
+            for key, inner in value.items():
+                if inner is None and not value.get(f"{key}_why"):
+                    alone.add(key)
+                walk(inner)
+        elif isinstance(value, list):
+            for inner in value:
+                walk(inner)
 
-def test_many_readings_share_a_table_and_few_have_pictures(report: AuditReport) -> None:
-    (one,) = report.cases
-    first = next(f for f in one.waterfalls if f.reading == one.study.main_reading)
-    for others in (3, 5):
-        more = [replace(first, reading=f"reading-{k}") for k in range(others)]
-        section = where_time_goes(replace(one, waterfalls=(first, *more)))
-        drawn = Page("p", "t", (section,)).pictures
-        tables = [b for b in section.blocks if isinstance(b, Grid) and b.columns[0] == "reading"]
-        assert len(drawn) == (4 if others == 3 else 1)
-        assert [len(t.rows) for t in tables] == ([] if others == 3 else [5])
-    known = [s for s in first.steps if s.time is not None]
-    assert tables[0].columns == ("reading", *(s.name for s in known))
-    for cell, step in zip(tables[0].rows[0][1:], known, strict=True):
-        assert cell.text.startswith(f"{step.time:.4f} s")
-        assert str(step.evidence) in (*cell.text.split("\n"), "none")
-
-
-def test_a_section_that_holds_nothing_is_left_out() -> None:
-    page = Page("p", "t", (Section("a", "A", ()), Section("b", "B", (Prose("x"),))))
-    assert [s.id for s in page.filled.sections] == ["b"]
-
-
-def test_a_case_without_waypoints_says_once_what_is_not_computed() -> None:
-    (one,) = audit(load_case("z1-woa-bspline"), seeds=2).cases
-    page = case_page(one)
-    ids = [s.id for s in page.sections]
-    assert "not-computed" in ids
-    assert not {"waterfall", "optima", "sensitivities", "motions", "landscapes"} & set(ids)
-    text = markdown(page)
-    assert text.count("way-points are not printed (the text gives their number, 8") == 1
-    assert "\nNone." not in text
-
-
-def test_long_tables_of_readings_scroll_in_a_box_and_print_whole() -> None:
-    grid = Grid(("problem", "reading"), ((Cell("p"), Cell("r")),) * 13)
-    page = Page("p", "t", (Section("a", "A", (grid, replace(grid, rows=grid.rows[:12]))),))
-    environment = _environment()
-    html_page = environment.get_template("case.html").render(page=page, style="")
-    assert re.findall(r'<div class="(scroll[^"]*)"', html_page) == ["scroll tall", "scroll"]
-    style = (_TEMPLATES / "style.css").read_text(encoding="utf-8")
-    assert "max-height: none" in style.split("@media print")[1]
+    walk(json.loads((folder / MARK).read_text(encoding="utf-8"))["cases"])
+    assert {"claim", "problem", "printed"} <= alone <= set(re.findall(r"`([a-z]+)`", named))

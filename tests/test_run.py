@@ -1,7 +1,12 @@
 """The loop: seeds, budgets, traces, joints by themselves, and answers left to the checker."""
 
+import os
 import pickle
+import signal
+import subprocess
+import sys
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -277,3 +282,34 @@ def test_workers_must_be_whole(workers: object) -> None:
 def test_budget_must_be_whole(iterations: object) -> None:
     with pytest.raises(TrajgapError, match=r"^pso: iterations: expected a whole number of 0"):
         run(PSO(), PROBLEM, 0, iterations)
+
+
+def test_an_interrupt_is_answered_by_the_parent_alone(tmp_path: Path) -> None:
+    # A terminal sends Ctrl-C to every process of the group. After two of three runs one worker is
+    # busy and one waits, where KeyboardInterrupt would print a traceback.
+    started = tmp_path / "many.py"
+    started.write_text(
+        "import sys\n"
+        "from trajgap.heuristics import PSO, run_many\n"
+        "from trajgap.problem import load_case\n"
+        "if __name__ == '__main__':\n"
+        "    problem = load_case('irb460-pso-353').problem()\n"
+        "    try:\n"
+        "        run_many(PSO(), problem, range(3), 2, 2000,\n"
+        "                 progress=lambda r: print('one', flush=True))\n"
+        "    except KeyboardInterrupt:\n"
+        "        sys.exit(130)\n",
+        encoding="utf-8",
+    )
+    process = subprocess.Popen(
+        [sys.executable, str(started)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    assert process.stdout is not None
+    assert [process.stdout.readline() for _ in range(2)] == ["one\n"] * 2
+    os.killpg(process.pid, signal.SIGINT)
+    _, err = process.communicate(timeout=60)
+    assert (process.returncode, err) == (130, "")
