@@ -29,7 +29,8 @@ _PASSES = 40
 _PATIENCE = 8
 """Passes without a gain after which a start is given up."""
 ADAPTIVE_VARIABLES = 1000
-"""Up to here the adaptive barrier needs far fewer iterations, beyond it sometimes very many."""
+"""Up to here the adaptive barrier needs far fewer iterations, beyond it sometimes very many; with
+virtual breaks, whose segments may vanish, it needs more."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,8 +88,8 @@ def compiled(structure: Structure) -> Compiled:
         "f": f.objective,
         "g": ca.vertcat(f.equalities, f.inequalities),
     }
-    small = f.sizes["variables"] <= ADAPTIVE_VARIABLES
-    cold = ca.nlpsol("cold", "ipopt", nlp, ipopt_options(False, adaptive=small))
+    adaptive = f.sizes["variables"] <= ADAPTIVE_VARIABLES and not structure.interpolant.virtual
+    cold = ca.nlpsol("cold", "ipopt", nlp, ipopt_options(False, adaptive=adaptive))
     warm = ca.nlpsol("warm", "ipopt", nlp, ipopt_options(True))
     return Compiled(f, cold, warm, time.perf_counter() - began)
 
