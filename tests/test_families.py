@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import get_args
 
@@ -125,6 +126,15 @@ def test_the_toolboxes_straight_move_has_the_poses_of_ctraj() -> None:
         spatial.SE3(first, check=False), spatial.SE3(last, check=False), s=np.linspace(0, 1, 5)
     )
     np.testing.assert_allclose(line.poses, np.array([pose.A for pose in theirs]), atol=1e-12)
+
+
+def test_the_programs_of_the_page_run(capsys: pytest.CaptureFixture[str]) -> None:
+    page = (Path(__file__).parents[1] / "docs" / "interpolants.md").read_text()
+    programs = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    assert len(programs) == 2
+    for program in programs:
+        exec(program, {})
+    assert "optimal" in capsys.readouterr().out
 
 
 def straight():
