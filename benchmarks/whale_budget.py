@@ -3,11 +3,13 @@
 ``python benchmarks/whale_budget.py [--repeats N]``. Eight seeded random way-points stand for the
 unprinted ones; the interpolant is the C4 quintic spline with v = a = 0 at both ends. Timed: every
 algorithm at 30 × 501 evaluations, under the death penalty and under the stretch; and the usual way
-to write the objective (scipy's spline for one vector, 50 samples a segment), on a part of the
-budget and scaled. Wanted: each below 3 s.
+to write the objective (scipy's spline for one vector, 50 samples a segment), by itself and, where
+mealpy is installed, under its whale algorithm, on a part of the budget and scaled. Wanted: each
+below 3 s.
 """
 
 import argparse
+import importlib.util
 import os
 import statistics
 import time
@@ -30,7 +32,7 @@ from trajgap.problem import Limits, Problem, evaluate, quintic_spline
 
 MEMBERS, ITERATIONS, SPAN = 30, 500, (0.0, 5.0)
 WANTED = 3.0
-SAMPLES, PART = 50, 150
+SAMPLES, PART, EPOCHS = 50, 150, 5
 VELOCITY = np.deg2rad([120.0, 120.0, 100.0, 180.0, 145.0, 180.0])
 ACCELERATION = np.deg2rad(np.full(6, 100.0))
 ENDS = [(1, np.zeros(6)), (2, np.zeros(6))]
@@ -64,6 +66,23 @@ def agreement(problem):
     return int((~exact & np.isfinite(usual)).sum()), int(exact.sum())
 
 
+def with_mealpy(problem, seed):
+    """Seconds of mealpy's OriginalWOA with the usual objective, scaled to the whole budget."""
+    from mealpy import FloatVar
+    from mealpy.swarm_based.WOA import OriginalWOA
+
+    bounds = FloatVar(lb=(SPAN[0],) * 7, ub=(SPAN[1],) * 7)
+    penalised = {
+        "bounds": bounds,
+        "minmax": "min",
+        "obj_func": lambda h: min(1e6, usual_fitness(problem.waypoints, h)),
+        "log_to": None,
+    }
+    model = OriginalWOA(epoch=EPOCHS, pop_size=MEMBERS)
+    spent, _ = seconds(lambda: model.solve(penalised, seed=seed))
+    return spent * (ITERATIONS + 1) / (EPOCHS + 1)
+
+
 def seconds(function):
     start = time.perf_counter()
     found = function()
@@ -89,10 +108,13 @@ def main():
         differential_evolution(ITERATIONS, MEMBERS, tol=0.0),
     )
     run(WOA(iterations=1), problem, 0)
-    usual, ours = [], {}
+    usual, theirs, ours = [], [], {}
+    optional = importlib.util.find_spec("mealpy") is not None
     for repeat in range(repeats):
         spent, _ = seconds(lambda: [usual_fitness(problem.waypoints, h) for h in part])
         usual.append(spent * evaluations / PART)
+        if optional:
+            theirs.append(with_mealpy(problem, repeat))
         for algorithm in algorithms:
             for handling in ("death-penalty", "stretch"):
                 timed = seconds(
@@ -104,6 +126,15 @@ def main():
         f"\nmedian of {repeats} alternating repeats, {os.cpu_count()} cores; 30 × 501 evaluations"
     )
     print(f"usual objective alone {written:.1f} s ({PART} vectors, scaled)")
+    if theirs:
+        spent = statistics.median(theirs)
+        ratio = statistics.median(
+            t / o for t, (o, _) in zip(theirs, ours["woa", "death-penalty"], strict=True)
+        )
+        print(
+            f"mealpy's OriginalWOA on it {spent:.1f} s ({EPOCHS} epochs, scaled), "
+            f"{ratio:.0f} times woa here"
+        )
     print(f"without any search: equal durations, {uniform_rescaling(problem).sum():.4f} s\n")
     print(f"{'algorithm':<24}{'objective':<15}{'time':>9}{'ratio':>7}{'wanted':>9}  median total")
     for (kind, handling), timed in ours.items():

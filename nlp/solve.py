@@ -21,7 +21,7 @@ from .formulation import Form
 from .kkt import kkt
 from .polish import polish
 from .solution import Solution, Status
-from .starts import equal_start, first_nodal, screened_starts
+from .starts import equal_start, first_nodal, screened_starts, settled
 from .tracking import (
     Compiled,
     Local,
@@ -154,7 +154,8 @@ def _multistart(
     tracked: list[tuple[NDArray[np.float64], Local]] = []
     found: list[Local] = []
     for start in points:
-        x, scaled, success, iterations = solve_coarse(problem, build_, start, floor)
+        near = settled(problem, start)
+        x, scaled, success, iterations = solve_coarse(problem, build_, near, floor)
         coarse, _ = unpack(problem, build_.formulation, scaled, x)
         known = [
             local

@@ -13,6 +13,10 @@ CHAINS, CHAIN_STEPS = 384, 40
 """Short random descents (shared by the joints' cost) and their number of steps."""
 GRID_POINTS = {2: 400, 3: 2500}
 """Points of the grid of duration ratios that is searched first where it is affordable."""
+SETTLING_STEPS, OFFSPRING = 30, 16
+"""Steps by which a start is brought near its basin's floor, and random trials of each."""
+SETTLED_SEGMENTS = 24
+"""Random trials gain little in more dimensions than these."""
 
 
 def first_nodal(problem: Problem) -> NDArray[np.float64] | None:
@@ -87,6 +91,28 @@ def screened_starts(
         if np.isfinite(total[i]) and min(apart, default=np.inf) > 0.5:
             chosen.append(ends[i])
     return np.array(chosen)
+
+
+def settled(problem: Problem, start: NDArray[np.float64]) -> NDArray[np.float64]:
+    """A start, brought near its basin's floor by random steps on the exact repaired total.
+
+    A few hundred batched evaluations cost less than one step of the solver from a start far from
+    its optimum. The steps' widths follow their success; the same start settles in the same place.
+    """
+    if problem.interpolant.free or not 1 < problem.segments <= SETTLED_SEGMENTS:
+        return start
+    generator = np.random.default_rng(0)
+    pool, totals = _repaired_total(problem, start[None])
+    point, total, width = pool[0], totals[0], 0.5
+    for _ in range(SETTLING_STEPS):
+        steps = np.exp(width * generator.standard_normal((OFFSPRING, problem.segments)))
+        pool, totals = _repaired_total(problem, point * steps)
+        best = int(np.argmin(totals))
+        if totals[best] < total:
+            point, total, width = pool[best], totals[best], 1.2 * width
+        else:
+            width = 0.6 * width
+    return np.asarray(point if np.isfinite(total) else start)
 
 
 def _repaired_total(

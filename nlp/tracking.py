@@ -28,6 +28,9 @@ from .starts import first_nodal
 _PASSES = 40
 _PATIENCE = 8
 """Passes without a gain after which a start is given up."""
+ADAPTIVE_VARIABLES = 1000
+"""Up to here the adaptive barrier needs far fewer iterations, beyond it sometimes very many; with
+virtual breaks, whose segments may vanish, it needs more."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +43,7 @@ class Compiled:
     build_seconds: float
 
 
-def ipopt_options(warm: bool) -> dict[str, Any]:
+def ipopt_options(warm: bool, adaptive: bool = False) -> dict[str, Any]:
     """Options of IPOPT that reach 1e-9, from a cold or a warm start."""
     options: dict[str, Any] = {
         "print_time": False,
@@ -54,7 +57,7 @@ def ipopt_options(warm: bool) -> dict[str, Any]:
         "ipopt.honor_original_bounds": "yes",
         "ipopt.acceptable_iter": 0,
         "ipopt.max_iter": 300,
-        "ipopt.mu_strategy": "monotone",
+        "ipopt.mu_strategy": "adaptive" if adaptive and not warm else "monotone",
     }
     if warm:
         options |= {
@@ -85,7 +88,8 @@ def compiled(structure: Structure) -> Compiled:
         "f": f.objective,
         "g": ca.vertcat(f.equalities, f.inequalities),
     }
-    cold = ca.nlpsol("cold", "ipopt", nlp, ipopt_options(False))
+    adaptive = f.sizes["variables"] <= ADAPTIVE_VARIABLES and not structure.interpolant.virtual
+    cold = ca.nlpsol("cold", "ipopt", nlp, ipopt_options(False, adaptive=adaptive))
     warm = ca.nlpsol("warm", "ipopt", nlp, ipopt_options(True))
     return Compiled(f, cold, warm, time.perf_counter() - began)
 

@@ -37,6 +37,14 @@ class CartesianLine:
     poses: Array
     residual: float
 
+    @property
+    def table(self) -> str:
+        """The way-points as a table that `scaffold` makes a case file from, every bit kept."""
+        lines = [",".join(("waypoint", *self.chain.labels))]
+        for k, row in enumerate(self.waypoints, 1):
+            lines.append(",".join((str(k), *(repr(float(q)) for q in row))))
+        return "\n".join(lines) + "\n"
+
     def deviation(self, trajectory: Trajectory, samples: int = 1001) -> float:
         """Largest distance of the end from the line on a joint trajectory, m.
 

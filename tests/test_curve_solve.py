@@ -57,6 +57,19 @@ def test_stretched_agrees_with_the_closed_form_under_every_unit_reading(units: s
     assert solution.kkt_residual <= 1e-11
 
 
+@pytest.mark.parametrize("units", UNITS)
+def test_the_stretched_optimum_is_found_by_the_solver_from_afar(units: str) -> None:
+    """A stretch of the start as a whole, all that happens beside the NLP, stays far above."""
+    problem = load_case(POLISH).problem(reading_id=f"{units}-stretched")
+    total = closed_form(problem.interpolant, problem.waypoints, problem.limits.derivatives).sum()
+    start = random_starts(problem, 1, np.random.default_rng(11))
+    stretched = float(start.sum() * evaluate(problem, start).stretch[0])
+    assert stretched > 1.5 * total
+    solution = solve(problem, initial=start)
+    assert solution.iterations > 5
+    assert solution.total_time == pytest.approx(total, rel=1e-9, abs=0)
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_stretched_agrees_with_the_closed_form_with_jerk_limits(seed: int) -> None:
     problem, _ = posed("stretched", seed + 20, count=5)

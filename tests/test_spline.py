@@ -71,6 +71,30 @@ def test_clamped_cubic_is_scipys() -> None:
     same_curve(mine, reference, range(4), inside(BREAKS))
 
 
+@pytest.mark.parametrize("seed", range(20))
+def test_random_durations_give_scipys_splines(seed: int) -> None:
+    """Value and every continuous derivative, relative to its largest; durations within 1 : 30."""
+    rng = np.random.default_rng([20260304, seed])
+    n = int(rng.integers(3, 12))
+    h = 10.0 ** rng.uniform(-0.9, 0.5, n)
+    t = np.concatenate([[0.0], np.cumsum(h)])
+    q = waypoints(n + 1, seed)
+    rest = [(1, np.zeros(3)), (2, np.zeros(3))]
+    times = np.sort(np.concatenate([t, rng.uniform(0.0, t[-1], 200)]))
+    same_curve(
+        fit(quintic_spline(n), q, h),
+        make_interp_spline(t, q, k=5, bc_type=(rest, rest)),
+        range(5),
+        times,
+    )
+    same_curve(
+        fit(cubic_spline(n), q, h),
+        make_interp_spline(t, q, k=3, bc_type="clamped"),
+        range(3),
+        times,
+    )
+
+
 def test_cubic_with_given_end_slopes_is_scipys() -> None:
     q = waypoints(5)
     start, end = np.array([0.3, -0.2, 0.7]), np.array([-0.4, 0.1, 0.9])
