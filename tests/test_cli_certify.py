@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import io
 import json
+import re
 import signal
 import subprocess
 import sys
@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from trajgap.compare import cli_certify, cli_output
+from trajgap.compare import cli_certify
 from trajgap.compare.proof_documents import NOT_COVERED, Worth
 from trajgap.nlp import Outcome, Subject, shipped
 from trajgap.nlp.state_file import read_state
@@ -20,7 +20,7 @@ from trajgap.nlp.verify import seal, verify
 from trajgap.problem import TrajgapError
 
 from .test_certify import POSED
-from .test_cli import CASE, Run, folder, run, strict
+from .test_cli import CASE, Run, folder, on_terminal, run, strict
 from .test_documents import SCHEMA, assert_valid
 
 __all__ = ["folder", "run"]
@@ -163,19 +163,13 @@ def test_ctrl_c_leaves_the_interval_and_a_state(run: Run) -> None:
     assert code == 0
 
 
-def test_the_live_line_on_a_terminal(monkeypatch: pytest.MonkeyPatch, run: Run) -> None:
-    class Terminal(io.StringIO):
-        def isatty(self) -> bool:
-            return True
-
-    terminal = Terminal()
-    monkeypatch.setenv("TERM", "xterm")
-    monkeypatch.setattr(sys, "stderr", terminal)
-    with cli_output.progress("certify", 1) as step:
-        step("case.problem.reading")
-        step.tell("case.problem.reading: 1.5 to 2.5 s, gap 4e-1, 17 open, 300 nodes/s")
-    text = terminal.getvalue()
-    assert "17 open, 300 nodes/s" in text
+def test_the_live_line_on_a_terminal() -> None:
+    code, seen = on_terminal(["solve", *ONE, "--certify"], COLUMNS="160")
+    assert code == 0
+    shown = re.search(
+        r"waypoints-rad: [\d.]+ to [\d.]+ s, gap [\de.-]+, \d+ open, \d+ nodes/s", seen
+    )
+    assert shown, seen
 
 
 def test_verify_says_what_each_file_is_worth(run: Run, tmp_path: Path) -> None:
