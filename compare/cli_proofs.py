@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from decimal import Decimal
+from fractions import Fraction
 from typing import Any
 
 from rich.console import RenderableType
@@ -16,7 +19,7 @@ _COLUMNS = (">lower s", ">upper s", ">gap", ">nodes", ">open", ">seconds", "outc
 
 def certified(document: Document) -> list[RenderableType]:
     """Summary of the `solve --certify` document."""
-    results = document["certified"]
+    results = document["intervals"]
     if not results:
         return [_line("nothing was begun", "dim")]
     joint = any(r["joint"] is not None for r in results)
@@ -26,7 +29,8 @@ def certified(document: Document) -> list[RenderableType]:
             r["problem"],
             r["reading"],
             *((r["joint"] or "all",) if joint else ()),
-            *(_bound(r[key]) for key in ("lower", "upper")),
+            _bound(r["lower_exact"], -1),
+            _bound(r["upper_exact"], 1),
             "" if r["gap"] is None else f"{r['gap']:.1e}",
             *("" if r[key] is None else r[key] for key in ("nodes", "open_nodes")),
             "" if r["seconds"] is None else f"{r['seconds']:.1f}",
@@ -35,17 +39,17 @@ def certified(document: Document) -> list[RenderableType]:
         for r in results
     ]
     parts: list[RenderableType] = [_line(results[0]["case"], "bold"), _Columns(head, rows)]
-    reasons = dict.fromkeys(
-        f"{r['outcome']}: {r['outcome_why']} ({r['problem']}, {r['reading']})"
-        for r in results
-        if r["outcome_why"]
-    )
+    reasons = dict.fromkeys(r["outcome_why"] for r in results if r["outcome_why"])
     parts += [_line(reason, "dim") for reason in reasons]
     return parts + [_line(f"go on with --resume {r['state']}") for r in results if r["state"]]
 
 
-def _bound(value: float | None) -> str:
-    return "none" if value is None else f"{value:.9f}"
+def _bound(exact: str | None, side: int) -> str:
+    """Nine decimals, rounded outwards."""
+    if exact is None:
+        return "none"
+    steps = Fraction(exact) * 10**9
+    return f"{Decimal(math.floor(steps) if side < 0 else math.ceil(steps)).scaleb(-9):.9f}"
 
 
 def verified(document: Document) -> str:

@@ -19,6 +19,7 @@ from .incumbent import float_problem, keeps_limits, prove_feasible
 from .solve import solve
 from .three_piece import STRICT
 from .tree import State, tree_document, tree_state
+from .verify_problem import number
 
 _BATCH = 256
 _LOOKS = 3
@@ -264,12 +265,13 @@ def _resumed(exact: ExactProblem, document: dict[str, Any]) -> Stopped:
         state = None if proved is None else tree_state(exact, proved, proof=True)
         pending = tree_state(exact, document["open"], proof=False)
         answer = document["durations"]
-        durations = None if answer is None else tuple(Fraction(h) for h in answer)
+        durations = None if answer is None else tuple(number(h) for h in answer)
+        kept = durations is None or keeps_limits(exact, durations)
     except TrajgapError:
         raise
     except (KeyError, IndexError, TypeError, ValueError, AttributeError, ArithmeticError) as error:
         raise TrajgapError(f"resume: malformed state ({type(error).__name__}: {error})") from None
-    if durations is not None and not keeps_limits(exact, durations):
+    if not kept:
         raise TrajgapError("resume: the durations of the state do not keep the limits")
     return Stopped(state, pending, durations)
 
