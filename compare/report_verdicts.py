@@ -21,6 +21,7 @@ from ..problem.claim import (
 from .audit import CaseAudit
 from .finding import RULES, ClaimVerdict, Finding, Judgement, Scope, Severity, judge
 from .report_blocks import Block, Cell, Folded, Grid, Prose, Section, Terms, text, word
+from .rules.family import placed
 from .study import Study
 from .waterfall import Waterfall
 from .waterfall_picture import seconds as interval
@@ -58,6 +59,7 @@ def summary(one: CaseAudit) -> str:
             f"{_count(one.errors, 'finding')} of severity error: a proof speaks against something "
             "printed."
         )
+    sentences += [placed(one.study.family(block)) for block in one.study.families]
     for fall in one.waterfalls:
         if fall.reading == one.study.main_reading:
             sentences += _down(one, fall)
