@@ -64,7 +64,7 @@ def _design(study: Study, result: FamilyResult) -> tuple[tuple[str, str], ...]:
         ("compared", f"{fast.algorithm} on {fast.problem} against {slow.algorithm} on "
          f"{slow.problem}, both with the settings and the choices of the case file"),
         ("printed", "no reduction" if result.printed is None else
-         f"{percent_range(*result.printed)} less, from the printed totals"),
+         f"{percent_range(*result.printed)} less"),
         ("instances", f"{block.instances} for each step of {steps} {block.unit} ({kind}), "
          f"{len(points)} way-points each, from {block.samples} positions of the workspace of "
          f"{study.case.robot.name}, seed {block.seed}"),

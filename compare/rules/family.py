@@ -74,8 +74,8 @@ def placed(result: FamilyResult) -> str:
     out = f"; not reproduced in {len(missed)} ({aside})" if missed else ""
     return (
         f"On {drawn} the printed reduction of {percent_range(*result.printed)} lies within the "
-        f"middle {100 * MIDDLE:g} % of one run against one run in {many - len(missed)} of "
-        f"{many} readings{out}."
+        f"middle {100 * MIDDLE:g} % of those of one run against one run in "
+        f"{many - len(missed)} of {many} readings{out}."
     )
 
 
@@ -100,7 +100,7 @@ def _aside(result: FamilyResult, reading: str) -> str:
     found = distribution(result.reductions(reading, Effect.BOTH))
     if found.missing == found.pairs or result.printed is None:
         return "no pair of answers"
-    return "more" if found.median > result.printed[1] else "less"
+    return "larger there" if found.median > result.printed[1] else "smaller there"
 
 
 def medians(result: FamilyResult, effect: Effect, at: int = 0) -> tuple[float, float] | None:
