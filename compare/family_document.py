@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from .family_study import Effect, FamilyResult, Optimum, Sample, distribution
+from .family_result import Effect, FamilyResult, Optimum, Sample, distribution
 from .undefined import number_or_why
 
 _NONE = "no pair of runs has two answers"

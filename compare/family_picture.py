@@ -8,7 +8,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from .drawing import INK, PAPER, RED, SERIES, Picture, drawing, light_grid, shown
-from .family_study import Effect, FamilyResult, distribution, percent_range
+from .family_result import Effect, FamilyResult, distribution, percent_range
 
 _MARKERS = ("o", "s", "^", "D")
 _OFFSET = 0.2

@@ -7,9 +7,10 @@ import numpy as np
 from .audit import CaseAudit
 from .drawing import svg
 from .family_picture import family_picture
-from .family_study import STARTS, Effect, FamilyResult, distribution, percent_range
+from .family_result import Effect, FamilyResult, distribution, percent_range
+from .family_study import STARTS
 from .report_blocks import Block, Cell, Drawn, Folded, Grid, Prose, Section, Terms, number, text
-from .rules.family import HANDLED, verdict_of
+from .rules.family import HANDLED, attributed, placed
 from .study import Study
 
 
@@ -32,9 +33,12 @@ def _family(study: Study, result: FamilyResult) -> list[Block]:
         "are drawn from the robot's workspace and are not the paper's."
     )
     return [
+        *(Prose(said) for said in (placed(result), attributed(result)) if said),
         Prose(
-            f"{verdict_of(result)} A distribution on other instances can say that something is "
-            "not reproduced, never more."
+            "The instances are not the paper's: what they show can be called not reproduced, never "
+            "more, and the absolute times stay not checkable. Way-points written into the case "
+            "file in place of not_printed and count bring the whole audit.",
+            "note",
         ),
         Terms(_design(study, result)),
         Drawn(f"family-{block.id}", svg(picture), title, caption),
@@ -58,9 +62,9 @@ def _design(study: Study, result: FamilyResult) -> tuple[tuple[str, str], ...]:
     objectives = "; ".join(f"{name}: {HANDLED[name]}" for name in block.objectives)
     pairs = [
         ("compared", f"{fast.algorithm} on {fast.problem} against {slow.algorithm} on "
-         f"{slow.problem}, both with the settings listed below"),
+         f"{slow.problem}, both with the settings and the choices of the case file"),
         ("printed", "no reduction" if result.printed is None else
-         f"{percent_range(*result.printed)} less, from the printed totals"),
+         f"{percent_range(*result.printed)} less"),
         ("instances", f"{block.instances} for each step of {steps} {block.unit} ({kind}), "
          f"{len(points)} way-points each, from {block.samples} positions of the workspace of "
          f"{study.case.robot.name}, seed {block.seed}"),

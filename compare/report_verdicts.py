@@ -22,6 +22,7 @@ from .audit import CaseAudit
 from .finding import RULES, ClaimVerdict, Finding, Judgement, Scope, Severity, gist
 from .readings import named
 from .report_blocks import Block, Cell, Folded, Grid, Prose, Section, Terms, text, word
+from .rules.family import placed
 from .study import Study
 from .waterfall import Waterfall
 from .waterfall_picture import seconds as interval
@@ -59,6 +60,7 @@ def summary(one: CaseAudit) -> str:
     sentences = [f"{_count(len(one.judgements), 'claim')}: {said or 'none to judge'}."]
     sentences += _against(one)
     sentences += _errors(one)
+    sentences += [placed(one.study.family(block)) for block in one.study.families]
     for fall in one.waterfalls:
         if fall.reading == one.study.main_reading:
             sentences += _down(one, fall)

@@ -7,6 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+SETTLED = 1e-3
+"""A run counts as converged when its best-so-far is within this share of its final total."""
+
 
 @dataclass(frozen=True)
 class Spread:

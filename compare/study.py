@@ -35,12 +35,12 @@ from ..problem import (
 from ..problem.claim import (
     Claim,
     DurationsClaim,
-    ImprovementClaim,
     MaximumClaim,
     TotalTimeClaim,
 )
-from ..problem.family import FamilyBlock, family_waypoints
-from .family_study import FamilyResult, Procedure, Task, examine
+from ..problem.family import FamilyBlock
+from .family_pose import examined, readings_of
+from .family_result import FamilyResult
 from .rounding import Box, RoundingVerdict, judge_rounding
 
 T = TypeVar("T")
@@ -321,74 +321,17 @@ class Study:
     @property
     def families(self) -> tuple[FamilyBlock, ...]:
         """Families of which both problems and some reading are selected, all of it implemented."""
-        return tuple(block for block in self.case.families if self._family_readings(block))
-
-    def _family_sides(self, block: FamilyBlock) -> tuple[Claim, Claim]:
-        claim = cast(ImprovementClaim, self.case.claim(block.claim))
-        return self.case.claim(claim.slower), self.case.claim(claim.faster)
-
-    def _family_readings(self, block: FamilyBlock) -> tuple[str, ...]:
-        sides = self._family_sides(block)
-        if any(self.algorithm(cast(str, side.algorithm)) is None for side in sides):
-            return ()
-        wanted = block.readings or tuple(reading.id for reading in self.case.readings)
-        pids = [side.problem or self.case.problems[0].id for side in sides]
-        return tuple(r for r in wanted if all((pid, r) in self.selected for pid in pids))
+        return tuple(block for block in self.case.families if readings_of(self, block))
 
     def family(self, block: FamilyBlock) -> FamilyResult:
         """What the two procedures of an improvement do on the instances of a family."""
-        return self._once(("family", block.id), lambda: self._examined(block))
 
-    def _examined(self, block: FamilyBlock) -> FamilyResult:
-        case, sides = self.case, self._family_sides(block)
-        slower, faster = (
-            Procedure(side.problem or case.problems[0].id, cast(str, side.algorithm))
-            for side in sides
-        )
-        first, last = (
-            cast(Algorithm[Any], self.algorithm(side.algorithm)) for side in (slower, faster)
-        )
-        readings = self._family_readings(block)
-        chain = case.chain()
-        assert chain is not None
-        count = case.posing(faster.problem, readings[0]).waypoints.number
-        drawn = family_waypoints(block, chain, case.robot.joints, count)
-        tasks = [
-            Task(
-                step=step,
-                index=index,
-                waypoints=points,
-                readings=readings,
-                slower=tuple(case.posing(slower.problem, r).problem_at(points) for r in readings),
-                faster=tuple(case.posing(faster.problem, r).problem_at(points) for r in readings),
-                algorithms=(first, last),
-                runs=block.runs,
-                objectives=block.objectives,
-            )
-            for step, instances in zip(block.lengths, drawn, strict=True)
-            for index, points in enumerate(instances)
-        ]
-        return FamilyResult(
-            block=block,
-            slower=slower,
-            faster=faster,
-            printed=self._printed_reduction(block, readings[0]),
-            readings=readings,
-            iterations=last.iterations,
-            samples=examine(
-                tasks, self.workers, lambda at: self._progress(f"{case.id}: {block.id}, {at}")
-            ),
-        )
+        def compute() -> FamilyResult:
+            what = f"{self.case.id}: family {block.id}"
+            self._progress(what)
+            return examined(self, block, lambda done: self._progress(f"{what}, {done}"))
 
-    def _printed_reduction(self, block: FamilyBlock, rid: str) -> tuple[float, float] | None:
-        claim = cast(ImprovementClaim, self.case.claim(block.claim))
-        if claim.percent is not None:
-            return float(claim.percent.lower) / 100, float(claim.percent.upper) / 100
-        totals = [self.claim_total(side, rid) for side in self._family_sides(block)]
-        if totals[0] is None or totals[1] is None:
-            return None
-        (slow_low, slow_high), (fast_low, fast_high) = totals[0][1], totals[1][1]
-        return 1 - fast_high / slow_low, 1 - fast_low / slow_high
+        return self._once(("family", block.id), compute)
 
 
 def _or_cut_off(box: Box) -> Box:

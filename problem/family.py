@@ -7,7 +7,6 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, StrictInt, field_validator
 
-from .errors import TrajgapError
 from .fields import Id, Length, Strict, Text, fault
 from .printed import Printed
 from .robot import Array, Chain
@@ -98,17 +97,14 @@ def family_waypoints(
         # Named by the step itself, so that adding a step leaves the others as they were.
         named = int(np.float64(step).view(np.uint64))
         stream = np.random.SeedSequence([block.seed, named])
-        try:
-            drawn.append(
-                waypoint_family(
-                    workspace,
-                    step=step,
-                    count=block.instances,
-                    seed=int(stream.generate_state(1, np.uint64)[0]),
-                    waypoints=waypoints,
-                    kind=StepKind(block.kind),
-                )
+        drawn.append(
+            waypoint_family(
+                workspace,
+                step=step,
+                count=block.instances,
+                seed=int(stream.generate_state(1, np.uint64)[0]),
+                waypoints=waypoints,
+                kind=StepKind(block.kind),
             )
-        except TrajgapError as error:
-            raise TrajgapError(f"families.{block.id}: {error}") from None
+        )
     return np.array(drawn)[..., columns]

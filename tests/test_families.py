@@ -15,7 +15,18 @@ from trajgap.compare.audit import audit_case
 from trajgap.compare.documents import audit_document
 from trajgap.compare.drawing import svg
 from trajgap.compare.family_picture import family_picture
-from trajgap.compare.family_study import Effect, FamilyResult, Optimum, Sample, distribution
+from trajgap.compare.family_pose import printed_reduction
+from trajgap.compare.family_result import (
+    MIDDLE,
+    Effect,
+    FamilyResult,
+    Optimum,
+    Procedure,
+    Sample,
+    distribution,
+    percent_range,
+    reproduced,
+)
 from trajgap.compare.report import case_page
 from trajgap.compare.report_markdown import markdown
 from trajgap.compare.rules.family import family
@@ -187,7 +198,7 @@ def test_steps_of_the_end_are_measured_at_the_end() -> None:
 def test_a_step_that_nothing_reaches_is_named() -> None:
     case = small(('kind = "joint"', 'kind = "end"'), ("[0.3, 0.9]", "[5]"))
     study = Study(case, seeds=2)
-    with pytest.raises(TrajgapError, match=r"families\.drawn: step: none of the 50 sampled"):
+    with pytest.raises(TrajgapError, match=r"^small\.toml: families\.drawn: step: none of the 50"):
         study.family(study.families[0])
 
 
@@ -318,7 +329,7 @@ def made(before: list[float], after: list[float], printed: tuple[float, float]) 
     sample = Sample(
         "as-printed", 0.3, 0, np.zeros((3, 2)), *known, totals, np.zeros(totals.shape, np.intp)
     )  # fmt: skip
-    sides = [family_study.Procedure("stops", "plain"), family_study.Procedure("spline", "new")]
+    sides = [Procedure("stops", "plain"), Procedure("spline", "new")]
     return FamilyResult(block, *sides, printed, ("as-printed",), 12, (sample,))
 
 
@@ -342,13 +353,13 @@ def test_quantiles_of_every_pair_of_runs() -> None:
 )
 def test_reproduced_means_within_the_middle(printed: tuple[float, float], expected: bool) -> None:
     runs = made([2.0], [1.0], printed)
-    assert family_study.reproduced(runs, "as-printed") is expected
-    assert not family_study.reproduced(replace(runs, printed=None), "as-printed")
+    assert reproduced(runs, "as-printed") is expected
+    assert not reproduced(replace(runs, printed=None), "as-printed")
 
 
 def test_the_printed_reduction_is_an_interval_of_the_digits() -> None:
     study = Study(load_case(WHALE), seeds=2)
-    low, high = study._printed_reduction(study.families[0], "v-deg-a-deg") or (0, 0)
+    low, high = printed_reduction(study, study.families[0]) or (0, 0)
     assert low == pytest.approx(1 - 11.715 / 13.075, rel=1e-12)
     assert high == pytest.approx(1 - 11.705 / 13.085, rel=1e-12)
     printed = small(('slower = "old-total"', 'slower = "old-total"\npercent = "24.9"'))
@@ -495,6 +506,19 @@ def test_way_points_dropped_into_the_file_get_the_full_audit() -> None:
 # --- the page of the documentation ----------------------------------------------------------------
 
 
+def test_the_documented_digits_are_those_of_the_case_and_the_rule() -> None:
+    page = (ROOT / "docs" / "families.md").read_text(encoding="utf-8")
+    study = Study(load_case(WHALE), seeds=2)
+    (block,) = study.families
+    claim = study.case.claim(block.claim)
+    for side, name in ((claim.slower, "quintic"), (claim.faster, "b-spline")):
+        total = study.case.claim(side)
+        assert (total.problem, f"{total.value} s" in page) == (name, True)
+    assert percent_range(*printed_reduction(study, block) or (0, 0)) in page
+    assert f"{100 * MIDDLE:g} %" in page
+    assert [f"`{reading}` |" in page for reading in block.readings] == [True] * 5
+
+
 @pytest.mark.slow
 def test_the_documented_medians_are_those_of_the_shipped_family() -> None:
     study = Study(load_case(WHALE), seeds=2)
@@ -509,11 +533,9 @@ def test_the_documented_medians_are_those_of_the_shipped_family() -> None:
         computed = [100 * distribution(found.reductions(reading, *c)).median for c in columns]
         assert printed == pytest.approx(computed, abs=0.0501)
         assert abs(computed[3]) < 3
-    missed = [r for r in found.readings if not family_study.reproduced(found, r)]
+    missed = [r for r in found.readings if not reproduced(found, r)]
     assert missed == ["v-deg-a-deg", "v-rad-a-deg"]
     assert all(f"`{reading}`" in page.split("\n\n")[-1] for reading in missed)
-    assert family_study.percent_range(*found.printed or (0, 0)) in page
-    assert f"{100 * family_study.MIDDLE:g} %" in page
 
 
 # --- what is refused ------------------------------------------------------------------------------

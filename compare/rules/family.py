@@ -8,9 +8,8 @@ import numpy as np
 
 from ...nlp import Evidence
 from ...problem.claim import ConvergenceClaim
-from ..family_study import (
+from ..family_result import (
     MIDDLE,
-    SETTLED,
     Effect,
     FamilyResult,
     Procedure,
@@ -19,6 +18,7 @@ from ..family_study import (
     reproduced,
 )
 from ..finding import Basis, ClaimVerdict, Finding, Scope, Severity
+from ..statistics import SETTLED
 from ..study import Study
 
 HANDLED = {
@@ -63,36 +63,36 @@ def _finding(
     )
 
 
-def verdict_of(result: FamilyResult) -> str:
-    """Where the printed reduction lies over all readings, and what it is due to."""
+def placed(result: FamilyResult) -> str:
+    """Where the printed reduction lies among those of the runs, over all readings."""
     many = len(result.readings)
     drawn = f"{result.instances} instances drawn from the robot's workspace"
-    parts = [f"No reduction is printed to set beside {drawn}."]
-    if result.printed is not None:
-        missed = [r for r in result.readings if not reproduced(result, r)]
-        where = (
-            f"On {drawn} the printed reduction of {percent_range(*result.printed)} lies within the "
-            f"middle {100 * MIDDLE:g} % of one run against one run in {many - len(missed)} of "
-            f"{many} readings"
-        )
-        aside = ", ".join(f"{r}: {_aside(result, r)}" for r in missed)
-        out = f"; not reproduced in {len(missed)} ({aside})" if missed else ""
-        parts = [f"{where}{out}."]
-    both = medians(result, Effect.BOTH)
-    curve = medians(result, Effect.CURVE)
+    if result.printed is None:
+        return f"No reduction is printed to set beside {drawn}."
+    missed = [r for r in result.readings if not reproduced(result, r)]
+    aside = ", ".join(f"{r}: {_aside(result, r)}" for r in missed)
+    out = f"; not reproduced in {len(missed)} ({aside})" if missed else ""
+    return (
+        f"On {drawn} the printed reduction of {percent_range(*result.printed)} lies within the "
+        f"middle {100 * MIDDLE:g} % of those of one run against one run in "
+        f"{many - len(missed)} of {many} readings{out}."
+    )
+
+
+def attributed(result: FamilyResult) -> str:
+    """What the reduction is due to: medians over the readings; empty if there are none."""
+    both, curve = medians(result, Effect.BOTH), medians(result, Effect.CURVE)
     if both is None or curve is None:
-        return parts[0]
-    penalised = ", ".join(
-        f"{percent_range(*span, digits=1)} under {objective}"
+        return ""
+    alone = ", ".join(
+        f"{percent_range(*span, digits=1)} with {objective}"
         for at, objective in enumerate(result.block.objectives)
         if (span := medians(result, Effect.ALGORITHM, at)) is not None
     )
-    parts.append(
+    return (
         f"Medians by reading: both together {percent_range(*both, digits=1)}; the curve alone, at "
-        f"the best known optima, {percent_range(*curve, digits=1)}; the algorithm alone "
-        f"{penalised}."
+        f"the best known optima, {percent_range(*curve, digits=1)}; the algorithm alone {alone}."
     )
-    return " ".join(parts)
 
 
 def _aside(result: FamilyResult, reading: str) -> str:
@@ -100,7 +100,7 @@ def _aside(result: FamilyResult, reading: str) -> str:
     found = distribution(result.reductions(reading, Effect.BOTH))
     if found.missing == found.pairs or result.printed is None:
         return "no pair of answers"
-    return "more" if found.median > result.printed[1] else "less"
+    return "larger there" if found.median > result.printed[1] else "smaller there"
 
 
 def medians(result: FamilyResult, effect: Effect, at: int = 0) -> tuple[float, float] | None:
@@ -114,9 +114,9 @@ def _summary(result: FamilyResult) -> Finding:
     block = result.block
     span = medians(result, Effect.BOTH)
     message = (
-        f"{verdict_of(result)} {block.why} They are not the paper's instances and decide nothing "
-        "about its totals."
-    )
+        f"{placed(result)} {attributed(result)} {block.why} They are not the paper's instances and "
+        "decide nothing about its totals."
+    ).replace("  ", " ")
     printed = None if result.printed is None else percent_range(*result.printed)
     computed = f"medians {percent_range(*span, digits=1)}" if span else "no pair of answers"
     return _finding(block.claim, None, printed, computed, message)

@@ -18,11 +18,8 @@ from ...problem.claim import (
     TotalTimeClaim,
 )
 from ..finding import Basis, ClaimVerdict, Finding, Scope, Severity
-from ..statistics import settled_at, share_of_pairs, spread
+from ..statistics import SETTLED, settled_at, share_of_pairs, spread
 from ..study import Study
-
-SETTLED = 1e-3
-"""A run counts as converged when its best-so-far is within this share of its final total."""
 
 
 def replay(study: Study) -> Iterator[Finding]:
