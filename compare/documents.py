@@ -15,6 +15,7 @@ from ..nlp.retime import Retiming
 from ..problem import Case, Check, Coupling, Peak
 from .finding import Finding, Judgement
 from .gap import Gap
+from .reading_words import answers, holding
 from .rounding import Point, RoundingVerdict
 from .waterfall import Waterfall
 
@@ -438,8 +439,8 @@ def _readings(summary: ReadingsSummary | None) -> Document:
     return {
         "readings": {
             "admissible": list(summary.admissible),
-            "answers": list(summary.answers),
-            "holding": list(summary.holding),
+            "answers": list(answers(summary)),
+            "holding": list(holding(summary)),
             "nearest": list(summary.nearest),
             "fits": [{"reading": r, **_number("factor", f, None)} for r, f in summary.fits],
             "outcomes": [_outcome(o) for o in summary.outcomes],

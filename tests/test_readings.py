@@ -9,11 +9,11 @@ from math import exp, log, pi
 
 import numpy as np
 import pytest
-from trajgap.compare import readings
 from trajgap.compare.audit import AuditReport, CaseAudit
 from trajgap.compare.documents import audit_document
 from trajgap.compare.finding import ClaimVerdict, Judgement, Scope
 from trajgap.compare.gap import GapKind
+from trajgap.compare.reading_words import answers, holding, segments
 from trajgap.compare.readings import Excess, Keeping, ReadingsSummary, readings_summary
 from trajgap.compare.report_blocks import Page
 from trajgap.compare.report_markdown import markdown
@@ -22,7 +22,7 @@ from trajgap.compare.rules.continuous import continuous
 from trajgap.compare.study import Study
 from trajgap.compare.waterfall import Waterfall
 from trajgap.nlp import Evidence
-from trajgap.problem import Case, evaluate, load_case, parse_case
+from trajgap.problem import Case, evaluate, fit, load_case, parse_case
 
 from .test_curve_rules import polish as changed
 from .test_curve_rules import shipped
@@ -94,7 +94,7 @@ def test_segments_over_a_limit_are_those_of_a_dense_sample() -> None:
             continue
         problem = one.case.problem(reading_id=outcome.reading)
         durations = one.case.claim_durations(one.case.claim("after"), outcome.reading).value
-        trajectory = readings.fit(problem.interpolant, problem.waypoints, durations)
+        trajectory = fit(problem.interpolant, problem.waypoints, durations)
         over = set()
         for k, (low, high) in enumerate(pairwise([0.0, *np.cumsum(durations)])):
             ends = np.array([low, high]) + np.array([1e-9, -1e-9])
@@ -129,7 +129,7 @@ def test_the_fit_is_the_factor_that_makes_the_printed_durations_tight() -> None:
 
 
 def test_the_words_say_how_it_is_measured_and_call_no_reading_the_right_one() -> None:
-    limits, fit = summary_of(polish()).answers
+    limits, fit = answers(summary_of(polish()))
     assert limits.startswith("Limits of after (nine-segments), 16 readings: keeps under 2 (")
     assert "breaks under 12 (angles-rad-v-rad-a-rad-stretched and 11 more)" in limits
     assert "where they are kept 11.6 to 12.8 times, else" in limits
@@ -137,7 +137,7 @@ def test_the_words_say_how_it_is_measured_and_call_no_reading_the_right_one() ->
         "would just reach the limits, as a shortest time does; the limits are broken there" in fit
     )
     assert fit.endswith("This measures fit; it does not say which reading was meant.")
-    assert summary_of(polish()).holding == (
+    assert holding(summary_of(polish())) == (
         "Under every reading: supported x.",
         "Under some: y (supported 1, refuted 15).",
         "Decided under none: z.",
@@ -165,7 +165,7 @@ def test_without_waypoints_the_reason_stands_in_place_of_numbers() -> None:
     one = summed(load_case(WHALE), {})
     found = summary_of(one)
     assert found.outcomes == found.fits == found.nearest == ()
-    (sentence,) = found.answers
+    (sentence,) = answers(found)
     assert sentence.startswith("Under none of 13 readings can limits, optimum or gap be computed:")
     assert "no way-points are printed" in sentence
     section = side_by_side(one)
@@ -208,7 +208,7 @@ def test_a_problem_without_printed_durations_has_an_optimum_and_no_verdict() -> 
     found = summary_of(one)
     assert {o.keeping for o in found.outcomes} == {None}
     assert all(o.optimum is not None and o.gap is None for o in found.outcomes)
-    assert found.answers == ()
+    assert answers(found) == ()
     document = audit_document(AuditReport((one,)))
     assert_valid(document, "audit")
     assert_reasons(document)
@@ -217,8 +217,8 @@ def test_a_problem_without_printed_durations_has_an_optimum_and_no_verdict() -> 
 def test_a_selected_reading_counts_as_one_of_all() -> None:
     claims = {"limit-80": "durations-80", "limit-110": "durations-110"}
     found = summary_of(summed(load_case(PALLET), claims, reading="waypoints-rad"))
-    assert "Limits of durations-80 (limit-80), 1 of 2 readings: keeps under 1" in found.answers[0]
-    assert all(answer.startswith("Limits of durations-") for answer in found.answers)
+    assert "Limits of durations-80 (limit-80), 1 of 2 readings: keeps under 1" in answers(found)[0]
+    assert all(answer.startswith("Limits of durations-") for answer in answers(found))
 
 
 def test_durations_that_define_no_curve_are_not_decided() -> None:
@@ -245,8 +245,8 @@ def test_the_document_carries_every_number() -> None:
     shown = document["cases"][0]["readings"]
     assert json.loads(json.dumps(shown, allow_nan=False)) == shown
     found = summary_of(one)
-    assert shown["answers"] == list(found.answers)
-    assert shown["holding"] == list(found.holding)
+    assert shown["answers"] == list(answers(found))
+    assert shown["holding"] == list(holding(found))
     assert [(f["reading"], f["factor"]) for f in shown["fits"]] == list(found.fits)
     for own, outcome in zip(shown["outcomes"], found.outcomes, strict=True):
         assert own["keeping"] == outcome.keeping
@@ -275,4 +275,4 @@ def test_the_page_has_a_row_for_each_reading() -> None:
     [((0,), "1"), ((0, 1), "1, 2"), ((0, 1, 2, 4, 6, 7, 8, 9), "1–3, 5, 7–10"), ((), "")],
 )
 def test_runs_of_segments_are_drawn_together(numbers: tuple[int, ...], words: str) -> None:
-    assert readings.segments([Excess(n, "1", "velocity", 2.0) for n in numbers]) == words
+    assert segments([Excess(n, "1", "velocity", 2.0) for n in numbers]) == words
