@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import io
 import json
 from functools import cache
 from itertools import pairwise
 from math import exp, log, pi
+from typing import Any
 
 import numpy as np
 import pytest
+from rich.console import Console
 from trajgap.compare.audit import AuditReport, CaseAudit
+from trajgap.compare.cli_summary import audited
 from trajgap.compare.documents import audit_document
 from trajgap.compare.finding import ClaimVerdict, Judgement, Scope
 from trajgap.compare.gap import GapKind
@@ -268,6 +272,47 @@ def test_the_page_has_a_row_for_each_reading() -> None:
         assert f"{outcome.optimum:.6f} s" in line
         assert ("(default)" in line) == (outcome.reading == one.case.default_reading.id)
     assert "segments 1–4, 6–9<br>joint 6 velocity, ratio 15.25" in page
+
+
+def terminal(document: Any, width: int = 400) -> list[str]:
+    out = io.StringIO()
+    console = Console(file=out, width=width)
+    for part in audited(document):
+        console.print(part)
+    return [line.rstrip() for line in out.getvalue().splitlines()]
+
+
+def test_the_terminal_says_once_what_many_readings_say() -> None:
+    document = audit_document(AuditReport((polish(),)))
+    (case,) = document["cases"]
+    readings = case["readings"]["admissible"]
+    case["findings"] = [
+        {"rule": "TG302", "severity": "error", "claim": "optimal", "reading": reading,
+         "message": f"Not shortest: {k}.5 s"}
+        for k, reading in enumerate(readings[:3])
+    ] + [
+        {"rule": "TG302", "severity": "error", "claim": "optimal", "reading": readings[3],
+         "message": "Not within the limits: a ratio of 3"},
+        {"rule": "TG104", "severity": "error", "claim": None, "reading": None, "message": "Alike."},
+        *({"rule": "TG201", "severity": "warning", "claim": "kept", "reading": reading,
+           "message": "Breaks."} for reading in readings[:2]),
+        {"rule": "TG106", "severity": "warning", "claim": None, "reading": None, "message": "m"},
+        {"rule": "TG101", "severity": "info", "claim": "kept", "reading": None, "message": "fits"},
+    ]  # fmt: skip
+    lines = terminal(document)
+    assert [line for line in lines if line.startswith(("error", "warning"))] == [
+        f"error TG302 optimal (3 readings; as follows under {readings[0]}): Not shortest: 0.5 s",
+        "error TG302 optimal: Not within the limits: a ratio of 3",
+        "error TG104: Alike.",
+        "warnings: TG201 kept (2 readings), TG106",
+    ]
+    found = answers(summary_of(polish()))
+    assert all(sentence in lines for sentence in found)
+    (row,) = [line for line in lines if line.startswith("y ")]
+    assert "1 of 16" in row
+    (row,) = [line for line in lines if line.startswith("x ")]
+    assert " all " in row
+    assert max(map(len, terminal(document, 80))) <= 100
 
 
 @pytest.mark.parametrize(

@@ -84,9 +84,7 @@ def _distance(
             )
     severity = Severity.INFO
     if distance.highest < 0 and broken(study, claim, pid, rid) is not None:
-        message += (
-            f" Below the {solution.evidence} total, which keeps the limits; these durations do not."
-        )
+        message += " Below the best known total, which keeps the limits; these durations do not."
     elif distance.highest < 0:
         severity = Severity.WARNING
         message += (
