@@ -170,7 +170,8 @@ def test_without_waypoints_the_reason_stands_in_place_of_numbers() -> None:
     found = summary_of(one)
     assert found.outcomes == found.fits == found.nearest == ()
     (sentence,) = answers(found)
-    assert sentence.startswith("Under none of 13 readings can limits, optimum or gap be computed:")
+    many = len(one.case.readings)
+    assert sentence.startswith(f"Under none of {many} readings can limits, optimum or gap be comp")
     assert "no way-points are printed" in sentence
     section = side_by_side(one)
     page = markdown(Page("z1", "t", (section,)))
