@@ -15,6 +15,7 @@ from ..problem import Case, Check, Coupling, Peak
 from .family_document import family_document
 from .finding import Finding, Judgement
 from .gap import Gap
+from .reading_words import answers, holding
 from .rounding import Point, RoundingVerdict
 from .undefined import number_or_why as _number
 from .waterfall import Waterfall
@@ -432,8 +433,8 @@ def _readings(summary: ReadingsSummary | None) -> Document:
     return {
         "readings": {
             "admissible": list(summary.admissible),
-            "answers": list(summary.answers),
-            "holding": list(summary.holding),
+            "answers": list(answers(summary)),
+            "holding": list(holding(summary)),
             "nearest": list(summary.nearest),
             "fits": [{"reading": r, **_number("factor", f, None)} for r, f in summary.fits],
             "outcomes": [_outcome(o) for o in summary.outcomes],

@@ -9,7 +9,8 @@ from ..problem import Case
 from ..problem.clamped import ClampedBSpline, Parameters
 from ..problem.clamped_readings import clamped_readings
 from .audit import CaseAudit
-from .readings import Outcome, ReadingsSummary, segments
+from .reading_words import answers, holding, segments
+from .readings import Outcome, ReadingsSummary
 from .report_blocks import Block, Cell, Folded, Grid, Prose, Section, number, text, word
 
 
@@ -20,7 +21,7 @@ def side_by_side(one: CaseAudit) -> Section:
     if summary is None:
         blocks.append(Prose("The case has one reading."))
     else:
-        blocks += [Prose(sentence) for sentence in (*summary.answers, *summary.holding)]
+        blocks += [Prose(sentence) for sentence in (*answers(summary), *holding(summary))]
         blocks += _outcomes(one, summary) if summary.outcomes else [_unposed(one)]
     blocks += _determined(one.case)
     return Section("side-by-side", "The readings side by side", tuple(blocks))
@@ -29,18 +30,18 @@ def side_by_side(one: CaseAudit) -> Section:
 def _outcomes(one: CaseAudit, summary: ReadingsSummary) -> list[Block]:
     """One table for each printed answer, or for each problem without one."""
     default = one.case.default_reading.id
-    answers: dict[tuple[str | None, str], list[Outcome]] = {}
+    printed: dict[tuple[str | None, str], list[Outcome]] = {}
     for outcome in summary.outcomes:
-        answers.setdefault((outcome.claim, outcome.problem), []).append(outcome)
+        printed.setdefault((outcome.claim, outcome.problem), []).append(outcome)
     names = ("reading", "limits", "over a limit", "× to limits", "optimum", "printed total")
     grids: list[Block] = []
-    for (claim, problem), own in answers.items():
+    for (claim, problem), own in printed.items():
         rows = tuple(_row(outcome, default) for outcome in own)
         grids.append(Grid(names, rows, f"{claim} ({problem})" if claim else problem).filled)
     note = (
         "Limits are judged over everything that prints alike, digits rounded or cut off; jumps and "
         "the segments over a limit are those of the printed point. × to limits: all durations "
-        "times this just reach the limits, jumps apart. The printed total stands beside the optimum."
+        "times this just reach the limits, jumps apart. The printed total is beside the optimum."
     )
     return [*grids, Prose(note, "note")]
 

@@ -20,7 +20,7 @@ from ..problem.claim import (
 )
 from .audit import CaseAudit
 from .finding import RULES, ClaimVerdict, Finding, Judgement, Scope, Severity, gist
-from .readings import named
+from .reading_words import named
 from .report_blocks import Block, Cell, Folded, Grid, Prose, Section, Terms, text, word
 from .rules.family import placed
 from .study import Study

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+import io
 import json
 from functools import cache
 from itertools import pairwise
 from math import exp, log, pi
+from typing import Any
 
 import numpy as np
 import pytest
-from trajgap.compare import readings
+from rich.console import Console
 from trajgap.compare.audit import AuditReport, CaseAudit
+from trajgap.compare.cli_summary import audited
 from trajgap.compare.documents import audit_document
 from trajgap.compare.finding import ClaimVerdict, Judgement, Scope
 from trajgap.compare.gap import GapKind
+from trajgap.compare.reading_words import answers, holding, segments
 from trajgap.compare.readings import Excess, Keeping, ReadingsSummary, readings_summary
 from trajgap.compare.report_blocks import Page
 from trajgap.compare.report_markdown import markdown
@@ -22,7 +26,7 @@ from trajgap.compare.rules.continuous import continuous
 from trajgap.compare.study import Study
 from trajgap.compare.waterfall import Waterfall
 from trajgap.nlp import Evidence
-from trajgap.problem import Case, evaluate, load_case, parse_case
+from trajgap.problem import Case, evaluate, fit, load_case, parse_case
 
 from .test_curve_rules import polish as changed
 from .test_curve_rules import shipped
@@ -94,7 +98,7 @@ def test_segments_over_a_limit_are_those_of_a_dense_sample() -> None:
             continue
         problem = one.case.problem(reading_id=outcome.reading)
         durations = one.case.claim_durations(one.case.claim("after"), outcome.reading).value
-        trajectory = readings.fit(problem.interpolant, problem.waypoints, durations)
+        trajectory = fit(problem.interpolant, problem.waypoints, durations)
         over = set()
         for k, (low, high) in enumerate(pairwise([0.0, *np.cumsum(durations)])):
             ends = np.array([low, high]) + np.array([1e-9, -1e-9])
@@ -129,7 +133,7 @@ def test_the_fit_is_the_factor_that_makes_the_printed_durations_tight() -> None:
 
 
 def test_the_words_say_how_it_is_measured_and_call_no_reading_the_right_one() -> None:
-    limits, fit = summary_of(polish()).answers
+    limits, fit = answers(summary_of(polish()))
     assert limits.startswith("Limits of after (nine-segments), 16 readings: keeps under 2 (")
     assert "breaks under 12 (angles-rad-v-rad-a-rad-stretched and 11 more)" in limits
     assert "where they are kept 11.6 to 12.8 times, else" in limits
@@ -137,7 +141,7 @@ def test_the_words_say_how_it_is_measured_and_call_no_reading_the_right_one() ->
         "would just reach the limits, as a shortest time does; the limits are broken there" in fit
     )
     assert fit.endswith("This measures fit; it does not say which reading was meant.")
-    assert summary_of(polish()).holding == (
+    assert holding(summary_of(polish())) == (
         "Under every reading: supported x.",
         "Under some: y (supported 1, refuted 15).",
         "Decided under none: z.",
@@ -165,8 +169,9 @@ def test_without_waypoints_the_reason_stands_in_place_of_numbers() -> None:
     one = summed(load_case(WHALE), {})
     found = summary_of(one)
     assert found.outcomes == found.fits == found.nearest == ()
-    (sentence,) = found.answers
-    assert sentence.startswith("Under none of 13 readings can limits, optimum or gap be computed:")
+    (sentence,) = answers(found)
+    many = len(one.case.readings)
+    assert sentence.startswith(f"Under none of {many} readings can limits, optimum or gap be comp")
     assert "no way-points are printed" in sentence
     section = side_by_side(one)
     page = markdown(Page("z1", "t", (section,)))
@@ -208,7 +213,7 @@ def test_a_problem_without_printed_durations_has_an_optimum_and_no_verdict() -> 
     found = summary_of(one)
     assert {o.keeping for o in found.outcomes} == {None}
     assert all(o.optimum is not None and o.gap is None for o in found.outcomes)
-    assert found.answers == ()
+    assert answers(found) == ()
     document = audit_document(AuditReport((one,)))
     assert_valid(document, "audit")
     assert_reasons(document)
@@ -217,8 +222,8 @@ def test_a_problem_without_printed_durations_has_an_optimum_and_no_verdict() -> 
 def test_a_selected_reading_counts_as_one_of_all() -> None:
     claims = {"limit-80": "durations-80", "limit-110": "durations-110"}
     found = summary_of(summed(load_case(PALLET), claims, reading="waypoints-rad"))
-    assert "Limits of durations-80 (limit-80), 1 of 2 readings: keeps under 1" in found.answers[0]
-    assert all(answer.startswith("Limits of durations-") for answer in found.answers)
+    assert "Limits of durations-80 (limit-80), 1 of 2 readings: keeps under 1" in answers(found)[0]
+    assert all(answer.startswith("Limits of durations-") for answer in answers(found))
 
 
 def test_durations_that_define_no_curve_are_not_decided() -> None:
@@ -245,8 +250,8 @@ def test_the_document_carries_every_number() -> None:
     shown = document["cases"][0]["readings"]
     assert json.loads(json.dumps(shown, allow_nan=False)) == shown
     found = summary_of(one)
-    assert shown["answers"] == list(found.answers)
-    assert shown["holding"] == list(found.holding)
+    assert shown["answers"] == list(answers(found))
+    assert shown["holding"] == list(holding(found))
     assert [(f["reading"], f["factor"]) for f in shown["fits"]] == list(found.fits)
     for own, outcome in zip(shown["outcomes"], found.outcomes, strict=True):
         assert own["keeping"] == outcome.keeping
@@ -270,9 +275,50 @@ def test_the_page_has_a_row_for_each_reading() -> None:
     assert "segments 1–4, 6–9<br>joint 6 velocity, ratio 15.25" in page
 
 
+def terminal(document: Any, width: int = 400) -> list[str]:
+    out = io.StringIO()
+    console = Console(file=out, width=width)
+    for part in audited(document):
+        console.print(part)
+    return [line.rstrip() for line in out.getvalue().splitlines()]
+
+
+def test_the_terminal_says_once_what_many_readings_say() -> None:
+    document = audit_document(AuditReport((polish(),)))
+    (case,) = document["cases"]
+    readings = case["readings"]["admissible"]
+    case["findings"] = [
+        {"rule": "TG302", "severity": "error", "claim": "optimal", "reading": reading,
+         "message": f"Not shortest: {k}.5 s"}
+        for k, reading in enumerate(readings[:3])
+    ] + [
+        {"rule": "TG302", "severity": "error", "claim": "optimal", "reading": readings[3],
+         "message": "Not within the limits: a ratio of 3"},
+        {"rule": "TG104", "severity": "error", "claim": None, "reading": None, "message": "Alike."},
+        *({"rule": "TG201", "severity": "warning", "claim": "kept", "reading": reading,
+           "message": "Breaks."} for reading in readings[:2]),
+        {"rule": "TG106", "severity": "warning", "claim": None, "reading": None, "message": "m"},
+        {"rule": "TG101", "severity": "info", "claim": "kept", "reading": None, "message": "fits"},
+    ]  # fmt: skip
+    lines = terminal(document)
+    assert [line for line in lines if line.startswith(("error", "warning"))] == [
+        f"error TG302 optimal (3 readings; as follows under {readings[0]}): Not shortest: 0.5 s",
+        "error TG302 optimal: Not within the limits: a ratio of 3",
+        "error TG104: Alike.",
+        "warnings: TG201 kept (2 readings), TG106",
+    ]
+    found = answers(summary_of(polish()))
+    assert all(sentence in lines for sentence in found)
+    (row,) = [line for line in lines if line.startswith("y ")]
+    assert "1 of 16" in row
+    (row,) = [line for line in lines if line.startswith("x ")]
+    assert " all " in row
+    assert max(map(len, terminal(document, 80))) <= 100
+
+
 @pytest.mark.parametrize(
     ("numbers", "words"),
     [((0,), "1"), ((0, 1), "1, 2"), ((0, 1, 2, 4, 6, 7, 8, 9), "1–3, 5, 7–10"), ((), "")],
 )
 def test_runs_of_segments_are_drawn_together(numbers: tuple[int, ...], words: str) -> None:
-    assert readings.segments([Excess(n, "1", "velocity", 2.0) for n in numbers]) == words
+    assert segments([Excess(n, "1", "velocity", 2.0) for n in numbers]) == words

@@ -14,6 +14,7 @@ from ...problem.printed import Interval
 from ...problem.uniform import vertex_matrix
 from ..finding import Basis, ClaimVerdict, Finding, Scope, Severity
 from ..study import Study
+from .digits import hull, meet
 
 
 @dataclass(frozen=True)
@@ -28,12 +29,15 @@ class Vertex:
     printed : Printed
     allowed : Interval
         Of V through the inverse of (2)(3), for every way-point that rounds to its digits.
+    allowed_cut : Interval
+        The same for way-points whose digits are rounded or cut off.
     """
 
     joint: str
     index: int
     printed: Printed
     allowed: Interval
+    allowed_cut: Interval
 
     @property
     def width(self) -> Fraction:
@@ -43,8 +47,12 @@ class Vertex:
     @property
     def inside(self) -> bool:
         """Whether some way-points that print alike give a vertex that prints as this one."""
-        own = self.printed.interval
-        return own.lower <= self.allowed.upper and self.allowed.lower <= own.upper
+        return meet(self.printed.interval, self.allowed)
+
+    @property
+    def inside_cut(self) -> bool:
+        """The same, wherever digits are rounded or cut off."""
+        return meet(hull(self.printed), self.allowed_cut)
 
 
 def control_vertices(study: Study) -> Iterator[Finding]:
@@ -66,8 +74,10 @@ def vertices(claim: ControlVerticesClaim, posing: Posing) -> tuple[Vertex, ...]:
     found = []
     for j, label in enumerate(posing.labels):
         intervals = [row[j].interval for row in points]
+        hulls = [hull(row[j]) for row in points]
         for index, (weights, printed) in enumerate(zip(matrix, claim.joint_rows[j], strict=True)):
-            found.append(Vertex(label, index, printed, _combined(weights, intervals)))
+            allowed, wide = _combined(weights, intervals), _combined(weights, hulls)
+            found.append(Vertex(label, index, printed, allowed, wide))
     return tuple(found)
 
 
@@ -79,17 +89,25 @@ def _combined(weights: Sequence[Fraction], intervals: Sequence[Interval]) -> Int
 
 def _judged(claim: ControlVerticesClaim, found: tuple[Vertex, ...]) -> Finding:
     outside = [v for v in found if not v.inside]
+    beyond = [v for v in outside if not v.inside_cut]
     widest = float(max(v.width for v in found))
-    if outside:
+    if beyond:
         verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
         shown = "; ".join(
             f"V{v.index} of joint {v.joint} printed {v.printed}, allowed "
-            f"{float(v.allowed.lower):.6f} to {float(v.allowed.upper):.6f}"
-            for v in outside[:5]
+            f"{float(v.allowed_cut.lower):.6f} to {float(v.allowed_cut.upper):.6f}"
+            for v in beyond[:5]
         )
         message = (
-            f"{len(outside)} of {len(found)} printed control vertices lie outside what the "
-            f"rounding of the printed way-points allows through (2) and (3): {shown}."
+            f"{len(beyond)} of {len(found)} printed control vertices lie outside what the printed "
+            f"way-points allow through (2) and (3), digits rounded or cut off: {shown}."
+        )
+    elif outside:
+        verdict, severity = ClaimVerdict.SUPPORTED, Severity.WARNING
+        names = ", ".join(f"V{v.index} of joint {v.joint}" for v in outside[:5])
+        message = (
+            f"{len(outside)} of {len(found)} printed control vertices ({names}) follow from the "
+            "printed way-points only if digits are cut off instead of rounded."
         )
     else:
         verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO

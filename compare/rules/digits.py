@@ -61,11 +61,12 @@ def _finding(
     )
 
 
-def _meet(a: Interval, b: Interval) -> bool:
+def meet(a: Interval, b: Interval) -> bool:
+    """Whether two intervals have a number in common."""
     return a.lower <= b.upper and b.lower <= a.upper
 
 
-def _hull(number: Printed) -> Interval:
+def hull(number: Printed) -> Interval:
     """Every value whose digits, rounded or cut off, are the printed ones."""
     a, b = number.interval, number.truncated
     return Interval(min(a.lower, b.lower), max(a.upper, b.upper))
@@ -95,12 +96,12 @@ def _compared(
 ) -> Finding:
     """A printed number against the interval that its printed ingredients allow."""
     shown, computed = f"{printed} {unit}", f"{_range(rounded)} {unit}"
-    if _meet(printed.interval, rounded):
+    if meet(printed.interval, rounded):
         message = f"{what} allows {computed}; printed is {shown}."
         return _finding(
             rule, ClaimVerdict.SUPPORTED, Severity.INFO, claim.id, message, shown, computed
         )
-    if _meet(printed.truncated, cut):
+    if meet(printed.truncated, cut):
         message = (
             f"{what} allows {computed} with rounded digits; printed is {shown}, which fits only "
             f"if digits are cut off instead of rounded ({_range(cut)} {unit})."
@@ -137,9 +138,9 @@ def _maxima(study: Study) -> Iterator[Finding]:
         rows = [study.case.printed_durations(study.case.claim(i)) for i in claim.of]
         wrong = []
         for k, printed in enumerate(claim.durations):
-            column = [_hull(row[k]) for row in rows if len(row) > k]
+            column = [hull(row[k]) for row in rows if len(row) > k]
             longest = Interval(max(c.lower for c in column), max(c.upper for c in column))
-            if not _meet(_hull(printed), longest):
+            if not meet(hull(printed), longest):
                 wrong.append(f"segment {k + 1}: printed {printed}, longest {_range(longest)}")
         shown = ", ".join(str(d) for d in claim.durations)
         if wrong:
@@ -230,7 +231,7 @@ def _unquantified(
     elif seconds.lower > 0:
         message = f"The printed totals are {between}."
         verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
-    elif _hull(slower).upper < _hull(faster).lower:
+    elif hull(slower).upper < hull(faster).lower:
         message = f"The printed totals are {between}: the one called better is the longer."
         verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
     else:
@@ -248,8 +249,8 @@ def _against_tables(
     slower, faster = totals
     assert slower is not None
     assert faster is not None
-    _, allowed = _reduction(_hull(slower), _hull(faster))
-    if _meet(_hull(percent), allowed):
+    _, allowed = _reduction(hull(slower), hull(faster))
+    if meet(hull(percent), allowed):
         return
     where = " and ".join(t.where for t in tables if t is not None)
     yield _finding(
@@ -306,7 +307,7 @@ def _same_total(study: Study) -> Iterator[Finding]:
         total = None if table is None else _total(table)
         if table is None or total is None:
             continue
-        agree = _meet(_hull(claim.value), _hull(total))
+        agree = meet(hull(claim.value), hull(total))
         unit = _unit(study)
         message = (
             f"{claim.where} prints {claim.value} {unit} and {table.where} prints {total} {unit} "
