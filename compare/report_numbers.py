@@ -35,7 +35,7 @@ from .waterfall import Step, Waterfall
 from .waterfall_picture import seconds as interval
 from .waterfall_picture import waterfall_picture
 
-_ON_A_LINE = 3
+_ON_A_LINE = 2
 _FEW = 3
 """Other readings of a problem that still get a picture each."""
 
