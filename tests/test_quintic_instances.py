@@ -54,10 +54,36 @@ def test_twenty_problems_of_seven_segments_and_six_joints() -> None:
         assert 0.9 * STEPS[k // 5] < steps.max() <= STEPS[k // 5]
 
 
+def page() -> dict[str, list[str]]:
+    """Rows of the page's table by the name of the problem."""
+    text = (ROOT / "docs" / "interpolants.md").read_text()
+    lines = [line.strip("|").split("|") for line in text.splitlines() if line.startswith("| step")]
+    return {cells[0].strip(): [cell.strip() for cell in cells[1:]] for cells in lines}
+
+
+def test_the_page_lists_every_problem_and_its_totals_are_not_below_what_a_bound_allows() -> None:
+    rows = page()
+    assert list(rows) == [p.name for p in INSTANCES]
+    near, default = [], 0
+    for problem in INSTANCES:
+        _, best, single, *_, last = rows[problem.name]
+        mean_speed = (np.abs(np.diff(problem.waypoints, axis=0)) / problem.limits.velocity).max(1)
+        assert mean_speed.sum() < float(best) < float(equal_start(problem).sum())
+        hits, count = map(int, single.split(" of "))
+        assert count == 20
+        near.append(hits)
+        default += last == "yes"
+    assert np.median(near) >= 15
+    assert default >= 19
+
+
 def found_from(problem: Problem, count: int, seed: int) -> tuple[float, np.ndarray, int]:
     """Total of the default call, totals of single starts, and neighbours that are shorter."""
     usual = solve(problem)
     assert usual.status is Status.OPTIMAL
+    quantities, best, *_ = page()[problem.name]
+    assert usual.total_time == pytest.approx(float(best), abs=6e-7)
+    assert sorted({a.quantity for a in usual.active}) == quantities.split(", ")
     assert usual.check is not None
     assert usual.check.verdict is Verdict.PASS
     starts = random_starts(problem, count, np.random.default_rng(seed))
