@@ -47,9 +47,10 @@ def place_labels(axes: Axes, points: NDArray[np.float64], labels: Sequence[str])
         taken.append(box)
         middle = ((box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2)
         away = max(abs(middle[0] - x) - width / 2, abs(middle[1] - y) - height / 2)
+        home = axes.transData.inverted().transform((x * per_point, y * per_point))
         axes.annotate(
             text,
-            axes.transData.inverted().transform((x * per_point, y * per_point)),
+            (float(home[0]), float(home[1])),
             xytext=(middle[0] - x, middle[1] - y),
             textcoords="offset points",
             ha="center",
@@ -87,4 +88,4 @@ def _cost(box: Bbox, taken: list[Bbox], room: Bbox) -> float:
         for b in taken
     )
     outside = max(room.x0 - box.x0, box.x1 - room.x1, room.y0 - box.y0, box.y1 - room.y1, 0.0)
-    return overlap + 10.0 * outside
+    return float(overlap + 10.0 * outside)
