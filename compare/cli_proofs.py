@@ -9,7 +9,7 @@ from typing import Any
 
 from rich.console import RenderableType
 
-from .cli_summary import _Columns, _line, plain
+from .cli_table import Columns, line, plain
 
 Document = dict[str, Any]
 
@@ -21,7 +21,7 @@ def certified(document: Document) -> list[RenderableType]:
     """Summary of the `solve --certify` document."""
     results = document["intervals"]
     if not results:
-        return [_line("nothing was begun", "dim")]
+        return [line("nothing was begun", "dim")]
     joint = any(r["joint"] is not None for r in results)
     head = ("problem", "reading", *(("joint",) if joint else ()), *_COLUMNS)
     rows = [
@@ -38,10 +38,10 @@ def certified(document: Document) -> list[RenderableType]:
         )
         for r in results
     ]
-    parts: list[RenderableType] = [_line(results[0]["case"], "bold"), _Columns(head, rows)]
+    parts: list[RenderableType] = [line(results[0]["case"], "bold"), Columns(head, rows)]
     reasons = dict.fromkeys(r["outcome_why"] for r in results if r["outcome_why"])
-    parts += [_line(reason, "dim") for reason in reasons]
-    return parts + [_line(f"go on with --resume {r['state']}") for r in results if r["state"]]
+    parts += [line(reason, "dim") for reason in reasons]
+    return parts + [line(f"go on with --resume {r['state']}") for r in results if r["state"]]
 
 
 def _bound(exact: str | None, side: int) -> str:
@@ -55,4 +55,4 @@ def _bound(exact: str | None, side: int) -> str:
 def verified(document: Document) -> str:
     """Text of the `verify` document: one line a file, whatever the window."""
     lines = (f"{one['file']}: {one['worth']}: {one['reason']}" for one in document["verified"])
-    return "".join(f"{plain(line)}\n" for line in lines)
+    return "".join(f"{plain(one)}\n" for one in lines)

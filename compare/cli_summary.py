@@ -6,39 +6,13 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
-from rich import box
-from rich.cells import cell_len
-from rich.console import Console, ConsoleOptions, RenderableType, RenderResult
-from rich.measure import Measurement
-from rich.table import Table
+from rich.console import RenderableType
 from rich.text import Text
 
+from .cli_table import Columns, line
 from .finding import gist
 
 Document = dict[str, Any]
-
-_NARROWEST = 16
-"""Columns that prose keeps in the narrowest window."""
-_GAP = 2
-_STYLES = {
-    "pass": "green",
-    "keeps": "green",
-    "consistent": "green",
-    "optimal": "green",
-    "supported": "green",
-    "violated": "yellow",
-    "discontinuous": "yellow",
-    "feasible": "yellow",
-    "not_attained": "yellow",
-    "inconsistent": "yellow",
-    "warning": "yellow",
-    "breaks": "red",
-    "infeasible": "red",
-    "failed": "red",
-    "limit": "red",
-    "refuted": "red",
-    "error": "red",
-}
 
 
 def cases(document: Document) -> list[RenderableType]:
@@ -47,7 +21,7 @@ def cases(document: Document) -> list[RenderableType]:
         (one["id"], one["title"], len(one["problems"]), len(one["readings"]), one["claims"])
         for one in document["cases"]
     ]
-    return [_Columns(("case", "~title", ">problems", ">readings", ">claims"), rows)]
+    return [Columns(("case", "~title", ">problems", ">readings", ">claims"), rows)]
 
 
 def show(document: Document) -> list[RenderableType]:
@@ -66,17 +40,17 @@ def show(document: Document) -> list[RenderableType]:
         (r["id"] + (" (default)" if r["default"] else ""), r["why"]) for r in document["readings"]
     ]
     parts: list[RenderableType] = [
-        _line(document["id"], "bold"),
-        *(_line(line) for line in lines),
-        _Columns(("problem", "~title"), problems),
-        _Columns(("reading", "~why it is admissible"), readings),
+        line(document["id"], "bold"),
+        *(line(said) for said in lines),
+        Columns(("problem", "~title"), problems),
+        Columns(("reading", "~why it is admissible"), readings),
     ]
     if document["claims"]:
         claims = [(c["id"], c["quantity"], _stated(c), c["where"]) for c in document["claims"]]
-        parts.append(_Columns(("claim", "quantity", "printed", "…where"), claims))
+        parts.append(Columns(("claim", "quantity", "printed", "…where"), claims))
     if document["assumptions"]:
         choices = [(a["id"], a["choice"]) for a in document["assumptions"]]
-        parts.append(_Columns(("left open", "…what was chosen"), choices))
+        parts.append(Columns(("left open", "…what was chosen"), choices))
     return parts
 
 
@@ -98,10 +72,10 @@ def checked(document: Document) -> list[RenderableType]:
     """Summary of the `check` document."""
     results = document["results"]
     shown = " ".join(f"{d:.6g}" for d in results[0]["segment_durations"])
-    parts: list[RenderableType] = [_line(f"{results[0]['case']}: durations {shown} s", "bold")]
+    parts: list[RenderableType] = [line(f"{results[0]['case']}: durations {shown} s", "bold")]
     parts += _by_result(results, _JUDGED, _judged, "all")
     note = "verdict: the printed point, for all t. rounding: all inputs that print alike."
-    return [*parts, _line(note, "dim"), *_reasons(results, ("feasible_time", "tight_time"))]
+    return [*parts, line(note, "dim"), *_reasons(results, ("feasible_time", "tight_time"))]
 
 
 def _judged(result: Document) -> tuple[object, ...]:
@@ -120,9 +94,9 @@ _ANSWER = ("status", ">total s", "evidence", "durations s", "starts", "KKT", ">T
 def solved(document: Document) -> list[RenderableType]:
     """Summary of the `solve` document."""
     results = document["results"]
-    parts: list[RenderableType] = [_line(results[0]["case"], "bold")]
+    parts: list[RenderableType] = [line(results[0]["case"], "bold")]
     parts += _by_result(results, _ANSWER, _answer, "longest")
-    parts += [_line(line) for result in results for line in _procedure(result)]
+    parts += [line(said) for result in results for said in _procedure(result)]
     active = [
         (
             r["problem"],
@@ -136,10 +110,10 @@ def solved(document: Document) -> list[RenderableType]:
     ]
     if active:
         limits = ("problem", "reading", "limit reached", ">multiplier s", ">10 % more changes s")
-        parts.append(_Columns(limits, _without_repeats(active, 2)))
+        parts.append(Columns(limits, _without_repeats(active, 2)))
     build, solve = (sum(r[key] for r in results) for key in ("build_seconds", "solve_seconds"))
     parts += _reasons(results, ("status", "toppra"))
-    return [*parts, _line(f"build {build:.2f} s, solve {solve:.2f} s", "dim")]
+    return [*parts, line(f"build {build:.2f} s, solve {solve:.2f} s", "dim")]
 
 
 def _answer(result: Document) -> tuple[object, ...]:
@@ -167,12 +141,12 @@ def _by_result(
     """One table of all results, or one for each where the joints stand by themselves."""
     if not any("joints" in result for result in results):
         rows = [(r["problem"], r["reading"], *cells(r)) for r in results]
-        return [_Columns(("problem", "reading", *columns), rows)]
+        return [Columns(("problem", "reading", *columns), rows)]
     parts: list[RenderableType] = []
     for result in results:
         joints = [(one["joint"], *cells(one)) for one in result["joints"]]
-        parts.append(_line(f"problem {result['problem']}, reading {result['reading']}"))
-        parts.append(_Columns(("joint", *columns), [*joints, (whole, *cells(result))]))
+        parts.append(line(f"problem {result['problem']}, reading {result['reading']}"))
+        parts.append(Columns(("joint", *columns), [*joints, (whole, *cells(result))]))
     return parts
 
 
@@ -199,17 +173,17 @@ def audited(document: Document) -> list[RenderableType]:
     for case in document["cases"]:
         counts = Counter(v["verdict"] for v in case["verdicts"])
         said = ", ".join(f"{counts[v]} {v}" for v in dict.fromkeys(counts))
-        parts.append(_line(f"{case['case']}: {len(case['verdicts'])} claims; {said}", "bold"))
+        parts.append(line(f"{case['case']}: {len(case['verdicts'])} claims; {said}", "bold"))
         rows = [
             (v["claim"], v["verdict"], _under(v), v["evidence"], v["why"]) for v in case["verdicts"]
         ]
-        parts.append(_Columns(("claim", "verdict", "readings", "evidence", "…why"), rows))
+        parts.append(Columns(("claim", "verdict", "readings", "evidence", "…why"), rows))
         parts += _time_goes(case["waterfalls"])
         parts += _side_by_side(case["readings"])
-        parts += [_line(line) for line in _said_once(case["findings"], "error")]
+        parts += [line(said) for said in _said_once(case["findings"], "error")]
         warned = _places(case["findings"], "warning")
-        parts += [_line(f"warnings: {', '.join(warned)}", "dim")] if warned else []
-        parts.append(_line(""))
+        parts += [line(f"warnings: {', '.join(warned)}", "dim")] if warned else []
+        parts.append(line(""))
     return parts
 
 
@@ -223,7 +197,7 @@ def _under(verdict: Document) -> str:
 
 def _side_by_side(readings: Document | None) -> list[RenderableType]:
     """What the readings make of the printed answers; the claims stand in the table above."""
-    return [_line(one) for one in (*readings["answers"], "")] if readings else []
+    return [line(one) for one in (*readings["answers"], "")] if readings else []
 
 
 def _grouped(
@@ -273,7 +247,7 @@ def _time_goes(waterfalls: Sequence[Document]) -> list[RenderableType]:
         return []
     rows = [(name, *(cell for one in steps for cell in _worth(one.get(name)))) for name in names]
     columns = [column for fall in falls for column in (f">{fall['problem']}", "evidence")]
-    return [_Columns((f"where the time goes, s ({falls[0]['reading']})", *columns), rows)]
+    return [Columns((f"where the time goes, s ({falls[0]['reading']})", *columns), rows)]
 
 
 def _worth(step: Document | None) -> tuple[str, str]:
@@ -286,15 +260,6 @@ def _worth(step: Document | None) -> tuple[str, str]:
 # --- cells ----------------------------------------------------------------------------------------
 
 
-def plain(text: object) -> str:
-    """Text from a file without anything that could steer a terminal."""
-    return "".join(c if c.isprintable() else " " for c in str(text))
-
-
-def _line(text: object, style: str = "") -> Text:
-    return Text(plain(text), style=style)
-
-
 def _seconds(value: float | None) -> str:
     return "none" if value is None else f"{value:.6f}"
 
@@ -303,45 +268,6 @@ def _place(place: Document) -> str:
     where = f"joint {place['joint']}" if place["joint"] else f"segment {place['segment'] + 1}"
     at = f" at {place['time']:.4f} s" if place["time"] is not None else ""
     return f"{where} {place['quantity']}{at}"
-
-
-class _Columns:
-    """Table in which one column of prose takes what the window leaves.
-
-    Before a column's name, > aligns right, ~ lets its prose wrap, … lets it be cut off. Whatever
-    else is cut off would say something else, so a table may be wider than the window.
-    """
-
-    def __init__(self, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
-        self._kinds = [c[0] if c[0] in ">~…" else "" for c in columns]
-        self._names = [c.removeprefix(k) for c, k in zip(columns, self._kinds, strict=True)]
-        self._rows = [[plain(cell) for cell in row] for row in rows]
-        lines = [self._names, *self._rows]
-        self._widths = [max(map(cell_len, column)) for column in zip(*lines, strict=True)]
-
-    def _total(self, prose: int) -> int:
-        widths = zip(self._widths, self._kinds, strict=True)
-        firm = sum(w if kind not in ("~", "…") else min(w, prose) for w, kind in widths)
-        return firm + _GAP * (len(self._widths) - 1)
-
-    def __rich_measure__(self, console: Console, options: ConsoleOptions) -> Measurement:
-        return Measurement(self._total(_NARROWEST), self._total(options.max_width))
-
-    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        prose = max(_NARROWEST, options.max_width - self._total(0))
-        table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=(0, 1, 0, 0))
-        for name, kind, width in zip(self._names, self._kinds, self._widths, strict=True):
-            table.add_column(
-                name,
-                justify="right" if kind == ">" else "left",
-                no_wrap=kind != "~",
-                overflow="fold" if kind == "~" else "ellipsis",
-                width=min(width, prose) if kind in ("~", "…") else width,
-            )
-        for row in self._rows:
-            table.add_row(*(Text(cell, style=_STYLES.get(cell, "")) for cell in row))
-        yield table
-        yield Text()
 
 
 def _without_repeats(rows: Iterable[Sequence[object]], count: int) -> list[Sequence[object]]:
@@ -364,4 +290,4 @@ def _reasons(results: Iterable[Document], keys: Sequence[str]) -> list[Text]:
         for key in keys
         if result.get(f"{key}_why") and "joints" not in result
     ]
-    return [_line(reason, "dim") for reason in found]
+    return [line(reason, "dim") for reason in found]

@@ -162,11 +162,7 @@ class Study:
                 why = "only a declared piecewise polynomial is a member of its relaxed family"
                 return Solution(problem, Status.FAILED, why)
             self._progress(f"{self.case.id}: relaxed family, {pid}, {rid}")
-            given, inner = problem.interpolant, problem.segments - 1
-            if not isinstance(given, Interpolant):
-                why = "only a declared piecewise polynomial is a member of its relaxed family"
-                return Solution(problem, Status.FAILED, why)
-            self._progress(f"{self.case.id}: relaxed family, {pid}, {rid}")
+            inner = problem.segments - 1
             family = Interpolant(
                 tuple(max(5, degree) for degree in given.degrees),
                 (2,) * inner,

@@ -19,7 +19,7 @@ from typing import Any
 import jsonschema
 import pytest
 from rich.cells import cell_len
-from trajgap.compare import cli_output, cli_summary
+from trajgap.compare import cli_output, cli_table
 from trajgap.compare.cli import main
 from trajgap.problem import load_case, published_ids
 
@@ -669,7 +669,7 @@ def test_no_digit_is_cut_off_in_a_narrow_window(monkeypatch: pytest.MonkeyPatch)
     rows = [("name", "3.296695", "prose " * 40)]
     for width in (20, 40, 200):
         monkeypatch.setenv("COLUMNS", str(width))
-        text = cli_output.rendered([cli_summary._Columns(("a", ">total s", "…why"), rows)])
+        text = cli_output.rendered([cli_table.Columns(("a", ">total s", "…why"), rows)])
         assert "name" in text
         assert "3.296695" in text
         assert "…" in text

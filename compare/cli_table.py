@@ -1,0 +1,84 @@
+"""Lines and tables on a terminal, safe from what a file may hold."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from rich import box
+from rich.cells import cell_len
+from rich.console import Console, ConsoleOptions, RenderResult
+from rich.measure import Measurement
+from rich.table import Table
+from rich.text import Text
+
+_NARROWEST = 16
+"""Columns that prose keeps in the narrowest window."""
+_GAP = 2
+_STYLES = {
+    "pass": "green",
+    "keeps": "green",
+    "consistent": "green",
+    "optimal": "green",
+    "supported": "green",
+    "violated": "yellow",
+    "discontinuous": "yellow",
+    "feasible": "yellow",
+    "not_attained": "yellow",
+    "inconsistent": "yellow",
+    "warning": "yellow",
+    "breaks": "red",
+    "infeasible": "red",
+    "failed": "red",
+    "limit": "red",
+    "refuted": "red",
+    "error": "red",
+}
+
+
+def plain(text: object) -> str:
+    """Text from a file without anything that could steer a terminal."""
+    return "".join(c if c.isprintable() else " " for c in str(text))
+
+
+def line(text: object, style: str = "") -> Text:
+    """One line in a style of rich."""
+    return Text(plain(text), style=style)
+
+
+class Columns:
+    """Table in which one column of prose takes what the window leaves.
+
+    Before a column's name, > aligns right, ~ lets its prose wrap, … lets it be cut off. Whatever
+    else is cut off would say something else, so a table may be wider than the window.
+    """
+
+    def __init__(self, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
+        self._kinds = [c[0] if c[0] in ">~…" else "" for c in columns]
+        self._names = [c.removeprefix(k) for c, k in zip(columns, self._kinds, strict=True)]
+        self._rows = [[plain(cell) for cell in row] for row in rows]
+        lines = [self._names, *self._rows]
+        self._widths = [max(map(cell_len, column)) for column in zip(*lines, strict=True)]
+
+    def _total(self, prose: int) -> int:
+        widths = zip(self._widths, self._kinds, strict=True)
+        firm = sum(w if kind not in ("~", "…") else min(w, prose) for w, kind in widths)
+        return firm + _GAP * (len(self._widths) - 1)
+
+    def __rich_measure__(self, console: Console, options: ConsoleOptions) -> Measurement:
+        return Measurement(self._total(_NARROWEST), self._total(options.max_width))
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        prose = max(_NARROWEST, options.max_width - self._total(0))
+        table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=(0, 1, 0, 0))
+        for name, kind, width in zip(self._names, self._kinds, self._widths, strict=True):
+            table.add_column(
+                name,
+                justify="right" if kind == ">" else "left",
+                no_wrap=kind != "~",
+                overflow="fold" if kind == "~" else "ellipsis",
+                width=min(width, prose) if kind in ("~", "…") else width,
+            )
+        for row in self._rows:
+            table.add_row(*(Text(cell, style=_STYLES.get(cell, "")) for cell in row))
+        yield table
+        yield Text()
