@@ -15,9 +15,9 @@ from ..nlp import (
     PerJointSolution,
     Solution,
     Status,
-    printed,
     solve,
     solve_per_joint,
+    stated_exactly,
     with_certificate,
     with_certificates,
 )
@@ -115,7 +115,7 @@ class Study:
             self._progress(f"{self.case.id}: optimum of {which}, {pid}, {rid}")
             index = None if joint is None else problem.joints.index(joint)
             found = solve(problem if index is None else problem.joint(index))
-            return with_certificate(found, printed(self.case.posing(pid, rid), index))
+            return with_certificate(found, stated_exactly(self.case.posing(pid, rid), index))
 
         if joint is not None and len(self.problem(pid, rid).joints) == 1:
             joint = None

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from decimal import ROUND_FLOOR, Context, Decimal, localcontext
 from fractions import Fraction
 
-from ..nlp import Evidence, Solution, Subject, printed, proved
+from ..nlp import Evidence, Solution, Subject, proved, stated_exactly
 from ..nlp.family_free import family_free
 from ..nlp.retime import retime
 from ..problem import Coupling, fit
@@ -68,7 +68,7 @@ def _starting_claim(study: Study, pid: str) -> AnyClaim | None:
 def _known(name: str, solution: Solution, note: str = "") -> Step:
     if solution.durations is None:
         return Step(name, None, None, None, Evidence.NONE, solution.why or str(solution.status))
-    notes = [note] if note else []
+    notes = [n for n in (note, solution.why) if n]
     if solution.infimum is not None:
         notes.append("approached, not attained")
     low = solution.lower_bound
@@ -162,7 +162,7 @@ def _free(study: Study, pid: str, rid: str) -> Step:
     if answer.total_time is None:
         return Step(name, None, None, None, Evidence.NONE, answer.why or "")
     note = "upper estimate" + (f"; {answer.why}" if answer.why else "")
-    exact = printed(study.case.posing(pid, rid))
+    exact = stated_exactly(study.case.posing(pid, rid))
     bound = None if exact is None else proved(exact, Subject.ANY)
     if bound is None or not 0 < bound.lower <= answer.total_time:
         return Step(name, answer.total_time, None, None, answer.evidence, note)

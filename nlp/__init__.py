@@ -3,7 +3,7 @@
 from .certificate import certificate, shipped, write_certificate
 from .certified import Certified, Outcome, Progress
 from .certify import certify
-from .evidence import Interval, printed, proved, with_certificate, with_certificates
+from .evidence import Interval, proved, stated_exactly, with_certificate, with_certificates
 from .exact import ExactProblem, exact_problem, printed_problem
 from .family_free import FamilyFree, family_free
 from .formulation import Form, Formulation, Structure, build
@@ -41,7 +41,6 @@ __all__ = [
     "exact_problem",
     "family_free",
     "kkt",
-    "printed",
     "printed_problem",
     "proved",
     "random_starts",
@@ -50,6 +49,7 @@ __all__ = [
     "shipped",
     "solve",
     "solve_per_joint",
+    "stated_exactly",
     "structure_of",
     "verify",
     "weakest",

@@ -12,6 +12,7 @@ from typing import Any
 
 from ..problem import Curve, Interpolant, TrajgapError
 from ..problem.curve import end_conditions
+from ..problem.uniform import StretchedUniformBSpline, TimedUniformBSpline
 from .certified import Certified, Outcome
 from .exact import ExactProblem, Real, decimal
 from .verify import FORMAT, Subject, seal
@@ -43,7 +44,7 @@ def problem_document(problem: ExactProblem) -> dict[str, Any]:
         "name": problem.name,
         "unit": problem.unit,
         "joints": list(problem.joints),
-        **(_declaration(curve) if isinstance(curve, Interpolant) else _named(curve)),
+        **(_declaration(curve) if isinstance(curve, Interpolant) else _other(curve)),
         "waypoints": [[decimal(q) for q in row] for row in problem.waypoints],
         "limits": [[_real(x) for x in row] for row in problem.limits],
         "position_lower": [_real(x) for x in problem.position_lower],
@@ -53,13 +54,21 @@ def problem_document(problem: ExactProblem) -> dict[str, Any]:
     }
 
 
-def _named(curve: Curve) -> dict[str, Any]:
+def _other(curve: Curve) -> dict[str, Any]:
     """A curve of another kind: its name, and the velocities prescribed at its ends, if any."""
     ends = [dict(side).get(1) for side in end_conditions(curve)]
     if ends == [None, None]:
-        return {"curve": curve.name}
-    shown = [None if v is None else decimal(Fraction(v)) for v in ends]
-    return {"curve": curve.name, "ends": shown}
+        return {"curve": _named(curve)}
+    return {
+        "curve": _named(curve),
+        "ends": [None if v is None else decimal(Fraction(v)) for v in ends],
+    }
+
+
+def _named(curve: Curve) -> str:
+    """Words that tell a curve from every other: its name, or all its fields."""
+    uniform = isinstance(curve, StretchedUniformBSpline | TimedUniformBSpline)
+    return curve.name if uniform else repr(curve)
 
 
 def _declaration(interpolant: Interpolant) -> dict[str, Any]:

@@ -74,7 +74,7 @@ def proved(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> Interv
     return Interval(verdict.lower, verdict.upper, durations, verdict.infeasible)
 
 
-def printed(posing: Posing, joint: int | None = None) -> ExactProblem | None:
+def stated_exactly(posing: Posing, joint: int | None = None) -> ExactProblem | None:
     """`printed_problem` of all joints or of one; None where it cannot be stated exactly."""
     try:
         exact = printed_problem(posing)
@@ -124,7 +124,7 @@ def with_certificates(answer: PerJointSolution, posing: Posing) -> PerJointSolut
     -------
     PerJointSolution
     """
-    joints = [with_certificate(s, printed(posing, j)) for j, s in enumerate(answer.joints)]
+    joints = [with_certificate(s, stated_exactly(posing, j)) for j, s in enumerate(answer.joints)]
     same = all(new.best == old.best for new, old in zip(joints, answer.joints, strict=True))
     # Durations of another answer would not be the ones behind the procedure's output.
     return replace(answer, joints=tuple(joints)) if same else answer

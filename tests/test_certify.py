@@ -27,13 +27,13 @@ from trajgap.problem import (
     TrajgapError,
     Verdict,
     check,
-    cubic_spline,
     evaluate,
     fit,
     load_case,
     published_ids,
     rest_to_rest,
     three_five_three,
+    uniform_cubic_b_spline,
 )
 
 module = import_module("trajgap.nlp.three_piece_search")
@@ -150,6 +150,14 @@ def test_shipped_certificates_are_fresh_and_prove() -> None:
         assert verdict.upper is not None
         assert verdict.upper - verdict.lower <= verdict.upper / 10**6
         assert len(json.dumps(document)) < 200_000
+    files = {path.stem: json.loads(path.read_text("utf-8")) for path in all_files()}
+    about = {n for n, d in files.items() if d["claim"]["subject"] == Subject.DECLARED}
+    assert about == set(POSED), "a certificate of a problem that is not shipped"
+    assert all(path.stat().st_size <= 200_000 for path in all_files())
+
+
+def all_files() -> list[Path]:
+    return sorted(shipped_folder().glob("*.json"))
 
 
 def test_the_table_in_the_docs_is_that_of_the_files() -> None:
@@ -448,7 +456,7 @@ def test_positions_that_no_direction_keeps_are_proved_infeasible() -> None:
 def test_what_is_not_covered_is_said() -> None:
     q = np.array([[0.2], [1.1], [-0.4], [0.7]])
     with pytest.raises(TrajgapError, match="covered are rest-to-rest"):
-        certify(Problem(q, Limits(1.0), cubic_spline(3)))
+        certify(Problem(q, Limits(1.0), uniform_cubic_b_spline(4, "timed")))
     with pytest.raises(TrajgapError, match="nothing limits"):
         certify(Problem(q, Limits(), three_five_three()))
 

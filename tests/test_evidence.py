@@ -16,6 +16,8 @@ from trajgap.compare.study import Study
 from trajgap.compare.waterfall import waterfalls
 from trajgap.nlp import (
     Evidence,
+    ExactProblem,
+    Interval,
     Subject,
     proved,
     shipped,
@@ -39,6 +41,7 @@ from .test_certify import POSED
 from .test_documents import assert_valid
 
 evidence_module = import_module("trajgap.nlp.evidence")
+waterfall_module = import_module("trajgap.compare.waterfall")
 certificate_module = import_module("trajgap.nlp.certificate")
 IRB, PUMA, GA = "irb460-pso-353", "puma560-mnam-pso-353", "irb1600-ga-cubic-bspline"
 PAIR = ("limit-80", "waypoints-rad")
@@ -190,6 +193,28 @@ def test_a_total_below_the_proved_bound_is_called_that(monkeypatch: pytest.Monke
     (message,) = (f.message for f in optimum(study) if f.claim == "durations-80" and f.gap)
     assert "below the proved lower bound of this problem as printed" in message
     assert "best known" not in message
+
+
+@pytest.mark.parametrize("upper", [None, Fraction(1, 2)])
+def test_a_bound_for_any_curve_stands_on_the_waterfall(
+    monkeypatch: pytest.MonkeyPatch, upper: Fraction | None
+) -> None:
+    bound = Interval(Fraction(2, 5), upper, None, False)
+
+    def only_any(problem: ExactProblem, subject: Subject) -> Interval | None:
+        return bound if subject is Subject.ANY else None
+
+    monkeypatch.setattr(waterfall_module, "proved", only_any)
+    (fall,) = waterfalls(one_study())
+    step = fall.steps[-1]
+    assert step.low == 0.4
+    assert "proved" in step.note
+    if upper is None:
+        assert step.evidence is Evidence.BEST_KNOWN
+        assert step.time is not None
+        assert step.time > 0.5
+    else:
+        assert (step.time, step.evidence) == (0.5, Evidence.CERTIFIED)
 
 
 def test_only_a_proof_sets_a_lower_bound() -> None:
