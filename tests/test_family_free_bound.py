@@ -19,7 +19,13 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import linprog
 from trajgap.compare import waterfall
 from trajgap.compare.study import Study
-from trajgap.nlp import Evidence, evidence, family_free_rows, family_free_search
+from trajgap.nlp import (
+    Evidence,
+    evidence,
+    family_free_certify,
+    family_free_rows,
+    family_free_search,
+)
 from trajgap.nlp.certificate import certificate, shipped_folder
 from trajgap.nlp.certified import Certified, Outcome, Progress
 from trajgap.nlp.exact import ExactProblem, exact_problem, printed_problem
@@ -354,6 +360,45 @@ def test_falsified_rows_are_seen_and_refused(monkeypatch: pytest.MonkeyPatch) ->
     verdict = verify(certificate(found))
     assert not verdict.proves
     assert "proves only" in verdict.reason
+
+
+def poor(monkeypatch: pytest.MonkeyPatch) -> Problem:
+    """A problem for which the local solver's first answer is 5 % too long."""
+    first = family_free_certify._first_motion
+
+    def longer(*given: Any) -> Any:
+        motion = first(*given)
+        assert motion is not None
+        slow = Fraction(21, 20)
+        return (
+            tuple(h * slow for h in motion[0]),
+            tuple(tuple(v / slow for v in row) for row in motion[1]),
+        )
+
+    monkeypatch.setattr(family_free_certify, "_first_motion", longer)
+    return attacked()[0]
+
+
+def test_a_poor_first_answer_is_replaced(monkeypatch: pytest.MonkeyPatch) -> None:
+    problem, _ = attacked()
+    honest = certify_family_free(problem, gap=1e-6)
+    found = certify_family_free(poor(monkeypatch), gap=1e-6)
+    proved(found)
+    assert found.outcome is Outcome.CERTIFIED
+    assert found.upper is not None
+    assert honest.upper is not None
+    assert float(found.upper) == pytest.approx(float(honest.upper), rel=1e-6)
+
+
+def test_an_answer_that_is_not_optimal_is_never_certified(monkeypatch: pytest.MonkeyPatch) -> None:
+    problem, _ = attacked()
+    honest = certify_family_free(problem, gap=1e-6)
+    monkeypatch.setattr(family_free_certify, "_local_motion", lambda *_: None)
+    found = certify_family_free(poor(monkeypatch), gap=1e-6, seconds=1.0)
+    assert found.outcome is Outcome.INTERVAL
+    assert honest.upper is not None
+    assert found.lower <= honest.upper
+    assert proved(found).upper == found.upper
 
 
 def test_a_bound_that_is_too_high_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
