@@ -136,7 +136,7 @@ class Search:
             again = lower(scaled, inherited.rows, inherited.weights, low, high) * unit
             if again > best.lower:
                 best = Node(box, inherited.rows, inherited.weights, again, carried)
-        best.cuts = self._cuts(low, high, high - low, (low + high) / 2)
+        best.cuts = self._cuts(low, high, (high - low,), (low + high) / 2)
         rows, past = carried, [best.lower]
         for _ in range(_ROUNDS):
             if best.lower >= target:
@@ -165,7 +165,7 @@ class Search:
                 stress = self._stress(best, h, low, high)
                 doubt = np.maximum(0.0, excess).max(axis=1)
                 enough = unit * stress.sum() > (target - proved) / 4
-                best.cuts = self._cuts(low, high, stress if enough else doubt, h)
+                best.cuts = self._cuts(low, high, (stress, doubt), h)
             else:
                 enough = True
             past.append(proved)
@@ -189,19 +189,24 @@ class Search:
         return cost
 
     def _cuts(
-        self, low: Array, high: Array, score: Array, h: Array
+        self, low: Array, high: Array, scores: tuple[Array, ...], h: Array
     ) -> tuple[tuple[int, Fraction], ...]:
-        """Segments with the largest scores, and the places ``h`` to cut them."""
+        """Segments with large scores, taken from each list in turn, and the places to cut them."""
         width = high - low
-        score = np.where(width > _NARROWEST * high, score, -1.0)
+        ranks = [np.argsort(-score) for score in scores]
+        wide = width > _NARROWEST * high
+        turns = [
+            int(rank[n])
+            for n in range(len(low))
+            for score, rank in zip(scores, ranks, strict=True)
+            if wide[rank[n]] and score[rank[n]] > _FAINT * score.max()
+        ]
         cuts = []
-        for k in np.argsort(-score)[:_TRIALS]:
-            if score[k] <= _FAINT * score.max():
-                break
+        for k in list(dict.fromkeys(turns))[:_TRIALS]:
             margin = _MARGIN * width[k]
             place = min(max(h[k], low[k] + margin), high[k] - margin) * self.scaled.time
             digits = 2 - int(np.floor(np.log10(width[k] * self.scaled.time)))
-            cuts.append((int(k), Fraction(round(Fraction(place), digits))))
+            cuts.append((k, Fraction(round(Fraction(place), digits))))
         return tuple(cuts)
 
     def halves(self, node: Node, segment: int, at: Fraction, target: float) -> tuple[Node, ...]:

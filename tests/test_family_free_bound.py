@@ -205,6 +205,11 @@ def test_grids_of_three_segments(seed: int) -> None:
     assert low <= float(h[good].sum(axis=1).min()) <= 1.05 * high
 
 
+@pytest.mark.parametrize("seed", [700, 701])
+def test_seven_segments_and_six_joints(seed: int) -> None:
+    interval(random_problem(np.random.default_rng(seed), 7, 6), 1e-6)
+
+
 def discrete_motion(problem: Problem, h: Array, cells: int) -> bool:
     """Whether a velocity that is linear on every cell keeps the limits: a linear program."""
     steps = np.repeat(h / cells, cells)
