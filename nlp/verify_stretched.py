@@ -90,6 +90,6 @@ def _check(
                 rest = [-sign * c for c in derivative(piece, order)]
                 rest[0] += limit
                 need(
-                    nonnegative(rest, Fraction(0), Fraction(1)),
+                    nonnegative(rest, Fraction(1)),
                     f"answer: joint {j + 1}, segment {k + 1}, derivative {order} exceeds its limit",
                 )
