@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from decimal import ROUND_FLOOR, Context, Decimal, localcontext
+from fractions import Fraction
 
 from ..nlp import Evidence, Solution, Subject, proved, stated_exactly
 from ..nlp.family_free import family_free
@@ -165,9 +167,16 @@ def _free(study: Study, pid: str, rid: str) -> Step:
     if bound is None or not 0 < bound.lower <= answer.total_time:
         return Step(name, answer.total_time, None, None, answer.evidence, note)
     low = float(bound.lower)
+    shown = f"no motion within the limits is shorter than {_below(bound.lower)} s: certified"
     if bound.upper is not None:
         high = float(bound.upper)
-        note = f"proved, gap {(high - low) / high:.1e}"
+        note = f"{shown}, gap {(high - low) / high:.1e}" + (f"; {answer.why}" if answer.why else "")
         return Step(name, high, low, high, Evidence.CERTIFIED, note)
-    note += f"; no curve takes less than {low:.6f} s: proved"
+    note += f"; {shown}"
     return Step(name, answer.total_time, low, answer.total_time, Evidence.BEST_KNOWN, note)
+
+
+def _below(value: Fraction) -> str:
+    """Six significant digits, rounded down."""
+    with localcontext(Context(prec=6, rounding=ROUND_FLOOR)):
+        return str(Decimal(value.numerator) / Decimal(value.denominator))

@@ -6,6 +6,7 @@ from .certify import certify
 from .evidence import Interval, proved, stated_exactly, with_certificate, with_certificates
 from .exact import ExactProblem, exact_problem, printed_problem
 from .family_free import FamilyFree, family_free
+from .family_free_certify import certify_family_free
 from .formulation import Form, Formulation, Structure, build
 from .kkt import KKT, Active, kkt
 from .per_joint import PerJointSolution, Range, solve_per_joint
@@ -38,6 +39,7 @@ __all__ = [
     "build",
     "certificate",
     "certify",
+    "certify_family_free",
     "exact_problem",
     "family_free",
     "kkt",

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ..problem import Curve, Interpolant, TrajgapError
+from ..problem.curve import end_conditions
 from ..problem.uniform import StretchedUniformBSpline, TimedUniformBSpline
 from .certified import Certified, Outcome
 from .exact import ExactProblem, Real, decimal
@@ -43,13 +44,24 @@ def problem_document(problem: ExactProblem) -> dict[str, Any]:
         "name": problem.name,
         "unit": problem.unit,
         "joints": list(problem.joints),
-        **(_declaration(curve) if isinstance(curve, Interpolant) else {"curve": _named(curve)}),
+        **(_declaration(curve) if isinstance(curve, Interpolant) else _other(curve)),
         "waypoints": [[decimal(q) for q in row] for row in problem.waypoints],
         "limits": [[_real(x) for x in row] for row in problem.limits],
         "position_lower": [_real(x) for x in problem.position_lower],
         "position_upper": [_real(x) for x in problem.position_upper],
         "duration_lower": [decimal(x) for x in problem.duration_lower],
         "duration_upper": [None if x is None else decimal(x) for x in problem.duration_upper],
+    }
+
+
+def _other(curve: Curve) -> dict[str, Any]:
+    """A curve of another kind: its name, and the velocities prescribed at its ends, if any."""
+    ends = [dict(side).get(1) for side in end_conditions(curve)]
+    if ends == [None, None]:
+        return {"curve": _named(curve)}
+    return {
+        "curve": _named(curve),
+        "ends": [None if v is None else decimal(Fraction(v)) for v in ends],
     }
 
 
@@ -174,10 +186,10 @@ def shipped(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> dict[
     -------
     dict or None
     """
-    wanted = question(problem_document(problem))
+    wanted = question(problem_document(problem), subject)
     for document in _all_shipped():
         same = document["claim"]["subject"] == subject
-        if same and question(document["problem"]) == wanted:
+        if same and question(document["problem"], subject) == wanted:
             return copy.deepcopy(document)
     return None
 
@@ -188,6 +200,16 @@ def _all_shipped() -> tuple[dict[str, Any], ...]:
     return tuple(json.loads(path.read_text("utf-8")) for path in paths)
 
 
-def question(problem: dict[str, Any]) -> dict[str, Any]:
+def question(problem: dict[str, Any], subject: Subject = Subject.DECLARED) -> dict[str, Any]:
     """What a problem asks, whatever it is called."""
-    return {key: value for key, value in problem.items() if key != "name"}
+    same = {key: value for key, value in problem.items() if key != "name"}
+    if subject is Subject.DECLARED:
+        return same
+    # Of the curve itself only the velocities prescribed at its ends count.
+    given = same.pop("prescribed", None)
+    ends = same.pop("ends", [None, None])
+    if given is not None:
+        ends = [dict(entries).get(1) for entries in (given[0], given[-1])]
+    for key in ("curve", "degrees", "continuity"):
+        same.pop(key, None)
+    return {"virtual": [], **same, "ends": ends}

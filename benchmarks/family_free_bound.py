@@ -1,0 +1,98 @@
+"""Bounds over all motions for the shipped cases: the table of docs/certificates-family-free.md.
+
+Without options each problem is certified and its certificate written beside the others; problems
+that differ in the declared curve alone share one. With --convergence the effort for several gaps
+is printed instead.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import time
+from collections.abc import Callable, Iterator
+from decimal import Decimal
+from fractions import Fraction
+
+from trajgap.nlp.certificate import problem_document, question, shipped_folder, write_certificate
+from trajgap.nlp.exact import ExactProblem, printed_problem
+from trajgap.nlp.family_free_certify import certify_family_free
+from trajgap.nlp.family_free_exact import missing
+from trajgap.nlp.verify import Subject, verify
+from trajgap.problem import load_case, published_ids
+
+GAPS = {"irb1600-ga-cubic-bspline": 1e-5}
+GAP = 1e-9
+HEAD = "| problem | lower (s) | upper (s) | gap | boxes | seconds | bytes | check (s) |"
+
+
+def problems() -> Iterator[tuple[str, ExactProblem, float]]:
+    """Every different question of the shipped cases, and the gap to reach."""
+    seen = set()
+    for case_id in published_ids():
+        case = load_case(case_id)
+        for problem in case.problems:
+            for reading in case.readings:
+                posing = case.posing(problem.id, reading.id)
+                if not posing.posed:
+                    continue
+                exact = printed_problem(posing)
+                asked = json.dumps(question(problem_document(exact), Subject.ANY), sort_keys=True)
+                if missing(exact) is None and asked not in seen:
+                    seen.add(asked)
+                    name = f"{case_id}.{problem.id}.{reading.id}"
+                    yield name, exact, GAPS.get(case_id, GAP)
+
+
+def nine(value: Fraction, rounding: Callable[[Fraction], int]) -> str:
+    """Nine decimals, rounded outwards."""
+    return f"{Decimal(rounding(value * 10**9)).scaleb(-9):.9f}"
+
+
+def line(name: str, exact: ExactProblem, gap: float, seconds: float) -> str:
+    """Certify, write, and prove again."""
+    path = shipped_folder() / f"{name}.any-curve.json"
+    found = certify_family_free(exact, gap=gap, seconds=seconds)
+    size = write_certificate(found, path)
+    began = time.perf_counter()
+    verdict = verify(path)
+    check = time.perf_counter() - began
+    assert verdict.proves, verdict
+    assert found.upper is not None
+    return (
+        f"| `{path.stem}` | {nine(found.lower, math.floor)} | {nine(found.upper, math.ceil)} "
+        f"| {found.gap:.1e} | {found.nodes} | {found.seconds:.1f} | {size} | {check:.1f} |"
+    )
+
+
+def convergence(exact: ExactProblem, gap: float, seconds: float) -> str:
+    """Boxes and seconds for one gap."""
+    found = certify_family_free(exact, gap=gap, seconds=seconds)
+    return (
+        f"| {gap:.0e} | {found.outcome} | {found.gap:.1e} | {found.nodes} | {found.seconds:.1f} |"
+    )
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("only", nargs="*", help="beginnings of names; all by default")
+    parser.add_argument("--seconds", type=float, default=120.0, help="limit for each")
+    parser.add_argument("--convergence", action="store_true")
+    options = parser.parse_args()
+    if not options.convergence:
+        print(HEAD)
+        print("|---" * (HEAD.count("|") - 1) + "|")
+    for name, exact, gap in problems():
+        if options.only and not name.startswith(tuple(options.only)):
+            continue
+        if not options.convergence:
+            print(line(name, exact, gap, options.seconds), flush=True)
+            continue
+        print(f"\n{name}\n\n| asked | outcome | gap | boxes | seconds |\n|---|---|---|---|---|")
+        for wanted in (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9):
+            print(convergence(exact, wanted, options.seconds), flush=True)
+
+
+if __name__ == "__main__":
+    main()
