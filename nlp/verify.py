@@ -11,7 +11,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from . import verify_rest_to_rest, verify_stretched, verify_three_piece
+from . import verify_cubic, verify_rest_to_rest, verify_stretched, verify_three_piece
 from .verify_problem import Proved, Refused, need
 
 FORMAT = "trajgap-certificate-1"
@@ -39,6 +39,7 @@ VERIFIERS: dict[str, Verifier] = {
     "three-piece": Verifier(verify_three_piece.prove),
     "rest-to-rest": Verifier(verify_rest_to_rest.prove),
     "stretched": Verifier(verify_stretched.prove),
+    "cubic": Verifier(verify_cubic.prove),
 }
 """By ``proof.kind``."""
 

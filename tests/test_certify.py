@@ -309,7 +309,7 @@ def test_positions_that_no_direction_keeps_are_proved_infeasible() -> None:
 def test_what_is_not_covered_is_said() -> None:
     q = np.array([[0.2], [1.1], [-0.4], [0.7]])
     with pytest.raises(TrajgapError, match="covered are rest-to-rest"):
-        certify(Problem(q, Limits(1.0), cubic_spline(3)))
+        certify(Problem(q, Limits(1.0), cubic_spline(3, ((1, 0.25),))))
     with pytest.raises(TrajgapError, match="nothing limits"):
         certify(Problem(q, Limits(), three_five_three()))
 
