@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import argparse
+import math
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from decimal import Decimal
+from fractions import Fraction
 
 from trajgap.nlp.certificate import shipped_folder, write_certificate
 from trajgap.nlp.certify import certify, covered
@@ -46,6 +49,11 @@ def main() -> None:
             print(line(name, exact), flush=True)
 
 
+def nine(value: Fraction, rounding: Callable[[Fraction], int]) -> str:
+    """Nine decimals, rounded outwards."""
+    return f"{Decimal(rounding(value * 10**9)).scaleb(-9):.9f}"
+
+
 def line(name: str, exact: ExactProblem) -> str:
     path = shipped_folder() / f"{name}.json"
     found = certify(exact)
@@ -56,7 +64,8 @@ def line(name: str, exact: ExactProblem) -> str:
     assert verdict.proves, verdict
     assert found.upper is not None
     return (
-        f"| `{name}` | {float(found.lower):.9f} | {float(found.upper):.9f} | {found.gap:.1e} "
+        f"| `{name}` | {nine(found.lower, math.floor)} | {nine(found.upper, math.ceil)} "
+        f"| {found.gap:.1e} "
         f"| {found.nodes} | {found.seconds:.1f} | {size} | {seconds:.1f} |"
     )
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ..problem import Case, load_case, published_ids
-from .finding import ClaimVerdict, Finding, Judgement, Scope, Severity, judge
+from .finding import ClaimVerdict, Finding, Judgement, Scope, Severity, judge, weigh
 from .rules.continuous import continuous
 from .rules.control_vertices import control_vertices
 from .rules.count import count
@@ -131,9 +131,10 @@ def audit_case(study: Study) -> CaseAudit:
     groups = _GROUPS if study.posed else _WITHOUT_WAYPOINTS
     found = [finding for group in groups for finding in group(study)]
     scoped = _with_scopes(found, study)
-    ordered = sorted(scoped, key=lambda f: (_ORDER[f.severity], f.rule))
+    by_rule = sorted(scoped, key=lambda f: (_ORDER[f.severity], f.rule))
     admissible = [reading.id for reading in study.case.readings]
-    judgements = tuple(judge(claim.id, ordered, admissible) for claim in study.case.claims)
+    judgements = tuple(judge(claim.id, by_rule, admissible) for claim in study.case.claims)
+    ordered = sorted(weigh(by_rule, judgements), key=lambda f: (_ORDER[f.severity], f.rule))
     steps = waterfalls(study) if study.posed else ()
     return CaseAudit(study.case, study, tuple(ordered), judgements, steps)
 

@@ -26,8 +26,9 @@ app = typer.Typer(
 _ENDS = """\b
 Exit codes:
   0    done
-  1    audit --strict, and a finding has severity error
+  1    audit --strict, and a finding has severity error; verify, and a file is refused
   2    bad input; one line on standard error says what to mend
+  3    solve --certify, and an interval is wider than asked for or nothing is proved
   70   a fault of trajgap itself
   130  interrupted
 """
@@ -130,13 +131,91 @@ def solve(
     coupling: Coupled = None,
     starts: Annotated[int, typer.Option(min=1, help="Starts of the solver.")] = 4,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the random starts.")] = 0,
+    certify: Annotated[
+        bool, typer.Option("--certify", help="Prove an interval of each optimum instead.")
+    ] = False,
+    gap: Annotated[
+        float | None,
+        typer.Option(
+            min=0.0,
+            metavar="G",
+            help="With --certify: relative width to reach.",
+            show_default="1e-6",
+        ),
+    ] = None,
+    seconds: Annotated[
+        float | None,
+        typer.Option(
+            "--time",
+            min=0.0,
+            metavar="S",
+            help="With --certify: seconds for each problem; then the best interval is left.",
+            show_default="60",
+        ),
+    ] = None,
+    certificates: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FOLDER",
+            help="With --certify: where certificates go, and states of stopped runs.",
+            show_default="trajgap-certificates; none with --json",
+        ),
+    ] = None,
+    resume: Annotated[
+        list[Path] | None,
+        typer.Option(
+            metavar="FILE",
+            help="With --certify: go on from this state file, every part of it proved again. "
+            "May be given several times.",
+        ),
+    ] = None,
     as_json: AsJson = False,
     out: Out = None,
 ) -> int:
-    """Solve a case exactly: all its problems under all its readings."""
-    from . import cli_commands
+    """Solve a case exactly: all its problems under all its readings.
 
-    return cli_commands.solve_case(case, problem, reading, coupling, starts, seed, as_json, out)
+    With --certify, Ctrl-C leaves the best interval, and a state to go on from.
+    """
+    if not certify:
+        options = {
+            "--gap": gap,
+            "--time": seconds,
+            "--certificates": certificates,
+            "--resume": resume or None,
+        }
+        for name, value in options.items():
+            if value is not None:
+                raise typer.BadParameter(f"{name} needs --certify")
+        from . import cli_commands
+
+        return cli_commands.solve_case(case, problem, reading, coupling, starts, seed, as_json, out)
+    from . import cli_certify
+
+    return cli_certify.certify_case(
+        case,
+        problem,
+        reading,
+        coupling,
+        1e-6 if gap is None else gap,
+        60.0 if seconds is None else seconds,
+        seed,
+        certificates,
+        resume or [],
+        as_json,
+        out,
+    )
+
+
+@app.command(epilog=_ENDS)
+def verify(
+    files: Annotated[list[Path], typer.Argument(metavar="FILE...", help="Certificates.")],
+    as_json: AsJson = False,
+    out: Out = None,
+) -> int:
+    """Prove certificates again, with code that shares nothing with the solver."""
+    from . import cli_certify
+
+    return cli_certify.verify_files(files, as_json, out)
 
 
 @app.command(epilog=_ENDS)

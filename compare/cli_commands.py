@@ -5,10 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from ..nlp import Solution, solve, solve_per_joint
+from ..nlp import (
+    Solution,
+    solve,
+    solve_per_joint,
+    stated_exactly,
+    with_certificate,
+    with_certificates,
+)
 from ..nlp.per_joint import OPTIMUM_SLACK
 from ..nlp.retime import Retiming, retime
-from ..problem import Case, Check, Coupling, check, fit, published_ids
+from ..problem import Case, Check, ClockedTrajectory, Coupling, check, fit, published_ids
 from . import cli_summary, documents
 from .cli_input import (
     Posed,
@@ -126,8 +133,10 @@ def _solved(case: Case, one: Posed, starts: int, seed: int) -> documents.Documen
         halves = Study(case).half_digits(one.problem_id, one.reading_id)
         slacks = tuple(dict.fromkeys((*halves, OPTIMUM_SLACK)))
         apart = solve_per_joint(one.problem, starts=starts, seed=seed, slacks=slacks)
+        apart = with_certificates(apart, case.posing(one.problem_id, one.reading_id))
         return documents.solve_result(*ids, apart, [_retimed(s) for s in apart.joints])
     answer = solve(one.problem, starts=starts, seed=seed)
+    answer = with_certificate(answer, stated_exactly(case.posing(one.problem_id, one.reading_id)))
     return documents.solve_result(*ids, answer, [_retimed(answer)])
 
 
@@ -136,6 +145,8 @@ def _retimed(answer: Solution) -> Retiming | str:
     if answer.durations is None:
         return "no durations, so no path"
     trajectory = fit(problem.interpolant, problem.waypoints, answer.durations, answer.nodal)
+    if isinstance(trajectory, ClockedTrajectory):
+        return "time is not linear in the curve's parameter: its path is no polynomial in time"
     return retime(trajectory, problem.limits)
 
 

@@ -87,8 +87,18 @@ def rendered(parts: Sequence[RenderableType]) -> str:
     return "\n".join(line.rstrip() for line in page.read().split("\n"))
 
 
+class Steps:
+    """A bar on standard error that each call moves one step on; shows nothing by itself."""
+
+    def __call__(self, text: str) -> None:
+        """Begin the next step."""
+
+    def tell(self, text: str) -> None:
+        """Say how the present step goes."""
+
+
 @contextmanager
-def progress(label: str, total: int | None = None) -> Iterator[Callable[[str], None]]:
+def progress(label: str, total: int | None = None) -> Iterator[Steps]:
     """Show a bar on standard error while something runs, if that is a terminal.
 
     Parameters
@@ -100,11 +110,11 @@ def progress(label: str, total: int | None = None) -> Iterator[Callable[[str], N
 
     Yields
     ------
-    callable
+    Steps
         To be called with a short text before each step.
     """
     if not sys.stderr.isatty():
-        yield lambda _: None
+        yield Steps()
         return
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
@@ -113,14 +123,18 @@ def progress(label: str, total: int | None = None) -> Iterator[Callable[[str], N
     columns = (BarColumn(bar_width=24), TimeElapsedColumn(), TextColumn("{task.description}"))
     with Progress(*columns, console=console, transient=True) as bar:
         task = bar.add_task(label, total=total)
-        begun = 0
 
-        def step(text: str) -> None:
-            nonlocal begun
-            bar.update(task, description=text, completed=begun)
-            begun += 1
+        class Shown(Steps):
+            begun = 0
 
-        yield step
+            def __call__(self, text: str) -> None:
+                bar.update(task, description=text, completed=self.begun)
+                self.begun += 1
+
+            def tell(self, text: str) -> None:
+                bar.update(task, description=text)
+
+        yield Shown()
 
 
 @contextmanager
@@ -163,6 +177,22 @@ def new_file(path: Path | None, field: str = "--out") -> Iterator[Callable[[str]
 
     with draft(file):
         yield write
+
+
+def replace_file(path: Path, text: str) -> None:
+    """Write a file under its name at once and complete, in the place of an earlier one.
+
+    Raises
+    ------
+    CaseError
+        If it cannot be written.
+    """
+    with _writing(str(path), "--certificates"):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        file = path.parent / f".trajgap-{os.getpid()}.tmp"
+        with draft(file):
+            file.write_text(text, encoding="utf-8")
+            file.replace(path)
 
 
 def check_folder(path: Path, cases: Sequence[Case]) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from ..nlp import Evidence
@@ -15,9 +15,10 @@ class Severity(StrEnum):
 
     ERROR = "error"
     """A proof of digits, counts, enclosures or a shorter motion contradicts something printed, or
-    shows that two printed things contradict each other."""
+    shows that two printed things contradict each other, whatever the reading."""
     WARNING = "warning"
-    """Printed things do not fit together, or a best known value speaks against a statement."""
+    """Printed things do not fit together, a best known value speaks against a statement, or a
+    proof contradicts something printed under some admissible readings and not under all."""
     INFO = "info"
     """A fact beside the claim, or support for it."""
 
@@ -160,7 +161,8 @@ def judge(claim: str, findings: Iterable[Finding], readings: Iterable[str]) -> J
     one contradicts it, else supported if one supports it, else not checkable. A verdict that
     holds under some readings only says so; what no reading decides is not checkable.
     """
-    own = [f for f in findings if f.claim == claim and f.decides]
+    about = [f for f in findings if f.claim == claim]
+    own = [f for f in about if f.decides]
     order = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT, ClaimVerdict.SUPPORTED)
     each: list[tuple[str, ClaimVerdict]] = []
     for reading in readings:
@@ -170,7 +172,8 @@ def judge(claim: str, findings: Iterable[Finding], readings: Iterable[str]) -> J
     per_reading = [v for _, v in each]
     decided = [v for v in per_reading if v is not ClaimVerdict.NOT_CHECKABLE]
     if not decided:
-        why = next((f.message for f in own), "no rule applies to this claim")
+        beside = [f"{f.rule}, which decides nothing: {f.message}" for f in about if not f.decides]
+        why = next((f.message for f in own), next(iter(beside), "no rule applies to this claim"))
         nothing = ClaimVerdict.NOT_CHECKABLE
         return Judgement(claim, nothing, Scope.NO, Evidence.NONE, why, tuple(each))
     verdict = next(v for v in order if v in decided)
@@ -187,3 +190,32 @@ def judge(claim: str, findings: Iterable[Finding], readings: Iterable[str]) -> J
     said += [f"But {f.verdict} under {f.reading or 'all'}, {f.rule}: {f.message}" for f in against]
     why = " ".join(dict.fromkeys(said))
     return Judgement(claim, verdict, scope, evidence, why, tuple(each))
+
+
+def weigh(findings: Iterable[Finding], judgements: Iterable[Judgement]) -> tuple[Finding, ...]:
+    """Findings whose severity fits the verdict on their claim.
+
+    What a proof says under one reading is an error only where the claim falls under every
+    admissible reading; otherwise it is a warning, for the reading may not be the one meant.
+
+    Parameters
+    ----------
+    findings : iterable of Finding
+    judgements : iterable of Judgement
+        Of the claims, over all admissible readings.
+
+    Returns
+    -------
+    tuple of Finding
+        In their order.
+    """
+    against = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT)
+    fallen = {
+        j.claim for j in judgements if j.readings and all(v in against for _, v in j.readings)
+    }
+    return tuple(
+        replace(f, severity=Severity.WARNING)
+        if f.severity is Severity.ERROR and f.reading is not None and f.claim not in fallen
+        else f
+        for f in findings
+    )

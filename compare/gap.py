@@ -100,14 +100,13 @@ def gap(
         If the reference is not a positive finite time.
     """
     if isinstance(reference, Solution):
-        best = reference.infimum if reference.infimum is not None else reference.total_time
-        reference = Reference(best, reference.lower_bound)
+        reference = Reference(reference.best, reference.lower_bound)
     elif not isinstance(reference, Reference):
         reference = Reference(float(reference))
     if not 0 < reference.upper < float("inf"):
         raise TrajgapError(f"gap: the reference {reference.upper} s is not a positive finite time")
     low, high = time if isinstance(time, tuple) else (float(time), float(time))
-    base = reference.lower if reference.lower else reference.upper
+    base = reference.upper if reference.lower is None else reference.lower
     return Gap(
         lowest=(low - reference.upper) / reference.upper,
         highest=(high - base) / base,

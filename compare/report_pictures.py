@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..heuristics import JointRuns
-from ..nlp import Solution
+from ..nlp import Solution, weakest
 from ..problem import Problem, TrajgapError
 from ..problem.claim import AnyClaim, DurationsClaim, MaximumClaim, TotalTimeClaim
 from .audit import CaseAudit
@@ -182,7 +182,7 @@ def _convergence(study: Study, pid: str, rid: str, runs: dict[str, Runs]) -> Ite
         [_time(s) for s in solutions],
         printed,
         rounding=max(widths),
-        evidence=str(solutions[0].evidence),
+        evidence=str(weakest(s.evidence for s in solutions)),
         joints=problem.joints,
         title=f"Best total so far, {pid}" + (", each joint by itself" if by_joint else ""),
     )
@@ -195,7 +195,7 @@ def _convergence(study: Study, pid: str, rid: str, runs: dict[str, Runs]) -> Ite
 
 
 def _time(solution: Solution) -> float:
-    return solution.infimum if solution.infimum is not None else solution.total_time
+    return solution.best
 
 
 def _totals(study: Study, pid: str, rid: str) -> tuple[dict[str, float], dict[str, float]]:

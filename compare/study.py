@@ -11,7 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..heuristics import Algorithm, JointRuns, Run, from_settings, run_many, run_many_per_joint
-from ..nlp import PerJointSolution, Solution, Status, solve, solve_per_joint
+from ..nlp import (
+    PerJointSolution,
+    Solution,
+    Status,
+    solve,
+    solve_per_joint,
+    stated_exactly,
+    with_certificate,
+    with_certificates,
+)
 from ..nlp.per_joint import OPTIMUM_SLACK
 from ..problem import (
     Case,
@@ -98,13 +107,15 @@ class Study:
         return self._once(("problem", pid, rid), lambda: self.case.problem(pid, rid))
 
     def optimum(self, pid: str, rid: str, joint: str | None = None) -> Solution:
-        """Best known answer with shared durations, of all joints or of one."""
+        """Best known answer with shared durations, of all joints or of one; certified if proved."""
 
         def compute() -> Solution:
             problem = self.problem(pid, rid)
             which = "all joints" if joint is None else f"joint {joint}"
             self._progress(f"{self.case.id}: optimum of {which}, {pid}, {rid}")
-            return solve(problem if joint is None else problem.joint(problem.joints.index(joint)))
+            index = None if joint is None else problem.joints.index(joint)
+            found = solve(problem if index is None else problem.joint(index))
+            return with_certificate(found, stated_exactly(self.case.posing(pid, rid), index))
 
         if joint is not None and len(self.problem(pid, rid).joints) == 1:
             joint = None
@@ -116,7 +127,8 @@ class Study:
         def compute() -> PerJointSolution:
             self._progress(f"{self.case.id}: each joint by itself, {pid}, {rid}")
             slacks = dict.fromkeys((*self.half_digits(pid, rid), OPTIMUM_SLACK))
-            return solve_per_joint(self.problem(pid, rid), slacks=tuple(slacks))
+            found = solve_per_joint(self.problem(pid, rid), slacks=tuple(slacks))
+            return with_certificates(found, self.case.posing(pid, rid))
 
         return self._once(("per joint", pid, rid), compute)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..nlp import Evidence, Solution
+from ..nlp import Evidence, Solution, Subject, proved, stated_exactly
 from ..nlp.family_free import family_free
 from ..nlp.retime import retime
 from ..problem import Coupling, fit
@@ -66,10 +66,14 @@ def _starting_claim(study: Study, pid: str) -> AnyClaim | None:
 def _known(name: str, solution: Solution, note: str = "") -> Step:
     if solution.durations is None:
         return Step(name, None, None, None, Evidence.NONE, solution.why or str(solution.status))
-    value = solution.infimum if solution.infimum is not None else solution.total_time
+    notes = [n for n in (note, solution.why) if n]
     if solution.infimum is not None:
-        note = f"{note} approached, not attained".strip()
-    return Step(name, value, None, None, solution.evidence, note)
+        notes.append("approached, not attained")
+    low = solution.lower_bound
+    if low is None:
+        return Step(name, solution.best, None, None, solution.evidence, "; ".join(notes))
+    notes.append(f"proved, gap {(solution.best - low) / solution.best:.1e}")
+    return Step(name, solution.best, low, solution.best, solution.evidence, "; ".join(notes))
 
 
 def _waterfall(study: Study, pid: str, rid: str) -> Waterfall:
@@ -123,7 +127,7 @@ def _procedure(study: Study, pid: str, rid: str) -> Step:
         return Step(name, None, None, None, Evidence.NONE, answer.why or "")
     low = answer.ranges[0].lowest if answer.ranges else None
     high = answer.ranges[0].highest if answer.ranges else None
-    note = f"check: {answer.check.verdict}"
+    note = f"check: {answer.check.verdict}; each joint's optimum {answer.joint_evidence}"
     if answer.ranges:
         note += f"; range while each joint is within {answer.ranges[0].slack:g} s of its optimum"
     return Step(name, answer.total_time, low, high, answer.evidence, note)
@@ -156,4 +160,14 @@ def _free(study: Study, pid: str, rid: str) -> Step:
     if answer.total_time is None:
         return Step(name, None, None, None, Evidence.NONE, answer.why or "")
     note = "upper estimate" + (f"; {answer.why}" if answer.why else "")
-    return Step(name, answer.total_time, None, None, answer.evidence, note)
+    exact = stated_exactly(study.case.posing(pid, rid))
+    bound = None if exact is None else proved(exact, Subject.ANY)
+    if bound is None or not 0 < bound.lower <= answer.total_time:
+        return Step(name, answer.total_time, None, None, answer.evidence, note)
+    low = float(bound.lower)
+    if bound.upper is not None:
+        high = float(bound.upper)
+        note = f"proved, gap {(high - low) / high:.1e}"
+        return Step(name, high, low, high, Evidence.CERTIFIED, note)
+    note += f"; no curve takes less than {low:.6f} s: proved"
+    return Step(name, answer.total_time, low, answer.total_time, Evidence.BEST_KNOWN, note)

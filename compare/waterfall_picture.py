@@ -103,7 +103,7 @@ def seconds(step: Step) -> str:
     text = f"{step.time:.{digits}f} s"
     if step.low is not None and step.high is not None:
         width = step.high - step.low
-        if width > 0:
+        if width > 1e-9:
             digits = min(9, max(digits, math.ceil(1 - math.log10(width))))
             text += f" ({step.low:.{digits}f} to {step.high:.{digits}f})"
     return text

@@ -10,7 +10,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from ..problem import Interpolant, TrajgapError
+from ..problem import Curve, Interpolant, TrajgapError
+from ..problem.uniform import StretchedUniformBSpline, TimedUniformBSpline
 from .certified import Certified, Outcome
 from .exact import ExactProblem, Real, decimal
 from .verify import FORMAT, Subject, seal
@@ -42,7 +43,7 @@ def problem_document(problem: ExactProblem) -> dict[str, Any]:
         "name": problem.name,
         "unit": problem.unit,
         "joints": list(problem.joints),
-        **(_declaration(curve) if isinstance(curve, Interpolant) else {"curve": curve.name}),
+        **(_declaration(curve) if isinstance(curve, Interpolant) else {"curve": _named(curve)}),
         "waypoints": [[decimal(q) for q in row] for row in problem.waypoints],
         "limits": [[_real(x) for x in row] for row in problem.limits],
         "position_lower": [_real(x) for x in problem.position_lower],
@@ -50,6 +51,12 @@ def problem_document(problem: ExactProblem) -> dict[str, Any]:
         "duration_lower": [decimal(x) for x in problem.duration_lower],
         "duration_upper": [None if x is None else decimal(x) for x in problem.duration_upper],
     }
+
+
+def _named(curve: Curve) -> str:
+    """Words that tell a curve from every other: its name, or all its fields."""
+    uniform = isinstance(curve, StretchedUniformBSpline | TimedUniformBSpline)
+    return curve.name if uniform else repr(curve)
 
 
 def _declaration(interpolant: Interpolant) -> dict[str, Any]:
@@ -102,6 +109,29 @@ def certificate(certified: Certified) -> dict[str, Any]:
     return {**document, "seal": seal(document)}
 
 
+def certificate_text(certified: Certified) -> str:
+    """`certificate` as the text of a file.
+
+    Parameters
+    ----------
+    certified : Certified
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    TrajgapError
+        If nothing is proved.
+    """
+    text = json.dumps(certificate(certified), separators=(",", ":"), ensure_ascii=False)
+    # One key a line keeps a diff readable.
+    text = text.replace(',"problem', ',\n"problem').replace(',"claim"', ',\n"claim"')
+    text = text.replace(',"proof"', ',\n"proof"').replace(',"tree"', ',\n"tree"')
+    return text.replace(',"leaves"', ',\n"leaves"').replace(',"seal"', ',\n"seal"') + "\n"
+
+
 def write_certificate(certified: Certified, path: str | Path) -> int:
     """Write a certificate.
 
@@ -120,11 +150,7 @@ def write_certificate(certified: Certified, path: str | Path) -> int:
     TrajgapError
         If nothing is proved.
     """
-    text = json.dumps(certificate(certified), separators=(",", ":"), ensure_ascii=False)
-    # One key a line keeps a diff readable.
-    text = text.replace(',"problem', ',\n"problem').replace(',"claim"', ',\n"claim"')
-    text = text.replace(',"proof"', ',\n"proof"').replace(',"tree"', ',\n"tree"')
-    text = text.replace(',"leaves"', ',\n"leaves"').replace(',"seal"', ',\n"seal"') + "\n"
+    text = certificate_text(certified)
     Path(path).write_text(text, encoding="utf-8")
     return len(text.encode())
 
@@ -148,10 +174,10 @@ def shipped(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> dict[
     -------
     dict or None
     """
-    wanted = _question(problem_document(problem))
+    wanted = question(problem_document(problem))
     for document in _all_shipped():
         same = document["claim"]["subject"] == subject
-        if same and _question(document["problem"]) == wanted:
+        if same and question(document["problem"]) == wanted:
             return copy.deepcopy(document)
     return None
 
@@ -162,5 +188,6 @@ def _all_shipped() -> tuple[dict[str, Any], ...]:
     return tuple(json.loads(path.read_text("utf-8")) for path in paths)
 
 
-def _question(problem: dict[str, Any]) -> dict[str, Any]:
+def question(problem: dict[str, Any]) -> dict[str, Any]:
+    """What a problem asks, whatever it is called."""
     return {key: value for key, value in problem.items() if key != "name"}

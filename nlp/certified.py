@@ -144,9 +144,12 @@ class Certifier:
         Why such a problem is not covered all the same, or None.
     certify : callable
         Keyboard interrupts and the time limit end it with what is proved so far.
+    instant : bool
+        Whether it is a closed form.
     """
 
     family: str
     declares: Callable[[ExactProblem], bool]
     missing: Callable[[ExactProblem], str | None]
     certify: Callable[[ExactProblem, Request], Certified]
+    instant: bool = False

@@ -36,6 +36,11 @@ def covered(problem: ExactProblem) -> str | None:
     return f"{problem.curve.name}: not covered; covered are {families}"
 
 
+def instant(problem: ExactProblem) -> bool:
+    """Whether a covered problem is solved in closed form."""
+    return any(c.instant and c.declares(problem) for c in CERTIFIERS)
+
+
 def certify(
     problem: Problem | ExactProblem,
     *,

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..problem import Check, Interpolant, Problem, check
 from .near_optimal import longest_per_segment_range
-from .solution import Evidence, Solution, Status
+from .solution import Evidence, Solution, Status, weakest
 from .solve import STARTS, solve
 
 OPTIMUM_SLACK = 1e-6
@@ -75,8 +75,13 @@ class PerJointSolution:
         return float(self.durations.sum()) if self.durations is not None else float("inf")
 
     @property
+    def joint_evidence(self) -> Evidence:
+        """The weakest evidence of the joints' own optima."""
+        return weakest(s.evidence for s in self.joints)
+
+    @property
     def evidence(self) -> Evidence:
-        """Best known if every joint has an answer."""
+        """Best known if every joint has an answer: the procedure's output is no optimum."""
         return Evidence.NONE if self.durations is None else Evidence.BEST_KNOWN
 
     def __str__(self) -> str:

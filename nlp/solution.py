@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from enum import StrEnum
 
@@ -40,6 +41,12 @@ class Evidence(StrEnum):
     """No value."""
 
 
+def weakest(evidence: Iterable[Evidence]) -> Evidence:
+    """The weakest of some words; none for no words."""
+    order = [Evidence.CERTIFIED, Evidence.BEST_KNOWN, Evidence.NONE]
+    return max(evidence, key=order.index, default=Evidence.NONE)
+
+
 @dataclass(frozen=True, eq=False)
 class Solution:
     """Answer of the exact side to a `Problem` with shared durations.
@@ -58,7 +65,7 @@ class Solution:
     infimum : float or None
         For `not_attained`: the value approached, s.
     lower_bound : float or None
-        A certified lower bound, s.
+        A certified lower bound, s; only `with_certificate` sets it.
     kkt_residual : float or None
         Of the reduced problem, scaled, with all active peaks found again.
     active : tuple of Active
@@ -93,11 +100,16 @@ class Solution:
         return float(self.durations.sum()) if self.durations is not None else float("inf")
 
     @property
+    def best(self) -> float:
+        """The infimum where it is not attained, else the total, s; inf without an answer."""
+        return self.infimum if self.infimum is not None else self.total_time
+
+    @property
     def evidence(self) -> Evidence:
         """Certified only with a lower bound; otherwise best known, or none."""
         if self.durations is None:
             return Evidence.NONE
-        return Evidence.BEST_KNOWN
+        return Evidence.BEST_KNOWN if self.lower_bound is None else Evidence.CERTIFIED
 
     def __str__(self) -> str:
         lines = [f"{self.problem.name}: {self.status}" + (f" ({self.why})" if self.why else "")]
@@ -109,6 +121,9 @@ class Solution:
                 f"check           {self.check.verdict}, largest excess "
                 f"{self.check.max_violation:.1e}",
             ]
+        if self.lower_bound is not None:
+            width = (self.best - self.lower_bound) / self.best
+            lines.append(f"lower bound     {self.lower_bound:.9f} s, proved; gap {width:.1e}")
         if self.infimum is not None:
             lines.append(f"infimum         {self.infimum:.9f} s, approached but not attained")
         if self.kkt_residual is not None:

@@ -19,6 +19,7 @@ from .incumbent import float_problem, keeps_limits, prove_feasible
 from .solve import solve
 from .three_piece import STRICT
 from .tree import State, tree_document, tree_state
+from .verify_problem import number
 
 _BATCH = 256
 _LOOKS = 3
@@ -63,6 +64,31 @@ class _Stop(Exception):
     """Time is up, or boxes are as small as they may get."""
 
 
+@dataclass(frozen=True, eq=False)
+class _Work:
+    """Boxes with their proofs, and batches of open ones; together they cover the square."""
+
+    done: tuple[tuple[Boxes, tuple[Proof, ...]], ...]
+    queue: tuple[Boxes, ...]
+
+    def after(self, head: Boxes, found: list[Proof | None], axis: NDArray[np.int64]) -> _Work:
+        """The last batch without ``head``, whose boxes are proved or halved."""
+        proved = np.array([proof is not None for proof in found])
+        rest = self.queue[-1].pick(np.s_[len(head) :])
+        halved = () if proved.all() else (head.pick(~proved).halves(axis[~proved]),)
+        queue = (*self.queue[:-1], *((rest,) if len(rest) else ()), *halved)
+        new = (head.pick(proved), tuple(proof for proof in found if proof is not None))
+        return _Work((*self.done, new), queue)
+
+    def state(self, target: Fraction) -> State:
+        """All boxes; the open ones without a proof."""
+        every = [boxes for boxes, _ in self.done] + list(self.queue)
+        proofs: list[Proof | None] = [proof for _, found in self.done for proof in found]
+        proofs += [None] * sum(map(len, self.queue))
+        level = np.vstack([boxes.level for boxes in every])
+        return State(target, Boxes(level, np.vstack([b.index for b in every])), tuple(proofs))
+
+
 @dataclass(eq=False)
 class _Run:
     problem: ExactProblem
@@ -87,34 +113,30 @@ class _Run:
         `better` set as well.
         """
         rows = self.problem if target < _ENDLESS else _positions_alone(self.problem)
-        proposer = Proposer(rows, target)
-        kept = np.array(
-            [
-                proof is not None and proposer.prover.proves(*proof, *boxes.sides(n))
-                for n, proof in enumerate(proofs)
-            ]
-        )
-        done = [(boxes.pick(kept), [p for p, k in zip(proofs, kept, strict=True) if k])]
-        queue = [boxes.pick(~kept)] if not kept.all() else []
+        work = _Work((), (boxes,))
         try:
-            while queue:
-                head = queue[-1].pick(np.arange(min(_BATCH, len(queue[-1]))))
+            proposer = Proposer(rows, target)
+            kept = np.array(
+                [
+                    proof is not None and proposer.prover.proves(*proof, *boxes.sides(n))
+                    for n, proof in enumerate(proofs)
+                ]
+            )
+            again = tuple(p for p, k in zip(proofs, kept, strict=True) if k and p is not None)
+            left = (boxes.pick(~kept),) if not kept.all() else ()
+            work = _Work(((boxes.pick(kept), again),), left)
+            while work.queue:
+                head = work.queue[-1].pick(np.arange(min(_BATCH, len(work.queue[-1]))))
                 self._look(head, target)
-                found, axis = proposer.propose(head)
-                proved = np.array([p is not None for p in found])
-                rest = queue.pop().pick(np.s_[len(head) :])
-                if len(rest):
-                    queue.append(rest)
-                if not proved.all():
-                    queue.append(head.pick(~proved).halves(axis[~proved]))
-                done.append((head.pick(proved), [p for p in found if p is not None]))
+                # One assignment: wherever an interrupt strikes, the boxes cover the square.
+                work = work.after(head, *proposer.propose(head))
                 self.nodes += len(head)
-                self._tell(sum(map(len, queue)))
+                self._tell(sum(map(len, work.queue)))
         except (KeyboardInterrupt, _Stop):
             self.stopped = self.better is None
-            self.pending = _gathered(target, done, queue)
+            self.pending = work.state(target)
             return None
-        return _gathered(target, done, [])
+        return work.state(target)
 
     def _look(self, boxes: Boxes, target: Fraction) -> None:
         """Stop where there is reason to."""
@@ -151,17 +173,6 @@ class _Run:
         lower = float(self.lower)
         gap = (upper - lower) / upper if self.upper is not None else float("inf")
         self.report(Progress(lower, upper, gap, open_boxes, self.nodes, self.nodes / seconds))
-
-
-def _gathered(
-    target: Fraction,
-    done: list[tuple[Boxes, list[Proof | None]]],
-    queue: list[Boxes],
-) -> State:
-    every = [b for b, _ in done] + queue
-    proofs = [p for _, found in done for p in found] + [None] * sum(map(len, queue))
-    boxes = Boxes(np.vstack([b.level for b in every]), np.vstack([b.index for b in every]))
-    return State(target, boxes, tuple(proofs))
 
 
 def _declares(problem: ExactProblem) -> bool:
@@ -254,12 +265,13 @@ def _resumed(exact: ExactProblem, document: dict[str, Any]) -> Stopped:
         state = None if proved is None else tree_state(exact, proved, proof=True)
         pending = tree_state(exact, document["open"], proof=False)
         answer = document["durations"]
-        durations = None if answer is None else tuple(Fraction(h) for h in answer)
+        durations = None if answer is None else tuple(number(h) for h in answer)
+        kept = durations is None or keeps_limits(exact, durations)
     except TrajgapError:
         raise
     except (KeyError, IndexError, TypeError, ValueError, AttributeError, ArithmeticError) as error:
         raise TrajgapError(f"resume: malformed state ({type(error).__name__}: {error})") from None
-    if durations is not None and not keeps_limits(exact, durations):
+    if not kept:
         raise TrajgapError("resume: the durations of the state do not keep the limits")
     return Stopped(state, pending, durations)
 
@@ -286,7 +298,7 @@ def _targets(
         return [sum(longest, Fraction(0)) * (1 + STRICT)]
     last = float(_SAFE) * gap
     found = [_down(upper * (1 - Fraction(g))) for g in (*(g for g in _STAGES if g > last), last)]
-    return [t for t in found if t > lower] or [found[-1]]
+    return [t for t in found if t > lower]
 
 
 def _positions_alone(exact: ExactProblem) -> ExactProblem:

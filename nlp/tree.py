@@ -12,6 +12,7 @@ from ..problem import TrajgapError
 from .boxes import Boxes, Proof
 from .exact import ExactProblem, decimal
 from .three_piece import PLACES, TOTAL, Prover, Row
+from .verify_problem import number
 
 _DEEPEST = 60
 
@@ -70,7 +71,7 @@ def tree_state(problem: ExactProblem, document: dict[str, Any], proof: bool) -> 
     TrajgapError
         If it is malformed or does not prove its total.
     """
-    target = Fraction(str(document["total"]))
+    target = number(document["total"])
     rows = [_row(problem, entry) for entry in document["rows"]]
     boxes = _boxes(str(document["tree"]))
     leaves = document["leaves"]
@@ -82,7 +83,7 @@ def tree_state(problem: ExactProblem, document: dict[str, Any], proof: bool) -> 
             proofs.append(None)
             continue
         which = tuple(rows[_whole(k, 0, len(rows) - 1)] for k in leaf[::2])
-        weights = tuple(Fraction(str(x)) for x in leaf[1::2])
+        weights = tuple(number(x) for x in leaf[1::2])
         if len(which) != len(weights) or not which:
             raise TrajgapError("resume: a leaf without weights")
         proofs.append((which, weights))

@@ -6,6 +6,7 @@ import hashlib
 import json
 from collections.abc import Callable
 from dataclasses import dataclass
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from enum import StrEnum
 from fractions import Fraction
 from pathlib import Path
@@ -127,7 +128,13 @@ def verify(source: str | Path | dict[str, Any]) -> Verdict:
 def _shown(found: Proved, subject: Subject) -> str:
     if found.infeasible:
         return "no durations within their bounds keep the limits: infeasible"
-    shown = f"the least total of {subject} is at least {float(found.lower):.12g} s"
+    shown = f"the least total of {subject} is at least {_rounded(found.lower, ROUND_FLOOR)} s"
     if found.upper is not None:
-        shown += f" and at most {float(found.upper):.12g} s"
+        shown += f" and at most {_rounded(found.upper, ROUND_CEILING)} s"
     return shown
+
+
+def _rounded(value: Fraction, side: str) -> str:
+    """Twelve digits on the safe side."""
+    quotient = Context(12, side).divide(Decimal(value.numerator), Decimal(value.denominator))
+    return f"{quotient.normalize():f}"

@@ -6,18 +6,20 @@ import copy
 import json
 from fractions import Fraction
 from importlib import import_module
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from trajgap.nlp import solve, three_piece
 from trajgap.nlp.boxes import Boxes
-from trajgap.nlp.certificate import certificate, problem_document, shipped
+from trajgap.nlp.certificate import certificate, problem_document, shipped, shipped_folder
 from trajgap.nlp.certified import Certified, Outcome, Progress
 from trajgap.nlp.certify import certify, covered
 from trajgap.nlp.exact import ExactProblem, decimal, exact_problem, printed_problem
 from trajgap.nlp.incumbent import exact_coefficients, keeps_limits, never_above
 from trajgap.nlp.three_piece import PLACES, Prover, Row, exact_row
-from trajgap.nlp.verify import verify
+from trajgap.nlp.verify import Subject, verify
 from trajgap.problem import (
     Coupling,
     Limits,
@@ -25,13 +27,13 @@ from trajgap.problem import (
     TrajgapError,
     Verdict,
     check,
-    cubic_spline,
     evaluate,
     fit,
     load_case,
     published_ids,
     rest_to_rest,
     three_five_three,
+    uniform_cubic_b_spline,
 )
 
 module = import_module("trajgap.nlp.three_piece_search")
@@ -148,6 +150,34 @@ def test_shipped_certificates_are_fresh_and_prove() -> None:
         assert verdict.upper is not None
         assert verdict.upper - verdict.lower <= verdict.upper / 10**6
         assert len(json.dumps(document)) < 200_000
+    files = {path.stem: json.loads(path.read_text("utf-8")) for path in all_files()}
+    about = {n for n, d in files.items() if d["claim"]["subject"] == Subject.DECLARED}
+    assert about == set(POSED), "a certificate of a problem that is not shipped"
+    assert all(path.stat().st_size <= 200_000 for path in all_files())
+
+
+def all_files() -> list[Path]:
+    return sorted(shipped_folder().glob("*.json"))
+
+
+def test_the_table_in_the_docs_is_that_of_the_files() -> None:
+    page = (Path(__file__).parent.parent / "docs" / "certificates.md").read_text("utf-8")
+    rows = {}
+    for line in page.splitlines():
+        cells = [cell.strip() for cell in line.strip("|").split("|")]
+        if len(cells) == 8 and cells[0].startswith("`"):
+            rows[cells[0].strip("`")] = cells
+    files = {path.stem: path for path in shipped_folder().glob("*.json")}
+    about = {name: json.loads(path.read_text("utf-8")) for name, path in files.items()}
+    mine = {n for n, d in about.items() if d["claim"]["subject"] == Subject.DECLARED}
+    assert set(rows) == mine
+    for name, cells in rows.items():
+        lower, upper = (Fraction(about[name]["claim"][key]) for key in ("lower", "upper"))
+        least, most = (Fraction(cell) for cell in cells[1:3])
+        assert 0 <= lower - least < Fraction(1, 10**9), f"{name}: rounded outwards"
+        assert 0 <= most - upper < Fraction(1, 10**9), f"{name}: rounded outwards"
+        assert cells[3] == f"{float(1 - lower / upper):.1e}", name
+        assert int(cells[6]) == files[name].stat().st_size, name
 
 
 def unlucky(monkeypatch: pytest.MonkeyPatch, seconds: float = 2.0) -> tuple[float, Certified]:
@@ -217,6 +247,123 @@ def test_a_stopped_run_goes_on_where_it_stopped(monkeypatch: pytest.MonkeyPatch)
     assert second.outcome is Outcome.CERTIFIED
     assert second.nodes < 400
     assert verify(certificate(second)).proves
+
+
+def stopped_at(name: str, monkeypatch: pytest.MonkeyPatch) -> Certified:
+    """A run that was stopped with a proved lower bound and with open boxes."""
+
+    def interrupt(progress: Progress) -> None:
+        if progress.lower > 0 and progress.open_boxes > 0:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(module, "_BATCH", 8)
+    found = certify(POSED[name], report=interrupt)
+    assert found.outcome is Outcome.INTERVAL
+    return found
+
+
+def test_an_edited_state_proves_nothing_false(monkeypatch: pytest.MonkeyPatch) -> None:
+    name = "irb460-pso-353.limit-80.waypoints-rad"
+    exact, found = POSED[name], stopped_at(name, monkeypatch)
+    assert found.resume is not None
+    assert found.upper is not None
+    base = json.loads(json.dumps(found.resume.document()))
+    assert module._resumed(exact, base).proved.target == found.lower
+    rng = np.random.default_rng(3)
+    places = state_places(base)
+    outcomes = []
+    for _ in range(250):
+        path = places[rng.integers(0, len(places))]
+        data = copy.deepcopy(base)
+        node = data
+        for key in path[:-1]:
+            node = node[key]
+        node[path[-1]] = mangled(node[path[-1]], rng)
+        try:
+            state = module._resumed(exact, data)
+        except TrajgapError:
+            outcomes.append("refused")
+            continue
+        outcomes.append("taken")
+        if state.proved is not None:
+            assert state.proved.target <= found.upper, path
+        if state.durations is not None:
+            assert keeps_limits(exact, state.durations), path
+        for tree in (state.proved, state.pending):
+            assert tree is None or (0.5**tree.boxes.level).prod(axis=1).sum() == 1.0
+    assert outcomes.count("refused") > 50
+    assert outcomes.count("taken") > 20
+
+
+def state_places(node: Any, path: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
+    children = node.items() if isinstance(node, dict) else enumerate(node)
+    found = []
+    for key, child in children:
+        found.append((*path, key))
+        if isinstance(child, dict | list):
+            found += state_places(child, (*path, key))
+    return found
+
+
+def mangled(value: Any, rng: np.random.Generator) -> Any:
+    choice = int(rng.integers(0, 5))
+    if choice == 0:
+        return [None, [], "", {}, -1, "1e9", "x", True][int(rng.integers(0, 8))]
+    if isinstance(value, bool) or value is None:
+        return "1"
+    if isinstance(value, int):
+        return value + int(rng.choice([-1, 1, 5]))
+    if isinstance(value, str) and value and set(value) <= set("ab."):
+        k = int(rng.integers(0, len(value)))
+        return value[:k] + str(rng.choice(["a", "b", ".", "", ".."])) + value[k + 1 :]
+    if isinstance(value, str) and value[:1].isdigit():
+        return str(Fraction(value) * (1 + Fraction(int(rng.integers(-9, 9)), 10)))
+    if isinstance(value, list):
+        return value[:-1]
+    return value
+
+
+def test_edited_open_boxes_only_cost_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    name = "irb460-pso-353.limit-80.waypoints-rad"
+    exact, found = POSED[name], stopped_at(name, monkeypatch)
+    assert found.resume is not None
+    state = json.loads(json.dumps(found.resume.document()))
+    # "Everything is proved by any row", and a total that is far too long.
+    state["open"] |= {"tree": ".", "leaves": [[0, "1"]], "total": "100"}
+    again = certify(exact, gap=1e-3, resume=state)
+    assert again.outcome is Outcome.CERTIFIED
+    assert again.lower >= found.lower
+    assert verify(certificate(again)).proves
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        ({"kind": "stretched"}, "a state of kind"),
+        ({"open": None}, "malformed"),
+        ({"durations": ["0.1", "0.1", "0.1"]}, "do not keep the limits"),
+        ({"durations": ["1", "1"]}, "malformed"),
+    ],
+)
+def test_a_bad_state_is_refused(change: dict[str, Any], reason: str) -> None:
+    exact = POSED["irb460-pso-353.limit-80.waypoints-rad"]
+    found = certify(exact, seconds=0.0)
+    assert found.resume is not None
+    with pytest.raises(TrajgapError, match=reason):
+        certify(exact, resume={**found.resume.document(), **change})
+
+
+def test_a_proof_that_is_not_one_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    name = "irb460-pso-353.limit-80.waypoints-rad"
+    found = stopped_at(name, monkeypatch)
+    assert found.resume is not None
+    state = json.loads(json.dumps(found.resume.document()))
+    state["proved"]["total"] = str(found.upper)
+    with pytest.raises(TrajgapError, match="does not prove its lower bound"):
+        certify(POSED[name], resume=state)
+    state["proved"]["leaves"][0] = None
+    with pytest.raises(TrajgapError, match="does not prove its lower bound"):
+        certify(POSED[name], resume=state)
 
 
 def test_no_time_gives_no_lower_bound() -> None:
@@ -309,7 +456,7 @@ def test_positions_that_no_direction_keeps_are_proved_infeasible() -> None:
 def test_what_is_not_covered_is_said() -> None:
     q = np.array([[0.2], [1.1], [-0.4], [0.7]])
     with pytest.raises(TrajgapError, match="covered are rest-to-rest"):
-        certify(Problem(q, Limits(1.0), cubic_spline(3, ((1, 0.25),))))
+        certify(Problem(q, Limits(1.0), uniform_cubic_b_spline(4, "timed")))
     with pytest.raises(TrajgapError, match="nothing limits"):
         certify(Problem(q, Limits(), three_five_three()))
 

@@ -102,7 +102,7 @@ def test_help_is_quick_and_documents_the_exit_codes() -> None:
         assert done.returncode == 0
         assert done.stderr == ""
     assert min(took) < 0.5
-    for command in ("cases", "show", "check", "solve", "audit", "new"):
+    for command in ("cases", "show", "check", "solve", "verify", "audit", "new"):
         assert f"\n  {command} " in done.stdout
     for line in ("0    done", "1    audit --strict", "2    bad input"):
         assert line in done.stdout
@@ -117,7 +117,7 @@ def test_help_imports_nothing_that_computes() -> None:
     assert done.stdout == "set()\n"
 
 
-@pytest.mark.parametrize("command", ["cases", "show", "check", "solve", "audit", "new"])
+@pytest.mark.parametrize("command", ["cases", "show", "check", "solve", "verify", "audit", "new"])
 def test_each_command_explains_itself(run: Run, command: str) -> None:
     code, out, err = run(command, "--help")
     assert (code, err) == (0, "")
@@ -789,7 +789,7 @@ def test_every_enum_is_documented() -> None:
 
 
 def test_the_schema_knows_each_document() -> None:
-    for name in ("cases", "show", "check", "solve", "audit"):
+    for name in ("cases", "show", "check", "solve", "certify", "verify", "audit"):
         assert {"$ref": f"#/$defs/{name}"} in SCHEMA["anyOf"]
     with pytest.raises(jsonschema.ValidationError):
         jsonschema.validate({"schema": "trajgap/1"}, SCHEMA)

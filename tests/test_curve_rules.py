@@ -8,11 +8,12 @@ from importlib.resources import files
 
 import numpy as np
 import pytest
-from trajgap.compare.finding import ClaimVerdict, Finding, Severity
+from trajgap.compare.finding import Basis, ClaimVerdict, Finding, Severity
 from trajgap.compare.rounding import Box, Rounding, judge_rounding
 from trajgap.compare.rules.continuous import continuous
 from trajgap.compare.rules.control_vertices import control_vertices, vertices
 from trajgap.compare.rules.digits import digits
+from trajgap.compare.rules.optimum import optimum
 from trajgap.compare.rules.text import text
 from trajgap.compare.study import Study
 from trajgap.nlp.interval import Ball
@@ -217,6 +218,29 @@ def test_jumps_are_named_apart_from_the_limits() -> None:
     assert limits["angles-deg-v-rad-a-rad-timed"].verdict is ClaimVerdict.SUPPORTED
     refuted = [rid for rid, f in limits.items() if f.verdict is ClaimVerdict.REFUTED]
     assert len(refuted) == 12
+    # Nothing in the paper says that the equal durations before the optimisation keep them.
+    assert not any(f.decides for f in of(found, "TG201", "before"))
+
+
+def test_the_printed_durations_are_optimal_under_no_reading() -> None:
+    """Under each, a shorter motion is exhibited, or no rounding lets them keep the limits."""
+    study = polish()
+    found = {f.reading: f for f in of(optimum(study), "TG302", "time-optimal")}
+    assert len(found) == 16
+    assert {f.verdict for f in found.values()} == {ClaimVerdict.REFUTED}
+    shorter = {rid for rid, f in found.items() if f.message.startswith("Not the shortest: after")}
+    # Angles in radians under limits in degrees: the printed total lies below the optimum.
+    assert {rid.rpartition("-")[0] for rid in found.keys() - shorter} == {
+        "angles-rad-v-rad-a-deg",
+        "angles-rad-v-deg-a-rad",
+        "angles-rad-v-deg-a-deg",
+    }
+    for rid in found.keys() - shorter:
+        assert found[rid].message.startswith("Not an answer within the limits: after")
+        assert found[rid].basis is Basis.ENCLOSURE
+    for rid in shorter:
+        jumps = "whose velocity may jump at the via-points" in found[rid].message
+        assert jumps == rid.endswith("stretched")
 
 
 def test_acceleration_said_to_jump_does_in_the_reading_that_stretches() -> None:
@@ -254,7 +278,7 @@ def test_a_case_without_waypoints_says_of_each_time_why_it_is_not_checkable() ->
     assert not of(found, "TG501", "improvement")
     assert not list(control_vertices(study))
     (improvement,) = of(digits(study), "TG103", "improvement")
-    assert improvement.verdict is ClaimVerdict.SUPPORTED
+    assert improvement.verdict is ClaimVerdict.NOT_CHECKABLE
 
 
 def test_a_posed_case_has_no_such_finding() -> None:

@@ -8,6 +8,7 @@ from trajgap.compare.finding import (
     Scope,
     Severity,
     judge,
+    weigh,
 )
 from trajgap.compare.gap import GapKind, Reference, gap
 from trajgap.compare.statistics import settled_at, share_of_pairs, spread
@@ -100,6 +101,36 @@ def test_a_claim_is_judged_reading_by_reading(found, verdict, scope) -> None:
 def test_findings_about_other_claims_or_beside_the_point_do_not_decide() -> None:
     findings = [finding(R, None, claim="other"), finding(R, None, decides=False), finding(S, None)]
     assert judge("c", findings, ["a"]).verdict is S
+
+
+def test_a_claim_that_nothing_decides_names_what_stands_beside_it() -> None:
+    beside = finding(S, None, decides=False, rule="TG403", message="replays")
+    judged = judge("c", [beside], ["a"])
+    assert (judged.verdict, judged.why) == (N, "TG403, which decides nothing: replays")
+    assert judge("c", [], ["a"]).why == "no rule applies to this claim"
+
+
+@pytest.mark.parametrize(
+    ("found", "errors"),
+    [
+        ([(R, "a"), (R, "b")], 2),
+        ([(R, "a"), (X, "b")], 2),
+        ([(R, "a"), (N, "b")], 0),
+        ([(R, "a"), (S, "b")], 0),
+        ([(R, "a")], 0),
+        ([(R, None)], 1),
+        ([(R, None), (S, "a")], 1),
+    ],
+)
+def test_a_severity_fits_the_verdict_on_the_claim(found, errors) -> None:
+    findings = [
+        finding(v, reading, severity=Severity.ERROR if v in (R, X) else Severity.INFO)
+        for v, reading in found
+    ]
+    weighed = weigh(findings, [judge("c", findings, ["a", "b"])])
+    assert sum(f.severity is Severity.ERROR for f in weighed) == errors
+    softened = sum(f.severity is Severity.WARNING for f in weighed)
+    assert errors + softened == sum(v in (R, X) for v, _ in found)
 
 
 def test_rule_ids_are_unique() -> None:

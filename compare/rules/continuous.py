@@ -91,9 +91,35 @@ def _judged(
     return verdict, severity, message
 
 
+def broken(study: Study, claim: AnyClaim, pid: str, rid: str) -> str | None:
+    """What shows that every input printing alike, rounded or cut off, breaks a limit; or None."""
+    if not isinstance(claim, DurationsClaim | MaximumClaim):
+        return None
+    verdict, _, message = _judged(study, claim, pid, rid)
+    return message if verdict is ClaimVerdict.REFUTED else None
+
+
+def said_to_keep(study: Study, claim: AnyClaim) -> bool:
+    """Whether durations are meant as an answer within the limits.
+
+    They are if an algorithm found them, or a statement about limits or optimality names them; a
+    paper that says of other durations that they keep the limits says nothing of these.
+    """
+    about = [
+        c.of
+        for c in study.case.claims
+        if isinstance(c, StatementClaim) and c.checks in ("within_limits", "optimal")
+    ]
+    return claim.algorithm is not None or not about or any(claim.id in named for named in about)
+
+
 def _limits(study: Study, claim: AnyClaim) -> Iterator[Finding]:
+    said = said_to_keep(study, claim)
     for pid, rid in study.claim_pairs(claim):
         verdict, severity, message = _judged(study, claim, pid, rid)
+        if not said:
+            verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
+            message += " Nothing printed says that these durations keep the limits."
         yield Finding(
             rule="TG201",
             severity=severity,
@@ -108,6 +134,7 @@ def _limits(study: Study, claim: AnyClaim) -> Iterator[Finding]:
             computed=_ratio(study, claim, pid, rid),
             gap=None,
             message=message,
+            decides=said,
         )
 
 
@@ -159,8 +186,9 @@ def _limits_statement(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             message = " ".join(f"{c.id} ({pid}): {m}" for c, pid, m in broken)
         elif all(v is ClaimVerdict.SUPPORTED for v in verdicts):
             verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
+            every = ", ".join(dict.fromkeys(c.id for c, _, _ in judged))
             message = (
-                f"All {len(judged)} printed sets of durations keep the limits for all t, or some "
+                f"Every printed set of durations ({every}) keeps the limits for all t, or some "
                 "input that prints alike does."
             )
         else:

@@ -203,7 +203,7 @@ def _improvements(study: Study) -> Iterator[Finding]:
                 what = f"The reduction between the printed totals {between}"
                 yield _compared("TG103", claim, number, rounded, cut, what, unit)
         if claim.percent is None and claim.seconds is None:
-            yield _unquantified(claim, slower, faster, between, seconds, _unit(study))
+            yield _unquantified(study, claim, slower, faster, seconds)
         tables = [_table_total(study, c.algorithm, c.problem) for c in (slower_claim, faster_claim)]
         totals = [_total(t) for t in tables if t is not None]
         if claim.percent is not None and len(totals) == 2 and None not in totals:
@@ -211,19 +211,22 @@ def _improvements(study: Study) -> Iterator[Finding]:
 
 
 def _unquantified(
-    claim: ImprovementClaim,
-    slower: Printed,
-    faster: Printed,
-    between: str,
-    seconds: Interval,
-    unit: str,
+    study: Study, claim: ImprovementClaim, slower: Printed, faster: Printed, seconds: Interval
 ) -> Finding:
+    unit = _unit(study)
+    between = f"{slower} and {faster} {unit}"
     if slower.text == faster.text:
         message = (
             f"The printed totals of the two algorithms are alike, {faster} {unit}: an improvement, "
             f"if any, is below {_shown(seconds.upper)} {unit}."
         )
         verdict, severity = ClaimVerdict.INCONSISTENT, Severity.WARNING
+    elif seconds.lower > 0 and not study.posed:
+        message = (
+            f"The printed totals are {between}, in the order that is claimed; neither can be "
+            "computed from the text."
+        )
+        verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
     elif seconds.lower > 0:
         message = f"The printed totals are {between}."
         verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ...nlp import Evidence, Solution
+from ...nlp import Evidence, Solution, weakest
 from ...problem import Coupling
 from ...problem.claim import (
     AnyClaim,
@@ -17,6 +17,16 @@ from ..finding import Basis, ClaimVerdict, Finding, Scope, Severity
 from ..gap import Gap, GapKind, Reference, gap
 from ..rounding import Rounding
 from ..study import Study
+from .continuous import broken
+
+_BELOW = (
+    " The whole printed interval lies below the best known total. That value is not a proven "
+    "bound; the limits, the reading or the printed digits differ, or a better optimum exists."
+)
+_BELOW_BOUND = (
+    " The whole printed interval lies below the proved lower bound of this problem as printed: "
+    "the limits, the reading or the digits of the way-points differ."
+)
 
 
 def optimum(study: Study) -> Iterator[Finding]:
@@ -31,7 +41,7 @@ def optimum(study: Study) -> Iterator[Finding]:
 
 def reference_of(solution: Solution) -> Reference | None:
     """The reference interval of a solution, or None where it has no positive time."""
-    best = solution.infimum if solution.infimum is not None else solution.total_time
+    best = solution.best
     return Reference(best, solution.lower_bound) if 0 < best < float("inf") else None
 
 
@@ -70,8 +80,8 @@ def _distance(
     distance = gap(interval, reference, feasible=kept)
     which = "with shared durations" if shared or claim.joint is None else f"of joint {claim.joint}"
     message = (
-        f"Printed {shown}; {solution.evidence} optimum {which} {reference.upper:.6f} s: "
-        f"{_named(distance)}."
+        f"Printed {shown}; {reference.evidence} optimum {which} {reference.upper:.6f} s"
+        f"{_bounded(reference)}: {_named(distance)}."
     )
     if not isinstance(claim, TotalTimeClaim):
         verdict = study.claim_check(claim, pid, rid)
@@ -82,13 +92,14 @@ def _distance(
                 f"({repaired.percent})."
             )
     severity = Severity.INFO
-    if distance.highest < 0:
-        severity = Severity.WARNING
+    if distance.highest < 0 and broken(study, claim, pid, rid) is not None:
         message += (
-            " The whole printed interval lies below the best known total. That value is not a "
-            "proven bound; the limits, the reading or the printed digits differ, or a better "
-            "optimum exists."
+            f" Below the {reference.evidence} total, which keeps the limits; these durations do "
+            "not."
         )
+    elif distance.highest < 0:
+        severity = Severity.WARNING
+        message += _BELOW if reference.lower is None else _BELOW_BOUND
     return Finding(
         rule="TG303" if shared else "TG302",
         severity=severity,
@@ -107,9 +118,18 @@ def _distance(
     )
 
 
+def _bounded(reference: Reference) -> str:
+    if reference.lower is None:
+        return ""
+    width = (reference.upper - reference.lower) / reference.upper
+    return f" (proved, gap {width:.1e})"
+
+
 def _named(distance: Gap) -> str:
     name = "gap" if distance.kind is GapKind.OPTIMALITY else "difference of reported time"
-    return f"{name} {distance.percent}"
+    return (
+        distance.percent if distance.percent.endswith("reference") else f"{name} {distance.percent}"
+    )
 
 
 def _beside_procedure(
@@ -123,9 +143,9 @@ def _beside_procedure(
     inside = low <= wide.highest and high >= wide.lowest
     tight = answer.check.tight_time
     message = (
-        f"Each joint at its own {answer.evidence} optimum, then the longest per segment, gives "
-        f"{wide.lowest:.4f} to {wide.highest:.4f} s while every joint stays within {wide.slack:g} "
-        f"s of its optimum, and {answer.total_time:.4f} s at the optima found"
+        f"Each joint at its own {answer.joint_evidence} optimum, then the longest per segment, "
+        f"gives {wide.lowest:.4f} to {wide.highest:.4f} s while every joint stays within "
+        f"{wide.slack:g} s of its optimum, and {answer.total_time:.4f} s at the optima found"
         + (f" (free rescaling of that motion: {tight:.4f} s)" if tight is not None else "")
         + f"; printed is {shown}, {'inside' if inside else 'outside'} that range."
     )
@@ -148,13 +168,15 @@ def _beside_procedure(
 
 
 def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Finding]:
-    """A feasible shorter answer to the same problem refutes "optimal"; its absence supports it.
+    """Refuted by a feasible shorter answer, or by durations that no rounding lets keep the limits.
 
     Shorter means: for every way-point that prints alike, the same checked durations, stretched as
-    far as those way-points may need, take less than the low end of the printed total.
+    far as those way-points may need, take less than the low end of the printed total. The shortest
+    answer within the limits is within the limits, so that durations which break them are not it.
     """
     for rid in study.readings:
-        longer, judged, open_ = [], 0, 0
+        longer, breaking, judged, open_ = [], [], 0, 0
+        evidence: list[Evidence] = []
         for claim in (study.case.claim(i) for i in statement.of):
             for pid, reading in study.claim_pairs(claim):
                 total = study.claim_total(claim, rid)
@@ -162,42 +184,43 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
                 if total is None or solution is None or solution.durations is None:
                     continue
                 judged += 1
-                shown, interval = total
-                problem = study.claim_problem(claim, pid, rid)
-                reached = study.reachable(problem, solution.durations, pid, rid)
-                best = solution.infimum or solution.total_time
-                if reached is not None and interval[0] > reached:
-                    distance = gap(
-                        interval, Reference(reached), feasible=_kept(study, claim, pid, rid)
-                    )
-                    longer.append(
-                        f"{claim.id} ({pid}): printed {shown}; a checked motion takes "
-                        f"{reached:.6f} s for every way-point that prints alike "
-                        f"({_named(distance)})"
-                    )
+                evidence.append(solution.evidence)
+                interval = total[1]
+                shorter = _shorter(study, claim, pid, rid, solution, total)
+                proof = broken(study, claim, pid, rid)
+                best = solution.best
+                if shorter is not None:
+                    longer.append(shorter)
+                elif proof is not None:
+                    breaking.append(f"{claim.id} ({pid}): {proof}")
                 elif not interval[0] <= best <= interval[1]:
                     open_ += 1
         if not judged:
             continue
-        if longer:
+        known = weakest(evidence)
+        if longer or breaking:
+            # What refutes is a motion that was checked, whatever is proved below it.
+            known = Evidence.BEST_KNOWN if longer else Evidence.NONE
             verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
-            message = "Not the shortest: " + "; ".join(longer) + "."
+            said = [f"Not the shortest: {'; '.join(longer)}."] if longer else []
+            said += [f"Not an answer within the limits: {' '.join(breaking)}"] if breaking else []
+            message = " ".join(said)
         elif open_:
             verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
             message = (
-                f"{open_} of {judged} printed totals differ from the best known optimum by no "
+                f"{open_} of {judged} printed totals differ from the {known} optimum by no "
                 "more than the rounding of the inputs explains, or lie below it."
             )
         else:
             verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
-            message = f"All {judged} printed totals agree with the best known optimum."
+            message = f"Every printed total agrees with the {known} optimum."
         yield Finding(
             rule="TG302",
             severity=severity,
             verdict=verdict,
             scope=Scope.SOME,
-            evidence=Evidence.BEST_KNOWN,
-            basis=Basis.OPTIMUM,
+            evidence=known,
+            basis=Basis.ENCLOSURE if breaking and not longer else Basis.OPTIMUM,
             claim=statement.id,
             problem=None,
             reading=rid,
@@ -206,3 +229,27 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
             gap=None,
             message=message,
         )
+
+
+def _shorter(
+    study: Study,
+    claim: AnyClaim,
+    pid: str,
+    rid: str,
+    solution: Solution,
+    total: tuple[str, tuple[float, float]],
+) -> str | None:
+    """A checked motion that is shorter whatever the way-points round from, if there is one."""
+    assert solution.durations is not None
+    shown, interval = total
+    problem = study.claim_problem(claim, pid, rid)
+    reached = study.reachable(problem, solution.durations, pid, rid)
+    if reached is None or interval[0] <= reached:
+        return None
+    distance = gap(interval, Reference(reached), feasible=_kept(study, claim, pid, rid))
+    jumps = solution.check is not None and any(j.order == 1 for j in solution.check.jumps)
+    kind = "a checked motion, whose velocity may jump at the via-points under this reading,"
+    return (
+        f"{claim.id} ({pid}): printed {shown}; {kind if jumps else 'a checked motion'} takes "
+        f"{reached:.6f} s for every way-point that prints alike ({_named(distance)})"
+    )
