@@ -278,7 +278,7 @@ class Laid:
             for i, w in enumerate(equal.tolist())
             if abs(w * unit) > _SMALLEST
         }
-        parts = np.maximum(dual[-4 * len(self.joints) * self.count :], 0.0)
+        parts = np.maximum(dual[dual.size - 4 * len(self.joints) * self.count :], 0.0)
         parts = parts.reshape(4, len(self.joints), self.count)
         lowest, highest = parts[0] + parts[2], parts[1] + parts[3]
         with np.errstate(invalid="ignore"):
