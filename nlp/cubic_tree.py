@@ -148,6 +148,8 @@ class Prover:
 
     def bound(self, box: Box, target: Target, weights: Weights) -> Fraction | None:
         """Proved bound of a target (of nothing: whether it is positive), in ticks."""
+        if weights.scale < 1 and target is not NOTHING:
+            return None
         value = least(self.system, self.total, target, weights, self.side(box), box.ranges)
         if not np.isfinite(value):
             return None
