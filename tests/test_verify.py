@@ -135,7 +135,8 @@ def mutate(kind: str, per_field: int, seed: int) -> Counter[str]:
 
 
 def test_every_kind_of_proof_is_attacked() -> None:
-    assert set(KINDS) == set(VERIFIERS)
+    # Trees of steps are altered in their own manner, in test_cubic_certificates.py.
+    assert {*KINDS, "cubic"} == set(VERIFIERS)
 
 
 @pytest.mark.parametrize("kind", KINDS)
