@@ -12,7 +12,13 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from . import verify_family_free, verify_rest_to_rest, verify_stretched, verify_three_piece
+from . import (
+    verify_cubic,
+    verify_family_free,
+    verify_rest_to_rest,
+    verify_stretched,
+    verify_three_piece,
+)
 from .verify_problem import Proved, Refused, need
 
 FORMAT = "trajgap-certificate-1"
@@ -41,6 +47,7 @@ VERIFIERS: dict[str, Verifier] = {
     "rest-to-rest": Verifier(verify_rest_to_rest.prove),
     "stretched": Verifier(verify_stretched.prove),
     "family-free": Verifier(verify_family_free.prove, Subject.ANY),
+    "cubic": Verifier(verify_cubic.prove),
 }
 """By ``proof.kind``."""
 
