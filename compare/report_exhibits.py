@@ -227,8 +227,8 @@ def _joint_path(study: Study, chain: Chain) -> _Path | None:
     q = problem.waypoints[:, order]
     labels = study.case.posing(study.problems[0], study.main_reading).waypoints.labels
     # Whole turns do not move the end.
-    turned = chain.lower + np.mod(q - chain.lower, 2 * np.pi)
-    outside = np.argwhere(np.isfinite(chain.lower) & (turned > chain.upper))
+    base = np.where(np.isfinite(chain.lower), chain.lower, q)
+    outside = np.argwhere(base + np.mod(q - base, 2 * np.pi) > chain.upper)
     if outside.size:
         k, j = outside[0]
         name = labels[k] if labels else f"way-point {k + 1}"

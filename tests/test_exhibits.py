@@ -56,7 +56,7 @@ def printed_vertices(shift: str = "0") -> list[Vertex]:
             digits = Printed(f"{exact + float(shift) * (j == k == 0):.2f}")
             half = Fraction(1, 50)
             allowed = Interval(Fraction(exact) - half, Fraction(exact) + half)
-            found.append(Vertex(label, k, digits, allowed))
+            found.append(Vertex(label, k, digits, allowed, allowed))
     return found
 
 
