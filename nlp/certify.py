@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from ..problem import Problem, TrajgapError
-from . import rest_to_rest, stretched_bound, three_piece_search
+from . import quintic_certify, rest_to_rest, stretched_bound, three_piece_search
 from .certified import GAP, Argument, Certified, Certifier, Progress, Request
 from .exact import ExactProblem, exact_problem
 
@@ -14,6 +14,7 @@ CERTIFIERS: tuple[Certifier, ...] = (
     rest_to_rest.CERTIFIER,
     three_piece_search.CERTIFIER,
     stretched_bound.CERTIFIER,
+    quintic_certify.CERTIFIER,
 )
 
 

@@ -12,7 +12,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from . import verify_rest_to_rest, verify_stretched, verify_three_piece
+from . import verify_quintic, verify_rest_to_rest, verify_stretched, verify_three_piece
 from .verify_problem import Proved, Refused, need
 
 FORMAT = "trajgap-certificate-1"
@@ -40,6 +40,7 @@ VERIFIERS: dict[str, Verifier] = {
     "three-piece": Verifier(verify_three_piece.prove),
     "rest-to-rest": Verifier(verify_rest_to_rest.prove),
     "stretched": Verifier(verify_stretched.prove),
+    "quintic-spline": Verifier(verify_quintic.prove),
 }
 """By ``proof.kind``."""
 
