@@ -291,10 +291,10 @@ def _spread(n, k, local, out, sign):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def _adjoint_part(n, r, e, inverse, matrix, phi, mu, gain):  # type: ignore[no-untyped-def]
-    """Energy bound of π = φ − M μ over the box, and its Taylor parts ``gain[k, order, a]``.
+def _adjoint_part(n, r, e, inverse, matrix, phi, rough, mu, gain):  # type: ignore[no-untyped-def]
+    """Energy bound of π = φ − M μ over the box, and its constant; Taylor parts into ``gain``.
 
-    ``gain[n, 0]`` onwards is not used; the constant part of π is returned beside it.
+    ``rough`` is φ with absolute values in its sums.
     """
     size = mu.size
     rest = np.zeros(size)
@@ -324,7 +324,7 @@ def _adjoint_part(n, r, e, inverse, matrix, phi, mu, gain):  # type: ignore[no-u
             i = place(k, a, n)
             if i < 0:
                 continue
-            v = abs(phi[k, a]) * (top if a < 2 else 1.0)
+            v = rough[k, a] * (top if a < 2 else 1.0)
             for b in range(4):
                 q = place(k, b, n)
                 if q >= 0:
@@ -420,7 +420,7 @@ def bound(  # type: ignore[no-untyped-def]
     kappa = coercivity(n, r, e, inverse, matrix)
     if not kappa > 0.0:
         return -np.inf
-    phi = np.zeros((joints, n, 4))
+    phi, rough = np.zeros((joints, n, 4)), np.zeros((joints, n, 4))
     curve, against = np.zeros((n, 5)), np.zeros(n)
     absolute = abs(tau) * total
     active = np.zeros(joints, np.bool_)
@@ -429,6 +429,7 @@ def bound(  # type: ignore[no-untyped-def]
         active[j] = True
         for a in range(4):
             phi[j, k, a] += w * shape[i, a + 1]
+            rough[j, k, a] += abs(w * shape[i, a + 1])
         curve[k, 2] += w * shape[i, 0] * step[k, j]
         top = r[k] + e[k]
         absolute += abs(w * shape[i, 0] * step[k, j]) * top * top
@@ -452,7 +453,7 @@ def bound(  # type: ignore[no-untyped-def]
                 if i >= 0:
                     right[i] += phi[j, k, a] * (r[k] if a < 2 else 1.0)
         apply_inverse(inverse, right, mu)
-        adjoint, rest = _adjoint_part(n, r, e, inverse, matrix, phi[j], mu, gain)
+        adjoint, rest = _adjoint_part(n, r, e, inverse, matrix, phi[j], rough[j], mu, gain)
         residual = _residual_part(n, r, e, inverse, matrix, step[:, j], x0[j], slope[j], reach)
         error += adjoint * residual
         wide = np.abs(x0[j])
@@ -470,7 +471,7 @@ def bound(  # type: ignore[no-untyped-def]
                     continue
                 degree = 1 if a < 2 else 0
                 curve[k, degree] += phi[j, k, a] * x0[j, i]
-                absolute += abs(phi[j, k, a]) * (top if a < 2 else 1.0) * wide[i]
+                absolute += rough[j, k, a] * (top if a < 2 else 1.0) * wide[i]
                 curve[k, LOAD_POWERS[a]] += mu[i] * LOAD[a] * step[k, j]
                 for b in range(4):
                     q = place(k, b, n)

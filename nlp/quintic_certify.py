@@ -14,12 +14,12 @@ from ..problem import Interpolant, Problem, TrajgapError, Verdict, check, evalua
 from .certified import Certified, Certifier, Outcome, Progress, Request
 from .exact import ExactProblem, decimal
 from .incumbent import float_problem, keeps_limits, prove_feasible
-from .quintic_leaves import MOST_SEGMENTS, Leaves
+from .quintic_leaves import Leaves
 from .quintic_search import DONE, FULL, PAUSED, SHORTER, search
 from .quintic_windows import Windows, windows
 from .solve import solve
 from .verify_problem import Declaration, Refused, Stated, number
-from .verify_quintic import SMALLEST, prove_total
+from .verify_quintic import MOST_JOINTS, MOST_SEGMENTS, SMALLEST, prove_total
 
 Array = NDArray[np.float64]
 
@@ -107,8 +107,8 @@ def _missing(problem: ExactProblem) -> str | None:
     inner = ((),) * (problem.segments - 1)
     if problem.interpolant.prescribed != (_REST, *inner, _REST):
         return f"{problem.curve.name}: only rest with zero acceleration at both ends is covered"
-    if problem.segments > MOST_SEGMENTS:
-        return f"more than {MOST_SEGMENTS} segments"
+    if problem.segments > MOST_SEGMENTS or len(problem.joints) > MOST_JOINTS:
+        return f"more than {MOST_SEGMENTS} segments or {MOST_JOINTS} joints"
     q = problem.waypoints
     sizes = [abs(b - a) for k in range(len(q) - 1) for a, b in zip(q[k], q[k + 1], strict=True)]
     sizes += [x.high for row in problem.limits for x in row if x is not None]

@@ -15,7 +15,6 @@ from .quintic_windows import UNIT, Windows
 _ROOM = (1 << 12, 1 << 12, 1 << 13)
 LETTERS = ".abcdefghijklmnopqrstuvwxyz"
 """A leaf, and the duration that is cut."""
-MOST_SEGMENTS = len(LETTERS) - 1
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,6 +22,8 @@ Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 ROUND, SLACK, PLACES, UNIT, BATCH = 1e-12, 1e-12, 1024, 65536.0, 256
+MOST_SEGMENTS, MOST_JOINTS = 26, 12
+"""What the number of roundings was counted for."""
 SMALLEST = Fraction(1, 10**30)
 """Steps and limits are 0 or above it, so that nothing underflows."""
 
@@ -173,6 +175,7 @@ class _Task:
             [whole(w[0], 0, joints - 1), *(whole(x, -(2**20), 2**20) for x in w[1:])]
             for w in proof["windows"]
         ]
+        need(n <= MOST_SEGMENTS and joints <= MOST_JOINTS, "too many segments or joints")
         need(all(len(w) == 2 * n + 2 for w in self.windows), "windows: shape")
         tops = (n - 1, joints - 1, 3, 1, PLACES)
         bottoms = (0, 0, 1, -1, 0)
@@ -192,8 +195,10 @@ class _Task:
         for order in (1, 2, 3):
             at = self.rows[:, 2] == order
             for p in range(order, 6):
+                # Few digits: multiples of 2⁻⁵⁰ or so, every sum and product is exact.
                 factor = float(np.prod(np.arange(p - order + 1, p + 1)))
-                self.shapes[at] += factor * s[at, None] ** (p - order) * _HERMITE[None, 1:, p]
+                power = np.prod(np.repeat(s[at, None], p - order, axis=1), axis=1)
+                self.shapes[at] += factor * power[:, None] * _HERMITE[None, 1:, p]
         self.shapes *= self.rows[:, 3:4]
 
     def check(self, boxes: Array, leaves: list[Any]) -> None:
@@ -376,13 +381,14 @@ class _Bound:
             mine = j == joint
             if not mine.any():
                 continue
-            phi = np.zeros((2, self.size, n, 2 * n - 2))  # velocities times r, accelerations
+            # Of velocities times r and of accelerations, then both in absolute values.
+            phi = np.zeros((4, self.size, n, 2 * n - 2))
             for segment in range(n):
                 for a, i in self.places[segment]:
                     on = mine & (k == segment)
                     np.add.at(phi[a // 2, :, segment, i], self.at[on], shape[on, a + 1])
+                    np.add.at(phi[2 + a // 2, :, segment, i], self.at[on], np.abs(shape[on, a + 1]))
             found = self._joint(task.steps[:, joint], phi)
-            value += found["constant"]
             alone += found["alone"]
             first += found["first"]
             second += found["second"]
@@ -418,7 +424,7 @@ class _Bound:
         rest = full.sum(axis=1) - np.einsum("lij,lj->li", self.m0, mu)
         gain = -np.einsum("olkij,lj->olki", stiff[1:], mu)
         gain[0] += phi[0]
-        high = np.abs(phi[1]) + np.abs(phi[0]) * (r + e)[:, :, None]
+        high = phi[3] + phi[2] * (r + e)[:, :, None]
         weak = high.sum(axis=1) + np.einsum("lij,lj->li", self.stiff_top, np.abs(mu))
         outer = np.abs(self.root)
         adjoint = np.linalg.norm(
@@ -454,7 +460,6 @@ class _Bound:
         cubic = np.einsum("lkm,lk,lm->l", np.abs(mixed[1]), e**2, e)
         cubic += np.einsum("lkm,lk,lm->l", np.abs(mixed[2]), e**3, e)
         return {
-            "constant": np.zeros(self.size),
             "alone": alone,
             "first": np.einsum("li,lmi->lm", rest, slope),
             "second": mixed[0] + np.swapaxes(mixed[0], 1, 2),
