@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import runpy
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -24,6 +26,7 @@ from trajgap.nlp.verify import seal, verify
 from trajgap.problem import Limits, Problem, TrajgapError, evaluate, quintic_spline
 
 module = import_module("trajgap.nlp.quintic_certify")
+ROOT = Path(__file__).parent.parent
 ENDS = [(1, 0.0), (2, 0.0)]
 
 
@@ -151,6 +154,19 @@ def test_dense_search_stays_within_the_interval() -> None:
 @pytest.mark.slow
 def test_dense_search_stays_within_two_hundred_intervals() -> None:
     attacked(range(100, 300), 0.005)
+
+
+@pytest.mark.slow
+def test_a_row_of_the_docs_is_proved_again() -> None:
+    page = (ROOT / "docs" / "certificates-quintic.md").read_text("utf-8")
+    problems = runpy.run_path(str(ROOT / "benchmarks" / "quintic_instances.py"))["instances"]()
+    assert sum(f"| {problem.name} | [" in page for problem in problems) == 20
+    problem = next(p for p in problems if p.name == "step 3.0 rad, number 2")
+    found = certify(problem, gap=0.1, seconds=600.0)
+    assert found.upper is not None
+    interval = f"[{float(found.lower):.6f}, {float(found.upper):.6f}]"
+    assert f"| {problem.name} | {interval} |" in page
+    assert verify(json.loads(json.dumps(certificate(found)))).proves
 
 
 def small() -> Problem:
