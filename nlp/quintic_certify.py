@@ -114,8 +114,12 @@ def _missing(problem: ExactProblem) -> str | None:
     sizes += [x.high for row in problem.limits for x in row if x is not None]
     if not all(x == 0 or SMALLEST < x < 1 / SMALLEST for x in sizes):
         return "a step or a limit is of unusual size"
+    if all(problem.duration_lower):
+        return None
     if not np.isfinite(_limits(problem)).any() and not any(problem.duration_lower):
         return "nothing limits the total from below"
+    if not (np.isfinite(_limits(problem)[:, :2]) & _steps(problem).any(axis=0)[:, None]).any():
+        return "no joint that moves has a velocity or acceleration limit"
     return None
 
 

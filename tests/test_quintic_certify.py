@@ -265,6 +265,9 @@ def test_what_is_not_covered_is_said() -> None:
     assert covered(exact_problem(problem)) is None
     free = replace(problem, limits=Limits([np.inf] * 2, [np.inf] * 2))
     assert "nothing limits" in str(covered(exact_problem(free)))
+    jerk = replace(problem, limits=Limits([np.inf] * 2, [np.inf] * 2, [9.0] * 2))
+    assert "no joint that moves" in str(covered(exact_problem(jerk)))
+    assert covered(exact_problem(replace(jerk, duration_lower=np.full(3, 0.1)))) is None
     huge = replace(problem, waypoints=problem.waypoints * 1e31)
     assert "unusual size" in str(covered(exact_problem(huge)))
     many = Problem(np.zeros((30, 1)), Limits(1.0, 1.0), quintic_spline(29))
