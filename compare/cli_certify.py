@@ -7,13 +7,14 @@ import signal
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from fractions import Fraction
 from pathlib import Path
 from types import FrameType
 from typing import Any
 
 from ..nlp import Certified, ExactProblem, Outcome, Progress, certify, printed_problem, verify
-from ..nlp.certificate import certificate_text, question
+from ..nlp.certificate import certificate, certificate_text, question
 from ..nlp.certify import covered
 from ..nlp.state_file import STATE_FORMAT, StateFile, read_state, state_document
 from ..nlp.verify import FORMAT, Verdict
@@ -80,10 +81,14 @@ def certify_case(
                         report=stop.reporting(one.name, step),
                     )
                 )
+                why = None
+                if not isinstance(found, str):
+                    step.tell(f"{one.name}: the proof is checked")
+                    found, why = _checked(found)
                 unsettled |= isinstance(found, str) or found.outcome not in _SETTLED
                 files = _written(folder, one.name, found)
                 ids = (case.id, one.posed.problem_id, one.posed.reading_id, one.joint)
-                results.append(proof_documents.certify_result(*ids, found, *files))
+                results.append(proof_documents.certify_result(*ids, found, *files, why))
         document = proof_documents.certify_document(results)
         write(json_text(document))
     emit(document, cli_proofs.certified, as_json)
@@ -125,6 +130,17 @@ def _states(resume: Sequence[Path], asked: Sequence[Question]) -> dict[str, Stat
             )
         found |= dict.fromkeys(fits, state)
     return found
+
+
+def _checked(found: Certified) -> tuple[Certified, str | None]:
+    """Nothing is called certified that the verifier does not prove again."""
+    if found.proof is None:
+        return found, None
+    verdict = verify(certificate(found))
+    if verdict.proves:
+        return found, None
+    nothing = replace(found, outcome=Outcome.OPEN, lower=Fraction(0), proof=None)
+    return nothing, f"the proof found is refused: {verdict.reason}"
 
 
 def _file(folder: Path, name: str, kind: str = "") -> Path:

@@ -19,7 +19,7 @@ _COLUMNS = (">lower s", ">upper s", ">gap", ">nodes", ">open", ">seconds", "outc
 
 def certified(document: Document) -> list[RenderableType]:
     """Summary of the `solve --certify` document."""
-    results = document["certified"]
+    results = document["intervals"]
     if not results:
         return [_line("nothing was begun", "dim")]
     joint = any(r["joint"] is not None for r in results)

@@ -213,15 +213,20 @@ def _time_goes(waterfalls: Sequence[Document]) -> list[RenderableType]:
     """Where the time goes, for each problem under its first reading."""
     first = {fall["problem"]: fall for fall in reversed(waterfalls)}
     falls = [fall for fall in waterfalls if first[fall["problem"]] is fall]
-    times = [{step["name"]: step["time"] for step in fall["steps"]} for fall in falls]
-    names = dict.fromkeys(name for one in times for name in one)
+    steps = [{step["name"]: step for step in fall["steps"]} for fall in falls]
+    names = dict.fromkeys(name for one in steps for name in one)
     if not names:
         return []
-    rows = [
-        (name, *(_seconds(one[name]) if name in one else "" for one in times)) for name in names
-    ]
-    columns = [f">{fall['problem']}" for fall in falls]
+    rows = [(name, *(cell for one in steps for cell in _worth(one.get(name)))) for name in names]
+    columns = [column for fall in falls for column in (f">{fall['problem']}", "evidence")]
     return [_Columns((f"where the time goes, s ({falls[0]['reading']})", *columns), rows)]
+
+
+def _worth(step: Document | None) -> tuple[str, str]:
+    """Time of a step, and the word for what stands behind it, if any does."""
+    if step is None:
+        return "", ""
+    return _seconds(step["time"]), "" if step["evidence"] == "none" else step["evidence"]
 
 
 # --- cells ----------------------------------------------------------------------------------------

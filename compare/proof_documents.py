@@ -38,7 +38,7 @@ def certify_document(results: Iterable[Document]) -> Document:
     -------
     dict
     """
-    return {"schema": SCHEMA, "certified": list(results)}
+    return {"schema": SCHEMA, "intervals": list(results)}
 
 
 def certify_result(
@@ -49,6 +49,7 @@ def certify_result(
     found: Certified | str,
     certificate: str | None,
     state: str | None,
+    why: str | None = None,
 ) -> Document:
     """What was proved of one problem under one reading.
 
@@ -62,6 +63,8 @@ def certify_result(
         Or why the problem is not covered.
     certificate, state : str or None
         Files that were written.
+    why : str or None
+        Why the outcome is what it is, where that needs to be said.
 
     Returns
     -------
@@ -81,7 +84,7 @@ def certify_result(
     return {
         **head,
         "outcome": str(found.outcome),
-        "outcome_why": None,
+        "outcome_why": why,
         **_number("lower", lower, "nothing is proved yet", -1),
         **_number("upper", upper, none, 1),
         **(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator
+from decimal import ROUND_FLOOR, Decimal
 
 import numpy as np
 
@@ -63,6 +64,7 @@ def _steps(fall: Waterfall) -> Grid:
 
 # --- optima ---------------------------------------------------------------------------------------
 
+NINE = Decimal("1e-9")
 _ANSWER = ("status", "total", "evidence", "durations, s", "check", "KKT residual", "starts at best")
 
 
@@ -72,6 +74,8 @@ def _answer(solution: Solution) -> tuple[Cell, ...]:
     total = None if solution.durations is None else seconds(solution.total_time)
     if solution.infimum is not None:
         total = f"{solution.infimum:.6f} s (infimum)"
+    if total is not None and solution.lower_bound is not None:
+        total += f"\nat least {Decimal(solution.lower_bound).quantize(NINE, ROUND_FLOOR)} s, proved"
     return (
         text(solution.status + (f"\n{solution.why}" if solution.why else "")),
         number(total),
@@ -182,7 +186,7 @@ def sensitivities(one: CaseAudit) -> Section:
                 )
             )
     note = Prose(
-        "First-order change of the best known total for 10 % more of each limit that is reached, "
+        "First-order change of the total for 10 % more of each limit that is reached, "
         "from the multipliers of the optimum with shared durations.",
         "note",
     )

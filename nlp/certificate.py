@@ -10,7 +10,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from ..problem import Interpolant, TrajgapError
+from ..problem import Curve, Interpolant, TrajgapError
+from ..problem.uniform import StretchedUniformBSpline, TimedUniformBSpline
 from .certified import Certified, Outcome
 from .exact import ExactProblem, Real, decimal
 from .verify import FORMAT, Subject, seal
@@ -42,7 +43,7 @@ def problem_document(problem: ExactProblem) -> dict[str, Any]:
         "name": problem.name,
         "unit": problem.unit,
         "joints": list(problem.joints),
-        **(_declaration(curve) if isinstance(curve, Interpolant) else {"curve": curve.name}),
+        **(_declaration(curve) if isinstance(curve, Interpolant) else {"curve": _named(curve)}),
         "waypoints": [[decimal(q) for q in row] for row in problem.waypoints],
         "limits": [[_real(x) for x in row] for row in problem.limits],
         "position_lower": [_real(x) for x in problem.position_lower],
@@ -50,6 +51,12 @@ def problem_document(problem: ExactProblem) -> dict[str, Any]:
         "duration_lower": [decimal(x) for x in problem.duration_lower],
         "duration_upper": [None if x is None else decimal(x) for x in problem.duration_upper],
     }
+
+
+def _named(curve: Curve) -> str:
+    """Words that tell a curve from every other: its name, or all its fields."""
+    uniform = isinstance(curve, StretchedUniformBSpline | TimedUniformBSpline)
+    return curve.name if uniform else repr(curve)
 
 
 def _declaration(interpolant: Interpolant) -> dict[str, Any]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 from itertools import pairwise
-from math import comb, factorial, perm
+from math import comb, lcm, perm
 from typing import Any
 
 from .verify_problem import Stated, need, number
@@ -109,20 +109,28 @@ def at(poly: Sequence[Fraction], t: Fraction) -> Fraction:
     return sum((c * t**p for p, c in enumerate(poly)), Fraction(0))
 
 
-def nonnegative(poly: Sequence[Fraction], low: Fraction, high: Fraction, depth: int = 60) -> bool:
-    """Whether a polynomial is ≥ 0 on [low, high]: Bernstein coefficients, by bisection."""
+def nonnegative(poly: Sequence[Fraction], high: Fraction, depth: int = 60) -> bool:
+    """Whether a polynomial is ≥ 0 on [0, high]: Bernstein coefficients, by bisection."""
     n = len(poly) - 1
-    taylor = [at(derivative(poly, k), low) * (high - low) ** k / factorial(k) for k in range(n + 1)]
-    control = [
-        sum((Fraction(comb(i, k), comb(n, k)) * taylor[k] for k in range(i + 1)), Fraction(0))
-        for i in range(n + 1)
-    ]
-    if min(control) >= 0:
-        return True
-    if depth == 0 or control[0] < 0 or control[-1] < 0:
-        return False
-    middle = (low + high) / 2
-    return nonnegative(poly, low, middle, depth - 1) and nonnegative(poly, middle, high, depth - 1)
+    scaled = [c * high**p for p, c in enumerate(poly)]
+    unit = lcm(*(c.denominator for c in scaled)) * lcm(*(comb(n, k) for k in range(n + 1)))
+    whole = [int(c * unit) for c in scaled]
+    # Integers from here on: positive multiples of the coefficients.
+    control = [sum(comb(i, k) * whole[k] // comb(n, k) for k in range(i + 1)) for i in range(n + 1)]
+    left = [(control, depth)]
+    while left:
+        row, more = left.pop()
+        if min(row) >= 0:
+            continue
+        if more == 0 or row[0] < 0 or row[-1] < 0:
+            return False
+        low, top = [], []
+        for k in range(n, -1, -1):
+            low.append(row[0] << k)
+            top.append(row[-1] << k)
+            row = [x + y for x, y in pairwise(row)]
+        left += [(low, more - 1), (top[::-1], more - 1)]
+    return True
 
 
 def check_durations(problem: Stated, h: Sequence[Fraction]) -> None:
@@ -171,7 +179,7 @@ def check_answer(problem: Stated, h: Sequence[Fraction]) -> None:
                 rest = [-sign * c for c in derivative(piece, order)]
                 rest[0] += limit
                 need(
-                    nonnegative(rest, Fraction(0), h[k]),
+                    nonnegative(rest, h[k]),
                     f"answer: joint {j + 1}, segment {k + 1}, derivative {order} exceeds its limit",
                 )
 

@@ -10,11 +10,11 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
-from .verify_answer import at, check_durations, derivative, nonnegative, read_answer
-from .verify_problem import Proved, Stated, need, number, read_problem, whole
+from .verify_answer import at, check_durations, derivative, nonnegative
+from .verify_problem import Proved, Stated, need, read_problem
+from .verify_segments import prove_segments
 
 CURVE = "uniform cubic B-spline, segments stretched in time"
-PLACES = 2**20
 
 
 def prove(document: dict[str, Any]) -> Proved:
@@ -33,22 +33,14 @@ def prove(document: dict[str, Any]) -> Proved:
     Refused
         If it does not prove its claim.
     """
-    problem, claim = read_problem(document["problem"]), document["claim"]
+    problem = read_problem(document["problem"])
     need(problem.curve == CURVE, "declaration not covered: no stretched uniform cubic B-spline")
     curves = [_pieces(list(column)) for column in zip(*problem.waypoints, strict=True)]
-    least = _least(problem, curves, document["proof"]["segments"])
-    lower = number(claim["lower"])
-    need(lower <= sum(least), "the lower bound exceeds the total that is proved")
-    answer = read_answer(claim)
-    if claim["infeasible"] is True:
-        need(answer is None, "infeasible, but with an answer")
-        late = any(u is not None and x > u for x, u in zip(least, problem.longest, strict=True))
-        need(late, "infeasible only if a segment needs more than its upper bound")
-        return Proved(lower, None, True)
-    if answer is None:
-        return Proved(lower)
-    _check(problem, curves, answer[0])
-    return Proved(lower, answer[1])
+
+    def peak(joint: int, segment: int, order: int, e: Fraction) -> Fraction:
+        return abs(at(derivative(curves[joint][segment], order), e))
+
+    return prove_segments(document, problem, peak, lambda h: _check(problem, curves, h))
 
 
 def _pieces(q: Sequence[Fraction]) -> list[list[Fraction]]:
@@ -79,28 +71,6 @@ def _pieces(q: Sequence[Fraction]) -> list[list[Fraction]]:
     return found
 
 
-def _least(
-    problem: Stated, curves: Sequence[Sequence[Sequence[Fraction]]], bounds: Any
-) -> list[Fraction]:
-    """Least duration of every segment: limit·hʳ ≥ |derivative in e at a place|."""
-    need(len(bounds) == len(problem.longest), "one bound per segment")
-    out = []
-    for k, (joint, order, place, text) in enumerate(bounds):
-        x = number(text)
-        need(x >= 0, f"segment {k + 1}: a negative duration")
-        if whole(joint, -1, len(problem.limits) - 1) == -1:
-            need(x <= problem.shortest[k], f"segment {k + 1}: above its lower bound")
-        else:
-            bound = problem.limits[joint][whole(order, 1, 3) - 1]
-            need(bound is not None and bound[1] > 0, "a limit that is not there")
-            assert bound is not None
-            e = Fraction(whole(place, 0, PLACES), PLACES)
-            peak = abs(at(derivative(curves[joint][k], order), e))
-            need(bound[1] * x**order <= peak, f"segment {k + 1}: its least duration is not proved")
-        out.append(x)
-    return out
-
-
 def _check(
     problem: Stated, curves: Sequence[Sequence[Sequence[Fraction]]], h: Sequence[Fraction]
 ) -> None:
@@ -120,6 +90,6 @@ def _check(
                 rest = [-sign * c for c in derivative(piece, order)]
                 rest[0] += limit
                 need(
-                    nonnegative(rest, Fraction(0), Fraction(1)),
+                    nonnegative(rest, Fraction(1)),
                     f"answer: joint {j + 1}, segment {k + 1}, derivative {order} exceeds its limit",
                 )

@@ -150,6 +150,14 @@ def test_shipped_certificates_are_fresh_and_prove() -> None:
         assert verdict.upper is not None
         assert verdict.upper - verdict.lower <= verdict.upper / 10**6
         assert len(json.dumps(document)) < 200_000
+    files = {path.stem: json.loads(path.read_text("utf-8")) for path in all_files()}
+    about = {n for n, d in files.items() if d["claim"]["subject"] == Subject.DECLARED}
+    assert about == set(POSED), "a certificate of a problem that is not shipped"
+    assert all(path.stat().st_size <= 200_000 for path in all_files())
+
+
+def all_files() -> list[Path]:
+    return sorted(shipped_folder().glob("*.json"))
 
 
 def test_the_table_in_the_docs_is_that_of_the_files() -> None:

@@ -14,8 +14,9 @@ from typing import Any
 import pytest
 from trajgap.compare import cli_certify
 from trajgap.compare.proof_documents import NOT_COVERED, Worth
-from trajgap.nlp import Outcome, Subject, shipped
+from trajgap.nlp import ExactProblem, Outcome, Subject, shipped, three_piece
 from trajgap.nlp.state_file import read_state
+from trajgap.nlp.three_piece import Row, exact_row
 from trajgap.nlp.verify import seal, verify
 from trajgap.problem import TrajgapError
 
@@ -44,8 +45,8 @@ def test_each_joint_is_certified_and_its_file_proves(run: Run) -> None:
     assert out.endswith("certificates: trajgap-certificates\n")
     document = strict(Path("c.json").read_text())
     assert_valid(document, "certify")
-    assert [r["joint"] for r in document["certified"]] == ["a", "b"]
-    for result in document["certified"]:
+    assert [r["joint"] for r in document["intervals"]] == ["a", "b"]
+    for result in document["intervals"]:
         assert result["outcome"] == "certified"
         assert result["gap"] <= 1e-3
         assert result["lower"] <= sum(result["segment_durations"]) <= result["upper"] * (1 + 1e-12)
@@ -53,7 +54,7 @@ def test_each_joint_is_certified_and_its_file_proves(run: Run) -> None:
         verdict = verify(result["certificate"])
         assert str(verdict).startswith("proves: ")
         assert str(Fraction(result["lower_exact"])) == str(verdict.lower)
-    files = [r["certificate"] for r in document["certified"]]
+    files = [r["certificate"] for r in document["intervals"]]
     code, out, err = run("verify", *files)
     assert (code, err) == (0, "")
     assert [line.partition(": proves: ")[0] for line in out.splitlines()] == files
@@ -63,7 +64,7 @@ def test_shared_durations_are_one_question(run: Run) -> None:
     arguments = ("--coupling", "shared", "--gap", "0.01", "--json")
     code, out, _ = run("solve", "mine.toml", "--certify", *arguments)
     assert code == 0
-    (result,) = strict(out)["certified"]
+    (result,) = strict(out)["intervals"]
     assert result["joint"] is None
     assert result["certificate"] is None
     assert not Path("trajgap-certificates").exists(), "with --json only where told"
@@ -99,8 +100,8 @@ def test_a_curve_that_is_not_covered_is_named(run: Run) -> None:
     assert code == cli_certify.NOT_PROVED
     document = strict(out)
     assert_valid(document, "certify")
-    assert document["certified"][0]["outcome"] == NOT_COVERED
-    assert "time a B-spline too" in document["certified"][0]["lower_why"]
+    assert document["intervals"][0]["outcome"] == NOT_COVERED
+    assert "time a B-spline too" in document["intervals"][0]["lower_why"]
 
 
 def test_a_time_limit_leaves_a_state_to_go_on_from(run: Run) -> None:
@@ -113,6 +114,23 @@ def test_a_time_limit_leaves_a_state_to_go_on_from(run: Run) -> None:
     assert code == 0
     assert "certified" in out
     assert verify(f"trajgap-certificates/{NAME}.json").proves
+
+
+def test_a_proof_that_the_verifier_refuses_is_not_called_certified(
+    run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(problem: ExactProblem, row: Row, total: Fraction) -> three_piece.Poly:
+        return exact_row(problem, row, total * Fraction(9, 10))
+
+    monkeypatch.setattr(three_piece, "exact_row", broken)
+    code, out, _ = run("solve", *ONE, "--certify", "--gap", "0.1", "--out", "c.json")
+    assert code == cli_certify.NOT_PROVED
+    assert "certified" not in out
+    assert "the proof found is refused" in out
+    document = strict(Path("c.json").read_text())
+    assert_valid(document, "certify")
+    assert document["intervals"][0]["outcome"] == "open"
+    assert document["intervals"][0]["lower"] is None
 
 
 def test_a_narrower_certificate_stays(run: Run) -> None:
@@ -156,7 +174,7 @@ def test_ctrl_c_leaves_the_interval_and_a_state(run: Run) -> None:
     assert process.returncode == 130
     assert err.endswith("trajgap: interrupted\n")
     assert "interval" in out
-    (result,) = strict(Path("answer.json").read_text())["certified"]
+    (result,) = strict(Path("answer.json").read_text())["intervals"]
     assert 0 < result["lower"] < result["upper"]
     assert verify(result["certificate"]).proves
     code, _, _ = run("solve", *ONE, "--certify", "--gap", "0.01", "--resume", result["state"])

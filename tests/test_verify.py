@@ -20,6 +20,7 @@ from trajgap.nlp.certificate import shipped, write_certificate
 from trajgap.nlp.certify import certify
 from trajgap.nlp.exact import ExactProblem
 from trajgap.nlp.verify import VERIFIERS, seal, verify
+from trajgap.nlp.verify_answer import nonnegative
 from trajgap.problem import Limits, Problem, three_five_three
 
 from tests.certificate_kinds import KINDS, stated, text
@@ -266,6 +267,17 @@ def test_what_favours_the_claim_is_refused_of_every_shipped_certificate() -> Non
             proves, why = tampered(data, tamper)
             assert not proves, f"{name}: {what}"
             assert reason in why, f"{name}: {what}: {why}"
+
+
+def test_polynomials_are_judged_exactly() -> None:
+    # 4s(1 − s) touches 0 at both ends, (s − 1/3)² inside; a hair less does not pass.
+    hair = Fraction(1, 10**15)
+    assert nonnegative([Fraction(0), Fraction(4), Fraction(-4)], Fraction(1))
+    assert not nonnegative([-hair, Fraction(4), Fraction(-4)], Fraction(1))
+    assert nonnegative([Fraction(1, 9) + hair, Fraction(-2, 3), Fraction(1)], Fraction(2))
+    assert not nonnegative([Fraction(1, 9) - hair, Fraction(-2, 3), Fraction(1)], Fraction(2))
+    assert nonnegative([Fraction(1), Fraction(-1)], Fraction(1))
+    assert not nonnegative([Fraction(1), Fraction(-1)], 1 + hair)
 
 
 def test_a_harmless_change_is_reported() -> None:
