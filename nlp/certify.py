@@ -6,7 +6,13 @@ from collections.abc import Callable
 from typing import Any
 
 from ..problem import Problem, TrajgapError
-from . import cubic_certify, rest_to_rest, stretched_bound, three_piece_search
+from . import (
+    cubic_certify,
+    quintic_certify,
+    rest_to_rest,
+    stretched_bound,
+    three_piece_search,
+)
 from .certified import GAP, Argument, Certified, Certifier, Progress, Request
 from .exact import ExactProblem, exact_problem
 
@@ -15,6 +21,7 @@ CERTIFIERS: tuple[Certifier, ...] = (
     three_piece_search.CERTIFIER,
     stretched_bound.CERTIFIER,
     cubic_certify.CERTIFIER,
+    quintic_certify.CERTIFIER,
 )
 
 

@@ -15,6 +15,7 @@ from typing import Any
 from . import (
     verify_cubic,
     verify_family_free,
+    verify_quintic,
     verify_rest_to_rest,
     verify_stretched,
     verify_three_piece,
@@ -48,6 +49,7 @@ VERIFIERS: dict[str, Verifier] = {
     "stretched": Verifier(verify_stretched.prove),
     "family-free": Verifier(verify_family_free.prove, Subject.ANY),
     "cubic": Verifier(verify_cubic.prove),
+    "quintic-spline": Verifier(verify_quintic.prove),
 }
 """By ``proof.kind``."""
 

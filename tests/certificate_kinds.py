@@ -21,6 +21,7 @@ from trajgap.problem import (
     Problem,
     closed_form,
     evaluate,
+    quintic_spline,
     rest_to_rest,
     three_five_three,
     uniform_cubic_b_spline,
@@ -62,6 +63,12 @@ def stretched() -> Problem:
     )
 
 
+def quintic() -> Problem:
+    q = np.array([[0.25, -0.5], [1.0, 0.125], [-0.375, 0.75], [0.5, 0.25]])
+    limits = Limits([1.0, 0.9], [2.0, 1.5], [np.inf, 9.0])
+    return Problem(q, limits, quintic_spline(3), (0.5, 0.1, 0.1))
+
+
 def _alone(needs: np.ndarray, problem: Problem) -> float:
     """Total where each segment stands alone; positions are left out, which only shortens it."""
     h = np.maximum(needs, problem.duration_lower)
@@ -95,6 +102,7 @@ def stretched_optimum(problem: Problem) -> float:
 KINDS = {
     "three-piece": Kind(three_piece, 0.03, lambda problem: dense_best(problem, 81)),
     "rest-to-rest": Kind(rest, 1e-6, rest_optimum),
+    "quintic-spline": Kind(quintic, 0.1, lambda problem: dense_best(problem, 81)),
     "stretched": Kind(stretched, 1e-6, stretched_optimum),
 }
 

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from fractions import Fraction
 from importlib import import_module
 from pathlib import Path
+from string import ascii_lowercase
 from typing import Any
 
 import numpy as np
@@ -49,7 +50,7 @@ def places(node: Any, path: Path_ = ()) -> list[Path_]:
 def changed(value: Any, rng: np.random.Generator) -> Any:
     if isinstance(value, int):
         return int(rng.choice([value + 1, value - 1, -value, int(rng.integers(0, 20_000)), 0]))
-    if set(value) <= set("ab."):
+    if set(value) <= set(f"{ascii_lowercase}."):
         k = int(rng.integers(0, len(value)))
         return value[:k] + str(rng.choice(["a", "b", ".", "", "..", "x"])) + value[k + 1 :]
     try:

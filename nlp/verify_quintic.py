@@ -1,0 +1,469 @@
+"""Re-proof of a C4 quintic spline's lower bound: own derivation, numpy, many leaves at once.
+
+The argument is that of docs/certificates-quintic.md. Nothing is shared with the solver: the nodal
+equations come from the jumps of q''' and q'''' (the solver has the energy ∫q'''²), arrays lead with
+the leaf. Every result is a sum of products with fewer than 2000 roundings on any path, 2.3e-13 of
+the same sum over absolute values: `ROUND` of that sum is taken off.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import comb
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .verify_answer import check_answer, read_answer
+from .verify_problem import Proved, Refused, Stated, need, number, read_problem, whole
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+ROUND, SLACK, PLACES, UNIT, BATCH = 1e-12, 1e-12, 1024, 65536.0, 256
+MOST_SEGMENTS, MOST_JOINTS = 26, 12
+"""What the number of roundings was counted for."""
+SMALLEST = Fraction(1, 10**30)
+"""Steps and limits are 0 or above it, so that nothing underflows."""
+
+# Quintic with (q0, q1, v0, v1, a0, a1): rows of ascending powers; exact, entries are halves.
+_AT = np.array(
+    [[1, 0, 0, 0, 0, 0], [1] * 6, [0, 1, 0, 0, 0, 0], range(6), [0, 0, 2, 0, 0, 0],
+     [p * (p - 1) for p in range(6)]], dtype=np.float64,
+)  # fmt: skip
+_HERMITE = np.rint(2.0 * np.linalg.inv(_AT).T) / 2.0
+_JUMPS = np.array(
+    [24 * _HERMITE[:, 4], -24 * _HERMITE[:, 4] - 120 * _HERMITE[:, 5], -6 * _HERMITE[:, 3],
+     6 * _HERMITE[:, 3] + 24 * _HERMITE[:, 4] + 60 * _HERMITE[:, 5]]
+)  # fmt: skip
+"""q'''' and q''' that a segment adds to the jumps at its ends, by (q0, q1, v0, v1, a0, a1)."""
+_STIFF, _LOAD = _JUMPS[:, 2:], -_JUMPS[:, 1]
+_LOAD_POWER = np.array([4, 4, 3, 3])
+_POWER = _LOAD_POWER[:, None] - np.array([1, 1, 2, 2])
+
+
+def prove(document: dict[str, Any]) -> Proved:
+    """Prove a certificate of kind "quintic-spline" again.
+
+    Parameters
+    ----------
+    document : dict
+
+    Returns
+    -------
+    Proved
+
+    Raises
+    ------
+    Refused
+        If it does not prove its claim.
+    """
+    problem, claim, proof = read_problem(document["problem"]), document["claim"], document["proof"]
+    need(claim["infeasible"] is False, "infeasible only by another kind of proof")
+    total, lower = number(proof["total"]), number(claim["lower"])
+    need(lower <= total, "the lower bound exceeds the total that is proved")
+    answer, upper = read_answer(claim), None
+    if answer is not None:
+        upper = answer[1]
+        check_answer(problem, answer[0])
+    prove_total(problem, proof)
+    return Proved(lower, upper)
+
+
+def prove_total(problem: Stated, proof: dict[str, Any]) -> Fraction:
+    """The total below which a proof leaves nothing feasible.
+
+    Parameters
+    ----------
+    problem : Stated
+    proof : dict
+        ``proof`` of the file.
+
+    Returns
+    -------
+    Fraction
+
+    Raises
+    ------
+    Refused
+        If it proves nothing.
+    """
+    given = problem.declaration
+    rest = {1: Fraction(0), 2: Fraction(0)}
+    n = len(problem.shortest)
+    need(
+        given is not None
+        and n > 1
+        and given.degrees == [5] * n
+        and given.continuity == [4] * (n - 1)
+        and given.prescribed == [rest, *[{}] * (n - 1), rest]
+        and not given.virtual,
+        "declaration not covered: no C4 quintic spline at rest at the ends",
+    )
+    total, q = number(proof["total"]), problem.waypoints
+    need(
+        Fraction(1, 10**9) < total < 10**9 and Fraction(float(total)) == total,
+        "a total that is no float of usual size is not proved",
+    )
+    steps = [[b - a for a, b in zip(q[k], q[k + 1], strict=True)] for k in range(n)]
+    sizes = [abs(d) for row in steps for d in row if d]
+    sizes += [x[1] for row in problem.limits for x in row if x is not None and x[1] > 0]
+    need(all(SMALLEST < x < 1 / SMALLEST for x in sizes), "a number is of unusual size")
+    limits = np.array(
+        [[np.inf if x is None or x[1] <= 0 else float(x[1]) for x in row] for row in problem.limits]
+    )
+    task = _Task(np.array([[float(x) for x in row] for row in steps]), limits, float(total), proof)
+    low = [number(x) for x in proof["low"]]
+    need(len(low) == n, "one least duration per segment")
+    for k, x in enumerate(low):
+        mean = any(
+            v[0] is not None and v[0][1] > 0 and x * v[0][1] <= abs(d)
+            for v, d in zip(problem.limits, steps[k], strict=True)
+        )
+        need(
+            Fraction(float(x)) == x >= 0 and (mean or x <= problem.shortest[k]),
+            f"segment {k + 1}: its least duration is not proved",
+        )
+    boxes = _boxes(proof["tree"], np.array([float(x) for x in low]), float(total), n)
+    leaves = proof["leaves"]
+    need(isinstance(leaves, list) and len(leaves) == len(boxes), "leaves and tree differ in number")
+    with np.errstate(all="ignore"):  # what is not finite fails every comparison
+        for first in range(0, len(boxes), BATCH):
+            task.check(np.array(boxes[first : first + BATCH]), leaves[first : first + BATCH])
+    return total
+
+
+def _shrunk(low: list[float], high: list[float], total: float) -> tuple[list[float], list[float]]:
+    """Part of a box whose durations can add up to the total, with something to spare."""
+    below, above = sum(low), sum(high)
+    slack = SLACK * (above + total)
+    least = [max(a, total - (above - b) - slack) for a, b in zip(low, high, strict=True)]
+    most = [min(b, total - (below - a) + slack) for a, b in zip(low, high, strict=True)]
+    return least, most
+
+
+def _boxes(tree: Any, low: Array, total: float, n: int) -> list[tuple[list[float], list[float]]]:
+    """Leaves of a tree in preorder, the lower part of a cut first: each shrunk, maybe empty."""
+    need(isinstance(tree, str), "the tree is no text")
+    stack = [(low.tolist(), [total] * n)]
+    found = []
+    for letter in tree:
+        need(bool(stack), "the tree has too many letters")
+        least, most = _shrunk(*stack.pop(), total)
+        if letter == ".":
+            found.append((least, most))
+            continue
+        k = ord(letter) - ord("a")
+        need(0 <= k < n, f"the tree has an unknown letter {letter!r}")
+        a, b = least[k], most[k]
+        middle = float(np.sqrt(a * b)) if a > 0.1 * b else 0.3 * b
+        # Where the parts overlap or leave the box they still cover it.
+        stack.append(([*least[:k], middle, *least[k + 1 :]], most))
+        stack.append((least, [*most[:k], middle, *most[k + 1 :]]))
+    need(not stack, "the tree leaves a part of the simplex open")
+    return found
+
+
+class _Task:
+    """What all leaves of a proof have in common, and their check."""
+
+    def __init__(self, steps: Array, limits: Array, total: float, proof: dict[str, Any]) -> None:
+        self.steps, self.limits, self.total = steps, limits, total
+        n, joints = steps.shape
+        self.windows = [
+            [whole(w[0], 0, joints - 1), *(whole(x, -(2**20), 2**20) for x in w[1:])]
+            for w in proof["windows"]
+        ]
+        need(n <= MOST_SEGMENTS and joints <= MOST_JOINTS, "too many segments or joints")
+        need(all(len(w) == 2 * n + 2 for w in self.windows), "windows: shape")
+        tops = (n - 1, joints - 1, 3, 1, PLACES)
+        bottoms = (0, 0, 1, -1, 0)
+        self.rows = np.array(
+            [
+                [whole(x, a, b) for x, a, b in zip(row, bottoms, tops, strict=True)]
+                for row in proof["rows"]
+            ],
+            np.int64,
+        ).reshape(-1, 5)
+        need(bool((self.rows[:, 3] != 0).all()), "rows: sign")
+        self.caps = limits[self.rows[:, 1], self.rows[:, 2] - 1]
+        need(bool(np.isfinite(self.caps).all()), "a row leans on a limit that is not there")
+        # Derivative of (step, v0, v1, a0, a1) at the place.
+        s = self.rows[:, 4] / PLACES
+        self.shapes = np.zeros((len(s), 5))
+        for order in (1, 2, 3):
+            at = self.rows[:, 2] == order
+            for p in range(order, 6):
+                # Few digits: multiples of 2⁻⁵⁰ or so, every sum and product is exact.
+                factor = float(np.prod(np.arange(p - order + 1, p + 1)))
+                power = np.prod(np.repeat(s[at, None], p - order, axis=1), axis=1)
+                self.shapes[at] += factor * power[:, None] * _HERMITE[None, 1:, p]
+        self.shapes *= self.rows[:, 3:4]
+
+    def check(self, boxes: Array, leaves: list[Any]) -> None:
+        """Refuse a batch of leaves unless each box is excluded."""
+        weighted = []
+        for i, (leaf, (low, high)) in enumerate(zip(leaves, boxes, strict=True)):
+            need(isinstance(leaf, list), "a leaf is no list")
+            if len(leaf) == 0:
+                need(bool((low > high).any()), "a leaf that is not empty is not proved")
+            elif len(leaf) == 2:
+                window = self.windows[whole(leaf[0], 0, len(self.windows) - 1)]
+                tau = float(number(leaf[1]))
+                need(
+                    self._window(window, tau, low, high) > 0.0, "a leaf with a window is not proved"
+                )
+            else:
+                weighted.append(i)
+        if weighted:
+            which = np.array(weighted)
+            bound = _Bound(self, boxes[which, 0], boxes[which, 1], [leaves[i] for i in weighted])
+            need(bool((bound.least() > 0.0).all()), "a leaf with limits is not proved")
+
+    def _window(self, window: list[int], tau: float, low: Array, high: Array) -> float:
+        """Least of Σ cΔ/h − A Σ m h − V Σ|c + ψ' h| + tau (Σ h − total) over a box."""
+        n, j = low.size, window[0]
+        psi, c = np.array(window[1 : n + 2]) / UNIT, np.array(window[n + 2 :]) / UNIT
+        a, b = np.abs(psi[:-1]), np.abs(psi[1:])
+        squares = (a * a + b * b) / np.maximum(2.0 * (a + b), 1e-300)
+        mean = np.where(psi[:-1] * psi[1:] < 0.0, squares, 0.5 * (a + b))
+        left = np.abs(c + np.diff(psi))
+        velocity, acceleration = self.limits[j, :2]
+        need(
+            bool(np.isfinite(acceleration)) or not mean.any(),
+            "a window leans on a limit that is not there",
+        )
+        need(
+            bool(np.isfinite(velocity)) or not left.any(),
+            "a window leans on a limit that is not there",
+        )
+        pay = acceleration * mean if mean.any() else np.zeros(n)
+        fixed = velocity * left.sum() if left.any() else 0.0
+        p, q = c * self.steps[:, j], tau - pay
+        start = np.where(low > 0.0, p / low + q * low, np.where(p > 0.0, np.inf, 0.0))
+        start = np.where((low <= 0.0) & (p < 0.0), -np.inf, start)
+        turn = np.where((p > 0.0) & (q > 0.0), np.sqrt(p / q), -1.0)
+        bottom = 2.0 * np.sqrt(np.maximum(p * q, 0.0)) * (1.0 - 1e-12)
+        least = np.minimum(start, p / high + q * high)
+        inside = (low < turn) & (turn < high)
+        least = np.where(inside, np.minimum(least, bottom), least)
+        size = fixed + 2.0 * abs(tau) * self.total + ((abs(tau) + pay) * high).sum()
+        size += np.abs(least).sum()
+        return float(least.sum() - fixed - tau * self.total - 10.0 * ROUND * size)
+
+
+class _Bound:
+    """Weighted limits on a batch of boxes: arrays (leaf, ...) in the symbols of the docs page."""
+
+    def __init__(self, task: _Task, low: Array, high: Array, leaves: list[Any]) -> None:
+        need(
+            bool((low > 0.0).all() and (low <= high).all()), "a leaf that is too wide is not proved"
+        )
+        self.task, self.size = task, len(leaves)
+        self.n, self.joints = task.steps.shape
+        ends = 1.0 / high, 1.0 / low
+        self.r = 0.5 * (ends[0] + ends[1])
+        self.e = 0.5 * (ends[1] - ends[0]) + 4.0 * SLACK * ends[1]
+        need(bool((self.e < 0.6 * self.r).all()), "a leaf that is too wide is not proved")
+        at, row, weight, tau = [], [], [], []
+        for i, leaf in enumerate(leaves):
+            tau.append(whole(leaf[0], -(2**52), 2**52))
+            need(len(leaf) % 2 == 1, "a leaf misses a weight")
+            for which, share in zip(leaf[1::2], leaf[2::2], strict=True):
+                at.append(i)
+                row.append(whole(which, 0, len(task.rows) - 1))
+                weight.append(whole(share, 1, 2**52))
+        self.at, self.row = np.array(at), np.array(row)
+        self.weight, self.tau = np.array(weight, float), np.array(tau, float)
+        self._parts()
+
+    def _parts(self) -> None:
+        """Taylor coefficients of M and b, segment by segment, and R with RᵀR ≈ M0⁻¹."""
+        n, size, unknowns = self.n, self.size, 2 * (self.n - 1)
+        top = self.r + self.e
+        self.stiff = np.zeros((4, size, n, unknowns, unknowns))
+        self.load = np.zeros((5, size, n, unknowns))
+        self.stiff_top = np.zeros((size, unknowns, unknowns))
+        self.load_top = np.zeros((size, n, unknowns))
+        self.places = [
+            [(a, 2 * (k + a % 2 - 1) + a // 2) for a in range(4) if 0 < k + a % 2 < n]
+            for k in range(n)
+        ]
+        for k in range(n):
+            for a, i in self.places[k]:
+                power = int(_LOAD_POWER[a])
+                for o in range(power + 1):
+                    term = comb(power, o) * _LOAD[a] * self.r[:, k] ** (power - o)
+                    self.load[o, :, k, i] = term
+                self.load_top[:, k, i] = abs(_LOAD[a]) * top[:, k] ** power
+                for b, j in self.places[k]:
+                    power = int(_POWER[a, b])
+                    for o in range(power + 1):
+                        term = comb(power, o) * _STIFF[a, b] * self.r[:, k] ** (power - o)
+                        self.stiff[o, :, k, i, j] = term
+                    self.stiff_top[:, i, j] += abs(_STIFF[a, b]) * top[:, k] ** power
+        self.m0 = self.stiff[0].sum(axis=1)
+        try:
+            self.root = np.linalg.inv(np.linalg.cholesky(self.m0))
+        except np.linalg.LinAlgError:
+            raise Refused("the matrix of a leaf is not positive definite") from None
+
+    def _framed(self, matrix: Array) -> tuple[Array, Array]:
+        """R A Rᵀ, and the largest row sum of its rounding."""
+        back = np.swapaxes(self.root, 1, 2)
+        rough = np.abs(self.root) @ np.abs(matrix) @ np.abs(back)
+        return self.root @ matrix @ back, ROUND * rough.sum(axis=2).max(axis=1)
+
+    def _coercivity(self) -> Array:
+        """κ with M(r)⁻¹ ≼ RᵀR/κ all over each box."""
+        frame, rounding = self._framed(self.m0)
+        off = np.abs(frame - np.eye(frame.shape[1])).sum(axis=2).max(axis=1) + rounding
+        need(bool((off < 1e-6).all()), "the matrix of a leaf is ill-conditioned")
+        share = self.e / self.r
+        part = np.zeros_like(self.m0)
+        for k in range(self.n):
+            for a, i in self.places[k]:
+                for b, j in self.places[k]:
+                    if a < 2 and b < 2:
+                        part[:, i, j] += _STIFF[a, b] * self.r[:, k] ** 3 * share[:, k] ** 2
+        power, rounding = self._framed(part)
+        power = 0.5 * (power + np.swapaxes(power, 1, 2))
+        largest, exponent = np.ones(self.size), 1.0
+        for _ in range(5):
+            norm = np.sqrt((power * power).sum(axis=(1, 2)))
+            largest *= norm**exponent
+            exponent *= 0.5
+            power = power / norm[:, None, None]
+            power = power @ power
+        largest = (largest * (1.0 + 1e-9) + rounding) / (1.0 - off)
+        need(bool((largest < 1.0).all()), "a leaf that is too wide is not proved")
+        kappa = (1.0 - share.max(axis=1)) * (1.0 - np.sqrt(largest)) ** 2 * (1.0 - off)
+        return np.asarray(kappa * (1.0 - 1e-9))
+
+    def _energy(self, vectors: Array) -> Array:
+        """‖R v‖ of vectors (leaf, ..., unknowns)."""
+        flat = vectors.reshape(self.size, -1, vectors.shape[-1])
+        norms = np.linalg.norm(flat @ np.swapaxes(self.root, 1, 2), axis=2)
+        return np.asarray(norms.reshape(vectors.shape[:-1]))
+
+    def _solve(self, right: Array) -> Array:
+        half = right @ np.swapaxes(self.root, 1, 2)
+        return np.asarray(half @ self.root)
+
+    def least(self) -> Array:
+        """Lower bound of each leaf's weighted sum."""
+        n, r, e, task = self.n, self.r, self.e, self.task
+        k, j, order = task.rows[self.row, 0], task.rows[self.row, 1], task.rows[self.row, 2]
+        shape, cap = task.shapes[self.row] * self.weight[:, None], task.caps[self.row] * self.weight
+        bent = np.zeros((self.size, n))
+        np.add.at(bent, (self.at, k), shape[:, 0] * task.steps[k, j])
+        against = np.zeros((3, self.size, n))  # limits: constant, times r, times 1/r
+        for o, where in ((2, 0), (1, 1), (3, 2)):
+            np.add.at(against[where], (self.at[order == o], k[order == o]), cap[order == o])
+        top, bottom = r + e, r - e
+        moved = np.zeros((self.size, n))
+        np.add.at(moved, (self.at, k), np.abs(shape[:, 0] * task.steps[k, j]))
+        size = (moved * top**2 + against[0] + against[1] * top + against[2] / bottom).sum(axis=1)
+        size += np.abs(self.tau) * (task.total + (1.0 / bottom).sum(axis=1))
+        # Taylor coefficients of what depends on one duration; joints add to them below.
+        alone = np.zeros((5, self.size, n))
+        change = self.tau[:, None] - against[2]
+        alone[0] = bent * r**2 - against[0] - against[1] * r + change / r
+        alone[1] = 2.0 * bent * r - against[1] - change / r**2
+        alone[2] = bent + change / r**3
+        cubic = (np.abs(change) * e**3 / (r**3 * bottom)).sum(axis=1)
+        second = np.zeros((self.size, n, n))
+        first = np.zeros((self.size, n))
+        value = -self.tau * task.total
+        error = np.zeros(self.size)
+        for joint in range(self.joints):
+            mine = j == joint
+            if not mine.any():
+                continue
+            # Of velocities times r and of accelerations, then both in absolute values.
+            phi = np.zeros((4, self.size, n, 2 * n - 2))
+            for segment in range(n):
+                for a, i in self.places[segment]:
+                    on = mine & (k == segment)
+                    np.add.at(phi[a // 2, :, segment, i], self.at[on], shape[on, a + 1])
+                    np.add.at(phi[2 + a // 2, :, segment, i], self.at[on], np.abs(shape[on, a + 1]))
+            found = self._joint(task.steps[:, joint], phi)
+            alone += found["alone"]
+            first += found["first"]
+            second += found["second"]
+            cubic += found["cubic"]
+            size += found["size"]
+            error += found["error"]
+        value += alone[0].sum(axis=1)
+        first += alone[1]
+        cubic += (np.abs(alone[3]) * e**3 + np.abs(alone[4]) * e**4).sum(axis=1)
+        each = np.arange(n)
+        bend = second[:, each, each] + 2.0 * alone[2]
+        second[:, each, each] = 0.0
+        inside = np.abs(first) < bend * e
+        turn = -0.5 * first * first / bend
+        value += np.where(inside, turn, 0.5 * bend * e * e - np.abs(first) * e).sum(axis=1)
+        value -= 0.5 * (np.abs(second) * e[:, :, None] * e[:, None, :]).sum(axis=(1, 2))
+        error = error / self._coercivity() + cubic
+        return np.asarray(value - error * (1.0 + 1e-9) - 10.0 * ROUND * size)
+
+    def _joint(self, step: Array, phi: Array) -> dict[str, Array]:
+        """One joint's part: F = φᵀx̃ + μᵀ(b − M x̃) + (φ − M μ)ᵀ(x − x̃), x̃ = x0 + Σ X_m δ_m."""
+        n, r, e = self.n, self.r, self.e
+        stiff, load = self.stiff, self.load * step[:, None]
+        full = phi[1] + phi[0] * r[:, :, None]
+        x0 = self._solve(load[0].sum(axis=1)[:, None])[:, 0]
+        rise = load[1] - np.einsum("lkij,lj->lki", stiff[1], x0)
+        slope = self._solve(rise)
+        mu = self._solve(full.sum(axis=1)[:, None])[:, 0]
+        wide = np.abs(x0) + np.einsum("lm,lmi->li", e, np.abs(slope))
+        reach = (self.load_top * np.abs(step)[:, None]).sum(axis=1)
+        reach += np.einsum("lij,lj->li", self.stiff_top, wide)
+        # π = φ − M μ: constant, then Taylor parts of each segment.
+        rest = full.sum(axis=1) - np.einsum("lij,lj->li", self.m0, mu)
+        gain = -np.einsum("olkij,lj->olki", stiff[1:], mu)
+        gain[0] += phi[0]
+        high = phi[3] + phi[2] * (r + e)[:, :, None]
+        weak = high.sum(axis=1) + np.einsum("lij,lj->li", self.stiff_top, np.abs(mu))
+        outer = np.abs(self.root)
+        adjoint = np.linalg.norm(
+            np.einsum("lij,lj->li", outer, np.abs(rest) + ROUND * weak), axis=1
+        )
+        for o in range(3):
+            adjoint += (self._energy(gain[o]) * e ** (o + 1)).sum(axis=1)
+        # ρ = b − M x̃.
+        pulled = np.einsum("olkij,lmj->olkmi", stiff[1:], slope)
+        zero = load[0].sum(axis=1) - np.einsum("lij,lj->li", self.m0, x0)
+        linear = rise - np.einsum("lij,lmj->lmi", self.m0, slope)
+        loose = np.abs(zero) + np.einsum("lm,lmi->li", e, np.abs(linear)) + ROUND * reach
+        residual = np.linalg.norm(np.einsum("lij,lj->li", outer, loose), axis=1)
+        each = np.arange(n)
+        for o in range(2, 5):
+            own = load[o] - pulled[o - 2][:, each, each]
+            if o < 4:
+                own = own - np.einsum("lkij,lj->lki", stiff[o], x0)
+            residual += (self._energy(own) * e**o).sum(axis=1)
+        both = pulled[0] + np.swapaxes(pulled[0], 1, 2)
+        pairs = self._energy(both) * e[:, :, None] * e[:, None, :]
+        residual += 0.5 * (pairs.sum(axis=(1, 2)) - pairs[:, each, each].sum(axis=1))
+        for o in (1, 2):
+            crossed = self._energy(pulled[o]) * e[:, :, None] ** (o + 1) * e[:, None, :]
+            residual += crossed.sum(axis=(1, 2)) - crossed[:, each, each].sum(axis=1)
+        alone = np.zeros((5, self.size, n))
+        for o in range(5):
+            part = load[o] if o == 4 else load[o] - np.einsum("lkij,lj->lki", stiff[o], x0)
+            alone[o] = np.einsum("li,lki->lk", mu, part)
+        alone[0] += np.einsum("lki,li->lk", full, x0)
+        alone[1] += np.einsum("lki,li->lk", phi[0], x0)
+        mixed = np.einsum("olki,lmi->olkm", gain, slope)
+        cubic = np.einsum("lkm,lk,lm->l", np.abs(mixed[1]), e**2, e)
+        cubic += np.einsum("lkm,lk,lm->l", np.abs(mixed[2]), e**3, e)
+        return {
+            "alone": alone,
+            "first": np.einsum("li,lmi->lm", rest, slope),
+            "second": mixed[0] + np.swapaxes(mixed[0], 1, 2),
+            "cubic": cubic,
+            "size": (high.sum(axis=1) * wide).sum(axis=1) + (np.abs(mu) * reach).sum(axis=1),
+            "error": adjoint * residual,
+        }
