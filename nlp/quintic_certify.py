@@ -118,7 +118,8 @@ def _missing(problem: ExactProblem) -> str | None:
         return None
     if not np.isfinite(_limits(problem)).any() and not any(problem.duration_lower):
         return "nothing limits the total from below"
-    if not (np.isfinite(_limits(problem)[:, :2]) & _steps(problem).any(axis=0)[:, None]).any():
+    moving = np.asarray(_steps(problem).any(axis=0), dtype=np.bool_)
+    if not (np.isfinite(_limits(problem)[:, :2]) & moving[:, None]).any():
         return "no joint that moves has a velocity or acceleration limit"
     return None
 
