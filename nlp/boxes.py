@@ -1,4 +1,4 @@
-"""Many boxes of directions at once: 3-5-3 rows in Bernstein form, as floats that only propose."""
+"""Many boxes of directions at once: rows in Bernstein form, as floats that only propose."""
 
 from __future__ import annotations
 
@@ -13,23 +13,19 @@ from numpy.typing import NDArray
 from scipy.optimize import linprog
 
 from .exact import ExactProblem
+from .square_polynomials import MONOMIALS, SHARES, SUM, padded, power, times
 from .three_piece import (
-    HERMITE,
-    MONOMIALS,
     PLACES,
-    SHARES,
-    SQUARE,
     STRICT,
-    SUM,
     TOTAL,
     Array,
     Prover,
     Row,
-    padded,
-    power,
+    on_square,
+    shape_for,
     static_rows,
-    times,
 )
+from .three_piece_shape import POWERS
 
 MOST_PLACES = 8
 _GRID = 65
@@ -83,40 +79,41 @@ class Proposer:
         self._static = np.array(
             [self.prover.row(row).astype(float) for row in self.static]
         ).reshape(-1, self.size, self.size)
-        q = np.array([[float(x) for x in row] for row in problem.waypoints])
-        self._start = q[1]
-        d1, d2, d3 = np.diff(q, axis=0)
-        self._steps = np.stack([d2, 3 * d1, 6 * d1, 3 * d3, -6 * d3])
+        self._shape = shape_for(problem)
+        self._segments = np.array([piece.segment for piece in self._shape.pieces])
+        monomials = self._shape.monomials
+        shape = (len(self._segments), len(problem.joints), len(monomials), POWERS)
+        self._above = np.zeros(shape)
+        self._below = np.zeros((shape[0], shape[2]))
+        for g, piece in enumerate(self._shape.pieces):
+            self._below[g] = [piece.below.get(key, 0) for key in monomials]
+            for j, angles in enumerate(zip(*problem.waypoints, strict=True)):
+                for key, powers in piece.above(angles).items():
+                    self._above[g, j, monomials.index(key)] = [float(c) for c in powers]
         caps: list[tuple[int, float]] = [(TOTAL, float(total))]
         for g, upper in enumerate(problem.duration_upper):
             if upper is not None:
                 caps.append((g, float(upper * (1 + STRICT))))
-        self._limits: list[tuple[int, int, int, float]] = []
+        self._limits: list[tuple[int, int, int, int, float]] = []
         self._collect_limits()
         self._caps = [c for c, _ in caps]
         self._cap_values = np.array([v for _, v in caps])
-        orders = sorted({r for _, r, _, _ in self._limits})
+        orders = sorted({r for _, _, r, _, _ in self._limits})
         self._orders = orders
         tensors = []
+        each = [MONOMIALS[key] for key in monomials]
         for cap in self._caps:
             hold = SUM if cap == TOTAL else SHARES[cap]
-            for r in orders:
-                parts = [times(m, power(hold, r)) for m in MONOMIALS]
-                parts.append(times(SQUARE, power(SHARES[1], r)))
-                if r == 0:
-                    parts = [*MONOMIALS, SQUARE]
-                tensors.append([padded(p, self.size).astype(float) for p in parts])
-        shape = (len(self._caps), len(orders), 6, self.size, self.size)
-        self._tensors = np.array(tensors, dtype=np.float64).reshape(shape)
-        s = np.linspace(0.0, 1.0, _GRID)
-        base = np.array([[float(x) for x in row] for row in HERMITE])
-        self._hermite = []
-        for r in range(5):
-            powers = np.arange(r, 6)
-            scale = np.array([math.perm(p, r) for p in powers])
-            self._hermite.append(base[:, r:] * scale)
-        self._grid = s
-        self._on_grid = [h @ s[None, :] ** np.arange(h.shape[1])[:, None] for h in self._hermite]
+            for piece in self._shape.pieces:
+                below = on_square({key: Fraction(c) for key, c in piece.below.items()})
+                for r in orders:
+                    parts = [times(m, power(hold, r)) for m in each] if r else [*each]
+                    parts.append(times(below, power(SHARES[piece.segment], r)))
+                    tensors.append([padded(p, self.size).astype(float) for p in parts])
+        wide = (len(self._caps), shape[0], len(orders), len(each) + 1, self.size, self.size)
+        self._tensors = np.array(tensors, dtype=np.float64).reshape(wide)
+        self._grid = np.linspace(0.0, 1.0, _GRID)
+        self._on_grid = self._grid[None, :] ** np.arange(POWERS)[:, None]
         n = self.size - 1
         self._comb = np.array(
             [[math.comb(j, k) for j in range(n + 1)] for k in range(n + 1)], float
@@ -127,17 +124,21 @@ class Proposer:
 
     def _collect_limits(self) -> None:
         problem = self.problem
-        for j in range(len(problem.joints)):
-            for r, limit in enumerate(problem.limits[j], start=1):
-                if limit is not None and limit.high > 0:
-                    self._limits += [(j, r, sign, float(limit.high)) for sign in (1, -1)]
-            low, high = problem.position_lower[j], problem.position_upper[j]
-            if high is not None:
-                self._limits.append((j, 0, 1, float(high.high)))
-            if low is not None:
-                self._limits.append((j, 0, -1, -float(low.low)))
+        for g in range(len(self._segments)):
+            for j in range(len(problem.joints)):
+                for r, limit in enumerate(problem.limits[j], start=1):
+                    if limit is not None and limit.high > 0:
+                        self._limits += [(g, j, r, sign, float(limit.high)) for sign in (1, -1)]
+                low, high = problem.position_lower[j], problem.position_upper[j]
+                if high is not None:
+                    self._limits.append((g, j, 0, 1, float(high.high)))
+                if low is not None:
+                    self._limits.append((g, j, 0, -1, -float(low.low)))
         # Twice: for the highest and the next highest peak.
         self._limits = [limit for limit in self._limits for _ in range(2)]
+        sides = [limit[:4] for limit in self._limits]
+        self._sides = np.array(sides, dtype=np.int64).reshape(-1, 4)
+        self._bounds = np.array([limit[4] for limit in self._limits], dtype=np.float64)
 
     def _maps(self, boxes: Boxes) -> Array:
         """Matrices from power to local Bernstein coefficients, (boxes, 2, size, size)."""
@@ -149,24 +150,27 @@ class Proposer:
         return np.asarray(self._to_bernstein @ shift)
 
     def _places(self, boxes: Boxes) -> tuple[Array, Ints, Ints]:
-        """Coefficients (boxes, caps·K, 6) of the heaviest places, their limits and place."""
+        """Coefficients (boxes, caps, K, monomials + 1) of the heaviest places, limits and place."""
         width = 0.5**boxes.level
         a, b = ((boxes.index + 0.5) * width).T
         x, y = (1 - a) / a, (1 - b) / b
-        mono = np.stack([np.ones_like(x), x, x * x, y, y * y], axis=1)
+        mono = np.stack([x**i * y**j for i, j in self._shape.monomials], axis=1)
+        below = mono @ self._below.T
         heavy = np.empty((len(boxes), len(self._limits)))
         place = np.empty((len(boxes), len(self._limits)), dtype=np.int64)
         shares = np.stack([a * (1 - b), (1 - a) * (1 - b), b * (1 - a)], axis=1)
-        shortest = shares[:, 1] * self._cap_values[0] / (1 - a * b)
-        for i, cap in enumerate(self._caps[1:], start=1):
-            shortest = np.minimum(shortest, self._cap_values[i] * shares[:, 1] / shares[:, cap])
+        longest = shares * (self._cap_values[0] / (1 - a * b))[:, None]
+        for cap, value in zip(self._caps[1:], self._cap_values[1:], strict=True):
+            longest = np.minimum(longest, value * shares / shares[:, cap, None])
         each = np.arange(len(boxes))
         curves: dict[tuple[int, int], Array] = {}
-        for i, (j, r, sign, limit) in enumerate(self._limits):
-            weights = mono * self._steps[:, j]
-            if (j, r) not in curves:
-                curves[j, r] = weights @ self._on_grid[r]
-            curve = sign * curves[j, r]
+        grids: dict[tuple[int, int, int], Array] = {}
+        for i, (g, j, r, sign, limit) in enumerate(self._limits):
+            if (g, j) not in curves:
+                curves[g, j] = mono @ self._above[g, j] / below[:, g, None]
+            if (g, j, r) not in grids:
+                grids[g, j, r] = _derived(curves[g, j], r) @ self._on_grid[: POWERS - r]
+            curve = sign * grids[g, j, r]
             top = curve.argmax(axis=1)
             if i % 2:  # the next highest of the local maxima
                 edge = np.full((len(boxes), 1), -np.inf)
@@ -178,31 +182,29 @@ class Proposer:
             s = self._grid[top]
             # Two Newton steps towards the interior extremum, kept near the grid's best.
             for _ in range(2):
-                slope = _at(weights @ self._hermite[r + 1], s)
-                bend = _at(weights @ self._hermite[r + 2], s) if r + 2 < 5 else np.zeros_like(s)
+                slope = _at(_derived(curves[g, j], r + 1), s)
+                bend = _at(_derived(curves[g, j], r + 2), s) if r + 2 < 5 else np.zeros_like(s)
                 with np.errstate(divide="ignore", invalid="ignore"):
                     step = np.where(sign * bend < 0, -slope / bend, 0.0)
                 s = np.clip(s + np.clip(step, -1 / _GRID, 1 / _GRID), 0.0, 1.0)
             place[:, i] = np.rint(s * PLACES)
-            value = sign * _at(weights @ self._hermite[r], place[:, i] / PLACES)
+            value = sign * _at(_derived(curves[g, j], r), place[:, i] / PLACES)
             if r == 0:
-                value = value + sign * self._start[j]
                 heavy[:, i] = 1.0 + (value - limit) / max(1.0, abs(limit))
             else:
-                heavy[:, i] = np.maximum(value / limit, 0.0) ** (1 / r) / shortest
+                heavy[:, i] = (
+                    np.maximum(value / limit, 0.0) ** (1 / r) / longest[:, self._segments[g]]
+                )
         count = min(MOST_PLACES, len(self._limits))
         chosen = np.argsort(-heavy, axis=1)[:, :count]
         s = place[each[:, None], chosen] / PLACES
-        coefficients = np.zeros((len(boxes), len(self._caps), count, 6))
-        orders = np.array([r for _, r, _, _ in self._limits])[chosen]
-        joints = np.array([j for j, _, _, _ in self._limits])[chosen]
-        signs = np.array([g for _, _, g, _ in self._limits], dtype=float)[chosen]
-        bounds = np.array([v for _, _, _, v in self._limits])[chosen]
+        coefficients = np.zeros((len(boxes), len(self._caps), count, mono.shape[1] + 1))
+        pieces, joints, orders, signs = self._sides[chosen].transpose(2, 0, 1)
+        bounds = self._bounds[chosen]
         for r in self._orders:
-            powers = s[..., None] ** np.arange(self._hermite[r].shape[1])
-            weights = (powers @ self._hermite[r].T) * self._steps.T[joints] * signs[..., None]
-            if r == 0:
-                weights[..., 0] += signs * self._start[joints]
+            powers = s[..., None] ** np.arange(POWERS - r)
+            above = _derived(self._above, r)[pieces, joints]
+            weights = np.einsum("nkmp,nkp->nkm", above, powers) * signs[..., None]
             for c, cap in enumerate(self._cap_values):
                 scale = np.where(orders > 0, bounds * cap**r, 1.0)
                 right = np.where(orders > 0, 1.0, bounds + float(STRICT))
@@ -216,13 +218,13 @@ class Proposer:
         left, right = maps[:, 0], np.swapaxes(maps[:, 1], 1, 2)
         static = left[:, None] @ self._static @ right[:, None]
         coefficients, chosen, place = self._places(boxes)
-        order = np.array([r for _, r, _, _ in self._limits], dtype=np.int64)[chosen]
-        local = left[:, None, None, None] @ self._tensors @ right[:, None, None, None]
+        piece, order = self._sides[chosen][..., 0], self._sides[chosen][..., 2]
+        local = left[:, None, None, None, None] @ self._tensors @ right[:, None, None, None, None]
         count = chosen.shape[1]
         each = np.arange(len(boxes))[:, None]
         blocks = [static]
         for c in range(len(self._caps)):
-            mine = local[each, c, np.searchsorted(self._orders, order)]
+            mine = local[each, c, piece, np.searchsorted(self._orders, order)]
             blocks.append(np.einsum("nkq,nkqij->nkij", coefficients[:, c], mine))
         table = np.concatenate(blocks, axis=1)
         scale = np.abs(table).max(axis=(2, 3), keepdims=True)
@@ -242,8 +244,9 @@ class Proposer:
             if k < len(self.static):
                 return self.static[k]
             c, i = divmod(k - len(self.static), count)
-            j, r, sign, _ = self._limits[chosen[n, i]]
-            return Row("place", j, r, sign, int(place[n, i]), self._caps[c])
+            g, j, r, sign, _ = self._limits[chosen[n, i]]
+            kind = self._shape.pieces[g].kind
+            return Row(kind, j, r, sign, int(place[n, i]), self._caps[c])
 
         for n in range(len(boxes)):
             proof: Proof | None = None
@@ -276,6 +279,12 @@ def _rounded(weights: Array, digits: int, row_of: Callable[[int], Row]) -> Proof
     kept = [int(k) for k in np.flatnonzero(weights > 10.0 ** (-digits - 3) * top)]
     values = tuple(Fraction(f"{weights[k] / top:.{digits - 1}e}") for k in kept)
     return tuple(row_of(k) for k in kept), values
+
+
+def _derived(curves: Array, order: int) -> Array:
+    """Derivative of polynomials whose ascending coefficients lie along the last axis."""
+    scale = [math.perm(p, order) for p in range(order, curves.shape[-1])]
+    return np.asarray(curves[..., order:] * np.array(scale, dtype=np.float64))
 
 
 def _at(coefficients: Array, s: Array) -> Array:

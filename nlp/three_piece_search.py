@@ -1,4 +1,4 @@
-"""Branch and bound over the directions of three durations: 3-5-3 polynomials."""
+"""Branch and bound over the directions of three durations: 3-5-3 and 4-3-4 polynomials."""
 
 from __future__ import annotations
 
@@ -11,13 +11,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..problem import Interpolant, Problem, TrajgapError, Verdict, check, evaluate
+from ..problem import Problem, TrajgapError, Verdict, check, evaluate
 from .boxes import Boxes, Proof, Proposer
 from .certified import Certified, Certifier, Outcome, Progress, Request
 from .exact import ExactProblem, decimal
 from .incumbent import float_problem, keeps_limits, prove_feasible
 from .solve import solve
-from .three_piece import STRICT
+from .three_piece import STRICT, shape_for
+from .three_piece_shape import shape_of
 from .tree import State, tree_document, tree_state
 from .verify_problem import number
 
@@ -34,17 +35,19 @@ _DEEPEST = 44
 class Tree:
     """Boxes that prove a total, as the proof of a certificate."""
 
+    kind: str
     state: State
 
     def document(self) -> dict[str, Any]:
-        """Kind "three-piece" of docs/certificates.md."""
-        return {"kind": "three-piece", **tree_document(self.state)}
+        """Kind "three-piece" or "four-three-four" of docs/certificates.md."""
+        return {"kind": self.kind, **tree_document(self.state)}
 
 
 @dataclass(frozen=True, eq=False)
 class Stopped:
     """Where a stopped run can go on: the proof so far, open boxes, and the answer."""
 
+    kind: str
     proved: State | None
     pending: State
     durations: tuple[Fraction, ...] | None
@@ -53,7 +56,7 @@ class Stopped:
         """The state of docs/certificates.md."""
         answer = self.durations
         return {
-            "kind": "three-piece",
+            "kind": self.kind,
             "proved": None if self.proved is None else tree_document(self.proved),
             "open": tree_document(self.pending),
             "durations": None if answer is None else [decimal(h) for h in answer],
@@ -176,15 +179,7 @@ class _Run:
 
 
 def _declares(problem: ExactProblem) -> bool:
-    rest = ((1, 0.0), (2, 0.0))
-    interpolant = problem.curve
-    return (
-        isinstance(interpolant, Interpolant)
-        and interpolant.degrees == (3, 5, 3)
-        and interpolant.continuity == (2, 2)
-        and interpolant.prescribed == (rest, (), (), rest)
-        and not interpolant.virtual
-    )
+    return shape_of(problem.curve) is not None
 
 
 def _missing(problem: ExactProblem) -> str | None:
@@ -235,6 +230,7 @@ def _certify(exact: ExactProblem, request: Request) -> Certified:
 
 
 def _result(run: _Run, answer: tuple[Fraction, ...] | None, began: float) -> Certified:
+    kind = shape_for(run.problem).proof
     upper = sum(answer, Fraction(0)) if answer is not None else None
     pending = run.pending if run.stopped else None
     if upper is not None:
@@ -251,15 +247,16 @@ def _result(run: _Run, answer: tuple[Fraction, ...] | None, began: float) -> Cer
         run.nodes,
         0 if pending is None else sum(p is None for p in pending.proofs),
         time.perf_counter() - began,
-        None if run.state is None else Tree(run.state),
-        None if pending is None else Stopped(run.state, pending, answer),
+        None if run.state is None else Tree(kind, run.state),
+        None if pending is None else Stopped(kind, run.state, pending, answer),
     )
 
 
 def _resumed(exact: ExactProblem, document: dict[str, Any]) -> Stopped:
     """Read a state; its proof and its answer are proved again, its open boxes only propose."""
     try:
-        if document["kind"] != "three-piece":
+        kind = shape_for(exact).proof
+        if document["kind"] != kind:
             raise TrajgapError(f"resume: a state of kind {document['kind']!r}")
         proved = document["proved"]
         state = None if proved is None else tree_state(exact, proved, proof=True)
@@ -273,7 +270,7 @@ def _resumed(exact: ExactProblem, document: dict[str, Any]) -> Stopped:
         raise TrajgapError(f"resume: malformed state ({type(error).__name__}: {error})") from None
     if not kept:
         raise TrajgapError("resume: the durations of the state do not keep the limits")
-    return Stopped(state, pending, durations)
+    return Stopped(kind, state, pending, durations)
 
 
 def _answer(
@@ -315,4 +312,6 @@ def _down(total: Fraction) -> Fraction:
     return Fraction(int(total * 10**digits), 10**digits)
 
 
-CERTIFIER = Certifier("C2 3-5-3 polynomials at rest at the ends", _declares, _missing, _certify)
+CERTIFIER = Certifier(
+    "C2 3-5-3 and 4-3-4 polynomials at rest at the ends", _declares, _missing, _certify
+)

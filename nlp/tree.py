@@ -1,4 +1,4 @@
-"""The bisection tree of a 3-5-3 proof as JSON, and back again with every box proved anew."""
+"""The bisection tree of a proof as JSON, and back again with every box proved anew."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 from ..problem import TrajgapError
 from .boxes import Boxes, Proof
 from .exact import ExactProblem, decimal
-from .three_piece import PLACES, TOTAL, Prover, Row
+from .three_piece import PLACES, TOTAL, Prover, Row, shape_for
 from .verify_problem import number
 
 _DEEPEST = 60
@@ -103,11 +103,13 @@ def _whole(value: Any, low: int, high: int) -> int:
 
 def _row(problem: ExactProblem, entry: Any) -> Row:
     kind, joint, order, sign, place, cap = entry
+    shape = shape_for(problem)
+    places = [piece.kind for piece in shape.pieces]
     joints = 3 if kind == "lower" else len(problem.joints)
     row = Row(
         str(kind),
         _whole(joint, 0, joints - 1),
-        _whole(order, 0 if kind == "place" else 1, 3),
+        _whole(order, 0 if kind in places else 1, 3),
         _whole(sign, -1, 1),
         _whole(place, 0, PLACES),
         _whole(cap, TOTAL, 2),
@@ -121,7 +123,7 @@ def _row(problem: ExactProblem, entry: Any) -> Row:
     else:
         limit = problem.limits[row.joint][row.order - 1]
         there = limit is not None and limit.high > 0
-    known = kind in ("lower", "place", "first", "last", "mean") and sign != 0
+    known = (kind == "lower" or kind in shape.kinds) and sign != 0
     if not (known and there and held and (kind != "mean" or order == 1)):
         raise TrajgapError(f"resume: no such row for this problem: {entry!r}")
     return row

@@ -45,6 +45,7 @@ class Verifier:
 
 VERIFIERS: dict[str, Verifier] = {
     "three-piece": Verifier(verify_three_piece.prove),
+    "four-three-four": Verifier(verify_three_piece.prove),
     "rest-to-rest": Verifier(verify_rest_to_rest.prove),
     "stretched": Verifier(verify_stretched.prove),
     "family-free": Verifier(verify_family_free.prove, Subject.ANY),

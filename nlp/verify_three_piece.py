@@ -1,4 +1,4 @@
-"""Proof of a lower bound for 3-5-3 polynomials, checked again: standard library only.
+"""Proof of a lower bound for 3-5-3 or 4-3-4 polynomials, checked again: standard library only.
 
 Why the proof holds is in docs/certificates.md; the symbols are the same here.
 """
@@ -6,9 +6,9 @@ Why the proof holds is in docs/certificates.md; the symbols are the same here.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass
 from fractions import Fraction
-from math import comb, lcm, perm
+from math import comb, factorial, lcm, perm
 from operator import mul
 from typing import Any
 
@@ -32,8 +32,47 @@ M: tuple[Poly, ...] = (  # shares of the total, times S
 S: Poly = {(0, 0): Fraction(1), (1, 1): Fraction(-1)}
 
 
+@dataclass(frozen=True)
+class Form:
+    """One kind of curve.
+
+    Attributes
+    ----------
+    degrees : list of int
+    divisors : dict
+        By kind of row at a place: its segment, and the coefficients of xⁱyʲ that the piece is
+        multiplied by, none negative.
+    cubic_ends : bool
+        Whether the end pieces are d·s³; if not, only their being at rest is used.
+    """
+
+    degrees: list[int]
+    divisors: dict[str, tuple[int, dict[tuple[int, int], int]]]
+    cubic_ends: bool
+
+
+FORMS = {
+    "three-piece": Form([3, 5, 3], {"place": (1, {(0, 0): 1})}, True),
+    "four-three-four": Form(
+        [4, 3, 4],
+        {
+            "place": (1, {(0, 0): 1, (1, 0): 2, (0, 1): 2, (1, 1): 3}),
+            "place-first": (0, {(1, 0): 1, (2, 0): 2, (1, 1): 2, (2, 1): 3}),
+            "place-last": (2, {(0, 1): 1, (1, 1): 2, (0, 2): 2, (1, 2): 3}),
+        },
+        False,
+    ),
+}
+"""By ``proof.kind``."""
+
+Ratios = dict[tuple[int, int], list[Fraction]]
+"""Coefficients in s of each xⁱyʲ."""
+Curves = dict[str, list[Ratios]]
+"""By kind of row and joint: a piece times its divisor."""
+
+
 def prove(document: dict[str, Any]) -> Proved:
-    """Prove a certificate of kind "three-piece" again.
+    """Prove a certificate of kind "three-piece" or "four-three-four" again.
 
     Parameters
     ----------
@@ -49,7 +88,8 @@ def prove(document: dict[str, Any]) -> Proved:
         If it does not prove its claim.
     """
     problem, claim, proof = read_problem(document["problem"]), document["claim"], document["proof"]
-    _declared(problem)
+    form = FORMS[proof["kind"]]
+    _declared(problem, form)
     total, lower = number(proof["total"]), number(claim["lower"])
     need(total > 0, "the total is not positive")
     need(lower <= total, "the lower bound exceeds the total that is proved")
@@ -61,11 +101,13 @@ def prove(document: dict[str, Any]) -> Proved:
     if infeasible:
         need(answer is None, "infeasible, but with an answer")
         longest = [x for x in problem.longest if x is not None]
-        timeless = all(row[5] >= 0 or (row[0] == "place" and row[2] == 0) for row in proof["rows"])
+        timeless = all(
+            row[5] >= 0 or (row[0] in form.divisors and row[2] == 0) for row in proof["rows"]
+        )
         above = len(longest) == 3 and lower > sum(longest)
         need(timeless or above, "infeasible only above all upper bounds, or without the total")
-    quintics = [_quintic(problem, j) for j in range(len(problem.limits))]
-    polys = [_row(problem, quintics, row, total) for row in proof["rows"]]
+    curves = _curves(problem, form)
+    polys = [_row(problem, form, curves, row, total) for row in proof["rows"]]
     boxes = _leaves(proof["tree"])
     need(len(boxes) == len(proof["leaves"]), "leaves and tree differ in number")
     for count, (box, leaf) in enumerate(zip(boxes, proof["leaves"], strict=True)):
@@ -78,16 +120,16 @@ def prove(document: dict[str, Any]) -> Proved:
     return Proved(lower, upper, infeasible)
 
 
-def _declared(problem: Stated) -> None:
+def _declared(problem: Stated, form: Form) -> None:
     given = problem.declaration
     rest = {1: Fraction(0), 2: Fraction(0)}
     need(
         given is not None
-        and given.degrees == [3, 5, 3]
+        and given.degrees == form.degrees
         and given.continuity == [2, 2]
         and given.prescribed == [rest, {}, {}, rest]
         and not given.virtual,
-        "declaration not covered: no 3-5-3 polynomial at rest at the ends",
+        "declaration not covered: not the polynomials of this kind of proof, at rest at the ends",
     )
 
 
@@ -110,31 +152,64 @@ def _plus(*terms: tuple[Fraction, Poly]) -> Poly:
     return out
 
 
-def _quintic(problem: Stated, joint: int) -> list[list[Fraction]]:
-    """The quintic's coefficients for h₂ = 1 as α + β₁x + γ₁x² + β₂y + γ₂y²: five lists."""
-    alone = replace(
-        problem,
-        waypoints=[[row[joint]] for row in problem.waypoints],
-        limits=problem.limits[joint : joint + 1],
-    )
-    f = {
-        (x, y): pieces(alone, [Fraction(1, x), Fraction(1), Fraction(1, y)])[0][1]
-        for x, y in ((1, 1), (2, 1), (3, 1), (1, 2), (1, 3), (2, 3))
-    }
-    out: list[list[Fraction]] = [[] for _ in range(5)]
-    for p in range(6):
-        v = {key: c[p] for key, c in f.items()}
-        g1 = (v[3, 1] - 2 * v[2, 1] + v[1, 1]) / 2
-        g2 = (v[1, 3] - 2 * v[1, 2] + v[1, 1]) / 2
-        b1, b2 = v[2, 1] - v[1, 1] - 3 * g1, v[1, 2] - v[1, 1] - 3 * g2
-        a = v[1, 1] - b1 - g1 - b2 - g2
-        need(v[2, 3] == a + 2 * b1 + 4 * g1 + 3 * b2 + 9 * g2, "the quintic is not of this form")
-        for values, x in zip(out, (a, b1, g1, b2, g2), strict=True):
+def _curves(problem: Stated, form: Form) -> Curves:
+    """Each piece times its divisor, as a polynomial of degree 2 in x and in y, for s in [0, 1].
+
+    It is read off from exact splines on nine pairs of ratios, and checked on two more.
+    """
+    grid = [(Fraction(x), Fraction(y)) for x in (1, 2, 3) for y in (1, 2, 3)]
+    further = [(Fraction(2), Fraction(5)), (Fraction(7, 2), Fraction(1, 3))]
+    splines = {(x, y): pieces(problem, [1 / x, Fraction(1), 1 / y]) for x, y in grid + further}
+    out: Curves = {}
+    for kind, (segment, divisor) in form.divisors.items():
+        out[kind] = []
+        for joint in range(len(problem.limits)):
+            values = {}
+            for (x, y), spline in splines.items():
+                h = (1 / x, Fraction(1), 1 / y)[segment]
+                by = sum((c * x**i * y**j for (i, j), c in divisor.items()), Fraction(0))
+                values[x, y] = [by * c * h**p for p, c in enumerate(spline[joint][segment])]
+            rows = [_parabola([values[x, y] for y in (1, 2, 3)]) for x in (1, 2, 3)]
+            found: Ratios = {}
+            for j in range(3):
+                for i, coefficients in enumerate(_parabola([row[j] for row in rows])):
+                    found[i, j] = coefficients
+            for x, y in further:
+                expected = [Fraction(0)] * len(values[x, y])
+                for (i, j), c in found.items():
+                    expected = [e + x**i * y**j * v for e, v in zip(expected, c, strict=True)]
+                need(values[x, y] == expected, "a piece is not of this form")
+            out[kind].append(found)
+    return out
+
+
+def _parabola(nodes: list[list[Fraction]]) -> list[list[Fraction]]:
+    """Coefficients of the parabolas with these values at 1, 2, 3: ascending."""
+    out: list[list[Fraction]] = [[], [], []]
+    for v1, v2, v3 in zip(*nodes, strict=True):
+        c = (v3 - 2 * v2 + v1) / 2
+        b = v2 - v1 - 3 * c
+        for values, x in zip(out, (v1 - b - c, b, c), strict=True):
             values.append(x)
     return out
 
 
-def _row(problem: Stated, quintics: list[list[list[Fraction]]], row: Any, total: Fraction) -> Poly:
+def _on_square(ratios: dict[tuple[int, int], Fraction]) -> Poly:
+    """a²b²·Σ c·xⁱyʲ in a and b."""
+    a: Poly = {(1, 0): Fraction(1)}
+    a1: Poly = {(0, 0): Fraction(1), (1, 0): Fraction(-1)}
+    b: Poly = {(0, 1): Fraction(1)}
+    b1: Poly = {(0, 0): Fraction(1), (0, 1): Fraction(-1)}
+    return _plus(
+        *(
+            (c, _times(*[a] * (2 - i), *[a1] * i, *[b] * (2 - j), *[b1] * j))
+            for (i, j), c in ratios.items()
+            if c
+        )
+    )
+
+
+def _row(problem: Stated, form: Form, curves: Curves, row: Any, total: Fraction) -> Poly:
     """Polynomial in a, b that is < 0 wherever a trajectory shorter than ``total`` is feasible."""
     kind, (joint, order, sign, place, cap) = row[0], row[1:]
     whole(cap, -1, 2)
@@ -147,7 +222,7 @@ def _row(problem: Stated, quintics: list[list[list[Fraction]]], row: Any, total:
         k = whole(joint, 0, 2)
         return _plus((problem.shortest[k] / c, hold), (Fraction(-1), M[k]))
     whole(joint, 0, len(problem.limits) - 1)
-    whole(order, 0 if kind == "place" else 1, 3)
+    whole(order, 0 if kind in form.divisors else 1, 3)
     need(type(sign) is int and sign in (1, -1), "sign")
     q = [w[joint] for w in problem.waypoints]
     if order == 0:
@@ -160,20 +235,17 @@ def _row(problem: Stated, quintics: list[list[list[Fraction]]], row: Any, total:
         need(bound is not None and bound[1] > 0, "a row leans on a limit that is not there")
         assert bound is not None
         limit = bound[1]
-    if kind == "place":
+    if kind in form.divisors:
         s = Fraction(whole(place, 0, PLACES), PLACES)
-        values = [at(derivative(part, order), s) for part in quintics[joint]]
-        a: Poly = {(1, 0): Fraction(1)}
-        a1 = {(0, 0): Fraction(1), (1, 0): Fraction(-1)}
-        b: Poly = {(0, 1): Fraction(1)}
-        b1 = {(0, 0): Fraction(1), (0, 1): Fraction(-1)}
-        shapes = ((a, a, b, b), (a, a1, b, b), (a1, a1, b, b), (a, a, b, b1), (a, a, b1, b1))
-        left = _plus(*((sign * v, _times(*f)) for v, f in zip(values, shapes, strict=True)))
-        below, segment = _times(a, a, b, b), 1
+        ratios = curves[kind][joint]
+        left = _on_square({key: sign * at(derivative(c, order), s) for key, c in ratios.items()})
+        segment, divisor = form.divisors[kind]
+        below = _on_square({key: Fraction(c) for key, c in divisor.items()})
     else:
         segment = {"first": 0, "mean": 1, "last": 2}[kind]
         need(kind != "mean" or order == 1, "a mean speed has order 1")
-        way = abs(q[segment + 1] - q[segment]) * (1 if kind == "mean" else perm(3, order))
+        least = perm(3, order) if form.cubic_ends else factorial(order)
+        way = abs(q[segment + 1] - q[segment]) * (1 if kind == "mean" else least)
         left, below = {(0, 0): way}, ONE
     if order == 0:
         return _plus((Fraction(1), left), (-limit, below))
