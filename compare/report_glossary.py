@@ -44,7 +44,11 @@ _EVIDENCE = (
         "The best value found and checked, with nothing proved below it. A gap against it is a "
         "lower estimate of the true one.",
     ),
-    ("none", "No reference value was needed."),
+    (
+        "none",
+        "The verdict rests on no reference value: on the printed digits, a count, a check of what "
+        "is printed, or a shorter motion that was checked and needs no optimum beside it.",
+    ),
 )
 _DISTANCES = (
     (
@@ -74,7 +78,7 @@ _BASES = {
     Basis.ENCLOSURE: "True peaks over the box of all inputs that print alike.",
     Basis.CHECK: "True peaks at the printed point.",
     Basis.IDENTITY: "A scaling law that needs no solver.",
-    Basis.OPTIMUM: "A reference value of the exact side.",
+    Basis.OPTIMUM: "A reference value of the exact side, or a motion of its own that was checked.",
     Basis.REPLAY: "Seeded runs of the algorithm under the listed choices. It can say that "
     "something is not reproduced, never that it is refuted.",
     Basis.KINEMATICS: "Forward kinematics of the printed table of the robot.",

@@ -196,7 +196,7 @@ def claim_table(one: CaseAudit) -> Section:
                 text(_why(one, judgement)),
             )
         )
-    names = ("claim", "where", "printed", "verdict", "readings", "evidence", "why")
+    names = ("claim", "where", "printed", "verdict", "readings", "reference", "why")
     readings = f"{_count(len(one.study.readings), 'reading')}: {named(one.study.readings, _FEW)}"
     note = Prose(f"{readings}. Words are explained at the end of the page.", "note")
     return Section(

@@ -262,6 +262,7 @@ def test_every_word_of_the_vocabulary_is_explained(page: Seen) -> None:
     vocabulary = [
         "certified",
         "best known",
+        "none",
         "supported",
         "refuted",
         "not checkable",
