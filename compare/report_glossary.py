@@ -63,6 +63,21 @@ _DISTANCES = (
     ("feasible time", "T·max(1, c*): all durations stretched until every limit is kept."),
     ("tight time", "T·c*: all durations rescaled until a limit is just reached."),
 )
+_STEPS = (
+    ("reading", "One way to understand what the text leaves open; everything is computed under "
+     "each reading that the text admits."),
+    ("shared durations", "All joints pass each way-point together, so that they share the segment "
+     "durations."),
+    ("relaxed family", "Curves of degree 5 or more in every segment, C2, through the same "
+     "way-points, within the same limits and end conditions; the optimiser uses the freedom left."),
+    ("TOPPRA", "The fastest motion along the path of a given curve, under velocity and "
+     "acceleration limits only; on grids, extrapolated."),
+    ("any curve through the way-points", "The fastest motion of bounded velocity and acceleration, "
+     "whatever the curve; joints meet at the way-points only."),
+    ("KKT residual", "How far the answer is from meeting the first-order conditions of an optimum, "
+     "scaled; near 0 it meets them, which proves no global optimum."),
+    ("starts at best", "How many starts of the local solver ended at the lowest total found."),
+)  # fmt: skip
 _SEVERITIES = (
     ("error", "A printed number or statement is contradicted by a proof, whatever the reading."),
     (
@@ -94,6 +109,7 @@ def glossary() -> Section:
         ("On one motion", _CHECKS),
         ("On a reference value", _EVIDENCE),
         ("On a distance", _DISTANCES),
+        ("On steps, optima and runs", _STEPS),
         ("Severity of a finding", _SEVERITIES),
         ("Basis of a finding", tuple((str(b), meaning) for b, meaning in _BASES.items())),
     )

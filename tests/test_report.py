@@ -273,6 +273,13 @@ def test_every_word_of_the_vocabulary_is_explained(page: Seen) -> None:
         "undecided",
         "optimality gap",
         "difference of reported time",
+        "reading",
+        "relaxed family",
+        "TOPPRA",
+        "any curve through the way-points",
+        "KKT residual",
+        "starts at best",
+        "replay",
     ]
     for word in (*vocabulary, *Basis, *Keeping):
         assert f"word-{slug(word)}" in anchors
