@@ -125,7 +125,9 @@ def _down(one: CaseAudit, fall: Waterfall) -> Iterable[str]:
             break
     known = [s for s in fall.steps if s.time is not None]
     if known and known[-1].evidence is not Evidence.NONE:
-        yield f"With {known[-1].name} it would be {interval(known[-1])} ({known[-1].note})."
+        last = known[-1]
+        shown = f"{interval(last)} ({last.note})"
+        yield f"With {last.name} the {last.evidence} shortest time is {shown}."
 
 
 def _problems(study: Study) -> Grid:

@@ -200,6 +200,15 @@ def test_every_claim_stands_with_its_digits_and_verdict(
     assert "0.7615, 0.3854, 0.4572 s" in page.words
 
 
+def test_the_last_step_is_told_with_its_evidence(page: Seen, report: AuditReport) -> None:
+    one = report.cases[0]
+    falls = [f for f in one.waterfalls if f.reading == one.study.main_reading]
+    for step in (next(s for s in reversed(f.steps) if s.time is not None) for f in falls):
+        assert (
+            f"With {step.name} the {step.evidence} shortest time is {step.time:.4f} s" in page.words
+        )
+
+
 def test_where_readings_differ_each_has_its_verdict(page: Seen) -> None:
     assert "some refuted under waypoints-rad supported under waypoints-deg" in page.words
     said = "durations-110, limits-kept supported under waypoints-deg, refuted under waypoints-rad."
