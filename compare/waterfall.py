@@ -13,6 +13,8 @@ from ..problem import Coupling, fit
 from ..problem.claim import AnyClaim, DurationsClaim, MaximumClaim
 from .study import Study
 
+_ROUNDING = 1e-12
+
 
 @dataclass(frozen=True)
 class Step:
@@ -164,7 +166,8 @@ def _free(study: Study, pid: str, rid: str) -> Step:
     note = "upper estimate" + (f"; {answer.why}" if answer.why else "")
     exact = stated_exactly(study.case.posing(pid, rid))
     bound = None if exact is None else proved(exact, Subject.ANY)
-    if bound is None or not 0 < bound.lower <= answer.total_time:
+    # An infimum that is met to the last digit may round to either side of its bound.
+    if bound is None or not 0 < bound.lower <= answer.total_time * (1 + _ROUNDING):
         return Step(name, answer.total_time, None, None, answer.evidence, note)
     low = float(bound.lower)
     shown = f"no motion within the limits is shorter than {_below(bound.lower)} s: certified"
@@ -173,7 +176,8 @@ def _free(study: Study, pid: str, rid: str) -> Step:
         note = f"{shown}, gap {(high - low) / high:.1e}" + (f"; {answer.why}" if answer.why else "")
         return Step(name, high, low, high, Evidence.CERTIFIED, note)
     note += f"; {shown}"
-    return Step(name, answer.total_time, low, answer.total_time, Evidence.BEST_KNOWN, note)
+    high = max(low, answer.total_time)
+    return Step(name, high, low, high, Evidence.BEST_KNOWN, note)
 
 
 def _below(value: Fraction) -> str:

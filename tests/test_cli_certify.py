@@ -235,7 +235,10 @@ def test_huge_numbers_are_no_fault(run: Run, tmp_path: Path) -> None:
         (("--certify", "--resume", "missing.json"), "missing.json: cannot be read"),
         (("--certify", "--resume", "mine.toml"), "mine.toml: is no JSON"),
         (("--certify", "--certificates", "taken"), "is no trajgap-certificate-1"),
-        (("--certify", "--gap", "1"), "gap must lie in"),
+        (("--certify", "--gap", "1"), "--gap: 1 is no relative width; give 0 or more, below 1"),
+        (("--certify", "--gap", "inf"), "--gap: inf is no relative width"),
+        (("--certify", "--certificates", "mine.toml"), "mine.toml: --certificates: is no folder"),
+        (("--certify", "--certificates", "mine.toml/x/y"), "mine.toml: --certificates: is no fold"),
     ],
 )
 def test_bad_options(run: Run, arguments: tuple[str, ...], reason: str) -> None:
@@ -269,3 +272,10 @@ def test_a_state_file_that_was_edited_is_refused(run: Run) -> None:
     code, _, err = run("solve", *ONE, "--certify", "--resume", str(path))
     assert code == 2
     assert "do not keep the limits" in err
+
+
+def test_a_width_that_is_not_reached_is_not_called_certified(run: Run) -> None:
+    code, out, _ = run("solve", *ONE, "--certify", "--gap", "0", "--json")
+    (result,) = strict(out)["intervals"]
+    assert 0 < result["gap"] < 1e-9
+    assert (code, result["outcome"]) == (3, "interval")

@@ -19,6 +19,7 @@ from trajgap.nlp import (
     ExactProblem,
     Interval,
     Subject,
+    family_free,
     proved,
     shipped,
     solve,
@@ -40,7 +41,6 @@ from trajgap.problem import (
 from .test_certify import POSED
 from .test_documents import assert_valid
 
-waterfall_module = import_module("trajgap.compare.waterfall")
 evidence_module = import_module("trajgap.nlp.evidence")
 waterfall_module = import_module("trajgap.compare.waterfall")
 certificate_module = import_module("trajgap.nlp.certificate")
@@ -217,6 +217,29 @@ def test_a_bound_for_any_curve_stands_on_the_waterfall(
         assert step.time > 0.5
     else:
         assert (step.time, step.evidence) == (0.5, Evidence.CERTIFIED)
+
+
+@pytest.mark.parametrize(("above", "certified"), [(1e-15, True), (1e-6, False)])
+def test_a_bound_for_any_curve_may_round_above_the_answer_and_no_more(
+    monkeypatch: pytest.MonkeyPatch, above: float, certified: bool
+) -> None:
+    study = one_study()
+    found = family_free(study.problem(*study.pairs[0])).total_time
+    assert found is not None
+    lower = Fraction(found) * Fraction(1 + above)
+    bound = Interval(lower, lower + Fraction(1, 10**9), None, False)
+    monkeypatch.setattr(
+        waterfall_module, "proved", lambda _, subject: bound if subject is Subject.ANY else None
+    )
+    step = waterfalls(study)[0].steps[-1]
+    assert (step.evidence is Evidence.CERTIFIED) == certified
+    assert step.time is not None
+    assert step.low is None or step.low <= step.time
+
+
+def test_what_is_proved_of_any_curve_is_called_certified_under_every_reading() -> None:
+    for fall in waterfalls(Study(load_case(IRB))):
+        assert fall.steps[-1].evidence is Evidence.CERTIFIED
 
 
 def test_only_a_proof_sets_a_lower_bound() -> None:
