@@ -108,7 +108,7 @@ def verify(source: str | Path | dict[str, Any]) -> Verdict:
         if not isinstance(source, dict):
             if Path(source).stat().st_size > _LARGEST:
                 raise Refused("the file is too large")
-            source = json.loads(Path(source).read_text("utf-8"))
+            source = json.loads(Path(source).read_text("utf-8"), object_pairs_hook=_once)
         need(isinstance(source, dict), "the file is not a JSON object")
         assert isinstance(source, dict)
         rest = {key: value for key, value in source.items() if key != "seal"}
@@ -130,6 +130,13 @@ def verify(source: str | Path | dict[str, Any]) -> Verdict:
     return Verdict(
         True, altered, _shown(found, subject), found.lower, found.upper, found.infeasible, subject
     )
+
+
+def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """An object; of a key that it has twice, readers of the file may see either value."""
+    found = dict(pairs)
+    need(len(found) == len(pairs), "the file names a key twice in one object")
+    return found
 
 
 def _shown(found: Proved, subject: Subject) -> str:

@@ -313,6 +313,18 @@ def test_a_malformed_file_is_refused(tmp_path: Path, text: str) -> None:
     assert not verify(tmp_path / "missing.json").proves
 
 
+def test_a_key_named_twice_is_refused(tmp_path: Path) -> None:
+    # Readers of the file may take the first value, and json takes the last.
+    path = tmp_path / "twice.json"
+    text = json.dumps(document())
+    path.write_text(text.replace('"limits": ', '"limits": [], "limits": ', 1))
+    verdict = verify(path)
+    assert not verdict.proves
+    assert "twice" in verdict.reason
+    path.write_text(text)
+    assert verify(path).proves
+
+
 def test_the_verifiers_share_no_code_with_the_solver() -> None:
     folder = Path(str(import_module("trajgap.nlp.verify").__file__)).parent
     modules = sorted(folder.glob("verify*.py"))
