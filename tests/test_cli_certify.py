@@ -247,6 +247,15 @@ def test_bad_options(run: Run, arguments: tuple[str, ...], reason: str) -> None:
     assert reason in err
 
 
+def test_a_nested_file_in_the_way_is_refused(run: Run) -> None:
+    folder = Path("trajgap-certificates")
+    folder.mkdir()
+    (folder / f"{NAME}.json").write_text("[" * 99_999)
+    code, _, err = run("solve", *ONE, "--certify", "--time", "0")
+    assert code == 2
+    assert "is no trajgap-certificate-1" in err
+
+
 def test_a_state_of_another_problem_is_refused(run: Run) -> None:
     run("solve", *ONE, "--certify", "--time", "0")
     state = f"trajgap-certificates/{NAME}.state.json"
