@@ -555,6 +555,12 @@ def test_a_joint_that_stays_where_it_must_not_be_has_no_answer(key: str, bound: 
     verdict = verify(document)
     assert not verdict.proves
     assert "position" in verdict.reason
+    side = {key: (np.inf if key == "position_upper" else -np.inf, float(bound))}
+    limits = Limits(1.0, 1.0, joints=2, **side)
+    problem = replace(posed([[0.0, 5.0], [1.0, 5.0]], 1.0, 1.0), limits=limits)
+    found = certify_family_free(problem)
+    assert found.upper is None
+    assert proved(found).lower is not None
 
 
 # --- what is not covered, and stopping ------------------------------------------------------------
