@@ -325,6 +325,13 @@ def test_a_key_named_twice_is_refused(tmp_path: Path) -> None:
     assert verify(path).proves
 
 
+@pytest.mark.parametrize("way", ["a", "b.", "ab.."])
+def test_an_endless_tree_is_refused(way: str) -> None:
+    data = document()
+    data["proof"]["tree"] = way * 1_000_000
+    assert "too deep" in verify(data).reason
+
+
 def test_the_verifiers_share_no_code_with_the_solver() -> None:
     folder = Path(str(import_module("trajgap.nlp.verify").__file__)).parent
     modules = sorted(folder.glob("verify*.py"))
