@@ -195,6 +195,8 @@ def _narrower(path: Path, new: dict[str, Any], found: Certified) -> bool:
     verdict = verify(old)
     if not verdict.proves or verdict.lower is None or verdict.upper is None:
         return False
+    if verdict.subject != found.subject:
+        return False
     return found.upper is None or verdict.upper - verdict.lower < found.upper - found.lower
 
 
