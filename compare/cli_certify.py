@@ -173,7 +173,7 @@ def _check_files(folder: Path, asked: Sequence[Question]) -> None:
 def _read(path: Path) -> dict[str, Any]:
     try:
         document = json.loads(path.read_text("utf-8"))
-    except (OSError, ValueError):
+    except (OSError, ValueError, RecursionError):
         return {}
     return document if isinstance(document, dict) else {}
 
@@ -207,6 +207,8 @@ def _narrower(path: Path, new: dict[str, Any], found: Certified) -> bool:
         return False
     verdict = verify(old)
     if not verdict.proves or verdict.lower is None or verdict.upper is None:
+        return False
+    if verdict.subject != found.subject:
         return False
     return found.upper is None or verdict.upper - verdict.lower < found.upper - found.lower
 

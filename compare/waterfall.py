@@ -11,6 +11,7 @@ from ..nlp.family_free import family_free
 from ..nlp.retime import retime
 from ..problem import Coupling, fit
 from ..problem.claim import AnyClaim, DurationsClaim, MaximumClaim
+from ..problem.printed import down, up
 from .study import Study
 
 _ROUNDING = 1e-12
@@ -169,10 +170,10 @@ def _free(study: Study, pid: str, rid: str) -> Step:
     # An infimum that is met to the last digit may round to either side of its bound.
     if bound is None or not 0 < bound.lower <= answer.total_time * (1 + _ROUNDING):
         return Step(name, answer.total_time, None, None, answer.evidence, note)
-    low = float(bound.lower)
+    low = down(bound.lower)
     shown = f"no motion within the limits is shorter than {_below(bound.lower)} s: certified"
     if bound.upper is not None:
-        high = float(bound.upper)
+        high = up(bound.upper)
         note = f"{shown}, gap {(high - low) / high:.1e}" + (f"; {answer.why}" if answer.why else "")
         return Step(name, high, low, high, Evidence.CERTIFIED, note)
     note += f"; {shown}"

@@ -241,7 +241,9 @@ def _result(run: _Run, answer: tuple[Fraction, ...] | None, began: float, gap: f
         enough = run.state is not None and upper - run.lower <= upper * Fraction(gap)
         outcome = Outcome.CERTIFIED if enough else Outcome.INTERVAL
     else:
-        above = run.state is not None and not run.stopped
+        # A resumed proof may be of any total, and nothing may be left to prove.
+        wanted = _targets(run.problem, None, 0.0, Fraction(0))
+        above = run.state is not None and not run.stopped and run.lower in wanted
         outcome = Outcome.INFEASIBLE if above else Outcome.OPEN
     return Certified(
         run.problem,

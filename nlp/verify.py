@@ -143,9 +143,18 @@ def verify(source: str | Path | dict[str, Any]) -> Verdict:
 
 def _parsed(path: Path) -> Any:
     try:
-        return json.loads(path.read_text("utf-8"))
+        return json.loads(path.read_text("utf-8"), object_pairs_hook=_once)
+    except Refused:
+        raise
     except (ValueError, RecursionError):
         raise Refused(f"no JSON; {_NAME_ONE}") from None
+
+
+def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """An object; of a key that it has twice, readers of the file may see either value."""
+    found = dict(pairs)
+    need(len(found) == len(pairs), "the file names a key twice in one object")
+    return found
 
 
 def _shown(found: Proved, subject: Subject) -> str:

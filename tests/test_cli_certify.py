@@ -143,6 +143,15 @@ def test_a_narrower_certificate_stays(run: Run) -> None:
     assert path.read_text() != narrow
 
 
+def test_a_narrower_certificate_of_all_curves_does_not_stay(run: Run) -> None:
+    other = shipped(POSED[NAME], Subject.ANY)
+    path = Path(f"trajgap-certificates/{NAME}.json")
+    path.parent.mkdir()
+    path.write_text(json.dumps(other))
+    assert run("solve", *ONE, "--certify", "--gap", "0.2")[0] == 0
+    assert json.loads(path.read_text())["claim"]["subject"] == Subject.DECLARED
+
+
 def test_ctrl_c_leaves_the_interval_and_a_state(run: Run) -> None:
     started = (
         "import sys, time, trajgap.compare.cli_certify as c\n"
@@ -248,6 +257,15 @@ def test_bad_options(run: Run, arguments: tuple[str, ...], reason: str) -> None:
     assert (code, out) == (2, "")
     assert err.count("\n") == 1
     assert reason in err
+
+
+def test_a_nested_file_in_the_way_is_refused(run: Run) -> None:
+    folder = Path("trajgap-certificates")
+    folder.mkdir()
+    (folder / f"{NAME}.json").write_text("[" * 99_999)
+    code, _, err = run("solve", *ONE, "--certify", "--time", "0")
+    assert code == 2
+    assert "is no trajgap-certificate-1" in err
 
 
 def test_a_state_of_another_problem_is_refused(run: Run) -> None:

@@ -115,6 +115,30 @@ def test_a_certificate_of_another_problem_is_not_used() -> None:
     assert proved(replace(exact, name="another name")) == proved(exact)
 
 
+@pytest.mark.parametrize(
+    "forged",
+    [
+        {"curve": "x", "ends": ["-1", "-1"]},
+        {"curve": "x", "ends": ["-1", "-1"], "virtual": []},
+        {"prescribed": [[[1, "-1"]], [], [], [[1, "-1"]]], "ends": ["0", "0"]},
+    ],
+)
+def test_a_certificate_for_other_end_velocities_is_not_used(
+    monkeypatch: pytest.MonkeyPatch, forged: dict[str, object]
+) -> None:
+    # The question and the verifier must read the ends in the same place.
+    exact = POSED[f"{PUMA}.six-joints.durations-positive"]
+    document = shipped(exact, Subject.ANY)
+    assert document is not None
+    if "curve" in forged:
+        for key in ("degrees", "continuity"):
+            del document["problem"][key]
+    document["problem"] |= forged
+    monkeypatch.setattr(certificate_module, "_all_shipped", lambda: (document,))
+    assert shipped(exact, Subject.ANY) is None
+    assert evidence_module.proved.__wrapped__(exact, Subject.ANY) is None
+
+
 def test_every_shipped_reading_that_is_covered_is_certified() -> None:
     case = load_case(GA)
     words = {}
@@ -209,7 +233,8 @@ def test_a_bound_for_any_curve_stands_on_the_waterfall(
     monkeypatch.setattr(waterfall_module, "proved", only_any)
     (fall,) = waterfalls(one_study())
     step = fall.steps[-1]
-    assert step.low == 0.4
+    # The nearest double lies above 2/5, and would be no lower bound.
+    assert step.low == np.nextafter(0.4, 0.0)
     assert step.note.count("no motion within the limits is shorter than 0.4 s: certified") == 1
     if upper is None:
         assert step.evidence is Evidence.BEST_KNOWN

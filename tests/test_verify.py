@@ -337,6 +337,25 @@ def test_what_is_no_certificate_is_refused_in_plain_words(
     assert missing == "cannot be read (No such file or directory); check the path"
 
 
+def test_a_key_named_twice_is_refused(tmp_path: Path) -> None:
+    # Readers of the file may take the first value, and json takes the last.
+    path = tmp_path / "twice.json"
+    text = json.dumps(document())
+    path.write_text(text.replace('"limits": ', '"limits": [], "limits": ', 1))
+    verdict = verify(path)
+    assert not verdict.proves
+    assert "twice" in verdict.reason
+    path.write_text(text)
+    assert verify(path).proves
+
+
+@pytest.mark.parametrize("way", ["a", "b.", "ab.."])
+def test_an_endless_tree_is_refused(way: str) -> None:
+    data = document()
+    data["proof"]["tree"] = way * 1_000_000
+    assert "too deep" in verify(data).reason
+
+
 def test_the_verifiers_share_no_code_with_the_solver() -> None:
     folder = Path(str(import_module("trajgap.nlp.verify").__file__)).parent
     modules = sorted(folder.glob("verify*.py"))
