@@ -6,6 +6,7 @@ import copy
 from dataclasses import replace
 from fractions import Fraction
 from importlib import import_module
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,6 +20,8 @@ from trajgap.nlp import (
     ExactProblem,
     Interval,
     Subject,
+    certificate,
+    certify,
     family_free,
     proved,
     shipped,
@@ -28,6 +31,7 @@ from trajgap.nlp import (
     with_certificate,
     with_certificates,
 )
+from trajgap.nlp.evidence import WIDEST
 from trajgap.nlp.exact import exact_problem, printed_problem
 from trajgap.problem import (
     Limits,
@@ -46,6 +50,7 @@ waterfall_module = import_module("trajgap.compare.waterfall")
 certificate_module = import_module("trajgap.nlp.certificate")
 IRB, PUMA, GA = "irb460-pso-353", "puma560-mnam-pso-353", "irb1600-ga-cubic-bspline"
 PAIR = ("limit-80", "waypoints-rad")
+VERDICTS = (Path(__file__).parent.parent / "docs" / "verdicts.md").read_text("utf-8")
 
 
 @pytest.fixture
@@ -80,6 +85,20 @@ def test_what_is_proved_is_called_certified() -> None:
     step = next(s for s in fall.steps if s.name.startswith("optimum"))
     assert (step.low, step.high) == (answer.lower_bound, answer.total_time)
     assert "proved" in str(answer)
+
+
+@pytest.mark.parametrize(("width", "word"), [(0.009, "certified"), (0.05, "best known")])
+def test_a_proof_of_a_wide_interval_certifies_nothing(
+    monkeypatch: pytest.MonkeyPatch, width: float, word: str
+) -> None:
+    assert f"at most {float(100 * WIDEST):g} % wide" in VERDICTS
+    problem = replace(POSED[f"{IRB}.{PAIR[0]}.{PAIR[1]}"], name=f"width {width}")
+    document = certificate(certify(problem, gap=width))
+    monkeypatch.setattr(evidence_module, "shipped", lambda *_: document)
+    answer = solve(one_study().problem(*PAIR))
+    evidence_module.proved.cache_clear()
+    assert with_certificate(answer, problem).evidence == word
+    evidence_module.proved.cache_clear()
 
 
 @pytest.mark.usefixtures("without_certificates")
