@@ -28,8 +28,9 @@ MOST_SEGMENTS, MOST_JOINTS, MOST_ROWS = 26, 12, 64
 """What the number of roundings was counted for; rows are those of a leaf."""
 SMALLEST = Fraction(1, 10**30)
 """Steps and limits are 0 or above it, so that nothing underflows."""
-LEAST_TAU, DEEPEST = Fraction(1, 10**60), 10_000
-"""A window's tau is 0 or above it, for the same reason; cuts of one box."""
+LEAST_TAU, BRIEFEST, DEEPEST = Fraction(1, 10**60), 1e-40, 10_000
+"""A window's tau is 0 or above it, durations in a leaf with limits too, for the same reason;
+cuts of one box."""
 
 # Quintic with (q0, q1, v0, v1, a0, a1): rows of ascending powers; exact, entries are halves.
 _AT = np.array(
@@ -275,7 +276,8 @@ class _Bound:
 
     def __init__(self, task: _Task, low: Array, high: Array, leaves: list[Any]) -> None:
         need(
-            bool((low > 0.0).all() and (low <= high).all()), "a leaf that is too wide is not proved"
+            bool((low > BRIEFEST).all() and (low <= high).all()),
+            "a leaf that is too wide is not proved",
         )
         self.task, self.size = task, len(leaves)
         self.n, self.joints = task.steps.shape
