@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import signal
 import threading
 from collections.abc import Callable, Iterator, Sequence
@@ -59,7 +60,10 @@ def certify_case(
     asked = [q for one in chosen for q in _questions(case, one)]
     states = _states(resume, asked)
     folder = CERTIFICATE_FOLDER if folder is None and not as_json else folder
+    if not 0 <= gap < 1:
+        raise CaseError(source, "--gap", f"{gap:g} is no relative width; give 0 or more, below 1")
     if folder is not None:
+        _check_folder(folder)
         _check_files(folder, asked)
     results: list[dict[str, Any]] = []
     unsettled, stop = False, _Stop()
@@ -148,6 +152,15 @@ def _file(folder: Path, name: str, kind: str = "") -> Path:
     return folder / f"{plain}{kind}.json"
 
 
+def _check_folder(folder: Path) -> None:
+    """Find out before computing whether the folder can be made and written to."""
+    there = next(p for p in (folder, *folder.absolute().parents) if os.path.lexists(p))
+    if not there.is_dir():
+        raise CaseError(str(there), "--certificates", "is no folder; name another")
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise CaseError(str(there), "--certificates", "cannot be written to; name another folder")
+
+
 def _check_files(folder: Path, asked: Sequence[Question]) -> None:
     """Find out before computing whether what is in the way may be replaced."""
     for one in asked:
@@ -160,7 +173,7 @@ def _check_files(folder: Path, asked: Sequence[Question]) -> None:
 def _read(path: Path) -> dict[str, Any]:
     try:
         document = json.loads(path.read_text("utf-8"))
-    except (OSError, ValueError):
+    except (OSError, ValueError, RecursionError):
         return {}
     return document if isinstance(document, dict) else {}
 
@@ -194,6 +207,8 @@ def _narrower(path: Path, new: dict[str, Any], found: Certified) -> bool:
         return False
     verdict = verify(old)
     if not verdict.proves or verdict.lower is None or verdict.upper is None:
+        return False
+    if verdict.subject != found.subject:
         return False
     return found.upper is None or verdict.upper - verdict.lower < found.upper - found.lower
 

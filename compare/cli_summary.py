@@ -177,7 +177,7 @@ def audited(document: Document) -> list[RenderableType]:
         rows = [
             (v["claim"], v["verdict"], _under(v), v["evidence"], v["why"]) for v in case["verdicts"]
         ]
-        parts.append(Columns(("claim", "verdict", "readings", "evidence", "…why"), rows))
+        parts.append(Columns(("claim", "verdict", "readings", "reference", "…why"), rows))
         parts += _time_goes(case["waterfalls"])
         parts += _side_by_side(case["readings"])
         parts += [line(said) for said in _said_once(case["findings"], "error")]

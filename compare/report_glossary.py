@@ -44,7 +44,11 @@ _EVIDENCE = (
         "The best value found and checked, with nothing proved below it. A gap against it is a "
         "lower estimate of the true one.",
     ),
-    ("none", "No reference value was needed."),
+    (
+        "none",
+        "The verdict rests on no reference value: on the printed digits, a count, a check of what "
+        "is printed, or a shorter motion that was checked and needs no optimum beside it.",
+    ),
 )
 _DISTANCES = (
     (
@@ -59,6 +63,21 @@ _DISTANCES = (
     ("feasible time", "T·max(1, c*): all durations stretched until every limit is kept."),
     ("tight time", "T·c*: all durations rescaled until a limit is just reached."),
 )
+_STEPS = (
+    ("reading", "One way to understand what the text leaves open; everything is computed under "
+     "each reading that the text admits."),
+    ("shared durations", "All joints pass each way-point together, so that they share the segment "
+     "durations."),
+    ("relaxed family", "Curves of degree 5 or more in every segment, C2, through the same "
+     "way-points, within the same limits and end conditions; the optimiser uses the freedom left."),
+    ("TOPPRA", "The fastest motion along the path of a given curve, under velocity and "
+     "acceleration limits only; on grids, extrapolated."),
+    ("any curve through the way-points", "The fastest motion of bounded velocity and acceleration, "
+     "whatever the curve; joints meet at the way-points only."),
+    ("KKT residual", "How far the answer is from meeting the first-order conditions of an optimum, "
+     "scaled; near 0 it meets them, which proves no global optimum."),
+    ("starts at best", "How many starts of the local solver ended at the lowest total found."),
+)  # fmt: skip
 _SEVERITIES = (
     ("error", "A printed number or statement is contradicted by a proof, whatever the reading."),
     (
@@ -74,7 +93,7 @@ _BASES = {
     Basis.ENCLOSURE: "True peaks over the box of all inputs that print alike.",
     Basis.CHECK: "True peaks at the printed point.",
     Basis.IDENTITY: "A scaling law that needs no solver.",
-    Basis.OPTIMUM: "A reference value of the exact side.",
+    Basis.OPTIMUM: "A reference value of the exact side, or a motion of its own that was checked.",
     Basis.REPLAY: "Seeded runs of the algorithm under the listed choices. It can say that "
     "something is not reproduced, never that it is refuted.",
     Basis.KINEMATICS: "Forward kinematics of the printed table of the robot.",
@@ -90,6 +109,7 @@ def glossary() -> Section:
         ("On one motion", _CHECKS),
         ("On a reference value", _EVIDENCE),
         ("On a distance", _DISTANCES),
+        ("On steps, optima and runs", _STEPS),
         ("Severity of a finding", _SEVERITIES),
         ("Basis of a finding", tuple((str(b), meaning) for b, meaning in _BASES.items())),
     )

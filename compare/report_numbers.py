@@ -114,7 +114,9 @@ def _answer(solution: Solution) -> tuple[Cell, ...]:
     if solution.infimum is not None:
         total = f"{solution.infimum:.6f} s (infimum)"
     if total is not None and solution.lower_bound is not None:
-        total += f"\nat least {Decimal(solution.lower_bound).quantize(NINE, ROUND_FLOOR)} s, proved"
+        total += (
+            f"\nat least {Decimal(solution.lower_bound).quantize(NINE, ROUND_FLOOR)} s,\nproved"
+        )
     return (
         text(solution.status + (f"\n{solution.why}" if solution.why else "")),
         number(total),

@@ -48,7 +48,7 @@ def _outcomes(one: CaseAudit, summary: ReadingsSummary) -> list[Block]:
 
 def _row(outcome: Outcome, default: str) -> tuple[Cell, ...]:
     mark = "\n(default)" if outcome.reading == default else ""
-    optimum = None if outcome.optimum is None else f"{outcome.optimum:.6f} s"
+    optimum = None if outcome.optimum is None else f"{outcome.optimum:.6f} s\n{outcome.evidence}"
     over = ""
     if outcome.excesses:
         worst = max(outcome.excesses, key=lambda e: e.ratio)

@@ -125,7 +125,9 @@ def _down(one: CaseAudit, fall: Waterfall) -> Iterable[str]:
             break
     known = [s for s in fall.steps if s.time is not None]
     if known and known[-1].evidence is not Evidence.NONE:
-        yield f"With {known[-1].name} it would be {interval(known[-1])} ({known[-1].note})."
+        last = known[-1]
+        shown = f"{interval(last)} ({last.note})"
+        yield f"With {last.name} the {last.evidence} shortest time is {shown}."
 
 
 def _problems(study: Study) -> Grid:
@@ -196,7 +198,7 @@ def claim_table(one: CaseAudit) -> Section:
                 text(_why(one, judgement)),
             )
         )
-    names = ("claim", "where", "printed", "verdict", "readings", "evidence", "why")
+    names = ("claim", "where", "printed", "verdict", "readings", "reference", "why")
     readings = f"{_count(len(one.study.readings), 'reading')}: {named(one.study.readings, _FEW)}"
     note = Prose(f"{readings}. Words are explained at the end of the page.", "note")
     return Section(

@@ -156,7 +156,7 @@ def tent_picture(scatter: TentScatter, *, unit: str, title: str) -> Picture:
             corner = (scatter.lower, scatter.lower)
             middle.plot(*corner, "o", markersize=12, markerfacecolor="none", color=RED, zorder=4)
             middle.annotate(
-                f"{scatter.at_zero} of {members} members",
+                f"{scatter.at_zero} of {members} begin here",
                 corner,
                 xytext=(14, 14),
                 textcoords="offset points",

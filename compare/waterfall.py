@@ -11,7 +11,10 @@ from ..nlp.family_free import family_free
 from ..nlp.retime import retime
 from ..problem import Coupling, fit
 from ..problem.claim import AnyClaim, DurationsClaim, MaximumClaim
+from ..problem.printed import down, up
 from .study import Study
+
+_ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
@@ -164,16 +167,18 @@ def _free(study: Study, pid: str, rid: str) -> Step:
     note = "upper estimate" + (f"; {answer.why}" if answer.why else "")
     exact = stated_exactly(study.case.posing(pid, rid))
     bound = None if exact is None else proved(exact, Subject.ANY)
-    if bound is None or not 0 < bound.lower <= answer.total_time:
+    # An infimum that is met to the last digit may round to either side of its bound.
+    if bound is None or not 0 < bound.lower <= answer.total_time * (1 + _ROUNDING):
         return Step(name, answer.total_time, None, None, answer.evidence, note)
-    low = float(bound.lower)
+    low = down(bound.lower)
     shown = f"no motion within the limits is shorter than {_below(bound.lower)} s: certified"
     if bound.upper is not None:
-        high = float(bound.upper)
+        high = up(bound.upper)
         note = f"{shown}, gap {(high - low) / high:.1e}" + (f"; {answer.why}" if answer.why else "")
         return Step(name, high, low, high, Evidence.CERTIFIED, note)
     note += f"; {shown}"
-    return Step(name, answer.total_time, low, answer.total_time, Evidence.BEST_KNOWN, note)
+    high = max(low, answer.total_time)
+    return Step(name, high, low, high, Evidence.BEST_KNOWN, note)
 
 
 def _below(value: Fraction) -> str:

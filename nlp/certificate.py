@@ -205,11 +205,15 @@ def question(problem: dict[str, Any], subject: Subject = Subject.DECLARED) -> di
     same = {key: value for key, value in problem.items() if key != "name"}
     if subject is Subject.DECLARED:
         return same
-    # Of the curve itself only the velocities prescribed at its ends count.
-    given = same.pop("prescribed", None)
-    ends = same.pop("ends", [None, None])
-    if given is not None:
+    # Of the curve itself only the velocities prescribed at its ends count, read where the verifier
+    # reads them: what only the other kind of curve states stays, and matches nothing.
+    if "degrees" in same:
+        given = same.pop("prescribed")
         ends = [dict(entries).get(1) for entries in (given[0], given[-1])]
-    for key in ("curve", "degrees", "continuity"):
+        own = ["degrees", "continuity"]
+    else:
+        ends = same.pop("ends", [None, None])
+        own = ["curve"]
+    for key in own:
         same.pop(key, None)
     return {"virtual": [], **same, "ends": ends}

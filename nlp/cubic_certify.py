@@ -23,6 +23,7 @@ from .cubic_tree import TICKS, Box, Prover, proof_document
 from .exact import ExactProblem
 from .incumbent import float_problem, keeps_limits, prove_feasible
 from .solve import solve
+from .verify_problem import number
 
 _STAGES = (0.1, 0.01, 1e-3, 1e-4, 1e-5)
 _APART = 3.0
@@ -256,7 +257,7 @@ def _resumed(run: _Run, document: dict[str, Any]) -> Tree | None:
             for key in ("proved", "pending")
         ]
         answer = document["durations"]
-        durations = None if answer is None else tuple(Fraction(h) for h in answer)
+        durations = None if answer is None else tuple(number(h) for h in answer)
     except TrajgapError:
         raise
     except (KeyError, IndexError, TypeError, ValueError, AttributeError, ArithmeticError) as error:

@@ -19,6 +19,8 @@ from .solution import Solution
 from .solve import solve
 from .verify import Subject, verify
 
+WIDEST = Fraction(1, 100)
+"""Relative width from which an interval is too wide to call the optimum certified."""
 _SAME = 1e-9
 
 
@@ -56,7 +58,8 @@ def proved(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> Interv
     Returns
     -------
     Interval or None
-        None without a certificate of exactly this problem, or if it does not prove its claim.
+        None without a certificate of exactly this problem, or if it does not prove its claim
+        or leaves an interval wider than `WIDEST`.
     """
     document = shipped(problem, subject)
     if document is None and subject is Subject.DECLARED and covered(problem) is None:
@@ -68,6 +71,8 @@ def proved(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> Interv
         return None
     verdict = verify(document)
     if not verdict.proves or verdict.lower is None:
+        return None
+    if verdict.upper is not None and verdict.upper - verdict.lower > WIDEST * verdict.lower:
         return None
     given = document["claim"]["durations"]
     durations = None if given is None else tuple(Fraction(h) for h in given)

@@ -152,6 +152,10 @@ def unanswered(problem: ExactProblem) -> str | None:
             return "jerk is limited: the bound holds, but motions are proved within v and a only"
         if problem.position_lower[j] is not None or problem.position_upper[j] is not None:
             return "position is limited: the bound holds, but motions are proved within v and a"
+    for j, place in enumerate(problem.waypoints[0]):
+        low, high = problem.position_lower[j], problem.position_upper[j]
+        if (low is not None and low.high > place) or (high is not None and high.low < place):
+            return f"joint {problem.joints[j]} is outside its position limits"
     return None
 
 

@@ -12,6 +12,7 @@ from ..problem import TrajgapError
 from .exact import decimal
 from .family_free_rows import KINDS, Row
 from .family_free_search import Node, Search
+from .verify_problem import number
 
 KIND = "family-free"
 DIGITS = (4, 6, 8, 12)
@@ -70,16 +71,16 @@ def free_bound(
     speeds : tuple of tuple of Fraction, or None
         Of the answer.
     """
-    number: dict[Row, int] = {}
+    known: dict[Row, int] = {}
     leaves: list[list[int | str]] = []
     for node in root.leaves:
         found = (search.exact(node, digits) for digits in DIGITS)
         weighted = next(texts for proved, texts in found if proved >= total)
-        pairs = [(number.setdefault(row, len(number)), weight) for row, weight in weighted]
+        pairs = [(known.setdefault(row, len(known)), weight) for row, weight in weighted]
         leaves.append([entry for pair in pairs for entry in pair])
     joints = search.asked.joints
     rows: tuple[list[int | str], ...] = tuple(
-        [KINDS[r.kind], r.segment, joints[r.joint], *r[3:]] for r in number
+        [KINDS[r.kind], r.segment, joints[r.joint], *r[3:]] for r in known
     )
     tree: list[list[int | str] | int] = []
     stack = [root]
@@ -107,7 +108,7 @@ def restored(search: Search, document: dict[str, Any], target: float) -> Node:
         for entry in document["tree"]:
             node = stack.pop()
             if entry != 0:
-                cut = (int(entry[0]), Fraction(entry[1]))
+                cut = (int(entry[0]), number(entry[1]))
                 stack += reversed(search.halves(node, *cut, -np.inf))
         leaves = root.leaves
         for leaf, own in zip(leaves, document["leaves"], strict=True):

@@ -7,7 +7,9 @@ the C4 quintic solve M(r) x = b(r), M = Σ_k M_k(r_k) symmetric positive definit
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, cast
 
 import numba
@@ -34,10 +36,15 @@ ROUNDING = 1e-12
 _CHOOSE = np.array([[1, 0, 0, 0, 0], [1, 1, 0, 0, 0], [1, 2, 1, 0, 0], [1, 3, 3, 1, 0],
                     [1, 4, 6, 4, 1]], dtype=np.float64)  # fmt: skip
 _SQUARINGS = 4
+_SOURCES = sorted(Path(__file__).parent.glob("quintic_*.py"))
+STAMP = hashlib.sha256(b"".join(path.read_bytes() for path in _SOURCES)).hexdigest()[:16]
+"""Of the sources of everything that is compiled here."""
 
 
 def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
     """Compile with numba, cached on disk where there is a writable place."""
+    # numba looks at the caller's file alone: the name keeps it from an old callee in the cache.
+    function.__qualname__ = f"{function.__qualname__}_{STAMP}"
     try:
         jitted = numba.njit(cache=True, nogil=True, error_model="numpy")(function)
     except RuntimeError:

@@ -245,6 +245,8 @@ def _certify(exact: ExactProblem, request: Request) -> Certified:
     except (KeyboardInterrupt, _Stop):
         pass
     upper = run.upper
+    if upper is not None and upper < run.lower:
+        raise TrajgapError("certify: the proof contradicts the answer, one of them is wrong")
     if upper is None:
         outcome = Outcome.OPEN
     elif not stopped and upper - run.lower <= upper * Fraction(request.gap):

@@ -19,6 +19,7 @@ SPARE = 1e-9
 _SLACK = 1e-12
 _WIDEST = 0.6
 _KEPT = 1e-5
+_BRIEFEST = 1e-40
 
 
 @compiled
@@ -47,7 +48,7 @@ def cut(low, high):  # type: ignore[no-untyped-def]
 def inverse_box(n, low, high, r, e):  # type: ignore[no-untyped-def]
     """Centre and half-widths of a box in 1/h; False if it is too wide for `bound`."""
     for k in range(n):
-        if not low[k] > 0.0:
+        if not low[k] > _BRIEFEST:
             return False
         a, b = 1.0 / high[k], 1.0 / low[k]
         r[k] = 0.5 * (a + b)

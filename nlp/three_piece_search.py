@@ -226,17 +226,20 @@ def _certify(exact: ExactProblem, request: Request) -> Certified:
                 run.stopped, searching = True, False  # the improvement is too slight to prove
             else:
                 answer = found
-    return _result(run, answer, began)
+    return _result(run, answer, began, request.gap)
 
 
-def _result(run: _Run, answer: tuple[Fraction, ...] | None, began: float) -> Certified:
+def _result(run: _Run, answer: tuple[Fraction, ...] | None, began: float, gap: float) -> Certified:
     kind = shape_for(run.problem).proof
     upper = sum(answer, Fraction(0)) if answer is not None else None
     pending = run.pending if run.stopped else None
     if upper is not None:
-        outcome = Outcome.INTERVAL if run.stopped or run.state is None else Outcome.CERTIFIED
+        enough = run.state is not None and upper - run.lower <= upper * Fraction(gap)
+        outcome = Outcome.CERTIFIED if enough else Outcome.INTERVAL
     else:
-        above = run.state is not None and not run.stopped
+        # A resumed proof may be of any total, and nothing may be left to prove.
+        wanted = _targets(run.problem, None, 0.0, Fraction(0))
+        above = run.state is not None and not run.stopped and run.lower in wanted
         outcome = Outcome.INFEASIBLE if above else Outcome.OPEN
     return Certified(
         run.problem,

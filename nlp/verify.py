@@ -24,6 +24,7 @@ from .verify_problem import Proved, Refused, need
 
 FORMAT = "trajgap-certificate-1"
 _LARGEST = 200_000_000
+_NAME_ONE = "name a certificate"
 
 
 class Subject(StrEnum):
@@ -111,13 +112,15 @@ def verify(source: str | Path | dict[str, Any]) -> Verdict:
         if not isinstance(source, dict):
             if Path(source).stat().st_size > _LARGEST:
                 raise Refused("the file is too large")
-            source = json.loads(Path(source).read_text("utf-8"))
-        need(isinstance(source, dict), "the file is not a JSON object")
+            source = _parsed(Path(source))
+        need(isinstance(source, dict), f"no JSON object; {_NAME_ONE}")
         assert isinstance(source, dict)
+        need(source.get("format") == FORMAT, f"no {FORMAT}; {_NAME_ONE}")
+        missing = [key for key in ("problem", "claim", "proof") if key not in source]
+        need(not missing, f"malformed: {', '.join(missing)}: missing")
         rest = {key: value for key, value in source.items() if key != "seal"}
         altered = seal(rest) != source.get("seal")
         altered |= seal(source.get("problem")) != source.get("problem_hash")
-        need(source["format"] == FORMAT, "unknown format")
         kind, claim = source["proof"]["kind"], source["claim"]
         need(isinstance(kind, str) and kind in VERIFIERS, f"unknown kind of proof {kind!r}")
         subject = VERIFIERS[kind].subject
@@ -126,13 +129,33 @@ def verify(source: str | Path | dict[str, Any]) -> Verdict:
         found = VERIFIERS[kind].prove(source)
     except Refused as error:
         return Verdict(False, altered, str(error))
-    except (KeyError, IndexError, TypeError, ValueError, AttributeError) as error:
+    except KeyError as error:
+        return Verdict(False, altered, f"malformed: {error}: missing")
+    except (IndexError, TypeError, ValueError, AttributeError) as error:
         return Verdict(False, altered, f"malformed: {type(error).__name__}: {error}")
-    except (OSError, RecursionError, ZeroDivisionError, OverflowError) as error:
-        return Verdict(False, altered, f"unreadable: {error}")
+    except OSError as error:
+        return Verdict(False, altered, f"cannot be read ({error.strerror}); check the path")
+    except (RecursionError, ZeroDivisionError, OverflowError) as error:
+        return Verdict(False, altered, f"malformed: {type(error).__name__}: {error}")
     return Verdict(
         True, altered, _shown(found, subject), found.lower, found.upper, found.infeasible, subject
     )
+
+
+def _parsed(path: Path) -> Any:
+    try:
+        return json.loads(path.read_text("utf-8"), object_pairs_hook=_once)
+    except Refused:
+        raise
+    except (ValueError, RecursionError):
+        raise Refused(f"no JSON; {_NAME_ONE}") from None
+
+
+def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """An object; of a key that it has twice, readers of the file may see either value."""
+    found = dict(pairs)
+    need(len(found) == len(pairs), "the file names a key twice in one object")
+    return found
 
 
 def _shown(found: Proved, subject: Subject) -> str:

@@ -193,7 +193,8 @@ def _row(
 ) -> tuple[Fraction, Fraction, Fraction, Fraction]:
     """time·h + first·v₀ + last·v₁ ≥ right, for every motion of one joint through a segment."""
     kind, sign = row[0], row[3]
-    need(sign in (1, -1), "sign")
+    # A sign 1.0 would turn every product with it into a float.
+    need(type(sign) is int and sign in (1, -1), "sign")
     if kind == "change":  # A·h ≥ ∓(v₁ − v₀)
         return bend, Fraction(sign), Fraction(-sign), Zero
     way = sign * step
@@ -226,7 +227,11 @@ def _check_motion(problem: Stated, asked: _Question, h: list[Fraction], speeds: 
     for j, (velocity, bend) in enumerate(zip(asked.velocity, asked.acceleration, strict=True)):
         steps = [row[j] for row in asked.steps]
         if not any(steps) and all(v in (None, 0) for v in asked.ends):
-            continue  # it stays where it is
+            # It stays where it is.
+            low, high, place = *(side[j] for side in problem.position), problem.waypoints[0][j]
+            inside = (low is None or low[1] <= place) and (high is None or place <= high[0])
+            need(inside, f"answer: joint {j + 1} is outside its position limits")
+            continue
         need(problem.limits[j][2] is None, "answer: jerk is limited")
         free = problem.position[0][j] is None and problem.position[1][j] is None
         need(free, "answer: position is limited")

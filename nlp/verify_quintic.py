@@ -8,8 +8,10 @@ the same sum over absolute values: `ROUND` of that sum is taken off.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from fractions import Fraction
-from math import comb
+from itertools import islice
+from math import comb, sqrt
 from typing import Any
 
 import numpy as np
@@ -22,10 +24,13 @@ Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 ROUND, SLACK, PLACES, UNIT, BATCH = 1e-12, 1e-12, 1024, 65536.0, 256
-MOST_SEGMENTS, MOST_JOINTS = 26, 12
-"""What the number of roundings was counted for."""
+MOST_SEGMENTS, MOST_JOINTS, MOST_ROWS = 26, 12, 64
+"""What the number of roundings was counted for; rows are those of a leaf."""
 SMALLEST = Fraction(1, 10**30)
 """Steps and limits are 0 or above it, so that nothing underflows."""
+LEAST_TAU, BRIEFEST, DEEPEST = Fraction(1, 10**60), 1e-40, 10_000
+"""A window's tau is 0 or above it, durations in a leaf with limits too, for the same reason;
+cuts of one box."""
 
 # Quintic with (q0, q1, v0, v1, a0, a1): rows of ascending powers; exact, entries are halves.
 _AT = np.array(
@@ -68,6 +73,7 @@ def prove(document: dict[str, Any]) -> Proved:
         upper = answer[1]
         check_answer(problem, answer[0])
     prove_total(problem, proof)
+    need(answer is None or total <= sum(answer[0]), "the proof contradicts the answer")
     return Proved(lower, upper)
 
 
@@ -125,12 +131,20 @@ def prove_total(problem: Stated, proof: dict[str, Any]) -> Fraction:
             Fraction(float(x)) == x >= 0 and (mean or x <= problem.shortest[k]),
             f"segment {k + 1}: its least duration is not proved",
         )
-    boxes = _boxes(proof["tree"], np.array([float(x) for x in low]), float(total), n)
-    leaves = proof["leaves"]
-    need(isinstance(leaves, list) and len(leaves) == len(boxes), "leaves and tree differ in number")
+    tree, leaves = proof["tree"], proof["leaves"]
+    need(isinstance(tree, str), "the tree is no text")
+    need(
+        isinstance(leaves, list) and len(leaves) == tree.count("."),
+        "leaves and tree differ in number",
+    )
+    boxes = _boxes(tree, [float(x) for x in low], float(total), n)
     with np.errstate(all="ignore"):  # what is not finite fails every comparison
-        for first in range(0, len(boxes), BATCH):
-            task.check(np.array(boxes[first : first + BATCH]), leaves[first : first + BATCH])
+        for first in range(0, len(leaves), BATCH):
+            part = leaves[first : first + BATCH]
+            found = list(islice(boxes, len(part)))
+            need(len(found) == len(part), "the tree has too many letters")
+            task.check(np.array(found), part)
+    need(next(boxes, None) is None, "the tree has too many letters")
     return total
 
 
@@ -143,26 +157,25 @@ def _shrunk(low: list[float], high: list[float], total: float) -> tuple[list[flo
     return least, most
 
 
-def _boxes(tree: Any, low: Array, total: float, n: int) -> list[tuple[list[float], list[float]]]:
+def _boxes(
+    tree: str, low: list[float], total: float, n: int
+) -> Iterator[tuple[list[float], list[float]]]:
     """Leaves of a tree in preorder, the lower part of a cut first: each shrunk, maybe empty."""
-    need(isinstance(tree, str), "the tree is no text")
-    stack = [(low.tolist(), [total] * n)]
-    found = []
+    stack = [(low, [total] * n)]
     for letter in tree:
-        need(bool(stack), "the tree has too many letters")
+        need(0 < len(stack) < DEEPEST, "the tree has too many letters or is too deep")
         least, most = _shrunk(*stack.pop(), total)
         if letter == ".":
-            found.append((least, most))
+            yield least, most
             continue
         k = ord(letter) - ord("a")
         need(0 <= k < n, f"the tree has an unknown letter {letter!r}")
         a, b = least[k], most[k]
-        middle = float(np.sqrt(a * b)) if a > 0.1 * b else 0.3 * b
+        middle = sqrt(a * b) if 0.0 < 0.1 * b < a else 0.3 * b
         # Where the parts overlap or leave the box they still cover it.
         stack.append(([*least[:k], middle, *least[k + 1 :]], most))
         stack.append((least, [*most[:k], middle, *most[k + 1 :]]))
     need(not stack, "the tree leaves a part of the simplex open")
-    return found
 
 
 class _Task:
@@ -210,7 +223,12 @@ class _Task:
                 need(bool((low > high).any()), "a leaf that is not empty is not proved")
             elif len(leaf) == 2:
                 window = self.windows[whole(leaf[0], 0, len(self.windows) - 1)]
-                tau = float(number(leaf[1]))
+                exact = number(leaf[1])
+                need(
+                    exact == 0 or LEAST_TAU < abs(exact) < 1 / LEAST_TAU,
+                    "a window's tau is of unusual size",
+                )
+                tau = float(exact)
                 need(
                     self._window(window, tau, low, high) > 0.0, "a leaf with a window is not proved"
                 )
@@ -258,7 +276,8 @@ class _Bound:
 
     def __init__(self, task: _Task, low: Array, high: Array, leaves: list[Any]) -> None:
         need(
-            bool((low > 0.0).all() and (low <= high).all()), "a leaf that is too wide is not proved"
+            bool((low > BRIEFEST).all() and (low <= high).all()),
+            "a leaf that is too wide is not proved",
         )
         self.task, self.size = task, len(leaves)
         self.n, self.joints = task.steps.shape
@@ -270,6 +289,7 @@ class _Bound:
         for i, leaf in enumerate(leaves):
             tau.append(whole(leaf[0], -(2**52), 2**52))
             need(len(leaf) % 2 == 1, "a leaf misses a weight")
+            need(len(leaf) <= 2 * MOST_ROWS + 1, "a leaf has too many rows")
             for which, share in zip(leaf[1::2], leaf[2::2], strict=True):
                 at.append(i)
                 row.append(whole(which, 0, len(task.rows) - 1))

@@ -17,6 +17,7 @@ from .verify_problem import Proved, Refused, Stated, need, number, read_problem,
 
 STRICT = Fraction(1, 2**40)
 PLACES = 2**20
+_FINEST = 2**256
 SIZE = 6
 """Coefficients per variable: no row has a higher degree, and raising it only tightens the test."""
 BINOMIALS = lcm(*(comb(SIZE - 1, p) for p in range(SIZE)))
@@ -292,6 +293,8 @@ def _leaves(tree: str) -> list[tuple[Fraction, ...]]:
     for letter in tree:
         need(bool(stack), "the tree has too many letters")
         a0, a1, b0, b1 = stack.pop()
+        # Each halving adds a digit: a file of some megabytes would ask for all of the memory.
+        need(max(x.denominator for x in (a0, a1, b0, b1)) < _FINEST, "the tree is too deep")
         if letter == ".":
             found.append((a0, a1, b0, b1))
         elif letter == "a":

@@ -7,7 +7,9 @@ vector instructions. No lane looks at another: order, blocks and threads do not 
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, cast
 
 import numba
@@ -16,9 +18,14 @@ import numpy as np
 MAX_COEFFICIENTS = 10
 _LANES = 192
 _SETTLED = 1e-6
+_SOURCES = sorted(Path(__file__).parent.glob("*kernel.py"))
+STAMP = hashlib.sha256(b"".join(path.read_bytes() for path in _SOURCES)).hexdigest()[:16]
+"""Of the sources of everything that is compiled here."""
 
 
 def _compiled(function: Callable[..., Any]) -> Callable[..., Any]:
+    # numba looks at the caller's file alone: the name keeps it from an old callee in the cache.
+    function.__qualname__ = f"{function.__qualname__}_{STAMP}"
     try:
         jitted = numba.njit(cache=True, nogil=True, error_model="numpy")(function)
     except RuntimeError:  # no writable place for the cache: compile in memory

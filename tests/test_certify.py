@@ -323,6 +323,21 @@ def mangled(value: Any, rng: np.random.Generator) -> Any:
     return value
 
 
+def test_a_resumed_bound_alone_proves_nothing_infeasible(monkeypatch: pytest.MonkeyPatch) -> None:
+    name = "irb460-pso-353.limit-80.waypoints-rad"
+    exact, found = POSED[name], stopped_at(name, monkeypatch)
+    assert found.resume is not None
+    state = json.loads(json.dumps(found.resume.document()))
+    state["durations"] = None
+    assert state["proved"] is not None
+    assert None in exact.duration_upper
+    monkeypatch.setattr(module, "_answer", lambda *_: None)
+    again = certify(exact, resume=state)
+    assert again.outcome is Outcome.OPEN
+    assert again.lower == found.lower
+    assert verify(certificate(again)).proves
+
+
 def test_edited_open_boxes_only_cost_time(monkeypatch: pytest.MonkeyPatch) -> None:
     name = "irb460-pso-353.limit-80.waypoints-rad"
     exact, found = POSED[name], stopped_at(name, monkeypatch)

@@ -143,6 +143,15 @@ def test_a_narrower_certificate_stays(run: Run) -> None:
     assert path.read_text() != narrow
 
 
+def test_a_narrower_certificate_of_all_curves_does_not_stay(run: Run) -> None:
+    other = shipped(POSED[NAME], Subject.ANY)
+    path = Path(f"trajgap-certificates/{NAME}.json")
+    path.parent.mkdir()
+    path.write_text(json.dumps(other))
+    assert run("solve", *ONE, "--certify", "--gap", "0.2")[0] == 0
+    assert json.loads(path.read_text())["claim"]["subject"] == Subject.DECLARED
+
+
 def test_ctrl_c_leaves_the_interval_and_a_state(run: Run) -> None:
     started = (
         "import sys, time, trajgap.compare.cli_certify as c\n"
@@ -235,7 +244,10 @@ def test_huge_numbers_are_no_fault(run: Run, tmp_path: Path) -> None:
         (("--certify", "--resume", "missing.json"), "missing.json: cannot be read"),
         (("--certify", "--resume", "mine.toml"), "mine.toml: is no JSON"),
         (("--certify", "--certificates", "taken"), "is no trajgap-certificate-1"),
-        (("--certify", "--gap", "1"), "gap must lie in"),
+        (("--certify", "--gap", "1"), "--gap: 1 is no relative width; give 0 or more, below 1"),
+        (("--certify", "--gap", "inf"), "--gap: inf is no relative width"),
+        (("--certify", "--certificates", "mine.toml"), "mine.toml: --certificates: is no folder"),
+        (("--certify", "--certificates", "mine.toml/x/y"), "mine.toml: --certificates: is no fold"),
     ],
 )
 def test_bad_options(run: Run, arguments: tuple[str, ...], reason: str) -> None:
@@ -245,6 +257,15 @@ def test_bad_options(run: Run, arguments: tuple[str, ...], reason: str) -> None:
     assert (code, out) == (2, "")
     assert err.count("\n") == 1
     assert reason in err
+
+
+def test_a_nested_file_in_the_way_is_refused(run: Run) -> None:
+    folder = Path("trajgap-certificates")
+    folder.mkdir()
+    (folder / f"{NAME}.json").write_text("[" * 99_999)
+    code, _, err = run("solve", *ONE, "--certify", "--time", "0")
+    assert code == 2
+    assert "is no trajgap-certificate-1" in err
 
 
 def test_a_state_of_another_problem_is_refused(run: Run) -> None:
@@ -269,3 +290,10 @@ def test_a_state_file_that_was_edited_is_refused(run: Run) -> None:
     code, _, err = run("solve", *ONE, "--certify", "--resume", str(path))
     assert code == 2
     assert "do not keep the limits" in err
+
+
+def test_a_width_that_is_not_reached_is_not_called_certified(run: Run) -> None:
+    code, out, _ = run("solve", *ONE, "--certify", "--gap", "0", "--json")
+    (result,) = strict(out)["intervals"]
+    assert 0 < result["gap"] < 1e-9
+    assert (code, result["outcome"]) == (3, "interval")

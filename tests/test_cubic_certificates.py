@@ -473,6 +473,10 @@ def test_an_altered_state_is_refused() -> None:
         certify(base_problem(), resume={"kind": "three-piece"})
     with pytest.raises(TrajgapError, match="malformed"):
         certify(base_problem(), resume={"kind": "cubic"})
+    # As a power of ten it would fill the memory.
+    endless = {"kind": "cubic", "proved": None, "pending": None, "durations": ["1e999999999"]}
+    with pytest.raises(TrajgapError, match="malformed"):
+        certify(base_problem(), resume=endless)
 
 
 def test_no_time_gives_what_mean_velocities_say() -> None:

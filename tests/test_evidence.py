@@ -6,6 +6,7 @@ import copy
 from dataclasses import replace
 from fractions import Fraction
 from importlib import import_module
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,6 +20,9 @@ from trajgap.nlp import (
     ExactProblem,
     Interval,
     Subject,
+    certificate,
+    certify,
+    family_free,
     proved,
     shipped,
     solve,
@@ -27,6 +31,7 @@ from trajgap.nlp import (
     with_certificate,
     with_certificates,
 )
+from trajgap.nlp.evidence import WIDEST
 from trajgap.nlp.exact import exact_problem, printed_problem
 from trajgap.problem import (
     Limits,
@@ -40,12 +45,12 @@ from trajgap.problem import (
 from .test_certify import POSED
 from .test_documents import assert_valid
 
-waterfall_module = import_module("trajgap.compare.waterfall")
 evidence_module = import_module("trajgap.nlp.evidence")
 waterfall_module = import_module("trajgap.compare.waterfall")
 certificate_module = import_module("trajgap.nlp.certificate")
 IRB, PUMA, GA = "irb460-pso-353", "puma560-mnam-pso-353", "irb1600-ga-cubic-bspline"
 PAIR = ("limit-80", "waypoints-rad")
+VERDICTS = (Path(__file__).parent.parent / "docs" / "verdicts.md").read_text("utf-8")
 
 
 @pytest.fixture
@@ -82,6 +87,20 @@ def test_what_is_proved_is_called_certified() -> None:
     assert "proved" in str(answer)
 
 
+@pytest.mark.parametrize(("width", "word"), [(0.009, "certified"), (0.05, "best known")])
+def test_a_proof_of_a_wide_interval_certifies_nothing(
+    monkeypatch: pytest.MonkeyPatch, width: float, word: str
+) -> None:
+    assert f"at most {float(100 * WIDEST):g} % wide" in VERDICTS
+    problem = replace(POSED[f"{IRB}.{PAIR[0]}.{PAIR[1]}"], name=f"width {width}")
+    document = certificate(certify(problem, gap=width))
+    monkeypatch.setattr(evidence_module, "shipped", lambda *_: document)
+    answer = solve(one_study().problem(*PAIR))
+    evidence_module.proved.cache_clear()
+    assert with_certificate(answer, problem).evidence == word
+    evidence_module.proved.cache_clear()
+
+
 @pytest.mark.usefixtures("without_certificates")
 def test_nothing_is_called_certified_without_a_certificate() -> None:
     study = one_study()
@@ -113,6 +132,30 @@ def test_a_certificate_of_another_problem_is_not_used() -> None:
     assert proved(other) is None
     assert proved(exact, Subject.ANY) is None or shipped(exact, Subject.ANY) is not None
     assert proved(replace(exact, name="another name")) == proved(exact)
+
+
+@pytest.mark.parametrize(
+    "forged",
+    [
+        {"curve": "x", "ends": ["-1", "-1"]},
+        {"curve": "x", "ends": ["-1", "-1"], "virtual": []},
+        {"prescribed": [[[1, "-1"]], [], [], [[1, "-1"]]], "ends": ["0", "0"]},
+    ],
+)
+def test_a_certificate_for_other_end_velocities_is_not_used(
+    monkeypatch: pytest.MonkeyPatch, forged: dict[str, object]
+) -> None:
+    # The question and the verifier must read the ends in the same place.
+    exact = POSED[f"{PUMA}.six-joints.durations-positive"]
+    document = shipped(exact, Subject.ANY)
+    assert document is not None
+    if "curve" in forged:
+        for key in ("degrees", "continuity"):
+            del document["problem"][key]
+    document["problem"] |= forged
+    monkeypatch.setattr(certificate_module, "_all_shipped", lambda: (document,))
+    assert shipped(exact, Subject.ANY) is None
+    assert evidence_module.proved.__wrapped__(exact, Subject.ANY) is None
 
 
 def test_every_shipped_reading_that_is_covered_is_certified() -> None:
@@ -209,7 +252,8 @@ def test_a_bound_for_any_curve_stands_on_the_waterfall(
     monkeypatch.setattr(waterfall_module, "proved", only_any)
     (fall,) = waterfalls(one_study())
     step = fall.steps[-1]
-    assert step.low == 0.4
+    # The nearest double lies above 2/5, and would be no lower bound.
+    assert step.low == np.nextafter(0.4, 0.0)
     assert step.note.count("no motion within the limits is shorter than 0.4 s: certified") == 1
     if upper is None:
         assert step.evidence is Evidence.BEST_KNOWN
@@ -217,6 +261,29 @@ def test_a_bound_for_any_curve_stands_on_the_waterfall(
         assert step.time > 0.5
     else:
         assert (step.time, step.evidence) == (0.5, Evidence.CERTIFIED)
+
+
+@pytest.mark.parametrize(("above", "certified"), [(1e-15, True), (1e-6, False)])
+def test_a_bound_for_any_curve_may_round_above_the_answer_and_no_more(
+    monkeypatch: pytest.MonkeyPatch, above: float, certified: bool
+) -> None:
+    study = one_study()
+    found = family_free(study.problem(*study.pairs[0])).total_time
+    assert found is not None
+    lower = Fraction(found) * Fraction(1 + above)
+    bound = Interval(lower, lower + Fraction(1, 10**9), None, False)
+    monkeypatch.setattr(
+        waterfall_module, "proved", lambda _, subject: bound if subject is Subject.ANY else None
+    )
+    step = waterfalls(study)[0].steps[-1]
+    assert (step.evidence is Evidence.CERTIFIED) == certified
+    assert step.time is not None
+    assert step.low is None or step.low <= step.time
+
+
+def test_what_is_proved_of_any_curve_is_called_certified_under_every_reading() -> None:
+    for fall in waterfalls(Study(load_case(IRB))):
+        assert fall.steps[-1].evidence is Evidence.CERTIFIED
 
 
 def test_only_a_proof_sets_a_lower_bound() -> None:

@@ -179,7 +179,7 @@ def test_the_tent_picture_counts_what_it_draws(scatter: TentScatter) -> None:
     np.testing.assert_array_equal(exact.lines[0].get_xydata(), scatter.exact[:, :2])
     drawn = doubles.lines[0].get_xydata()
     at_origin = int((drawn == 0).all(axis=1).sum())
-    assert [t.get_text() for t in doubles.texts] == [f"{at_origin} of 30 members"]
+    assert [t.get_text() for t in doubles.texts] == [f"{at_origin} of 30 begin here"]
     assert len(apart.lines) == 2
     assert steps.get_title(loc="right") == f"0 at step {scatter.orbit.zero_at}"
     assert f"exactly 0 from step {scatter.orbit.zero_at} on" in figure.description

@@ -521,6 +521,48 @@ def test_a_row_must_not_look_the_wrong_way() -> None:
     assert "wrong way" in verdict.reason
 
 
+def by_hand(problem: Problem, total: str, rows: list[Any], leaf: list[Any]) -> dict[str, Any]:
+    """A certificate of one box that no solver wrote, sealed."""
+    document = json.loads(json.dumps(certificate(certify_family_free(problem))))
+    document["claim"] |= {"lower": total, "upper": None, "durations": None}
+    document["proof"] |= {"total": total, "cap": total, "rows": rows, "speeds": None}
+    document["proof"] |= {"tree": [0], "leaves": [leaf]}
+    return dict(document)
+
+
+@pytest.mark.parametrize("sign", [1.0, True])
+def test_nothing_is_proved_in_floats(sign: Any) -> None:
+    # 10³⁰⁸ rad at 1 rad/s take as many seconds. 2·10³⁰⁸ overflowed, and inf proved any total.
+    whole = 10**308
+    row = ["reach", 0, 0, sign, 0, 0, 95 * 10**8]
+    document = by_hand(posed([0.0, 1.0], 1.0, 1.0), "9" * 390, [row], [0, "1"])
+    document["problem"]["waypoints"] = [["0"], [str(whole)]]
+    verdict = verify(document)
+    assert not verdict.proves
+    assert "sign" in verdict.reason
+    row[3] = 1
+    assert "proves only" in verify(document).reason
+
+
+@pytest.mark.parametrize(("key", "bound"), [("position_upper", "4"), ("position_lower", "6")])
+def test_a_joint_that_stays_where_it_must_not_be_has_no_answer(key: str, bound: str) -> None:
+    found = certify_family_free(posed([[0.0, 5.0], [1.0, 5.0]], 1.0, 1.0))
+    document = json.loads(json.dumps(certificate(found)))
+    assert document["claim"]["upper"] is not None
+    document["problem"][key] = [None, "5"]
+    assert verify(document).proves
+    document["problem"][key] = [None, bound]
+    verdict = verify(document)
+    assert not verdict.proves
+    assert "position" in verdict.reason
+    side = {key: (np.inf if key == "position_upper" else -np.inf, float(bound))}
+    limits = Limits(1.0, 1.0, joints=2, **side)
+    problem = replace(posed([[0.0, 5.0], [1.0, 5.0]], 1.0, 1.0), limits=limits)
+    found = certify_family_free(problem)
+    assert found.upper is None
+    assert proved(found).lower is not None
+
+
 # --- what is not covered, and stopping ------------------------------------------------------------
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import runpy
 from collections.abc import Callable
@@ -23,6 +24,7 @@ from trajgap.nlp.quintic_bound import bound, centre
 from trajgap.nlp.quintic_rows import PLACES, row_shape
 from trajgap.nlp.quintic_windows import window, window_bound, window_terms
 from trajgap.nlp.verify import seal, verify
+from trajgap.nlp.verify_problem import number
 from trajgap.problem import Limits, Problem, TrajgapError, evaluate, quintic_spline
 
 module = import_module("trajgap.nlp.quintic_certify")
@@ -258,6 +260,95 @@ def test_an_altered_state_is_refused(alter: Callable[[Any], Any], match: str) ->
     alter(state)
     with pytest.raises(TrajgapError, match=match):
         certify(small(), resume=state)
+
+
+def forged(total: str, low: list[str], **proof: Any) -> dict[str, Any]:
+    """A certificate of durations of at least 0.55 s, whose least total is 1.1 s, with a proof."""
+    q = np.array([[0.0], [0.1], [0.2]])
+    problem = Problem(q, Limits(100.0, 100.0), quintic_spline(2), [0.55, 0.55])
+    document = dict(json.loads(json.dumps(certificate(certify(problem, gap=0.1)))))
+    document["proof"].update(total=total, low=low, **proof)
+    document["claim"].update(lower=total, upper=None, durations=None)
+    return document
+
+
+def test_a_window_below_the_smallest_floats_proves_nothing() -> None:
+    # tau·0.53125 is rounded up to tau, twice, and tau·1.25 down to it.
+    tau = f"0.{'0' * 323}5"
+    nothing = {"tree": ".", "windows": [[0] * 6], "rows": [], "leaves": [[0, tau]]}
+    verdict = verify(forged("1.25", ["0.53125", "0.53125"], **nothing))
+    assert not verdict.proves
+    assert "unusual size" in verdict.reason
+
+
+def test_a_leaf_with_more_rows_than_were_counted_is_refused() -> None:
+    # Each addition is rounded: the margin is for a number of them.
+    rows = {"tree": ".", "windows": [], "rows": [[0, 0, 1, 1, 512]], "leaves": [[1] + [0, 1] * 65]}
+    verdict = verify(forged("1.109375", ["0.546875", "0.546875"], **rows))
+    assert not verdict.proves
+    assert "too many rows" in verdict.reason
+
+
+@pytest.mark.parametrize(
+    ("tree", "leaves", "reason"),
+    [
+        ("", [], "open"),
+        ("..", [[], []], "too many"),
+        ("a" * 100_000 + ".", [[]], "too deep"),
+        (".", [], "differ"),
+        (".", {}, "differ"),
+        ("a..", [[], []], "not empty"),
+        ("A..", [[], []], "unknown"),
+        ("ab...", [[], [], []], "not empty"),
+    ],
+)
+def test_trees_that_cover_nothing_are_refused(tree: str, leaves: Any, reason: str) -> None:
+    document = forged("1.109375", ["0.546875", "0.546875"], tree=tree, leaves=leaves)
+    verdict = verify(document)
+    assert not verdict.proves
+    assert reason in verdict.reason
+
+
+def test_a_box_that_is_empty_may_be_cut_but_not_left_open() -> None:
+    low = ["0.546875", "0.546875"]
+    assert verify(forged("1", low, tree="a..", leaves=[[], []])).proves
+    assert "open" in verify(forged("1", low, tree="a.", leaves=[[]])).reason
+
+
+def test_a_proof_that_contradicts_the_answer_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = certify(small(), gap=0.1)
+    document = certificate(found)
+    verifier = import_module("trajgap.nlp.verify_quintic")
+    monkeypatch.setattr(verifier, "prove_total", lambda problem, proof: number(proof["total"]))
+    assert verify(document).proves
+    document["proof"]["total"] = "100"
+    assert verify(document).reason == "the proof contradicts the answer"
+    # The solver says so, too.
+    state = {"kind": "quintic-spline", "proved": {"total": "100"}, "durations": None}
+    monkeypatch.setattr(module, "prove_total", verifier.prove_total)
+    with pytest.raises(TrajgapError, match="contradicts"):
+        certify(small(), gap=0.1, resume=state)
+
+
+@pytest.mark.parametrize(
+    ("folder", "pattern"), [("problem", "*kernel.py"), ("nlp", "quintic_*.py")]
+)
+def test_compiled_code_is_named_after_all_its_sources(folder: str, pattern: str) -> None:
+    paths = sorted((ROOT / folder).glob(pattern))
+    stamp = hashlib.sha256(b"".join(path.read_bytes() for path in paths)).hexdigest()[:16]
+    compiled = 0
+    for path in paths:
+        inside = vars(import_module(f"trajgap.{folder}.{path.stem}")).values()
+        functions = [x.py_func for x in inside if hasattr(x, "py_func")]
+        assert all(f.__qualname__ == f"{f.__name__}_{stamp}" for f in functions)
+        compiled += len(functions)
+    assert compiled > 10
+    # None outside calls one of these and is cached without their stamp.
+    users = [p for d in ("problem", "nlp") for p in (ROOT / d).glob("*.py")]
+    assert {p for p in users if "numba.njit" in p.read_text("utf-8")} == {
+        ROOT / "problem" / "kernel.py",
+        ROOT / "nlp" / "quintic_bound.py",
+    }
 
 
 def test_what_is_not_covered_is_said() -> None:

@@ -270,7 +270,7 @@ def test_the_page_has_a_row_for_each_reading() -> None:
             x for x in page.splitlines() if x.startswith(f"| {outcome.reading}") and "|" in x
         ]
         assert f"| {outcome.keeping}" in line
-        assert f"{outcome.optimum:.6f} s" in line
+        assert f"{outcome.optimum:.6f} s<br>{outcome.evidence}" in line
         assert ("(default)" in line) == (outcome.reading == one.case.default_reading.id)
     assert "segments 1–4, 6–9<br>joint 6 velocity, ratio 15.25" in page
 

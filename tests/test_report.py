@@ -200,6 +200,15 @@ def test_every_claim_stands_with_its_digits_and_verdict(
     assert "0.7615, 0.3854, 0.4572 s" in page.words
 
 
+def test_the_last_step_is_told_with_its_evidence(page: Seen, report: AuditReport) -> None:
+    one = report.cases[0]
+    falls = [f for f in one.waterfalls if f.reading == one.study.main_reading]
+    for step in (next(s for s in reversed(f.steps) if s.time is not None) for f in falls):
+        assert (
+            f"With {step.name} the {step.evidence} shortest time is {step.time:.4f} s" in page.words
+        )
+
+
 def test_where_readings_differ_each_has_its_verdict(page: Seen) -> None:
     assert "some refuted under waypoints-rad supported under waypoints-deg" in page.words
     said = "durations-110, limits-kept supported under waypoints-deg, refuted under waypoints-rad."
@@ -262,6 +271,7 @@ def test_every_word_of_the_vocabulary_is_explained(page: Seen) -> None:
     vocabulary = [
         "certified",
         "best known",
+        "none",
         "supported",
         "refuted",
         "not checkable",
@@ -272,6 +282,13 @@ def test_every_word_of_the_vocabulary_is_explained(page: Seen) -> None:
         "undecided",
         "optimality gap",
         "difference of reported time",
+        "reading",
+        "relaxed family",
+        "TOPPRA",
+        "any curve through the way-points",
+        "KKT residual",
+        "starts at best",
+        "replay",
     ]
     for word in (*vocabulary, *Basis, *Keeping):
         assert f"word-{slug(word)}" in anchors

@@ -15,6 +15,7 @@ from trajgap.compare.rules.replay import replay
 from trajgap.compare.rules.scaling import scaling
 from trajgap.compare.rules.text import text
 from trajgap.compare.study import Study
+from trajgap.nlp import Evidence
 from trajgap.problem import TrajgapError, load_case, parse_case
 
 PUMA = "puma560-mnam-pso-353"
@@ -191,6 +192,7 @@ def test_the_scaling_law_is_not_used_where_a_duration_bound_or_acceleration_limi
 def test_optimal_is_refuted_by_a_shorter_checked_motion_and_supported_by_its_digits() -> None:
     found = {f.reading: f for f in of(optimum(changed(IRB)), "TG302", "time-optimal")}
     assert found["waypoints-rad"].verdict is ClaimVerdict.REFUTED
+    assert found["waypoints-rad"].evidence is Evidence.NONE, "a shorter motion needs no optimum"
     optimal = changed(
         IRB,
         (
@@ -204,6 +206,7 @@ def test_optimal_is_refuted_by_a_shorter_checked_motion_and_supported_by_its_dig
     )
     found = {f.reading: f for f in of(optimum(optimal), "TG302", "time-optimal")}
     assert found["waypoints-rad"].verdict is ClaimVerdict.SUPPORTED
+    assert found["waypoints-rad"].evidence is Evidence.CERTIFIED
 
 
 def test_a_claim_stands_beside_its_own_optimum_the_shared_one_and_the_procedure() -> None:

@@ -19,7 +19,7 @@ import pytest
 from trajgap.nlp.certificate import shipped, write_certificate
 from trajgap.nlp.certify import certify
 from trajgap.nlp.exact import ExactProblem
-from trajgap.nlp.verify import VERIFIERS, Subject, seal, verify
+from trajgap.nlp.verify import FORMAT, VERIFIERS, Subject, seal, verify
 from trajgap.nlp.verify_answer import nonnegative
 from trajgap.problem import Limits, Problem, three_five_three
 
@@ -312,6 +312,48 @@ def test_a_malformed_file_is_refused(tmp_path: Path, text: str) -> None:
     assert not verdict.proves
     assert str(verdict).startswith("refused: ")
     assert not verify(tmp_path / "missing.json").proves
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("", "no JSON; name a certificate"),
+        ("[case]", "no JSON; name a certificate"),
+        ("[1]", "no JSON object; name a certificate"),
+        ("{}", f"no {FORMAT}; name a certificate"),
+        (f'{{"format": "{FORMAT}", "claim": {{}}}}', "malformed: problem, proof: missing"),
+        (f'{{"format": "{FORMAT}", "problem": 1, "claim": 1, "proof": {{}}}}',
+         "malformed: 'kind': missing"),
+    ],
+)  # fmt: skip
+def test_what_is_no_certificate_is_refused_in_plain_words(
+    tmp_path: Path, text: str, reason: str
+) -> None:
+    path = tmp_path / "other.json"
+    path.write_text(text)
+    assert verify(path).reason == reason
+    assert verify(tmp_path).reason == "cannot be read (Is a directory); check the path"
+    missing = verify(tmp_path / "missing.json").reason
+    assert missing == "cannot be read (No such file or directory); check the path"
+
+
+def test_a_key_named_twice_is_refused(tmp_path: Path) -> None:
+    # Readers of the file may take the first value, and json takes the last.
+    path = tmp_path / "twice.json"
+    text = json.dumps(document())
+    path.write_text(text.replace('"limits": ', '"limits": [], "limits": ', 1))
+    verdict = verify(path)
+    assert not verdict.proves
+    assert "twice" in verdict.reason
+    path.write_text(text)
+    assert verify(path).proves
+
+
+@pytest.mark.parametrize("way", ["a", "b.", "ab.."])
+def test_an_endless_tree_is_refused(way: str) -> None:
+    data = document()
+    data["proof"]["tree"] = way * 1_000_000
+    assert "too deep" in verify(data).reason
 
 
 def test_the_verifiers_share_no_code_with_the_solver() -> None:

@@ -199,8 +199,8 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
             continue
         known = weakest(evidence)
         if longer or breaking:
-            # What refutes is a motion that was checked, whatever is proved below it.
-            known = Evidence.BEST_KNOWN if longer else Evidence.NONE
+            # What refutes is a motion or a broken limit: no optimum, known or certified, is needed.
+            known = Evidence.NONE
             verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
             said = [f"Not the shortest: {'; '.join(longer)}."] if longer else []
             said += [f"Not an answer within the limits: {' '.join(breaking)}"] if breaking else []
