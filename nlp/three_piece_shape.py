@@ -111,7 +111,13 @@ def _by(factor: Fraction, ratios: Mapping[Ratios, int]) -> dict[Ratios, Fraction
 
 def _middle_quintic(q: Sequence[Fraction]) -> dict[Ratios, Powers]:
     d1, d2, d3 = _steps(q)
-    ends = ((0, 0), d2), ((1, 0), 3 * d1), ((2, 0), 6 * d1), ((0, 1), 3 * d3), ((0, 2), -6 * d3)
+    ends: tuple[tuple[Ratios, Fraction], ...] = (
+        ((0, 0), d2),
+        ((1, 0), 3 * d1),
+        ((2, 0), 6 * d1),
+        ((0, 1), 3 * d3),
+        ((0, 2), -6 * d3),
+    )
     found = {
         key: tuple(factor * c for c in basis)
         for (key, factor), basis in zip(ends, _QUINTIC, strict=True)

@@ -158,7 +158,8 @@ def _curves(problem: Stated, form: Form) -> Curves:
 
     It is read off from exact splines on nine pairs of ratios, and checked on two more.
     """
-    grid = [(Fraction(x), Fraction(y)) for x in (1, 2, 3) for y in (1, 2, 3)]
+    nodes = [Fraction(x) for x in (1, 2, 3)]
+    grid = [(x, y) for x in nodes for y in nodes]
     further = [(Fraction(2), Fraction(5)), (Fraction(7, 2), Fraction(1, 3))]
     splines = {(x, y): pieces(problem, [1 / x, Fraction(1), 1 / y]) for x, y in grid + further}
     out: Curves = {}
@@ -170,7 +171,7 @@ def _curves(problem: Stated, form: Form) -> Curves:
                 h = (1 / x, Fraction(1), 1 / y)[segment]
                 by = sum((c * x**i * y**j for (i, j), c in divisor.items()), Fraction(0))
                 values[x, y] = [by * c * h**p for p, c in enumerate(spline[joint][segment])]
-            rows = [_parabola([values[x, y] for y in (1, 2, 3)]) for x in (1, 2, 3)]
+            rows = [_parabola([values[x, y] for y in nodes]) for x in nodes]
             found: Ratios = {}
             for j in range(3):
                 for i, coefficients in enumerate(_parabola([row[j] for row in rows])):
