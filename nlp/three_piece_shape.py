@@ -24,7 +24,7 @@ POWERS = 6
 
 _HALF = Fraction(1, 2)
 # Hermite basis on [0, 1], ascending: blend of the positions, velocities and accelerations.
-_QUINTIC = (
+_QUINTIC: tuple[tuple[int | Fraction, ...], ...] = (
     (0, 0, 0, 10, -15, 6),
     (0, 1, 0, -6, 8, -3),
     (0, 0, _HALF, -3 * _HALF, 3 * _HALF, -_HALF),
