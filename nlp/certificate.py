@@ -17,8 +17,6 @@ from .certified import Certified, Outcome
 from .exact import ExactProblem, Real, decimal
 from .verify import FORMAT, Subject, seal
 
-MOST_BYTES = 200_000
-
 
 def _real(value: Real | None) -> str | dict[str, Any] | None:
     if value is None:

@@ -187,10 +187,6 @@ def _(trajectory: ClockedTrajectory, joint: int, order: int) -> list[Extremum]:
     return found
 
 
-def _clock(curve: TimedUniformBSpline, durations: NDArray[np.floating]) -> NDArray[np.floating]:
-    return np.asarray(clock_matrix(curve.waypoints).astype(durations.dtype) @ durations)
-
-
 def _checked_clock(clock: Array) -> None:
     """Refuse a clock that does not run forwards everywhere.
 

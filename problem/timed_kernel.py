@@ -6,7 +6,6 @@ import numpy as np
 
 from .kernel import _compiled, roots_in_unit
 
-CUBIC = 4
 ROOM = 10
 
 
