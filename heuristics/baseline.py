@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..problem import Problem, TrajgapError, Verdict, check, evaluate
-from .objective import Array
+from ..problem import Array, Problem, TrajgapError, Verdict, check, evaluate
 
 
 def uniform_rescaling(problem: Problem) -> Array:

@@ -13,10 +13,10 @@ from typing import Any, TypeVar, cast
 
 import numpy as np
 
-from ..problem import Problem, TrajgapError
+from ..problem import Array, Problem, TrajgapError
 from .algorithm import Algorithm, S, Search, State
 from .budget import searched
-from .objective import Array, Bounds, Counted, Objective
+from .objective import Bounds, Counted, Objective
 from .repair import Handling, pose
 from .result import JointRuns, Run
 from .settings import whole

@@ -6,11 +6,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..problem import TOLERANCE, Problem, TrajgapError, evaluate
+from ..problem import TOLERANCE, Array, Problem, TrajgapError, evaluate
 
-Array = NDArray[np.float64]
 Objective = Callable[[Array], Array]
 """Maps a batch of positions, shape (batch, dimensions), to their fitness, shape (batch,)."""
 

@@ -9,8 +9,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ..problem import Problem, TrajgapError, evaluate
-from .objective import Array, DeathPenalty
+from ..problem import Array, Problem, TrajgapError, evaluate
+from .objective import DeathPenalty
 from .settings import choice
 
 

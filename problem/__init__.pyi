@@ -1,3 +1,4 @@
+from .arrays import Array
 from .cases import (
     Case,
     CaseFile,
@@ -79,6 +80,7 @@ __all__ = [
     "CHOICES",
     "QUANTITIES",
     "TOLERANCE",
+    "Array",
     "CartesianLine",
     "Case",
     "CaseError",

@@ -9,6 +9,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .arrays import Array
 from .curves import (
     Trajectory,
     as_durations,
@@ -187,9 +188,9 @@ def _ratio(value: float, limit: float, error: float) -> float:
 
 def _derivative_peaks(
     problem: Problem,
-    h: NDArray[np.float64],
+    h: Array,
     trajectory: Trajectory,
-    error: NDArray[np.float64],
+    error: Array,
 ) -> list[Peak]:
     limits = problem.limits.derivatives
     peaks = []
@@ -216,9 +217,9 @@ def _half_range(low: float, high: float, limit: float) -> float:
 
 def _position_peaks(
     problem: Problem,
-    h: NDArray[np.float64],
+    h: Array,
     trajectory: Trajectory,
-    error: NDArray[np.float64],
+    error: Array,
 ) -> list[Peak]:
     peaks = []
     for j, label in enumerate(problem.joints):
@@ -250,7 +251,7 @@ def _slack(problem: Problem, peak: Peak) -> float:
     return peak.error / scale if scale else 0.0
 
 
-def _duration_peaks(problem: Problem, h: NDArray[np.float64]) -> list[Peak]:
+def _duration_peaks(problem: Problem, h: Array) -> list[Peak]:
     peaks = []
     for k, d in enumerate(h):
         low, high = problem.duration_lower[k], problem.duration_upper[k]
@@ -263,7 +264,7 @@ def _duration_peaks(problem: Problem, h: NDArray[np.float64]) -> list[Peak]:
     return peaks
 
 
-def _jumps(problem: Problem, trajectory: Trajectory, error: NDArray[np.float64]) -> list[Jump]:
+def _jumps(problem: Problem, trajectory: Trajectory, error: Array) -> list[Jump]:
     jumps = []
     for b in range(1, len(trajectory.durations)):
         for j, label in enumerate(problem.joints):
@@ -276,7 +277,7 @@ def _jumps(problem: Problem, trajectory: Trajectory, error: NDArray[np.float64])
     return jumps
 
 
-def _no_curve(problem: Problem, h: NDArray[np.float64], why: CurveError, tolerance: float) -> Check:
+def _no_curve(problem: Problem, h: Array, why: CurveError, tolerance: float) -> Check:
     """Durations that define no curve keep no limit."""
     peak = Peak(None, "curve", why.segment, None, why.value, 0.0, np.inf, 0.0)
     return Check(
@@ -296,7 +297,7 @@ def _no_curve(problem: Problem, h: NDArray[np.float64], why: CurveError, toleran
 
 
 def _rescaled(
-    problem: Problem, h: NDArray[np.float64], factor: float, peaks: list[Peak]
+    problem: Problem, h: Array, factor: float, peaks: list[Peak]
 ) -> tuple[float | None, str | None]:
     stretched = h * factor
     slack = 1 + TOLERANCE
@@ -466,8 +467,8 @@ class Evaluation:
         c* of each vector.
     """
 
-    ratios: NDArray[np.float64]
-    stretch: NDArray[np.float64]
+    ratios: Array
+    stretch: Array
 
 
 def evaluate(problem: Problem, durations: ArrayLike, nodal: ArrayLike | None = None) -> Evaluation:
@@ -511,10 +512,10 @@ def evaluate(problem: Problem, durations: ArrayLike, nodal: ArrayLike | None = N
     return Evaluation(ratios, stretch)
 
 
-Question = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]
+Question = tuple[Array, Array, NDArray[np.bool_]]
 
 
-def _question(problem: Problem, nodal: NDArray[np.float64] | None) -> Question:
+def _question(problem: Problem, nodal: Array | None) -> Question:
     limits = problem.limits.derivatives
     values = motion_values(problem.interpolant, problem.waypoints, nodal)
     return values, limits, np.isfinite(limits)

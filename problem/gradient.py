@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
+from .arrays import Array
 from .curves import Extremum, PeakGradients, value_gradients
 from .problem import Problem
 
 
 def peak_gradients(
     problem: Problem,
-    durations: NDArray[np.float64],
+    durations: Array,
     points: list[Extremum],
-    nodal: NDArray[np.float64] | None = None,
+    nodal: Array | None = None,
 ) -> PeakGradients:
     """Gradients of the values at ``points``, extrema of the trajectory of these durations.
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
 import numpy as np
-from numpy.typing import NDArray
 
+from .arrays import Array
 from .curves import Curve, Interpolant, for_joint
 from .errors import TrajgapError
 from .limits import Limits
@@ -47,11 +47,11 @@ class Problem:
         If shapes disagree, a value is not finite, or a bound is negative or crosses its partner.
     """
 
-    waypoints: NDArray[np.float64]
+    waypoints: Array
     limits: Limits
     interpolant: Curve
-    duration_lower: NDArray[np.float64] = field(default_factory=lambda: np.array(0.0))
-    duration_upper: NDArray[np.float64] = field(default_factory=lambda: np.array(np.inf))
+    duration_lower: Array = field(default_factory=lambda: np.array(0.0))
+    duration_upper: Array = field(default_factory=lambda: np.array(np.inf))
     coupling: Coupling = Coupling.SHARED
     joints: tuple[str, ...] = ()
     name: str = "problem"

@@ -9,8 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ...problem import TrajgapError
-from ..objective import Array
+from ...problem import Array, TrajgapError
 from ..settings import Reader, choice, interval, number, share, whole
 from .swarm import held
 

@@ -19,10 +19,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...problem import Interpolant
+from ...problem import Array, Interpolant
 from ...problem.curves import PERM, RowKind, layout, right_hand_sides
-
-Array = NDArray[np.float64]
 
 EPS = float(np.finfo(np.float64).eps)
 TINY = 1e-300

@@ -8,17 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ...problem import QUANTITIES, Interpolant, Problem
+from ...problem import QUANTITIES, Array, Interpolant, Problem
 from ...problem.curves import StretchedUniformBSpline, TimedUniformBSpline
-from .balls import (
-    EPS,
-    Array,
-    Ball,
-    enclose_spline,
-    place_basis,
-    quotient_power,
-    raised,
-)
+from .balls import EPS, Ball, enclose_spline, place_basis, quotient_power, raised
 from .places import Rows, linear_program, rows_at
 from .uniform import centred, covered
 

@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linprog
 
-from ...problem import Extremum, Problem, extrema, fit
-from .balls import Array
+from ...problem import Array, Extremum, Problem, extrema, fit
 
 _MOST_PLACES = 100
 

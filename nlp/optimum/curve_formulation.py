@@ -9,9 +9,8 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
 
-from ...problem import ClampedBSpline, Curve, Problem
+from ...problem import Array, ClampedBSpline, Curve, Problem
 from ...problem.curves import (
     MAX_COEFFICIENTS,
     end_conditions,
@@ -26,7 +25,6 @@ SLOWEST = 1e-4
 """Least dt/de where time is not linear, relative to the mean duration."""
 SPEED = 4
 """Stands for the order of a row that keeps time increasing."""
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -10,9 +10,8 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
 
-from ...problem import ClampedBSpline, Curve, Problem, Timing
+from ...problem import Array, ClampedBSpline, Curve, Problem, Timing
 from ...problem.curves import (
     StretchedUniformBSpline,
     TimedUniformBSpline,
@@ -23,7 +22,6 @@ from ...problem.curves import (
     shape_matrix,
 )
 
-Array = NDArray[np.float64]
 Polynomial = list[Any]
 
 

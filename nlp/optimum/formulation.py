@@ -9,8 +9,8 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
 
+from ...problem import Array
 from ...problem.curves import PERM, Interpolant, Row, RowKind, layout
 
 GRID = {1: 0, 2: 2, 3: 4, 4: 5}
@@ -312,12 +312,12 @@ def build(structure: Structure) -> Formulation:
 
 def pack_parameters(
     formulation: Formulation,
-    values: NDArray[np.float64],
-    inverse_limits: NDArray[np.float64],
-    position: NDArray[np.float64],
-    places: list[NDArray[np.float64]],
-    weights: list[NDArray[np.float64]],
-) -> NDArray[np.float64]:
+    values: Array,
+    inverse_limits: Array,
+    position: Array,
+    places: list[Array],
+    weights: list[Array],
+) -> Array:
     """Parameter vector of a formulation, in the order that `build` documents."""
     parts = [values.ravel("F"), inverse_limits.ravel("F"), position.ravel("F")]
     for place, weight in zip(places, weights, strict=True):

@@ -5,10 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import nnls
 
-from ...problem import QUANTITIES, Extremum, Problem, extrema, fit, peak_gradients
+from ...problem import QUANTITIES, Array, Extremum, Problem, extrema, fit, peak_gradients
 from ...problem.curves import segment_of, smooth_order
 
 ACTIVE = 1e-7
@@ -67,7 +66,7 @@ class _Constraint:
 
 
 def _peaks_near_limit(
-    problem: Problem, durations: NDArray[np.float64], nodal: NDArray[np.float64] | None, near: float
+    problem: Problem, durations: Array, nodal: Array | None, near: float
 ) -> list[_Constraint]:
     trajectory = fit(problem.interpolant, problem.waypoints, durations, nodal)
     limits = problem.limits
@@ -101,8 +100,8 @@ def _peaks_near_limit(
 
 def kkt(
     problem: Problem,
-    durations: NDArray[np.float64],
-    nodal: NDArray[np.float64] | None = None,
+    durations: Array,
+    nodal: Array | None = None,
     active: float = ACTIVE,
 ) -> KKT:
     """Optimality conditions of min Σh over durations (and free nodal derivatives).

@@ -6,9 +6,8 @@ import time
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...problem import Check, Interpolant, Problem, check
+from ...problem import Array, Check, Interpolant, Problem, check
 from .near_optimal import longest_per_segment_range
 from .solution import Evidence, Solution, Status, weakest
 from .solver import STARTS, solve
@@ -50,7 +49,7 @@ class PerJointSolution:
 
     problem: Problem
     joints: tuple[Solution, ...]
-    durations: NDArray[np.float64] | None
+    durations: Array | None
     check: Check | None
     ranges: tuple[Range, ...]
     why: str | None

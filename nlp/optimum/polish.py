@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...problem import Extremum, Problem, check, extrema, fit, peak_gradients
+from ...problem import Array, Extremum, Problem, check, extrema, fit, peak_gradients
 from ...problem.curves import segment_of
 from .optimality import KKT, Active, kkt
 
@@ -13,9 +12,7 @@ _STEPS = 4
 _DIFFERENCE = 1e-6
 
 
-def polish(
-    problem: Problem, durations: NDArray[np.float64], report: KKT
-) -> tuple[NDArray[np.float64], KKT]:
+def polish(problem: Problem, durations: Array, report: KKT) -> tuple[Array, KKT]:
     """Sharpen a converged answer whose active limits are known.
 
     Interior-point answers keep a slack of the order of the last barrier parameter; Newton's method
@@ -74,7 +71,7 @@ def polish(
 _ORDERS = {"velocity": 1, "acceleration": 2, "jerk": 3}
 
 
-def _nearest(problem: Problem, h: NDArray[np.float64], active: Active) -> Extremum:
+def _nearest(problem: Problem, h: Array, active: Active) -> Extremum:
     assert active.joint is not None
     assert active.time is not None
     time, curve = active.time, problem.interpolant
@@ -90,10 +87,10 @@ def _nearest(problem: Problem, h: NDArray[np.float64], active: Active) -> Extrem
 
 def _conditions(
     problem: Problem,
-    h: NDArray[np.float64],
+    h: Array,
     active: list[Extremum],
-    weights: NDArray[np.float64],
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    weights: Array,
+) -> tuple[Array, Array, Array]:
     """Lagrangian gradient in log durations, excess of the active limits, and their gradients."""
     trajectory = fit(problem.interpolant, problem.waypoints, h)
     points = []

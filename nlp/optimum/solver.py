@@ -8,9 +8,9 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ...problem import Interpolant, Problem, TrajgapError, Verdict, check, fit
+from ...problem import Array, Interpolant, Problem, TrajgapError, Verdict, check, fit
 from ...problem.curves import coefficient_gradient, segment_peaks
 from .curve_formulation import compiled_curve, curve_structure
 from .curve_symbols import shape_key
@@ -132,7 +132,7 @@ def _solve_moving(
 
 def _search(
     problem: Problem, form: Form | None
-) -> tuple[Callable[[NDArray[np.float64], float], list[Local]], float]:
+) -> tuple[Callable[[Array, float], list[Local]], float]:
     """Local search from starts above a floor, and the time its build took, s."""
     if isinstance(problem.interpolant, Interpolant):
         build_ = compiled(structure_of(problem, form))
@@ -146,11 +146,9 @@ def _reduced(problem: Problem, form: Form | None) -> bool:
     return declared and structure_of(problem, form).form is Form.REDUCED
 
 
-def _multistart(
-    problem: Problem, build_: Compiled, points: NDArray[np.float64], floor: float
-) -> list[Local]:
+def _multistart(problem: Problem, build_: Compiled, points: Array, floor: float) -> list[Local]:
     """Local optima of all starts; the same coarse solution is tracked only once."""
-    tracked: list[tuple[NDArray[np.float64], Local]] = []
+    tracked: list[tuple[Array, Local]] = []
     found: list[Local] = []
     for start in points:
         near = settled(problem, start)
@@ -217,7 +215,7 @@ def _judged(problem: Problem, found: list[Local], floor: float, starts: int) -> 
     )
 
 
-def _at_floor(problem: Problem, durations: NDArray[np.float64], floor: float) -> list[int]:
+def _at_floor(problem: Problem, durations: Array, floor: float) -> list[int]:
     return np.flatnonzero((problem.duration_lower == 0) & (durations <= 1.01 * floor)).tolist()
 
 

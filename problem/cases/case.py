@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import CaseError
 from ..fields import nearest
 from ..printed import Printed
@@ -43,9 +43,9 @@ class DurationBox:
     Each array has shape (segments,).
     """
 
-    value: NDArray[np.float64]
-    lower: NDArray[np.float64]
-    upper: NDArray[np.float64]
+    value: Array
+    lower: Array
+    upper: Array
 
 
 @dataclass(frozen=True)
@@ -278,7 +278,7 @@ class Case:
 
     def waypoint_box(
         self, problem_id: str | None = None, reading_id: str | None = None
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    ) -> tuple[Array, Array]:
         """Bounds on the way-points that print alike.
 
         Parameters

@@ -7,9 +7,10 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, StrictInt, field_validator
 
+from ..arrays import Array
 from ..fields import Id, Length, Strict, Text, fault
 from ..printed import Printed
-from ..robots import Array, Chain, StepKind, sample_workspace, waypoint_family
+from ..robots import Chain, StepKind, sample_workspace, waypoint_family
 
 Count = Annotated[StrictInt, Field(ge=1, le=10_000)]
 

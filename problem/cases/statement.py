@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..curves import Curve, Interpolant
 from ..errors import CaseError, TrajgapError
 from ..fields import Strict
@@ -29,7 +29,7 @@ from .schema import (
 )
 
 Block = TypeVar("Block", bound=Strict)
-Data = tuple[Curve, Limits, NDArray[np.float64], NDArray[np.float64]]
+Data = tuple[Curve, Limits, Array, Array]
 """Curve, limits, and bounds on the durations."""
 _DERIVATIVES: tuple[Quantity, ...] = ("velocity", "acceleration", "jerk")
 _LARGEST = 1e12
@@ -181,7 +181,7 @@ class Posing:
         data = self.data()
         return self._at(data, np.array([[angle.value for angle in row] for row in self.points()]))
 
-    def problem_at(self, waypoints: NDArray[np.float64]) -> Problem:
+    def problem_at(self, waypoints: Array) -> Problem:
         """The same question through other way-points.
 
         Parameters
@@ -200,7 +200,7 @@ class Posing:
         """
         return self._at(self.data(), waypoints[:, list(self.joints)])
 
-    def _at(self, data: Data, waypoints: NDArray[np.float64]) -> Problem:
+    def _at(self, data: Data, waypoints: Array) -> Problem:
         interpolant, limits, lower, upper = data
         try:
             return Problem(
@@ -251,13 +251,13 @@ class Posing:
         )
         return interpolant, limits, lower, upper
 
-    def _limit(self, name: str, quantity: Quantity, default: float = np.inf) -> NDArray[np.float64]:
+    def _limit(self, name: str, quantity: Quantity, default: float = np.inf) -> Array:
         every = self._each("limits", name, quantity, len(self.labels), "joint", default)
         return every[list(self.joints)]
 
     def _each(
         self, block: str, name: str, quantity: Quantity, count: int, item: str, default: float
-    ) -> NDArray[np.float64]:
+    ) -> Array:
         given: Sequence[Printed | None] | Printed | None = getattr(getattr(self, block), name)
         if given is None:
             return np.full(count, default)

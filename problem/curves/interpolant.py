@@ -10,8 +10,8 @@ from enum import IntEnum
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import TrajgapError
 
 _DENSE = 300
@@ -251,7 +251,7 @@ class Interpolant:
         """Column of each segment's constant coefficient."""
         return tuple(itertools.accumulate((d + 1 for d in self.degrees), initial=0))
 
-    def _unit_matrix(self, rows: tuple[Row, ...] | list[Row]) -> NDArray[np.float64]:
+    def _unit_matrix(self, rows: tuple[Row, ...] | list[Row]) -> Array:
         matrix = np.zeros((len(rows), self.coefficients))
         for i, row in enumerate(rows):
             for column, value in self._entries(row):

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import PPoly
 
+from ..arrays import Array
 from ..errors import TrajgapError
 from . import kernel
 from .interpolant import Interpolant, RowKind
@@ -36,7 +37,7 @@ class Layout:
     unknowns: int
     lower: int
     upper: int
-    prescribed: NDArray[np.float64]
+    prescribed: Array
     waypoint: NDArray[np.int64]
     nodal: NDArray[np.int64]
 
@@ -94,9 +95,7 @@ def layout(interpolant: Interpolant) -> Layout:
     )
 
 
-def right_hand_sides(
-    interpolant: Interpolant, waypoints: NDArray[np.float64], nodal: NDArray[np.float64] | None
-) -> NDArray[np.float64]:
+def right_hand_sides(interpolant: Interpolant, waypoints: Array, nodal: Array | None) -> Array:
     """Values of the rows, shape (rows, joints): way-points, prescribed and free derivatives."""
     plan = layout(interpolant)
     joints = waypoints.shape[1]
@@ -122,10 +121,10 @@ def right_hand_sides(
 
 def coefficients(
     interpolant: Interpolant,
-    waypoints: NDArray[np.float64],
-    durations: NDArray[np.float64],
-    nodal: NDArray[np.float64] | None = None,
-) -> NDArray[np.float64]:
+    waypoints: Array,
+    durations: Array,
+    nodal: Array | None = None,
+) -> Array:
     """Coefficients in the segments' own parameter s in [0, 1], shape (segments, 10, joints)."""
     plan = layout(interpolant)
     values = right_hand_sides(interpolant, waypoints, nodal)
@@ -152,11 +151,11 @@ def coefficients(
     return out
 
 
-def _singular(interpolant: Interpolant, durations: NDArray[np.float64]) -> TrajgapError:
+def _singular(interpolant: Interpolant, durations: Array) -> TrajgapError:
     return TrajgapError(f"interpolant {interpolant.name}: singular for durations {durations} s")
 
 
-def as_durations(durations: ArrayLike, segments: int) -> NDArray[np.float64]:
+def as_durations(durations: ArrayLike, segments: int) -> Array:
     """Duration vector as a clean float64 array, or a clear refusal.
 
     Raises
@@ -217,9 +216,7 @@ def fit(
     return trajectory_from_scaled(scaled, interpolant.degrees, h)
 
 
-def trajectory_from_scaled(
-    scaled: NDArray[np.float64], degrees: tuple[int, ...], durations: NDArray[np.float64]
-) -> Trajectory:
+def trajectory_from_scaled(scaled: Array, degrees: tuple[int, ...], durations: Array) -> Trajectory:
     """Trajectory over scipy's ``PPoly`` from coefficients in s, shape (segments, power, joints)."""
     top = max(degrees)
     powers = np.arange(top + 1)
@@ -231,9 +228,9 @@ def trajectory_from_scaled(
 
 def motion_values(
     interpolant: Interpolant,
-    waypoints: NDArray[np.float64],
-    nodal: NDArray[np.float64] | None = None,
-) -> NDArray[np.float64]:
+    waypoints: Array,
+    nodal: Array | None = None,
+) -> Array:
     """`right_hand_sides` with positions counted from the first way-point, for `batch_peaks`.
 
     Derivatives do not depend on that shift; a joint that stands still gets exact zeros by it.
@@ -246,10 +243,10 @@ def motion_values(
 
 def batch_peaks(
     interpolant: Interpolant,
-    values: NDArray[np.float64],
-    durations: NDArray[np.float64],
+    values: Array,
+    durations: Array,
     wanted: NDArray[np.bool_],
-) -> NDArray[np.float64]:
+) -> Array:
     """True peaks of |v|, |a|, |j| for a batch of duration vectors.
 
     Parameters
@@ -331,12 +328,12 @@ def dense_system(
     return matrix / scale[:, None], factor / scale, first
 
 
-def _flat(interpolant: Interpolant, scaled: NDArray[np.float64]) -> NDArray[np.float64]:
+def _flat(interpolant: Interpolant, scaled: Array) -> Array:
     plan = layout(interpolant)
     return np.concatenate([scaled[k, : d + 1] for k, d in enumerate(plan.degrees)])
 
 
-def _unflat(interpolant: Interpolant, flat: NDArray[np.float64]) -> NDArray[np.float64]:
+def _unflat(interpolant: Interpolant, flat: Array) -> Array:
     """Coefficients of axis 0 put back into (segments, powers)."""
     plan = layout(interpolant)
     first = np.concatenate([[0], np.cumsum(plan.degrees + 1)])
@@ -348,10 +345,10 @@ def _unflat(interpolant: Interpolant, flat: NDArray[np.float64]) -> NDArray[np.f
 
 def refined_coefficients(
     interpolant: Interpolant,
-    waypoints: NDArray[np.float64],
-    durations: NDArray[np.float64],
-    nodal: NDArray[np.float64] | None = None,
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    waypoints: Array,
+    durations: Array,
+    nodal: Array | None = None,
+) -> tuple[Array, Array]:
     """Coefficients after iterative refinement in extended precision, with an error bound.
 
     The residual is taken in ``longdouble``; its rounding is bounded by that type's own epsilon,
@@ -391,9 +388,7 @@ def refined_coefficients(
     return _unflat(interpolant, rounded), _unflat(interpolant, error)
 
 
-def _inverse(
-    interpolant: Interpolant, matrix: NDArray[np.floating], durations: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _inverse(interpolant: Interpolant, matrix: NDArray[np.floating], durations: Array) -> Array:
     try:
         return np.asarray(np.linalg.inv(matrix), dtype=np.float64)
     except np.linalg.LinAlgError:
@@ -414,16 +409,16 @@ class CoefficientGradient:
         d coefficients of a joint / d that joint's free derivative.
     """
 
-    durations: NDArray[np.float64]
-    waypoints: NDArray[np.float64]
-    nodal: NDArray[np.float64]
+    durations: Array
+    waypoints: Array
+    nodal: Array
 
 
 def coefficient_gradient(
     interpolant: Interpolant,
-    waypoints: NDArray[np.float64],
-    durations: NDArray[np.float64],
-    nodal: NDArray[np.float64] | None = None,
+    waypoints: Array,
+    durations: Array,
+    nodal: Array | None = None,
 ) -> CoefficientGradient:
     """Derivatives of the coefficients by implicit differentiation of the linear system."""
     plan = layout(interpolant)

@@ -1,6 +1,5 @@
 from .cartesian_line import CartesianLine, ctraj
 from .chain import (
-    Array,
     Chain,
     Convention,
     JointKind,
@@ -14,7 +13,6 @@ from .nearness import Proximity, proximity
 from .workspace import StepKind, Workspace, sample_workspace, waypoint_family
 
 __all__ = [
-    "Array",
     "CartesianLine",
     "Chain",
     "Convention",

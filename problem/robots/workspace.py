@@ -7,8 +7,9 @@ from enum import StrEnum
 
 import numpy as np
 
+from ..arrays import Array
 from ..errors import TrajgapError
-from .chain import Array, Chain, forward_kinematics
+from .chain import Chain, forward_kinematics
 from .inverse import POSE, POSITION, inverse_kinematics
 
 _SHELL = 0.1
