@@ -72,7 +72,7 @@ from .robots import (
     link_frames,
     proximity,
     sample_workspace,
-    waypoint_family,
+    waypoint_sequences,
 )
 from .units import CHOICES, Measured, Scale, scale, to_si
 
@@ -156,5 +156,5 @@ __all__ = [
     "to_si",
     "uniform_cubic_b_spline",
     "up",
-    "waypoint_family",
+    "waypoint_sequences",
 ]

@@ -28,4 +28,4 @@ def peak_gradients(
     PeakGradients
         By the way-points with everything else held, also parameters that are taken from chords.
     """
-    return value_gradients(problem.interpolant, problem.waypoints, durations, points, nodal)
+    return value_gradients(problem.curve, problem.waypoints, durations, points, nodal)

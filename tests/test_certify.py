@@ -47,14 +47,14 @@ def posed() -> list[tuple[str, ExactProblem]]:
         case = load_case(case_id)
         for problem in case.problems:
             for reading in case.readings:
-                posing = case.posing(problem.id, reading.id)
-                if not posing.posed:
+                statement = case.statement(problem.id, reading.id)
+                if not statement.complete:
                     continue
-                exact = printed_problem(posing)
+                exact = printed_problem(statement)
                 if covered(exact) is not None:
                     continue
                 found.append((f"{case_id}.{problem.id}.{reading.id}", exact))
-                if len(exact.joints) > 1 and posing.coupling is Coupling.PER_JOINT:
+                if len(exact.joints) > 1 and statement.coupling is Coupling.PER_JOINT:
                     for j, label in enumerate(exact.joints):
                         name = f"{case_id}.{problem.id}.{reading.id}.joint-{label}"
                         found.append((name, exact.joint(j)))
@@ -101,7 +101,7 @@ def dense_best(problem: Problem, count: int = 161) -> float:
         if not np.isfinite(totals[i]):
             break
         h = shares[i] * stretch[i]
-        curve = fit(problem.interpolant, problem.waypoints, h)
+        curve = fit(problem.curve, problem.waypoints, h)
         angle = np.stack([curve(x) for x in np.linspace(0.0, h.sum(), 60)])
         inside = (angle >= problem.limits.position_lower).all()
         if inside and check(problem, h).verdict is Verdict.PASS:
@@ -484,7 +484,7 @@ def test_rows_are_the_limits_of_the_curve() -> None:
     rng = np.random.default_rng(5)
     for _ in range(20):
         h = rng.uniform(0.2, 1.5, 3)
-        curve = fit(exact.interpolant, q, h)
+        curve = fit(exact.curve, q, h)
         joint, order = int(rng.integers(0, 6)), int(rng.integers(1, 3))
         place, sign = int(rng.integers(0, PLACES + 1)), int(rng.choice([-1, 1]))
         total = Fraction(float(h.sum()))

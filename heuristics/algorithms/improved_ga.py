@@ -26,8 +26,8 @@ from .genes import (
     Encoding,
     FitnessRule,
     Genetics,
-    Mutated,
     Mutation,
+    MutationUnit,
     fitness_values,
     roulette,
     shuffled,
@@ -161,7 +161,7 @@ class ImprovedGA:
     position_range: tuple[float, float] = (0.1, 2.0)
     crossover: Crossover = Crossover.ARITHMETIC
     mutation: Mutation = Mutation.REDRAW
-    mutated: Mutated = Mutated.GENE
+    mutated: MutationUnit = MutationUnit.GENE
     mutation_reach: float = 0.1
     penalty: float = np.inf
 

@@ -97,7 +97,7 @@ def _improve(
             wide = variable_bounds(problem, f, unit, 0.0)
             wide[0][:n] = np.maximum(wide[0][:n], x[:n] * (1 - radius))
             wide[1][:n] = np.minimum(wide[1][:n], x[:n] * (1 + radius))
-            trajectory = fit(problem.interpolant, problem.waypoints, own)
+            trajectory = fit(problem.curve, problem.waypoints, own)
             trajectory = type(trajectory)(
                 trajectory.polynomial,
                 trajectory.durations,

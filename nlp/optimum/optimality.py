@@ -68,9 +68,9 @@ class _Constraint:
 def _peaks_near_limit(
     problem: Problem, durations: Array, nodal: Array | None, near: float
 ) -> list[_Constraint]:
-    trajectory = fit(problem.interpolant, problem.waypoints, durations, nodal)
+    trajectory = fit(problem.curve, problem.waypoints, durations, nodal)
     limits = problem.limits
-    curve = problem.interpolant
+    curve = problem.curve
     every_break = len(curve.waypoint_breaks) == curve.segments + 1
     found: list[_Constraint] = []
     for j, name in enumerate(problem.joints):
@@ -121,7 +121,7 @@ def kkt(
     """
     n, total = problem.segments, float(durations.sum())
     joints = problem.waypoints.shape[1]
-    free = problem.interpolant.free
+    free = problem.curve.free
     rows = _peaks_near_limit(problem, durations, nodal, active)
     points = [c.extremum for c in rows if c.extremum is not None]
     gradients = peak_gradients(problem, durations, points, nodal)

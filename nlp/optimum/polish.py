@@ -22,7 +22,7 @@ def polish(problem: Problem, durations: Array, report: KKT) -> tuple[Array, KKT]
     Parameters
     ----------
     problem : Problem
-        With a determined interpolant.
+        With a determined curve.
     durations : ndarray, shape (segments,)
     report : KKT
         Of these durations.
@@ -34,7 +34,7 @@ def polish(problem: Problem, durations: Array, report: KKT) -> tuple[Array, KKT]
     """
     limited = [a for a in report.active if a.quantity in _ORDERS]
     pinned = [a.segment for a in report.active if a.quantity == "duration"]
-    if problem.interpolant.free or len(limited) < len(report.active) - len(pinned):
+    if problem.curve.free or len(limited) < len(report.active) - len(pinned):
         return durations, report
     moving = np.setdiff1d(np.arange(problem.segments), pinned)
     active = [_nearest(problem, durations, a) for a in limited]
@@ -74,7 +74,7 @@ _ORDERS = {"velocity": 1, "acceleration": 2, "jerk": 3}
 def _nearest(problem: Problem, h: Array, active: Active) -> Extremum:
     assert active.joint is not None
     assert active.time is not None
-    time, curve = active.time, problem.interpolant
+    time, curve = active.time, problem.curve
     points = extrema(
         fit(curve, problem.waypoints, h),
         problem.joints.index(active.joint),
@@ -92,7 +92,7 @@ def _conditions(
     weights: Array,
 ) -> tuple[Array, Array, Array]:
     """Lagrangian gradient in log durations, excess of the active limits, and their gradients."""
-    trajectory = fit(problem.interpolant, problem.waypoints, h)
+    trajectory = fit(problem.curve, problem.waypoints, h)
     points = []
     for a in active:
         same = [

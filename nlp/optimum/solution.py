@@ -56,7 +56,7 @@ class Solution:
         The reason, where the status needs one.
     durations : ndarray, shape (segments,), or None
     nodal : ndarray, shape (free, joints), or None
-        Free derivatives of an under-determined interpolant.
+        Free derivatives of an under-determined curve.
     check : Check or None
         The checker's verdict on the durations.
     infimum : float or None

@@ -20,7 +20,7 @@ SETTLED_SEGMENTS = 24
 
 def first_nodal(problem: Problem) -> Array | None:
     """Free derivatives to start from: at rest, virtual breaks on the chord of their neighbours."""
-    if not problem.interpolant.free:
+    if not problem.curve.free:
         return None
     interpolant = problem.piecewise
     nodal = np.zeros((interpolant.free, problem.waypoints.shape[1]))
@@ -70,7 +70,7 @@ def screened_starts(problem: Problem, count: int, generator: np.random.Generator
     their ratios, otherwise by short random descents.
     """
     base = equal_start(problem)
-    if count <= 1 or problem.interpolant.free or problem.segments == 1:
+    if count <= 1 or problem.curve.free or problem.segments == 1:
         return np.vstack([base, random_starts(problem, max(count - 1, 0), generator)])
     if problem.segments in GRID_POINTS:
         pool = _grid_minima(problem, base)
@@ -94,7 +94,7 @@ def settled(problem: Problem, start: Array) -> Array:
     A few hundred batched evaluations cost less than one step of the solver from a start far from
     its optimum. The steps' widths follow their success; the same start settles in the same place.
     """
-    if problem.interpolant.free or not 1 < problem.segments <= SETTLED_SEGMENTS:
+    if problem.curve.free or not 1 < problem.segments <= SETTLED_SEGMENTS:
         return start
     generator = np.random.default_rng(0)
     pool, totals = _repaired_total(problem, start[None])

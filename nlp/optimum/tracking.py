@@ -327,7 +327,7 @@ def merit(problem: Problem, h: Array, nodal: Array | None) -> tuple[float, Array
     if verdict.feasible_time is None:
         return total * (1.0 + 10.0 * verdict.max_violation), h, nodal
     factor = max(1.0, verdict.stretch)
-    if problem.interpolant.free and nodal is not None:
+    if problem.curve.free and nodal is not None:
         orders = np.array([r for _, r in problem.piecewise.free_derivatives])[:, None]
         nodal = nodal / factor**orders
     return verdict.feasible_time, h * factor, nodal
@@ -348,7 +348,7 @@ def track(problem: Problem, build_: Compiled, x: Array, scaled: Scaled, floor: f
     radius, step, iterations, converged, duals = 0.5, np.inf, 0, False, None
     stale = 0
     for _ in range(_PASSES):
-        trajectory = fit(problem.interpolant, problem.waypoints, h, nodal)
+        trajectory = fit(problem.curve, problem.waypoints, h, nodal)
         c = trajectory.scaled / scaled.angle_unit
         places, weights = place_slots(f, replace(trajectory, scaled=c))
         p = pack_parameters(
@@ -356,7 +356,7 @@ def track(problem: Problem, build_: Compiled, x: Array, scaled: Scaled, floor: f
         )
         low, high = wide[0].copy(), wide[1].copy()
         room = radius * np.maximum(np.abs(x), np.where(np.arange(x.size) < n, 0.0, 1.0))
-        held = slice(None) if problem.interpolant.free else slice(n)
+        held = slice(None) if problem.curve.free else slice(n)
         low[held] = np.clip((x - room)[held], low[held], high[held])
         high[held] = np.clip((x + 2.0 * room)[held], low[held], high[held])
         near = duals is not None and step < 1e-2

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...problem import Array
-from .path import Piece, Stretch
+from .path import PathPiece, SegmentPart
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
 _TABLE, _REFINEMENTS = 256, 4
@@ -64,7 +64,7 @@ class Measure:
     tau: tuple[Array, ...]
 
 
-def measure(piece: Piece) -> Measure:
+def measure(piece: PathPiece) -> Measure:
     """The measure τ of a piece in which every grid is uniform.
 
     It is the mean of three: graded arc length (s ~ τ³ at a rest end, where q″ grows like
@@ -94,12 +94,12 @@ def measure(piece: Piece) -> Measure:
     return Measure(tuple(tables), tuple(tau))
 
 
-def sample(piece: Piece, graded: Measure, cells: int) -> SampledPath:
+def sample(piece: PathPiece, graded: Measure, cells: int) -> SampledPath:
     """Arc length, tangent and curvature of a piece on a grid.
 
     Parameters
     ----------
-    piece : Piece
+    piece : PathPiece
     graded : Measure
         Of that piece.
     cells : int
@@ -141,7 +141,7 @@ def sample(piece: Piece, graded: Measure, cells: int) -> SampledPath:
     )
 
 
-def _lengths(stretch: Stretch, u: Array) -> Array:
+def _lengths(stretch: SegmentPart, u: Array) -> Array:
     """Arc length of each cell of ``u``, rad, by Gauss quadrature."""
     half = np.diff(u) / 2
     nodes = (u[:-1] + half)[:, None] + half[:, None] * _NODES

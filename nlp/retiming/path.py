@@ -20,7 +20,7 @@ _IDLE = 1e-11
 
 
 @dataclass(frozen=True, eq=False)
-class Stretch:
+class SegmentPart:
     """The part of one segment that lies in one piece, over u in [0, 1].
 
     Attributes
@@ -76,10 +76,10 @@ class Stretch:
 
 
 @dataclass(frozen=True, eq=False)
-class Piece:
+class PathPiece:
     """The motion from one standstill, or end of the trajectory, to the next."""
 
-    stretches: tuple[Stretch, ...]
+    stretches: tuple[SegmentPart, ...]
 
     @property
     def start(self) -> float:
@@ -120,7 +120,7 @@ def segment_speeds(trajectory: Trajectory) -> Array:
     return speeds
 
 
-def pieces(trajectory: Trajectory) -> tuple[tuple[Piece, ...], tuple[float, ...]]:
+def pieces(trajectory: Trajectory) -> tuple[tuple[PathPiece, ...], tuple[float, ...]]:
     """Cut a trajectory wherever all joints stand still.
 
     Standstills are the common roots of the joints' velocities. A root at which a velocity changes
@@ -129,14 +129,14 @@ def pieces(trajectory: Trajectory) -> tuple[tuple[Piece, ...], tuple[float, ...]
 
     Returns
     -------
-    pieces : tuple of Piece
+    pieces : tuple of PathPiece
         In order. Segments in which nothing moves are left out.
     cuts : tuple of float
         Times of the standstills, s, those at the ends included.
     """
     tops = segment_speeds(trajectory)
     places = _standstills(trajectory, STANDSTILL * tops)
-    groups: list[list[Stretch]] = [[]]
+    groups: list[list[SegmentPart]] = [[]]
     cuts: list[float] = []
     for k, begin in enumerate(trajectory.breaks[:-1]):
         h = float(trajectory.durations[k])
@@ -154,12 +154,14 @@ def pieces(trajectory: Trajectory) -> tuple[tuple[Piece, ...], tuple[float, ...]
             right = _expanded(a, two, one - two, rest[1])
             if rest[0]:
                 groups.append([])
-            groups[-1].append(Stretch(left, right, float(begin + one * h), (two - one) * h, rest))
+            groups[-1].append(
+                SegmentPart(left, right, float(begin + one * h), (two - one) * h, rest)
+            )
             if rest[1]:
                 groups.append([])
     apart = 1e-6 * trajectory.total_time
     cuts = [t for i, t in enumerate(cuts) if i == 0 or t - cuts[i - 1] > apart]
-    return tuple(Piece(tuple(group)) for group in groups if group), tuple(cuts)
+    return tuple(PathPiece(tuple(group)) for group in groups if group), tuple(cuts)
 
 
 def _value(c: Array, u: Array, order: int) -> Array:

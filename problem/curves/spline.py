@@ -15,7 +15,7 @@ from scipy.interpolate import PPoly
 from ..arrays import Array
 from ..errors import TrajgapError
 from . import kernel
-from .interpolant import Interpolant, RowKind
+from .interpolant import ConditionKind, Interpolant
 from .trajectory import Trajectory
 
 PERM = np.array(
@@ -49,7 +49,7 @@ def layout(interpolant: Interpolant) -> Layout:
     rows = full.rows
     n = full.segments
     column = np.full((n, kernel.MAX_COEFFICIENTS), -1, dtype=np.int64)
-    given = {(r.at, r.order) for r in rows if r.kind == RowKind.RIGHT_VALUE}
+    given = {(r.at, r.order) for r in rows if r.kind == ConditionKind.RIGHT_VALUE}
     count = 0
     for k, d in enumerate(full.degrees):
         for p in range(d + 1):
@@ -57,11 +57,11 @@ def layout(interpolant: Interpolant) -> Layout:
                 column[k, p] = count
                 count += 1
     lower = upper = 0
-    equations = [r for r in rows if r.kind != RowKind.RIGHT_VALUE]
+    equations = [r for r in rows if r.kind != ConditionKind.RIGHT_VALUE]
     for e, row in enumerate(equations):
         k = row.at - 1
         touched = [column[k, p] for p in range(row.order, full.degrees[k] + 1)]
-        if row.kind == RowKind.MATCH and row.order <= full.degrees[row.at]:
+        if row.kind == ConditionKind.MATCH and row.order <= full.degrees[row.at]:
             touched.append(column[row.at, row.order])
         used = [c for c in touched if c >= 0]
         lower = max([lower, *(e - c for c in used)])
@@ -79,17 +79,17 @@ def layout(interpolant: Interpolant) -> Layout:
         lower=lower,
         upper=upper,
         prescribed=np.array(
-            [0.0 if r.kind == RowKind.MATCH else values[r.at].get(r.order, 0.0) for r in rows]
+            [0.0 if r.kind == ConditionKind.MATCH else values[r.at].get(r.order, 0.0) for r in rows]
         ),
         waypoint=np.array(
             [
-                waypoint.get(r.at, -1) if r.order == 0 and r.kind != RowKind.MATCH else -1
+                waypoint.get(r.at, -1) if r.order == 0 and r.kind != ConditionKind.MATCH else -1
                 for r in rows
             ],
             dtype=np.int64,
         ),
         nodal=np.array(
-            [free.get((r.at, r.order), -1) if r.kind != RowKind.MATCH else -1 for r in rows],
+            [free.get((r.at, r.order), -1) if r.kind != ConditionKind.MATCH else -1 for r in rows],
             dtype=np.int64,
         ),
     )
@@ -237,7 +237,7 @@ def motion_values(
     """
     plan = layout(interpolant)
     values = right_hand_sides(interpolant, waypoints, nodal)
-    values[(plan.orders == 0) & (plan.kinds != RowKind.MATCH)] -= waypoints[0]
+    values[(plan.orders == 0) & (plan.kinds != ConditionKind.MATCH)] -= waypoints[0]
     return values
 
 
@@ -313,14 +313,14 @@ def dense_system(
     factor = np.ones(size, dtype=durations.dtype)
     for i in range(size):
         kind, b, r = plan.kinds[i], plan.breaks[i], plan.orders[i]
-        if kind == RowKind.RIGHT_VALUE:
+        if kind == ConditionKind.RIGHT_VALUE:
             matrix[i, first[b] + r] = PERM[r, r]
             factor[i] = durations[b] ** r
             continue
         k = b - 1
         powers = np.arange(r, plan.degrees[k] + 1)
         matrix[i, first[k] + powers] = PERM[powers, r]
-        if kind == RowKind.LEFT_VALUE:
+        if kind == ConditionKind.LEFT_VALUE:
             factor[i] = durations[k] ** r
         elif r <= plan.degrees[b]:
             matrix[i, first[b] + r] = -PERM[r, r] * (durations[k] / durations[b]) ** r
@@ -432,13 +432,13 @@ def coefficient_gradient(
         kind, b, r = plan.kinds[i], plan.breaks[i], plan.orders[i]
         if r == 0:
             continue
-        if kind == RowKind.MATCH:
+        if kind == ConditionKind.MATCH:
             if r <= plan.degrees[b]:
                 entry = matrix[i, first[b] + r] * flat[first[b] + r]
                 by_duration[b - 1, i] -= r * entry / durations[b - 1]
                 by_duration[b, i] += r * entry / durations[b]
         else:
-            k = b if kind == RowKind.RIGHT_VALUE else b - 1
+            k = b if kind == ConditionKind.RIGHT_VALUE else b - 1
             by_duration[k, i] += r * factor[i] / durations[k] * values[i]
     one_hot_w = (plan.waypoint[None, :] == np.arange(waypoints.shape[0])[:, None]) * factor
     one_hot_n = (plan.nodal[None, :] == np.arange(interpolant.free)[:, None]) * factor

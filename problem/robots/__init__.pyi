@@ -10,7 +10,7 @@ from .chain import (
 from .dh import DhTable
 from .inverse import IkSolution, IkStatus, inverse_kinematics
 from .nearness import Proximity, proximity
-from .workspace import StepKind, Workspace, sample_workspace, waypoint_family
+from .workspace import StepKind, Workspace, sample_workspace, waypoint_sequences
 
 __all__ = [
     "CartesianLine",
@@ -30,5 +30,5 @@ __all__ = [
     "link_frames",
     "proximity",
     "sample_workspace",
-    "waypoint_family",
+    "waypoint_sequences",
 ]
