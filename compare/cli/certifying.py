@@ -129,7 +129,7 @@ def certify_case(
 
 
 def _questions(case: Case, one: Posed) -> Iterator[Question]:
-    posing = case.posing(one.problem_id, one.reading_id)
+    statement = case.statement(one.problem_id, one.reading_id)
     name = f"{case.id}.{one.problem_id}.{one.reading_id}"
     labels: list[str | None] = [None]
     if one.problem.coupling is Coupling.PER_JOINT:
@@ -137,7 +137,7 @@ def _questions(case: Case, one: Posed) -> Iterator[Question]:
     for j, label in enumerate(labels):
         own = name if label is None else f"{name}.joint-{label}"
         try:
-            exact = printed_problem(posing)
+            exact = printed_problem(statement)
             exact = exact if label is None else exact.joint(j)
             why = covered(exact)
         except CaseError:

@@ -105,7 +105,7 @@ def _declares(problem: ExactProblem) -> bool:
 
 def _missing(problem: ExactProblem) -> str | None:
     inner = ((),) * (problem.segments - 1)
-    if problem.interpolant.prescribed != (_REST, *inner, _REST):
+    if problem.piecewise.prescribed != (_REST, *inner, _REST):
         return f"{problem.curve.name}: only rest with zero acceleration at both ends is covered"
     if problem.segments > MOST_SEGMENTS or len(problem.joints) > MOST_JOINTS:
         return f"more than {MOST_SEGMENTS} segments or {MOST_JOINTS} joints"
@@ -332,7 +332,7 @@ def _resumed(
 def _stated(exact: ExactProblem) -> Stated:
     """The question as a verifier reads it; positions take no part."""
     nothing: list[tuple[Fraction, Fraction] | None] = [None] * len(exact.joints)
-    curve = exact.interpolant
+    curve = exact.piecewise
     return Stated(
         [list(row) for row in exact.waypoints],
         [[None if x is None else x.ends for x in row] for row in exact.limits],

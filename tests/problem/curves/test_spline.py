@@ -394,11 +394,11 @@ def test_motion_values_count_from_the_first_waypoint() -> None:
 
 def test_unwanted_peaks_are_zero() -> None:
     problem, h = posed(DECLARATIONS["quintic"], 4)
-    values = motion_values(problem.interpolant, problem.waypoints)
-    every = batch_peaks(problem.interpolant, values, h[None], np.ones((3, 3), bool))
+    values = motion_values(problem.curve, problem.waypoints)
+    every = batch_peaks(problem.curve, values, h[None], np.ones((3, 3), bool))
     assert (every > 0).all()
     wanted = np.array([[True, False, True], [False, True, False], [False, False, False]])
-    some = batch_peaks(problem.interpolant, values, h[None], wanted)
+    some = batch_peaks(problem.curve, values, h[None], wanted)
     np.testing.assert_array_equal(some, np.where(wanted, every, 0.0))
 
 

@@ -138,7 +138,7 @@ def test_prescribed_end_velocities(first: float, last: float) -> None:
 
 def test_rest_at_waypoints_of_the_interpolant_is_not_asked_for() -> None:
     smooth = family_free(PUMA_PROBLEM)
-    stopping = family_free(replace(PUMA_PROBLEM, interpolant=rest_to_rest(3, 5)))
+    stopping = family_free(replace(PUMA_PROBLEM, curve=rest_to_rest(3, 5)))
     assert stopping.total_time == pytest.approx(smooth.total_time, rel=1e-9)
 
 
@@ -309,9 +309,7 @@ def test_reachable_displacements_have_a_curve(v0: float, v1: float, h: float, sh
     ids=lambda i: i.name,
 )
 def test_no_spline_is_faster(interpolant: Interpolant) -> None:
-    problem = replace(
-        PUMA_PROBLEM, interpolant=interpolant, duration_lower=0.0, duration_upper=np.inf
-    )
+    problem = replace(PUMA_PROBLEM, curve=interpolant, duration_lower=0.0, duration_upper=np.inf)
     solution = solve(problem, starts=1)
     assert solution.durations is not None
     found = family_free(problem, initial=solution.durations)

@@ -182,7 +182,7 @@ def meets(one: Certified, other: Certified, factor: float) -> bool:
 def test_scaling_angles_and_time_scales_the_interval() -> None:
     p = base_problem()
     v, a, j = p.limits.derivatives.T
-    slow = Problem(p.waypoints * 3, Limits(v * 3 / 7, a * 3 / 49, j * 3 / 343), p.interpolant)
+    slow = Problem(p.waypoints * 3, Limits(v * 3 / 7, a * 3 / 49, j * 3 / 343), p.curve)
     found = certify(slow, gap=0.02)
     assert found.outcome is Outcome.CERTIFIED
     assert meets(base(), found, 7.0)
@@ -191,7 +191,7 @@ def test_scaling_angles_and_time_scales_the_interval() -> None:
 
 def test_the_way_back_takes_as_long_and_a_turned_joint_too() -> None:
     p = base_problem()
-    back = Problem(p.waypoints[::-1] * [1.0, -1.0], p.limits, p.interpolant)
+    back = Problem(p.waypoints[::-1] * [1.0, -1.0], p.limits, p.curve)
     assert meets(base(), certify(back, gap=0.02), 1.0)
 
 
@@ -207,7 +207,7 @@ def test_a_joint_alone_is_not_slower() -> None:
 
 def unknowns(system: CubicSystem, problem: Problem, h: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Coordinates and unknowns (scaled) of the spline through the way-points, from its fit."""
-    curve = fit(problem.interpolant, problem.waypoints, h)
+    curve = fit(problem.curve, problem.waypoints, h)
     breaks = np.concatenate([[0.0], np.cumsum(h)])
     unit, angle = 2.0**system.second, 2.0 ** np.array(system.powers)
     a = np.array([curve(t, 2) for t in breaks]) * unit**2 / angle
@@ -235,7 +235,7 @@ def test_equations_and_conditions_are_those_of_the_spline(seed: int) -> None:
             t, sign = moved
             right = np.array([6 * sign * float(s) / y[t] for s in system.steps[t]])
         assert left == pytest.approx(right, abs=1e-9)
-    curve = fit(problem.interpolant, problem.waypoints, h)
+    curve = fit(problem.curve, problem.waypoints, h)
     began = np.concatenate([[0.0], np.cumsum(h)])
     for row in system.starting_rows():
         terms = system.row(row, Fraction(8))
@@ -293,7 +293,7 @@ def test_ranges_hold_what_the_limits_allow(seed: int) -> None:
     problem = random_problem(seed)
     rng = np.random.default_rng(seed)
     h = rng.uniform(0.5, 2.0, problem.segments)
-    free = Problem(problem.waypoints, problem.limits, problem.interpolant)
+    free = Problem(problem.waypoints, problem.limits, problem.curve)
     h *= float(evaluate(free, h[None]).stretch[0]) * 1.001
     exact = exact_problem(free)
     system = cubic_system(exact, Fraction(float(h.sum()) * 1.2))
@@ -499,7 +499,7 @@ def test_durations_that_no_trajectory_keeps_are_proved_infeasible() -> None:
     best = base()
     assert best.durations is not None
     upper = [float(h) * 0.9 for h in best.durations]
-    found = certify(Problem(p.waypoints, p.limits, p.interpolant, 0.0, upper))
+    found = certify(Problem(p.waypoints, p.limits, p.curve, 0.0, upper))
     assert found.outcome is Outcome.INFEASIBLE
     document = certificate(found)
     verdict = verify(document)
@@ -605,7 +605,7 @@ def test_alterations_in_favour_of_the_claim_are_refused() -> None:
 
 def test_the_example_s_certificate_is_fresh_and_proves() -> None:
     case = load_case(EXAMPLE)
-    exact = printed_problem(case.posing(case.problems[0].id, case.readings[0].id))
+    exact = printed_problem(case.statement(case.problems[0].id, case.readings[0].id))
     document = json.loads(EXAMPLE.with_suffix(".certificate.json").read_text("utf-8"))
     assert document["problem"] == problem_document(exact), "run benchmarks/cubic_certificates.py"
     verdict = verify(document)

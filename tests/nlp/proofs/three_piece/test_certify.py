@@ -412,7 +412,7 @@ def test_rows_are_the_limits_of_the_curve() -> None:
     rng = np.random.default_rng(5)
     for _ in range(20):
         h = rng.uniform(0.2, 1.5, 3)
-        curve = fit(exact.interpolant, q, h)
+        curve = fit(exact.curve, q, h)
         joint, order = int(rng.integers(0, 6)), int(rng.integers(1, 3))
         place, sign = int(rng.integers(0, PLACES + 1)), int(rng.choice([-1, 1]))
         total = Fraction(float(h.sum()))
