@@ -9,9 +9,9 @@ from collections.abc import Callable, Iterator
 from decimal import Decimal
 from fractions import Fraction
 
-from trajgap.nlp.certificate import shipped_folder, write_certificate
-from trajgap.nlp.certify import certify, covered
-from trajgap.nlp.exact import ExactProblem, printed_problem
+from trajgap.nlp.proofs.certifiers import certify, covered
+from trajgap.nlp.proofs.document import shipped_folder, write_certificate
+from trajgap.nlp.proofs.exact import ExactProblem, printed_problem
 from trajgap.nlp.verify import verify
 from trajgap.problem import Coupling, load_case, published_ids
 

@@ -12,17 +12,23 @@ import time
 from pathlib import Path
 
 import numpy as np
-from trajgap.nlp.certificate import certificate, write_certificate
-from trajgap.nlp.certified import Certified
-from trajgap.nlp.certify import certify
-from trajgap.nlp.cubic_guide import peaks
-from trajgap.nlp.cubic_proof import TOTAL
-from trajgap.nlp.cubic_relaxation import Relaxation
-from trajgap.nlp.cubic_system import cubic_system
-from trajgap.nlp.cubic_tree import TICKS, Prover
-from trajgap.nlp.exact import ExactProblem, exact_problem, printed_problem
+from trajgap.nlp.proofs.certifiers import certify
+from trajgap.nlp.proofs.cubic.guide import peaks
+from trajgap.nlp.proofs.cubic.proof import TOTAL
+from trajgap.nlp.proofs.cubic.relaxation import Relaxation
+from trajgap.nlp.proofs.cubic.system import cubic_system
+from trajgap.nlp.proofs.cubic.tree import TICKS, Prover
+from trajgap.nlp.proofs.document import certificate, write_certificate
+from trajgap.nlp.proofs.exact import ExactProblem, exact_problem, printed_problem
+from trajgap.nlp.proofs.outcome import Certified
 from trajgap.nlp.verify import verify
-from trajgap.problem import Limits, Problem, cubic_spline, cubic_spline_virtual, load_case
+from trajgap.problem import (
+    Limits,
+    Problem,
+    cubic_spline,
+    cubic_spline_virtual,
+    load_case,
+)
 
 EXAMPLE = Path(__file__).parents[1] / "docs" / "examples" / "gasparetto-zanotto2008.toml"
 SECONDS = 300.0

@@ -15,10 +15,15 @@ from collections.abc import Callable, Iterator
 from decimal import Decimal
 from fractions import Fraction
 
-from trajgap.nlp.certificate import problem_document, question, shipped_folder, write_certificate
-from trajgap.nlp.exact import ExactProblem, printed_problem
-from trajgap.nlp.family_free_certify import certify_family_free
-from trajgap.nlp.family_free_exact import missing
+from trajgap.nlp.proofs.any_curve.certifier import certify_family_free
+from trajgap.nlp.proofs.any_curve.exact import missing
+from trajgap.nlp.proofs.document import (
+    problem_document,
+    question,
+    shipped_folder,
+    write_certificate,
+)
+from trajgap.nlp.proofs.exact import ExactProblem, printed_problem
 from trajgap.nlp.verify import Subject, verify
 from trajgap.problem import load_case, published_ids
 

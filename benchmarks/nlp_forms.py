@@ -7,8 +7,14 @@ import time
 
 import numpy as np
 from trajgap.nlp import Form, solve
-from trajgap.nlp.tracking import best_form
-from trajgap.problem import Limits, Problem, cubic_spline, quintic_spline, three_five_three
+from trajgap.nlp.optimum.tracking import best_form
+from trajgap.problem import (
+    Limits,
+    Problem,
+    cubic_spline,
+    quintic_spline,
+    three_five_three,
+)
 
 CASES = [
     ("3-5-3, 1 joint", three_five_three(), 4, 1),

@@ -25,7 +25,7 @@ METHODS = {
 
 def certificate(problem, seconds):
     """Certified lower bound, upper bound and boxes."""
-    from trajgap.nlp.certify import certify
+    from trajgap.nlp.proofs.certifiers import certify
 
     end = time.process_time() + seconds
 
@@ -132,7 +132,7 @@ def main():
 
         problems = instances()[given.first :: given.every]
         if given.method == "certificate":
-            from trajgap.nlp.certify import certify
+            from trajgap.nlp.proofs.certifiers import certify
 
             certify(problems[0], gap=0.3)  # compile
         run(given.method, given.seconds, problems)

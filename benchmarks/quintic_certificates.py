@@ -12,9 +12,9 @@ import json
 import time
 
 from quintic_instances import instances
-from trajgap.nlp.certificate import certificate
-from trajgap.nlp.certified import Progress
-from trajgap.nlp.certify import certify
+from trajgap.nlp.proofs.certifiers import certify
+from trajgap.nlp.proofs.document import certificate
+from trajgap.nlp.proofs.outcome import Progress
 from trajgap.nlp.verify import verify
 from trajgap.problem import Problem
 

@@ -3,12 +3,12 @@
 from collections.abc import Iterator
 from pathlib import Path
 
-from trajgap.compare.drawing import svg
-from trajgap.compare.report_blocks import Drawn
-from trajgap.compare.report_exhibits import exhibits_of_motion, exhibits_of_search
-from trajgap.compare.study import Study
-from trajgap.compare.waterfall import waterfalls
-from trajgap.compare.waterfall_picture import waterfall_picture
+from trajgap.compare.audits.study import Study
+from trajgap.compare.audits.waterfall import waterfalls
+from trajgap.compare.pages.blocks import Drawn
+from trajgap.compare.pages.exhibits import exhibits_of_motion, exhibits_of_search
+from trajgap.compare.pictures.drawing import svg
+from trajgap.compare.pictures.waterfall import waterfall_picture
 from trajgap.problem import load_case
 
 PICTURES = Path(__file__).parent / "pictures"

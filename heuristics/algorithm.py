@@ -28,6 +28,7 @@ class Algorithm(Protocol[S]):
     """A frozen record of settings that starts a search and moves it on."""
 
     kind: ClassVar[str]
+    open_choices: ClassVar[tuple[str, ...]]
 
     @property
     def iterations(self) -> int:

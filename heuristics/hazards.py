@@ -10,11 +10,17 @@ import numpy as np
 
 from ..problem import Problem, TrajgapError, evaluate
 from .algorithm import Algorithm
-from .improved_ga import THIRD, concentration, crossover_rate, mutation_rate
-from .improved_woa import inertia_weight
+from .algorithms import (
+    THIRD,
+    concentration,
+    crossover_rate,
+    exact_orbit,
+    inertia_weight,
+    mutation_rate,
+    orbit,
+)
+from .loop import states
 from .objective import Array, Bounds, DeathPenalty
-from .run import states
-from .tent import exact_orbit, orbit
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..problem import Problem, TrajgapError, evaluate
-from ..problem.check import TOLERANCE
+from ..problem import TOLERANCE, Problem, TrajgapError, evaluate
 
 Array = NDArray[np.float64]
 Objective = Callable[[Array], Array]

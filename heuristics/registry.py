@@ -7,29 +7,13 @@ from dataclasses import fields
 from typing import Any
 
 from ..problem import TrajgapError
-from . import constrained_pso, ga, improved_ga, improved_woa, mnam_pso, pso, woa
 from .algorithm import Algorithm
-from .constrained_pso import ConstrainedPSO
-from .ga import GA
-from .improved_ga import ImprovedGA
-from .improved_woa import ImprovedWOA
-from .mnam_pso import MNAMPSO
-from .pso import PSO
+from .algorithms import GA, MNAMPSO, PSO, WOA, ConstrainedPSO, ImprovedGA, ImprovedWOA
 from .settings import nearest
-from .woa import WOA
 
 _RECORDS: dict[str, Any] = {
     record.kind: record
     for record in (PSO, MNAMPSO, ConstrainedPSO, WOA, ImprovedWOA, GA, ImprovedGA)
-}
-_OPEN = {
-    PSO.kind: pso.OPEN_CHOICES,
-    MNAMPSO.kind: mnam_pso.OPEN_CHOICES,
-    ConstrainedPSO.kind: constrained_pso.OPEN_CHOICES,
-    WOA.kind: woa.OPEN_CHOICES,
-    ImprovedWOA.kind: improved_woa.OPEN_CHOICES,
-    GA.kind: ga.OPEN_CHOICES,
-    ImprovedGA.kind: improved_ga.OPEN_CHOICES,
 }
 
 KINDS: tuple[str, ...] = tuple(_RECORDS)
@@ -84,4 +68,5 @@ def open_choices(kind: str) -> tuple[str, ...]:
         If the kind is unknown.
     """
     _record(kind)
-    return _OPEN[kind]
+    choices: tuple[str, ...] = _RECORDS[kind].open_choices
+    return choices

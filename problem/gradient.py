@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .curve import PeakGradients, value_gradients
-from .peak import Extremum
+from .curves import Extremum, PeakGradients, value_gradients
 from .problem import Problem
 
 

@@ -8,9 +8,8 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from .curve import Curve, for_joint
+from .curves import Curve, Interpolant, for_joint
 from .errors import TrajgapError
-from .interpolant import Interpolant
 from .limits import Limits
 
 

@@ -14,16 +14,16 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from trajgap.nlp.certificate import certificate
-from trajgap.nlp.certify import certify
+from trajgap.nlp.proofs.certifiers import certify
+from trajgap.nlp.proofs.document import certificate
 from trajgap.problem import (
     Limits,
     Problem,
-    closed_form,
     evaluate,
     piecewise,
     quintic_spline,
     rest_to_rest,
+    solve_in_closed_form,
     three_five_three,
     uniform_cubic_b_spline,
 )
@@ -103,7 +103,7 @@ def rest_optimum(problem: Problem) -> float:
 def stretched_optimum(problem: Problem) -> float:
     """The floating-point closed form of `trajgap.problem`."""
     limits = problem.limits.derivatives
-    return _alone(closed_form(problem.interpolant, problem.waypoints, limits), problem)
+    return _alone(solve_in_closed_form(problem.interpolant, problem.waypoints, limits), problem)
 
 
 KINDS = {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from hypothesis import strategies as st
-from trajgap.problem.robot import Chain, Convention, JointKind
+from trajgap.problem.robots.chain import Chain, Convention, JointKind
 
 
 def rotation(axis: str, angle: float) -> np.ndarray:

@@ -19,7 +19,7 @@ from trajgap.problem import (
     load_robot,
     rest_to_rest,
 )
-from trajgap.problem.cartesian_line import ctraj
+from trajgap.problem.robots.cartesian_line import ctraj
 
 START = np.array([0.1, -0.6, 0.4, 0.2, 0.5, 0.1])
 

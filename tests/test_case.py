@@ -10,11 +10,11 @@ from pathlib import Path
 import jsonschema
 import numpy as np
 import pytest
-from trajgap.problem.case import Case
+from trajgap.problem.cases.case import Case
+from trajgap.problem.cases.load import load_case, parse_case, published_ids
+from trajgap.problem.cases.schema import case_schema
 from trajgap.problem.errors import CaseError
-from trajgap.problem.load import load_case, parse_case, published_ids
 from trajgap.problem.printed import Printed
-from trajgap.problem.schema import case_schema
 
 ROOT = Path(__file__).parent.parent
 

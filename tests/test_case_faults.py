@@ -11,12 +11,12 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from trajgap.problem.claim import QUANTITY_KINDS
+from trajgap.problem.cases.claim import QUANTITY_KINDS
+from trajgap.problem.cases.faults import first_fault
+from trajgap.problem.cases.load import check_case, load_case, parse_case
+from trajgap.problem.cases.schema import CaseFile
+from trajgap.problem.cases.statement import _LARGEST
 from trajgap.problem.errors import CaseError
-from trajgap.problem.faults import first_fault
-from trajgap.problem.load import check_case, load_case, parse_case
-from trajgap.problem.posing import _LARGEST
-from trajgap.problem.schema import CaseFile
 from trajgap.problem.textfile import read_text
 
 BASE = (Path(__file__).parent / "base_case.toml").read_text(encoding="utf-8")

@@ -11,14 +11,15 @@ from typing import Any
 
 import numpy as np
 import pytest
-from trajgap.nlp import solve, three_piece
-from trajgap.nlp.boxes import Boxes
-from trajgap.nlp.certificate import certificate, problem_document, shipped, shipped_folder
-from trajgap.nlp.certified import Certified, Outcome, Progress
-from trajgap.nlp.certify import certify, covered
-from trajgap.nlp.exact import ExactProblem, decimal, exact_problem, printed_problem
-from trajgap.nlp.incumbent import exact_coefficients, keeps_limits, never_above
-from trajgap.nlp.three_piece import PLACES, Prover, Row, exact_row
+from trajgap.nlp import solve
+from trajgap.nlp.proofs.answer import exact_coefficients, keeps_limits, never_above
+from trajgap.nlp.proofs.certifiers import certify, covered
+from trajgap.nlp.proofs.document import certificate, problem_document, shipped, shipped_folder
+from trajgap.nlp.proofs.exact import ExactProblem, decimal, exact_problem, printed_problem
+from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress
+from trajgap.nlp.proofs.three_piece import rows as three_piece
+from trajgap.nlp.proofs.three_piece.boxes import Boxes
+from trajgap.nlp.proofs.three_piece.rows import PLACES, Prover, Row, exact_row
 from trajgap.nlp.verify import Subject, verify
 from trajgap.problem import (
     Coupling,
@@ -36,7 +37,7 @@ from trajgap.problem import (
     uniform_cubic_b_spline,
 )
 
-module = import_module("trajgap.nlp.three_piece_search")
+module = import_module("trajgap.nlp.proofs.three_piece.search")
 
 
 def posed() -> list[tuple[str, ExactProblem]]:

@@ -27,10 +27,10 @@ from trajgap.problem import (
     rest_to_rest,
     three_five_three,
 )
-from trajgap.problem import spline as spline_module
+from trajgap.problem.curves import spline as spline_module
 
-from . import exact_route
-from .samples import DECLARATIONS, FREE, posed
+from tests import exact_route
+from tests.samples import DECLARATIONS, FREE, posed
 
 PUMA = np.array(
     [

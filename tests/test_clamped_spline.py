@@ -21,16 +21,16 @@ from trajgap.problem import (
     check,
     clamped_control_points,
     clamped_readings,
-    closed_form,
     evaluate,
     extrema,
     fit,
     peak_gradients,
     piecewise,
     quintic_spline,
+    solve_in_closed_form,
 )
-from trajgap.problem.clamped import average_matrix, chord_fractions
-from trajgap.problem.curve import for_joint
+from trajgap.problem.curves.clamped import average_matrix, chord_fractions
+from trajgap.problem.curves.kind import for_joint
 
 KINDS = [
     (degree, knots, parameters, time)
@@ -385,7 +385,7 @@ def test_control_points_are_those_of_scipys_basis(kind) -> None:
 def test_closed_form_of_a_stretched_chord_curve() -> None:
     for parameters in ("chord", "joint-chord"):
         problem, _ = posed((4, "averaged-continued", parameters, "stretched"), 11)
-        h = closed_form(problem.interpolant, problem.waypoints, problem.limits.derivatives)
+        h = solve_in_closed_form(problem.interpolant, problem.waypoints, problem.limits.derivatives)
         assert check(problem, h).stretch == pytest.approx(1.0, rel=1e-12)
         for k in range(7):
             shorter = h.copy()

@@ -19,11 +19,12 @@ from typing import Any
 import jsonschema
 import pytest
 from rich.cells import cell_len
-from trajgap.compare import cli_output, cli_table
 from trajgap.compare.cli import main
+from trajgap.compare.cli import output as cli_output
+from trajgap.compare.cli import table as cli_table
 from trajgap.problem import load_case, published_ids
 
-from .test_documents import SCHEMA, assert_valid, report
+from tests.test_documents import SCHEMA, assert_valid, report
 
 PUMA, IRB = "puma560-mnam-pso-353", "irb460-pso-353"
 
@@ -110,7 +111,7 @@ def test_help_is_quick_and_documents_the_exit_codes() -> None:
 
 def test_help_imports_nothing_that_computes() -> None:
     program_ = (
-        "import sys; import trajgap.compare.cli\n"
+        "import sys; import trajgap.compare.cli.app\n"
         "print({'numpy', 'casadi', 'pydantic', 'rich.table', 'numba', 'scipy'} & set(sys.modules))"
     )
     done = subprocess.run([sys.executable, "-c", program_], capture_output=True, text=True)
@@ -241,7 +242,7 @@ def stand_in(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
         seen.update(options, cases=[case.id for case in cases])
         return report()
 
-    monkeypatch.setattr(import_module("trajgap.compare.audit"), "audit", audit)
+    monkeypatch.setattr(import_module("trajgap.compare.audits.case_audit"), "audit", audit)
     return seen
 
 
@@ -251,7 +252,7 @@ def pages(monkeypatch: pytest.MonkeyPatch) -> None:
         out.mkdir(exist_ok=True)
         (out / "index.html").write_text("page", encoding="utf-8")
 
-    monkeypatch.setattr(import_module("trajgap.compare.report"), "write_report", write)
+    monkeypatch.setattr(import_module("trajgap.compare.pages.writer"), "write_report", write)
 
 
 @pytest.mark.usefixtures("pages")
@@ -505,7 +506,7 @@ def test_audit_reads_everything_before_it_computes(
     def audit(*_: object, **__: object) -> None:
         raise AssertionError("computed")
 
-    monkeypatch.setattr(import_module("trajgap.compare.audit"), "audit", audit)
+    monkeypatch.setattr(import_module("trajgap.compare.audits.case_audit"), "audit", audit)
     Path("bad.toml").write_text(CASE + "\nwrong = 1", encoding="utf-8")
     assert_refused(run("audit", IRB, PUMA, "bad.toml"), "bad.toml: ", "wrong: unknown key")
     assert_refused(run("audit", "mine.toml", "mine.toml"), "'mine' is also the id of mine.toml")
@@ -733,7 +734,7 @@ def test_a_full_disk(arguments: tuple[str, ...]) -> None:
 def test_interrupted() -> None:
     # CasADi swallows a KeyboardInterrupt and would go on with a solve that was cut short.
     started = (
-        "import sys, trajgap.compare.cli_commands as c; from trajgap.compare.cli import main\n"
+        "import sys, trajgap.compare.cli.commands as c; from trajgap.compare.cli import main\n"
         "solve = c.solve_per_joint\n"
         "def slow(*a, **k):\n"
         "    print('solving', file=sys.stderr, flush=True)\n"
@@ -761,7 +762,7 @@ def test_interrupted_inside_a_library(run: Run, monkeypatch: pytest.MonkeyPatch)
     def stop(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("trajgap.compare.cli_commands.solve_per_joint", stop)
+    monkeypatch.setattr("trajgap.compare.cli.commands.solve_per_joint", stop)
     ended = run("solve", "mine.toml", "--out", "answer.json")
     assert ended == (130, "", "trajgap: interrupted\n")
     assert sorted(p.name for p in Path().iterdir()) == ["mine.toml"]
@@ -771,7 +772,7 @@ def test_a_fault_of_ours_is_told_apart(run: Run, monkeypatch: pytest.MonkeyPatch
     def fail(*_: object, **__: object) -> None:
         raise ZeroDivisionError
 
-    monkeypatch.setattr("trajgap.compare.cli_commands.solve_per_joint", fail)
+    monkeypatch.setattr("trajgap.compare.cli.commands.solve_per_joint", fail)
     code, out, err = run("solve", "mine.toml", "--out", "answer.json")
     assert (code, out) == (70, "")
     assert err.endswith("trajgap: a fault of trajgap itself, please report the lines above\n")

@@ -12,17 +12,18 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from trajgap.compare import cli_certify
-from trajgap.compare.proof_documents import NOT_COVERED, Worth
-from trajgap.nlp import ExactProblem, Outcome, Subject, shipped, three_piece
-from trajgap.nlp.state_file import read_state
-from trajgap.nlp.three_piece import Row, exact_row
+from trajgap.compare.cli import certifying as cli_certify
+from trajgap.compare.documents.proofs import NOT_COVERED, Worth
+from trajgap.nlp import ExactProblem, Outcome, Subject, shipped
+from trajgap.nlp.proofs.state import read_state
+from trajgap.nlp.proofs.three_piece import rows as three_piece
+from trajgap.nlp.proofs.three_piece.rows import Row, exact_row
 from trajgap.nlp.verify import seal, verify
 from trajgap.problem import TrajgapError
 
-from .test_certify import POSED
-from .test_cli import CASE, Run, folder, on_terminal, run, strict
-from .test_documents import SCHEMA, assert_valid
+from tests.test_certify import POSED
+from tests.test_cli import CASE, Run, folder, on_terminal, run, strict
+from tests.test_documents import SCHEMA, assert_valid
 
 __all__ = ["folder", "run"]
 
@@ -154,10 +155,10 @@ def test_a_narrower_certificate_of_all_curves_does_not_stay(run: Run) -> None:
 
 def test_ctrl_c_leaves_the_interval_and_a_state(run: Run) -> None:
     started = (
-        "import sys, time, trajgap.compare.cli_certify as c\n"
+        "import sys, time, trajgap.compare.cli.certifying as c\n"
         "from importlib import import_module\n"
         "from trajgap.compare.cli import main\n"
-        "import_module('trajgap.nlp.three_piece_search')._BATCH = 4\n"
+        "import_module('trajgap.nlp.proofs.three_piece.search')._BATCH = 4\n"
         "reporting = c._Stop.reporting\n"
         "def slow(self, name, step):\n"
         "    report = reporting(self, name, step)\n"

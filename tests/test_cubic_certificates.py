@@ -13,18 +13,26 @@ from typing import Any
 
 import numpy as np
 import pytest
-from trajgap.nlp import cubic_certify, cubic_ranges, cubic_tree
-from trajgap.nlp.certificate import certificate, problem_document
-from trajgap.nlp.certified import Certified, Outcome, Progress, Request
-from trajgap.nlp.certify import certify
-from trajgap.nlp.cubic_certify import CERTIFIER
-from trajgap.nlp.cubic_proof import Target, least
-from trajgap.nlp.cubic_ranges import a_priori, narrowed, with_rho
-from trajgap.nlp.cubic_relaxation import Relaxation
-from trajgap.nlp.cubic_system import PLACES, CubicSystem, cubic_system
-from trajgap.nlp.cubic_tree import TICKS, Prover
-from trajgap.nlp.exact import exact_problem, printed_problem
-from trajgap.nlp.incumbent import keeps_limits
+from trajgap.nlp.proofs.answer import keeps_limits
+from trajgap.nlp.proofs.certifiers import certify
+from trajgap.nlp.proofs.cubic import (
+    certifier as cubic_certify,
+)
+from trajgap.nlp.proofs.cubic import (
+    ranges as cubic_ranges,
+)
+from trajgap.nlp.proofs.cubic import (
+    tree as cubic_tree,
+)
+from trajgap.nlp.proofs.cubic.certifier import CUBIC
+from trajgap.nlp.proofs.cubic.proof import Target, least
+from trajgap.nlp.proofs.cubic.ranges import a_priori, narrowed, with_rho
+from trajgap.nlp.proofs.cubic.relaxation import Relaxation
+from trajgap.nlp.proofs.cubic.system import PLACES, CubicSystem, cubic_system
+from trajgap.nlp.proofs.cubic.tree import TICKS, Prover
+from trajgap.nlp.proofs.document import certificate, problem_document
+from trajgap.nlp.proofs.exact import exact_problem, printed_problem
+from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress, Request
 from trajgap.nlp.verify import verify
 from trajgap.nlp.verify_cubic_box import Box
 from trajgap.nlp.verify_cubic_system import Cubic
@@ -140,7 +148,7 @@ def test_dense_search_never_leaves_the_interval_of_two_hundred_problems() -> Non
 def test_one_clamped_piece_has_a_closed_form(limits: Limits, total: float) -> None:
     problem = Problem([[-1.0], [2.0]], limits, cubic_spline(1))
     # `certify` prefers the closed form of rest-to-rest polynomials.
-    found = CERTIFIER.certify(exact_problem(problem), Request(gap=1e-3))
+    found = CUBIC.certify(exact_problem(problem), Request(gap=1e-3))
     assert found.outcome is Outcome.CERTIFIED
     assert float(found.lower) <= total * (1 + 1e-12)
     assert float(found.upper or 0) == pytest.approx(total, rel=1e-7)

@@ -9,16 +9,16 @@ from importlib.resources import files
 
 import numpy as np
 import pytest
-from trajgap.compare.finding import Basis, ClaimVerdict, Finding, Severity
-from trajgap.compare.rounding import Box, Rounding, judge_rounding
-from trajgap.compare.rules.continuous import continuous
-from trajgap.compare.rules.control_vertices import control_vertices, vertices
-from trajgap.compare.rules.digits import digits
-from trajgap.compare.rules.optimum import optimum
-from trajgap.compare.rules.text import text
-from trajgap.compare.study import Study
-from trajgap.nlp.interval import Ball
-from trajgap.nlp.uniform_enclosure import centred, covered
+from trajgap.compare.audits.finding import Basis, ClaimVerdict, Finding, Severity
+from trajgap.compare.audits.rounding import Box, Rounding, judge_rounding
+from trajgap.compare.audits.rules.continuous_time import judge_motions
+from trajgap.compare.audits.rules.distances import judge_distances
+from trajgap.compare.audits.rules.open_points import list_open_points
+from trajgap.compare.audits.rules.printed_digits import judge_digits
+from trajgap.compare.audits.rules.printed_vertices import judge_vertices, vertices
+from trajgap.compare.audits.study import Study
+from trajgap.nlp.enclosure.balls import Ball
+from trajgap.nlp.enclosure.uniform import centred, covered
 from trajgap.problem import (
     CaseError,
     Verdict,
@@ -30,10 +30,10 @@ from trajgap.problem import (
     parse_case,
     peak_gradients,
 )
-from trajgap.problem.timed import ClockedTrajectory
+from trajgap.problem.curves.timed import ClockedTrajectory
 
-from .test_clamped_spline import posed as clamped
-from .test_uniform_spline import posed, vertices_by_solving
+from tests.test_clamped_spline import posed as clamped
+from tests.test_uniform_spline import posed, vertices_by_solving
 
 POLISH, WHALE = "irb1600-ga-cubic-bspline", "z1-woa-bspline"
 SOURCE = files("trajgap.problem.published").joinpath(f"{POLISH}.toml").read_text("utf-8")
@@ -63,7 +63,7 @@ def of(findings, rule: str, claim: str | None = None) -> list[Finding]:
 
 def test_every_printed_control_vertex_is_inside_what_rounding_allows() -> None:
     study = polish()
-    (found,) = of(control_vertices(study), "TG205")
+    (found,) = of(judge_vertices(study), "TG205")
     assert found.verdict is ClaimVerdict.SUPPORTED
     assert found.computed == "72 of 72 inside"
     every = vertices(study.case.claim("control-vertices"), study.case.posing())
@@ -92,7 +92,7 @@ def test_one_changed_digit_is_seen_where_neither_rounding_nor_cutting_explains_i
     digits_: str, verdict: ClaimVerdict, severity: Severity
 ) -> None:
     study = polish(('"-2.1070"', f'"{digits_}"'))
-    (found,) = of(control_vertices(study), "TG205")
+    (found,) = of(judge_vertices(study), "TG205")
     assert (found.verdict, found.severity) == (verdict, severity)
     if severity is Severity.WARNING:
         assert "(V2 of joint 2) follow from the printed way-points only if digits" in found.message
@@ -119,7 +119,7 @@ def test_vertices_of_waypoints_whose_digits_were_cut_off_accuse_nobody() -> None
         head, _, tail = source.partition("joint_rows = [\n")
         source = f"{head}joint-rows = {table}{tail[tail.index(chr(10) + ']') + 2 :]}"
     study = Study(parse_case(source.replace("joint-rows", "joint_rows"), "cut.toml"), seeds=4)
-    (found,) = of(control_vertices(study), "TG205")
+    (found,) = of(judge_vertices(study), "TG205")
     assert (found.verdict, found.severity) == (ClaimVerdict.SUPPORTED, Severity.WARNING)
 
 
@@ -239,7 +239,7 @@ def test_clamped_splines_are_kept_consistent_or_undecided() -> None:
 
 
 def test_jumps_are_named_apart_from_the_limits() -> None:
-    found = list(continuous(polish()))
+    found = list(judge_motions(polish()))
     jumping = of(found, "TG202", "after")
     assert {f.reading.rpartition("-")[2] for f in jumping} == {"stretched"}
     assert len(jumping) == 8
@@ -261,7 +261,7 @@ def test_jumps_are_named_apart_from_the_limits() -> None:
 
 def test_the_printed_durations_are_optimal_under_no_reading() -> None:
     """Under each, a shorter motion is exhibited, or no rounding lets them keep the limits."""
-    found = {f.reading: f for f in of(optimum(shipped()), "TG302", "time-optimal")}
+    found = {f.reading: f for f in of(judge_distances(shipped()), "TG302", "time-optimal")}
     assert len(found) == 16
     assert {f.verdict for f in found.values()} == {ClaimVerdict.REFUTED}
     shorter = {rid for rid, f in found.items() if f.message.startswith("Not the shortest: after")}
@@ -280,7 +280,7 @@ def test_the_printed_durations_are_optimal_under_no_reading() -> None:
 
 
 def test_acceleration_said_to_jump_does_in_the_reading_that_stretches() -> None:
-    found = {f.reading: f for f in of(continuous(polish()), "TG206", "acceleration-jumps")}
+    found = {f.reading: f for f in of(judge_motions(polish()), "TG206", "acceleration-jumps")}
     assert len(found) == 16
     for reading, finding in found.items():
         jumps = reading.endswith("stretched")
@@ -294,7 +294,7 @@ def test_acceleration_said_to_jump_does_in_the_reading_that_stretches() -> None:
 
 
 def test_totals_and_the_saving_follow_from_the_digits() -> None:
-    found = list(digits(polish()))
+    found = list(judge_digits(polish()))
     assert {f.claim: f.verdict for f in found if f.rule in ("TG101", "TG103")} == dict.fromkeys(
         ("before", "after", "improvement"), ClaimVerdict.SUPPORTED
     )
@@ -306,19 +306,19 @@ def test_totals_and_the_saving_follow_from_the_digits() -> None:
 def test_a_case_without_waypoints_says_of_each_time_why_it_is_not_checkable() -> None:
     study = Study(load_case(WHALE), seeds=2)
     assert not study.posed
-    found = list(text(study))
+    found = list(list_open_points(study))
     for claim in ("b-spline-total", "quintic-total", "convergence"):
         (finding,) = of(found, "TG501", claim)
         assert finding.verdict is ClaimVerdict.NOT_CHECKABLE
         assert "cannot be computed without the way-points: the text gives" in finding.message
     assert not of(found, "TG501", "improvement")
-    assert not list(control_vertices(study))
-    (improvement,) = of(digits(study), "TG103", "improvement")
+    assert not list(judge_vertices(study))
+    (improvement,) = of(judge_digits(study), "TG103", "improvement")
     assert improvement.verdict is ClaimVerdict.NOT_CHECKABLE
 
 
 def test_a_posed_case_has_no_such_finding() -> None:
     study = polish()
     assert study.posed
-    assert not of(text(study), "TG501", "after")
+    assert not of(list_open_points(study), "TG501", "after")
     assert check(study.case.problem(), np.full(9, 1.0)).verdict is Verdict.PASS

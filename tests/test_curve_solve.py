@@ -8,22 +8,22 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 from trajgap.nlp import Status, kkt, random_starts, solve, solve_per_joint
-from trajgap.nlp.curve_formulation import build_curve, curve_structure
+from trajgap.nlp.optimum.curve_formulation import build_curve, curve_structure
 from trajgap.problem import (
     ClampedBSpline,
     Limits,
     Problem,
     TrajgapError,
     Verdict,
-    closed_form,
     evaluate,
     load_case,
     quintic_spline,
+    solve_in_closed_form,
     uniform_cubic_b_spline,
 )
 
-from .test_clamped_spline import posed as clamped
-from .test_uniform_spline import ByScipy, posed
+from tests.test_clamped_spline import posed as clamped
+from tests.test_uniform_spline import ByScipy, posed
 
 POLISH = "irb1600-ga-cubic-bspline"
 BEST = {
@@ -43,7 +43,9 @@ UNITS = tuple(BEST)
 @pytest.mark.parametrize("units", UNITS)
 def test_stretched_agrees_with_the_closed_form_under_every_unit_reading(units: str) -> None:
     problem = load_case(POLISH).problem(reading_id=f"{units}-stretched")
-    expected = closed_form(problem.interpolant, problem.waypoints, problem.limits.derivatives)
+    expected = solve_in_closed_form(
+        problem.interpolant, problem.waypoints, problem.limits.derivatives
+    )
     solution = solve(problem, starts=2)
     assert solution.status is Status.OPTIMAL
     assert solution.total_time == pytest.approx(expected.sum(), rel=1e-9, abs=0)
@@ -61,7 +63,9 @@ def test_stretched_agrees_with_the_closed_form_under_every_unit_reading(units: s
 def test_the_stretched_optimum_is_found_by_the_solver_from_afar(units: str) -> None:
     """A stretch of the start as a whole, all that happens beside the NLP, stays far above."""
     problem = load_case(POLISH).problem(reading_id=f"{units}-stretched")
-    total = closed_form(problem.interpolant, problem.waypoints, problem.limits.derivatives).sum()
+    total = solve_in_closed_form(
+        problem.interpolant, problem.waypoints, problem.limits.derivatives
+    ).sum()
     start = random_starts(problem, 1, np.random.default_rng(11))
     stretched = float(start.sum() * evaluate(problem, start).stretch[0])
     assert stretched > 1.5 * total
@@ -73,7 +77,9 @@ def test_the_stretched_optimum_is_found_by_the_solver_from_afar(units: str) -> N
 @pytest.mark.parametrize("seed", range(3))
 def test_stretched_agrees_with_the_closed_form_with_jerk_limits(seed: int) -> None:
     problem, _ = posed("stretched", seed + 20, count=5)
-    expected = closed_form(problem.interpolant, problem.waypoints, problem.limits.derivatives)
+    expected = solve_in_closed_form(
+        problem.interpolant, problem.waypoints, problem.limits.derivatives
+    )
     solution = solve(problem, starts=2)
     assert solution.total_time == pytest.approx(expected.sum(), rel=1e-9, abs=0)
 
@@ -167,7 +173,9 @@ def test_clamped_splines_are_solved_to_a_kkt_point(kind) -> None:
     assert solution.kkt_residual is not None
     assert solution.kkt_residual <= 1e-8
     if kind[3] == "stretched":
-        expected = closed_form(problem.interpolant, problem.waypoints, problem.limits.derivatives)
+        expected = solve_in_closed_form(
+            problem.interpolant, problem.waypoints, problem.limits.derivatives
+        )
         assert solution.total_time == pytest.approx(expected.sum(), rel=1e-9)
         return
     # No nearby durations, stretched until they keep the limits, are shorter.

@@ -23,7 +23,7 @@ from trajgap.problem import (
     parse_case,
     scaffold,
 )
-from trajgap.problem.declaration import Family
+from trajgap.problem.cases.declaration import Family
 
 WAYPOINTS = ((0.3, -1.0), (0.9, -0.55), (0.2, 0.35), (-0.45, 0.1))
 HEAD = """

@@ -11,8 +11,8 @@ from scipy import optimize
 from scipy.stats import mannwhitneyu
 from trajgap.heuristics import GA, WOA, Bounds, ImprovedGA, ImprovedWOA, states
 
-from . import loop_ga, loop_woa
-from .scripted import rastrigin, sphere
+from tests import loop_ga, loop_woa
+from tests.scripted import rastrigin, sphere
 
 pytestmark = pytest.mark.slow
 

@@ -11,15 +11,15 @@ from typing import Any
 import jsonschema
 import numpy as np
 import pytest
-from trajgap.compare import documents
-from trajgap.compare.audit import AuditReport, CaseAudit
-from trajgap.compare.finding import Basis, ClaimVerdict, Finding, Judgement, Scope, Severity
-from trajgap.compare.gap import GapKind, Reference, gap
-from trajgap.compare.rounding import Box, Rounding, judge_rounding
-from trajgap.compare.study import Study
-from trajgap.compare.waterfall import Step, Waterfall
+from trajgap.compare.audits.case_audit import AuditReport, CaseAudit
+from trajgap.compare.audits.finding import Basis, ClaimVerdict, Finding, Judgement, Scope, Severity
+from trajgap.compare.audits.rounding import Box, Rounding, judge_rounding
+from trajgap.compare.audits.study import Study
+from trajgap.compare.audits.waterfall import Step, Waterfall
+from trajgap.compare.documents import results as documents
+from trajgap.compare.gaps.optimality_gap import GapKind, Reference, gap
 from trajgap.nlp import Evidence, Solution, Status, solve, solve_per_joint
-from trajgap.nlp.retime import Retiming, retime
+from trajgap.nlp.retiming.toppra_check import Retiming, retime
 from trajgap.problem import (
     Coupling,
     Limits,
@@ -33,7 +33,7 @@ from trajgap.problem import (
     rest_to_rest,
     three_five_three,
 )
-from trajgap.problem.claim import QUANTITY_KINDS
+from trajgap.problem.cases.claim import QUANTITY_KINDS
 
 SCHEMA = json.loads(
     (Path(__file__).parent.parent / "docs" / "output.schema.json").read_text(encoding="utf-8")

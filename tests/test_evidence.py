@@ -10,11 +10,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from trajgap.compare.documents import results_document, solve_result
-from trajgap.compare.gap import Reference, gap
-from trajgap.compare.rules.optimum import optimum
-from trajgap.compare.study import Study
-from trajgap.compare.waterfall import waterfalls
+from trajgap.compare.audits.rules.distances import judge_distances
+from trajgap.compare.audits.study import Study
+from trajgap.compare.audits.waterfall import waterfalls
+from trajgap.compare.documents.results import results_document, solve_result
+from trajgap.compare.gaps.optimality_gap import Reference, gap
 from trajgap.nlp import (
     Evidence,
     ExactProblem,
@@ -31,8 +31,8 @@ from trajgap.nlp import (
     with_certificate,
     with_certificates,
 )
-from trajgap.nlp.evidence import WIDEST
-from trajgap.nlp.exact import exact_problem, printed_problem
+from trajgap.nlp.proofs.evidence import WIDEST
+from trajgap.nlp.proofs.exact import exact_problem, printed_problem
 from trajgap.problem import (
     Limits,
     Problem,
@@ -42,12 +42,12 @@ from trajgap.problem import (
     three_five_three,
 )
 
-from .test_certify import POSED
-from .test_documents import assert_valid
+from tests.test_certify import POSED
+from tests.test_documents import assert_valid
 
-evidence_module = import_module("trajgap.nlp.evidence")
-waterfall_module = import_module("trajgap.compare.waterfall")
-certificate_module = import_module("trajgap.nlp.certificate")
+evidence_module = import_module("trajgap.nlp.proofs.evidence")
+waterfall_module = import_module("trajgap.compare.audits.waterfall")
+certificate_module = import_module("trajgap.nlp.proofs.document")
 IRB, PUMA, GA = "irb460-pso-353", "puma560-mnam-pso-353", "irb1600-ga-cubic-bspline"
 PAIR = ("limit-80", "waypoints-rad")
 VERDICTS = (Path(__file__).parent.parent / "docs" / "verdicts.md").read_text("utf-8")
@@ -65,7 +65,7 @@ def one_study() -> Study:
 
 def said(study: Study) -> tuple[list[str], set[Evidence]]:
     """Every sentence and every evidence word beside an optimum."""
-    findings = list(optimum(study))
+    findings = list(judge_distances(study))
     steps = [step for fall in waterfalls(study) for step in fall.steps]
     texts = [f.message for f in findings] + [f"{s.name} {s.note}" for s in steps]
     return texts, {f.evidence for f in findings} | {s.evidence for s in steps}
@@ -235,7 +235,7 @@ def test_a_gap_is_measured_against_the_interval() -> None:
 def test_a_total_below_the_proved_bound_is_called_that(monkeypatch: pytest.MonkeyPatch) -> None:
     study = one_study()
     monkeypatch.setattr(Study, "claim_total", lambda *_: ("1.5 s", (1.4995, 1.5005)))
-    (message,) = (f.message for f in optimum(study) if f.claim == "durations-80" and f.gap)
+    (message,) = (f.message for f in judge_distances(study) if f.claim == "durations-80" and f.gap)
     assert "below the proved lower bound of this problem as printed" in message
     assert "best known" not in message
 

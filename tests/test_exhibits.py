@@ -8,19 +8,26 @@ from itertools import combinations
 import numpy as np
 import pytest
 from matplotlib.text import Annotation
-from trajgap.compare.drawing import Picture, drawing, svg
-from trajgap.compare.jump_picture import jump_picture, velocity_jumps
-from trajgap.compare.labels import place_labels
-from trajgap.compare.polygon_picture import polygon_picture
-from trajgap.compare.report_blocks import Drawn, Folded, Grid
-from trajgap.compare.report_exhibits import exhibits_of_motion, exhibits_of_search
-from trajgap.compare.rules.control_vertices import Vertex, vertices
-from trajgap.compare.study import Study
-from trajgap.compare.tent_picture import TentScatter, tent_picture, tent_scatter
-from trajgap.heuristics.tent import TentRule
-from trajgap.problem import Limits, Printed, Problem, TrajgapError, load_case, three_five_three
+from trajgap.compare.audits.rules.printed_vertices import Vertex, vertices
+from trajgap.compare.audits.study import Study
+from trajgap.compare.pages.blocks import Drawn, Folded, Grid
+from trajgap.compare.pages.exhibits import exhibits_of_motion, exhibits_of_search
+from trajgap.compare.pictures.drawing import Picture, drawing, svg
+from trajgap.compare.pictures.jumps import jump_picture, velocity_jumps
+from trajgap.compare.pictures.labels import place_labels
+from trajgap.compare.pictures.polygon import polygon_picture
+from trajgap.compare.pictures.tent import TentScatter, tent_picture, tent_scatter
+from trajgap.heuristics.algorithms.tent import TentRule
+from trajgap.problem import (
+    Limits,
+    Printed,
+    Problem,
+    TrajgapError,
+    load_case,
+    three_five_three,
+)
+from trajgap.problem.curves.uniform import control_vertices, uniform_cubic_b_spline
 from trajgap.problem.printed import Interval
-from trajgap.problem.uniform import control_vertices, uniform_cubic_b_spline
 
 WAYPOINTS = np.array([[0.3, 1.9], [1.4, 1.2], [0.9, 2.6], [2.0, 2.1], [1.6, 0.7]])
 DURATIONS = np.array([0.7, 1.1, 0.4, 0.9])

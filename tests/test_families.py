@@ -10,13 +10,11 @@ from pathlib import Path
 import jsonschema
 import numpy as np
 import pytest
-from trajgap.compare import audit, family_study
-from trajgap.compare.audit import audit_case
-from trajgap.compare.documents import audit_document
-from trajgap.compare.drawing import svg
-from trajgap.compare.family_picture import family_picture
-from trajgap.compare.family_pose import printed_reduction
-from trajgap.compare.family_result import (
+from trajgap.compare import audit
+from trajgap.compare.audits.case_audit import audit_case
+from trajgap.compare.audits.instances import study as family_study
+from trajgap.compare.audits.instances.pose import printed_reduction
+from trajgap.compare.audits.instances.result import (
     MIDDLE,
     Effect,
     FamilyResult,
@@ -27,10 +25,13 @@ from trajgap.compare.family_result import (
     percent_range,
     reproduced,
 )
-from trajgap.compare.report import case_page
-from trajgap.compare.report_markdown import markdown
-from trajgap.compare.rules.family import family
-from trajgap.compare.study import Study
+from trajgap.compare.audits.rules.on_instances import judge_instances
+from trajgap.compare.audits.study import Study
+from trajgap.compare.documents.results import audit_document
+from trajgap.compare.pages.markdown_text import markdown
+from trajgap.compare.pages.writer import case_page
+from trajgap.compare.pictures.drawing import svg
+from trajgap.compare.pictures.instances import family_picture
 from trajgap.nlp import Evidence
 from trajgap.problem import (
     Case,
@@ -45,8 +46,8 @@ from trajgap.problem import (
     parse_case,
     quintic_spline,
 )
-from trajgap.problem.clamped import polynomial_form
-from trajgap.problem.family import family_waypoints
+from trajgap.problem.cases.instances import family_waypoints
+from trajgap.problem.curves.clamped import polynomial_form
 
 ROOT = Path(__file__).resolve().parent.parent
 WHALE = "z1-woa-bspline"
@@ -369,7 +370,7 @@ def test_the_printed_reduction_is_an_interval_of_the_digits() -> None:
 
 def test_findings_inform_and_decide_nothing() -> None:
     study = Study(small(), seeds=2)
-    found = list(family(study))
+    found = list(judge_instances(study))
     assert [(f.claim, f.reading) for f in found] == [
         ("better", None), ("better", "as-printed"), ("better", "joined"), ("settles", None),
     ]  # fmt: skip
@@ -394,7 +395,7 @@ def test_findings_inform_and_decide_nothing() -> None:
 
 def test_without_a_pair_of_answers_the_words_say_so() -> None:
     found = list(
-        family(
+        judge_instances(
             Study(
                 small(
                     ("upper = 8", "upper = 0.05"),

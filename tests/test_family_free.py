@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import linprog, minimize_scalar
 from trajgap.nlp import Evidence, solve
-from trajgap.nlp.family_free import FamilyFree, family_free
-from trajgap.nlp.reach import furthest, profile, reachable
-from trajgap.nlp.retime import retime
+from trajgap.nlp.proofs.any_curve.estimate import FamilyFree, family_free
+from trajgap.nlp.proofs.any_curve.reach import furthest, profile, reachable
+from trajgap.nlp.retiming.toppra_check import retime
 from trajgap.problem import (
     Interpolant,
     Limits,

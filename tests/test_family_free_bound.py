@@ -17,23 +17,27 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import linprog
-from trajgap.compare import waterfall
-from trajgap.compare.study import Study
-from trajgap.nlp import (
-    Evidence,
-    evidence,
-    family_free_certify,
-    family_free_rows,
-    family_free_search,
+from trajgap.compare.audits import waterfall
+from trajgap.compare.audits.study import Study
+from trajgap.nlp import Evidence
+from trajgap.nlp.proofs import evidence
+from trajgap.nlp.proofs.any_curve import (
+    certifier as family_free_certify,
 )
-from trajgap.nlp.certificate import certificate, shipped_folder
-from trajgap.nlp.certified import Certified, Outcome, Progress
-from trajgap.nlp.exact import ExactProblem, exact_problem, printed_problem
-from trajgap.nlp.family_free import family_free
-from trajgap.nlp.family_free_certify import certify_family_free
-from trajgap.nlp.family_free_exact import missing, question
-from trajgap.nlp.family_free_rows import BRAKE, REACH, UNIT, Exact, Row, exact_row
-from trajgap.nlp.reach import furthest, reachable
+from trajgap.nlp.proofs.any_curve import (
+    rows as family_free_rows,
+)
+from trajgap.nlp.proofs.any_curve import (
+    search as family_free_search,
+)
+from trajgap.nlp.proofs.any_curve.certifier import certify_family_free
+from trajgap.nlp.proofs.any_curve.estimate import family_free
+from trajgap.nlp.proofs.any_curve.exact import missing, question
+from trajgap.nlp.proofs.any_curve.reach import furthest, reachable
+from trajgap.nlp.proofs.any_curve.rows import BRAKE, REACH, UNIT, Exact, Row, exact_row
+from trajgap.nlp.proofs.document import certificate, shipped_folder
+from trajgap.nlp.proofs.exact import ExactProblem, exact_problem, printed_problem
+from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress
 from trajgap.nlp.verify import Subject, Verdict, verify
 from trajgap.problem import (
     ClampedBSpline,

@@ -12,15 +12,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from trajgap.nlp import three_piece
-from trajgap.nlp.certificate import certificate
-from trajgap.nlp.certified import Certified, Outcome, Progress
-from trajgap.nlp.certify import certify, covered
-from trajgap.nlp.exact import ExactProblem, exact_problem
-from trajgap.nlp.incumbent import exact_coefficients, keeps_limits
-from trajgap.nlp.square_polynomials import Poly
-from trajgap.nlp.three_piece import PLACES, STRICT, Row, exact_row
-from trajgap.nlp.three_piece_shape import SHAPES, Shape, shape_of
+from trajgap.nlp.proofs.answer import exact_coefficients, keeps_limits
+from trajgap.nlp.proofs.certifiers import certify, covered
+from trajgap.nlp.proofs.document import certificate
+from trajgap.nlp.proofs.exact import ExactProblem, exact_problem
+from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress
+from trajgap.nlp.proofs.three_piece import rows as three_piece
+from trajgap.nlp.proofs.three_piece.ratios import SHAPES, Shape, shape_of
+from trajgap.nlp.proofs.three_piece.rows import PLACES, STRICT, Row, exact_row
+from trajgap.nlp.proofs.three_piece.square_polynomials import Poly
 from trajgap.nlp.verify import verify
 from trajgap.nlp.verify_problem import read_problem
 from trajgap.problem import (
@@ -31,11 +31,11 @@ from trajgap.problem import (
     piecewise,
     three_five_three,
 )
-from trajgap.problem.declaration import InterpolantBlock, declare
+from trajgap.problem.cases.declaration import InterpolantBlock, declare
 
 from tests.test_certify import dense_best, random_problem
 
-search = import_module("trajgap.nlp.three_piece_search")
+search = import_module("trajgap.nlp.proofs.three_piece.search")
 checker = import_module("trajgap.nlp.verify_three_piece")
 
 CURVE = piecewise((4, 3, 4))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import chisquare
 from trajgap.heuristics import GA, Bounds
-from trajgap.heuristics.genes import (
+from trajgap.heuristics.algorithms.genes import (
     Crossover,
     FitnessRule,
     Genetics,
@@ -17,10 +17,10 @@ from trajgap.heuristics.genes import (
     fitness_values,
     roulette,
 )
-from trajgap.heuristics.population import Population
+from trajgap.heuristics.algorithms.population import Population
 from trajgap.problem import TrajgapError
 
-from .scripted import OPEN, Script
+from tests.scripted import OPEN, Script
 
 X = np.array([[1.0, 1.0], [0.5, 1.5], [1.5, 2.5], [3.0, 1.0]])
 SMALL = GA(population=4, position_range=(0.0, 4.0))

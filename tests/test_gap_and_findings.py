@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from trajgap.compare.finding import (
+from trajgap.compare.audits.finding import (
     RULES,
     Basis,
     ClaimVerdict,
@@ -10,8 +10,8 @@ from trajgap.compare.finding import (
     judge,
     weigh,
 )
-from trajgap.compare.gap import GapKind, Reference, gap
-from trajgap.compare.statistics import settled_at, share_of_pairs, spread
+from trajgap.compare.gaps.optimality_gap import GapKind, Reference, gap
+from trajgap.compare.gaps.statistics import settled_at, share_of_pairs, spread
 from trajgap.nlp import Evidence, solve
 from trajgap.problem import TrajgapError, load_case
 

@@ -6,16 +6,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from trajgap.problem import (
-    Extremum,
-    Problem,
-    evaluate,
-    extrema,
-    fit,
-    peak_gradients,
-)
+from trajgap.problem import Extremum, Problem, evaluate, extrema, fit, peak_gradients
 
-from .samples import DECLARATIONS, FREE, posed
+from tests.samples import DECLARATIONS, FREE, posed
 
 SEEDS = st.integers(0, 10**6)
 

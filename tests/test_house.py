@@ -141,7 +141,7 @@ def test_flow_is_one_way_when_run(folder: str) -> None:
     [
         ("import trajgap.nlp", "trajgap.nlp"),
         ("from trajgap import nlp as n", "trajgap.nlp"),
-        ("from trajgap.nlp.solve import solve", "trajgap.nlp"),
+        ("from trajgap.nlp.optimum.solver import solve", "trajgap.nlp"),
         ("from ..nlp import solve", "trajgap.nlp"),
         ("from .. import nlp", "trajgap.nlp"),
         ("def f():\n    from ..nlp.solve import solve", "trajgap.nlp"),
@@ -162,6 +162,110 @@ def test_flow_check_sees_every_spelling(source: str, target: str) -> None:
 def test_flow_check_raises_no_false_alarm(source: str) -> None:
     found = imports(source, "trajgap.problem")
     assert not any(reaches(found, target) for target in forbidden("problem"))
+
+
+# --- faces ----------------------------------------------------------------------------------------
+
+
+def packages() -> list[str]:
+    return sorted(
+        name.removesuffix(".__init__")
+        for folder in MAY_IMPORT
+        for name, path in source_modules(folder).items()
+        if path.name == "__init__.py"
+    )
+
+
+def around_the_face(name: str, package: str, source: str) -> list[str]:
+    """Imports of ours that reach into another folder past its face."""
+    faults = []
+    houses = set(packages())
+    for node in ast.walk(ast.parse(source)):
+        if not isinstance(node, ast.ImportFrom) or not (
+            node.level or (node.module or "").startswith("trajgap")
+        ):
+            continue
+        base = importlib.util.resolve_name("." * node.level + (node.module or ""), package)
+        # A folder may use its own modules, and those that lie in the folders around it.
+        home = base if base in houses else base.rpartition(".")[0]
+        inside = f"{package}.".startswith(f"{home}.")
+        if base not in houses and not inside:
+            faults.append(f"{name}: {ast.unparse(node)}")
+        if base in houses:
+            modules = [a.name for a in node.names if f"{base}.{a.name}" in all_modules()]
+            if modules and not inside:
+                faults.append(f"{name}: {ast.unparse(node)}")
+            if inside and set(face_names(base)) & {a.name for a in node.names}:
+                faults.append(f"{name}: asks the face of a folder around it: {ast.unparse(node)}")
+    return faults
+
+
+def all_modules() -> set[str]:
+    modules = {name for folder in MAY_IMPORT for name in source_modules(folder)}
+    return modules - {"trajgap.nlp.verify"}  # until the verifiers have a folder of their own
+
+
+def face_names(package: str) -> list[str]:
+    return list(getattr(importlib.import_module(package), "__all__", ()))
+
+
+def test_across_folders_only_faces_are_imported() -> None:
+    faults = []
+    for folder in MAY_IMPORT:
+        for name, path in source_modules(folder).items():
+            package = name if path.name == "__init__.py" else name.rpartition(".")[0]
+            faults += around_the_face(name, package, path.read_text(encoding="utf-8"))
+    assert faults == []
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        "from ...problem.curves.kernel import roots_in_unit",
+        "from trajgap.problem.curves.kernel import roots_in_unit",
+        "from ...problem.curves import kernel",
+        "from ..retiming.path import pieces",
+        "from .. import solve",
+    ],
+)
+def test_the_face_rule_sees(source: str) -> None:
+    assert around_the_face("trajgap.nlp.optimum.x", "trajgap.nlp.optimum", source)
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        "from ...problem import check",
+        "from .starts import settled",
+        "from ..retiming import retime",
+    ],
+)
+def test_the_face_rule_lets_pass(source: str) -> None:
+    assert not around_the_face("trajgap.nlp.optimum.x", "trajgap.nlp.optimum", source)
+
+
+def test_no_module_is_named_like_a_public_function() -> None:
+    functions = {
+        name: package
+        for package in packages()
+        for name in face_names(package)
+        if inspect.isroutine(getattr(importlib.import_module(package), name))
+    }
+    leaves = {name.rpartition(".")[2]: name for name in all_modules()}
+    assert {leaves[name]: functions[name] for name in leaves.keys() & functions} == {}
+
+
+def test_faces_import_nothing_heavy() -> None:
+    program = (
+        "import importlib, sys\n"
+        f"for name in {packages()!r}: importlib.import_module(name)\n"
+        "print('\\n'.join(sys.modules))"
+    )
+    run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert run.returncode == 0, run.stderr
+    loaded = set(run.stdout.split())
+    heavy = {"casadi", "numba", "numpy", "scipy", "pydantic", "matplotlib", "toppra", "typer"}
+    assert loaded & heavy == set()
 
 
 # --- packaging ------------------------------------------------------------------------------------
@@ -192,7 +296,7 @@ def test_every_data_file_is_installed() -> None:
     installed = {
         path
         for name, folder in package_folders().items()
-        for pattern in ["*.py", *patterns.get(name, [])]
+        for pattern in ["*.py", *patterns["*"], *patterns.get(name, [])]
         for path in folder.glob(pattern)
     }
     here = {p for p in tracked_files() if p.relative_to(ROOT).parts[0] in MAY_IMPORT}

@@ -6,8 +6,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from trajgap.heuristics import ImprovedGA
-from trajgap.heuristics.hazards import rate_branches
-from trajgap.heuristics.improved_ga import (
+from trajgap.heuristics.algorithms.improved_ga import (
     THIRD,
     concentration,
     crossover_rate,
@@ -15,10 +14,11 @@ from trajgap.heuristics.improved_ga import (
     rank_chances,
     schedule,
 )
-from trajgap.heuristics.population import Population
+from trajgap.heuristics.algorithms.population import Population
+from trajgap.heuristics.hazards import rate_branches
 from trajgap.problem import TrajgapError
 
-from .scripted import OPEN, Script
+from tests.scripted import OPEN, Script
 
 SMALL = ImprovedGA(population=8, position_range=(0.0, 8.0), iterations=5)
 

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from trajgap.heuristics import WOA, Bounds, ImprovedWOA
-from trajgap.heuristics.improved_woa import inertia_weight
-from trajgap.heuristics.population import Population
+from trajgap.heuristics.algorithms.improved_woa import inertia_weight
+from trajgap.heuristics.algorithms.population import Population
 from trajgap.problem import TrajgapError
 
-from .scripted import OPEN, Script, off_centre
+from tests.scripted import OPEN, Script, off_centre
 
 # At I = 250 of 500, δ = 1 and, with s = 0, w = 0.5.
 HALF = ImprovedWOA(whales=3, position_rule="free")

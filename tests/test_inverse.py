@@ -9,13 +9,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
-from trajgap.problem import inverse
+from trajgap.problem.cases.robot_file import load_robot
 from trajgap.problem.errors import TrajgapError
-from trajgap.problem.inverse import POSE, POSITION, IkStatus, inverse_kinematics
-from trajgap.problem.robot import Chain, Convention, forward_kinematics
-from trajgap.problem.robot_file import load_robot
+from trajgap.problem.robots import inverse
+from trajgap.problem.robots.chain import Chain, Convention, forward_kinematics
+from trajgap.problem.robots.inverse import POSE, POSITION, IkStatus, inverse_kinematics
 
-from .chains import chains, rotation, translation
+from tests.chains import chains, rotation, translation
 
 S, M = Convention.STANDARD, Convention.MODIFIED
 PLANAR = Chain(S, a=[0.7, 0.4], alpha=[0, 0], d=[0, 0], lower=[-3, -3], upper=[3, 3])

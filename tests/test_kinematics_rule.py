@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from trajgap.compare.audit import _GROUPS
-from trajgap.compare.finding import RULES, Basis, ClaimVerdict, Finding, Severity
-from trajgap.compare.rules.kinematics import kinematics
-from trajgap.compare.study import Study
-from trajgap.problem.load import load_case, parse_case
+from trajgap.compare.audits.case_audit import _GROUPS
+from trajgap.compare.audits.finding import RULES, Basis, ClaimVerdict, Finding, Severity
+from trajgap.compare.audits.rules.printed_chain import judge_kinematics
+from trajgap.compare.audits.study import Study
+from trajgap.problem.cases.load import load_case, parse_case
 from trajgap.problem.printed import Printed
 
 ROOT = Path(__file__).parent.parent
@@ -66,7 +66,7 @@ family = "3-5-3"
 
 
 def findings(text: str) -> list[Finding]:
-    return list(kinematics(Study(parse_case(text, "arm.toml"))))
+    return list(judge_kinematics(Study(parse_case(text, "arm.toml"))))
 
 
 def column(values) -> str:
@@ -192,7 +192,7 @@ def test_problems_with_other_way_points_are_judged_apart():
 
 def test_without_positions_there_is_no_finding():
     assert findings(case_text([])) == []
-    assert list(kinematics(Study(load_case("puma560-mnam-pso-353")))) == []
+    assert list(judge_kinematics(Study(load_case("puma560-mnam-pso-353")))) == []
 
 
 def test_without_a_table_it_is_not_checkable():
@@ -251,7 +251,7 @@ def distances(reading: str, convention: str) -> list[float]:
 
 @pytest.fixture(scope="module")
 def palletiser() -> dict[str, Finding]:
-    return {f.reading: f for f in kinematics(Study(load_case("irb460-pso-353")))}
+    return {f.reading: f for f in judge_kinematics(Study(load_case("irb460-pso-353")))}
 
 
 @pytest.mark.parametrize("unit", ["rad", "deg"])
@@ -294,7 +294,7 @@ def test_the_page_prints_these_numbers(palletiser):
 
 def test_the_rule_is_registered_and_documented():
     assert "TG601" in {rule.id for rule in RULES}
-    assert kinematics in _GROUPS
+    assert judge_kinematics in _GROUPS
     assert "| TG601 |" in (ROOT / "docs" / "verdicts.md").read_text(encoding="utf-8")
 
 

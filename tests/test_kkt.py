@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 from trajgap.nlp import Form, Structure, build, kkt, solve, structure_of
-from trajgap.nlp.polish import polish
+from trajgap.nlp.optimum.polish import polish
 from trajgap.problem import (
     Limits,
     Problem,

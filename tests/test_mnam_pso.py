@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from trajgap.heuristics import MNAMPSO, PSO, Bounds
-from trajgap.heuristics.swarm import Swarm
+from trajgap.heuristics.algorithms.swarm import Swarm
 from trajgap.problem import TrajgapError
 
 OPEN = Bounds(np.full(2, -np.inf), np.full(2, np.inf))

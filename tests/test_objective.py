@@ -14,7 +14,7 @@ from trajgap.problem import (
     piecewise,
     three_five_three,
 )
-from trajgap.problem.check import TOLERANCE
+from trajgap.problem.checker import TOLERANCE
 
 WAYPOINTS = np.array([[0.19, -1.63], [0.82, -2.01], [0.13, -1.07], [-0.88, -1.31]])
 LIMITS = Limits([5.0, 3.0], [8.0, 11.0], [np.inf, 90.0])

@@ -25,10 +25,10 @@ from trajgap.problem import (
     fit,
     three_five_three,
 )
-from trajgap.problem.peak import critical_points
+from trajgap.problem.curves.peak import critical_points
 
-from . import exact_route
-from .samples import DECLARATIONS, posed
+from tests import exact_route
+from tests.samples import DECLARATIONS, posed
 
 
 def as_problem(velocity: np.ndarray) -> Problem:

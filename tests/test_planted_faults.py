@@ -14,13 +14,14 @@ from types import ModuleType
 
 import numpy as np
 import pytest
-from trajgap.problem import curve, kernel, peak, spline
+from trajgap.problem.curves import kernel, peak, spline
+from trajgap.problem.curves import kind as curve
 
-from . import test_check, test_peak, test_spline
-from .samples import DECLARATIONS
+from tests import test_check, test_peak, test_spline
+from tests.samples import DECLARATIONS
 
-checker = importlib.import_module("trajgap.problem.check")
-COMPILED = 'numba.njit(cache=True, nogil=True, error_model="numpy")(function)'
+checker = importlib.import_module("trajgap.problem.checker")
+COMPILED = "compiler(*(Path(__file__).with_name(name) for name in KERNELS))"
 
 
 def planted(module: ModuleType, old: str, new: str) -> ModuleType:
@@ -29,9 +30,9 @@ def planted(module: ModuleType, old: str, new: str) -> ModuleType:
     source = Path(module.__file__).read_text(encoding="utf-8")
     assert source.count(old) == 1, f"{old!r} occurs {source.count(old)} times"
     assert (COMPILED in source) == (module is kernel)
-    source = source.replace(old, new).replace(COMPILED, "function")
+    source = source.replace(old, new).replace(COMPILED, "lambda function: function")
     mutant = ModuleType(f"{module.__name__}_planted")
-    mutant.__package__ = "trajgap.problem"
+    mutant.__package__ = module.__package__
     mutant.__file__ = module.__file__
     sys.modules[mutant.__name__] = mutant
     try:

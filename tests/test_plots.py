@@ -11,12 +11,12 @@ import matplotlib
 import numpy as np
 import pytest
 from matplotlib.text import Text
-from trajgap.compare.convergence import convergence, endings
-from trajgap.compare.drawing import THEME, Picture, drawing, embedded, finish, shown, svg
-from trajgap.compare.landscape import landscape, tight_total
-from trajgap.compare.plots import beyond, curves
-from trajgap.compare.waterfall import Step, Waterfall
-from trajgap.compare.waterfall_picture import seconds, waterfall_picture
+from trajgap.compare.audits.waterfall import Step, Waterfall
+from trajgap.compare.pictures.drawing import THEME, Picture, drawing, embedded, finish, shown, svg
+from trajgap.compare.pictures.motion import beyond, motion_picture
+from trajgap.compare.pictures.searches import convergence, endings
+from trajgap.compare.pictures.totals_map import landscape, tight_total
+from trajgap.compare.pictures.waterfall import seconds, waterfall_picture
 from trajgap.heuristics import PSO, JointRuns, Run, run, run_per_joint
 from trajgap.nlp import Evidence, Solution, Status, solve
 from trajgap.problem import (
@@ -29,7 +29,7 @@ from trajgap.problem import (
     quintic_spline,
     three_five_three,
 )
-from trajgap.problem.uniform import TimedUniformBSpline
+from trajgap.problem.curves.uniform import TimedUniformBSpline
 
 
 @pytest.mark.parametrize("order", [1, 2])
@@ -53,7 +53,7 @@ def test_a_curve_with_a_clock_is_drawn_and_marked_in_time(order: int) -> None:
     marked = ((times[:, None] > ends[:, 0]) & (times[:, None] < ends[:, 1])).any(axis=1)
     near = (np.abs(times[:, None] - ends.ravel()) < 1e-6).any(axis=1)
     assert (over == marked)[~near].all()
-    picture = curves(problem, h, title="clock")
+    picture = motion_picture(problem, h, title="clock")
     assert "clock" in svg(picture)
 
 
@@ -113,8 +113,10 @@ def pictures(
     jerk = replace(problem, limits=Limits([3.0, 5.0], [9.0, 14.0], [80.0, 200.0]))
     ends = {name: np.array([r.durations for r in many]) for name, many in runs.items()}
     return {
-        "curves": curves(problem, DURATIONS, title="Motion", check=check(problem, DURATIONS)),
-        "jerk": curves(jerk, DURATIONS, title="Motion with jerk", note="a note"),
+        "curves": motion_picture(
+            problem, DURATIONS, title="Motion", check=check(problem, DURATIONS)
+        ),
+        "jerk": motion_picture(jerk, DURATIONS, title="Motion with jerk", note="a note"),
         "waterfall": waterfall_picture(fall(*STEPS), title="Where the time goes"),
         "convergence": convergence(
             runs, total, {"a": 1.1 * total, "b": 0.99 * total}, title="Runs"
@@ -154,7 +156,7 @@ def test_the_same_picture_gives_the_same_bytes(pictures: dict[str, Picture], nam
 def test_a_picture_does_not_depend_on_the_users_settings_or_on_earlier_pictures(
     problem: Problem,
 ) -> None:
-    plain = svg(curves(problem, DURATIONS, title="Motion"))
+    plain = svg(motion_picture(problem, DURATIONS, title="Motion"))
     settings = {
         "font.size": 20,
         "font.family": ["serif"],
@@ -162,8 +164,8 @@ def test_a_picture_does_not_depend_on_the_users_settings_or_on_earlier_pictures(
         "svg.hashsalt": "b",
     }
     with matplotlib.rc_context(settings):
-        svg(curves(problem, 2 * DURATIONS, title="Another"))
-        assert svg(curves(problem, DURATIONS, title="Motion")) == plain
+        svg(motion_picture(problem, 2 * DURATIONS, title="Another"))
+        assert svg(motion_picture(problem, DURATIONS, title="Motion")) == plain
         assert matplotlib.rcParams["font.size"] == 20
 
 
@@ -177,8 +179,8 @@ def test_no_date_no_library_version_and_no_address_to_fetch(pictures: dict[str, 
 
 
 def test_pyplot_is_never_loaded() -> None:
-    modules = ["drawing", "plots", "landscape", "convergence", "waterfall_picture"]
-    program = "import sys\n" + "".join(f"import trajgap.compare.{m}\n" for m in modules)
+    modules = ["drawing", "motion", "totals_map", "searches", "waterfall"]
+    program = "import sys\n" + "".join(f"import trajgap.compare.pictures.{m}\n" for m in modules)
     program += "sys.exit('matplotlib.pyplot' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", program], check=False).returncode == 0
 
@@ -217,7 +219,7 @@ def test_embedding_gives_own_ids_and_colours_of_the_page(pictures: dict[str, Pic
 
 def test_text_of_case_files_is_drawn_as_it_stands_and_cannot_break_out(problem: Problem) -> None:
     hostile = replace(problem, joints=(HOSTILE, "_b"))
-    picture = curves(hostile, DURATIONS, title=HOSTILE, note=HOSTILE)
+    picture = motion_picture(hostile, DURATIONS, title=HOSTILE, note=HOSTILE)
     document = svg(picture)
     root = ElementTree.fromstring(document)
     assert "script" not in {e.tag.removeprefix(SVG) for e in root.iter()}
@@ -321,7 +323,7 @@ def test_what_keeps_its_limit_exactly_is_not_red(problem: Problem) -> None:
 
 def test_each_joint_may_have_durations_of_its_own(problem: Problem) -> None:
     own = np.array([[0.7, 0.5, 0.6], [0.9, 0.8, 1.0]])
-    picture = curves(problem, own, title="Joints")
+    picture = motion_picture(problem, own, title="Joints")
     panels = np.array(picture.axes).reshape(2, 3)
     for j in range(2):
         (points,) = [a for a in panels[j, 0].lines if a.get_marker() == "o"]
@@ -331,12 +333,12 @@ def test_each_joint_may_have_durations_of_its_own(problem: Problem) -> None:
 def test_curves_refuse_durations_of_another_shape(problem: Problem) -> None:
     message = r"curves: expected durations of shape \(3,\) or \(2, 3\), got \(3, 2\)"
     with pytest.raises(TrajgapError, match=message):
-        curves(problem, np.ones((3, 2)), title="Motion")
+        motion_picture(problem, np.ones((3, 2)), title="Motion")
 
 
 def test_a_limit_far_away_does_not_flatten_the_curve(problem: Problem) -> None:
     far = replace(problem, limits=Limits([300.0, 5.0], [9.0, 14.0]))
-    axes = curves(far, DURATIONS, title="Motion").axes[1]
+    axes = motion_picture(far, DURATIONS, title="Motion").axes[1]
     assert max(np.abs(axes.get_ylim())) < 30
     assert "% of ±300" in axes.get_title(loc="right")
 

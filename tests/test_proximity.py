@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from trajgap.problem.cases.robot_file import load_robot
 from trajgap.problem.errors import TrajgapError
-from trajgap.problem.proximity import proximity
-from trajgap.problem.robot import Chain, Convention, forward_kinematics
-from trajgap.problem.robot_file import load_robot
+from trajgap.problem.robots.chain import Chain, Convention, forward_kinematics
+from trajgap.problem.robots.nearness import proximity
 
-from .chains import chains
+from tests.chains import chains
 
 PLANAR = Chain(Convention.STANDARD, a=[0.7, 0.4], alpha=[0, 0], d=[0, 0])
 NAN = np.nan
@@ -94,7 +94,7 @@ def test_radial_compares_distances_from_the_base_alone():
 
 
 def test_many_free_joints_end_with_a_valid_bound(monkeypatch):
-    module = importlib.import_module("trajgap.problem.proximity")
+    module = importlib.import_module("trajgap.problem.robots.nearness")
     monkeypatch.setattr(module, "_MOST_BOXES", 2000)
     chain = load_robot("puma560")
     found = proximity(chain, [2.5, 0, 0], np.full(6, NAN))

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from trajgap.heuristics import PSO, Bounds
-from trajgap.heuristics.swarm import Swarm
+from trajgap.heuristics.algorithms.swarm import Swarm
 
 OPEN = Bounds(np.full(2, -np.inf), np.full(2, np.inf))
 FREE = PSO(particles=2, inertia=0.5, velocity_rule="free", position_rule="free")

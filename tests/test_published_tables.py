@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 from trajgap.heuristics import from_settings
 from trajgap.problem import CaseError, jtraj, quintic_spline, uniform_cubic_b_spline
-from trajgap.problem.claim import ConditionsClaim, DurationsClaim, MaximumClaim
-from trajgap.problem.load import load_case, parse_case, published_ids
+from trajgap.problem.cases.claim import ConditionsClaim, DurationsClaim, MaximumClaim
+from trajgap.problem.cases.load import load_case, parse_case, published_ids
 from trajgap.problem.printed import Printed
 
 TABLES = Path(__file__).parent / "published_tables"

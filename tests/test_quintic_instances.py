@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from trajgap.nlp import Status, random_starts, solve
-from trajgap.nlp.starts import SETTLED_SEGMENTS, equal_start, settled
+from trajgap.nlp.optimum.starts import SETTLED_SEGMENTS, equal_start, settled
 from trajgap.problem import (
     Limits,
     Problem,

@@ -12,26 +12,26 @@ from typing import Any
 import numpy as np
 import pytest
 from rich.console import Console
-from trajgap.compare.audit import AuditReport, CaseAudit
-from trajgap.compare.cli_summary import audited
-from trajgap.compare.documents import audit_document
-from trajgap.compare.finding import ClaimVerdict, Judgement, Scope
-from trajgap.compare.gap import GapKind
-from trajgap.compare.reading_words import answers, holding, segments
-from trajgap.compare.readings import Excess, Keeping, ReadingsSummary, readings_summary
-from trajgap.compare.report_blocks import Page
-from trajgap.compare.report_markdown import markdown
-from trajgap.compare.report_readings import side_by_side
-from trajgap.compare.rules.continuous import continuous
-from trajgap.compare.study import Study
-from trajgap.compare.waterfall import Waterfall
+from trajgap.compare.audits.case_audit import AuditReport, CaseAudit
+from trajgap.compare.audits.finding import ClaimVerdict, Judgement, Scope
+from trajgap.compare.audits.reading_words import answers, holding, segments
+from trajgap.compare.audits.readings import Excess, Keeping, ReadingsSummary, readings_summary
+from trajgap.compare.audits.rules.continuous_time import judge_motions
+from trajgap.compare.audits.study import Study
+from trajgap.compare.audits.waterfall import Waterfall
+from trajgap.compare.cli.summary import audited
+from trajgap.compare.documents.results import audit_document
+from trajgap.compare.gaps.optimality_gap import GapKind
+from trajgap.compare.pages.blocks import Page
+from trajgap.compare.pages.markdown_text import markdown
+from trajgap.compare.pages.readings import side_by_side
 from trajgap.nlp import Evidence
 from trajgap.problem import Case, evaluate, fit, load_case, parse_case
 
-from .test_curve_rules import polish as changed
-from .test_curve_rules import shipped
-from .test_documents import assert_reasons, assert_valid
-from .test_fair_verdicts import HEAD, UNITS
+from tests.test_curve_rules import polish as changed
+from tests.test_curve_rules import shipped
+from tests.test_documents import assert_reasons, assert_valid
+from tests.test_fair_verdicts import HEAD, UNITS
 
 POLISH, WHALE, PALLET = "irb1600-ga-cubic-bspline", "z1-woa-bspline", "irb460-pso-353"
 
@@ -235,7 +235,7 @@ total = "6.81\""""
     (outcome,) = summary_of(laid_out(study, {"nine-segments": "after"})).outcomes
     assert outcome.keeping is Keeping.UNDECIDED
     assert (outcome.excesses, outcome.stretch) == ((), None)
-    found = [f for f in continuous(study) if f.claim == "after"]
+    found = [f for f in judge_motions(study) if f.claim == "after"]
     assert "the printed durations define no curve" in found[0].message
 
 

@@ -12,13 +12,13 @@ from pathlib import Path
 
 import pytest
 from trajgap.compare import AuditReport, audit, write_report
-from trajgap.compare.finding import Basis
-from trajgap.compare.readings import Keeping
-from trajgap.compare.report import MARK, case_page
-from trajgap.compare.report_blocks import Cell, Drawn, Grid, Page, Prose, Section, Terms, slug
-from trajgap.compare.report_markdown import markdown, plain
+from trajgap.compare.audits.finding import Basis
+from trajgap.compare.audits.readings import Keeping
+from trajgap.compare.pages.blocks import Cell, Drawn, Grid, Page, Prose, Section, Terms, slug
+from trajgap.compare.pages.markdown_text import markdown, plain
+from trajgap.compare.pages.writer import MARK, case_page
 from trajgap.problem import Case, TrajgapError
-from trajgap.problem.load import check_case
+from trajgap.problem.cases.load import check_case
 
 ID = "irb460-pso-353"
 SCRIPT = "<script>alert(1)</script>"

@@ -3,13 +3,13 @@
 import re
 from dataclasses import replace
 
-from trajgap.compare.audit import CaseAudit, audit
-from trajgap.compare.report import _TEMPLATES, _environment, case_page
-from trajgap.compare.report_blocks import Cell, Grid, Page, Prose, Section
-from trajgap.compare.report_markdown import markdown
-from trajgap.compare.report_numbers import where_time_goes
-from trajgap.compare.study import Study
-from trajgap.compare.waterfall import Step, Waterfall
+from trajgap.compare.audits.case_audit import CaseAudit, audit
+from trajgap.compare.audits.study import Study
+from trajgap.compare.audits.waterfall import Step, Waterfall
+from trajgap.compare.pages.blocks import Cell, Grid, Page, Prose, Section
+from trajgap.compare.pages.markdown_text import markdown
+from trajgap.compare.pages.numbers import where_time_goes
+from trajgap.compare.pages.writer import _TEMPLATES, _environment, case_page
 from trajgap.nlp import Evidence
 from trajgap.problem import load_case
 

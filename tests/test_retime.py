@@ -15,10 +15,10 @@ from toppra.constraint import (
     JointVelocityConstraint,
 )
 from trajgap.nlp import solve
-from trajgap.nlp.path import pieces
-from trajgap.nlp.path_grid import measure, sample
-from trajgap.nlp.path_nlp import path_nlp_duration
-from trajgap.nlp.retime import Retiming, extrapolate, retime, retime_joints
+from trajgap.nlp.retiming.grid import measure, sample
+from trajgap.nlp.retiming.path import pieces
+from trajgap.nlp.retiming.path_nlp import path_nlp_duration
+from trajgap.nlp.retiming.toppra_check import Retiming, extrapolate, retime, retime_joints
 from trajgap.problem import (
     Interpolant,
     Limits,
@@ -35,7 +35,7 @@ from trajgap.problem import (
     rest_to_rest,
     three_five_three,
 )
-from trajgap.problem.spline import trajectory_from_scaled
+from trajgap.problem.curves.spline import trajectory_from_scaled
 
 Array = NDArray[np.float64]
 

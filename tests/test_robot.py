@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from trajgap.problem.cases.robot_file import load_robot
 from trajgap.problem.errors import TrajgapError
-from trajgap.problem.robot import (
+from trajgap.problem.robots.chain import (
     Chain,
     Convention,
     JointKind,
@@ -18,9 +19,8 @@ from trajgap.problem.robot import (
     geometric_jacobian,
     link_frames,
 )
-from trajgap.problem.robot_file import load_robot
 
-from .chains import chains, elementary, rotation, translation
+from tests.chains import chains, elementary, rotation, translation
 
 S, M = Convention.STANDARD, Convention.MODIFIED
 

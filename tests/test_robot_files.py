@@ -15,13 +15,13 @@ from pathlib import Path
 import jsonschema
 import numpy as np
 import pytest
-from trajgap.problem.dh import DhTable, PiMultiple, read_angle
+from trajgap.problem.cases.load import load_case, parse_case
+from trajgap.problem.cases.robot_file import load_robot, parse_robot, robot_file, robot_ids
+from trajgap.problem.cases.schema import case_schema
 from trajgap.problem.errors import CaseError, TrajgapError
-from trajgap.problem.load import load_case, parse_case
 from trajgap.problem.printed import Printed
-from trajgap.problem.robot import Convention, JointKind, forward_kinematics
-from trajgap.problem.robot_file import load_robot, parse_robot, robot_file, robot_ids
-from trajgap.problem.schema import case_schema
+from trajgap.problem.robots.chain import Convention, JointKind, forward_kinematics
+from trajgap.problem.robots.dh import DhTable, PiMultiple, read_angle
 
 HERE = Path(__file__).parent
 ROBOTS = HERE.parent / "problem" / "robots"

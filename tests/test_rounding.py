@@ -11,9 +11,17 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from trajgap.compare.rounding import Box, Place, Point, Rounding, RoundingVerdict, judge_rounding
-from trajgap.nlp import box_bound, interval
-from trajgap.nlp.interval import Ball, enclose_spline
+from trajgap.compare.audits.rounding import (
+    Box,
+    Place,
+    Point,
+    Rounding,
+    RoundingVerdict,
+    judge_rounding,
+)
+from trajgap.nlp.enclosure import balls as interval
+from trajgap.nlp.enclosure import box_bound
+from trajgap.nlp.enclosure.balls import Ball, enclose_spline
 from trajgap.problem import (
     Interpolant,
     Limits,
@@ -29,8 +37,8 @@ from trajgap.problem import (
     rest_to_rest,
     three_five_three,
 )
-from trajgap.problem.interpolant import RowKind
-from trajgap.problem.load import load_case
+from trajgap.problem.cases.load import load_case
+from trajgap.problem.curves.interpolant import RowKind
 
 MOVING_ENDS = piecewise((4, 3, 4), 2, ((1, 0.3), (2, -0.7)))
 

@@ -5,16 +5,16 @@ from __future__ import annotations
 from importlib.resources import files
 
 import pytest
-from trajgap.compare.audit import audit
-from trajgap.compare.finding import ClaimVerdict, Finding, Severity
-from trajgap.compare.rules.continuous import continuous
-from trajgap.compare.rules.count import conditions, count
-from trajgap.compare.rules.digits import digits
-from trajgap.compare.rules.optimum import optimum
-from trajgap.compare.rules.replay import replay
-from trajgap.compare.rules.scaling import scaling
-from trajgap.compare.rules.text import text
-from trajgap.compare.study import Study
+from trajgap.compare.audits.case_audit import audit
+from trajgap.compare.audits.finding import ClaimVerdict, Finding, Severity
+from trajgap.compare.audits.rules.condition_count import conditions, judge_counts
+from trajgap.compare.audits.rules.continuous_time import judge_motions
+from trajgap.compare.audits.rules.distances import judge_distances
+from trajgap.compare.audits.rules.open_points import list_open_points
+from trajgap.compare.audits.rules.printed_digits import judge_digits
+from trajgap.compare.audits.rules.replays import judge_replays
+from trajgap.compare.audits.rules.scaling_law import judge_scaling
+from trajgap.compare.audits.study import Study
 from trajgap.nlp import Evidence
 from trajgap.problem import TrajgapError, load_case, parse_case
 
@@ -36,14 +36,14 @@ def of(findings, rule: str, claim: str | None = None) -> list[Finding]:
 
 def test_shipped_sums_maxima_and_percentages_hold() -> None:
     for rule in ("TG101", "TG102"):
-        found = of(digits(changed(PUMA)), rule)
+        found = of(judge_digits(changed(PUMA)), rule)
         assert found
         assert {f.verdict for f in found} == {ClaimVerdict.SUPPORTED}
 
 
 def test_a_total_beyond_the_rounding_of_its_parts_is_refuted() -> None:
     study = changed(PUMA, ('total = "3.298"', 'total = "3.301"'))
-    (found,) = of(digits(study), "TG101", "mnam-joint-1")
+    (found,) = of(judge_digits(study), "TG101", "mnam-joint-1")
     assert found.verdict is ClaimVerdict.REFUTED
     assert found.severity is Severity.ERROR
 
@@ -55,7 +55,7 @@ def test_a_total_that_fits_only_cut_off_digits_says_so() -> None:
             'durations = ["0.739", "0.822", "0.467"]\ntotal = "2.031"',
         )
     ]
-    (found,) = of(digits(changed(PUMA, *swaps)), "TG101", "mnam-joint-5")
+    (found,) = of(judge_digits(changed(PUMA, *swaps)), "TG101", "mnam-joint-5")
     assert found.verdict is ClaimVerdict.SUPPORTED
     assert found.severity is Severity.WARNING
     assert "cut off" in found.message
@@ -65,7 +65,7 @@ def test_a_longest_duration_that_no_row_has_is_refuted() -> None:
     study = changed(
         PUMA, ('durations = ["1.044", "1.258", "1.225"]', 'durations = ["1.047", "1.258", "1.225"]')
     )
-    assert {f.verdict for f in of(digits(study), "TG102")} == {ClaimVerdict.REFUTED}
+    assert {f.verdict for f in of(judge_digits(study), "TG102")} == {ClaimVerdict.REFUTED}
 
 
 @pytest.mark.parametrize(
@@ -78,11 +78,11 @@ def test_a_longest_duration_that_no_row_has_is_refuted() -> None:
 )
 def test_a_percentage_is_compared_as_an_interval(percent: str, verdict: ClaimVerdict) -> None:
     study = changed(PUMA, ('percent = "10.9"', f'percent = "{percent}"'))
-    assert verdict in {f.verdict for f in of(digits(study), "TG103", "improvement")}
+    assert verdict in {f.verdict for f in of(judge_digits(study), "TG103", "improvement")}
 
 
 def test_tables_printed_alike_are_found_and_one_other_digit_clears_them() -> None:
-    (found,) = of(digits(changed(PUMA)), "TG104")
+    (found,) = of(judge_digits(changed(PUMA)), "TG104")
     assert found.verdict is ClaimVerdict.INCONSISTENT
     assert "28" in found.message
     source = ('id = "pso-joint-5"', 'id = "pso-joint-5"')
@@ -91,23 +91,23 @@ def test_tables_printed_alike_are_found_and_one_other_digit_clears_them() -> Non
     assert len(claims) == 7
     first = 'table = "table-2"\ndurations = ["0.739", "0.822", "0.467"]'
     other = 'table = "table-2"\ndurations = ["0.739", "0.822", "0.468"]'
-    assert not of(digits(changed(PUMA, (first, other))), "TG104")
+    assert not of(judge_digits(changed(PUMA, (first, other))), "TG104")
 
 
 def test_two_totals_of_one_run_must_agree() -> None:
-    (found,) = of(digits(changed(PUMA)), "TG105", "pso-total")
+    (found,) = of(judge_digits(changed(PUMA)), "TG105", "pso-total")
     assert found.verdict is ClaimVerdict.INCONSISTENT
     study = changed(PUMA, ('value = "3.961"', 'value = "3.53"'))
-    (found,) = of(digits(study), "TG105", "pso-total")
+    (found,) = of(judge_digits(study), "TG105", "pso-total")
     assert found.verdict is ClaimVerdict.SUPPORTED
 
 
 def test_digits_that_stand_in_an_unrelated_column_are_mentioned_and_decide_nothing() -> None:
-    (found,) = of(digits(changed(IRB)), "TG106")
+    (found,) = of(judge_digits(changed(IRB)), "TG106")
     assert found.printed == "-1.0392, -0.5196"
     assert not found.decides
     assert not of(
-        digits(changed(IRB, ('values = ["-1.0392", 0, 0]', 'values = ["-1.0391", 0, 0]'))),
+        judge_digits(changed(IRB, ('values = ["-1.0392", 0, 0]', 'values = ["-1.0391", 0, 0]'))),
         "TG106",
     )
 
@@ -117,7 +117,7 @@ def test_eighteen_conditions_do_not_fit_fourteen_coefficients() -> None:
     claims = {c.id: c for c in study.case.claims}
     assert conditions(claims["rest-at-all-points"]) == 18
     assert conditions(claims["conditions-14"]) == 14
-    found = {f.claim: f.verdict for f in count(study)}
+    found = {f.claim: f.verdict for f in judge_counts(study)}
     assert found["rest-at-all-points"] is ClaimVerdict.REFUTED
     assert found["conditions-14"] is ClaimVerdict.SUPPORTED
     quintics = changed(
@@ -127,21 +127,23 @@ def test_eighteen_conditions_do_not_fit_fourteen_coefficients() -> None:
             'rest_at = "all"\norders = [1, 2]\ndegrees = [5, 5, 5]',
         ),
     )
-    found = {f.claim: f.verdict for f in count(quintics)}
+    found = {f.claim: f.verdict for f in judge_counts(quintics)}
     assert found["rest-at-all-points"] is ClaimVerdict.SUPPORTED
     miscounted = changed(IRB, ('count = "14"', 'count = "16"'))
-    assert {f.claim: f.verdict for f in count(miscounted)}["conditions-14"] is ClaimVerdict.REFUTED
+    assert {f.claim: f.verdict for f in judge_counts(miscounted)}[
+        "conditions-14"
+    ] is ClaimVerdict.REFUTED
 
 
 def test_the_table_of_the_puma_paper_is_reproduced_and_never_broken() -> None:
-    found = of(continuous(changed(PUMA)), "TG201")
+    found = of(judge_motions(changed(PUMA)), "TG201")
     assert {f.verdict for f in found} == {ClaimVerdict.SUPPORTED}
-    tight = {f.claim for f in of(continuous(changed(PUMA)), "TG204")}
+    tight = {f.claim for f in of(judge_motions(changed(PUMA)), "TG204")}
     assert {f"mnam-joint-{j}" for j in (1, 3, 4, 5, 6)} <= tight
 
 
 def test_only_an_enclosure_breaks_and_only_under_its_reading() -> None:
-    found = of(continuous(changed(IRB)), "TG201", "durations-110")
+    found = of(judge_motions(changed(IRB)), "TG201", "durations-110")
     verdicts = {f.reading: f.verdict for f in found}
     assert verdicts["waypoints-rad"] is ClaimVerdict.REFUTED
     assert verdicts["waypoints-deg"] is ClaimVerdict.SUPPORTED
@@ -161,12 +163,12 @@ value = "{}"
 """
     for value, verdict in (("119", ClaimVerdict.SUPPORTED), ("110", ClaimVerdict.INCONSISTENT)):
         study = changed(IRB, tail=claim.format(value))
-        found = {f.reading: f.verdict for f in of(continuous(study), "TG203")}
+        found = {f.reading: f.verdict for f in of(judge_motions(study), "TG203")}
         assert found["waypoints-rad"] is verdict
 
 
 def test_the_scaling_law_needs_no_solver_and_no_reading() -> None:
-    found = of(scaling(changed(IRB)), "TG301", "time-optimal")
+    found = of(judge_scaling(changed(IRB)), "TG301", "time-optimal")
     assert {f.reading for f in found} == {"waypoints-rad", "waypoints-deg"}
     assert {f.verdict for f in found} == {ClaimVerdict.REFUTED}
     consistent = changed(
@@ -176,21 +178,21 @@ def test_the_scaling_law_needs_no_solver_and_no_reading() -> None:
             'durations = ["0.46873", "0.42604", "0.46451"]',
         ),
     )
-    assert not of(scaling(consistent), "TG301")
+    assert not of(judge_scaling(consistent), "TG301")
 
 
 def test_the_scaling_law_is_not_used_where_a_duration_bound_or_acceleration_limit_holds() -> None:
-    assert not list(scaling(changed(IRB, ("lower = 0\n", "lower = 0.1\n"))))
+    assert not list(judge_scaling(changed(IRB, ("lower = 0\n", "lower = 0.1\n"))))
     bounded = changed(
         IRB,
         ("velocity = 80 }", "velocity = 80, acceleration = 900 }"),
         ('velocity = "deg/s"\ntime', 'velocity = "deg/s"\nacceleration = "deg/s^2"\ntime'),
     )
-    assert not list(scaling(bounded))
+    assert not list(judge_scaling(bounded))
 
 
 def test_optimal_is_refuted_by_a_shorter_checked_motion_and_supported_by_its_digits() -> None:
-    found = {f.reading: f for f in of(optimum(changed(IRB)), "TG302", "time-optimal")}
+    found = {f.reading: f for f in of(judge_distances(changed(IRB)), "TG302", "time-optimal")}
     assert found["waypoints-rad"].verdict is ClaimVerdict.REFUTED
     assert found["waypoints-rad"].evidence is Evidence.NONE, "a shorter motion needs no optimum"
     optimal = changed(
@@ -204,14 +206,14 @@ def test_optimal_is_refuted_by_a_shorter_checked_motion_and_supported_by_its_dig
             'durations = ["0.4656", "0.4838", "0.3724"]',
         ),
     )
-    found = {f.reading: f for f in of(optimum(optimal), "TG302", "time-optimal")}
+    found = {f.reading: f for f in of(judge_distances(optimal), "TG302", "time-optimal")}
     assert found["waypoints-rad"].verdict is ClaimVerdict.SUPPORTED
     assert found["waypoints-rad"].evidence is Evidence.CERTIFIED
 
 
 def test_a_claim_stands_beside_its_own_optimum_the_shared_one_and_the_procedure() -> None:
     study = changed(PUMA)
-    found = [f for f in optimum(study) if f.reading == "durations-at-least-0.3"]
+    found = [f for f in judge_distances(study) if f.reading == "durations-at-least-0.3"]
     (shared,) = of(found, "TG303", "mnam-longest")
     assert shared.gap is not None
     assert shared.gap.lowest == pytest.approx(3.5275 / shared.gap.reference.upper - 1, rel=1e-6)
@@ -223,7 +225,7 @@ def test_a_claim_stands_beside_its_own_optimum_the_shared_one_and_the_procedure(
 
 def test_a_total_below_the_best_known_one_is_a_warning_and_refutes_nothing() -> None:
     study = changed(PUMA, ('value = "3.528"', 'value = "3.1"'))
-    found = of(optimum(study), "TG303", "mnam-total")
+    found = of(judge_distances(study), "TG303", "mnam-total")
     assert {f.severity for f in found} == {Severity.WARNING}
     assert all(f.gap.highest < 0 for f in found)
     assert not any(f.verdict is ClaimVerdict.REFUTED for f in found)
@@ -237,14 +239,14 @@ def test_a_total_below_the_optimum_needs_no_warning_where_limits_are_broken() ->
             'durations = ["0.861", "1.258", "1.078"]\ntotal = "3.198"',
         ),
     )
-    found = of(optimum(study), "TG302", "mnam-joint-1")
+    found = of(judge_distances(study), "TG302", "mnam-joint-1")
     assert {f.severity for f in found} == {Severity.INFO}
     assert all(f.gap.highest < 0 for f in found)
     assert all("these durations do not" in f.message for f in found)
 
 
 def test_replays_never_refute() -> None:
-    found = list(replay(changed(IRB)))
+    found = list(judge_replays(changed(IRB)))
     assert {f.rule for f in found} == {"TG402", "TG403"}
     assert ClaimVerdict.REFUTED not in {f.verdict for f in found}
     assert Severity.ERROR not in {f.severity for f in found}
@@ -252,20 +254,20 @@ def test_replays_never_refute() -> None:
 
 def test_an_algorithm_of_unknown_kind_is_not_replayed() -> None:
     study = changed(IRB, ('kind = "constrained-pso"', 'kind = "firefly"'))
-    found = list(replay(study))
+    found = list(judge_replays(study))
     assert found
     assert all("not implemented" in f.message for f in found if f.rule == "TG402")
 
 
 def test_what_the_extraction_damaged_is_listed_and_never_refuted() -> None:
     for case in (PUMA, IRB):
-        found = list(text(changed(case)))
+        found = list(list_open_points(changed(case)))
         assert {f.verdict for f in found} == {ClaimVerdict.NOT_CHECKABLE}
         assert len(found) >= len(load_case(case).not_checkable)
 
 
 def test_no_error_rests_on_the_plain_check() -> None:
-    from trajgap.compare.finding import Basis
+    from trajgap.compare.audits.finding import Basis
 
     for case in (PUMA, IRB):
         report = audit(case, seeds=4)

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from trajgap.problem.cases.load import parse_case
+from trajgap.problem.cases.scaffolding import scaffold
 from trajgap.problem.errors import CaseError
-from trajgap.problem.load import parse_case
-from trajgap.problem.scaffold import scaffold
 
 RAD = {"position": "rad", "velocity": "rad/s", "acceleration": "rad/s^2"}
 

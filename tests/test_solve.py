@@ -16,7 +16,7 @@ from trajgap.problem import (
     three_five_three,
 )
 
-from . import second_route
+from tests import second_route
 
 PUMA = "puma560-mnam-pso-353"
 

@@ -23,7 +23,7 @@ from trajgap.problem import (
     rest_to_rest,
     three_five_three,
 )
-from trajgap.problem.spline import (
+from trajgap.problem.curves.spline import (
     batch_peaks,
     coefficient_gradient,
     coefficients,
@@ -31,8 +31,8 @@ from trajgap.problem.spline import (
     refined_coefficients,
 )
 
-from . import exact_route
-from .samples import DECLARATIONS, FREE, posed
+from tests import exact_route
+from tests.samples import DECLARATIONS, FREE, posed
 
 BREAKS = (0.0, 0.7, 1.2, 2.6, 2.9, 4.4, 5.1, 6.7)
 
@@ -294,7 +294,7 @@ def test_singular_durations_never_give_a_quiet_answer() -> None:
 
 
 def test_singular_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
-    from trajgap.problem import spline
+    from trajgap.problem.curves import spline
 
     def leave_nan(*arguments: object) -> None:
         arguments[-1][:] = np.nan  # type: ignore[index]

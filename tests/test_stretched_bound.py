@@ -7,14 +7,14 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from trajgap.nlp.certificate import certificate
-from trajgap.nlp.certified import Outcome
-from trajgap.nlp.certify import certify
-from trajgap.nlp.exact import exact_problem
-from trajgap.nlp.incumbent import keeps_limits, uniform_coefficients
+from trajgap.nlp.proofs.answer import keeps_limits, uniform_coefficients
+from trajgap.nlp.proofs.certifiers import certify
+from trajgap.nlp.proofs.document import certificate
+from trajgap.nlp.proofs.exact import exact_problem
+from trajgap.nlp.proofs.outcome import Outcome
 from trajgap.nlp.verify import verify
 from trajgap.nlp.verify_stretched import _pieces
-from trajgap.problem import Limits, Problem, closed_form, fit, uniform_cubic_b_spline
+from trajgap.problem import Limits, Problem, fit, solve_in_closed_form, uniform_cubic_b_spline
 
 
 def random_problem(seed: int) -> Problem:
@@ -35,7 +35,9 @@ def test_the_interval_holds_the_closed_form(seed: int) -> None:
     found = certify(problem)
     assert found.outcome is Outcome.CERTIFIED
     assert found.gap < 1e-11
-    durations = closed_form(problem.interpolant, problem.waypoints, problem.limits.derivatives)
+    durations = solve_in_closed_form(
+        problem.interpolant, problem.waypoints, problem.limits.derivatives
+    )
     best = float(np.maximum(durations, problem.duration_lower).sum())
     assert float(found.lower) <= best * (1 + 1e-12)
     assert found.upper is not None
@@ -73,7 +75,7 @@ def test_the_curve_is_the_same_by_three_routes() -> None:
 def test_a_segment_that_is_too_short_is_proved_infeasible() -> None:
     q = np.array([[0.0], [1.0], [0.5]])
     curve = uniform_cubic_b_spline(3, "stretched")
-    needs = closed_form(curve, q, [[1.0, np.inf, np.inf]])
+    needs = solve_in_closed_form(curve, q, [[1.0, np.inf, np.inf]])
     problem = Problem(q, Limits(1.0), curve, 0.0, [needs[0] * (1 - 1e-9), 9.0])
     found = certify(problem)
     assert found.outcome is Outcome.INFEASIBLE

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from trajgap.heuristics import DeathPenalty, ImprovedWOA
+from trajgap.heuristics.algorithms.tent import exact_orbit, orbit, tent
 from trajgap.heuristics.hazards import tent_collapse
-from trajgap.heuristics.tent import exact_orbit, orbit, tent
 from trajgap.problem import Limits, Problem, TrajgapError, quintic_spline
 
 

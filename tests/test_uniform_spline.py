@@ -20,17 +20,17 @@ from trajgap.problem import (
     TrajgapError,
     Verdict,
     check,
-    closed_form,
     control_vertices,
     evaluate,
     extrema,
     fit,
     load_case,
     peak_gradients,
+    solve_in_closed_form,
     uniform_cubic_b_spline,
 )
-from trajgap.problem.stretched import segment_peaks
-from trajgap.problem.uniform import clock_matrix, shape_matrix, vertex_matrix
+from trajgap.problem.curves.stretched import segment_peaks
+from trajgap.problem.curves.uniform import clock_matrix, shape_matrix, vertex_matrix
 
 POLISH = "irb1600-ga-cubic-bspline"
 TIMES = tuple(Timing)
@@ -267,7 +267,7 @@ def test_closed_form_from_dense_samples() -> None:
     np.testing.assert_allclose(peaks, exact, rtol=1e-7)
     ratios = peaks / problem.limits.derivatives
     expected = (ratios ** (1 / np.arange(1, 4))).max(axis=(1, 2))
-    found = closed_form(problem.interpolant, problem.waypoints, problem.limits.derivatives)
+    found = solve_in_closed_form(problem.interpolant, problem.waypoints, problem.limits.derivatives)
     np.testing.assert_allclose(found, expected, rtol=1e-7)
     verdict = check(problem, found)
     assert verdict.limits is Verdict.PASS
@@ -278,11 +278,11 @@ def test_closed_form_from_dense_samples() -> None:
 
 def test_closed_form_with_a_limit_of_zero_and_with_nothing_that_moves() -> None:
     curve = uniform_cubic_b_spline(3, "stretched")
-    assert (closed_form(curve, np.full((3, 1), 0.4), [[1.0, 2.0, 3.0]]) == 0).all()
-    moving = closed_form(curve, [[0.1], [0.4], [0.2]], [[0.0, np.inf, np.inf]])
+    assert (solve_in_closed_form(curve, np.full((3, 1), 0.4), [[1.0, 2.0, 3.0]]) == 0).all()
+    moving = solve_in_closed_form(curve, [[0.1], [0.4], [0.2]], [[0.0, np.inf, np.inf]])
     assert np.isinf(moving).all()
     with pytest.raises(TrajgapError, match="needs 3 rows"):
-        closed_form(curve, np.ones((4, 1)), [[1.0, 1.0, 1.0]])
+        solve_in_closed_form(curve, np.ones((4, 1)), [[1.0, 1.0, 1.0]])
 
 
 def test_jumps_have_the_size_that_the_vertices_give() -> None:

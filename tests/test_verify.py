@@ -16,9 +16,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from trajgap.nlp.certificate import shipped, write_certificate
-from trajgap.nlp.certify import certify
-from trajgap.nlp.exact import ExactProblem
+from trajgap.nlp.proofs.certifiers import certify
+from trajgap.nlp.proofs.document import shipped, write_certificate
+from trajgap.nlp.proofs.exact import ExactProblem
 from trajgap.nlp.verify import FORMAT, VERIFIERS, Subject, seal, verify
 from trajgap.nlp.verify_answer import nonnegative
 from trajgap.problem import Limits, Problem, three_five_three

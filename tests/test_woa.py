@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from trajgap.heuristics import PSO, WOA, Bounds, states
-from trajgap.heuristics.population import Population
-from trajgap.heuristics.swarm import Swarm
-from trajgap.heuristics.woa import delta, encircled, spiralled
+from trajgap.heuristics.algorithms.population import Population
+from trajgap.heuristics.algorithms.swarm import Swarm
+from trajgap.heuristics.algorithms.woa import delta, encircled, spiralled
 
-from .scripted import OPEN, Script, off_centre, sphere
+from tests.scripted import OPEN, Script, off_centre, sphere
 
 # At I = 250 of 500, δ = 1: then A = 2 r − 1.
 HALF = WOA(whales=4, position_rule="free")

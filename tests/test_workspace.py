@@ -6,10 +6,10 @@ import re
 
 import numpy as np
 import pytest
+from trajgap.problem.cases.robot_file import load_robot
 from trajgap.problem.errors import TrajgapError
-from trajgap.problem.robot import Chain, Convention, forward_kinematics
-from trajgap.problem.robot_file import load_robot
-from trajgap.problem.workspace import StepKind, sample_workspace, waypoint_family
+from trajgap.problem.robots.chain import Chain, Convention, forward_kinematics
+from trajgap.problem.robots.workspace import StepKind, sample_workspace, waypoint_family
 
 PUMA = load_robot("puma560")
 CLOUD = sample_workspace(PUMA, 4000, 7)
@@ -33,7 +33,7 @@ def test_the_seed_decides_and_the_first_samples_do_not_depend_on_the_count():
 
 
 def test_batches_leave_no_seam(monkeypatch):
-    from trajgap.problem import workspace
+    from trajgap.problem.robots import workspace
 
     monkeypatch.setattr(workspace, "_BATCH", 33)
     np.testing.assert_array_equal(sample_workspace(PUMA, 100, 7).points, CLOUD.points[:100])

@@ -7,11 +7,11 @@ import re
 import numpy as np
 import pytest
 from matplotlib.patches import PathPatch, Rectangle
-from trajgap.compare.drawing import svg
-from trajgap.compare.workspace_picture import workspace_picture
+from trajgap.compare.pictures.drawing import svg
+from trajgap.compare.pictures.workspace import workspace_picture
+from trajgap.problem.cases.robot_file import load_robot
 from trajgap.problem.errors import TrajgapError
-from trajgap.problem.robot_file import load_robot
-from trajgap.problem.workspace import sample_workspace
+from trajgap.problem.robots.workspace import sample_workspace
 
 CLOUD = sample_workspace(load_robot("puma560"), 500, 7)
 PATH = np.array([[0.1, 0.2, 0.9], [-0.3, 0.1, 0.7], [0.2, -0.4, 1.1]])
@@ -48,7 +48,7 @@ def test_three_views_of_the_same_points():
 
 
 def test_numbers_are_of_all_samples_though_fewer_are_drawn(monkeypatch):
-    from trajgap.compare import workspace_picture as module
+    from trajgap.compare.pictures import workspace as module
 
     monkeypatch.setattr(module, "_LARGEST_CLOUD", 50)
     figure = workspace_picture(CLOUD, title="cloud")

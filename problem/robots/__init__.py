@@ -1,1 +1,5 @@
-"""One file per robot: its Denavit–Hartenberg table and where it stands."""
+"""Robot arms: chains, kinematics in both directions, workspaces, and the arms as data."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

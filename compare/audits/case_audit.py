@@ -1,0 +1,175 @@
+"""The audit: load cases, run every rule, and judge every claim."""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from ...problem import Case, load_case, published_ids
+from .finding import (
+    ClaimVerdict,
+    Finding,
+    Judgement,
+    Scope,
+    Severity,
+    judge,
+    weigh,
+)
+from .readings import ReadingsSummary, readings_summary
+from .rules import (
+    judge_counts,
+    judge_digits,
+    judge_distances,
+    judge_instances,
+    judge_kinematics,
+    judge_motions,
+    judge_replays,
+    judge_scaling,
+    judge_vertices,
+    list_open_points,
+)
+from .study import SEEDS, Study
+from .waterfall import Waterfall, waterfalls
+
+_GROUPS = (
+    judge_digits,
+    judge_counts,
+    judge_motions,
+    judge_vertices,
+    judge_scaling,
+    judge_distances,
+    judge_replays,
+    judge_instances,
+    list_open_points,
+    judge_kinematics,
+)
+_WITHOUT_WAYPOINTS = (judge_digits, judge_instances, list_open_points)
+_ORDER = {Severity.ERROR: 0, Severity.WARNING: 1, Severity.INFO: 2}
+
+
+@dataclass(frozen=True, eq=False)
+class CaseAudit:
+    """Findings, verdicts and waterfalls of one case, with the study they were drawn from."""
+
+    case: Case
+    study: Study
+    findings: tuple[Finding, ...]
+    judgements: tuple[Judgement, ...]
+    waterfalls: tuple[Waterfall, ...]
+    readings: ReadingsSummary | None = None
+    """The readings side by side; None if the case has only one."""
+
+    @property
+    def errors(self) -> int:
+        """Number of findings of severity error."""
+        return sum(f.severity is Severity.ERROR for f in self.findings)
+
+    def __str__(self) -> str:
+        counts = Counter(j.verdict for j in self.judgements)
+        lines = [
+            f"{self.case.id}: "
+            + ", ".join(f"{counts[v]} {v}" for v in ClaimVerdict if counts[v])
+            + f" of {len(self.judgements)} claims"
+        ]
+        for f in self.findings:
+            if f.severity is Severity.ERROR:
+                reading = f" [{f.reading}]" if f.reading else ""
+                lines.append(f"  {f.rule}{reading} {f.claim or ''}: {f.message}")
+        return "\n".join(lines)
+
+
+@dataclass(frozen=True, eq=False)
+class AuditReport:
+    """Audits of several cases."""
+
+    cases: tuple[CaseAudit, ...]
+
+    @property
+    def errors(self) -> int:
+        """Number of findings of severity error in all cases."""
+        return sum(one.errors for one in self.cases)
+
+    def __str__(self) -> str:
+        return "\n".join(str(one) for one in self.cases)
+
+
+def audit(
+    cases: Iterable[str | Path | Case] | str | Path | Case | None = None,
+    *,
+    seeds: int = SEEDS,
+    workers: int = 1,
+    problem: str | None = None,
+    reading: str | None = None,
+    progress: Callable[[str], None] | None = None,
+) -> AuditReport:
+    """Audit published claims against the exact optimum of the very problems they state.
+
+    Parameters
+    ----------
+    cases : str, Path, Case, or iterable of these, optional
+        Ids of shipped cases or case files; all shipped cases by default.
+    seeds : int
+        Seeds of each replay.
+    workers : int
+        Processes for the replays; the result does not depend on it.
+    problem, reading : str, optional
+        Keep to one problem or reading.
+    progress : callable, optional
+        Called with a short text before anything that takes a while.
+
+    Returns
+    -------
+    AuditReport
+
+    Raises
+    ------
+    CaseError
+        If a case cannot be loaded; all are loaded before anything is computed.
+    """
+    if cases is None:
+        cases = published_ids()
+    chosen = [cases] if isinstance(cases, str | Path | Case) else list(cases)
+    loaded = [one if isinstance(one, Case) else load_case(one) for one in chosen]
+    studies = [
+        Study(
+            one, seeds=seeds, workers=workers, problem=problem, reading=reading, progress=progress
+        )
+        for one in loaded
+    ]
+    return AuditReport(tuple(audit_case(study) for study in studies))
+
+
+def audit_case(study: Study) -> CaseAudit:
+    """Run every rule on one case."""
+    groups = _GROUPS if study.posed else _WITHOUT_WAYPOINTS
+    found = [finding for group in groups for finding in group(study)]
+    scoped = _with_scopes(found, study)
+    by_rule = sorted(scoped, key=lambda f: (_ORDER[f.severity], f.rule))
+    admissible = [reading.id for reading in study.case.readings]
+    judgements = tuple(judge(claim.id, by_rule, admissible) for claim in study.case.claims)
+    ordered = sorted(weigh(by_rule, judgements), key=lambda f: (_ORDER[f.severity], f.rule))
+    steps = waterfalls(study) if study.posed else ()
+    readings = readings_summary(study, steps, judgements)
+    return CaseAudit(study.case, study, tuple(ordered), judgements, steps, readings)
+
+
+def _with_scopes(findings: list[Finding], study: Study) -> list[Finding]:
+    """A finding holds under all readings if its rule says the same of its claim in each."""
+    said: defaultdict[tuple[str, str | None, str | None], dict[str, set[ClaimVerdict]]]
+    said = defaultdict(lambda: defaultdict(set))
+    for f in findings:
+        if f.reading is not None:
+            said[f.rule, f.claim, f.problem][f.reading].add(f.verdict)
+    scoped = []
+    for f in findings:
+        if f.verdict is ClaimVerdict.NOT_CHECKABLE:
+            scoped.append(replace(f, scope=Scope.NO))
+        elif f.reading is None:
+            scoped.append(replace(f, scope=Scope.ALL))
+        else:
+            there = said[f.rule, f.claim, f.problem]
+            everywhere = all(f.verdict in there.get(r.id, set()) for r in study.case.readings)
+            scoped.append(replace(f, scope=Scope.ALL if everywhere else Scope.SOME))
+    return scoped

@@ -1,0 +1,5 @@
+"""Families of instances: way-points drawn where a paper prints none."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

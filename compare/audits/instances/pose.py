@@ -1,0 +1,123 @@
+"""From a declared family to its instances, posed for the two procedures that a claim compares."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, cast
+
+from ....heuristics import Algorithm
+from ....problem import TrajgapError
+from ....problem.cases import Claim, FamilyBlock, ImprovementClaim, family_waypoints
+from .result import FamilyResult, Procedure
+from .study import Task, examine
+
+if TYPE_CHECKING:
+    from ..study import Study
+
+
+def _claimed(study: Study, block: FamilyBlock) -> ImprovementClaim:
+    return cast(ImprovementClaim, study.case.claim(block.claim))
+
+
+def _sides(study: Study, block: FamilyBlock) -> tuple[Claim, Claim]:
+    claim = _claimed(study, block)
+    return study.case.claim(claim.slower), study.case.claim(claim.faster)
+
+
+def _procedure(study: Study, side: Claim) -> Procedure:
+    # A case file names both; the problem may be its only one.
+    return Procedure(side.problem or study.case.problems[0].id, cast(str, side.algorithm))
+
+
+def readings_of(study: Study, block: FamilyBlock) -> tuple[str, ...]:
+    """Selected readings of a family; none if an algorithm is not implemented."""
+    sides = [_procedure(study, side) for side in _sides(study, block)]
+    if any(study.algorithm(side.algorithm) is None for side in sides):
+        return ()
+    wanted = block.readings or tuple(reading.id for reading in study.case.readings)
+    return tuple(r for r in wanted if all((side.problem, r) in study.selected for side in sides))
+
+
+def printed_reduction(study: Study, block: FamilyBlock) -> tuple[float, float] | None:
+    """Smallest and largest reduction that the printed digits allow, as shares of the slower total.
+
+    Parameters
+    ----------
+    study : Study
+    block : FamilyBlock
+
+    Returns
+    -------
+    tuple of float or None
+        From the printed percentage, else from the two totals; None if neither is printed.
+    """
+    claim = _claimed(study, block)
+    if claim.percent is not None:
+        return float(claim.percent.lower) / 100, float(claim.percent.upper) / 100
+    rid = readings_of(study, block)[0]
+    slow, fast = (study.claim_total(side, rid) for side in _sides(study, block))
+    if slow is None or fast is None:
+        return None
+    (slow_low, slow_high), (fast_low, fast_high) = slow[1], fast[1]
+    return 1 - fast_high / slow_low, 1 - fast_low / slow_high
+
+
+def examined(
+    study: Study, block: FamilyBlock, progress: Callable[[str], None] | None = None
+) -> FamilyResult:
+    """Draw a family, pose it under its readings, and examine it.
+
+    Parameters
+    ----------
+    study : Study
+    block : FamilyBlock
+        For which `readings_of` names some reading.
+    progress : callable, optional
+        Called with a few words after each instance.
+
+    Returns
+    -------
+    FamilyResult
+
+    Raises
+    ------
+    TrajgapError
+        If no instance can be drawn at a step.
+    """
+    case = study.case
+    slower, faster = (_procedure(study, side) for side in _sides(study, block))
+    first, last = (
+        cast(Algorithm[Any], study.algorithm(side.algorithm)) for side in (slower, faster)
+    )
+    readings = readings_of(study, block)
+    chain = case.chain()
+    assert chain is not None
+    count = case.posing(faster.problem, readings[0]).waypoints.number
+    try:
+        drawn = family_waypoints(block, chain, case.robot.joints, count)
+    except TrajgapError as error:
+        raise TrajgapError(f"{case.file}: families.{block.id}: {error}") from None
+    tasks = [
+        Task(
+            step=step,
+            index=index,
+            waypoints=points,
+            readings=readings,
+            slower=tuple(case.posing(slower.problem, r).problem_at(points) for r in readings),
+            faster=tuple(case.posing(faster.problem, r).problem_at(points) for r in readings),
+            algorithms=(first, last),
+            runs=block.runs,
+            objectives=block.objectives,
+        )
+        for step, instances in zip(block.lengths, drawn, strict=True)
+        for index, points in enumerate(instances)
+    ]
+    return FamilyResult(
+        block=block,
+        slower=slower,
+        faster=faster,
+        printed=printed_reduction(study, block),
+        readings=readings,
+        iterations=last.iterations,
+        samples=examine(tasks, study.workers, progress),
+    )

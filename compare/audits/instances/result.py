@@ -1,0 +1,228 @@
+"""What a family of instances shows: samples, reductions, and their distribution."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....nlp import Evidence
+from ....problem.cases import FamilyBlock
+
+Array = NDArray[np.float64]
+
+MIDDLE = 0.9
+"""Share of a distribution within which a printed reduction counts as reproduced."""
+
+
+class Effect(StrEnum):
+    """What a reduction of the total is due to."""
+
+    BOTH = "both together"
+    """Curve and algorithm: the procedure of the paper against the other one."""
+    ALGORITHM = "algorithm alone"
+    """The two algorithms on the curve of the paper's procedure."""
+    CURVE = "curve alone"
+    """The two curves at their best known totals, without any algorithm."""
+
+
+@dataclass(frozen=True)
+class Procedure:
+    """A curve and the algorithm that searches its durations, as the paper names them."""
+
+    problem: str
+    algorithm: str
+
+
+@dataclass(frozen=True)
+class Optimum:
+    """Total (s) of a solve, inf without an answer, and how it ended."""
+
+    total: float
+    evidence: Evidence
+    status: str
+
+
+@dataclass(frozen=True, eq=False)
+class Sample:
+    """One instance under one reading.
+
+    Attributes
+    ----------
+    reading : str
+    step : float
+        rad or m.
+    index : int
+        Among the instances of its step.
+    waypoints : ndarray, shape (way-points, joints)
+        rad.
+    slower, faster : Optimum
+        Of the two curves.
+    totals : ndarray, shape (objectives, 3, runs)
+        Reported totals, s, of the slower procedure, the slower one's algorithm on the faster
+        one's curve, and the faster procedure; inf where a run has no answer that keeps its limits.
+    settled : ndarray, shape (objectives, 3, runs)
+        Iteration from which the best-so-far stays within `SETTLED` of its final value.
+    """
+
+    reading: str
+    step: float
+    index: int
+    waypoints: Array
+    slower: Optimum
+    faster: Optimum
+    totals: Array
+    settled: NDArray[np.intp]
+
+    def reductions(self, effect: Effect, objective: int = 0) -> Array:
+        """Share by which the total falls, of every pair of runs; nan where one has no answer.
+
+        Parameters
+        ----------
+        effect : Effect
+        objective : int
+            Position among the family's objectives; the optima have none.
+
+        Returns
+        -------
+        ndarray, shape (pairs,)
+        """
+        if effect is Effect.CURVE:
+            before, after = np.array([self.slower.total]), np.array([self.faster.total])
+        else:
+            first = 0 if effect is Effect.BOTH else 1
+            before, after = self.totals[objective, first], self.totals[objective, 2]
+        known = np.isfinite(before)[:, None] & np.isfinite(after)[None, :]
+        with np.errstate(invalid="ignore"):
+            shares = 1.0 - after[None, :] / before[:, None]
+        return np.where(known, shares, np.nan).ravel()
+
+
+@dataclass(frozen=True)
+class Distribution:
+    """Quantiles of reductions, in 0..1 or below, with pairs that have none counted apart."""
+
+    pairs: int
+    missing: int
+    lowest: float
+    lower_quarter: float
+    median: float
+    upper_quarter: float
+    highest: float
+    shorter: float
+    """Share of the pairs with a reduction above 0."""
+
+    def __str__(self) -> str:
+        if self.missing == self.pairs:
+            return f"no pair of answers in {self.pairs}"
+        low, middle, high = (
+            f"{100 * x:.1f}".replace("-", "−") for x in (self.lowest, self.median, self.highest)
+        )
+        text = f"median {middle} % ({low} to {high} %)"
+        return text + (f", {self.missing} of {self.pairs} without answer" if self.missing else "")
+
+
+def distribution(reductions: Array) -> Distribution:
+    """Quantiles of reductions.
+
+    Parameters
+    ----------
+    reductions : ndarray, shape (pairs,)
+        nan where a pair has none; nothing is clipped.
+
+    Returns
+    -------
+    Distribution
+        nan throughout if no pair has one.
+    """
+    known = reductions[np.isfinite(reductions)]
+    if not known.size:
+        known = np.array([np.nan])
+    low, quarter, middle, three, high = map(float, np.quantile(known, [0.0, 0.25, 0.5, 0.75, 1.0]))
+    missing = int(np.isnan(reductions).sum())
+    shorter = float((known > 0).mean()) if missing < reductions.size else np.nan
+    return Distribution(reductions.size, missing, low, quarter, middle, three, high, shorter)
+
+
+@dataclass(frozen=True, eq=False)
+class FamilyResult:
+    """What the two procedures of a relative claim do on the instances of a family.
+
+    Attributes
+    ----------
+    block : FamilyBlock
+    slower, faster : Procedure
+        The one that is said to be slower, and the paper's.
+    printed : tuple of float or None
+        Smallest and largest reduction that the printed digits allow.
+    readings : tuple of str
+    iterations : int
+        Budget of the faster procedure's algorithm.
+    samples : tuple of Sample
+        By step, instance and reading, in this order; failures included.
+    """
+
+    block: FamilyBlock
+    slower: Procedure
+    faster: Procedure
+    printed: tuple[float, float] | None
+    readings: tuple[str, ...]
+    iterations: int
+    samples: tuple[Sample, ...]
+
+    @property
+    def instances(self) -> int:
+        """Instances of all steps together."""
+        return len(self.block.steps) * self.block.instances
+
+    def of(self, reading: str, step: float | None = None) -> tuple[Sample, ...]:
+        """Instances under one reading, of one step or of all."""
+        return tuple(
+            s for s in self.samples if s.reading == reading and (step is None or s.step == step)
+        )
+
+    def reductions(
+        self, reading: str, effect: Effect, objective: int = 0, step: float | None = None
+    ) -> Array:
+        """Reductions of all instances under one reading, as `Sample.reductions`."""
+        return np.concatenate([s.reductions(effect, objective) for s in self.of(reading, step)])
+
+    def settled(self, reading: str, objective: int = 0) -> NDArray[np.intp]:
+        """Iterations at which the faster procedure's runs settled, those without answer apart."""
+        chosen = [
+            s.settled[objective, 2][np.isfinite(s.totals[objective, 2])] for s in self.of(reading)
+        ]
+        return np.concatenate(chosen)
+
+    def failed(self, reading: str, objective: int = 0) -> int:
+        """Runs without an answer that keeps its limits, over all routes."""
+        return sum(int(np.isinf(s.totals[objective]).sum()) for s in self.of(reading))
+
+    @property
+    def unsolved(self) -> tuple[str, ...]:
+        """Optima that are not known, in words."""
+        found = []
+        for s in self.samples:
+            for problem, one in ((self.slower.problem, s.slower), (self.faster.problem, s.faster)):
+                if not np.isfinite(one.total):
+                    at = f"step {s.step:g}, instance {s.index + 1}, {s.reading}"
+                    found.append(f"{problem}, {at}: {one.status}")
+        return tuple(found)
+
+
+def reproduced(result: FamilyResult, reading: str) -> bool:
+    """Whether the printed reduction lies in the middle of those of one run against one run."""
+    values = result.reductions(reading, Effect.BOTH)
+    known = values[np.isfinite(values)]
+    if result.printed is None or not known.size:
+        return False
+    low, high = np.quantile(known, [(1 - MIDDLE) / 2, (1 + MIDDLE) / 2])
+    return bool(result.printed[0] <= high and low <= result.printed[1])
+
+
+def percent_range(low: float, high: float, digits: int = 2) -> str:
+    """Two shares as one range in percent, such as "10.40 to 10.55 %"."""
+    ends = [f"{100 * x + 0.0:.{digits}f}" for x in (low, high)]
+    return " to ".join(dict.fromkeys(ends)).replace("-", "−") + " %"

@@ -1,0 +1,163 @@
+"""A relative claim on a family of instances: optima and runs of the two procedures it compares."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
+from multiprocessing import get_context
+from typing import Any
+
+import numpy as np
+
+from ....heuristics import Algorithm, run
+from ....nlp import Solution, solve
+from ....problem import TOLERANCE, Coupling, Interpolant, Problem, check
+from ....problem.curves import polynomial_form
+from ...gaps import SETTLED, settled_at
+from .result import Array, Optimum, Sample
+
+STARTS = 2
+"""Starts of every solve; one where the segments do not depend on each other."""
+_ROUTES = 3
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """One instance: its way-points, posed for both procedures under every reading."""
+
+    step: float
+    index: int
+    waypoints: Array
+    readings: tuple[str, ...]
+    slower: tuple[Problem, ...]
+    faster: tuple[Problem, ...]
+    algorithms: tuple[Algorithm[Any], Algorithm[Any]]
+    """Of the slower and of the faster procedure."""
+    runs: int
+    objectives: tuple[str, ...]
+
+
+def examine(
+    tasks: Iterable[Task],
+    workers: int = 1,
+    progress: Callable[[str], None] | None = None,
+) -> tuple[Sample, ...]:
+    """Solve every instance for both curves and run both procedures on it.
+
+    Parameters
+    ----------
+    tasks : iterable of Task
+    workers : int
+        Processes; the same bits for any number of them.
+    progress : callable, optional
+        Called with a few words after each instance.
+
+    Returns
+    -------
+    tuple of Sample
+        In the order of the tasks, one for each of their readings.
+    """
+    todo = list(tasks)
+    workers = max(1, min(workers, len(todo)))
+    found: list[Sample] = []
+    with ExitStack() as stack:
+        results: Iterable[tuple[Sample, ...]] = map(_examined, todo)
+        if workers > 1:
+            # Spawned, because a fork copies the locks of the compiled libraries.
+            context = get_context("spawn")
+            pool = stack.enter_context(ProcessPoolExecutor(workers, mp_context=context))
+            results = pool.map(_examined, todo)
+        for done, samples in enumerate(results, start=1):
+            found += samples
+            if progress is not None:
+                progress(f"instance {done} of {len(todo)}")
+    return tuple(found)
+
+
+Kept = dict[tuple[object, ...], Any]
+
+
+def _examined(task: Task) -> tuple[Sample, ...]:
+    kept: Kept = {}
+    found = []
+    for reading, slow, fast in zip(task.readings, task.slower, task.faster, strict=True):
+        one, other = _fast_form(slow), _fast_form(fast)
+        by_slower, by_faster = task.algorithms
+        routes = ((one, by_slower), (other, by_slower), (other, by_faster))
+        totals = np.empty((len(task.objectives), _ROUTES, task.runs))
+        settled = np.empty(totals.shape, dtype=np.intp)
+        for at, objective in enumerate(task.objectives):
+            for r, (problem, algorithm) in enumerate(routes):
+                for seed in range(task.runs):
+                    totals[at, r, seed], settled[at, r, seed] = _ran(
+                        kept, problem, algorithm, seed, objective
+                    )
+        totals.setflags(write=False)
+        settled.setflags(write=False)
+        found.append(
+            Sample(
+                reading=reading,
+                step=task.step,
+                index=task.index,
+                waypoints=task.waypoints,
+                slower=_optimum(kept, one),
+                faster=_optimum(kept, other),
+                totals=totals,
+                settled=settled,
+            )
+        )
+    return tuple(found)
+
+
+def _fast_form(problem: Problem) -> Problem:
+    """The problem with shared durations, its curve in the form that is evaluated fastest."""
+    curve = polynomial_form(problem.interpolant)
+    return replace(problem, interpolant=curve, coupling=Coupling.SHARED)
+
+
+def _key(problem: Problem) -> tuple[object, ...]:
+    """What tells one problem through the same way-points from another."""
+    limits = problem.limits
+    arrays = (
+        limits.derivatives,
+        limits.position_lower,
+        limits.position_upper,
+        problem.duration_lower,
+        problem.duration_upper,
+        problem.waypoints,
+    )
+    return (problem.interpolant, *(array.tobytes() for array in arrays))
+
+
+def _ran(
+    kept: Kept, problem: Problem, algorithm: Algorithm[Any], seed: int, objective: str
+) -> tuple[float, int]:
+    """Total of one run, inf without an answer that keeps its limits, and when it settled."""
+    key = (*_key(problem), algorithm, seed, objective)
+    if key not in kept:
+        done = run(algorithm, problem, seed, None, objective)
+        total = done.reported_time
+        if np.isfinite(total) and check(problem, done.durations).max_violation > TOLERANCE:
+            total = np.inf
+        kept[key] = total, settled_at(done.trace, SETTLED * total)
+    known: tuple[float, int] = kept[key]
+    return known
+
+
+def _optimum(kept: Kept, problem: Problem) -> Optimum:
+    key = _key(problem)
+    if key not in kept:
+        alone = isinstance(problem.interpolant, Interpolant) and set(
+            problem.interpolant.continuity
+        ) <= {0}
+        kept[key] = _told(solve(problem, starts=1 if alone else STARTS))
+    known: Optimum = kept[key]
+    return known
+
+
+def _told(solution: Solution) -> Optimum:
+    words = f"{solution.status}" + (f" ({solution.why})" if solution.why else "")
+    total = solution.total_time if solution.infimum is None else solution.infimum
+    return Optimum(total, solution.evidence, words)

@@ -1,0 +1,123 @@
+"""The readings of a case side by side, in words."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+from math import log
+
+from ...nlp import Evidence
+from .finding import Scope
+from .readings import Excess, Keeping, Outcome, ReadingsSummary
+
+
+def answers(summary: ReadingsSummary) -> tuple[str, ...]:
+    """What the readings make of the printed answers, and which of them fit best."""
+    return (*_of_answers(summary), *_of_fit(summary))
+
+
+def holding(summary: ReadingsSummary) -> tuple[str, ...]:
+    """What holds of the claims under all, some and no readings."""
+    return tuple(_of_claims(summary))
+
+
+def named(readings: Sequence[str], most: int = 2) -> str:
+    """Readings by name where they are few, else the first and how many more."""
+    shown = list(dict.fromkeys(readings))
+    if len(shown) > most:
+        return f"{shown[0]} and {len(shown) - 1} more"
+    return ", ".join(shown)
+
+
+def segments(excesses: Sequence[Excess]) -> str:
+    """Numbers of segments, from 1, with runs drawn together."""
+    numbers = [e.segment + 1 for e in excesses]
+    runs: list[list[int]] = []
+    for n in numbers:
+        if runs and n == runs[-1][-1] + 1:
+            runs[-1].append(n)
+        else:
+            runs.append([n])
+    return ", ".join(f"{r[0]}–{r[-1]}" if len(r) > 2 else ", ".join(map(str, r)) for r in runs)
+
+
+def _of_answers(summary: ReadingsSummary) -> Iterable[str]:
+    if not summary.outcomes:
+        yield (
+            f"Under none of {len(summary.admissible)} readings can limits, optimum or gap be "
+            f"computed: {summary.why}."
+        )
+        return
+    by_answer: defaultdict[tuple[str, str], list[Outcome]] = defaultdict(list)
+    for outcome in summary.outcomes:
+        if outcome.claim is not None:
+            by_answer[outcome.claim, outcome.problem].append(outcome)
+    for (claim, problem), own in by_answer.items():
+        under = {k: [o.reading for o in own if o.keeping is k] for k in Keeping}
+        said = ", ".join(
+            f"{k} under {len(found)} ({named(found)})" for k, found in under.items() if found
+        )
+        count = len(summary.admissible)
+        which = f"{count}" if len(own) == count else f"{len(own)} of {count}"
+        yield f"Limits of {claim} ({problem}), {which} readings: {said}.{_of_gaps(own)}"
+
+
+def _of_gaps(own: Sequence[Outcome]) -> str:
+    """How far the printed total is from the optimum, where the limits are kept and where not."""
+    kept = [o for o in own if o.keeping in (Keeping.KEEPS, Keeping.CONSISTENT)]
+    parts = []
+    for group, where in (
+        (kept, "where they are kept"),
+        ([o for o in own if o not in kept], "else"),
+    ):
+        gaps = [o.gap for o in group if o.gap is not None]
+        if gaps:
+            low = 1 + min(g.lowest for g in gaps)
+            high = 1 + max(g.highest for g in gaps)
+            low_, high_ = f"{low:.3g}", f"{high:.3g}"
+            parts.append(f"{where} {low_ if low_ == high_ else f'{low_} to {high_}'} times")
+    evidence = Evidence.CERTIFIED
+    if any(o.evidence is not Evidence.CERTIFIED for o in own):
+        evidence = Evidence.BEST_KNOWN
+    return f" Printed total: {', '.join(parts)} the {evidence} optimum." if parts else ""
+
+
+def _of_fit(summary: ReadingsSummary) -> Iterable[str]:
+    nearest = summary.nearest
+    if len(summary.fits) < 2:
+        return
+    own = [o for o in summary.outcomes if o.reading == nearest[0] and o.stretch is not None]
+    worst = max(own, key=lambda o: abs(log(o.stretch or 1.0)))
+    there = [
+        *(["the limits are broken there"] if any(o.keeping is Keeping.BREAKS for o in own) else []),
+        *(["the velocity jumps there"] if any(o.jumps for o in own) else []),
+    ]
+    if len(nearest) == len(summary.fits):
+        which = "Every reading fits the printed durations alike"
+    else:
+        which = f"The printed durations fit best under {named(nearest, 3)}"
+    yield (
+        f"{which}: those of {worst.claim} times {worst.stretch:.4g} would just reach the limits, "
+        f"as a shortest time does{''.join(f'; {x}' for x in there)}. This measures fit; it does "
+        "not say which reading was meant."
+    )
+
+
+def _of_claims(summary: ReadingsSummary) -> Iterable[str]:
+    every = defaultdict(list)
+    for tally in summary.tallies:
+        if tally.scope is Scope.ALL:
+            every[tally.verdict].append(tally.claim)
+    if every:
+        said = "; ".join(f"{verdict} {', '.join(claims)}" for verdict, claims in every.items())
+        yield f"Under every reading: {said}."
+    some = [
+        f"{t.claim} ({', '.join(f'{verdict} {n}' for verdict, n in t.counts)})"
+        for t in summary.tallies
+        if t.scope is Scope.SOME
+    ]
+    if some:
+        yield f"Under some: {', '.join(some)}."
+    no = [t.claim for t in summary.tallies if t.scope is Scope.NO]
+    if no:
+        yield f"Decided under none: {', '.join(no)}."

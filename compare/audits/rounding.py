@@ -1,0 +1,304 @@
+"""A printed solution judged over the box of all durations and way-points that print alike."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from enum import StrEnum
+
+import numpy as np
+
+from ...nlp.enclosure import (
+    EPS,
+    Array,
+    Ball,
+    Place,
+    bound_by_bisection,
+    bound_ratio,
+    linear_program,
+    rows_at,
+)
+from ...problem import TOLERANCE, Check, Problem, TrajgapError, Verdict, check, peak_gradients
+
+_MOST_STEPS = 12
+_MOST_ROWS = 300
+
+
+class Rounding(StrEnum):
+    """What holds over all inputs that print alike."""
+
+    KEEPS = "keeps"
+    """The printed point itself passes the check."""
+    CONSISTENT = "consistent"
+    """Some point of the box passes the check."""
+    BREAKS = "breaks"
+    """Every point of the box exceeds a limit by more than the tolerance: proved."""
+    UNDECIDED = "undecided"
+    """No passing point was found, and no proof that there is none."""
+
+
+@dataclass(frozen=True, eq=False)
+class Box:
+    """Printed numbers, and the bounds of all that print alike.
+
+    Parameters
+    ----------
+    value, lower, upper : array_like
+        Of one shape: durations (segments,), s, or way-points (way-points, joints), rad.
+
+    Raises
+    ------
+    TrajgapError
+        If the shapes differ, a number is not finite, or a value lies outside its bounds.
+    """
+
+    value: Array
+    lower: Array
+    upper: Array
+
+    def __post_init__(self) -> None:
+        for name in ("value", "lower", "upper"):
+            array = np.array(getattr(self, name), dtype=np.float64)
+            array.setflags(write=False)
+            object.__setattr__(self, name, array)
+        if not self.value.shape == self.lower.shape == self.upper.shape:
+            raise TrajgapError("box: value, lower and upper differ in shape; give them alike")
+        if not all(np.isfinite(a).all() for a in (self.value, self.lower, self.upper)):
+            raise TrajgapError("box: a number is not finite; give finite bounds")
+        if (self.lower > self.value).any() or (self.value > self.upper).any():
+            raise TrajgapError("box: a value lies outside its bounds; give lower ≤ value ≤ upper")
+
+    @classmethod
+    def exact(cls, value: Array) -> Box:
+        """Box of width 0."""
+        return cls(value, value, value)
+
+    def inside(self) -> tuple[Array, Array]:
+        """Ends moved inwards by the rounding that a printed interval's ends may carry."""
+        step = 4.0 * np.maximum(np.spacing(np.abs(self.lower)), np.spacing(np.abs(self.upper)))
+        step = np.where(self.upper - self.lower > 4.0 * step, step, 0.0)
+        return self.lower + step, self.upper - step
+
+
+@dataclass(frozen=True, eq=False)
+class Point:
+    """One point of the box: durations (segments,) in s, way-points (way-points, joints) in rad."""
+
+    durations: Array
+    waypoints: Array
+
+
+@dataclass(frozen=True, eq=False)
+class RoundingVerdict:
+    """What `judge_rounding` found.
+
+    Attributes
+    ----------
+    verdict : Rounding
+    worst_at_print : float
+        Largest ratio of a peak to its limit at the printed point; 0 if nothing is limited.
+    exhibit : Point, Place or None
+        A point that passes (keeps, consistent), the place of the excess (breaks), else None.
+    lower_bound_of_worst : float or None
+        Rigorous lower bound of the worst ratio over every point of the box whose durations lie
+        within their bounds (over every point, if none does); None if none was computed.
+    """
+
+    verdict: Rounding
+    worst_at_print: float
+    exhibit: Point | Place | None
+    lower_bound_of_worst: float | None
+
+
+def judge_rounding(
+    problem: Problem,
+    durations: Box,
+    waypoints: Box | None = None,
+    tolerance: float = TOLERANCE,
+) -> RoundingVerdict:
+    """Judge a printed solution over every input that prints alike.
+
+    Parameters
+    ----------
+    problem : Problem
+        All its joints share the durations; take `Problem.joint` for the row of one joint. Its
+        limits and duration bounds are taken as exact.
+    durations : Box, shape (segments,)
+        s.
+    waypoints : Box, shape (way-points, joints), optional
+        rad, in place of the problem's own; those, exactly, by default.
+    tolerance : float
+        Relative excess over a limit that still counts as keeping it, as in `check`.
+
+    Returns
+    -------
+    RoundingVerdict
+
+    Raises
+    ------
+    TrajgapError
+        If a shape does not fit the problem, a printed duration is not positive, or the
+        interpolant leaves coefficients free.
+
+    Notes
+    -----
+    `keeps` and `consistent` rest on `check` at one point. `breaks` rests on a proof that no
+    rounding can upset (`bound` and `interval`). A velocity that jumps is no excess over a limit:
+    where nothing else is wrong, the answer is `undecided`.
+    """
+    q = Box.exact(problem.waypoints) if waypoints is None else waypoints
+    if q.value.shape != problem.waypoints.shape:
+        raise TrajgapError(
+            f"waypoints: the box has shape {q.value.shape}, "
+            f"the problem {problem.waypoints.shape}; give them alike"
+        )
+    printed = replace(problem, waypoints=q.value)
+    at_print = check(printed, durations.value, tolerance=tolerance)
+    worst = 0.0 if at_print.worst is None else at_print.worst.ratio
+    if at_print.verdict is Verdict.PASS:
+        point = Point(durations.value, q.value)
+        return RoundingVerdict(Rounding.KEEPS, worst, point, None)
+
+    outside = _outside_bounds(problem, durations, tolerance)
+    if outside is not None:
+        return RoundingVerdict(Rounding.BREAKS, worst, outside, outside.lower_bound)
+    if at_print.worst is not None and at_print.worst.quantity == "curve":
+        # Bounds are built around the printed point, which defines no curve here.
+        return RoundingVerdict(Rounding.UNDECIDED, worst, None, None)
+    ball = Ball.between(q.lower, q.upper)
+    target = 1.0 + tolerance
+    least, most = _admissible(problem, durations, tolerance)
+    root = bound_ratio(problem, least, most, ball)
+    if root.value > target:
+        return RoundingVerdict(Rounding.BREAKS, worst, root.place, root.value)
+    best, passed = _search(problem, durations, q, at_print)
+    if passed:
+        return RoundingVerdict(Rounding.CONSISTENT, worst, best, _positive(root.value))
+    found = rows_at(replace(problem, waypoints=best.waypoints), best.durations)
+    if found.ratios().max(initial=-np.inf) <= target:
+        return RoundingVerdict(Rounding.UNDECIDED, worst, None, _positive(root.value))
+    proof = bound_by_bisection(problem, root, ball, target, found)
+    if proof.value > target:
+        return RoundingVerdict(Rounding.BREAKS, worst, proof.place, proof.value)
+    return RoundingVerdict(Rounding.UNDECIDED, worst, None, _positive(proof.value))
+
+
+def _positive(value: float) -> float | None:
+    return value if value > 0.0 else None
+
+
+def _outside_bounds(problem: Problem, durations: Box, tolerance: float) -> Place | None:
+    """The duration that lies farthest outside its bounds wherever in the box it is, if any."""
+    short = problem.duration_lower / np.maximum(durations.upper, np.finfo(np.float64).tiny)
+    long = durations.lower / problem.duration_upper
+    ratio = np.nextafter(np.maximum(short, long), -np.inf)
+    k = int(np.argmax(ratio))
+    if not ratio[k] > 1.0 + tolerance:
+        return None
+    return Place(None, "duration", k, None, float(ratio[k]))
+
+
+def _admissible(problem: Problem, durations: Box, tolerance: float) -> tuple[Array, Array]:
+    """All of the box that `check` does not refuse for a duration outside its bounds."""
+    slack = (1.0 + tolerance) * (1.0 + 4.0 * EPS)
+    lower = np.maximum(durations.lower, problem.duration_lower / slack * (1.0 - 4.0 * EPS))
+    upper = np.minimum(durations.upper, problem.duration_upper * slack)
+    # An empty range can only come from the last bits: then one end is as good as the other.
+    return np.minimum(lower, upper), np.maximum(lower, upper)
+
+
+@dataclass(frozen=True, eq=False)
+class _Region:
+    """Where the search may go."""
+
+    low: Array
+    high: Array
+    waypoint_low: Array
+    waypoint_high: Array
+
+
+def _search(
+    problem: Problem, durations: Box, waypoints: Box, at_print: Check
+) -> tuple[Point, bool]:
+    """Look for a passing point: cheap candidates, then descent from the best of them."""
+    low, high = durations.inside()
+    # Digits that stand for 0 as well: the search stays where a duration is positive.
+    low = np.maximum(low, 1e-3 * durations.value)
+    low = np.minimum(np.maximum(low, problem.duration_lower), high)
+    high = np.maximum(np.minimum(high, problem.duration_upper), low)
+    region = _Region(low, high, *waypoints.inside())
+    start = np.clip(durations.value, region.low, region.high)
+    angles = np.clip(waypoints.value, region.waypoint_low, region.waypoint_high)
+    candidates = [start, region.high]
+    if np.isfinite(at_print.stretch):
+        repaired = start * (at_print.stretch * (1.0 + 1e-12))
+        widest = start * (region.high / start).min()
+        candidates[:0] = [np.clip(h, region.low, region.high) for h in (repaired, widest)]
+    best: tuple[float, Point] | None = None
+    for h in candidates:
+        point = Point(h, angles)
+        result = _checked(problem, point, at_print.tolerance)
+        if result.verdict is Verdict.PASS:
+            return point, True
+        ratio = np.inf if result.worst is None else result.worst.ratio
+        if best is None or ratio < best[0]:
+            best = ratio, point
+    assert best is not None
+    return _descend(problem, best[1], region, at_print.tolerance)
+
+
+def _checked(problem: Problem, point: Point, tolerance: float) -> Check:
+    there = replace(problem, waypoints=point.waypoints)
+    return check(there, point.durations, tolerance=tolerance)
+
+
+def _descend(
+    problem: Problem, start: Point, region: _Region, tolerance: float
+) -> tuple[Point, bool]:
+    """Lower the worst ratio by sequential linear programs in a trust region.
+
+    Every peak's exact gradient by the durations and its joint's way-points makes one row; `reach`
+    is the trust region as a share of the box.
+    """
+    low = np.concatenate([region.low, region.waypoint_low.ravel()])
+    high = np.concatenate([region.high, region.waypoint_high.ravel()])
+    span = high - low
+    n, shape = problem.segments, problem.waypoints.shape
+    x = np.concatenate([start.durations, start.waypoints.ravel()])
+    point, reach, worst = start, 1.0, np.inf
+    trial = point
+    for _ in range(_MOST_STEPS):
+        there = replace(problem, waypoints=trial.waypoints)
+        rows = rows_at(there, trial.durations, _MOST_ROWS)
+        ratios = rows.ratios()
+        ratio = float(ratios.max(initial=-np.inf))
+        if ratio < worst:
+            gain, worst, point = worst - ratio, ratio, trial
+            x = np.concatenate([point.durations, point.waypoints.ravel()])
+            passing = ratio <= 1.0 + tolerance
+            if passing and _checked(problem, point, tolerance).verdict is Verdict.PASS:
+                return point, True
+            if gain < 1e-13:
+                break
+            rows = rows.pick(np.flatnonzero(ratios > 0.7 * ratio))
+            gradients = peak_gradients(there, point.durations, rows.points)
+            slope = np.zeros((len(rows.points), *shape))
+            for i, e in enumerate(rows.points):
+                slope[i, :, e.joint] = gradients.waypoints[i]
+            slope = np.hstack([gradients.durations, slope.reshape(len(rows.points), -1)])
+            slope = (rows.sign / rows.width)[:, None] * slope * span
+            level = rows.ratios()
+        else:
+            reach *= 0.25
+        if not np.isfinite(worst) or not slope.any():
+            break
+        with np.errstate(invalid="ignore", divide="ignore"):
+            room_low = np.where(span > 0.0, (low - x) / span, 0.0)
+            room_high = np.where(span > 0.0, (high - x) / span, 0.0)
+        solved = linear_program(
+            level, slope, np.maximum(room_low, -reach), np.minimum(room_high, reach)
+        )
+        if solved is None:
+            break
+        moved = np.clip(x + solved[0] * span, low, high)
+        trial = Point(moved[:n], moved[n:].reshape(shape))
+    return point, False

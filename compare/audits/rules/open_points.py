@@ -1,0 +1,53 @@
+"""TG501: what the case file lists as not checkable from the text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ....nlp import Evidence
+from ....problem.cases import ImprovementClaim, StatementClaim, TotalTimeClaim
+from ..finding import Basis, ClaimVerdict, Finding, Scope, Severity
+from ..study import Study
+
+
+def list_open_points(study: Study) -> Iterator[Finding]:
+    """One finding per statement and per damaged passage, never more than "not checkable"."""
+    for claim in study.case.claims:
+        if isinstance(claim, StatementClaim) and claim.not_checkable:
+            yield _listed(claim.id, f"{claim.where}: {claim.not_checkable}.")
+    if not study.posed:
+        yield from _without_waypoints(study)
+    for item in study.case.not_checkable:
+        yield _listed(None, f"{item.where}: {item.what} {item.why}")
+
+
+def _without_waypoints(study: Study) -> Iterator[Finding]:
+    """What cannot be said of claims while the way-points are missing."""
+    for claim in study.case.claims:
+        if isinstance(claim, StatementClaim | ImprovementClaim):
+            continue
+        why = study.case.posing(claim.problem).waypoints.not_printed
+        what = "An absolute time" if isinstance(claim, TotalTimeClaim) else "This"
+        yield _listed(
+            claim.id,
+            f"{claim.where}: {what} cannot be computed without the way-points: {why}. Added to "
+            "the case file, they make it checkable.",
+        )
+
+
+def _listed(claim: str | None, message: str) -> Finding:
+    return Finding(
+        rule="TG501",
+        severity=Severity.INFO,
+        verdict=ClaimVerdict.NOT_CHECKABLE,
+        scope=Scope.NO,
+        evidence=Evidence.NONE,
+        basis=Basis.TEXT,
+        claim=claim,
+        problem=None,
+        reading=None,
+        printed=None,
+        computed=None,
+        gap=None,
+        message=message.replace("..", "."),
+    )

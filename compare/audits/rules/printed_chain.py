@@ -1,0 +1,282 @@
+"""TG601: joint way-points and Cartesian way-points against the printed chain."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....nlp import Evidence
+from ....problem import Measured, to_si
+from ....problem.cases import Cartesian, Posing
+from ....problem.robots import Chain, Convention, DhTable, JointKind, Proximity, proximity
+from ..finding import Basis, ClaimVerdict, Finding, Scope, Severity
+from ..study import Study
+
+_NEGLIGIBLE = 1e-9
+"""Distance that float arithmetic alone could leave, m."""
+
+Joints = dict[str, tuple[Measured, ...]]
+"""Angles of the printed joints at every way-point."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Match:
+    """One convention: distances of all positions, as printed and over the signs of the twists."""
+
+    convention: Convention
+    near: tuple[Proximity, ...]
+    slack: tuple[float, ...]
+    signed: tuple[tuple[Proximity, ...], ...]
+    """The same for every other choice of signs."""
+    radial: float
+    """Largest miss of the distance from the base's origin beyond rounding, or 0, m."""
+
+    @property
+    def fits(self) -> bool:
+        """Whether every position is met within rounding, as printed."""
+        return _fits(self.near, self.slack)
+
+    @property
+    def misses(self) -> bool:
+        """Whether some position is missed by more than rounding, whatever the signs."""
+        return all(_misses(near, self.slack) for near in (self.near, *self.signed))
+
+    @property
+    def worst(self) -> float:
+        """Largest distance over the positions, with the best signs, m."""
+        return min(max(n.lower for n in near) for near in (self.near, *self.signed))
+
+
+def judge_kinematics(study: Study) -> Iterator[Finding]:
+    """Set the joint table against the printed positions, for every reading."""
+    case, dh = study.case, study.case.dh
+    if not case.cartesian:
+        return
+    if dh is None:
+        yield _not_checkable(None, "Positions of the end are printed, but no table of the robot.")
+        return
+    for reading in study.readings:
+        posed: dict[object, tuple[str, Posing]] = {}
+        for pid, rid in study.pairs:
+            posing = case.posing(pid, rid)
+            if rid == reading:
+                posed.setdefault((posing.waypoints.points, posing.units.position), (pid, posing))
+        for pid, posing in posed.values():
+            yield _compared(study, dh, posing, reading, pid if len(posed) > 1 else None)
+
+
+def _compared(study: Study, dh: DhTable, posing: Posing, rid: str, pid: str | None) -> Finding:
+    printed = study.case.chain()
+    assert printed is not None
+    joints = _joints(study, posing)
+    named = [(i, label) for i, label in enumerate(printed.labels) if label in joints]
+    sliding = [label for i, label in named if printed.kinds[i] is JointKind.PRISMATIC]
+    places = _places(study, posing)
+    if sliding or any(k is None for k, _ in places):
+        why = (
+            f"joint {sliding[0]} slides, and way-points are printed as angles"
+            if sliding
+            else "the numbers of positions and way-points differ"
+        )
+        return _not_checkable(rid, f"Positions cannot be set against joint angles: {why}.")
+    matches = []
+    for convention in dh.conventions:
+        flips: list[tuple[int, ...]] = [()]
+        if dh.alpha_signs == "uncertain":
+            flips += [
+                tuple(c) for n in range(len(dh.twisted)) for c in combinations(dh.twisted, n + 1)
+            ]
+        matches.append(_match(study, dh, convention, joints, places, flips))
+    return _finding(study, posing, rid, pid, [label for _, label in named], places, matches)
+
+
+def _joints(study: Study, posing: Posing) -> Joints:
+    """Angles of every printed joint: those of the problems, and those in columns of their own."""
+    rows = posing.waypoints.points
+    found = {
+        label: tuple(posing.si(row[j], "position") for row in rows)
+        for j, label in enumerate(posing.labels)
+    }
+    for column in study.case.columns:
+        if column.joint is not None and len(column.values) == len(rows):
+            found[column.joint] = tuple(posing.si(v, "position") for v in column.values)
+    return found
+
+
+def _places(study: Study, posing: Posing) -> list[tuple[int | None, Cartesian]]:
+    """Printed positions with the index of their way-point; None where there is none."""
+    labels, count = posing.waypoints.labels, len(posing.waypoints.points)
+    places = study.case.cartesian
+    found: list[tuple[int | None, Cartesian]] = []
+    for k, place in enumerate(places):
+        if place.waypoint is not None:
+            found.append(
+                (labels.index(place.waypoint) if place.waypoint in labels else None, place)
+            )
+        else:
+            found.append((k if len(places) == count else None, place))
+    return found
+
+
+def _match(
+    study: Study,
+    dh: DhTable,
+    convention: Convention,
+    joints: Joints,
+    places: list[tuple[int | None, Cartesian]],
+    flips: list[tuple[int, ...]],
+) -> _Match:
+    variants = []
+    for flipped in flips:
+        chain = study.case.chain(convention, flipped)
+        assert chain is not None
+        variants.append(chain)
+    near: list[list[Proximity]] = [[] for _ in variants]
+    slack, radial = [], 0.0
+    for k, place in places:
+        assert k is not None
+        held, loose = _held(variants[0], joints, k)
+        xyz = [to_si(number, place.unit) for number in place.values]
+        point = np.array([m.value for m in xyz])
+        halves = np.array([(m.upper - m.lower) / 2 for m in xyz])
+        allowed = dh.rounding(variants[0]) + loose + float(np.linalg.norm(halves)) + _NEGLIGIBLE
+        slack.append(allowed)
+        for found, chain in zip(near, variants, strict=True):
+            found.append(proximity(chain, point, held))
+        away = min(proximity(chain, point, held, radial=True).lower for chain in variants)
+        radial = max(radial, away if away > allowed else 0.0)
+    first, *others = (tuple(found) for found in near)
+    return _Match(convention, first, tuple(slack), tuple(others), radial)
+
+
+def _held(chain: Chain, joints: Joints, k: int) -> tuple[NDArray[np.float64], float]:
+    """Joint values at a way-point, NaN where not printed, and what their rounding moves."""
+    held, loose = np.full(chain.joints, np.nan), 0.0
+    for i, label in enumerate(chain.labels):
+        if label in joints:
+            angle = joints[label][k]
+            held[i] = angle.value
+            loose += float(chain.arms[i]) * (angle.upper - angle.lower) / 2
+    return held, loose
+
+
+def _fits(near: tuple[Proximity, ...], slack: tuple[float, ...]) -> bool:
+    return all(n.upper <= s for n, s in zip(near, slack, strict=True))
+
+
+def _misses(near: tuple[Proximity, ...], slack: tuple[float, ...]) -> bool:
+    return any(n.lower > s for n, s in zip(near, slack, strict=True))
+
+
+def _finding(
+    study: Study,
+    posing: Posing,
+    rid: str,
+    pid: str | None,
+    printed: list[str],
+    places: list[tuple[int | None, Cartesian]],
+    matches: list[_Match],
+) -> Finding:
+    chain = study.case.chain()
+    assert chain is not None
+    free = [label for label in chain.labels if label not in printed]
+    names = [place.label or place.id for _, place in places]
+    given = f"{chain.name}: joints {', '.join(printed)} in {posing.units.position}"
+    given += f", joints {', '.join(free)} free" if free else ""
+    fitting = next((m for m in matches if m.fits), None)
+    if fitting is not None:
+        far = max(n.upper for n in fitting.near)
+        verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
+        message = (
+            f"{given}: the end meets every printed position within {_up(far)} m "
+            f"({fitting.convention} convention); rounding explains {_up(max(fitting.slack))} m."
+        )
+    else:
+        listed = "; ".join(
+            f"{', '.join(f'{n} {_down(p.lower)}' for n, p in zip(names, m.near, strict=True))} m "
+            f"({m.convention} convention)"
+            for m in matches
+        )
+        rounding = ", ".join(_up(s) for s in matches[0].slack)
+        message = (
+            f"{given}: the end comes no nearer to the printed positions than {listed}. "
+            f"Rounding explains at most {rounding} m."
+        )
+        if all(m.misses for m in matches):
+            verdict, severity = ClaimVerdict.INCONSISTENT, Severity.WARNING
+            message += _whatever(matches)
+            message += (
+                " Taken as the table has them: the base frame, the zeros of the angles, and the "
+                "origin of the last frame as the end."
+            )
+        else:
+            verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
+            signed = any(_fits(near, m.slack) for m in matches for near in m.signed)
+            message += (
+                " With other signs of the twists, which the text may have lost, every one fits."
+                if signed
+                else " Whether that is more than rounding is not decided."
+            )
+    worst = "; ".join(f"{_down(m.worst)} m ({m.convention})" for m in matches)
+    return Finding(
+        rule="TG601",
+        severity=severity,
+        verdict=verdict,
+        scope=Scope.ALL,
+        evidence=Evidence.NONE,
+        basis=Basis.KINEMATICS,
+        claim=None,
+        problem=pid,
+        reading=rid,
+        printed="; ".join(dict.fromkeys(place.where for _, place in places)),
+        computed=f"farthest position, as near as it gets: {worst}",
+        gap=None,
+        message=message,
+    )
+
+
+def _whatever(matches: list[_Match]) -> str:
+    """What holds whatever the signs of the twists and the axes of the base."""
+    said = ""
+    if any(m.signed for m in matches):
+        worst = " and ".join(f"{_down(m.worst)} m ({m.convention})" for m in matches)
+        said += f" Whatever the signs of the twists, some position stays {worst} away."
+    turned = [f"{_down(m.radial)} m ({m.convention})" for m in matches if m.radial > 0]
+    if turned:
+        said += (
+            " Whatever the axes of the base, the distance from its origin misses by up to "
+            f"{' and '.join(turned)}."
+        )
+    return said
+
+
+def _down(metres: float) -> str:
+    """Three decimals that do not say more than the number."""
+    return f"{math.floor(1000 * metres) / 1000:.3f}"
+
+
+def _up(metres: float) -> str:
+    return f"{math.ceil(1000 * metres) / 1000:.3f}" if metres > 5e-4 else f"{metres:.1g}"
+
+
+def _not_checkable(rid: str | None, message: str) -> Finding:
+    return Finding(
+        rule="TG601",
+        severity=Severity.INFO,
+        verdict=ClaimVerdict.NOT_CHECKABLE,
+        scope=Scope.NO,
+        evidence=Evidence.NONE,
+        basis=Basis.KINEMATICS,
+        claim=None,
+        problem=None,
+        reading=rid,
+        printed=None,
+        computed=None,
+        gap=None,
+        message=message,
+    )

@@ -1,0 +1,131 @@
+"""TG205: printed control vertices against the printed way-points, in exact rational numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from ....nlp import Evidence
+from ....problem import Interval, Printed
+from ....problem.cases import ControlVerticesClaim, Posing
+from ....problem.curves import vertex_matrix
+from ..finding import Basis, ClaimVerdict, Finding, Scope, Severity
+from ..study import Study
+from .printed_digits import hull, meet
+
+
+@dataclass(frozen=True)
+class Vertex:
+    """One printed control vertex beside the interval that the printed way-points allow.
+
+    Attributes
+    ----------
+    joint : str
+    index : int
+        From 0, as the paper counts.
+    printed : Printed
+    allowed : Interval
+        Of V through the inverse of (2)(3), for every way-point that rounds to its digits.
+    allowed_cut : Interval
+        The same for way-points whose digits are rounded or cut off.
+    """
+
+    joint: str
+    index: int
+    printed: Printed
+    allowed: Interval
+    allowed_cut: Interval
+
+    @property
+    def width(self) -> Fraction:
+        """Half a digit of the way-points through the inverse, plus half a digit of V."""
+        return (self.allowed.upper - self.allowed.lower) / 2 + self.printed.unit / 2
+
+    @property
+    def inside(self) -> bool:
+        """Whether some way-points that print alike give a vertex that prints as this one."""
+        return meet(self.printed.interval, self.allowed)
+
+    @property
+    def inside_cut(self) -> bool:
+        """The same, wherever digits are rounded or cut off."""
+        return meet(hull(self.printed), self.allowed_cut)
+
+
+def judge_vertices(study: Study) -> Iterator[Finding]:
+    """Set every printed control vertex beside the way-points of its problem."""
+    for claim in study.case.claims:
+        if isinstance(claim, ControlVerticesClaim):
+            posing = study.case.posing(claim.problem)
+            if posing.posed:
+                yield _judged(claim, vertices(claim, posing))
+
+
+def vertices(claim: ControlVerticesClaim, posing: Posing) -> tuple[Vertex, ...]:
+    """Every printed control vertex with the interval that its way-points allow.
+
+    The unit does not matter: way-points and vertices are printed in the same one.
+    """
+    points = posing.waypoints.points
+    matrix = vertex_matrix(len(points))
+    found = []
+    for j, label in enumerate(posing.labels):
+        intervals = [row[j].interval for row in points]
+        hulls = [hull(row[j]) for row in points]
+        for index, (weights, printed) in enumerate(zip(matrix, claim.joint_rows[j], strict=True)):
+            allowed, wide = _combined(weights, intervals), _combined(weights, hulls)
+            found.append(Vertex(label, index, printed, allowed, wide))
+    return tuple(found)
+
+
+def _combined(weights: Sequence[Fraction], intervals: Sequence[Interval]) -> Interval:
+    ends = [(w * i.lower, w * i.upper) for w, i in zip(weights, intervals, strict=True)]
+    zero = Fraction(0)
+    return Interval(sum((min(e) for e in ends), zero), sum((max(e) for e in ends), zero))
+
+
+def _judged(claim: ControlVerticesClaim, found: tuple[Vertex, ...]) -> Finding:
+    outside = [v for v in found if not v.inside]
+    beyond = [v for v in outside if not v.inside_cut]
+    widest = float(max(v.width for v in found))
+    if beyond:
+        verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
+        shown = "; ".join(
+            f"V{v.index} of joint {v.joint} printed {v.printed}, allowed "
+            f"{float(v.allowed_cut.lower):.6f} to {float(v.allowed_cut.upper):.6f}"
+            for v in beyond[:5]
+        )
+        message = (
+            f"{len(beyond)} of {len(found)} printed control vertices lie outside what the printed "
+            f"way-points allow through (2) and (3), digits rounded or cut off: {shown}."
+        )
+    elif outside:
+        verdict, severity = ClaimVerdict.SUPPORTED, Severity.WARNING
+        names = ", ".join(f"V{v.index} of joint {v.joint}" for v in outside[:5])
+        message = (
+            f"{len(outside)} of {len(found)} printed control vertices ({names}) follow from the "
+            "printed way-points only if digits are cut off instead of rounded."
+        )
+    else:
+        verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
+        message = (
+            f"All {len(found)} printed control vertices lie inside the interval that the rounding "
+            f"of the printed way-points allows through (2) and (3), at most {widest:.2g} either "
+            "side of the value computed from the digits."
+        )
+    return Finding(
+        rule="TG205",
+        severity=severity,
+        verdict=verdict,
+        scope=Scope.ALL,
+        evidence=Evidence.NONE,
+        basis=Basis.DIGITS,
+        claim=claim.id,
+        problem=None,
+        reading=None,
+        printed=None,
+        computed=f"{len(found) - len(outside)} of {len(found)} inside",
+        gap=None,
+        message=message,
+    )

@@ -1,0 +1,120 @@
+"""TG301: two totals of one path under two velocity limits obey a scaling law, without a solver."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import permutations
+
+import numpy as np
+
+from ....nlp import Evidence
+from ....problem import Problem
+from ....problem.cases import AnyClaim, DurationsClaim, MaximumClaim, StatementClaim
+from ...gaps import Reference, gap
+from ..finding import Basis, ClaimVerdict, Finding, Scope, Severity
+from ..study import Study
+
+
+def judge_scaling(study: Study) -> Iterator[Finding]:
+    """Stretch one claim's durations to another's limits: a feasible total the other can meet."""
+    claims = [c for c in study.case.claims if isinstance(c, DurationsClaim | MaximumClaim)]
+    statements = [
+        c for c in study.case.claims if isinstance(c, StatementClaim) and c.checks == "optimal"
+    ]
+    for slow, fast in permutations(claims, 2):
+        if slow.problem == fast.problem or slow.joint != fast.joint:
+            continue
+        for rid in study.readings:
+            yield from _stretched(study, slow, fast, rid, statements)
+
+
+def velocity_factor(one: Problem, other: Problem) -> float | None:
+    """Factor c that maps feasible durations of ``one`` to feasible ones of ``other``, or None.
+
+    With velocity limits only, equal curves and no duration bound in force, stretching time by
+    c = V_one/V_other divides every velocity by c: optimum times limit is a constant.
+    """
+    same = (
+        one.interpolant == other.interpolant
+        and one.interpolant.homogeneous
+        and np.array_equal(one.waypoints, other.waypoints)
+        and not (one.duration_lower > 0).any()
+        and not np.isfinite(one.duration_upper).any()
+        and not (other.duration_lower > 0).any()
+        and not np.isfinite(other.duration_upper).any()
+        and not one.limits.limits_position
+        and not other.limits.limits_position
+    )
+    a, b = one.limits, other.limits
+    only_velocity = all(np.isinf(x).all() for x in (a.acceleration, a.jerk, b.acceleration, b.jerk))
+    if (
+        not same
+        or not only_velocity
+        or not np.array_equal(np.isfinite(a.velocity), np.isfinite(b.velocity))
+    ):
+        return None
+    finite = np.isfinite(a.velocity)
+    if not finite.any() or (b.velocity[finite] == 0).any():
+        return None
+    factors = a.velocity[finite] / b.velocity[finite]
+    return float(factors[0]) if np.ptp(factors) <= 1e-12 * factors[0] else None
+
+
+def _stretched(
+    study: Study,
+    source: AnyClaim,
+    target: AnyClaim,
+    rid: str,
+    statements: list[StatementClaim],
+) -> Iterator[Finding]:
+    pairs = [
+        [pid for pid, reading in study.claim_pairs(c) if reading == rid] for c in (source, target)
+    ]
+    if not pairs[0] or not pairs[1]:
+        return
+    one = study.claim_problem(source, pairs[0][0], rid)
+    other = study.claim_problem(target, pairs[1][0], rid)
+    factor = velocity_factor(one, other)
+    total = study.claim_total(target, rid)
+    durations = study.case.claim_durations(source, rid).value
+    feasible = study.reachable(one, durations, pairs[0][0], rid)
+    if factor is None or total is None or feasible is None:
+        return
+    reachable = feasible * factor
+    shown, (low, high) = total
+    if low <= reachable * (1 + 1e-9):
+        return
+    distance = gap((low, high), Reference(reachable), feasible=False)
+    message = (
+        f"The durations of {source.id}, stretched by {factor:.6g}, keep the limit of "
+        f"{target.id} and take {reachable:.6g} s; printed for {target.id} is {shown}, "
+        f"{distance.percent} from there. With velocity limits only, shortest time times "
+        "limit is a constant, so the two printed results cannot both be shortest."
+    )
+    common = {
+        "rule": "TG301",
+        "scope": Scope.SOME,
+        "evidence": Evidence.NONE,
+        "basis": Basis.IDENTITY,
+        "problem": pairs[1][0],
+        "reading": rid,
+        "printed": shown,
+        "computed": f"{reachable:.6g} s",
+        "gap": None,
+        "message": message,
+    }
+    yield Finding(
+        severity=Severity.WARNING,
+        verdict=ClaimVerdict.INCONSISTENT,
+        claim=target.id,
+        decides=False,
+        **common,  # type: ignore[arg-type]
+    )
+    for statement in statements:
+        if target.id in statement.of:
+            yield Finding(
+                severity=Severity.ERROR,
+                verdict=ClaimVerdict.REFUTED,
+                claim=statement.id,
+                **common,  # type: ignore[arg-type]
+            )

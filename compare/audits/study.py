@@ -1,0 +1,339 @@
+"""Everything that is computed for one case, each thing once: optima, checks, replays."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import fields, replace
+from enum import StrEnum
+from typing import Any, TypeVar, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...heuristics import (
+    Algorithm,
+    JointRuns,
+    Run,
+    from_settings,
+    run_many,
+    run_many_per_joint,
+)
+from ...nlp import (
+    PerJointSolution,
+    Solution,
+    Status,
+    solve,
+    solve_per_joint,
+    stated_exactly,
+    with_certificate,
+    with_certificates,
+)
+from ...nlp.optimum import OPTIMUM_SLACK
+from ...problem import (
+    Case,
+    Check,
+    Coupling,
+    Interpolant,
+    Problem,
+    TrajgapError,
+    check,
+    reachable_total,
+)
+from ...problem.cases import Claim, DurationsClaim, FamilyBlock, MaximumClaim, TotalTimeClaim
+from .instances import FamilyResult, examined, readings_of
+from .rounding import Box, RoundingVerdict, judge_rounding
+
+T = TypeVar("T")
+Pair = tuple[str, str]
+"""Problem id and reading id."""
+Replays = tuple[Run, ...] | tuple[JointRuns, ...]
+
+SEEDS = 30
+Array = NDArray[np.float64]
+VARIANT_SEEDS = 6
+
+
+class Study:
+    """Lazily computed, cached results of one case.
+
+    Parameters
+    ----------
+    case : Case
+    seeds : int
+        Seeds of each replay, 0 to seeds − 1.
+    workers : int
+        Processes for the replays; the results do not depend on it.
+    problem, reading : str, optional
+        Keep to one problem or reading of the case.
+    progress : callable, optional
+        Called with a short text before anything that takes a while.
+    """
+
+    def __init__(
+        self,
+        case: Case,
+        seeds: int = SEEDS,
+        workers: int = 1,
+        problem: str | None = None,
+        reading: str | None = None,
+        progress: Callable[[str], None] | None = None,
+    ) -> None:
+        if seeds < 2:
+            raise TrajgapError(f"seeds: {seeds} show no spread; give 2 or more, 30 is customary")
+        self.case = case
+        self.seeds = seeds
+        self.workers = workers
+        selected = case.selections(problem, reading)
+        self.selected: tuple[Pair, ...] = tuple(selected)
+        self.readings: tuple[str, ...] = tuple(dict.fromkeys(rid for _, rid in selected))
+        self.pairs: tuple[Pair, ...] = tuple(p for p in selected if case.posing(*p).posed)
+        self._progress = progress or (lambda _: None)
+        self._kept: dict[tuple[Any, ...], Any] = {}
+
+    def _once(self, key: tuple[Any, ...], compute: Callable[[], T]) -> T:
+        if key not in self._kept:
+            self._kept[key] = compute()
+        return cast(T, self._kept[key])
+
+    @property
+    def posed(self) -> bool:
+        """Whether way-points are printed, so that there are problems to solve."""
+        return bool(self.pairs)
+
+    @property
+    def problems(self) -> tuple[str, ...]:
+        """Ids of the problems that are posed, in order."""
+        return tuple(dict.fromkeys(pid for pid, _ in self.pairs))
+
+    @property
+    def main_reading(self) -> str:
+        """The case's default reading, or the only one selected."""
+        default = self.case.default_reading.id
+        return default if default in self.readings else self.readings[0]
+
+    def problem(self, pid: str, rid: str) -> Problem:
+        """Problem of the case, with its coupling."""
+        return self._once(("problem", pid, rid), lambda: self.case.problem(pid, rid))
+
+    def optimum(self, pid: str, rid: str, joint: str | None = None) -> Solution:
+        """Best known answer with shared durations, of all joints or of one; certified if proved."""
+
+        def compute() -> Solution:
+            problem = self.problem(pid, rid)
+            which = "all joints" if joint is None else f"joint {joint}"
+            self._progress(f"{self.case.id}: optimum of {which}, {pid}, {rid}")
+            index = None if joint is None else problem.joints.index(joint)
+            found = solve(problem if index is None else problem.joint(index))
+            return with_certificate(found, stated_exactly(self.case.posing(pid, rid), index))
+
+        if joint is not None and len(self.problem(pid, rid).joints) == 1:
+            joint = None
+        return self._once(("optimum", pid, rid, joint), compute)
+
+    def per_joint(self, pid: str, rid: str) -> PerJointSolution:
+        """Each joint by itself, with the ranges within half a printed digit and 1e-6 s."""
+
+        def compute() -> PerJointSolution:
+            self._progress(f"{self.case.id}: each joint by itself, {pid}, {rid}")
+            slacks = dict.fromkeys((*self.half_digits(pid, rid), OPTIMUM_SLACK))
+            found = solve_per_joint(self.problem(pid, rid), slacks=tuple(slacks))
+            return with_certificates(found, self.case.posing(pid, rid))
+
+        return self._once(("per joint", pid, rid), compute)
+
+    def half_digits(self, pid: str, rid: str) -> tuple[float, ...]:
+        """Half a unit of the last printed place of the totals of single joints, s."""
+        halves = []
+        for claim in self.case.claims:
+            if not isinstance(claim, DurationsClaim) or claim.problem not in (None, pid):
+                continue
+            if claim.joint and claim.total is not None and not claim.total.exact:
+                box = self.case.measured(claim.total, "time", pid, rid)
+                halves.append(round((box.upper - box.lower) / 2, 12))
+        return (max(halves),) if halves else ()
+
+    def relaxed(self, pid: str, rid: str) -> Solution:
+        """Optimum of the relaxed family: at least quintic everywhere, C2, the rest left free."""
+
+        def compute() -> Solution:
+            problem = self.problem(pid, rid)
+            given = problem.interpolant
+            if not isinstance(given, Interpolant):
+                why = "only a declared piecewise polynomial is a member of its relaxed family"
+                return Solution(problem, Status.FAILED, why)
+            self._progress(f"{self.case.id}: relaxed family, {pid}, {rid}")
+            inner = problem.segments - 1
+            family = Interpolant(
+                tuple(max(5, degree) for degree in given.degrees),
+                (2,) * inner,
+                (given.prescribed[0], *((),) * inner, given.prescribed[-1]),
+                virtual=given.virtual,
+                name="relaxed family",
+            )
+            return solve(replace(problem, interpolant=family, coupling=Coupling.SHARED))
+
+        return self._once(("relaxed", pid, rid), compute)
+
+    def claim_pairs(self, claim: Claim) -> Iterator[Pair]:
+        """Problems and readings that a claim speaks about."""
+        return (pair for pair in self.pairs if claim.problem in (None, pair[0]))
+
+    def claim_problem(self, claim: Claim, pid: str, rid: str) -> Problem:
+        """The problem a claim's durations belong to: one joint's, or that of all joints."""
+        problem = self.problem(pid, rid)
+        if claim.joint is None or claim.joint not in problem.joints:
+            return problem
+        return problem.joint(problem.joints.index(claim.joint))
+
+    def _box_columns(self, problem: Problem, pid: str, rid: str) -> tuple[Array, Array]:
+        """Bounds of the way-points that print alike, for the joints of ``problem``."""
+        lower, upper = self.case.waypoint_box(pid, rid)
+        labels = self.problem(pid, rid).joints
+        columns = [labels.index(label) for label in problem.joints]
+        return lower[:, columns], upper[:, columns]
+
+    def reachable(self, problem: Problem, durations: Array, pid: str, rid: str) -> float | None:
+        """A total (s) that some stretch of ``durations`` keeps whatever the way-points round from.
+
+        None if there is no such stretch.
+        """
+        return reachable_total(problem, durations, *self._box_columns(problem, pid, rid))
+
+    def claim_optimum(self, claim: Claim, pid: str, rid: str) -> Solution:
+        """Best known answer of `claim_problem`."""
+        return self.optimum(pid, rid, claim.joint)
+
+    def claim_check(self, claim: Claim, pid: str, rid: str) -> Check:
+        """The printed durations judged at the printed point."""
+
+        def compute() -> Check:
+            durations = self.case.claim_durations(claim, rid).value
+            return check(self.claim_problem(claim, pid, rid), durations)
+
+        return self._once(("check", claim.id, pid, rid), compute)
+
+    def claim_rounding(self, claim: Claim, pid: str, rid: str) -> RoundingVerdict:
+        """The printed durations judged over the box of all inputs that round to the digits."""
+        return self._once(
+            ("rounding", claim.id, pid, rid), lambda: self._judged_box(claim, pid, rid, cut=False)
+        )
+
+    def claim_cut(self, claim: Claim, pid: str, rid: str) -> RoundingVerdict:
+        """The same over a wider box, of inputs whose digits were rounded or cut off."""
+        return self._once(
+            ("cut", claim.id, pid, rid), lambda: self._judged_box(claim, pid, rid, cut=True)
+        )
+
+    def _judged_box(self, claim: Claim, pid: str, rid: str, cut: bool) -> RoundingVerdict:
+        self._progress(f"{self.case.id}: rounding box of {claim.id}, {rid}")
+        problem = self.claim_problem(claim, pid, rid)
+        printed = self.case.claim_durations(claim, rid)
+        durations = Box(printed.value, printed.lower, printed.upper)
+        waypoints = Box(problem.waypoints, *self._box_columns(problem, pid, rid))
+        if cut:
+            durations, waypoints = _or_cut_off(durations), _or_cut_off(waypoints)
+        return judge_rounding(problem, durations, waypoints)
+
+    def claim_total(self, claim: Claim, rid: str) -> tuple[str, tuple[float, float]] | None:
+        """A claim's total as printed (or as summed), and its interval in seconds."""
+        if isinstance(claim, DurationsClaim | MaximumClaim):
+            box = self.case.claim_durations(claim, rid)
+            summed = (float(box.lower.sum()), float(box.upper.sum()))
+            if claim.total is None:
+                return f"{float(box.value.sum()):.10g} s (sum of the printed durations)", summed
+            total = self.case.measured(claim.total, "time", claim.problem, rid)
+            both = (max(summed[0], total.lower), min(summed[1], total.upper))
+            return f"{claim.total} s", both if both[0] <= both[1] else (total.lower, total.upper)
+        if not isinstance(claim, TotalTimeClaim):
+            return None
+        total = self.case.measured(claim.value, "time", claim.problem, rid)
+        return f"{claim.value} s", (total.lower, total.upper)
+
+    def algorithm(self, algorithm_id: str) -> Algorithm[Any] | None:
+        """The case's algorithm, or None if its kind is not implemented."""
+        block = next(a for a in self.case.algorithms if a.id == algorithm_id)
+        try:
+            return from_settings(block.kind, block.parameters)
+        except TrajgapError as error:
+            if "is unknown" in str(error):
+                return None
+            raise TrajgapError(f"{self.case.file}: algorithms.{algorithm_id}: {error}") from None
+
+    def runs(self, algorithm_id: str, pid: str, rid: str) -> Replays:
+        """Replays of an algorithm under the listed choices, one per seed; empty if unknown."""
+        algorithm = self.algorithm(algorithm_id)
+        if algorithm is None:
+            return ()
+        return self._once(
+            ("runs", algorithm_id, pid, rid),
+            lambda: self._replay(algorithm, algorithm_id, pid, rid, self.seeds),
+        )
+
+    def _replay(
+        self, algorithm: Algorithm[Any], name: str, pid: str, rid: str, seeds: int
+    ) -> Replays:
+        problem = self.problem(pid, rid)
+        self._progress(f"{self.case.id}: {seeds} replays of {name}, {pid}, {rid}")
+        if problem.coupling is Coupling.PER_JOINT and len(problem.joints) > 1:
+            return run_many_per_joint(algorithm, problem, range(seeds), self.workers)
+        return run_many(algorithm, problem, range(seeds), self.workers)
+
+    def variants(self, algorithm_id: str) -> dict[str, Algorithm[Any]]:
+        """The algorithm under the listed choices, and with each open enumerated choice changed.
+
+        A choice is open if the paper does not print it; one is changed at a time.
+        """
+        algorithm = self.algorithm(algorithm_id)
+        if algorithm is None:
+            return {}
+        block = next(a for a in self.case.algorithms if a.id == algorithm_id)
+        found: dict[str, Algorithm[Any]] = {"as listed": algorithm}
+        for one in fields(cast(Any, algorithm)):
+            current = getattr(algorithm, one.name)
+            if not isinstance(current, StrEnum) or one.name in block.settings:
+                continue
+            for option in type(current):
+                if option is not current:
+                    changed = replace(cast(Any, algorithm), **{one.name: option})
+                    found[f"{one.name} = {option}"] = cast(Algorithm[Any], changed)
+        return found
+
+    def variant_totals(self, algorithm_id: str, pid: str, rid: str) -> dict[str, Array]:
+        """Reported totals of each variant over its seeds, s."""
+
+        def compute() -> dict[str, Array]:
+            totals: dict[str, Array] = {}
+            for name, algorithm in self.variants(algorithm_id).items():
+                if name == "as listed":
+                    runs = self.runs(algorithm_id, pid, rid)
+                else:
+                    few = min(VARIANT_SEEDS, self.seeds)
+                    runs = self._replay(algorithm, f"{algorithm_id}, {name}", pid, rid, few)
+                totals[name] = np.array([r.reported_time for r in runs])
+            return totals
+
+        return self._once(("variants", algorithm_id, pid, rid), compute)
+
+    @property
+    def families(self) -> tuple[FamilyBlock, ...]:
+        """Families of which both problems and some reading are selected, all of it implemented."""
+        return tuple(block for block in self.case.families if readings_of(self, block))
+
+    def family(self, block: FamilyBlock) -> FamilyResult:
+        """What the two procedures of an improvement do on the instances of a family."""
+
+        def compute() -> FamilyResult:
+            what = f"{self.case.id}: family {block.id}"
+            self._progress(what)
+            return examined(self, block, lambda done: self._progress(f"{what}, {done}"))
+
+        return self._once(("family", block.id), compute)
+
+
+def _or_cut_off(box: Box) -> Box:
+    """The box widened by the inputs whose further digits were cut off instead of rounded."""
+    up, down = 2.0 * (box.upper - box.value), 2.0 * (box.value - box.lower)
+    wide = 1.0 + 1e-9
+    lower = np.where(box.value > 0, box.lower, box.value - down * wide)
+    upper = np.where(box.value < 0, box.upper, box.value + up * wide)
+    return Box(box.value, np.minimum(lower, box.lower), np.maximum(upper, box.upper))

@@ -1,0 +1,176 @@
+"""What the command line reads: cases, printed durations, selections, each fault one clear line."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...problem import Case, CaseError, Printed, Problem, TrajgapError, load_case, to_si
+from ..audits import Box
+
+
+@dataclass(frozen=True, eq=False)
+class Posed:
+    """One problem of a case under one reading, in radians and seconds."""
+
+    problem_id: str
+    reading_id: str
+    problem: Problem
+
+
+@contextmanager
+def naming(file: str, field: str = "") -> Iterator[None]:
+    """Give errors raised inside the name of the file that they are about."""
+    try:
+        yield
+    except CaseError:
+        raise
+    except TrajgapError as error:
+        raise CaseError(file, field, str(error)) from None
+
+
+def read_case(source: str) -> Case:
+    """Load a published case by id, or a case file by path.
+
+    Raises
+    ------
+    CaseError
+        If it cannot be loaded.
+    """
+    if not source:
+        raise CaseError("CASE", "", "is empty; name a published case or a file")
+    try:
+        return load_case(source)
+    except OSError as error:
+        reason = error.strerror or type(error).__name__
+        raise CaseError(source, "", f"cannot be read ({reason}); check the path") from None
+
+
+def read_cases(sources: Sequence[str]) -> list[Case]:
+    """Load several cases whose ids differ.
+
+    Raises
+    ------
+    CaseError
+        If one cannot be loaded, or two have the same id.
+    """
+    cases: dict[str, Case] = {}
+    for source in sources:
+        case = read_case(source)
+        if case.id in cases:
+            raise CaseError(
+                source,
+                "id",
+                f"{case.id!r} is also the id of {cases[case.id].file}; name each case once",
+            )
+        cases[case.id] = case
+    return list(cases.values())
+
+
+def select(
+    case: Case, problem: str | None, reading: str | None, coupling: str | None = None
+) -> list[Posed]:
+    """Problems of a case under its readings.
+
+    Parameters
+    ----------
+    case : Case
+    problem, reading : str, optional
+        Keep only these; all by default.
+    coupling : str, optional
+        Instead of the case's own.
+
+    Returns
+    -------
+    list of Posed
+
+    Raises
+    ------
+    CaseError
+        If an id or the coupling is unknown.
+    """
+    return [
+        Posed(pid, rid, case.problem(pid, rid, coupling))
+        for pid, rid in case.selections(problem, reading)
+    ]
+
+
+def read_durations(text: str, file: str) -> tuple[Printed, ...]:
+    """Read durations as a paper prints them.
+
+    Parameters
+    ----------
+    text : str
+        Separated by commas or blanks.
+    file : str
+        The case that they are for, for messages.
+
+    Returns
+    -------
+    tuple of Printed
+
+    Raises
+    ------
+    CaseError
+        If one is not a positive finite decimal number.
+    """
+    words = [word for word in re.split(r"[,;\s]+", text) if word]
+    if not words:
+        raise CaseError(file, "--durations", "is empty; give one number per segment")
+    numbers = []
+    for position, word in enumerate(words, 1):
+        field = f"--durations: number {position}"
+        try:
+            number = Printed(word)
+        except TrajgapError as error:
+            raise CaseError(file, field, str(error)) from None
+        if number.fraction <= 0:
+            raise CaseError(file, field, f"{word!r} is not positive; give more than 0")
+        numbers.append(number)
+    return tuple(numbers)
+
+
+def duration_box(case: Case, posed: Posed, printed: Sequence[Printed]) -> Box:
+    """Durations in seconds with all that print alike, in the case's unit of time.
+
+    Raises
+    ------
+    CaseError
+        If their number is not that of the segments.
+    """
+    wanted = posed.problem.segments
+    if len(printed) != wanted:
+        raise CaseError(
+            case.file,
+            "--durations",
+            f"{len(printed)} numbers for {wanted} segments of problem {posed.problem_id!r}; "
+            "give one each, with decimal points, separated by commas",
+        )
+    unit = case.posing(posed.problem_id, posed.reading_id).units.time or "s"
+    with naming(case.file, "--durations"):
+        measured = [to_si(number, unit) for number in printed]
+    return Box(
+        np.array([m.value for m in measured]),
+        np.array([m.lower for m in measured]),
+        np.array([m.upper for m in measured]),
+    )
+
+
+def waypoint_box(case: Case, posed: Posed) -> Box:
+    """The problem's way-points with all that print alike, rad."""
+    lower, upper = case.waypoint_box(posed.problem_id, posed.reading_id)
+    return Box(posed.problem.waypoints, lower, upper)
+
+
+def one_joint(box: Box, joint: int) -> Box:
+    """The column of one joint."""
+
+    def column(array: NDArray[np.float64]) -> NDArray[np.float64]:
+        return array[:, joint : joint + 1]
+
+    return Box(column(box.value), column(box.lower), column(box.upper))

@@ -1,0 +1,235 @@
+"""What the command line writes: JSON, tables, files that are complete or absent, progress."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ...problem import Case, CaseError
+from .interrupt import draft
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+_PIPE_WIDTH = 120
+"""Columns where nobody's window limits them."""
+
+
+def emit(
+    document: dict[str, Any],
+    summary: Callable[[dict[str, Any]], Sequence[RenderableType]],
+    as_json: bool,
+) -> None:
+    """Print a document, as JSON or as its summary for reading."""
+    if as_json:
+        # Standard output may not be able to carry more than ASCII.
+        plain = not (sys.stdout.encoding or "").lower().startswith("utf")
+        text = json_text(document, ascii_only=plain)
+    else:
+        text = rendered(summary(document))
+    say(text)
+
+
+def say(text: str) -> None:
+    """Write text to standard output.
+
+    Raises
+    ------
+    CaseError
+        If that fails for another reason than a closed pipe.
+    """
+    try:
+        sys.stdout.write(text)
+        sys.stdout.flush()
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        reason = error.strerror or type(error).__name__
+        raise CaseError(
+            "standard output", "", f"cannot be written ({reason}); send it elsewhere"
+        ) from None
+
+
+def json_text(document: dict[str, Any], ascii_only: bool = False) -> str:
+    """JSON of a document; NaN and infinities are a fault of ours and raise ValueError."""
+    return json.dumps(document, indent=2, ensure_ascii=ascii_only, allow_nan=False) + "\n"
+
+
+def rendered(parts: Sequence[RenderableType]) -> str:
+    """Text of tables and lines, coloured only on a terminal and without NO_COLOR."""
+    from rich.console import Console
+    from rich.measure import Measurement
+
+    terminal, encoding = sys.stdout.isatty(), sys.stdout.encoding or "utf-8"
+    page = io.TextIOWrapper(io.BytesIO(), encoding, errors="replace", newline="")
+    console = Console(
+        file=page,
+        color_system="auto" if terminal and not os.environ.get("NO_COLOR") else None,
+        force_terminal=terminal,
+        width=None if terminal or "COLUMNS" in os.environ else _PIPE_WIDTH,
+        highlight=False,
+        markup=False,
+        emoji=False,
+    )
+    # In a narrow window a table is wider than it: cut digits would be other digits.
+    unbounded = console.options.update(max_width=10_000)
+    needed = (Measurement.get(console, unbounded, part).minimum for part in parts)
+    console.width = max(console.width, *needed)
+    for part in parts:
+        console.print(part)
+    page.seek(0)
+    return "\n".join(line.rstrip() for line in page.read().split("\n"))
+
+
+class Steps:
+    """A bar on standard error that each call moves one step on; shows nothing by itself."""
+
+    def __call__(self, text: str) -> None:
+        """Begin the next step."""
+
+    def tell(self, text: str) -> None:
+        """Say how the present step goes."""
+
+
+@contextmanager
+def progress(label: str, total: int | None = None) -> Iterator[Steps]:
+    """Show a bar on standard error while something runs, if that is a terminal.
+
+    Parameters
+    ----------
+    label : str
+        What runs.
+    total : int, optional
+        Number of steps, where it is known.
+
+    Yields
+    ------
+    Steps
+        To be called with a short text before each step.
+    """
+    if not sys.stderr.isatty():
+        yield Steps()
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    console = Console(stderr=True, markup=False, highlight=False)
+    columns = (BarColumn(bar_width=24), TimeElapsedColumn(), TextColumn("{task.description}"))
+    with Progress(*columns, console=console, transient=True) as bar:
+        task = bar.add_task(label, total=total)
+
+        class Shown(Steps):
+            begun = 0
+
+            def __call__(self, text: str) -> None:
+                bar.update(task, description=text, completed=self.begun)
+                self.begun += 1
+
+            def tell(self, text: str) -> None:
+                bar.update(task, description=text)
+
+        yield Shown()
+
+
+@contextmanager
+def new_file(path: Path | None, field: str = "--out") -> Iterator[Callable[[str], None]]:
+    """Reserve a new file; what is written appears under its name at once and complete.
+
+    Parameters
+    ----------
+    path : Path or None
+        Nothing is written if None.
+    field : str
+        The option that names it, for messages.
+
+    Yields
+    ------
+    callable
+        To be called with the whole text, once.
+
+    Raises
+    ------
+    CaseError
+        If the file exists, or cannot be written.
+    """
+    if path is None:
+        yield lambda _: None
+        return
+    name = str(path)
+    with _writing(name, field):
+        if path.is_dir():
+            raise CaseError(name, field, "is a directory; name a file in it")
+        if os.path.lexists(path):
+            raise CaseError(name, field, "exists already; name another file or delete this one")
+        file = path.parent / f".trajgap-{os.getpid()}.tmp"
+        file.open("x", encoding="utf-8").close()
+
+    def write(text: str) -> None:
+        with _writing(name, field):
+            file.write_text(text, encoding="utf-8")
+            file.replace(path)
+
+    with draft(file):
+        yield write
+
+
+def replace_file(path: Path, text: str) -> None:
+    """Write a file under its name at once and complete, in the place of an earlier one.
+
+    Raises
+    ------
+    CaseError
+        If it cannot be written.
+    """
+    with _writing(str(path), "--certificates"):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        file = path.parent / f".trajgap-{os.getpid()}.tmp"
+        with draft(file):
+            file.write_text(text, encoding="utf-8")
+            file.replace(path)
+
+
+def check_folder(path: Path, cases: Sequence[Case]) -> None:
+    """Find out whether a report can be written before computing what goes into it.
+
+    Raises
+    ------
+    CaseError
+        If the folder holds anything but an earlier report or cannot be written, or if the id of
+        a case is the name of another page.
+    """
+    from ..pages import MARK, foreign
+
+    name = str(path)
+    for case in cases:
+        if case.id in ("index", Path(MARK).stem):
+            raise CaseError(case.file, "id", f"{case.id!r} is the name of another page; rename it")
+    with _writing(name, "--out"):
+        if os.path.lexists(path) and not path.is_dir():
+            raise CaseError(name, "--out", "is a file; name a folder")
+        found = foreign(path)
+        if found is not None:
+            raise CaseError(
+                name, "--out", f"holds {found}, which is no audit; name a new or an empty folder"
+            )
+        path.parent.mkdir(parents=True, exist_ok=True)
+        trial = path.parent / f".trajgap-{os.getpid()}.tmp"
+        trial.mkdir()
+        trial.rmdir()
+
+
+@contextmanager
+def _writing(name: str, field: str) -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        reason = error.strerror or type(error).__name__
+        raise CaseError(
+            name, field, f"cannot be written ({reason}); name a place that can"
+        ) from None

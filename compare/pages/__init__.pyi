@@ -1,0 +1,3 @@
+from .writer import MARK, foreign, write_report
+
+__all__ = ["MARK", "foreign", "write_report"]

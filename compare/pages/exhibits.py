@@ -1,0 +1,294 @@
+"""Further pictures of a report page: workspace, control polygon, velocity jumps, tent map."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...heuristics.algorithms import ImprovedWOA, InitialRule, TentRule
+from ...problem import TrajgapError, forward_kinematics, to_si
+from ...problem.cases import ControlVerticesClaim, DurationsClaim, MaximumClaim
+from ...problem.robots import Chain, DhTable, proximity, sample_workspace
+from ..audits import Study
+from ..audits.rules import vertices
+from ..pictures import (
+    Picture,
+    jump_picture,
+    polygon_picture,
+    svg,
+    tent_picture,
+    tent_scatter,
+    velocity_jumps,
+    workspace_picture,
+)
+from .blocks import Block, Drawn, Folded, Grid, Section, number, text
+from .motions_shown import whole_claims
+
+_SAMPLES = 20_000
+_SEED = 0
+_NEGLIGIBLE = 1e-9
+"""Distance that float arithmetic alone could leave, m."""
+Array = NDArray[np.float64]
+
+
+def exhibits_of_motion(study: Study) -> list[Section]:
+    """Sections with the workspace, the control polygon and the jumps; absent where there is none.
+
+    Parameters
+    ----------
+    study : Study
+
+    Returns
+    -------
+    list of Section
+    """
+    sections = (
+        Section("jumps", "Jumps of the velocity", tuple(_jumps(study))),
+        Section("control-polygon", "Control polygon", tuple(_polygons(study))),
+        Section("workspace", "Workspace of the robot", tuple(_workspaces(study))),
+    )
+    return [section for section in sections if section.blocks]
+
+
+def exhibits_of_search(study: Study) -> list[Section]:
+    """Section with the initial population of the tent map; none where no algorithm has one."""
+    blocks = tuple(_tents(study))
+    return [Section("tent-map", "The tent map in double precision", blocks)] if blocks else []
+
+
+def _drawn(name: str, picture: Picture, caption: str) -> Drawn:
+    return Drawn(name, svg(picture), picture.title, caption)
+
+
+# --- jumps ----------------------------------------------------------------------------------------
+
+
+def _jumps(study: Study) -> Iterator[Block]:
+    for pid in study.problems:
+        alike: dict[tuple[str, ...], list[DurationsClaim | MaximumClaim]] = {}
+        for claim in whole_claims(study, pid):
+            alike.setdefault(tuple(map(str, claim.durations)), []).append(claim)
+        for claims in alike.values():
+            yield from _jumps_of(study, pid, claims)
+
+
+def _jumps_of(
+    study: Study, pid: str, claims: list[DurationsClaim | MaximumClaim]
+) -> Iterator[Block]:
+    first = claims[0]
+    readings = [rid for p, rid in study.pairs if p == pid]
+    jumping = [
+        rid
+        for rid in readings
+        if any(j.order == 1 for j in study.claim_check(first, pid, rid).jumps)
+    ]
+    if not jumping:
+        return
+    rid = jumping[0]
+    problem, durations = study.problem(pid, rid), study.case.claim_durations(first, rid).value
+    names = ", ".join(c.id for c in claims)
+    picture = jump_picture(
+        problem, durations, title=f"Jumps of the velocity with the printed durations of {names}"
+    )
+    where = "; ".join(dict.fromkeys(c.where for c in claims))
+    caption = (
+        f"{where}. Reading {rid}. The velocity jumps under {len(jumping)} of {len(readings)} "
+        "readings. Limits are judged apart from jumps, inside the segments."
+    )
+    yield _drawn(f"jumps-{pid}-{first.id}", picture, caption)
+    rows = tuple(
+        (
+            text(jump.joint),
+            number(jump.break_index),
+            number(f"{jump.time:.3f} s"),
+            number(f"{jump.size:+.6g} rad/s"),
+        )
+        for jump in velocity_jumps(problem, durations)
+    )
+    columns = ("joint", "break", "time", "velocity after less before")
+    yield Folded(f"All {len(rows)} jumps, {names}, reading {rid}", (Grid(columns, rows),))
+
+
+# --- control polygon ------------------------------------------------------------------------------
+
+
+def _polygons(study: Study) -> Iterator[Block]:
+    for claim in study.case.claims:
+        if not isinstance(claim, ControlVerticesClaim):
+            continue
+        posing = study.case.posing(claim.problem)
+        if not posing.posed:
+            continue
+        joints = range(len(posing.labels))
+        waypoints = [[row[j].value for j in joints] for row in posing.waypoints.points]
+        picture = polygon_picture(
+            waypoints,
+            vertices(claim, posing),
+            title=f"Control polygon of every joint: {claim.where}",
+        )
+        caption = (
+            f"{claim.where} beside the vertices computed from the printed way-points "
+            f"({posing.waypoints.where}). A grey bar holds every difference that rounding of both "
+            "explains. No reading enters: both are printed in one unit, and time plays no part."
+        )
+        yield _drawn(f"polygon-{claim.id}", picture, caption)
+
+
+# --- workspace ------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class _Path:
+    """Way-points in the base, m, with names, marks for those out of reach, and what to say."""
+
+    points: Array
+    labels: tuple[str, ...]
+    missed: tuple[bool, ...]
+    said: str
+
+
+def _workspaces(study: Study) -> Iterator[Block]:
+    dh = study.case.dh
+    if dh is None:
+        return
+    for convention in dh.conventions:
+        chain = study.case.chain(convention)
+        assert chain is not None
+        try:
+            cloud = sample_workspace(chain, _SAMPLES, _SEED)
+        except TrajgapError:
+            # A joint that slides without bounds has no workspace to sample.
+            return
+        several = len(dh.conventions) > 1
+        path = _printed_path(study, dh, chain) or _joint_path(study, chain)
+        picture = workspace_picture(
+            cloud,
+            waypoints=path.points if path else None,
+            labels=path.labels if path else (),
+            missed=path.missed if path else (),
+            title=f"Workspace of {chain.name}" + (f", {convention} table" if several else ""),
+        )
+        ranges = (
+            "their ranges"
+            if np.isfinite(chain.upper - chain.lower).all()
+            else "their ranges, or one turn where none is printed"
+        )
+        caption = f"{dh.where or 'The table'}, {convention} convention. Joints uniform in {ranges}."
+        if dh.alpha_signs == "uncertain":
+            caption += " Twists have their printed signs, of which the text may have lost some."
+        name = "workspace" + (f"-{convention}" if several else "")
+        yield _drawn(name, picture, caption + (f" {path.said}" if path else ""))
+
+
+def _printed_path(study: Study, dh: DhTable, chain: Chain) -> _Path | None:
+    """Printed positions of the end, and which of them no joint values reach."""
+    places = study.case.cartesian
+    if not places:
+        return None
+    measured = [[to_si(number, place.unit) for number in place.values] for place in places]
+    points = np.array([[m.value for m in row] for row in measured])
+    halves = np.array([[(m.upper - m.lower) / 2 for m in row] for row in measured])
+    slack = dh.rounding(chain) + np.linalg.norm(halves, axis=1) + _NEGLIGIBLE
+    free = np.full(chain.joints, np.nan)
+    near = [proximity(chain, point, free) for point in points]
+    names = tuple(place.label or place.id for place in places)
+    missed = tuple(bool(n.lower > s) for n, s in zip(near, slack, strict=True))
+    far = [
+        f"{name} by {np.floor(1000 * n.lower) / 1000:.3f} m"
+        for name, n, misses in zip(names, near, missed, strict=True)
+        if misses
+    ]
+    reached = all(n.upper <= s for n, s in zip(near, slack, strict=True))
+    where = "; ".join(dict.fromkeys(place.where for place in places))
+    said = f"Way-points as printed ({where}). "
+    if far:
+        said += f"Whatever the joints, the end misses {', '.join(far)} at least."
+    else:
+        said += (
+            "Some joint values reach each of them within rounding; whether they are the printed "
+            "ones is the question of TG601."
+            if reached
+            else "None is shown to be out of reach."
+        )
+    return _Path(points, names, missed, said)
+
+
+def _joint_path(study: Study, chain: Chain) -> _Path | None:
+    """Positions of the printed joint way-points, if the table gives every joint and its range."""
+    if not study.posed:
+        return None
+    problem = study.problem(study.problems[0], study.main_reading)
+    if set(chain.labels) != set(problem.joints) or not chain.revolute.all():
+        return None
+    order = [problem.joints.index(label) for label in chain.labels]
+    q = problem.waypoints[:, order]
+    labels = study.case.posing(study.problems[0], study.main_reading).waypoints.labels
+    # Whole turns do not move the end.
+    base = np.where(np.isfinite(chain.lower), chain.lower, q)
+    outside = np.argwhere(base + np.mod(q - base, 2 * np.pi) > chain.upper)
+    if outside.size:
+        k, j = outside[0]
+        name = labels[k] if labels else f"way-point {k + 1}"
+        said = (
+            f"The way-points are not drawn: joint {chain.labels[j]} at {name}, {q[k, j]:.4f} rad, "
+            f"lies outside the range of this table, {chain.lower[j]:.4f} to {chain.upper[j]:.4f} "
+            "rad, so the text may count its angles from another position."
+        )
+        return _Path(np.empty((0, 3)), (), (), said)
+    points = np.asarray(forward_kinematics(chain, q)[..., :3, 3])
+    said = f"Way-points by forward kinematics, reading {study.main_reading}."
+    return _Path(points, tuple(labels or ()), (), said)
+
+
+# --- tent map -------------------------------------------------------------------------------------
+
+
+def _tents(study: Study) -> Iterator[Block]:
+    segments = [
+        study.case.posing(pid, rid).waypoints.number - 1
+        for pid in dict.fromkeys(p for p, _ in study.case.selections())
+        for rid in study.readings[:1]
+    ]
+    dimensions = next((n for n in segments if n > 1), None)
+    if dimensions is None:
+        return
+    for block in study.case.algorithms:
+        built = study.algorithm(block.id)
+        if not isinstance(built, ImprovedWOA) or built.initial is not InitialRule.TENT:
+            continue
+        scatter = tent_scatter(built.whales, dimensions, built.position_initial, built.beta)
+        picture = tent_picture(
+            scatter,
+            unit="s",
+            title=f"Initial population of {built.whales} times {dimensions} durations, tent map",
+        )
+        printed = "as printed" if "tent_rule" in block.settings else "left open by the text"
+        low, high = built.position_initial
+        caption = (
+            f"{block.where}. x′ = x/β up to β, (1 − x)/(1 − β) above, scaled to {low:g} to "
+            f"{high:g} s; first two durations of every member. How orbits fill the population is "
+            f"{printed}; the listed choice is “{built.tent_rule}”."
+        )
+        yield _drawn(f"tent-{block.id}", picture, caption)
+        lengths = {
+            TentRule.COORDINATE: built.whales,
+            TentRule.MEMBER: dimensions,
+            TentRule.SINGLE: built.whales * dimensions,
+        }
+        rows = tuple(
+            (
+                text(f"{rule}" + (" (listed choice)" if rule is built.tent_rule else "")),
+                number(lengths[rule]),
+                number(f"{scatter.collapsed[rule]} of {built.whales}"),
+            )
+            for rule in TentRule
+        )
+        columns = (
+            "orbits by",
+            "points of an orbit",
+            "members with a duration of exactly 0 (seed 0)",
+        )
+        yield Grid(columns, rows)

@@ -1,0 +1,62 @@
+"""A report page as Markdown."""
+
+from __future__ import annotations
+
+import re
+
+from .blocks import Block, Drawn, Folded, Grid, Page, Prose, Terms
+
+_SPECIAL = re.compile(r"([\\`*_\[\]<>#|~$&])")
+_LIST = re.compile(r"^(\s*)([-+]|\d+[.)])(\s)", re.MULTILINE)
+
+
+def markdown(page: Page) -> str:
+    """Render a page; pictures are links to the files beside it.
+
+    Parameters
+    ----------
+    page : Page
+
+    Returns
+    -------
+    str
+        GitHub-flavoured Markdown, in which text from case files is plain text.
+    """
+    parts = [f"# {plain(page.title)}"]
+    for section in page.sections:
+        parts.append(f"## {plain(section.title)}")
+        parts += [_block(page, block) for block in section.blocks]
+    return "\n\n".join(part for part in parts if part) + "\n"
+
+
+def plain(text: str) -> str:
+    """Text in which nothing is markup."""
+    escaped = _SPECIAL.sub(r"\\\1", text)
+    return _LIST.sub(r"\1\\\2\3", escaped)
+
+
+def _block(page: Page, block: Block) -> str:
+    if isinstance(block, Prose):
+        return f"### {plain(block.text)}" if block.weight == "heading" else plain(block.text)
+    if isinstance(block, Terms):
+        return "\n".join(f"- **{plain(name)}**: {_line(meaning)}" for name, meaning in block.pairs)
+    if isinstance(block, Drawn):
+        link = f"![{_line(block.title)}](pictures/{page.id}-{block.name}.svg)"
+        return link + (f"\n\n{plain(block.caption)}" if block.caption else "")
+    if isinstance(block, Folded):
+        inner = [_block(page, one) for one in block.blocks]
+        return "\n\n".join([f"### {plain(block.title)}", *inner])
+    return _grid(block)
+
+
+def _grid(grid: Grid) -> str:
+    rows = [
+        "| " + " | ".join(_line(name) for name in grid.columns) + " |",
+        "|" + "---|" * len(grid.columns),
+        *("| " + " | ".join(_line(cell.text) for cell in row) + " |" for row in grid.rows),
+    ]
+    return (f"{plain(grid.caption)}\n\n" if grid.caption else "") + "\n".join(rows)
+
+
+def _line(text: str) -> str:
+    return "<br>".join(plain(line) for line in text.splitlines())

@@ -1,0 +1,297 @@
+"""The pictures of a report page: motions, searches and landscapes, under the default reading."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...heuristics import JointRuns
+from ...nlp import Solution, weakest
+from ...problem import Problem, TrajgapError
+from ...problem.cases import AnyClaim, DurationsClaim, MaximumClaim, TotalTimeClaim
+from ..audits import CaseAudit, Study
+from ..pictures import Picture, Runs, convergence, endings, landscape, motion_picture, svg
+from .blocks import Block, Drawn, Folded, Grid, Prose, Section
+from .numbers import REPLAY_COLUMNS, replay_rows
+
+Array = NDArray[np.float64]
+
+
+def _nothing(one: CaseAudit) -> tuple[Block, ...]:
+    """What a section without pictures says: nothing at all where no problem is posed."""
+    return (Prose("None."),) if one.study.posed else ()
+
+
+def motions(one: CaseAudit) -> Section:
+    """Angle, velocity and acceleration of every printed set of durations, and of the optimum."""
+    blocks: list[Block] = []
+    rid = one.study.main_reading
+    for pid in one.study.problems:
+        blocks += _printed_motions(one.study, pid, rid)
+        solution = one.study.optimum(pid, rid)
+        if solution.durations is not None:
+            title = f"{solution.evidence.capitalize()} optimum, {pid}: {solution.total_time:.6f} s"
+            picture = motion_picture(
+                solution.problem,
+                solution.durations,
+                title=title,
+                check=solution.check,
+                nodal=solution.nodal,
+            )
+            blocks.append(_drawn(f"optimum-{pid}", picture, f"Reading {rid}."))
+    return Section("motions", "Motions, with limits and peaks", tuple(blocks) or _nothing(one))
+
+
+def _drawn(name: str, picture: Picture, caption: str) -> Drawn:
+    return Drawn(name, svg(picture), picture.title, caption)
+
+
+def whole_claims(study: Study, pid: str) -> list[DurationsClaim | MaximumClaim]:
+    """Claims that print durations for all joints of a problem."""
+    joints = study.problem(pid, study.main_reading).joints
+    return [
+        c
+        for c in study.case.claims
+        if isinstance(c, DurationsClaim | MaximumClaim)
+        and c.problem in (None, pid)
+        and (c.joint is None or len(joints) == 1)
+    ]
+
+
+def _printed_motions(study: Study, pid: str, rid: str) -> Iterator[Block]:
+    alike: dict[tuple[str, ...], list[AnyClaim]] = {}
+    for claim in whole_claims(study, pid):
+        alike.setdefault(tuple(map(str, claim.durations)), []).append(claim)
+    for claims in alike.values():
+        first = claims[0]
+        problem = study.problem(pid, rid)
+        rounding = study.claim_rounding(first, pid, rid).verdict
+        title = f"Printed durations of {', '.join(c.id for c in claims)}"
+        worst = study.claim_check(first, pid, rid).worst
+        if worst is not None and worst.quantity == "curve":
+            yield Prose(f"{title} define no curve. Reading {rid}.", "note")
+            continue
+        picture = motion_picture(
+            problem,
+            study.case.claim_durations(first, rid).value,
+            title=title,
+            check=study.claim_check(first, pid, rid),
+            note=f"over all that prints alike: {rounding}",
+        )
+        where = "; ".join(c.where for c in claims)
+        yield _drawn(f"motion-{pid}-{first.id}", picture, f"{where}. Reading {rid}.")
+    for tables, singles in _tables_by_joint(study, pid).items():
+        yield _joint_by_joint(study, pid, rid, tables, singles)
+
+
+def _tables_by_joint(study: Study, pid: str) -> dict[str, list[DurationsClaim]]:
+    """Claims of tables that print every joint by itself; tables alike share an entry."""
+    joints = study.problem(pid, study.main_reading).joints
+    if len(joints) == 1:
+        return {}
+    found: dict[tuple[tuple[str, ...], ...], tuple[list[str], list[DurationsClaim]]] = {}
+    for table in study.case.tables:
+        rows = {
+            c.joint: c
+            for c in study.case.table_claims(table.id)
+            if isinstance(c, DurationsClaim) and c.problem in (None, pid)
+        }
+        if all(label in rows for label in joints):
+            claims = [rows[label] for label in joints]
+            digits = tuple(tuple(map(str, c.durations)) for c in claims)
+            found.setdefault(digits, ([], claims))[0].append(table.id)
+    return {", ".join(tables): claims for tables, claims in found.values()}
+
+
+def _joint_by_joint(
+    study: Study, pid: str, rid: str, tables: str, claims: list[DurationsClaim]
+) -> Drawn:
+    problem = study.problem(pid, rid)
+    durations = np.array([study.case.claim_durations(c, rid).value for c in claims])
+    verdicts = [str(study.claim_rounding(c, pid, rid).verdict) for c in claims]
+    words = ", ".join(dict.fromkeys(verdicts))
+    picture = motion_picture(
+        problem,
+        durations,
+        title=f"Printed durations of each joint by itself: {tables}",
+        note=f"over all that prints alike: {words}",
+    )
+    each = "; ".join(f"{c.id}: {v}" for c, v in zip(claims, verdicts, strict=True))
+    caption = (
+        "Each joint with its own durations, at the printed digits. Over all that prints alike: "
+        f"{each}. Reading {rid}."
+    )
+    return _drawn(f"motion-{pid}-joints-{claims[0].table}", picture, caption)
+
+
+# --- searches -------------------------------------------------------------------------------------
+
+
+def searches(one: CaseAudit) -> Section:
+    """Replays of the algorithms: convergence, where they end, and the spread over choices."""
+    study, rid = one.study, one.study.main_reading
+    blocks: list[Block] = []
+    for pid in study.problems:
+        runs = _runs(study, pid)
+        if not runs:
+            continue
+        blocks += _convergence(study, pid, rid, runs)
+        references, printed = _totals(study, pid, rid)
+        title = f"Totals of all runs, {pid}"
+        caption = "Vertical strokes are medians. A reported total is not clipped at the optimum."
+        blocks.append(
+            _drawn(f"totals-{pid}", endings(runs, references, printed, title=title), caption)
+        )
+        grid = Grid(REPLAY_COLUMNS, tuple(replay_rows(study, pid)))
+        blocks.append(Folded(f"Spread over seeds and open choices, {pid}", (grid,)))
+    lead = Prose(
+        f"Each algorithm was run with seeds 0 to {study.seeds - 1} under the choices listed below, "
+        f"reading {rid}. A replay can say that something is not reproduced, never that it is "
+        "refuted.",
+        "note",
+    )
+    return Section(
+        "searches", "Replays of the algorithms", (lead, *blocks) if blocks else _nothing(one)
+    )
+
+
+def _runs(study: Study, pid: str) -> dict[str, Runs]:
+    replays = {a.id: study.runs(a.id, pid, study.main_reading) for a in study.case.algorithms}
+    return {name: one for name, one in replays.items() if one}
+
+
+def _convergence(study: Study, pid: str, rid: str, runs: dict[str, Runs]) -> Iterator[Block]:
+    by_joint = isinstance(next(iter(runs.values()))[0], JointRuns)
+    problem = study.problem(pid, rid)
+    solutions = [study.optimum(pid, rid, label) for label in problem.joints] if by_joint else [
+        study.optimum(pid, rid)
+    ]  # fmt: skip
+    if any(s.durations is None for s in solutions):
+        return
+    printed: dict[str, list[float]] = {}
+    widths = [0.0]
+    groups: dict[str, list[DurationsClaim | MaximumClaim]] = (
+        {tables: list(claims) for tables, claims in _tables_by_joint(study, pid).items()}
+        if by_joint
+        else {c.id: [c] for c in whole_claims(study, pid)}
+    )
+    for label, claims in groups.items():
+        boxes = [total[1] for c in claims if (total := study.claim_total(c, rid)) is not None]
+        printed[label] = [(low + high) / 2 for low, high in boxes]
+        widths += [(high - low) / 2 for low, high in boxes]
+    picture = convergence(
+        runs,
+        [_time(s) for s in solutions],
+        printed,
+        rounding=max(widths),
+        evidence=str(weakest(s.evidence for s in solutions)),
+        joints=problem.joints,
+        title=f"Best total so far, {pid}" + (", each joint by itself" if by_joint else ""),
+    )
+    yield _drawn(
+        f"convergence-{pid}",
+        picture,
+        "Gap to the optimum, linear up to 0.01 % and logarithmic beyond. The band around a printed "
+        "total is its rounding.",
+    )
+
+
+def _time(solution: Solution) -> float:
+    return solution.best
+
+
+def _totals(study: Study, pid: str, rid: str) -> tuple[dict[str, float], dict[str, float]]:
+    shared = study.optimum(pid, rid)
+    references = {}
+    if shared.durations is not None:
+        references[f"{shared.evidence} optimum, shared durations"] = _time(shared)
+    problem = study.problem(pid, rid)
+    if len(problem.joints) > 1 and problem.coupling == "per-joint":
+        answer = study.per_joint(pid, rid)
+        if answer.durations is not None:
+            references["each joint at its optimum, longest per segment"] = answer.total_time
+    printed: dict[str, list[str]] = {}
+    values: dict[str, float] = {}
+    for claim in study.case.claims:
+        whole = isinstance(claim, TotalTimeClaim) and claim.joint is None
+        if claim in whole_claims(study, pid) or (whole and claim.problem in (None, pid)):
+            total = study.claim_total(claim, rid)
+            if total is not None:
+                printed.setdefault(total[0], []).append(claim.id)
+                values[total[0]] = (total[1][0] + total[1][1]) / 2
+    return references, {", ".join(ids): values[shown] for shown, ids in printed.items()}
+
+
+# --- landscapes -----------------------------------------------------------------------------------
+
+
+def landscapes(one: CaseAudit) -> Section:
+    """Total time over the shares of three durations, for all joints and for each by itself."""
+    study, rid = one.study, one.study.main_reading
+    blocks: list[Block] = []
+    for pid in study.problems:
+        problem = study.problem(pid, rid)
+        if problem.segments != 3:
+            blocks.append(
+                Prose(f"{pid} has {problem.segments} segments; three can be drawn.", "note")
+            )
+            continue
+        runs = _runs(study, pid)
+        printed = [
+            (c.id, study.case.claim_durations(c, rid).value) for c in whole_claims(study, pid)
+        ]
+        ends = {name: np.array([r.durations for r in many]) for name, many in runs.items()}
+        blocks += _landscape(
+            f"landscape-{pid}", problem, study.optimum(pid, rid), printed, ends, pid
+        )
+        single: list[Drawn] = []
+        for tables, claims in _tables_by_joint(study, pid).items():
+            for j, claim in enumerate(claims):
+                own = {
+                    name: np.array([r.runs[j].durations for r in many if isinstance(r, JointRuns)])
+                    for name, many in runs.items()
+                    if isinstance(many[0], JointRuns)
+                }
+                single += _landscape(
+                    f"landscape-{pid}-joint-{j + 1}",
+                    problem.joint(j),
+                    study.optimum(pid, rid, problem.joints[j]),
+                    [(tables, study.case.claim_durations(claim, rid).value)],
+                    own,
+                    f"{pid}, joint {problem.joints[j]}",
+                )
+            break
+        if single:
+            blocks.append(Folded(f"Each joint by itself, {pid}", tuple(single)))
+    return Section("landscapes", "Landscapes of the total time", tuple(blocks) or _nothing(one))
+
+
+def _landscape(
+    name: str,
+    problem: Problem,
+    optimum: Solution,
+    printed: list[tuple[str, Array]],
+    ends: dict[str, Array],
+    what: str,
+) -> Iterator[Drawn]:
+    alike: dict[bytes, tuple[list[str], Array]] = {}
+    for label, durations in printed:
+        alike.setdefault(durations.tobytes(), ([], durations))[0].append(label)
+    points = [(", ".join(labels), durations) for labels, durations in alike.values()]
+    try:
+        picture = landscape(
+            problem,
+            optimum,
+            points,
+            ends,
+            title=f"Total time over the shares of h₁ : h₂ : h₃, {what}",
+        )
+    except TrajgapError:
+        return
+    yield _drawn(
+        name,
+        picture,
+        "Exact totals: any shares, stretched until the first limit is reached for all t.",
+    )

@@ -1,0 +1,287 @@
+"""The computed half of a report page: where the time goes, optima, sensitivities and replays."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from decimal import ROUND_FLOOR, Decimal
+
+import numpy as np
+
+from ...nlp import Evidence, PerJointSolution, Solution
+from ...problem import Coupling
+from ...problem.cases import DurationsClaim
+from ..audits import CaseAudit, Step, Study, Waterfall
+from ..audits.rules import reference_of
+from ..gaps import Gap, gap, spread
+from ..pictures import seconds as interval
+from ..pictures import svg, waterfall_picture
+from .blocks import (
+    Block,
+    Cell,
+    Drawn,
+    Folded,
+    Grid,
+    Plain,
+    Prose,
+    Section,
+    listed,
+    number,
+    seconds,
+    text,
+    word,
+)
+
+_ON_A_LINE = 2
+_FEW = 3
+"""Other readings of a problem that still get a picture each."""
+
+
+def where_time_goes(one: CaseAudit) -> Section:
+    """Waterfall pictures and tables of the default reading; the others folded, or in a table."""
+    main = one.study.main_reading
+    blocks: list[Block] = []
+    for pid in dict.fromkeys(fall.problem for fall in one.waterfalls):
+        own = [fall for fall in one.waterfalls if fall.problem == pid]
+        others = [fall for fall in own if fall.reading != main]
+        for fall in own:
+            if fall.reading == main:
+                blocks += _drawn(fall)
+            elif len(others) <= _FEW:
+                blocks.append(Folded(f"Other reading: {pid}, {fall.reading}", _drawn(fall)))
+        if len(others) > _FEW:
+            blocks.append(_side_by_side(pid, others))
+    return Section("waterfall", "Where the time goes", tuple(blocks))
+
+
+def _drawn(fall: Waterfall) -> tuple[Plain, ...]:
+    title = f"Where the time goes: {fall.problem}, {fall.reading}"
+    picture = waterfall_picture(fall, title=title)
+    caption = "Bars start at 0; best known values are hatched, certified ones solid." + (
+        f" The first bar is claim {fall.claim}." if fall.claim else ""
+    )
+    name = f"waterfall-{fall.problem}-{fall.reading}"
+    return Drawn(name, svg(picture), title, caption), _steps(fall)
+
+
+def _side_by_side(pid: str, falls: Sequence[Waterfall]) -> Grid:
+    """Steps of many readings, one row each; steps that no reading has are left out."""
+    names = dict.fromkeys(s.name for fall in falls for s in fall.steps)
+    rows = []
+    for fall in falls:
+        steps = {s.name: s for s in fall.steps}
+        cells = [_step(steps.get(name)) for name in names]
+        rows.append((text(fall.reading), *cells))
+    caption = f"Other readings of {pid}; an empty cell was not computed"
+    return Grid(("reading", *names), tuple(rows), caption).filled
+
+
+def _step(step: Step | None) -> Cell:
+    if step is None or step.time is None:
+        return number(None)
+    evidence = "" if step.evidence is Evidence.NONE else f"\n{step.evidence}"
+    return number(interval(step) + evidence)
+
+
+def _steps(fall: Waterfall) -> Grid:
+    rows = tuple(
+        (text(s.name), number(interval(s)), word(s.evidence), text(s.note)) for s in fall.steps
+    )
+    return Grid(("step", "total", "evidence", "note"), rows)
+
+
+# --- optima ---------------------------------------------------------------------------------------
+
+_OPTIMA = "Optimum of each formulation"
+NINE = Decimal("1e-9")
+_ANSWER = ("status", "total", "evidence", "durations, s", "check", "KKT residual", "starts at best")
+
+
+def _durations(values: list[float]) -> str:
+    """Durations, a few on each line: nine on one would push the table off the page."""
+    lines = [listed(values[i : i + _ON_A_LINE]) for i in range(0, len(values), _ON_A_LINE)]
+    return ",\n".join(lines)
+
+
+def _answer(solution: Solution) -> tuple[Cell, ...]:
+    check = solution.check
+    residual = solution.kkt_residual
+    total = None if solution.durations is None else seconds(solution.total_time)
+    if solution.infimum is not None:
+        total = f"{solution.infimum:.6f} s (infimum)"
+    if total is not None and solution.lower_bound is not None:
+        total += (
+            f"\nat least {Decimal(solution.lower_bound).quantize(NINE, ROUND_FLOOR)} s,\nproved"
+        )
+    return (
+        text(solution.status + (f"\n{solution.why}" if solution.why else "")),
+        number(total),
+        word(solution.evidence),
+        number(None if solution.durations is None else _durations(list(solution.durations))),
+        word(check.verdict) if check is not None else text(None),
+        number(None if residual is None else f"{residual:.1e}"),
+        number(f"{solution.starts_at_best} of {solution.starts}" if solution.starts else None),
+    )
+
+
+def optima(one: CaseAudit) -> Section:
+    """Optimum of each formulation, then each joint by itself where the text does that."""
+    study = one.study
+    rows: list[tuple[Cell, ...]] = []
+    blocks: list[Block] = []
+    without: defaultdict[str, list[str]] = defaultdict(list)
+    for pid, rid in study.pairs:
+        own = study.optimum(pid, rid)
+        rows.append((text(pid), text(rid), text("printed curve, shared durations"), *_answer(own)))
+        relaxed = study.relaxed(pid, rid)
+        if relaxed.durations is None:
+            without[relaxed.why or str(relaxed.status)].append(rid)
+        else:
+            rows.append((text(pid), text(rid), text("relaxed family"), *_answer(relaxed)))
+        if _by_joint(study, pid, rid):
+            blocks += _joints(study, pid, rid)
+    if not rows:
+        return Section("optima", _OPTIMA, ())
+    notes = [
+        Prose(
+            f"No relaxed family for {len(found)} of {len(study.pairs)} rows above: {why}.", "note"
+        )
+        for why, found in without.items()
+    ]
+    names = ("problem", "reading", "formulation", *_ANSWER)
+    return Section("optima", _OPTIMA, (Grid(names, tuple(rows)), *notes, *blocks))
+
+
+def _by_joint(study: Study, pid: str, rid: str) -> bool:
+    problem = study.problem(pid, rid)
+    return problem.coupling is Coupling.PER_JOINT and len(problem.joints) > 1
+
+
+def _joints(study: Study, pid: str, rid: str) -> Iterator[Block]:
+    answer = study.per_joint(pid, rid)
+    rows = []
+    for label, solution in zip(answer.problem.joints, answer.joints, strict=True):
+        claims = [
+            c
+            for c in study.case.claims
+            if isinstance(c, DurationsClaim) and c.joint == label and c.problem in (None, pid)
+        ]
+        shown: dict[str, list[str]] = {}
+        gaps = []
+        for claim in claims:
+            total = study.claim_total(claim, rid)
+            reference = reference_of(solution)
+            if total is not None and reference is not None:
+                shown.setdefault(total[0], []).append(claim.where)
+                kept = study.claim_rounding(claim, pid, rid).verdict in ("keeps", "consistent")
+                gaps.append(_gap_text(gap(total[1], reference, feasible=kept)))
+        rows.append(
+            (
+                text(label),
+                *_answer(solution),
+                text("\n".join(f"{t} ({'; '.join(where)})" for t, where in shown.items())),
+                text("\n".join(dict.fromkeys(gaps))),
+            )
+        )
+    names = ("joint", *_ANSWER, "printed", "gap")
+    yield Prose(f"Each joint by itself: {pid}, {rid}", "heading")
+    yield Grid(names, tuple(rows))
+    yield Prose(_procedure(answer), "note")
+
+
+def _gap_text(distance: Gap) -> str:
+    return f"{distance.percent} ({distance.kind})"
+
+
+def _procedure(answer: PerJointSolution) -> str:
+    if answer.check is None:
+        return f"The longest durations are not known: {answer.why}."
+    parts = [
+        f"Longest duration of each segment at these optima: {answer.total_time:.6f} s "
+        f"(check: {answer.check.verdict}). That total is a procedure's output, not an optimum."
+    ]
+    for r in answer.ranges:
+        parts.append(
+            f"While every joint stays within {r.slack:g} s of its own optimum it ranges from "
+            f"{r.lowest:.6f} to {r.highest:.6f} s."
+        )
+    return " ".join(parts)
+
+
+# --- sensitivities --------------------------------------------------------------------------------
+
+
+def sensitivities(one: CaseAudit) -> Section:
+    """What 10 % more of each active limit buys, to first order."""
+    title = "What 10 % more of a limit buys"
+    if not one.study.posed:
+        return Section("sensitivities", title, ())
+    rows = []
+    for pid, rid in one.study.pairs:
+        solution = one.study.optimum(pid, rid)
+        bought: defaultdict[tuple[str, str], list[float]] = defaultdict(list)
+        for a in solution.active:
+            where = f"joint {a.joint}" if a.joint is not None else f"segment {a.segment + 1}"
+            bought[where, a.quantity].append(a.sensitivity)
+        for (where, quantity), changes in bought.items():
+            change = sum(changes)
+            rows.append(
+                (
+                    text(pid),
+                    text(rid),
+                    text(where),
+                    text(quantity),
+                    number(len(changes)),
+                    number(f"{change:+.6f} s"),
+                    number(f"{100 * change / solution.total_time:+.3f} %"),
+                )
+            )
+    note = Prose(
+        "First-order change of the total for 10 % more of each limit that is reached, "
+        "from the multipliers of the optimum with shared durations.",
+        "note",
+    )
+    names = ("problem", "reading", "limit of", "quantity", "peaks at it", "changes the total", "by")
+    body: Block = Grid(names, tuple(rows)) if rows else Prose("No limit is reached.")
+    return Section("sensitivities", title, (note, body))
+
+
+# --- replays --------------------------------------------------------------------------------------
+
+
+def replay_rows(study: Study, pid: str) -> list[tuple[Cell, ...]]:
+    """Totals of every algorithm over its seeds, under the listed choices and each one changed."""
+    rid = study.main_reading
+    reference = reference_of(study.optimum(pid, rid))
+    rows = []
+    for algorithm in study.case.algorithms:
+        for name, totals in study.variant_totals(algorithm.id, pid, rid).items():
+            s = spread(totals)
+            known = np.isfinite(s.median) and reference is not None
+            away = gap(s.median, reference).percent if known and reference is not None else None
+            rows.append(
+                (
+                    text(algorithm.id),
+                    text(name),
+                    number(s.runs),
+                    number(s.failed),
+                    *(
+                        number(seconds(x) if np.isfinite(x) else None)
+                        for x in (s.lowest, s.median, s.highest)
+                    ),
+                    number(away),
+                )
+            )
+    return rows
+
+
+REPLAY_COLUMNS = (
+    "algorithm",
+    "choices",
+    "runs",
+    "without answer",
+    "shortest",
+    "median",
+    "longest",
+    "median beside the optimum",
+)

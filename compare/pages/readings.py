@@ -1,0 +1,117 @@
+"""The readings of a case side by side, as a section of its page."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+from ...problem import Case
+from ...problem.curves import ClampedBSpline, Parameters, clamped_readings
+from ..audits import CaseAudit, Outcome, ReadingsSummary, answers, holding, segments
+from .blocks import (
+    Block,
+    Cell,
+    Folded,
+    Grid,
+    Prose,
+    Section,
+    number,
+    text,
+    word,
+)
+
+
+def side_by_side(one: CaseAudit) -> Section:
+    """What each reading makes of the printed answers, and what holds whatever the reading."""
+    blocks: list[Block] = []
+    summary = one.readings
+    if summary is None:
+        blocks.append(Prose("The case has one reading."))
+    else:
+        blocks += [Prose(sentence) for sentence in (*answers(summary), *holding(summary))]
+        blocks += _outcomes(one, summary) if summary.outcomes else [_unposed(one)]
+    blocks += _determined(one.case)
+    return Section("side-by-side", "The readings side by side", tuple(blocks))
+
+
+def _outcomes(one: CaseAudit, summary: ReadingsSummary) -> list[Block]:
+    """One table for each printed answer, or for each problem without one."""
+    default = one.case.default_reading.id
+    printed: dict[tuple[str | None, str], list[Outcome]] = {}
+    for outcome in summary.outcomes:
+        printed.setdefault((outcome.claim, outcome.problem), []).append(outcome)
+    names = ("reading", "limits", "over a limit", "× to limits", "optimum", "printed total")
+    grids: list[Block] = []
+    for (claim, problem), own in printed.items():
+        rows = tuple(_row(outcome, default) for outcome in own)
+        grids.append(Grid(names, rows, f"{claim} ({problem})" if claim else problem).filled)
+    note = (
+        "Limits are judged over everything that prints alike, digits rounded or cut off; jumps and "
+        "the segments over a limit are those of the printed point. × to limits: all durations "
+        "times this just reach the limits, jumps apart. The printed total is beside the optimum."
+    )
+    return [*grids, Prose(note, "note")]
+
+
+def _row(outcome: Outcome, default: str) -> tuple[Cell, ...]:
+    mark = "\n(default)" if outcome.reading == default else ""
+    optimum = None if outcome.optimum is None else f"{outcome.optimum:.6f} s\n{outcome.evidence}"
+    over = ""
+    if outcome.excesses:
+        worst = max(outcome.excesses, key=lambda e: e.ratio)
+        whose = f"joint {worst.joint} {worst.quantity}" if worst.joint else worst.quantity
+        plural = "s" if len(outcome.excesses) > 1 else ""
+        over = f"segment{plural} {segments(outcome.excesses)}\n{whose}, ratio {worst.ratio:.4g}"
+    jumps = f"\n{outcome.jumps} velocity jumps" if outcome.jumps else ""
+    limits = text(None) if outcome.keeping is None else word(outcome.keeping)
+    return (
+        text(outcome.reading + mark),
+        replace(limits, text=limits.text + jumps),
+        text(over),
+        number(None if outcome.stretch is None else f"{outcome.stretch:.4f}"),
+        number(optimum),
+        text(None if outcome.gap is None else f"{outcome.gap.percent}\n{outcome.gap.kind}"),
+    )
+
+
+def _unposed(one: CaseAudit) -> Grid:
+    """Curve and limits of each reading, where nothing can be computed for want of way-points."""
+    rows = []
+    for pid, rid in one.case.selections():
+        if rid not in one.study.readings:
+            continue
+        curve, limits, _, _ = one.case.posing(pid, rid).data()
+        rows.append(
+            (
+                text(rid),
+                text(pid),
+                text(curve.name),
+                text(_listed(limits.velocity)),
+                text(_listed(limits.acceleration)),
+            )
+        )
+    names = ("reading", "problem", "curve", "velocity limits, rad/s", "acceleration limits, rad/s²")
+    return Grid(names, tuple(rows), "What each reading poses, way-points apart")
+
+
+def _listed(limits: Iterable[float]) -> str:
+    every = [f"{v:.6g}" for v in limits]
+    return every[0] if len(set(every)) == 1 else ", ".join(every)
+
+
+def _determined(case: Case) -> list[Block]:
+    """Which degrees and knots the end conditions of a clamped B-spline determine."""
+    curves = [case.posing(pid, rid).interpolant() for pid, rid in case.selections()]
+    curve = next((c for c in curves if isinstance(c, ClampedBSpline)), None)
+    if curve is None:
+        return []
+    count = len(curve.waypoint_breaks)
+    rows = tuple(
+        (number(r.degree), text(str(r.knots)), text(str(r.count)), text(r.words))
+        for r in clamped_readings(count, curve.end_orders)
+        if r.parameters is Parameters.TIMES
+    )
+    grid = Grid(("degree", "knots", "count", "what holds"), rows, prose=True)
+    return [
+        Folded(f"Degrees and knots through {count} way-points, and what they determine", (grid,))
+    ]

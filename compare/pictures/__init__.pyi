@@ -1,0 +1,30 @@
+from .drawing import Picture, embedded, svg
+from .instances import family_picture
+from .jumps import jump_picture, velocity_jumps
+from .motion import motion_picture
+from .polygon import polygon_picture
+from .searches import Runs, convergence, endings
+from .tent import tent_picture, tent_scatter
+from .totals_map import landscape
+from .waterfall import seconds, waterfall_picture
+from .workspace import workspace_picture
+
+__all__ = [
+    "Picture",
+    "Runs",
+    "convergence",
+    "embedded",
+    "endings",
+    "family_picture",
+    "jump_picture",
+    "landscape",
+    "motion_picture",
+    "polygon_picture",
+    "seconds",
+    "svg",
+    "tent_picture",
+    "tent_scatter",
+    "velocity_jumps",
+    "waterfall_picture",
+    "workspace_picture",
+]

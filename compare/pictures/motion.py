@@ -1,0 +1,289 @@
+"""Pictures of a motion: angle and derivatives over time, with limits, peaks and way-points."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import ArrayLike, NDArray
+
+from ...problem import (
+    QUANTITIES,
+    TOLERANCE,
+    Check,
+    Extremum,
+    Problem,
+    Trajectory,
+    TrajgapError,
+    extrema,
+    fit,
+)
+from ...problem.curves import ClockedTrajectory, numerators
+from .drawing import BLUE, GRID, INK, PAPER, RED, Picture, drawing, finish, shown
+
+UNITS = {"position": "rad", "velocity": "rad/s", "acceleration": "rad/s²", "jerk": "rad/s³"}
+_SAMPLES = 48
+_OFF_SCALE = 0.12
+"""Share of a limit below which drawing the limit would flatten the curve."""
+
+
+def motion_picture(
+    problem: Problem,
+    durations: ArrayLike,
+    *,
+    title: str,
+    check: Check | None = None,
+    note: str = "",
+    nodal: ArrayLike | None = None,
+) -> Picture:
+    """Angle, velocity, acceleration (and jerk, if limited) over time, one row per joint.
+
+    Parameters
+    ----------
+    problem : Problem
+    durations : array_like, shape (segments,) or (joints, segments)
+        Segment durations, s, shared by all joints or of each joint by itself.
+    title : str
+    check : Check, optional
+        Its verdict is written below the picture.
+    note : str
+        Further words below the picture, such as the verdict over the rounding box.
+    nodal : array_like, shape (free, joints), optional
+        Free derivatives of an under-determined interpolant.
+
+    Returns
+    -------
+    Picture
+        Limits are dashed, largest values are marked at their exact places, and stretches beyond a
+        limit are red.
+
+    Raises
+    ------
+    TrajgapError
+        If the durations have the wrong shape.
+    """
+    h = np.asarray(durations, dtype=np.float64)
+    joints = len(problem.joints)
+    if h.shape not in ((problem.segments,), (joints, problem.segments)):
+        raise TrajgapError(
+            f"curves: expected durations of shape ({problem.segments},) or "
+            f"({joints}, {problem.segments}), got {h.shape}"
+        )
+    if h.ndim == 1:
+        motion = fit(problem.interpolant, problem.waypoints, h, _array(nodal))
+        rows = [(motion, j) for j in range(joints)]
+    else:
+        rows = [
+            (fit(problem.interpolant, problem.waypoints[:, j : j + 1], h[j]), 0)
+            for j in range(joints)
+        ]
+    orders = [0, 1, 2] + ([3] if np.isfinite(problem.limits.jerk).any() else [])
+    description = "; ".join(
+        _words(problem, *rows[j], j, r) for j in range(joints) for r in orders if r
+    )
+    with drawing():
+        figure = Picture(title, description, 3.3 * len(orders), 0.95 + 1.45 * joints)
+        grid = figure.subplots(joints, len(orders), squeeze=False, sharex="all")
+        for j, (trajectory, column) in enumerate(rows):
+            for axes, r in zip(grid[j], orders, strict=True):
+                _panel(axes, problem, trajectory, column, j, r)
+        for axes in grid[-1]:
+            axes.set_xlabel("time, s")
+        key = "○ way-point   ● largest value   - - limit   red: beyond a limit"
+        if check is not None:
+            key += f"   ·   for all t: {check.verdict}"
+        finish(figure, key + (f"   ·   {shown(note, 90)}" if note else ""))
+    return figure
+
+
+def _array(values: ArrayLike | None) -> NDArray[np.float64] | None:
+    return None if values is None else np.asarray(values, dtype=np.float64)
+
+
+def _limits_of(problem: Problem, joint: int, order: int) -> tuple[float, float]:
+    limits = problem.limits
+    if order == 0:
+        return float(limits.position_lower[joint]), float(limits.position_upper[joint])
+    top = float(limits.derivatives[joint, order - 1])
+    return -top, top
+
+
+def _largest(trajectory: Trajectory, column: int, order: int) -> Extremum:
+    return max(extrema(trajectory, column, order), key=lambda e: abs(e.value))
+
+
+def _name(order: int) -> str:
+    return ("position", *QUANTITIES)[order]
+
+
+def _words(problem: Problem, trajectory: Trajectory, column: int, joint: int, order: int) -> str:
+    top = _largest(trajectory, column, order)
+    quantity = _name(order)
+    limit = _limits_of(problem, joint, order)[1]
+    text = (
+        f"joint {problem.joints[joint]}: largest {quantity} {top.value:.5g} {UNITS[quantity]} "
+        f"at {top.time:.4g} s"
+    )
+    return text + (f", limit {limit:.5g}" if np.isfinite(limit) else ", no limit")
+
+
+def _panel(
+    axes: Axes, problem: Problem, trajectory: Trajectory, column: int, joint: int, order: int
+) -> None:
+    quantity = _name(order)
+    times, values = sampled(trajectory, column, order)
+    low, high = _limits_of(problem, joint, order)
+    for b in trajectory.breaks:
+        axes.axvline(float(b), color=GRID, linewidth=0.7, zorder=0)
+    axes.axhline(0.0, color=GRID, linewidth=0.7, zorder=0)
+    axes.plot(times, values, color=BLUE, linewidth=1.4, zorder=2)
+    size = float(np.nanmax(np.abs(values)))
+    drawn = [
+        x for x in (low, high) if np.isfinite(x) and (order == 0 or size > _OFF_SCALE * abs(x))
+    ]
+    for limit in drawn:
+        axes.axhline(limit, color=INK, linestyle=(0, (4, 3)), linewidth=0.9, zorder=1)
+    for start, end in beyond(trajectory, column, order, low, high):
+        axes.axvspan(start, end, facecolor=RED, edgecolor=RED, alpha=0.22, linewidth=1.0, zorder=1)
+        inside = (times >= start) & (times <= end)
+        axes.plot(times[inside], values[inside], color=RED, linewidth=2.0, zorder=3)
+    axes.set_ylabel(UNITS[quantity])
+    if order == 0:
+        axes.plot(
+            trajectory.breaks[list(problem.interpolant.waypoint_breaks)],
+            problem.waypoints[:, joint],
+            linestyle="none",
+            marker="o",
+            markersize=4.5,
+            markerfacecolor=PAPER,
+            markeredgecolor=INK,
+            zorder=4,
+        )
+        axes.set_title(f"joint {shown(problem.joints[joint], 12)}, angle", weight="bold")
+    else:
+        axes.set_title(quantity)
+        _mark_peak(axes, _largest(trajectory, column, order), high)
+    extent = np.concatenate([[np.nanmin(values), np.nanmax(values)], drawn])
+    room = 0.1 * (float(np.ptp(extent)) or 1.0)
+    axes.set_ylim(float(extent.min()) - room, float(extent.max()) + room)
+    axes.margins(x=0.02)
+    axes.locator_params(axis="y", nbins=4)
+    axes.locator_params(axis="x", nbins=6)
+
+
+def _mark_peak(axes: Axes, top: Extremum, limit: float) -> None:
+    over = abs(top.value) > limit * (1 + TOLERANCE)
+    colour = RED if over else INK
+    axes.plot([top.time], [top.value], marker="o", markersize=4.5, color=colour, zorder=5)
+    text = f"{top.value:.4f}".replace("-", "−")
+    if np.isfinite(limit) and limit > 0:
+        share = 100 * abs(top.value) / limit
+        text += f", {share:.2f} % of ±{limit:.5g}"
+    elif np.isfinite(limit):
+        text += ", limit 0"
+    axes.set_title(text, color=colour, fontsize=8, loc="right")
+
+
+def sampled(
+    trajectory: Trajectory, column: int, order: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Times and values, with the exact extrema among them and a gap where the curve jumps.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+    column, order : int
+        Joint and derivative.
+
+    Returns
+    -------
+    times, values : ndarray, shape (samples,)
+        s and rad/sᵒʳᵈᵉʳ; a value is NaN at a jump.
+    """
+    times: list[NDArray[np.float64]] = []
+    values: list[NDArray[np.float64]] = []
+    scale = max(abs(e.value) for e in extrema(trajectory, column, order)) or 1.0
+    for k, start in enumerate(trajectory.breaks[:-1]):
+        own = [e.s for e in extrema(trajectory, column, order) if e.segment == k]
+        s = np.unique(np.concatenate([np.linspace(0.0, 1.0, _SAMPLES + 1), own]))
+        v = _valued(trajectory, k, column, order, s)
+        if values and abs(values[-1][-1] - v[0]) > 1e-6 * scale:
+            times.append(np.array([start]))
+            values.append(np.array([np.nan]))
+        times.append(_times(trajectory, k, s))
+        values.append(v)
+    return np.concatenate(times), np.concatenate(values)
+
+
+def _valued(
+    trajectory: Trajectory, piece: int, column: int, order: int, s: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Derivative in time at places of a piece."""
+    if isinstance(trajectory, ClockedTrajectory):
+        return np.array([trajectory.value(piece, column, order, float(x)) for x in s])
+    found = np.polynomial.polynomial.polyval(s, trajectory.derivative(piece, column, order))
+    return np.asarray(found, dtype=np.float64)
+
+
+def _times(trajectory: Trajectory, piece: int, s: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Times of places of a piece, s."""
+    if isinstance(trajectory, ClockedTrajectory):
+        found = np.polynomial.polynomial.polyval(s, trajectory.clock[piece])
+        return np.asarray(found, dtype=np.float64)
+    return np.asarray(trajectory.breaks[piece] + s * trajectory.durations[piece])
+
+
+def _excess(
+    trajectory: Trajectory, piece: int, column: int, order: int, level: float
+) -> NDArray[np.float64]:
+    """Polynomial on a piece that vanishes where a derivative has the value ``level``."""
+    if order == 0 or not isinstance(trajectory, ClockedTrajectory):
+        found = np.asarray(trajectory.derivative(piece, column, order), dtype=np.float64).copy()
+        found[0] -= level
+        return found
+    # With a clock the derivative is N/t′²ʳ⁻¹, and t′ > 0.
+    clock = trajectory.clock[piece]
+    above = numerators(trajectory.scaled[piece, :4, column], clock, order)[-1]
+    below = np.polynomial.polynomial.polypow(clock[1:] * np.arange(1, clock.size), 2 * order - 1)
+    return np.asarray(np.polynomial.polynomial.polysub(np.real(above), level * below))
+
+
+def beyond(
+    trajectory: Trajectory, column: int, order: int, low: float, high: float
+) -> Sequence[tuple[float, float]]:
+    """Stretches of time in which a derivative lies beyond its limits, from exact crossings.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+    column, order : int
+        Joint and derivative.
+    low, high : float
+        Limits in rad/sᵒʳᵈᵉʳ; an excess within the checker's relative tolerance does not count.
+
+    Returns
+    -------
+    sequence of (float, float)
+        Start and end, s; stretches that touch are joined.
+    """
+    found: list[tuple[float, float]] = []
+    slack = TOLERANCE * max((abs(x) for x in (low, high) if np.isfinite(x)), default=0.0)
+    for k in range(len(trajectory.durations)):
+        cuts = [0.0, 1.0]
+        for limit in (low - slack, high + slack):
+            if np.isfinite(limit):
+                shifted = _excess(trajectory, k, column, order, limit)
+                roots = np.polynomial.polynomial.polyroots(np.trim_zeros(shifted, "b"))
+                cuts += [float(r.real) for r in roots if abs(r.imag) < 1e-9 and 0 < r.real < 1]
+        cuts.sort()
+        for s0, s1 in pairwise(cuts):
+            v = float(_valued(trajectory, k, column, order, np.array([(s0 + s1) / 2]))[0])
+            if s1 > s0 and not low - slack <= v <= high + slack:
+                t0, t1 = map(float, _times(trajectory, k, np.array([s0, s1])))
+                if found and t0 - found[-1][1] <= 1e-12 * trajectory.total_time:
+                    found[-1] = (found[-1][0], t1)
+                else:
+                    found.append((t0, t1))
+    return found

@@ -1,0 +1,307 @@
+"""Picture of the total time over the simplex of three duration shares."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import BoundaryNorm, ListedColormap
+from matplotlib.patches import Polygon
+from matplotlib.tri import Triangulation
+from numpy.typing import ArrayLike, NDArray
+
+from ...nlp import Solution
+from ...problem import Problem, TrajgapError, evaluate
+from .drawing import (
+    INK,
+    MUTED,
+    ORANGE,
+    PURPLE,
+    RED,
+    SKY,
+    Picture,
+    drawing,
+    finish,
+    shown,
+)
+
+Array = NDArray[np.float64]
+
+LEVELS = (0.0, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
+"""Contours in percent above the reference total."""
+_BELOW = 0.01
+"""A tight total this many percent below the optimum is drawn apart: it needs an explanation."""
+_DIVISIONS = 120
+_CORNERS: Array = np.array([[0.0, 0.0], [1.0, 0.0], [0.5, np.sqrt(3) / 2]])
+# On the map, whose colours do not follow the page's theme, neither may these.
+_DARK = "#101418"
+_LIGHT = "#fefefe"
+_PRINTED = ("D", "s", "P", "X")
+_ENDS = (("o", SKY), ("^", PURPLE), ("v", _LIGHT), ("<", ORANGE))
+
+
+def landscape(
+    problem: Problem,
+    optimum: Solution,
+    printed: Sequence[tuple[str, ArrayLike]],
+    ends: Mapping[str, ArrayLike],
+    *,
+    title: str,
+) -> Picture:
+    """Least total over the shares of three durations: all shares, and the part that matters.
+
+    Every point is a ratio h₁ : h₂ : h₃; its height is T·c*, the total of the durations of that
+    ratio stretched until a limit is reached, from the checker's exact peaks.
+
+    Parameters
+    ----------
+    problem : Problem
+        With three segments.
+    optimum : Solution
+        Reference of the contours.
+    printed : sequence of (str, array_like)
+        Label and printed durations, shape (3,), s.
+    ends : mapping of str to array_like
+        Durations that each heuristic ended with, shape (runs, 3), s.
+    title : str
+
+    Returns
+    -------
+    Picture
+        Where a bound on the durations forbids the tight total, the map is hatched.
+
+    Raises
+    ------
+    TrajgapError
+        If the problem has not three segments, its trajectories have free derivatives, or there is
+        no optimum.
+    """
+    if problem.segments != 3:
+        raise TrajgapError(f"landscape: drawn for 3 segments, the problem has {problem.segments}")
+    if optimum.durations is None:
+        raise TrajgapError("landscape: the problem has no optimum to compare with")
+    best = optimum.total_time if optimum.infimum is None else optimum.infimum
+    points = [(label, _shares(h)) for label, h in printed]
+    runs = {name: _shares(h) for name, h in ends.items()}
+    centre = _shares(optimum.durations)
+    every = np.vstack([centre, *(p for _, p in points), *runs.values()])
+    every = every[np.isfinite(every).all(axis=1)]
+    description = _words(problem, best, centre[0], printed, runs)
+    with drawing():
+        figure = Picture(title, description, 9.6, 5.0)
+        whole, part = figure.subplots(1, 2)
+        colours = matplotlib.colormaps["cividis_r"](np.linspace(0, 1, len(LEVELS)))
+        below = False
+        for axes, corner in ((whole, np.zeros(3)), (part, _window(every))):
+            below |= _map(axes, problem, corner, best, colours)
+            _mark(axes, corner, centre, points, runs)
+        corner = _window(every)
+        inner = corner + (1 - corner.sum()) * np.eye(3)
+        whole.add_patch(
+            Polygon(inner @ _CORNERS, fill=False, edgecolor=_DARK, linewidth=1.1, zorder=4)
+        )
+        whole.set_title("all shares of the total", loc="center", pad=2)
+        part.set_title("enlarged", loc="center", pad=2)
+        _key(figure, colours, best)
+        handles, labels = part.get_legend_handles_labels()
+        figure.legend(
+            handles,
+            labels,
+            loc="outside lower left",
+            ncols=2,
+            title=_note(problem, below),
+            title_fontsize=8,
+            alignment="left",
+        )
+        finish(figure)
+    return figure
+
+
+def _shares(durations: ArrayLike) -> Array:
+    h = np.atleast_2d(np.asarray(durations, dtype=np.float64))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        shares = h / h.sum(axis=1, keepdims=True)
+    shares[~(h > 0).all(axis=1)] = np.nan
+    return np.asarray(shares)
+
+
+def _window(shares: Array) -> Array:
+    """Lower ends of the three shares of a triangle that holds all points with some room."""
+    low = shares.min(axis=0)
+    side = 1 - low.sum()
+    # At least a fifth of the simplex, so that a tight cloud still shows its surroundings.
+    room = max(0.12 * side, (0.2 - side) / 3, 0.02)
+    return np.asarray(np.maximum(low - room, 0.0))
+
+
+def _words(
+    problem: Problem,
+    best: float,
+    centre: Array,
+    printed: Sequence[tuple[str, ArrayLike]],
+    runs: Mapping[str, Array],
+) -> str:
+    parts = [
+        f"optimum {best:.6g} s at shares " + ", ".join(f"{100 * s:.1f} %" for s in centre),
+        *(
+            f"{label}: {100 * (tight_total(problem, _shares(h))[0] / best - 1):+.3g} % after free "
+            "rescaling"
+            for label, h in printed
+        ),
+        *(f"{name}: {len(s)} end points" for name, s in runs.items()),
+    ]
+    return "; ".join(parts)
+
+
+def tight_total(problem: Problem, shares: Array) -> Array:
+    """Total after free rescaling of durations with the given shares.
+
+    Parameters
+    ----------
+    problem : Problem
+    shares : ndarray, shape (points, segments)
+        Positive, summing to 1.
+
+    Returns
+    -------
+    ndarray, shape (points,)
+        T·c* in s; inf where a joint with limit 0 moves.
+    """
+    return evaluate(problem, shares).stretch
+
+
+def _grid(corner: Array) -> tuple[Array, NDArray[np.int64]]:
+    """Shares on a triangular grid just inside a sub-triangle, and the triangles between them."""
+    n = _DIVISIONS
+    index = np.array([(i, j) for i in range(n + 1) for j in range(n + 1 - i)])
+    local = np.column_stack([index, n - index.sum(axis=1)]) / n
+    local = local * (1 - 3e-4) + 1e-4
+    number = {(int(i), int(j)): k for k, (i, j) in enumerate(index)}
+    triangles = []
+    for i in range(n):
+        for j in range(n - i):
+            a, b, c = number[i, j], number[i + 1, j], number[i, j + 1]
+            triangles.append((a, b, c))
+            if (i + 1, j + 1) in number:
+                triangles.append((b, number[i + 1, j + 1], c))
+    return corner + (1 - corner.sum()) * local, np.array(triangles)
+
+
+def _place(corner: Array, shares: Array) -> Array:
+    """Shares to the plane: the sub-triangle fills the unit triangle."""
+    return np.asarray(((shares - corner) / (1 - corner.sum())) @ _CORNERS)
+
+
+def _map(axes: Axes, problem: Problem, corner: Array, best: float, colours: Array) -> bool:
+    """Draw the contours; whether some point lies below the optimum."""
+    shares, triangles = _grid(corner)
+    total = tight_total(problem, shares)
+    x, y = _place(corner, shares).T
+    mesh = Triangulation(x, y, triangles)
+    top = 10 * best
+    excess = 100 * (np.minimum(total, top) / best - 1)
+    bands = axes.tricontourf(mesh, excess, levels=[-101.0, *LEVELS[1:], 1e9], colors=list(colours))
+    bands.set_edgecolor(_DARK)
+    bands.set_linewidth(0.4)
+    below = bool(excess.min() < -_BELOW)
+    if below:
+        axes.tricontourf(mesh, excess, levels=[-101.0, -_BELOW], colors=_LIGHT)
+    low, high = problem.duration_lower, problem.duration_upper
+    if (low > 0).any() or np.isfinite(high).any():
+        tight = shares * total[:, None]
+        margin = np.min(np.hstack([tight / np.maximum(low, 1e-12), high / tight]), axis=1)
+        axes.tricontourf(
+            mesh, np.minimum(margin, 2.0), levels=[-1.0, 1.0], colors="none", hatches=["xx"]
+        )
+        axes.tricontour(
+            mesh, np.minimum(margin, 2.0), levels=[1.0], colors=_DARK, linewidths=1.2,
+            linestyles="dashed",
+        )  # fmt: skip
+    axes.add_patch(Polygon(_CORNERS, fill=False, edgecolor=MUTED, linewidth=0.9, zorder=4))
+    _ticks(axes, corner)
+    axes.set_aspect("equal")
+    axes.set_axis_off()
+    axes.set_xlim(-0.12, 1.12)
+    axes.set_ylim(-0.14, 0.98)
+    return below
+
+
+def _ticks(axes: Axes, corner: Array) -> None:
+    """Label the edges with the shares of the three durations, in percent."""
+    side = 1 - corner.sum()
+    step = next(s for s in (0.01, 0.02, 0.05, 0.1, 0.2) if side / s <= 5.5)
+    places = (("right", "center"), ("center", "top"), ("left", "center"))
+    shifts = ((-0.03, 0.0), (0.0, -0.025), (0.03, 0.0))
+    for k in range(3):
+        first = (k + 1) % 3
+        start = step * np.ceil(corner[k] / step - 1e-9)
+        for value in np.arange(start, corner[k] + side + 1e-9, step):
+            # Share k grows from the edge opposite its corner; its labels stand on one edge.
+            share = corner.copy()
+            share[k] = value
+            share[first] += corner[k] + side - value
+            x, y = _place(corner, share)
+            dx, dy = shifts[(k + 1) % 3]
+            ha, va = places[(k + 1) % 3]
+            axes.plot([x, x + 0.5 * dx], [y, y + 0.5 * dy], color=MUTED, linewidth=0.8)
+            label = f"{abs(round(100 * value, 6)):g}"
+            axes.text(x + 0.7 * dx, y + 0.7 * dy, label, ha=ha, va=va, fontsize=7.5)
+    corners = ((-0.07, -0.06), (1.07, -0.06), (0.5, 0.93))
+    edges = ((0.5, -0.12, 0), (0.87, 0.47, -60), (0.13, 0.47, 60))
+    for k, name in enumerate(("h₁", "h₂", "h₃")):
+        x, y = corners[k]
+        axes.text(x, y, name, ha="center", va="center", fontsize=10, weight="bold")
+        x, y, angle = edges[k]
+        axes.text(
+            x, y, f"{name}, %", ha="center", va="center", rotation=angle, fontsize=8, color=MUTED
+        )
+
+
+def _mark(
+    axes: Axes,
+    corner: Array,
+    centre: Array,
+    printed: Sequence[tuple[str, Array]],
+    runs: Mapping[str, Array],
+) -> None:
+    for i, (name, shares) in enumerate(runs.items()):
+        marker, colour = _ENDS[i % len(_ENDS)]
+        x, y = _place(corner, shares).T
+        axes.scatter(
+            x, y, s=20, marker=marker, facecolors=colour, edgecolors=_DARK, linewidths=0.5,
+            zorder=5, label=f"{len(shares)} runs of {shown(name, 40)}",
+        )  # fmt: skip
+    for i, (label, shares) in enumerate(printed):
+        x, y = _place(corner, shares).T
+        axes.scatter(
+            x, y, s=52, marker=_PRINTED[i % len(_PRINTED)], facecolors=RED, edgecolors=_LIGHT,
+            linewidths=1.0, zorder=6, label=f"printed: {shown(label, 44)}",
+        )  # fmt: skip
+    x, y = _place(corner, centre).T
+    axes.scatter(
+        x, y, s=130, marker="*", facecolors=_LIGHT, edgecolors=_DARK, linewidths=1.0, zorder=7,
+        label="optimum",
+    )  # fmt: skip
+
+
+def _note(problem: Problem, below: bool) -> str:
+    text = (
+        "Each point: durations of these shares, stretched until a limit is reached (tight total)."
+    )
+    if (problem.duration_lower > 0).any() or np.isfinite(problem.duration_upper).any():
+        text += " Hatched: a bound on the durations forbids it."
+    return text + (" White: below the optimum." if below else "")
+
+
+def _key(figure: Picture, colours: Array, best: float) -> None:
+    edges = list(range(len(LEVELS) + 1))
+    mapping = matplotlib.cm.ScalarMappable(
+        BoundaryNorm(edges, len(LEVELS)), ListedColormap(colours)
+    )
+    bar = figure.colorbar(mapping, ax=figure.axes, shrink=0.75, aspect=24, pad=0.02)
+    bar.set_ticks(edges[:-1], labels=[f"+{v:g} %" if v else f"{best:.4f} s" for v in LEVELS])
+    bar.ax.tick_params(length=0)
+    bar.outline.set_edgecolor(INK)
+    bar.set_label("tight total, above the optimum")

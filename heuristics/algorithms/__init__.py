@@ -1,0 +1,5 @@
+"""The papers' algorithms, one a file, equation by equation."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

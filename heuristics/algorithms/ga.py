@@ -1,0 +1,210 @@
+"""The standard genetic algorithm: fitness-proportionate selection, crossover, mutation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..objective import Array, Bounds, Objective
+from ..settings import choice, clean, reject, share, whole
+from .genes import (
+    READERS,
+    Crossover,
+    Encoding,
+    FitnessRule,
+    Genetics,
+    Mutated,
+    Mutation,
+    elite_kept,
+    fitness_values,
+    roulette,
+    shuffled,
+)
+from .population import Population, first_population, followed
+from .swarm import spread
+
+SHARED_OPEN = (
+    "population, iterations: not printed; 40 and 200",
+    "encoding, resolution: not printed; real numbers (binary: a lattice at least as fine as the "
+    "printed 'time resolution 0.001 s')",
+    "position_range: no range of the durations is printed; [0.1, 2] s, around the printed 0.66 to "
+    "1.00 s",
+    "fitness_rule: the fitness of a minimisation is not printed, 'the largest fitness' is best; "
+    "1/T, and 0 for an infeasible individual",
+    "how limits enter the fitness is not printed; death penalty",
+    "crossover, mutation, mutated, mutation_reach: operators are not printed; arithmetic crossover "
+    "of random pairs, a mutated gene is drawn anew, the probability is that of a gene",
+    "elite: whether the best individual survives is not printed; it does not, but is reported",
+    "ties: the best is replaced only by a strictly smaller total; the first individual leads",
+    "budget: N iterations are N generations after the initial one, N + 1 evaluations of the "
+    "population",
+)
+
+OPEN_CHOICES = (
+    "selection: 'roulette in proportion to the fitness' is said of the traditional algorithm; "
+    "kept, a tournament of two for comparison",
+    "crossover_rate, mutation_rate: not printed for the traditional algorithm; 0.8 and 0.05",
+    *SHARED_OPEN,
+)
+"""What the paper leaves open, and what was chosen."""
+
+
+class Selection(StrEnum):
+    """How parents are selected."""
+
+    ROULETTE = "roulette"
+    """With chances in proportion to the fitness."""
+    TOURNAMENT = "tournament"
+    """The fitter of two random individuals; the first of two equal ones."""
+
+
+@dataclass(frozen=True)
+class GA:
+    """Standard GA, the "traditional" one of `irb1600-ga-cubic-bspline`, and its settings.
+
+    Parameters
+    ----------
+    population : int
+        Even; not printed.
+    iterations : int
+        Generations after the initial one; not printed.
+    crossover_rate, mutation_rate : float
+        Not printed.
+    selection : Selection
+        "roulette" (said of it) or "tournament".
+    fitness_rule : FitnessRule
+        "inverse" or "complement"; not printed.
+    encoding : Encoding
+        "real" or "binary"; not printed.
+    resolution : float
+        Largest step of the binary encoding, s; printed as the time resolution.
+    position_range : tuple of float
+        Range that durations are drawn, encoded and mutated in, s; not printed.
+    crossover : Crossover
+        "arithmetic", "one-point" or "uniform"; not printed. Arithmetic crossover of bit strings
+        acts on what they stand for.
+    mutation : Mutation
+        "redraw" or "creep"; not printed. Bits are flipped.
+    mutated : Mutated
+        "gene" or "individual"; not printed.
+    mutation_reach : float
+        Half-width of "creep" as a share of the range; not printed.
+    elite : int
+        Best individuals that survive in place of the worst children; not printed.
+    penalty : float
+        Total of an infeasible individual, s; not printed.
+
+    Raises
+    ------
+    TrajgapError
+        If a value has the wrong type, lies outside its range, or contradicts another one.
+
+    Notes
+    -----
+    Random numbers are drawn in this order. Initially: positions, individual by individual. At each
+    step: the selection (one number for each parent; for "tournament" two), the shuffling of the
+    parents, which pairs mate, the numbers of their crossover, which genes mutate (for "individual":
+    which individuals, then where), the size of each mutation (real encoding).
+    """
+
+    kind: ClassVar[str] = "ga"
+    open_choices: ClassVar[tuple[str, ...]] = OPEN_CHOICES
+
+    population: int = 40
+    iterations: int = 200
+    crossover_rate: float = 0.8
+    mutation_rate: float = 0.05
+    selection: Selection = Selection.ROULETTE
+    fitness_rule: FitnessRule = FitnessRule.INVERSE
+    encoding: Encoding = Encoding.REAL
+    resolution: float = 0.001
+    position_range: tuple[float, float] = (0.1, 2.0)
+    crossover: Crossover = Crossover.ARITHMETIC
+    mutation: Mutation = Mutation.REDRAW
+    mutated: Mutated = Mutated.GENE
+    mutation_reach: float = 0.1
+    elite: int = 0
+    penalty: float = np.inf
+
+    def __post_init__(self) -> None:
+        own = {
+            "crossover_rate": share(),
+            "mutation_rate": share(),
+            "selection": choice(Selection),
+            "elite": whole(0),
+        }
+        clean(self, self.kind, {**READERS, **own})
+        check_population(self.kind, self.population, self.elite, 2)
+        check_range(self.kind, self.position_range)
+
+    @property
+    def genetics(self) -> Genetics:
+        """Encoding and operators."""
+        return genetics_of(self)
+
+    def parents(self, fitness: Array, rng: np.random.Generator) -> NDArray[np.intp]:
+        """Draw as many parents as individuals."""
+        size = fitness.size
+        if self.selection is Selection.ROULETTE:
+            return roulette(fitness, rng.random(size))
+        rivals = (size * rng.random((2, size))).astype(np.intp)
+        first, second = rivals
+        winners: NDArray[np.intp] = np.where(fitness[second] > fitness[first], second, first)
+        return winners
+
+    def init(self, bounds: Bounds, rng: np.random.Generator, objective: Objective) -> Population:
+        """Draw and judge the initial population."""
+        drawn = spread(rng, self.position_range, (self.population, bounds.lower.size))
+        return first_population(self.genetics.on_lattice(drawn), objective)
+
+    def step(
+        self, before: Population, bounds: Bounds, rng: np.random.Generator, objective: Objective
+    ) -> Population:
+        """Make the next generation and judge it."""
+        fitness = fitness_values(before.fitness, self.penalty, self.fitness_rule)
+        pool = shuffled(before.positions[self.parents(fitness, rng)], rng)
+        return bred(
+            before, pool, self.genetics, self.crossover_rate, self.mutation_rate, self.elite,
+            rng, objective,
+        )  # fmt: skip
+
+
+def check_population(kind: str, population: int, elite: int, multiple: int) -> None:
+    """Refuse a population that cannot be paired or divided, or one of survivors only."""
+    if population % multiple:
+        raise reject(kind, "population", f"must be a multiple of {multiple}, got {population}")
+    if elite >= population:
+        raise reject(kind, "elite", f"{elite} survivors leave no room in {population}")
+
+
+def check_range(kind: str, span: tuple[float, float]) -> None:
+    """Refuse a range without width: nothing could be encoded or mutated."""
+    if not span[0] < span[1]:
+        raise reject(kind, "position_range", "has no width; give two different numbers")
+
+
+def genetics_of(settings: object) -> Genetics:
+    """Encoding and operators from the settings of the same names."""
+    return Genetics(**{name: getattr(settings, name) for name in Genetics.__dataclass_fields__})
+
+
+def bred(
+    before: Population,
+    pool: Array,
+    genetics: Genetics,
+    crossover_rate: float,
+    mutation_rate: float,
+    elite: int,
+    rng: np.random.Generator,
+    objective: Objective,
+) -> Population:
+    """Next generation from a shuffled mating pool, judged."""
+    children = genetics.offspring(pool, crossover_rate, mutation_rate, rng)
+    positions, totals = elite_kept(
+        before.positions, before.fitness, children, objective(children), elite
+    )
+    return followed(before, positions, totals)

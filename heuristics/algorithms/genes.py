@@ -1,0 +1,236 @@
+"""Genetic operators on durations: encoding, crossover and mutation of a mating pool."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...problem import TrajgapError
+from ..objective import Array
+from ..settings import Reader, choice, interval, number, share, whole
+from .swarm import held
+
+
+class Encoding(StrEnum):
+    """What a chromosome is made of."""
+
+    REAL = "real"
+    """One number for each duration."""
+    BINARY = "binary"
+    """A bit string for each duration, its lattice spread over the range."""
+
+
+class Crossover(StrEnum):
+    """How two parents make two children."""
+
+    ARITHMETIC = "arithmetic"
+    """α x + (1 − α) y and (1 − α) x + α y, one random α for each pair."""
+    ONE_POINT = "one-point"
+    """They swap all genes after a random place."""
+    UNIFORM = "uniform"
+    """They swap each gene with chance 1/2."""
+
+
+class Mutation(StrEnum):
+    """What happens to a mutated number; a mutated bit is flipped."""
+
+    REDRAW = "redraw"
+    """It is drawn anew, uniformly in the range."""
+    CREEP = "creep"
+    """It moves uniformly within ± a share of the range, and is held in the range."""
+
+
+class Mutated(StrEnum):
+    """What the mutation probability is the probability of."""
+
+    GENE = "gene"
+    """That a gene mutates."""
+    INDIVIDUAL = "individual"
+    """That one random gene of an individual mutates."""
+
+
+class FitnessRule(StrEnum):
+    """How a total to be minimised becomes a fitness f ≥ 0 to be maximised; infeasible: 0."""
+
+    INVERSE = "inverse"
+    """f = 1/T."""
+    COMPLEMENT = "complement"
+    """f = T_worst − T, with the worst feasible total of the population, which so gets 0 as well."""
+
+
+def fitness_values(totals: Array, penalty: float, rule: FitnessRule) -> Array:
+    """Fitness f of a population's totals, shape (members,), in 1/s or s.
+
+    Raises
+    ------
+    TrajgapError
+        If a total of 0 or less is to be inverted.
+    """
+    feasible = totals < penalty
+    fitness = np.zeros_like(totals)
+    if not feasible.any():
+        return fitness
+    if rule is FitnessRule.COMPLEMENT:
+        fitness[feasible] = totals[feasible].max() - totals[feasible]
+        return fitness
+    if (totals[feasible] <= 0).any():
+        raise TrajgapError(
+            "fitness_rule: 'inverse' needs positive objective values; take 'complement'"
+        )
+    fitness[feasible] = 1.0 / totals[feasible]
+    return fitness
+
+
+@dataclass(frozen=True)
+class Genetics:
+    """Encoding and operators; the fields are settings of the same names of `GA`."""
+
+    encoding: Encoding
+    crossover: Crossover
+    mutation: Mutation
+    mutated: Mutated
+    mutation_reach: float
+    position_range: tuple[float, float]
+    resolution: float
+
+    @cached_property
+    def bits(self) -> int:
+        """Bits for each duration: enough for steps no larger than the resolution."""
+        low, high = self.position_range
+        steps = int(np.ceil((high - low) / self.resolution * (1 - 1e-12)))
+        return max(1, steps.bit_length())
+
+    @property
+    def step(self) -> float:
+        """Distance of neighbouring lattice points of the binary encoding, s."""
+        low, high = self.position_range
+        return (high - low) / float((1 << self.bits) - 1)
+
+    def encoded(self, positions: Array) -> Array:
+        """Bits of the nearest lattice points, most significant first, (members, durations·bits)."""
+        low, high = self.position_range
+        index = np.rint((held(positions, low, high) - low) / self.step).astype(np.int64)
+        places = np.arange(self.bits)[::-1]
+        bits = (index[:, :, None] >> places) & 1
+        return bits.reshape(len(positions), -1).astype(np.float64)
+
+    def decoded(self, bits: Array) -> Array:
+        """Positions of bit strings, s."""
+        powers = 2.0 ** np.arange(self.bits)[::-1]
+        index = bits.reshape(len(bits), -1, self.bits) @ powers
+        decoded: Array = self.position_range[0] + index * self.step
+        return decoded
+
+    def on_lattice(self, positions: Array) -> Array:
+        """Positions as the encoding holds them."""
+        if self.encoding is Encoding.BINARY:
+            return self.decoded(self.encoded(positions))
+        return positions
+
+    def offspring(
+        self, pool: Array, crossover_rate: float, mutation_rate: float, rng: np.random.Generator
+    ) -> Array:
+        """Cross neighbours of a shuffled pool of even size, then mutate.
+
+        Draws whether each pair mates, its crossover's numbers, whether each gene (or individual)
+        mutates, then the numbers of the mutation.
+        """
+        if self.encoding is Encoding.REAL:
+            return self._mutated(crossed(pool, self.crossover, crossover_rate, rng),
+                                 mutation_rate, rng)  # fmt: skip
+        if self.crossover is Crossover.ARITHMETIC:
+            bits = self.encoded(crossed(pool, self.crossover, crossover_rate, rng))
+        else:
+            bits = crossed(self.encoded(pool), self.crossover, crossover_rate, rng)
+        flips = chosen(self.mutated, mutation_rate, bits.shape, rng)
+        return self.decoded(np.where(flips, 1.0 - bits, bits))
+
+    def _mutated(self, children: Array, rate: float, rng: np.random.Generator) -> Array:
+        low, high = self.position_range
+        where = chosen(self.mutated, rate, children.shape, rng)
+        size = rng.random(children.shape)
+        if self.mutation is Mutation.CREEP:
+            reach = self.mutation_reach * (high - low)
+            fresh = held(children + reach * (2.0 * size - 1.0), low, high)
+        else:
+            fresh = low + (high - low) * size
+        return np.where(where, fresh, children)
+
+
+def crossed(pool: Array, rule: Crossover, rate: float, rng: np.random.Generator) -> Array:
+    """Cross the pairs (0, 1), (2, 3), ... of a pool, each with chance ``rate``."""
+    first, second = pool[0::2], pool[1::2]
+    pairs, genes = first.shape
+    mates = rng.random((pairs, 1)) < rate
+    if rule is Crossover.ARITHMETIC:
+        part = rng.random((pairs, 1))
+        one, two = part * first + (1 - part) * second, (1 - part) * first + part * second
+    else:
+        if rule is Crossover.ONE_POINT:
+            cut = 1 + np.floor(rng.random((pairs, 1)) * (genes - 1))
+            swap = np.arange(genes) >= cut
+        else:
+            swap = rng.random((pairs, genes)) < 0.5
+        one, two = np.where(swap, second, first), np.where(swap, first, second)
+    children = np.empty_like(pool)
+    children[0::2], children[1::2] = np.where(mates, one, first), np.where(mates, two, second)
+    return children
+
+
+def chosen(
+    unit: Mutated, rate: float, shape: tuple[int, ...], rng: np.random.Generator
+) -> NDArray[np.bool_]:
+    """Draw which genes mutate."""
+    members, genes = shape
+    if unit is Mutated.GENE:
+        each: NDArray[np.bool_] = rng.random(shape) < rate
+        return each
+    which, place = rng.random((2, members, 1))
+    one: NDArray[np.bool_] = (which < rate) & (np.arange(genes) == np.floor(place * genes))
+    return one
+
+
+def roulette(weights: Array, draws: Array) -> NDArray[np.intp]:
+    """Members drawn with chances proportional to weights ≥ 0; equal chances if all are 0."""
+    total = np.cumsum(weights if weights.any() else np.ones_like(weights))
+    picked = np.searchsorted(total, draws * total[-1], side="right")
+    held_in: NDArray[np.intp] = np.minimum(picked, weights.size - 1)
+    return held_in
+
+
+def shuffled(pool: Array, rng: np.random.Generator) -> Array:
+    """Shuffle a mating pool, so that neighbours are random pairs."""
+    return pool[np.argsort(rng.random(len(pool)), kind="stable")]
+
+
+def elite_kept(
+    parents: Array, parent_totals: Array, children: Array, child_totals: Array, elite: int
+) -> tuple[Array, Array]:
+    """Children whose worst are replaced by the best parents, and their totals."""
+    if elite == 0:
+        return children, child_totals
+    best = np.argsort(parent_totals, kind="stable")[:elite]
+    worst = np.argsort(child_totals, kind="stable")[child_totals.size - elite :]
+    kept, totals = children.copy(), child_totals.copy()
+    kept[worst], totals[worst] = parents[best], parent_totals[best]
+    return kept, totals
+
+
+READERS: dict[str, Reader] = {
+    "population": whole(2),
+    "iterations": whole(0),
+    "encoding": choice(Encoding),
+    "resolution": number(positive=True),
+    "position_range": interval(),
+    "fitness_rule": choice(FitnessRule),
+    "crossover": choice(Crossover),
+    "mutation": choice(Mutation),
+    "mutated": choice(Mutated),
+    "mutation_reach": share(),
+    "penalty": number(positive=True, infinite=True),
+}
+"""Readers of the settings that standard and improved GA share."""

@@ -1,0 +1,31 @@
+from .formulation import Form, Formulation, Structure, build
+from .optimality import KKT, Active, kkt
+from .per_joint import OPTIMUM_SLACK, PerJointSolution, Range, solve_per_joint
+from .solution import Evidence, Solution, Status, weakest
+from .solver import KKT_TOLERANCE, SAME, STARTS, solve
+from .starts import random_starts
+from .tracking import structure_of
+
+__all__ = [
+    "KKT",
+    "KKT_TOLERANCE",
+    "OPTIMUM_SLACK",
+    "SAME",
+    "STARTS",
+    "Active",
+    "Evidence",
+    "Form",
+    "Formulation",
+    "PerJointSolution",
+    "Range",
+    "Solution",
+    "Status",
+    "Structure",
+    "build",
+    "kkt",
+    "random_starts",
+    "solve",
+    "solve_per_joint",
+    "structure_of",
+    "weakest",
+]

@@ -1,0 +1,172 @@
+"""KKT residual and multipliers of the reduced problem, with every active peak found again."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import nnls
+
+from ...problem import QUANTITIES, Extremum, Problem, extrema, fit, peak_gradients
+from ...problem.curves import segment_of, smooth_order
+
+ACTIVE = 1e-7
+"""Relative distance to a limit within which a peak counts as active."""
+MORE = 0.1
+"""Sensitivities say what this much more of a limit would buy, to first order."""
+
+
+@dataclass(frozen=True)
+class Active:
+    """A limit that is reached, with what it costs.
+
+    Attributes
+    ----------
+    joint : str or None
+        Joint label; None for a bound on a segment duration.
+    quantity : str
+        "velocity", "acceleration", "jerk", "position", "duration" (lower or upper bound).
+    segment : int
+        Segment, from 0.
+    time : float or None
+        Where on the trajectory, s.
+    multiplier : float
+        Lagrange multiplier of ratio ≤ 1, s.
+    sensitivity : float
+        First-order change of the total time for 10 % more of this limit, s.
+    """
+
+    joint: str | None
+    quantity: str
+    segment: int
+    time: float | None
+    multiplier: float
+    sensitivity: float
+
+
+@dataclass(frozen=True)
+class KKT:
+    """Scaled residual of the optimality conditions, and the active limits.
+
+    ``residual`` is the largest of stationarity (in log durations, relative to the total),
+    complementarity and relative violation.
+    """
+
+    residual: float
+    active: tuple[Active, ...]
+
+
+@dataclass(frozen=True)
+class _Constraint:
+    extremum: Extremum | None
+    label: tuple[str | None, str, int, float | None]
+    excess: float
+    sign: float
+    scale: float
+
+
+def _peaks_near_limit(
+    problem: Problem, durations: NDArray[np.float64], nodal: NDArray[np.float64] | None, near: float
+) -> list[_Constraint]:
+    trajectory = fit(problem.interpolant, problem.waypoints, durations, nodal)
+    limits = problem.limits
+    curve = problem.interpolant
+    every_break = len(curve.waypoint_breaks) == curve.segments + 1
+    found: list[_Constraint] = []
+    for j, name in enumerate(problem.joints):
+        for r, quantity in enumerate(QUANTITIES, start=1):
+            limit = float(limits.derivatives[j, r - 1])
+            if not np.isfinite(limit) or limit == 0:
+                continue
+            for e in extrema(trajectory, j, r):
+                repeated = e.s == 0.0 and e.segment > 0 and smooth_order(curve, e.segment) >= r
+                excess = abs(e.value) / limit - 1
+                if excess >= -near and not repeated:
+                    sign = float(np.sign(e.value))
+                    label = (name, quantity, segment_of(curve, durations, e), e.time)
+                    found.append(_Constraint(e, label, excess, sign, limit))
+        low, high = float(limits.position_lower[j]), float(limits.position_upper[j])
+        if np.isfinite(low) or np.isfinite(high):
+            size = max(1.0, *(abs(x) for x in (low, high) if np.isfinite(x)))
+            for e in extrema(trajectory, j, 0):
+                for limit, sign in ((low, -1.0), (high, 1.0)):
+                    excess = sign * (e.value - limit) / size
+                    given = e.s in (0.0, 1.0) and every_break
+                    if np.isfinite(limit) and excess >= -near and not given:
+                        label = (name, "position", segment_of(curve, durations, e), e.time)
+                        found.append(_Constraint(e, label, excess, sign, size))
+    return found
+
+
+def kkt(
+    problem: Problem,
+    durations: NDArray[np.float64],
+    nodal: NDArray[np.float64] | None = None,
+    active: float = ACTIVE,
+) -> KKT:
+    """Optimality conditions of min Σh over durations (and free nodal derivatives).
+
+    Parameters
+    ----------
+    problem : Problem
+    durations : ndarray, shape (segments,)
+    nodal : ndarray, shape (free, joints), optional
+    active : float
+        Relative distance at which a limit counts as reached.
+
+    Returns
+    -------
+    KKT
+        Multipliers by non-negative least squares on the envelope gradients.
+    """
+    n, total = problem.segments, float(durations.sum())
+    joints = problem.waypoints.shape[1]
+    free = problem.interpolant.free
+    rows = _peaks_near_limit(problem, durations, nodal, active)
+    points = [c.extremum for c in rows if c.extremum is not None]
+    gradients = peak_gradients(problem, durations, points, nodal)
+    columns = np.zeros((n + free * joints, len(rows)))
+    nodal_scale = np.ones((free, joints))
+    for i, (_, order) in enumerate(problem.piecewise.free_derivatives if free else ()):
+        if 1 <= order <= 3:
+            limit = problem.limits.derivatives[:, order - 1]
+            nodal_scale[i] = np.where(np.isfinite(limit), limit, 1.0)
+    for i, c in enumerate(rows):
+        columns[:n, i] = c.sign * gradients.durations[i] * durations / c.scale
+        if c.extremum is not None and free:
+            block = np.zeros((free, joints))
+            block[:, c.extremum.joint] = c.sign * gradients.nodal[i] / c.scale
+            columns[n:, i] = (block * nodal_scale).ravel()
+    bounds: list[tuple[int, float, float]] = []
+    for k in range(n):
+        low, high = problem.duration_lower[k], problem.duration_upper[k]
+        if low > 0 and durations[k] <= low * (1 + active):
+            bounds.append((k, -1.0, durations[k] / low - 1))
+        if np.isfinite(high) and durations[k] >= high * (1 - active):
+            bounds.append((k, 1.0, 1 - durations[k] / high))
+    walls = np.zeros((n + free * joints, len(bounds)))
+    for i, (k, sign, _) in enumerate(bounds):
+        walls[k, i] = sign
+    objective = np.concatenate([durations / total, np.zeros(free * joints)])
+    matrix = np.hstack([columns, walls])
+    if matrix.shape[1]:
+        weights, _ = nnls(matrix, -objective, maxiter=30 * matrix.shape[1] + 100)
+    else:
+        weights = np.zeros(0)
+    stationarity = float(np.abs(matrix @ weights + objective).max())
+    gaps = np.array([c.excess for c in rows] + [gap for _, _, gap in bounds])
+    slack = float(np.abs(weights * gaps).max(initial=0.0))
+    violation = max([0.0, *(c.excess for c in rows)])
+    reached: list[Active] = []
+    for c, w in zip(rows, weights, strict=False):
+        joint, quantity, segment, time = c.label
+        multiplier = float(w * total)
+        more = MORE if quantity != "position" else MORE * abs(c.scale)
+        if multiplier > 0:
+            reached.append(Active(joint, quantity, segment, time, multiplier, -more * multiplier))
+    for (k, sign, _), w in zip(bounds, weights[len(rows) :], strict=True):
+        multiplier = float(w * total)
+        if multiplier > 0:
+            reached.append(Active(None, "duration", k, None, multiplier, -sign * MORE * multiplier))
+    return KKT(max(stationarity, slack, violation), tuple(reached))

@@ -1,0 +1,168 @@
+"""The papers' other procedure: each joint by itself, then the longest duration per segment."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...problem import Check, Interpolant, Problem, check
+from .near_optimal import longest_per_segment_range
+from .solution import Evidence, Solution, Status, weakest
+from .solver import STARTS, solve
+
+OPTIMUM_SLACK = 1e-6
+"""Excess over each joint's own optimum (s) within which the procedure's output is reported."""
+_MOST_SEGMENTS = 4
+
+
+@dataclass(frozen=True)
+class Range:
+    """The procedure's total while each joint stays within ``slack`` (s) of its own optimum."""
+
+    slack: float
+    lowest: float
+    highest: float
+
+
+@dataclass(frozen=True, eq=False)
+class PerJointSolution:
+    """Each joint's own optimum, and what the longest-per-segment procedure makes of them.
+
+    The total of the procedure is its output, not an optimum of anything: where a joint's optimum
+    is flat, many totals are equally justified, and `ranges` says which.
+
+    Attributes
+    ----------
+    problem : Problem
+    joints : tuple of Solution
+        One per joint.
+    durations : ndarray, shape (segments,), or None
+        Longest of the joints' durations, per segment.
+    check : Check or None
+        That vector judged with all joints.
+    ranges : tuple of Range
+    why : str or None
+        Why there is no total or no range.
+    """
+
+    problem: Problem
+    joints: tuple[Solution, ...]
+    durations: NDArray[np.float64] | None
+    check: Check | None
+    ranges: tuple[Range, ...]
+    why: str | None
+    solve_seconds: float
+
+    @property
+    def status(self) -> Status:
+        """The worst status among the joints."""
+        order = [
+            Status.OPTIMAL,
+            Status.FEASIBLE,
+            Status.NOT_ATTAINED,
+            Status.LIMIT,
+            Status.FAILED,
+            Status.INFEASIBLE,
+        ]
+        return max((s.status for s in self.joints), key=order.index)
+
+    @property
+    def total_time(self) -> float:
+        """Total of the longest durations, s; inf without an answer."""
+        return float(self.durations.sum()) if self.durations is not None else float("inf")
+
+    @property
+    def joint_evidence(self) -> Evidence:
+        """The weakest evidence of the joints' own optima."""
+        return weakest(s.evidence for s in self.joints)
+
+    @property
+    def evidence(self) -> Evidence:
+        """Best known if every joint has an answer: the procedure's output is no optimum."""
+        return Evidence.NONE if self.durations is None else Evidence.BEST_KNOWN
+
+    def __str__(self) -> str:
+        lines = [f"{self.problem.name}: each joint by itself, then the longest per segment"]
+        for label, s in zip(self.problem.joints, self.joints, strict=True):
+            shown = ", ".join(f"{d:.4f}" for d in s.durations) if s.durations is not None else s.why
+            lines.append(f"joint {label:<9} {s.total_time:.6f} s  ({shown})  {s.status}")
+        if self.durations is not None and self.check is not None:
+            lines.append(f"longest         {self.total_time:.6f} s, {self.check.verdict}")
+        for r in self.ranges:
+            lines.append(
+                f"within {r.slack:g} s of each optimum: {r.lowest:.6f} to {r.highest:.6f} s"
+            )
+        if self.why:
+            lines.append(self.why)
+        return "\n".join(lines)
+
+
+def solve_per_joint(
+    problem: Problem,
+    *,
+    starts: int = STARTS,
+    seed: int = 0,
+    slacks: tuple[float, ...] = (OPTIMUM_SLACK,),
+) -> PerJointSolution:
+    """Optimise each joint by itself and take the longest duration of each segment.
+
+    Parameters
+    ----------
+    problem : Problem
+        Its coupling is not looked at.
+    starts, seed : int
+        As in `solve`.
+    slacks : tuple of float
+        Excesses over each joint's own optimum, s, for which the range of the procedure's total
+        is reported; none for an empty tuple.
+
+    Returns
+    -------
+    PerJointSolution
+    """
+    began = time.perf_counter()
+    singles = [problem.joint(j) for j in range(problem.waypoints.shape[1])]
+    solutions = tuple(solve(p, starts=starts, seed=seed) for p in singles)
+    answers = [s.durations for s in solutions if s.durations is not None]
+    ranges: list[Range] = []
+    if len(answers) < len(solutions):
+        durations, verdict = None, None
+        why = "some joint has no feasible durations: " + "; ".join(
+            f"joint {label}: {s.why}"
+            for label, s in zip(problem.joints, solutions, strict=True)
+            if s.durations is None
+        )
+    elif problem.interpolant.free:
+        durations, verdict = None, None
+        why = (
+            f"the longest durations do not determine the motion: {problem.interpolant.name} "
+            f"leaves {problem.interpolant.free} derivatives of each joint free"
+        )
+    else:
+        durations = np.max(answers, axis=0)
+        verdict = check(problem, durations)
+        why = None
+        settled = all(s.status is Status.OPTIMAL for s in solutions)
+        if not isinstance(problem.interpolant, Interpolant):
+            why = "ranges are computed for declared piecewise polynomials only"
+        elif problem.segments > _MOST_SEGMENTS:
+            why = f"ranges are computed for at most {_MOST_SEGMENTS} segments"
+        elif not settled:
+            why = "ranges need an attained optimum of every joint"
+        else:
+            ranges = [
+                Range(slack, *longest_per_segment_range(singles, answers, slack))
+                for slack in slacks
+            ]
+    return PerJointSolution(
+        problem,
+        solutions,
+        durations,
+        verdict,
+        tuple(ranges),
+        why,
+        time.perf_counter() - began,
+    )

@@ -1,0 +1,111 @@
+"""Newton steps on the optimality conditions of the reduced problem, on a known active set."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...problem import Extremum, Problem, check, extrema, fit, peak_gradients
+from ...problem.curves import segment_of
+from .optimality import KKT, Active, kkt
+
+_STEPS = 4
+_DIFFERENCE = 1e-6
+
+
+def polish(
+    problem: Problem, durations: NDArray[np.float64], report: KKT
+) -> tuple[NDArray[np.float64], KKT]:
+    """Sharpen a converged answer whose active limits are known.
+
+    Interior-point answers keep a slack of the order of the last barrier parameter; Newton's method
+    on stationarity and the active limits removes it. The answer is kept only if it is feasible
+    and its KKT residual is smaller.
+
+    Parameters
+    ----------
+    problem : Problem
+        With a determined interpolant.
+    durations : ndarray, shape (segments,)
+    report : KKT
+        Of these durations.
+
+    Returns
+    -------
+    durations, report
+        The better of what was given and what was found.
+    """
+    limited = [a for a in report.active if a.quantity in _ORDERS]
+    pinned = [a.segment for a in report.active if a.quantity == "duration"]
+    if problem.interpolant.free or len(limited) < len(report.active) - len(pinned):
+        return durations, report
+    moving = np.setdiff1d(np.arange(problem.segments), pinned)
+    active = [_nearest(problem, durations, a) for a in limited]
+    weights = np.array([a.multiplier for a in limited])
+    h = durations.copy()
+    for _ in range(_STEPS):
+        base, excess, columns = _conditions(problem, h, active, weights)
+        hessian = np.empty((moving.size, moving.size))
+        for i, k in enumerate(moving):
+            step = np.zeros(h.size)
+            step[k] = _DIFFERENCE
+            ahead, _, _ = _conditions(problem, h * np.exp(step), active, weights)
+            behind, _, _ = _conditions(problem, h * np.exp(-step), active, weights)
+            hessian[:, i] = (ahead - behind)[moving] / (2 * _DIFFERENCE)
+        block = columns[moving]
+        size = len(active)
+        system = np.block([[hessian, block], [block.T, np.zeros((size, size))]])
+        right = -np.concatenate([base[moving], excess])
+        step_all = np.linalg.lstsq(system, right, rcond=1e-12)[0]
+        change = np.zeros(h.size)
+        change[moving] = np.clip(step_all[: moving.size], -1e-3, 1e-3)
+        h = h * np.exp(change)
+        weights = weights + step_all[moving.size :]
+    verdict = check(problem, h)
+    if not verdict.stretch <= 1 + 1e-9:
+        return durations, report
+    h = np.clip(h * max(1.0, verdict.stretch), problem.duration_lower, problem.duration_upper)
+    better = kkt(problem, h)
+    if better.residual < report.residual and check(problem, h).max_violation <= 1e-15:
+        return h, better
+    return durations, report
+
+
+_ORDERS = {"velocity": 1, "acceleration": 2, "jerk": 3}
+
+
+def _nearest(problem: Problem, h: NDArray[np.float64], active: Active) -> Extremum:
+    assert active.joint is not None
+    assert active.time is not None
+    time, curve = active.time, problem.interpolant
+    points = extrema(
+        fit(curve, problem.waypoints, h),
+        problem.joints.index(active.joint),
+        _ORDERS[active.quantity],
+    )
+    # Where a derivative jumps, two extrema share a time.
+    own = [e for e in points if segment_of(curve, h, e) == active.segment]
+    return min(own, key=lambda e: abs(e.time - time))
+
+
+def _conditions(
+    problem: Problem,
+    h: NDArray[np.float64],
+    active: list[Extremum],
+    weights: NDArray[np.float64],
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Lagrangian gradient in log durations, excess of the active limits, and their gradients."""
+    trajectory = fit(problem.interpolant, problem.waypoints, h)
+    points = []
+    for a in active:
+        same = [
+            e
+            for e in extrema(trajectory, a.joint, a.order)
+            if e.segment == a.segment and (e.s in (0.0, 1.0)) == (a.s in (0.0, 1.0))
+        ]
+        points.append(min(same, key=lambda e: abs(e.s - a.s), default=a))
+    limits = np.array([problem.limits.derivatives[e.joint, e.order - 1] for e in points])
+    values = np.array([e.value for e in points])
+    gradients = peak_gradients(problem, h, points).durations
+    columns = (np.sign(values)[:, None] * gradients * h / limits[:, None]).T
+    return h + columns @ weights, np.abs(values) / limits - 1.0, columns

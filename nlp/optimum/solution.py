@@ -1,0 +1,143 @@
+"""What the exact side returns: a status from a closed set, durations, and their evidence."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...problem import Check, Problem
+from .optimality import Active
+
+
+class Status(StrEnum):
+    """How a solve ended."""
+
+    OPTIMAL = "optimal"
+    """Feasible for all t, and the optimality conditions hold: a local optimum."""
+    FEASIBLE = "feasible"
+    """Feasible for all t; the optimality conditions were not reached."""
+    INFEASIBLE = "infeasible"
+    """No duration vector within the bounds keeps the limits; `why` says how that is known."""
+    NOT_ATTAINED = "not_attained"
+    """The total only approaches its infimum as a duration goes to 0."""
+    LIMIT = "limit"
+    """The iteration limit was reached before a feasible point."""
+    FAILED = "failed"
+    """The solver failed; nothing is claimed."""
+
+
+class Evidence(StrEnum):
+    """What stands behind a reference value."""
+
+    CERTIFIED = "certified"
+    """Lower and upper bound within the stated gap, re-checked."""
+    BEST_KNOWN = "best known"
+    """The best value found; nothing is proved below it."""
+    NONE = "none"
+    """No value."""
+
+
+def weakest(evidence: Iterable[Evidence]) -> Evidence:
+    """The weakest of some words; none for no words."""
+    order = [Evidence.CERTIFIED, Evidence.BEST_KNOWN, Evidence.NONE]
+    return max(evidence, key=order.index, default=Evidence.NONE)
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """Answer of the exact side to a `Problem` with shared durations.
+
+    Attributes
+    ----------
+    problem : Problem
+    status : Status
+    why : str or None
+        The reason, where the status needs one.
+    durations : ndarray, shape (segments,), or None
+    nodal : ndarray, shape (free, joints), or None
+        Free derivatives of an under-determined interpolant.
+    check : Check or None
+        The checker's verdict on the durations.
+    infimum : float or None
+        For `not_attained`: the value approached, s.
+    lower_bound : float or None
+        A certified lower bound, s; only `with_certificate` sets it.
+    kkt_residual : float or None
+        Of the reduced problem, scaled, with all active peaks found again.
+    active : tuple of Active
+        Limits that are reached, with multipliers and sensitivities.
+    starts, starts_at_best : int
+        Starts of the solver, and how many ended within 1e-6 (relative) of the best.
+    iterations : int
+        Solver iterations over all starts.
+    build_seconds, solve_seconds : float
+    """
+
+    problem: Problem
+    status: Status
+    why: str | None = None
+    durations: NDArray[np.float64] | None = None
+    nodal: NDArray[np.float64] | None = None
+    check: Check | None = None
+    infimum: float | None = None
+    lower_bound: float | None = None
+    kkt_residual: float | None = None
+    active: tuple[Active, ...] = ()
+    starts: int = 0
+    starts_at_best: int = 0
+    iterations: int = 0
+    build_seconds: float = 0.0
+    solve_seconds: float = 0.0
+    totals: tuple[float, ...] = field(default=(), repr=False)
+
+    @property
+    def total_time(self) -> float:
+        """Sum of the durations, s; inf without an answer, so that no comparison passes."""
+        return float(self.durations.sum()) if self.durations is not None else float("inf")
+
+    @property
+    def best(self) -> float:
+        """The infimum where it is not attained, else the total, s; inf without an answer."""
+        return self.infimum if self.infimum is not None else self.total_time
+
+    @property
+    def evidence(self) -> Evidence:
+        """Certified only with a lower bound; otherwise best known, or none."""
+        if self.durations is None:
+            return Evidence.NONE
+        return Evidence.BEST_KNOWN if self.lower_bound is None else Evidence.CERTIFIED
+
+    def __str__(self) -> str:
+        lines = [f"{self.problem.name}: {self.status}" + (f" ({self.why})" if self.why else "")]
+        if self.durations is not None and self.check is not None:
+            shown = ", ".join(f"{d:.6f}" for d in self.durations)
+            lines += [
+                f"total time      {self.total_time:.9f} s  [{self.evidence}]",
+                f"durations       {shown} s",
+                f"check           {self.check.verdict}, largest excess "
+                f"{self.check.max_violation:.1e}",
+            ]
+        if self.lower_bound is not None:
+            width = (self.best - self.lower_bound) / self.best
+            lines.append(f"lower bound     {self.lower_bound:.9f} s, proved; gap {width:.1e}")
+        if self.infimum is not None:
+            lines.append(f"infimum         {self.infimum:.9f} s, approached but not attained")
+        if self.kkt_residual is not None:
+            lines.append(f"KKT residual    {self.kkt_residual:.1e}")
+        if self.starts:
+            lines.append(f"starts          {self.starts_at_best} of {self.starts} reached the best")
+        for a in self.active:
+            where = f"joint {a.joint}" if a.joint else f"segment {a.segment + 1}"
+            at = f" at t = {a.time:.4f} s" if a.time is not None else ""
+            lines.append(
+                f"active          {where} {a.quantity}{at}: 10 % more changes the total by "
+                f"{a.sensitivity:+.4f} s"
+            )
+        lines.append(
+            f"build, solve    {1e3 * self.build_seconds:.1f} ms, {1e3 * self.solve_seconds:.1f} ms"
+        )
+        return "\n".join(lines)

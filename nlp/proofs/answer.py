@@ -1,0 +1,208 @@
+"""An answer whose feasibility is proved in rational numbers."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...problem import Interpolant, Limits, Problem
+from ...problem.curves import RowKind, StretchedUniformBSpline, vertex_matrix
+from .exact import ExactProblem
+
+_STRETCHES = tuple(Fraction(1, 10**k) for k in (13, 12, 11, 10, 9, 8, 7))
+_DEEPEST = 60
+
+
+def float_problem(exact: ExactProblem) -> Problem:
+    """Nearest problem in floats, in the unit of angle of ``exact``; π on the tighter side."""
+    limits = [[np.inf if x is None else float(x.low) for x in row] for row in exact.limits]
+    v, a, j = np.array(limits, dtype=np.float64).T
+    low = [-np.inf if x is None else float(x.high) for x in exact.position_lower]
+    high = [np.inf if x is None else float(x.low) for x in exact.position_upper]
+    return Problem(
+        np.array([[float(q) for q in row] for row in exact.waypoints]),
+        Limits(v, a, j, np.array(low), np.array(high)),
+        exact.curve,
+        np.array([float(x) for x in exact.duration_lower]),
+        np.array([np.inf if x is None else float(x) for x in exact.duration_upper]),
+        joints=exact.joints,
+        name=exact.name,
+    )
+
+
+def solve_exactly(
+    matrix: list[list[Fraction]], right: list[list[Fraction]]
+) -> list[list[Fraction]] | None:
+    """Solution of a square linear system by Gauss elimination; None if it is singular."""
+    rows = [a + b for a, b in zip(matrix, right, strict=True)]
+    n = len(rows)
+    for k in range(n):
+        pivot = next((i for i in range(k, n) if rows[i][k] != 0), None)
+        if pivot is None:
+            return None
+        rows[k], rows[pivot] = rows[pivot], rows[k]
+        inverse = 1 / rows[k][k]
+        rows[k] = [x * inverse if x else x for x in rows[k]]
+        for i in range(n):
+            factor = rows[i][k]
+            if i != k and factor:
+                rows[i] = [
+                    x - factor * y if y else x for x, y in zip(rows[i], rows[k], strict=True)
+                ]
+    return [row[n:] for row in rows]
+
+
+def exact_coefficients(
+    interpolant: Interpolant,
+    waypoints: Sequence[Sequence[Fraction]],
+    durations: Sequence[Fraction],
+) -> list[list[list[Fraction]]] | None:
+    """Coefficients [joint][segment][power] in s = (t − t_k)/h_k; None if not determined."""
+    first = [0]
+    for degree in interpolant.degrees:
+        first.append(first[-1] + degree + 1)
+    joints = len(waypoints[0])
+    at = {b: waypoints[i] for i, b in enumerate(interpolant.waypoint_breaks)}
+    matrix, right = [], []
+    for row in interpolant.rows:
+        line, values = [Fraction(0)] * first[-1], [Fraction(0)] * joints
+        if row.kind != RowKind.RIGHT_VALUE:
+            k = row.at - 1
+            for p in range(row.order, interpolant.degrees[k] + 1):
+                line[first[k] + p] = math.perm(p, row.order) / durations[k] ** row.order
+        if row.kind != RowKind.LEFT_VALUE and row.order <= interpolant.degrees[row.at]:
+            sign = 1 if row.kind == RowKind.RIGHT_VALUE else -1
+            value = sign * math.factorial(row.order) / durations[row.at] ** row.order
+            line[first[row.at] + row.order] = value
+        if row.kind != RowKind.MATCH:
+            given = dict(interpolant.prescribed[row.at])
+            values = [Fraction(given[row.order])] * joints if row.order else list(at[row.at])
+        matrix.append(line)
+        right.append(values)
+    if len(matrix) != first[-1]:
+        return None
+    solved = solve_exactly(matrix, right)
+    if solved is None:
+        return None
+    return [
+        [[solved[i][j] for i in range(first[k], first[k + 1])] for k in range(interpolant.segments)]
+        for j in range(joints)
+    ]
+
+
+def uniform_coefficients(waypoints: Sequence[Sequence[Fraction]]) -> list[list[list[Fraction]]]:
+    """Coefficients [joint][segment][power] in e of the uniform cubic B-spline through way-points.
+
+    Source: `irb1600-ga-cubic-bspline`, (1) to (3).
+    """
+    matrix, found = vertex_matrix(len(waypoints)), []
+    for column in zip(*waypoints, strict=True):
+        v = [sum((x * q for x, q in zip(row, column, strict=True)), Fraction(0)) for row in matrix]
+        pieces = []
+        for k in range(len(waypoints) - 1):
+            a, b, c, d = v[k : k + 4]
+            third = (d - 3 * c + 3 * b - a) / 6
+            pieces.append([(a + 4 * b + c) / 6, (c - a) / 2, (a - 2 * b + c) / 2, third])
+        found.append(pieces)
+    return found
+
+
+def never_above(coefficients: Sequence[Fraction], bound: Fraction) -> bool:
+    """Whether a polynomial is ≤ bound on [0, 1]: Bernstein form, halved until it shows."""
+    n = len(coefficients) - 1
+    start = [
+        bound
+        - sum(Fraction(math.comb(i, k), math.comb(n, k)) * coefficients[k] for k in range(i + 1))
+        for i in range(n + 1)
+    ]
+    pieces = [(start, 0)]
+    while pieces:
+        control, depth = pieces.pop()
+        if min(control) >= 0:
+            continue
+        if control[0] < 0 or control[-1] < 0 or depth == _DEEPEST:
+            return False
+        left, right, row = [control[0]], [control[-1]], control
+        while len(row) > 1:
+            row = [(x + y) / 2 for x, y in itertools.pairwise(row)]
+            left.append(row[0])
+            right.append(row[-1])
+        pieces += [(left, depth + 1), (right[::-1], depth + 1)]
+    return True
+
+
+def _smooth(pieces: list[list[Fraction]], durations: Sequence[Fraction], order: int) -> bool:
+    """Whether a derivative is continuous: no limit on the next one survives a jump of it."""
+    scaled = [
+        ([math.perm(p, order) * c / h**order for p, c in enumerate(piece)][order:])
+        for piece, h in zip(pieces, durations, strict=True)
+    ]
+    ends = [sum(piece, Fraction(0)) for piece in scaled]
+    starts = [piece[0] if piece else Fraction(0) for piece in scaled]
+    return ends[:-1] == starts[1:]
+
+
+def keeps_limits(problem: ExactProblem, durations: Sequence[Fraction]) -> bool:
+    """Whether durations are within their bounds and their trajectory keeps every limit, exactly.
+
+    A limit on a derivative asks for a continuous one below it; only a curve that is stretched
+    segment by segment is judged inside its segments alone.
+    """
+    for h, low, high in zip(durations, problem.duration_lower, problem.duration_upper, strict=True):
+        if h <= 0 or h < low or (high is not None and h > high):
+            return False
+    stretched = isinstance(problem.curve, StretchedUniformBSpline)
+    if stretched:
+        curve: list[list[list[Fraction]]] | None = uniform_coefficients(problem.waypoints)
+    else:
+        curve = exact_coefficients(problem.interpolant, problem.waypoints, durations)
+    if curve is None:
+        return False
+    for j, pieces in enumerate(curve):
+        limited = [order for order in (2, 3) if problem.limits[j][order - 1] is not None]
+        if not stretched and not all(_smooth(pieces, durations, r - 1) for r in limited):
+            return False
+        floor, roof = problem.position_lower[j], problem.position_upper[j]
+        for piece, h in zip(pieces, durations, strict=True):
+            if roof is not None and not never_above(piece, roof.low):
+                return False
+            if floor is not None and not never_above([-c for c in piece], -floor.high):
+                return False
+            derivative, scale = piece, Fraction(1)
+            for limit in problem.limits[j]:
+                derivative = [p * c for p, c in enumerate(derivative)][1:]
+                scale *= h
+                if limit is None or not derivative:
+                    continue
+                for sign in (1, -1):
+                    if not never_above([sign * c for c in derivative], limit.low * scale):
+                        return False
+    return True
+
+
+def prove_feasible(
+    problem: ExactProblem, durations: NDArray[np.float64]
+) -> tuple[Fraction, ...] | None:
+    """Rational durations near the given ones, proved feasible; None if none was found.
+
+    The durations are stretched uniformly by a tiny factor, rounded up to 15 digits, and never
+    beyond their upper bounds.
+    """
+    for stretch in (Fraction(0), *_STRETCHES):
+        found = []
+        for h, low, high in zip(
+            durations, problem.duration_lower, problem.duration_upper, strict=True
+        ):
+            value = Fraction(float(h)) * (1 + stretch)
+            digits = 15 - math.ceil(math.log10(max(float(value), 1e-12)))
+            value = Fraction(math.ceil(value * 10**digits), 10**digits)
+            value = max(value, low)
+            found.append(value if high is None else min(value, high))
+        if keeps_limits(problem, found):
+            return tuple(found)
+    return None

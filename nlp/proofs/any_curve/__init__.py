@@ -1,0 +1,5 @@
+"""Bounds over every motion through the way-points, whatever its curve."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

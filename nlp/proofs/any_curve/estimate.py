@@ -1,0 +1,266 @@
+"""The optimum through the same way-points over all C1 joint curves: an upper estimate."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ....problem import Problem, TrajgapError
+from ....problem.curves import end_conditions
+from ...optimum import Evidence
+from .local import KEPT, Question, local_optimum, starting_points
+from .reach import profile
+
+STARTS = 6
+SAME = 1e-6
+"""Relative difference below which two totals count as the same."""
+
+
+@dataclass(frozen=True, eq=False)
+class FamilyFree:
+    """Best known total over all C1 curves through the way-points within v and a limits.
+
+    Attributes
+    ----------
+    total_time : float or None
+        s; an upper estimate of the optimum, never a bound below it. None if not computed.
+    durations : ndarray, shape (way-points − 1,), or None
+        Between way-points, s; virtual breaks of the interpolant do not count.
+    nodal_velocities : ndarray, shape (way-points, joints), or None
+        rad/s; NaN for moving joints without an acceleration limit, whose velocities are open.
+    attained : bool
+        False if curves only come arbitrarily close to the total.
+    why : str or None
+        Why nothing was computed, or why the total is not attained.
+    starts, starts_at_best : int
+    totals : tuple of float
+        Of the starts that led to an answer, s.
+    """
+
+    total_time: float | None
+    durations: NDArray[np.float64] | None = None
+    nodal_velocities: NDArray[np.float64] | None = None
+    attained: bool = False
+    why: str | None = None
+    starts: int = 0
+    starts_at_best: int = 0
+    totals: tuple[float, ...] = field(default=(), repr=False)
+
+    @property
+    def evidence(self) -> Evidence:
+        """Best known, or none without a value."""
+        return Evidence.NONE if self.total_time is None else Evidence.BEST_KNOWN
+
+    def __str__(self) -> str:
+        if self.total_time is None or self.durations is None:
+            return f"family-free optimum: not computed, {self.why}"
+        shown = ", ".join(f"{d:.6f}" for d in self.durations)
+        lines = [
+            f"family-free optimum {self.total_time:.9f} s  [{self.evidence}, an upper estimate]",
+            f"durations           {shown} s",
+        ]
+        if not self.attained:
+            lines.append(f"not attained        {self.why}")
+        if self.starts:
+            lines.append(f"starts              {self.starts_at_best} of {self.starts} at the best")
+        return "\n".join(lines)
+
+
+def family_free(
+    problem: Problem,
+    *,
+    starts: int = STARTS,
+    seed: int = 0,
+    initial: ArrayLike | None = None,
+) -> FamilyFree:
+    """Least total time through the way-points over all C1 curves with |v| ≤ V and |a| ≤ A.
+
+    The joints share their segment durations and nothing else; acceleration may jump. Of the
+    interpolant only the velocities prescribed at the two ends count. A segment in which nothing
+    moves, and whose duration has no lower bound, is passed in no time.
+
+    Parameters
+    ----------
+    problem : Problem
+        Its coupling is not looked at: durations are shared.
+    starts : int
+        Number of starts: rest at every way-point first, then random ones.
+    seed : int
+        Seed of the random starts.
+    initial : array_like, shape (starts, segments of the interpolant), optional
+        Durations to start from as well, s.
+
+    Returns
+    -------
+    FamilyFree
+        Never raises for a problem without answer: `why` says the reason.
+
+    Raises
+    ------
+    TrajgapError
+        If ``initial`` has the wrong shape.
+
+    Notes
+    -----
+    In a segment a joint makes the displacement Δq between nodal velocities v₀ and v₁ if and only
+    if |v₁ − v₀| ≤ A h, D(p) ≥ Δq for some p ≤ V, and the same mirrored (`reach.furthest` says
+    why). So durations, nodal velocities and peaks p are all the unknowns there are. The problem
+    is not convex in them: several starts, and nothing is claimed below the value.
+    """
+    given = _initial(problem, initial)
+    reason = _not_covered(problem)
+    if reason is not None:
+        return FamilyFree(None, why=reason)
+    matter = _matter(problem)
+    question = _pose(problem, matter)
+    short = np.flatnonzero(question.lower > question.upper * (1 + KEPT))
+    if short.size:
+        return FamilyFree(None, why=f"segment {short[0] + 1} cannot be done within its upper bound")
+    bounded = np.isfinite(question.acceleration)
+    durations = question.lower.copy()
+    totals: tuple[float, ...] = ()
+    count = 0
+    velocities = np.full(problem.waypoints.shape, np.nan)
+    if bounded.any():
+        moving = ~((question.steps == 0).all(axis=1) & (question.lower == 0))
+        core = replace(
+            question,
+            steps=question.steps[moving][:, bounded],
+            velocity=question.velocity[bounded],
+            acceleration=question.acceleration[bounded],
+            lower=question.lower[moving],
+            upper=question.upper[moving],
+        )
+        points = starting_points(core, starts, np.random.default_rng(seed), given[:, moving])
+        answers = [answer for h in points if (answer := local_optimum(core, h)) is not None]
+        count = len(points)
+        if not answers:
+            return FamilyFree(None, why=f"none of {count} starts led to an answer", starts=count)
+        totals = tuple(float(h.sum()) for h, _ in answers)
+        h, v = answers[int(np.argmin(totals))]
+        durations[moving] = h
+        nodes = np.concatenate([[0], np.cumsum(moving)])
+        velocities[:, np.flatnonzero(matter)[bounded]] = v[nodes]
+    outside = _outside_range(problem, durations, velocities)
+    if outside is not None:
+        return FamilyFree(None, why=outside, starts=count)
+    velocities[:, ~_restless(problem)] = 0.0
+    total = float(durations.sum())
+    why = _not_attained(question, durations)
+    best = sum(t <= total * (1 + SAME) for t in totals)
+    return FamilyFree(total, durations, velocities, why is None, why, count, best, totals)
+
+
+def _merge(problem: Problem, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Values per segment of the interpolant added up between way-points, along the last axis."""
+    breaks = problem.interpolant.waypoint_breaks
+    return np.add.reduceat(values, breaks[:-1], axis=-1)
+
+
+def _initial(problem: Problem, initial: ArrayLike | None) -> NDArray[np.float64]:
+    if initial is None:
+        return np.empty((0, problem.waypoints.shape[0] - 1))
+    h = np.atleast_2d(np.asarray(initial, dtype=np.float64))
+    if h.ndim != 2 or h.shape[1] != problem.segments or not (np.isfinite(h) & (h > 0)).all():
+        raise TrajgapError(
+            f"initial: expected positive durations of shape (starts, {problem.segments}), "
+            f"got shape {h.shape}"
+        )
+    return _merge(problem, h)
+
+
+def _ends(problem: Problem) -> tuple[float | None, float | None]:
+    start, end = end_conditions(problem.interpolant)
+    return dict(start).get(1), dict(end).get(1)
+
+
+def _restless(problem: Problem) -> NDArray[np.bool_]:
+    """Joints that cannot simply stay where they are."""
+    moves = np.ptp(problem.waypoints, axis=0) > 0
+    return np.asarray(moves | any(v not in (None, 0.0) for v in _ends(problem)))
+
+
+def _matter(problem: Problem) -> NDArray[np.bool_]:
+    """Joints that have to move and have a limit."""
+    limited = np.isfinite(problem.limits.velocity) | np.isfinite(problem.limits.acceleration)
+    return np.asarray(_restless(problem) & limited)
+
+
+def _not_covered(problem: Problem) -> str | None:
+    """The reason why there is no value, as far as it can be told before solving."""
+    limits, restless = problem.limits, _restless(problem)
+    if np.isfinite(limits.jerk[restless]).any():
+        return "jerk is limited; the optimum over all curves is computed for v and a limits only"
+    for name, values in (("velocity", limits.velocity), ("acceleration", limits.acceleration)):
+        stuck = np.flatnonzero(restless & (values == 0))
+        if stuck.size:
+            return f"joint {problem.joints[stuck[0]]} moves, but its {name} limit is 0"
+    if not _matter(problem).any():
+        return "nothing that moves is limited" if restless.any() else "nothing moves"
+    for end, v in zip(("start", "end"), _ends(problem), strict=True):
+        fast = np.flatnonzero(abs(v or 0.0) > limits.velocity)
+        if fast.size:
+            joint = problem.joints[fast[0]]
+            return f"the velocity prescribed at the {end} exceeds the limit of joint {joint}"
+    low, high = limits.position_lower, limits.position_upper
+    if ((problem.waypoints < low) | (problem.waypoints > high)).any():
+        return "a way-point lies outside the position limits"
+    return None
+
+
+def _pose(problem: Problem, matter: NDArray[np.bool_]) -> Question:
+    steps = np.diff(problem.waypoints, axis=0)[:, matter]
+    velocity = problem.limits.velocity[matter]
+    return Question(
+        steps=steps,
+        velocity=velocity,
+        acceleration=problem.limits.acceleration[matter],
+        lower=np.maximum(
+            _merge(problem, problem.duration_lower), (np.abs(steps) / velocity).max(axis=1)
+        ),
+        upper=_merge(problem, problem.duration_upper),
+        ends=_ends(problem),
+    )
+
+
+def _outside_range(
+    problem: Problem, durations: NDArray[np.float64], velocities: NDArray[np.float64]
+) -> str | None:
+    """Say that the curve found leaves the position limits; the search does not know them."""
+    limits = problem.limits
+    for j in np.flatnonzero(np.isfinite(velocities[0])):
+        low, high = limits.position_lower[j], limits.position_upper[j]
+        if np.isinf(low) and np.isinf(high):
+            continue
+        for k in np.flatnonzero(durations > 0):
+            start, end = problem.waypoints[k : k + 2, j]
+            v0, v1 = velocities[k : k + 2, j]
+            top, bend = limits.velocity[j], limits.acceleration[j]
+            curve = profile(end - start, v0, v1, durations[k], top, bend)
+            least, most = curve.position_range()
+            slack = KEPT * max(1.0, abs(start))
+            if start + least < low - slack or start + most > high + slack:
+                return (
+                    f"position is limited, and the curve found leaves the range of joint "
+                    f"{problem.joints[j]}; optima that keep such limits are not computed"
+                )
+    return None
+
+
+def _not_attained(question: Question, durations: NDArray[np.float64]) -> str | None:
+    """Say why curves only approach the total, or None if one attains it."""
+    vanishing = np.flatnonzero(durations == 0)
+    if vanishing.size:
+        return f"nothing moves in segment {vanishing[0] + 1}: its duration goes to 0"
+    for j in np.flatnonzero(np.isinf(question.acceleration)):
+        # A joint that needs its full speed all through a segment has it at both of its ends.
+        steps = question.steps[:, j]
+        full = np.abs(steps) >= question.velocity[j] * durations * (1 - KEPT)
+        wanted = np.where(full, np.sign(steps) * question.velocity[j], np.nan)
+        first, last = (np.nan if end is None else end for end in question.ends)
+        before, after = np.append(first, wanted), np.append(wanted, last)
+        if (np.abs(before - after) > KEPT * question.velocity[j]).any():
+            return "only velocity is limited: it would have to jump between its limits"
+    return None

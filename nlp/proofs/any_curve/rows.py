@@ -1,0 +1,124 @@
+"""Linear inequalities that hold for every motion of one joint through one segment."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import NamedTuple
+
+from .exact import FreeQuestion
+
+Box = tuple[tuple[Fraction, Fraction], ...]
+"""Bounds of every duration, s."""
+
+UNIT = 10**10
+"""Parameters of rows are multiples of 1/UNIT."""
+REACH, BRAKE, CHANGE = range(3)
+KINDS = ("reach", "brake", "change")
+
+
+class Row(NamedTuple):
+    """One inequality; ``sign`` mirrors the joint so that its displacement is not negative.
+
+    ``a`` and ``b`` are slopes of tangents, ``c`` is velocity limit over peak speed, all times UNIT.
+    """
+
+    kind: int
+    segment: int
+    joint: int
+    sign: int
+    a: int
+    b: int
+    c: int
+
+
+@dataclass(frozen=True)
+class Exact:
+    """time·h + start·v₀ + end·v₁ ≥ right."""
+
+    time: Fraction
+    start: Fraction
+    end: Fraction
+    right: Fraction
+
+
+def exact_row(asked: FreeQuestion, row: Row, box: Box, speed: Fraction) -> Exact:
+    """A row in rational numbers.
+
+    Parameters
+    ----------
+    asked : FreeQuestion
+    row : Row
+    box : Box
+        Only "brake" depends on it.
+    speed : Fraction
+        Bound on the joint's speed.
+
+    Returns
+    -------
+    Exact
+        Why it holds is in docs/certificates-family-free.md.
+    """
+    acceleration = asked.loose[row.joint][1]
+    assert acceleration is not None
+    if row.kind == CHANGE:
+        return Exact(acceleration, Fraction(row.sign), Fraction(-row.sign), Fraction(0))
+    way = abs(asked.steps[row.segment][row.joint])
+    a, b = Fraction(row.a, UNIT), Fraction(row.b, UNIT)
+    if row.kind == REACH:
+        n = Fraction(row.c, UNIT) / speed
+        peak = (2 * a - a * a + 2 * b - b * b) / (2 * acceleration) - way * n * n
+        return Exact(
+            Fraction(1),
+            row.sign * a / acceleration,
+            row.sign * b / acceleration,
+            2 * way * n + min(Fraction(0), peak * speed),
+        )
+    low, high = box[row.segment]
+    return Exact(
+        acceleration * (a * a + b * b) / 2 - way / (low * high),
+        -row.sign * a,
+        -row.sign * b,
+        -abs(1 - a - b) * speed - way * (1 / low + 1 / high),
+    )
+
+
+def bound(
+    asked: FreeQuestion,
+    speeds: tuple[Fraction, ...],
+    box: Box,
+    weighted: Iterable[tuple[Row, Fraction]],
+) -> Fraction:
+    """Lower bound of the total in a box: Σh − Σ weight·(row's excess), least over the box.
+
+    Parameters
+    ----------
+    asked : FreeQuestion
+    speeds : tuple of Fraction
+        Bounds on the joints' speeds.
+    box : Box
+    weighted : iterable of (Row, Fraction)
+        Weights ≥ 0.
+
+    Returns
+    -------
+    Fraction
+        s.
+    """
+    total = Fraction(0)
+    times = [Fraction(1)] * len(box)
+    slopes: dict[tuple[int, int], Fraction] = {}
+    for row, weight in weighted:
+        exact = exact_row(asked, row, box, speeds[row.joint])
+        total += weight * exact.right
+        times[row.segment] -= weight * exact.time
+        for at, slope in ((row.segment, exact.start), (row.segment + 1, exact.end)):
+            key = (at, row.joint)
+            slopes[key] = slopes.get(key, Fraction(0)) - weight * slope
+    for factor, (low, high) in zip(times, box, strict=True):
+        total += factor * (low if factor > 0 else high)
+    for (at, joint), slope in slopes.items():
+        end = asked.ends[0] if at == 0 else asked.ends[1] if at == len(box) else None
+        total += slope * end if end is not None else -abs(slope) * speeds[joint]
+    return total

@@ -1,0 +1,94 @@
+"""A proved interval of the optimum, by the method for the problem's kind of curve."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from ...problem import Problem, TrajgapError
+from .closed_form import REST_TO_REST, STRETCHED
+from .cubic import CUBIC
+from .exact import ExactProblem, exact_problem
+from .outcome import GAP, Argument, Certified, Certifier, Progress, Request
+from .quintic import QUINTIC
+from .three_piece import THREE_PIECE
+
+CERTIFIERS: tuple[Certifier, ...] = (
+    REST_TO_REST,
+    THREE_PIECE,
+    STRETCHED,
+    CUBIC,
+    QUINTIC,
+)
+
+
+def covered(problem: ExactProblem) -> str | None:
+    """Why a problem is not covered, or None.
+
+    Parameters
+    ----------
+    problem : ExactProblem
+
+    Returns
+    -------
+    str or None
+    """
+    for certifier in CERTIFIERS:
+        if certifier.declares(problem):
+            return certifier.missing(problem)
+    families = ", ".join(certifier.family for certifier in CERTIFIERS)
+    return f"{problem.curve.name}: not covered; covered are {families}"
+
+
+def instant(problem: ExactProblem) -> bool:
+    """Whether a covered problem is solved in closed form."""
+    return any(c.instant and c.declares(problem) for c in CERTIFIERS)
+
+
+def certify(
+    problem: Problem | ExactProblem,
+    *,
+    gap: float = GAP,
+    seconds: float = 60.0,
+    seed: int = 0,
+    resume: Argument | dict[str, Any] | None = None,
+    report: Callable[[Progress], None] | None = None,
+) -> Certified:
+    """Prove an interval of the least total of a problem with shared durations.
+
+    Parameters
+    ----------
+    problem : Problem or ExactProblem
+        The floats of a `Problem` are taken as exact; `printed_problem` gives the printed one. Its
+        coupling is not looked at.
+    gap : float
+        Relative width of the interval to reach.
+    seconds : float
+        Time limit. At the limit, or at Ctrl-C, the best interval proved so far is returned.
+    seed : int
+        Of the starts of the local solver that finds the answer.
+    resume : Argument or dict, optional
+        ``resume`` of a stopped run, or its document; everything in it is proved again.
+    report : callable, optional
+        Called with a `Progress` after every batch of boxes.
+
+    Returns
+    -------
+    Certified
+
+    Raises
+    ------
+    TrajgapError
+        If the curve is not covered, nothing limits the total, or ``resume`` does not prove what
+        it says.
+    """
+    exact = exact_problem(problem) if isinstance(problem, Problem) else problem
+    why = covered(exact)
+    if why is not None:
+        raise TrajgapError(f"certify: {why}")
+    if not 0 <= gap < 1 or not seconds >= 0:
+        raise TrajgapError("certify: the gap must lie in [0, 1), the seconds must be 0 or more")
+    if resume is not None and not isinstance(resume, dict):
+        resume = resume.document()
+    method = next(c for c in CERTIFIERS if c.declares(exact))
+    return method.certify(exact, Request(gap, seconds, seed, resume, report))

@@ -1,0 +1,174 @@
+"""Rest-to-rest polynomials: each duration stands alone, so the optimum is in closed form."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from ....problem import Interpolant
+from ..answer import prove_feasible, solve_exactly
+from ..exact import ExactProblem, decimal
+from ..outcome import Certified, Certifier, Outcome, Request
+from ..three_piece import PLACES
+
+STILL = 1e-9
+"""Duration, as a share of the total, of a segment in which nothing moves."""
+
+
+@dataclass(frozen=True)
+class SegmentBound:
+    """Why a segment takes at least ``least`` seconds: a limit at a place, or its own lower bound.
+
+    ``joint`` is −1 for the lower bound of the duration.
+    """
+
+    least: Fraction
+    joint: int = -1
+    order: int = 0
+    place: int = 0
+
+
+@dataclass(frozen=True)
+class ClosedForm:
+    """Bounds of all segments, as the proof of a certificate of kind ``kind``."""
+
+    kind: str
+    bounds: tuple[SegmentBound, ...]
+
+    def document(self) -> dict[str, Any]:
+        """Kinds "rest-to-rest" and "stretched" of docs/certificates.md."""
+        rows = [[b.joint, b.order, b.place, decimal(b.least)] for b in self.bounds]
+        return {"kind": self.kind, "segments": rows}
+
+
+def is_rest_to_rest(problem: ExactProblem) -> bool:
+    """Whether every segment starts and ends at rest, which then determines it."""
+    interpolant = problem.curve
+    if not isinstance(interpolant, Interpolant):
+        return False
+    orders = tuple((r, 0.0) for r in range(1, (interpolant.degrees[0] + 1) // 2))
+    return (
+        set(interpolant.degrees) == {2 * len(orders) + 1}
+        and bool(orders)
+        and set(interpolant.continuity) <= {0}
+        and set(interpolant.prescribed) == {orders}
+        and not interpolant.virtual
+    )
+
+
+def shape(degree: int) -> list[Fraction]:
+    """Coefficients of the polynomial from 0 to 1 whose derivatives vanish at both ends."""
+    half = (degree + 1) // 2
+    start = [
+        [Fraction(math.factorial(r) if p == r else 0) for p in range(degree + 1)]
+        for r in range(half)
+    ]
+    end = [[Fraction(math.perm(p, r)) for p in range(degree + 1)] for r in range(half)]
+    right = [[Fraction(0)] for _ in range(degree + 1)]
+    right[half] = [Fraction(1)]
+    solved = solve_exactly(start + end, right)
+    assert solved is not None
+    return [row[0] for row in solved]
+
+
+def peaks(degree: int) -> list[tuple[int, Fraction]]:
+    """For orders 1 to 3, a place (in 1/PLACES) of the largest |derivative| and its value there."""
+    found = []
+    poly = shape(degree)
+    for _ in range(3):
+        poly = [p * c for p, c in enumerate(poly)][1:]
+        slope = np.polynomial.Polynomial([float(p * c) for p, c in enumerate(poly)][1:] or [0.0])
+        roots = np.real(slope.roots()) if slope.degree() else np.zeros(0)
+        places = {0, PLACES, *(round(float(np.clip(s, 0, 1)) * PLACES) for s in roots)}
+        values = {k: abs(_at(poly, Fraction(k, PLACES))) for k in places}
+        best = max(values, key=lambda k: (values[k], k))
+        found.append((best, values[best]))
+    return found
+
+
+def _at(poly: list[Fraction], s: Fraction) -> Fraction:
+    return sum((c * s**p for p, c in enumerate(poly)), Fraction(0))
+
+
+def root_below(value: Fraction, order: int) -> Fraction:
+    """A rational at most the root of a positive number, in 15 digits."""
+    guess = float(value) ** (1 / order)
+    digits = 15 - math.ceil(math.log10(guess))
+    whole = math.floor(guess * 10.0**digits) + 8
+    while Fraction(whole, 1) ** order > value * Fraction(10) ** (digits * order):
+        whole -= 1
+    return Fraction(whole / Fraction(10) ** digits)
+
+
+def closed_form(problem: ExactProblem) -> tuple[list[SegmentBound], list[float]]:
+    """Least duration of every segment, proved, and durations to try as the answer.
+
+    Parameters
+    ----------
+    problem : ExactProblem
+        For which `is_rest_to_rest` holds.
+
+    Returns
+    -------
+    bounds : list of SegmentBound
+    durations : list of float
+        s.
+    """
+    tops = peaks(problem.interpolant.degrees[0])
+    bounds, durations = [], []
+    for k in range(problem.segments):
+        best = SegmentBound(problem.duration_lower[k])
+        longest = float(best.least)
+        for j, limits in enumerate(problem.limits):
+            way = abs(problem.waypoints[k + 1][j] - problem.waypoints[k][j])
+            for order, (limit, (place, top)) in enumerate(zip(limits, tops, strict=True), start=1):
+                if limit is None or limit.low <= 0 or way == 0:
+                    continue
+                least = root_below(way * top / limit.high, order)
+                longest = max(longest, float(way * top / limit.low) ** (1 / order))
+                if least > best.least:
+                    best = SegmentBound(least, j, order, place)
+        bounds.append(best)
+        durations.append(longest)
+    still = max(sum(durations), 1e-3) * STILL
+    return bounds, [max(h, still) for h in durations]
+
+
+def answered(
+    exact: ExactProblem,
+    request: Request,
+    kind: str,
+    closed: Callable[[ExactProblem], tuple[list[SegmentBound], list[float]]],
+) -> Certified:
+    """A proved interval from bounds of the segments and durations to try as the answer."""
+    began = time.perf_counter()
+    bounds, durations = closed(exact)
+    lower = sum((b.least for b in bounds), Fraction(0))
+    answer = prove_feasible(exact, np.array(durations))
+    upper = sum(answer, Fraction(0)) if answer is not None else None
+    late = any(
+        u is not None and b.least > u for b, u in zip(bounds, exact.duration_upper, strict=True)
+    )
+    if upper is None:
+        outcome = Outcome.INFEASIBLE if late else Outcome.OPEN
+    else:
+        within = upper - lower <= upper * Fraction(request.gap)
+        outcome = Outcome.CERTIFIED if within else Outcome.INTERVAL
+    seconds = time.perf_counter() - began
+    proof = ClosedForm(kind, tuple(bounds))
+    return Certified(exact, outcome, lower, upper, answer, 0, 0, seconds, proof)
+
+
+def _certify(exact: ExactProblem, request: Request) -> Certified:
+    return answered(exact, request, "rest-to-rest", closed_form)
+
+
+REST_TO_REST = Certifier(
+    "rest-to-rest polynomials", is_rest_to_rest, lambda _: None, _certify, instant=True
+)

@@ -1,0 +1,5 @@
+"""Proofs for C2 cubic splines: linear programs propose, outward rounding proves."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

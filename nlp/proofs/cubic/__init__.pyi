@@ -1,0 +1,3 @@
+from .certifier import CUBIC
+
+__all__ = ["CUBIC"]

@@ -1,0 +1,133 @@
+"""Certificates at work: what a re-proved certificate says about a problem and a solver's answer."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import lru_cache
+
+import numpy as np
+
+from ...problem import TrajgapError
+from ...problem.cases import Posing
+from ..optimum import PerJointSolution, Solution, solve
+from ..verify import Subject, verify
+from .certifiers import certify, covered, instant
+from .document import certificate, shipped
+from .exact import ExactProblem, printed_problem
+
+WIDEST = Fraction(1, 100)
+"""Relative width from which an interval is too wide to call the optimum certified."""
+_SAME = 1e-9
+
+
+@dataclass(frozen=True)
+class Interval:
+    """What a certificate proves, after it was proved again.
+
+    Attributes
+    ----------
+    lower : Fraction
+        No feasible total is below it, s.
+    upper : Fraction or None
+        A feasible total, s.
+    durations : tuple of Fraction or None
+        Of that total.
+    infeasible : bool
+    """
+
+    lower: Fraction
+    upper: Fraction | None
+    durations: tuple[Fraction, ...] | None
+    infeasible: bool
+
+
+@lru_cache(maxsize=1024)
+def proved(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> Interval | None:
+    """The interval of a shipped certificate, or of a closed form; proved again, once a process.
+
+    Parameters
+    ----------
+    problem : ExactProblem
+    subject : Subject
+        Curves that the interval speaks about.
+
+    Returns
+    -------
+    Interval or None
+        None without a certificate of exactly this problem, or if it does not prove its claim
+        or leaves an interval wider than `WIDEST`.
+    """
+    document = shipped(problem, subject)
+    if document is None and subject is Subject.DECLARED and covered(problem) is None:
+        if not instant(problem):
+            return None
+        found = certify(problem)
+        document = None if found.proof is None else certificate(found)
+    if document is None:
+        return None
+    verdict = verify(document)
+    if not verdict.proves or verdict.lower is None:
+        return None
+    if verdict.upper is not None and verdict.upper - verdict.lower > WIDEST * verdict.lower:
+        return None
+    given = document["claim"]["durations"]
+    durations = None if given is None else tuple(Fraction(h) for h in given)
+    return Interval(verdict.lower, verdict.upper, durations, verdict.infeasible)
+
+
+def stated_exactly(posing: Posing, joint: int | None = None) -> ExactProblem | None:
+    """`printed_problem` of all joints or of one; None where it cannot be stated exactly."""
+    try:
+        exact = printed_problem(posing)
+    except TrajgapError:
+        return None
+    return exact if joint is None or len(exact.joints) == 1 else exact.joint(joint)
+
+
+def with_certificate(solution: Solution, problem: ExactProblem | None) -> Solution:
+    """Add the lower bound that is proved for the same problem, if there is one.
+
+    Parameters
+    ----------
+    solution : Solution
+    problem : ExactProblem or None
+        The same problem in exact numbers.
+
+    Returns
+    -------
+    Solution
+        Solved once more from the certificate's durations if these are shorter. Unchanged if
+        nothing is proved, or if the answer lies below the bound: then one of the two is wrong.
+    """
+    found = None if problem is None else proved(problem)
+    if found is None or found.upper is None or found.durations is None:
+        return solution
+    if not solution.best <= float(found.upper) * (1 + _SAME):
+        start = np.array([float(h) for h in found.durations])
+        again = solve(solution.problem, initial=start)
+        solution = again if again.best < solution.best else solution
+    lower = float(found.lower)
+    if Fraction(lower) > found.lower:
+        lower = math.nextafter(lower, -math.inf)
+    return replace(solution, lower_bound=lower) if lower <= solution.best < math.inf else solution
+
+
+def with_certificates(answer: PerJointSolution, posing: Posing) -> PerJointSolution:
+    """`with_certificate` for each joint's own optimum; the procedure's output stays what it is.
+
+    Parameters
+    ----------
+    answer : PerJointSolution
+    posing : Posing
+        Of the same problem.
+
+    Returns
+    -------
+    PerJointSolution
+    """
+    joints = [with_certificate(s, stated_exactly(posing, j)) for j, s in enumerate(answer.joints)]
+    same = all(new.best == old.best for new, old in zip(joints, answer.joints, strict=True))
+    # Durations of another answer would not be the ones behind the procedure's output.
+    return replace(answer, joints=tuple(joints)) if same else answer

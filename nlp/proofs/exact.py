@@ -1,0 +1,227 @@
+"""The problem in exact rational numbers: what a certificate speaks about."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...problem import Curve, Interpolant, Printed, Problem, Scale, TrajgapError, scale
+from ...problem.cases import Posing
+
+_PI = Scale(Fraction(1), 1).bounds
+
+
+def decimal(number: Fraction) -> str:
+    """Exact text of a rational: a decimal where it ends, a quotient otherwise."""
+    digits, rest = 0, number.denominator
+    for prime in (2, 5):
+        count = 0
+        while rest % prime == 0:
+            rest //= prime
+            count += 1
+        digits = max(digits, count)
+    if rest != 1 or digits > 60:
+        return f"{number.numerator}/{number.denominator}"
+    whole = abs(number) * 10**digits
+    text = str(whole.numerator).rjust(digits + 1, "0")
+    sign = "-" if number < 0 else ""
+    return sign + (f"{text[:-digits]}.{text[-digits:]}" if digits else text)
+
+
+@dataclass(frozen=True)
+class Real:
+    """The number ``rational · π**pi``, pi = −1, 0 or 1."""
+
+    rational: Fraction
+    pi: int = 0
+
+    @property
+    def ends(self) -> tuple[Fraction, Fraction]:
+        """Rational bounds of the number, equal without π."""
+        if self.pi == 0:
+            return self.rational, self.rational
+        found = [self.rational * p if self.pi > 0 else self.rational / p for p in _PI]
+        return min(found), max(found)
+
+    @property
+    def low(self) -> Fraction:
+        """Rational lower bound."""
+        return self.ends[0]
+
+    @property
+    def high(self) -> Fraction:
+        """Rational upper bound."""
+        return self.ends[1]
+
+
+@dataclass(frozen=True)
+class ExactProblem:
+    """A problem with shared durations, every number rational.
+
+    A lower bound of the total takes the looser end of a limit with π, an answer the tighter one.
+
+    Attributes
+    ----------
+    name : str
+    curve : Curve
+    joints : tuple of str
+    waypoints : tuple of tuple of Fraction
+        One row per way-point, in ``unit``.
+    limits : tuple of tuple
+        Per joint: velocity, acceleration, jerk as `Real` in ``unit``/sʳ, or None.
+    position_lower, position_upper : tuple
+        Per joint, a `Real` in ``unit`` or None.
+    duration_lower : tuple of Fraction
+        s; 0 means "positive".
+    duration_upper : tuple of Fraction or None
+        s.
+    unit : str
+        Unit of angle, "rad" or "deg".
+    """
+
+    name: str
+    curve: Curve
+    joints: tuple[str, ...]
+    waypoints: tuple[tuple[Fraction, ...], ...]
+    limits: tuple[tuple[Real | None, ...], ...]
+    position_lower: tuple[Real | None, ...]
+    position_upper: tuple[Real | None, ...]
+    duration_lower: tuple[Fraction, ...]
+    duration_upper: tuple[Fraction | None, ...]
+    unit: str = "rad"
+
+    @property
+    def segments(self) -> int:
+        """Number of segments."""
+        return self.curve.segments
+
+    @property
+    def interpolant(self) -> Interpolant:
+        """The curve as a declared piecewise polynomial.
+
+        Raises
+        ------
+        TrajgapError
+            If it is of another kind.
+        """
+        if not isinstance(self.curve, Interpolant):
+            raise TrajgapError(f"certify: {self.curve.name} is no declared piecewise polynomial")
+        return self.curve
+
+    def joint(self, index: int) -> ExactProblem:
+        """The same question for one joint alone."""
+        one = slice(index, index + 1)
+        return ExactProblem(
+            f"{self.name}, joint {self.joints[index]}",
+            self.curve,
+            self.joints[one],
+            tuple(row[one] for row in self.waypoints),
+            self.limits[one],
+            self.position_lower[one],
+            self.position_upper[one],
+            self.duration_lower,
+            self.duration_upper,
+            self.unit,
+        )
+
+    def derivative_limits(self) -> NDArray[np.float64]:
+        """Looser ends of the limits as floats, shape (joints, 3); inf where there is none."""
+        values = [[np.inf if x is None else float(x.high) for x in row] for row in self.limits]
+        return np.array(values, dtype=np.float64)
+
+
+def exact_problem(problem: Problem) -> ExactProblem:
+    """Take the floats of a `Problem` as exact numbers.
+
+    Parameters
+    ----------
+    problem : Problem
+        Its coupling is not looked at.
+
+    Returns
+    -------
+    ExactProblem
+    """
+    limits = problem.limits
+
+    def point(value: float) -> Real | None:
+        return Real(Fraction(value)) if np.isfinite(value) else None
+
+    return ExactProblem(
+        problem.name,
+        problem.interpolant,
+        problem.joints,
+        tuple(tuple(Fraction(float(q)) for q in row) for row in problem.waypoints),
+        tuple(tuple(point(float(x)) for x in row) for row in limits.derivatives),
+        tuple(point(float(x)) for x in limits.position_lower),
+        tuple(point(float(x)) for x in limits.position_upper),
+        tuple(Fraction(float(x)) for x in problem.duration_lower),
+        tuple(Fraction(float(x)) if np.isfinite(x) else None for x in problem.duration_upper),
+    )
+
+
+def printed_problem(posing: Posing) -> ExactProblem:
+    """Take the printed digits of one problem under one reading as exact numbers.
+
+    Parameters
+    ----------
+    posing : Posing
+        From `Case.posing`.
+
+    Returns
+    -------
+    ExactProblem
+        In the unit of angle of the way-points; a limit in the other unit carries π.
+
+    Raises
+    ------
+    TrajgapError
+        If the interpolant prescribes a derivative that is not 0.
+    CaseError
+        If a unit is missing.
+    """
+    posing.points()
+    problem = posing.problem()
+    if not problem.interpolant.homogeneous:
+        raise TrajgapError("certify: end derivatives other than 0 are not covered")
+    base = scale(str(posing.units.position))
+
+    def angle(number: Printed | None, unit: str | None) -> Real | None:
+        if number is None or unit is None:
+            return None
+        other = scale(unit)
+        value = number.fraction * other.rational / base.rational
+        return Real(value, other.pi - base.pi)
+
+    def each(given: Any, count: int) -> list[Any]:
+        return list(given) if isinstance(given, tuple | list) else [given] * count
+
+    units, limits, total = posing.units, posing.limits, len(posing.labels)
+    columns = []
+    for name in ("velocity", "acceleration", "jerk"):
+        column = each(getattr(limits, name), total)
+        columns.append([angle(column[j], getattr(units, name)) for j in posing.joints])
+    low, high = (
+        [angle(each(getattr(limits, name), total)[j], units.position) for j in posing.joints]
+        for name in ("position_lower", "position_upper")
+    )
+    second = scale(str(units.time)).rational if units.time is not None else Fraction(1)
+    n = problem.segments
+    rows = posing.waypoints.points
+    shortest, longest = each(posing.durations.lower, n), each(posing.durations.upper, n)
+    return ExactProblem(
+        problem.name,
+        problem.interpolant,
+        problem.joints,
+        tuple(tuple(row[j].fraction for j in posing.joints) for row in rows),
+        tuple(zip(*columns, strict=True)),
+        tuple(low),
+        tuple(high),
+        tuple(Fraction(0) if x is None else x.fraction * second for x in shortest),
+        tuple(None if x is None else x.fraction * second for x in longest),
+        str(units.position),
+    )

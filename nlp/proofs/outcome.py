@@ -1,0 +1,155 @@
+"""What a certifier is asked for and returns: a proved interval, and the argument behind it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import StrEnum
+from fractions import Fraction
+from typing import Any, Protocol
+
+from ..verify import Subject
+from .exact import ExactProblem
+
+GAP = 1e-6
+"""Relative width of the interval that is asked for by default."""
+
+
+class Outcome(StrEnum):
+    """How a certification ended."""
+
+    CERTIFIED = "certified"
+    """The optimum lies in the interval, whose relative width is at most the gap asked for."""
+    INFEASIBLE = "infeasible"
+    """No durations within their bounds keep the limits: proved."""
+    INTERVAL = "interval"
+    """Stopped early: the optimum lies in the interval, which is wider than asked for."""
+    OPEN = "open"
+    """Nothing is proved."""
+
+
+@dataclass(frozen=True)
+class Progress:
+    """What a long run reports: bounds in s, relative gap, open boxes, boxes per second."""
+
+    lower: float
+    upper: float
+    gap: float
+    open_boxes: int
+    nodes: int
+    rate: float
+
+
+class Argument(Protocol):
+    """What proves a lower bound, or what a stopped run can go on from."""
+
+    def document(self) -> dict[str, Any]:
+        """JSON-ready, with ``kind``; every number as exact text."""
+
+
+@dataclass(frozen=True)
+class Request:
+    """What is asked of a certifier.
+
+    Attributes
+    ----------
+    gap : float
+        Relative width of the interval to reach.
+    seconds : float
+        Time limit.
+    seed : int
+        Of the starts of a local solver.
+    resume : dict or None
+        ``resume.document()`` of a stopped run, as read from a file: nothing in it is trusted.
+    report : callable or None
+        Called with a `Progress` now and then.
+    """
+
+    gap: float = GAP
+    seconds: float = 60.0
+    seed: int = 0
+    resume: dict[str, Any] | None = None
+    report: Callable[[Progress], None] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Certified:
+    """A proved interval of the optimum.
+
+    Attributes
+    ----------
+    problem : ExactProblem
+    outcome : Outcome
+    lower : Fraction
+        No feasible total is below it, s.
+    upper : Fraction or None
+        Total of ``durations``, s; None without an answer.
+    durations : tuple of Fraction or None
+        Feasible, proved in rational numbers.
+    nodes, open_boxes : int
+    seconds : float
+    proof : Argument or None
+        What proves ``lower``; None if nothing is proved.
+    resume : Argument or None
+        Where a stopped run can go on.
+    subject : Subject
+        What the interval speaks about.
+    """
+
+    problem: ExactProblem
+    outcome: Outcome
+    lower: Fraction
+    upper: Fraction | None
+    durations: tuple[Fraction, ...] | None
+    nodes: int
+    open_boxes: int
+    seconds: float
+    proof: Argument | None = None
+    resume: Argument | None = None
+    subject: Subject = Subject.DECLARED
+
+    @property
+    def gap(self) -> float:
+        """Relative width of the interval, (upper − lower)/upper; inf without an answer."""
+        if self.upper is None:
+            return float("inf")
+        return float((self.upper - self.lower) / self.upper)
+
+    def __str__(self) -> str:
+        if self.outcome is Outcome.INFEASIBLE:
+            head = "no durations within their bounds keep the limits: proved"
+        elif self.upper is None and not self.lower:
+            head = "nothing proved"
+        elif self.upper is None:
+            head = f"optimum at least {float(self.lower):.9f} s, no answer"
+        else:
+            head = (
+                f"optimum in [{float(self.lower):.9f}, {float(self.upper):.9f}] s, "
+                f"gap {self.gap:.1e}, {self.outcome}"
+            )
+        return f"{self.problem.name}: {head}; {self.nodes} boxes, {self.seconds:.1f} s"
+
+
+@dataclass(frozen=True)
+class Certifier:
+    """One method, for one kind of curve.
+
+    Attributes
+    ----------
+    family : str
+        Words for the curves that it covers.
+    declares : callable
+        Whether a problem's curve is of its kind.
+    missing : callable
+        Why such a problem is not covered all the same, or None.
+    certify : callable
+        Keyboard interrupts and the time limit end it with what is proved so far.
+    instant : bool
+        Whether it is a closed form.
+    """
+
+    family: str
+    declares: Callable[[ExactProblem], bool]
+    missing: Callable[[ExactProblem], str | None]
+    certify: Callable[[ExactProblem, Request], Certified]
+    instant: bool = False

@@ -1,0 +1,3 @@
+from .certifier import QUINTIC
+
+__all__ = ["QUINTIC"]

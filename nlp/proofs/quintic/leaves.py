@@ -1,0 +1,90 @@
+"""The tree of a quintic proof: arrays that the search writes, and their JSON."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .search import EMPTY, WINDOW
+from .windows import UNIT, Windows
+
+_ROOM = (1 << 12, 1 << 12, 1 << 13)
+LETTERS = ".abcdefghijklmnopqrstuvwxyz"
+"""A leaf, and the duration that is cut."""
+
+
+@dataclass(frozen=True, eq=False)
+class Leaves:
+    """Letters in preorder and, leaf by leaf, what excludes it; the last array counts all three."""
+
+    tree: NDArray[np.int8]
+    kinds: NDArray[np.int8]
+    starts: NDArray[np.int64]
+    ids: NDArray[np.int16]
+    share: NDArray[np.float64]
+    tau: NDArray[np.float64]
+    sizes: NDArray[np.int64]
+
+    @classmethod
+    def empty(cls, room: tuple[int, int, int] = _ROOM) -> Leaves:
+        """Arrays with room for letters, leaves and rows."""
+        letters, leaves, rows = room
+        return cls(
+            np.zeros(letters, np.int8),
+            np.zeros(leaves, np.int8),
+            np.zeros(leaves + 1, np.int64),
+            np.zeros((rows, 5), np.int16),
+            np.zeros(rows),
+            np.zeros(leaves),
+            np.zeros(3, np.int64),
+        )
+
+    @property
+    def arrays(self) -> tuple[NDArray[Any], ...]:
+        """In the order of `search`."""
+        return self.tree, self.kinds, self.starts, self.ids, self.share, self.tau, self.sizes
+
+    def larger(self) -> Leaves:
+        """The same with twice the room."""
+
+        def grown(part: NDArray[Any]) -> NDArray[Any]:
+            return np.concatenate([part, np.zeros_like(part)])
+
+        *parts, sizes = self.arrays
+        tree, kinds, starts, ids, share, tau = map(grown, parts)
+        return Leaves(tree, kinds, starts, ids, share, tau, sizes)
+
+    def document(self, windows: Windows) -> dict[str, Any]:
+        """Tables of windows and rows that are used, the tree, and one list per leaf."""
+        letters, leaves = int(self.sizes[0]), int(self.sizes[1])
+        tables: tuple[dict[Any, int], dict[Any, int]] = ({}, {})
+        found: list[list[int | str]] = []
+        ids, share = self.ids.tolist(), self.share.tolist()
+        for i, (a, b) in enumerate(pairwise(self.starts[: leaves + 1].tolist())):
+            if self.kinds[i] == EMPTY:
+                found.append([])
+            elif self.kinds[i] == WINDOW:
+                number = tables[0].setdefault(ids[a][0], len(tables[0]))
+                found.append([number, repr(float(self.tau[i]))])
+            else:
+                leaf: list[int | str] = [int(self.tau[i])]
+                for row, weight in zip(ids[a:b], share[a:b], strict=True):
+                    leaf += [tables[1].setdefault(tuple(row), len(tables[1])), int(weight)]
+                found.append(leaf)
+        return {
+            "windows": [
+                [
+                    int(windows.joint[w]),
+                    *(int(x) for x in windows.psi[w] * UNIT),
+                    *(int(x) for x in windows.weights[w] * UNIT),
+                ]
+                for w in tables[0]
+            ],
+            "rows": [list(row) for row in tables[1]],
+            "tree": "".join(LETTERS[x] for x in self.tree[:letters]),
+            "leaves": found,
+        }

@@ -1,0 +1,203 @@
+"""Depth-first bisection of the simplex of durations: every leaf with what excludes it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .bound import bound, centre, compiled
+from .rows import MOST, candidates, simplex
+from .windows import excluding_window
+
+EMPTY, WINDOW, LIMITS = 0, 1, 2
+"""Kinds of leaves: no durations of this total, a condition of all motions, weighted limits."""
+DONE, PAUSED, FULL, SHORTER, DEEP = 0, 1, 2, 3, 4
+"""Why the search returned."""
+SHARES = 2.0**20
+"""Largest weight of a row."""
+SPARE = 1e-9
+"""Part of the limits by which a leaf must exceed them, so that another evaluation agrees."""
+_SLACK = 1e-12
+_WIDEST = 0.6
+_KEPT = 1e-5
+_BRIEFEST = 1e-40
+
+
+@compiled
+def clip(n, low, high, total, least, most):  # type: ignore[no-untyped-def]
+    """Shrink a box to durations that can add up to the total; False if there are none."""
+    below, above = 0.0, 0.0
+    for k in range(n):
+        below += low[k]
+        above += high[k]
+    slack = _SLACK * (above + total)
+    for k in range(n):
+        least[k] = max(low[k], total - (above - high[k]) - slack)
+        most[k] = min(high[k], total - (below - low[k]) + slack)
+        if not least[k] <= most[k]:
+            return False
+    return True
+
+
+@compiled
+def cut(low, high):  # type: ignore[no-untyped-def]
+    """Where a side is bisected: the geometric mean, or nearer to the top of a side that is wide."""
+    return np.sqrt(low * high) if low > 0.1 * high else 0.3 * high
+
+
+@compiled
+def inverse_box(n, low, high, r, e):  # type: ignore[no-untyped-def]
+    """Centre and half-widths of a box in 1/h; False if it is too wide for `bound`."""
+    for k in range(n):
+        if not low[k] > _BRIEFEST:
+            return False
+        a, b = 1.0 / high[k], 1.0 / low[k]
+        r[k] = 0.5 * (a + b)
+        e[k] = 0.5 * (b - a) + 4.0 * _SLACK * b
+        if not e[k] < _WIDEST * r[k]:
+            return False
+    return True
+
+
+@compiled
+def _share_out(count, norms, weight, tau, share):  # type: ignore[no-untyped-def]
+    """Weights of the rows and tau as whole numbers: any positive multiple proves the same."""
+    top = 0.0
+    for c in range(count):
+        if weight[c] > _KEPT:
+            top = max(top, weight[c] / norms[c])
+    for c in range(count):
+        share[c] = np.rint(weight[c] / norms[c] / top * SHARES) if weight[c] > _KEPT else 0.0
+    return np.rint(tau / top * SHARES)
+
+
+@compiled
+def _excluded(  # type: ignore[no-untyped-def]
+    n, joints, r, e, step, limits, total, matrix, inverse, x0, slope,
+    count, ids, shapes, norms, share, tau,
+):  # fmt: skip
+    """Whether rows with their shares exclude the box, with something to spare."""
+    kept = 0
+    for c in range(count):
+        if share[c] > 0.0:
+            kept += 1
+    segment, joint = np.empty(kept, np.int64), np.empty(kept, np.int64)
+    power, limit = np.empty(kept, np.int64), np.empty(kept)
+    shape, weight = np.empty((kept, 5)), np.empty(kept)
+    q, scale = 0, 0.0
+    for c in range(count):
+        if share[c] > 0.0:
+            segment[q], joint[q] = ids[c, 0], ids[c, 1]
+            power[q] = 2 - ids[c, 2]
+            limit[q] = limits[ids[c, 1], ids[c, 2] - 1]
+            shape[q] = shapes[c]
+            weight[q] = share[c]
+            scale += share[c] * norms[c]
+            q += 1
+    reached = bound(
+        n, joints, r, e, step, total, matrix, inverse, x0, slope,
+        segment, joint, power, limit, shape, weight, tau,
+    )  # fmt: skip
+    return reached > SPARE * scale
+
+
+@compiled
+def search(  # type: ignore[no-untyped-def]
+    n, joints, step, limits, total, library, stack_low, stack_high, depth, nodes, look,
+    tree, kinds, starts, ids_out, share_out, tau_out, sizes, counts,
+):  # fmt: skip
+    """Work on the stack until it is empty, ``nodes`` boxes are visited or the room is full.
+
+    ``sizes`` = (letters, leaves, rows) written so far, ``depth[0]`` the height of the stack.
+    Letters are 0 for a leaf, k + 1 for a cut of duration k, the lower part first. Leaf i of kind
+    `LIMITS` has rows ``starts[i] : starts[i + 1]``; of kind `WINDOW` one, whose first number is the
+    condition's. A direction whose total seems to be below ``look`` ends the search, with its box on
+    top of the stack. ``counts`` = (boxes, boxes with a centre, boxes with a bound) so far.
+    """
+    size = 2 * (n - 1)
+    matrix, inverse = np.empty((size, size)), np.empty((size, size))
+    x0, slope = np.empty((joints, size)), np.empty((joints, n, size))
+    low, high = np.empty(n), np.empty(n)
+    r, e = np.empty(n), np.empty(n)
+    ids = np.empty((MOST, 5), np.int64)
+    value, norms = np.empty(MOST), np.empty(MOST)
+    weight, share = np.empty(MOST), np.empty(MOST)
+    gradient, shapes = np.empty((MOST, n)), np.empty((MOST, 5))
+    for _ in range(nodes):
+        if depth[0] == 0:
+            return DONE
+        if depth[0] + 2 > stack_low.shape[0]:
+            return DEEP
+        if (
+            sizes[0] + 1 > tree.size or sizes[1] + 2 > kinds.size
+            or sizes[2] + MOST > ids_out.shape[0]
+        ):  # fmt: skip
+            return FULL
+        at = depth[0] - 1
+        leaf, tau, used = -1, 0.0, 0
+        counts[0] += 1
+        if not clip(n, stack_low[at], stack_high[at], total, low, high):
+            leaf = EMPTY
+        else:
+            f, tau = excluding_window(n, library, low, high, np.float64(total))
+            if f >= 0:
+                leaf, used = WINDOW, 1
+                ids_out[sizes[2], 0] = f
+                share_out[sizes[2]] = 1.0
+            elif inverse_box(n, low, high, r, e) and centre(
+                n, joints, r, step, matrix, inverse, x0, slope
+            ):
+                counts[1] += 1
+                count = candidates(
+                    n, joints, r, step, limits, x0, slope, ids, value, gradient, shapes, norms
+                )
+                least, tau = simplex(n, count, value, gradient, r, e, total, weight)
+                if least > 0.0:
+                    counts[2] += 1
+                    tau = _share_out(count, norms, weight, tau, share)
+                    if _excluded(
+                        n, joints, r, e, step, limits, total, matrix, inverse, x0, slope,
+                        count, ids, shapes, norms, share, tau,
+                    ):  # fmt: skip
+                        leaf = LIMITS
+                        for c in range(count):
+                            if share[c] > 0.0:
+                                ids_out[sizes[2] + used] = ids[c]
+                                share_out[sizes[2] + used] = share[c]
+                                used += 1
+                if leaf < 0 and look > 0.0:
+                    reached, stretch = 0.0, 0.0
+                    for k in range(n):
+                        reached += 1.0 / r[k]
+                    for c in range(count):
+                        stretch = max(stretch, (1.0 + value[c]) ** (1.0 / ids[c, 2]))
+                    if reached * stretch < look:
+                        stack_low[at] = low
+                        stack_high[at] = high
+                        return SHORTER
+        if leaf >= 0:
+            tree[sizes[0]] = 0
+            sizes[0] += 1
+            kinds[sizes[1]] = leaf
+            tau_out[sizes[1]] = tau
+            starts[sizes[1]] = sizes[2]
+            sizes[1] += 1
+            sizes[2] += used
+            starts[sizes[1]] = sizes[2]
+            depth[0] -= 1
+            continue
+        axis, widest = 0, -1.0
+        for k in range(n):
+            width = high[k] / max(low[k], 1e-6 * high[k])
+            if width > widest:
+                widest, axis = width, k
+        middle = cut(low[axis], high[axis])
+        stack_low[at] = low
+        stack_high[at] = high
+        stack_low[at + 1] = low
+        stack_high[at + 1] = high
+        stack_low[at, axis] = middle
+        stack_high[at + 1, axis] = middle
+        tree[sizes[0]] = axis + 1
+        sizes[0] += 1
+        depth[0] += 1
+    return DONE if depth[0] == 0 else PAUSED

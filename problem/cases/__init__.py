@@ -1,0 +1,5 @@
+"""Case files: what a paper prints, read strictly and turned into problems."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

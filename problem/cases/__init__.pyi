@@ -1,0 +1,48 @@
+from .case import Case, DurationBox
+from .claim import (
+    AnyClaim,
+    Claim,
+    ConditionsClaim,
+    ControlVerticesClaim,
+    ConvergenceClaim,
+    DurationsClaim,
+    ImprovementClaim,
+    MaximumClaim,
+    PeakClaim,
+    StatementClaim,
+    TotalTimeClaim,
+)
+from .instances import FamilyBlock, family_waypoints
+from .load import load_case, parse_case, published_ids
+from .robot_file import load_robot, robot_ids
+from .scaffolding import scaffold
+from .schema import Cartesian, CaseFile, case_schema
+from .statement import Posing
+
+__all__ = [
+    "AnyClaim",
+    "Cartesian",
+    "Case",
+    "CaseFile",
+    "Claim",
+    "ConditionsClaim",
+    "ControlVerticesClaim",
+    "ConvergenceClaim",
+    "DurationBox",
+    "DurationsClaim",
+    "FamilyBlock",
+    "ImprovementClaim",
+    "MaximumClaim",
+    "PeakClaim",
+    "Posing",
+    "StatementClaim",
+    "TotalTimeClaim",
+    "case_schema",
+    "family_waypoints",
+    "load_case",
+    "load_robot",
+    "parse_case",
+    "published_ids",
+    "robot_ids",
+    "scaffold",
+]

@@ -1,0 +1,382 @@
+"""Case files: what a paper prints, loaded, and turned into problems reading by reading."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import CaseError
+from ..fields import nearest
+from ..printed import Printed
+from ..problem import Coupling, Problem
+from ..robots import Chain, Convention, DhTable
+from ..units import Measured, Quantity
+from .claim import AnyClaim, Claim, DurationsClaim, MaximumClaim
+from .instances import FamilyBlock
+from .robot_file import robot_file, robot_ids
+from .schema import (
+    Algorithm,
+    Assumption,
+    Cartesian,
+    CaseFile,
+    Column,
+    NotCheckable,
+    ProblemBlock,
+    Reading,
+    Robot,
+    Source,
+    Table,
+)
+from .statement import Posing, pose
+
+_ONLY_PROBLEM = ProblemBlock(id="main")
+_ONLY_READING = Reading(id="as-printed", why="the numbers and units as printed", default=True)
+
+
+@dataclass(frozen=True)
+class DurationBox:
+    """Claimed durations in seconds: as printed, and the box of all that print alike.
+
+    Each array has shape (segments,).
+    """
+
+    value: NDArray[np.float64]
+    lower: NDArray[np.float64]
+    upper: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Case:
+    """A loaded and checked case file.
+
+    Parameters
+    ----------
+    document : CaseFile
+        The file's content, validated.
+    file : str
+        What it was loaded from, for messages.
+    """
+
+    document: CaseFile
+    file: str
+
+    @property
+    def id(self) -> str:
+        """Permanent id of the case."""
+        return self.document.id
+
+    @property
+    def title(self) -> str:
+        """Title of the case."""
+        return self.document.title
+
+    @property
+    def source(self) -> Source:
+        """Where the numbers were printed."""
+        return self.document.source
+
+    @property
+    def robot(self) -> Robot:
+        """The robot and its joint labels."""
+        return self.document.robot
+
+    @property
+    def problems(self) -> tuple[ProblemBlock, ...]:
+        """The problems posed; one called "main" if the file names none."""
+        return self.document.problems or (_ONLY_PROBLEM,)
+
+    @property
+    def readings(self) -> tuple[Reading, ...]:
+        """The admissible readings; one called "as-printed" if the file names none."""
+        return self.document.readings or (_ONLY_READING,)
+
+    @property
+    def claims(self) -> tuple[AnyClaim, ...]:
+        """What the paper claims."""
+        return self.document.claims
+
+    @property
+    def tables(self) -> tuple[Table, ...]:
+        """The tables that group the claims."""
+        return self.document.tables
+
+    @property
+    def algorithms(self) -> tuple[Algorithm, ...]:
+        """The paper's algorithms and their settings."""
+        return self.document.algorithms
+
+    @property
+    def families(self) -> tuple[FamilyBlock, ...]:
+        """Families of instances on which relative claims are examined."""
+        return self.document.families
+
+    @property
+    def assumptions(self) -> tuple[Assumption, ...]:
+        """What the paper leaves open, and what was chosen."""
+        return self.document.assumptions
+
+    @property
+    def columns(self) -> tuple[Column, ...]:
+        """Printed numbers that are neither problem data nor claims."""
+        return self.document.columns
+
+    @property
+    def cartesian(self) -> tuple[Cartesian, ...]:
+        """Printed positions of the robot's end."""
+        return self.document.cartesian
+
+    @property
+    def not_checkable(self) -> tuple[NotCheckable, ...]:
+        """What cannot be checked from the extracted text."""
+        return self.document.not_checkable
+
+    @cached_property
+    def default_reading(self) -> Reading:
+        """The reading marked as default, else the first."""
+        return next((r for r in self.readings if r.default), self.readings[0])
+
+    @property
+    def posed(self) -> bool:
+        """Whether every problem has way-points under every reading, so that it can be solved."""
+        return all(self.posing(*pair).posed for pair in self.selections())
+
+    @cached_property
+    def dh(self) -> DhTable | None:
+        """The robot's Denavit-Hartenberg table: printed in the paper, or the shipped model's.
+
+        Raises
+        ------
+        CaseError
+            If the model is unknown.
+        """
+        model = self.robot.model
+        if model is None:
+            return self.robot.dh
+        if model not in robot_ids():
+            raise CaseError(
+                self.file,
+                "robot.model",
+                f"no robot {model!r} is shipped; {nearest(model, robot_ids())}",
+            )
+        return robot_file(model).dh
+
+    def chain(
+        self, convention: Convention | None = None, flipped: tuple[int, ...] = ()
+    ) -> Chain | None:
+        """The robot's chain, or None if the case has no table.
+
+        Parameters
+        ----------
+        convention : Convention, optional
+            Instead of the one stated.
+        flipped : tuple of int
+            Rows whose twist is taken with the other sign.
+
+        Returns
+        -------
+        Chain or None
+
+        Raises
+        ------
+        CaseError
+            If the model is unknown, or the table has not one row per joint.
+        """
+        if self.dh is None:
+            return None
+        labels = self.robot.joints if self.robot.model is None else ()
+        if self.dh.joints is None and labels and len(self.dh.d) != len(labels):
+            raise CaseError(
+                self.file,
+                "robot.dh.d",
+                f"has {len(self.dh.d)} entries for {len(labels)} joints; "
+                "give one each, or name the table's joints",
+            )
+        return self.dh.chain(self.robot.name, labels, convention, flipped)
+
+    def claim(self, claim_id: str) -> AnyClaim:
+        """Look a claim up by its id.
+
+        Raises
+        ------
+        CaseError
+            If there is no such claim.
+        """
+        for claim in self.claims:
+            if claim.id == claim_id:
+                return claim
+        ids = [claim.id for claim in self.claims]
+        raise CaseError(self.file, "claim", f"no claim {claim_id!r}; {nearest(claim_id, ids)}")
+
+    def table_claims(self, table_id: str) -> tuple[AnyClaim, ...]:
+        """Claims that a table prints, in the order of the file."""
+        return tuple(claim for claim in self.claims if claim.table == table_id)
+
+    def selections(
+        self, problem: str | None = None, reading: str | None = None
+    ) -> list[tuple[str, str]]:
+        """Pairs of problem id and reading id.
+
+        Parameters
+        ----------
+        problem, reading : str, optional
+            Keep only these; all by default.
+
+        Returns
+        -------
+        list of (str, str)
+            Problems in the order of the file; within each, the default reading first.
+
+        Raises
+        ------
+        CaseError
+            If the problem or reading is unknown.
+        """
+        first = self.default_reading
+        ordered = [first, *(r for r in self.readings if r is not first)]
+        problems = self.problems if problem is None else (self._problem(problem),)
+        readings = ordered if reading is None else [self._reading(reading)]
+        return [(p.id, r.id) for p in problems for r in readings]
+
+    def problem(
+        self,
+        problem_id: str | None = None,
+        reading_id: str | None = None,
+        coupling: Coupling | str | None = None,
+    ) -> Problem:
+        """Problem in radians and seconds.
+
+        Parameters
+        ----------
+        problem_id : str, optional
+            Which of the paper's problems; the first by default.
+        reading_id : str, optional
+            Under which reading; the default one if not given.
+        coupling : Coupling or str, optional
+            "shared" or "per-joint" instead of what the file says.
+
+        Returns
+        -------
+        Problem
+
+        Raises
+        ------
+        CaseError
+            If an id or the coupling is unknown, the numbers don't fit together, or the paper
+            prints no way-points.
+        """
+        posing = self.posing(problem_id, reading_id)
+        problem = posing.problem()
+        if coupling is None:
+            return problem
+        if coupling not in tuple(Coupling):
+            known = ", ".join(Coupling)
+            raise CaseError(self.file, "coupling", f"unknown coupling {coupling!r}; use {known}")
+        return replace(problem, coupling=Coupling(coupling))
+
+    def waypoint_box(
+        self, problem_id: str | None = None, reading_id: str | None = None
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Bounds on the way-points that print alike.
+
+        Parameters
+        ----------
+        problem_id, reading_id : str, optional
+            As in `problem`.
+
+        Returns
+        -------
+        lower, upper : ndarray, shape (way-points, joints)
+            Joint angles in rad, rounded outwards.
+        """
+        points = self.posing(problem_id, reading_id).points()
+        lower = np.array([[angle.lower for angle in row] for row in points])
+        upper = np.array([[angle.upper for angle in row] for row in points])
+        return lower, upper
+
+    def printed_durations(self, claim: Claim) -> tuple[Printed, ...]:
+        """Segment durations of a claim as printed; empty if it states none."""
+        return claim.durations if isinstance(claim, DurationsClaim | MaximumClaim) else ()
+
+    def claim_durations(self, claim: Claim, reading_id: str | None = None) -> DurationBox:
+        """Segment durations of a claim in seconds.
+
+        Parameters
+        ----------
+        claim : Claim
+            A claim of this case that states durations.
+        reading_id : str, optional
+            Under which reading; the default one if not given.
+
+        Returns
+        -------
+        DurationBox
+
+        Raises
+        ------
+        CaseError
+            If the claim states no durations.
+        """
+        printed = self.printed_durations(claim)
+        if not printed:
+            raise CaseError(
+                self.file, f"claim {claim.id!r}", "states no durations; choose one that does"
+            )
+        posing = self.posing(claim.problem, reading_id)
+        measured = [posing.si(number, "time") for number in printed]
+        return DurationBox(
+            np.array([m.value for m in measured]),
+            np.array([m.lower for m in measured]),
+            np.array([m.upper for m in measured]),
+        )
+
+    def measured(
+        self,
+        number: Printed,
+        quantity: Quantity,
+        problem_id: str | None = None,
+        reading_id: str | None = None,
+    ) -> Measured:
+        """Convert a printed number of this case to radians and seconds.
+
+        Parameters
+        ----------
+        number : Printed
+            For example a claim's total or peak.
+        quantity : {"position", "velocity", "acceleration", "jerk", "time"}
+            What it measures, which decides the unit.
+        problem_id, reading_id : str, optional
+            As in `problem`.
+
+        Returns
+        -------
+        Measured
+
+        Raises
+        ------
+        CaseError
+            If the file states no unit for the quantity.
+        """
+        return self.posing(problem_id, reading_id).si(number, quantity)
+
+    def posing(self, problem_id: str | None = None, reading_id: str | None = None) -> Posing:
+        """One problem under one reading, still in printed digits."""
+        problem = self.problems[0] if problem_id is None else self._problem(problem_id)
+        reading = self.default_reading if reading_id is None else self._reading(reading_id)
+        return pose(self.document, self.file, problem, reading)
+
+    def _problem(self, problem_id: str) -> ProblemBlock:
+        for problem in self.problems:
+            if problem.id == problem_id:
+                return problem
+        mend = nearest(problem_id, (p.id for p in self.problems))
+        raise CaseError(self.file, "problem", f"no problem {problem_id!r}; {mend}")
+
+    def _reading(self, reading_id: str) -> Reading:
+        for reading in self.readings:
+            if reading.id == reading_id:
+                return reading
+        mend = nearest(reading_id, (r.id for r in self.readings))
+        raise CaseError(self.file, "reading", f"no reading {reading_id!r}; {mend}")

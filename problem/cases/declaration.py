@@ -1,0 +1,165 @@
+"""How a case file declares its interpolant, and the curve that it means."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, StrictInt, model_validator
+
+from ..curves import (
+    ClampedBSpline,
+    Curve,
+    Knots,
+    Parameters,
+    Timing,
+    cubic_spline,
+    cubic_spline_virtual,
+    jtraj,
+    piecewise,
+    quintic_spline,
+    rest_to_rest,
+    three_five_three,
+    uniform_cubic_b_spline,
+)
+from ..fields import Number, Strict, fault
+
+Family = Literal[
+    "3-5-3",
+    "polynomials",
+    "cubic-spline",
+    "quintic-spline",
+    "cubic-spline-virtual",
+    "rest-to-rest",
+    "jtraj",
+    "uniform-cubic-b-spline",
+    "clamped-b-spline",
+]
+
+_FAMILY_KEYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
+    "3-5-3": ((), ()),
+    "polynomials": (("degrees",), ("continuity", "end_orders", "end_derivatives", "free")),
+    "cubic-spline": ((), ("end_orders", "end_derivatives", "free")),
+    "quintic-spline": ((), ()),
+    "cubic-spline-virtual": ((), ()),
+    "rest-to-rest": (("degree",), ()),
+    "jtraj": ((), ()),
+    "uniform-cubic-b-spline": (("time",), ()),
+    "clamped-b-spline": (("degree", "knots", "parameters"), ("time", "end_orders")),
+}
+
+
+class InterpolantBlock(Strict):
+    """The curve through the way-points."""
+
+    family: Family
+    where: str = ""
+    degrees: tuple[Annotated[StrictInt, Field(ge=1, le=9)], ...] | None = None
+    """Polynomials: the degree of each segment."""
+    continuity: Annotated[StrictInt, Field(ge=0, le=8)] | None = None
+    """Polynomials: highest continuous derivative at the via-points; 2 if absent."""
+    end_orders: tuple[Annotated[StrictInt, Field(ge=1, le=8)], ...] | None = None
+    """Orders of the derivatives prescribed at both ends; [1, 2] if absent (cubic-spline: [1])."""
+    end_derivatives: tuple[Number, ...] | None = None
+    """Their values, in the units of the file; all 0 if absent."""
+    degree: StrictInt | None = None
+    """Rest-to-rest: degree of every segment, 3, 5, 7 or 9. Clamped B-spline: 3 to 7."""
+    knots: Literal["waypoints", "averaged", "averaged-continued"] | None = None
+    """Clamped B-spline: where the inner knots lie."""
+    parameters: Literal["times", "chord", "joint-chord"] | None = None
+    """Clamped B-spline: what the knots are placed by."""
+    time: Literal["stretched", "timed"] | None = None
+    """B-splines: whether each segment is stretched in time by itself, or time is smooth."""
+    free: Annotated[StrictInt, Field(ge=0)] = 0
+    """Coefficients per joint that the conditions leave free."""
+
+    @model_validator(mode="after")
+    def _keys_of_family(self) -> Self:
+        needed, allowed = _FAMILY_KEYS[self.family]
+        for key in needed:
+            if getattr(self, key) is None:
+                raise fault(f".{key}", f"is missing; family {self.family!r} needs it")
+        for key in self.model_fields_set - {"family", "where", *needed, *allowed}:
+            raise fault(f".{key}", f"does not go with family {self.family!r}; leave it out")
+        if self.degree is not None:
+            allowed_degrees = (3, 5, 7, 9) if self.family == "rest-to-rest" else range(3, 8)
+            if self.degree not in allowed_degrees:
+                words = ", ".join(map(str, allowed_degrees[:-1]))
+                raise fault(
+                    ".degree",
+                    f"{self.degree} is not allowed; use {words} or {allowed_degrees[-1]}",
+                )
+        if self.end_orders is not None and len(set(self.end_orders)) != len(self.end_orders):
+            raise fault(".end_orders", "names an order twice; leave one out")
+        if self.end_derivatives is not None:
+            orders = self.orders
+            if len(self.end_derivatives) != len(orders):
+                raise fault(
+                    ".end_derivatives",
+                    f"{len(self.end_derivatives)} values for the {len(orders)} orders "
+                    f"{list(orders)}; give one value per order",
+                )
+            for index, (order, value) in enumerate(zip(orders, self.end_derivatives, strict=True)):
+                if order > 3 and value.fraction != 0:
+                    raise fault(
+                        f".end_derivatives[{index}]",
+                        f"order {order} has no unit; only 0 can be prescribed above jerk",
+                    )
+        return self
+
+    @property
+    def orders(self) -> tuple[int, ...]:
+        """Orders prescribed at both ends."""
+        if self.end_orders is not None:
+            return self.end_orders
+        return (1,) if self.family == "cubic-spline" else (1, 2)
+
+
+@lru_cache(maxsize=128)
+def declare(block: InterpolantBlock, count: int, ends: tuple[tuple[int, float], ...]) -> Curve:
+    """Curve that a block means for a number of way-points.
+
+    Parameters
+    ----------
+    block : InterpolantBlock
+    count : int
+        Number of way-points.
+    ends : tuple of (order, value)
+        Derivatives prescribed at both ends, rad/sᵒʳᵈᵉʳ, where the family leaves them open.
+
+    Returns
+    -------
+    Curve
+
+    Raises
+    ------
+    TrajgapError
+        If the declaration is over- or under-determined or contradicts itself.
+    """
+    match block.family:
+        case "3-5-3":
+            return three_five_three()
+        case "polynomials":
+            continuity = 2 if block.continuity is None else block.continuity
+            return piecewise(block.degrees or (), continuity, ends)
+        case "cubic-spline":
+            return cubic_spline(count - 1, ends)
+        case "quintic-spline":
+            return quintic_spline(count - 1)
+        case "cubic-spline-virtual":
+            return cubic_spline_virtual(count)
+        case "rest-to-rest":
+            return rest_to_rest(count - 1, block.degree or 0)
+        case "jtraj":
+            return jtraj(count - 1)
+        case "uniform-cubic-b-spline":
+            return uniform_cubic_b_spline(count, block.time or "")
+        case "clamped-b-spline":
+            return ClampedBSpline(
+                count,
+                block.degree or 0,
+                Knots(block.knots or ""),
+                Parameters(block.parameters or ""),
+                Timing(block.time or "timed"),
+                block.orders,
+            )

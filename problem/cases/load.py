@@ -1,0 +1,123 @@
+"""Loading of case files: published ones by id, others by path."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from ..errors import CaseError
+from ..fields import nearest
+from ..textfile import parse_toml, read_text
+from .case import Case
+from .faults import first_fault
+from .references import check_claims, check_kinematics, check_references
+from .schema import CaseFile
+
+FORMAT = 1
+"""The version of the case file format that this module reads."""
+
+_PUBLISHED = "trajgap.problem.published"
+"""Package that holds the published cases as data."""
+
+
+def published_ids() -> tuple[str, ...]:
+    """Ids of the case files shipped with the package, sorted."""
+    folder = files(_PUBLISHED)
+    names = (entry.name for entry in folder.iterdir())
+    return tuple(sorted(n.removesuffix(".toml") for n in names if n.endswith(".toml")))
+
+
+def load_case(source: str | Path) -> Case:
+    """Load a case file.
+
+    Parameters
+    ----------
+    source : str or Path
+        Id of a published case, or path of a TOML file.
+
+    Returns
+    -------
+    Case
+
+    Raises
+    ------
+    CaseError
+        If there is no such case or file, or anything in it is wrong: one line naming the file,
+        the field and the mend.
+    """
+    known = published_ids()
+    if isinstance(source, str) and source in known:
+        text = files(_PUBLISHED).joinpath(f"{source}.toml").read_text("utf-8")
+        return parse_case(text, source)
+    path = Path(source)
+    if not path.suffix and not path.exists():
+        raise CaseError(
+            str(source), "", f"neither a published case nor a file; {nearest(str(source), known)}"
+        )
+    return parse_case(read_text(path), str(source))
+
+
+def parse_case(text: str, file: str) -> Case:
+    """Read the text of a case file.
+
+    Parameters
+    ----------
+    text : str
+        TOML.
+    file : str
+        Name for error messages.
+
+    Returns
+    -------
+    Case
+
+    Raises
+    ------
+    CaseError
+        As `load_case`.
+    """
+    return check_case(parse_toml(text, file), file)
+
+
+def check_case(raw: dict[str, Any], file: str) -> Case:
+    """Check the raw content of a case file.
+
+    Parameters
+    ----------
+    raw : dict
+        Parsed TOML, numbers with a point as Decimal.
+    file : str
+        Name for error messages.
+
+    Returns
+    -------
+    Case
+
+    Raises
+    ------
+    CaseError
+        As `load_case`.
+    """
+    version = raw.get("format")
+    if version is None:
+        raise CaseError(file, "format", f"is missing; add `format = {FORMAT}`")
+    if version != FORMAT or isinstance(version, bool):
+        raise CaseError(file, "format", f"is {version!r}; this version reads {FORMAT}")
+    try:
+        document = CaseFile.model_validate(raw)
+    except ValidationError as error:
+        raise CaseError(file, *first_fault(error)) from None
+    check_references(document, file)
+    case = Case(document, file)
+    check_kinematics(document, file, case.chain())
+    for problem_id, reading_id in case.selections():
+        posing = case.posing(problem_id, reading_id)
+        if posing.posed:
+            posing.problem()
+        else:
+            posing.data()
+    check_claims(document, file, lambda claim: case.posing(claim.problem))
+    return case

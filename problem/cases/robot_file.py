@@ -1,0 +1,119 @@
+"""Robots as data: shipped ones by id, others by path."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from importlib.resources import files
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from ..errors import CaseError
+from ..fields import nearest
+from ..robots import Chain
+from ..textfile import parse_toml, read_text
+from .faults import first_fault
+from .schema import RobotFile
+
+FORMAT = 1
+"""The version of the robot file format that this module reads."""
+_ROBOTS = "trajgap.problem.robots"
+"""Package that holds the shipped robots as data."""
+
+
+def robot_ids() -> tuple[str, ...]:
+    """Ids of the robots shipped with the package, sorted."""
+    names = (entry.name for entry in files(_ROBOTS).iterdir())
+    return tuple(sorted(n.removesuffix(".toml") for n in names if n.endswith(".toml")))
+
+
+def load_robot(source: str | Path) -> Chain:
+    """Load the chain of a robot file, as its table is printed.
+
+    Parameters
+    ----------
+    source : str or Path
+        Id of a shipped robot, or path of a TOML file.
+
+    Returns
+    -------
+    Chain
+
+    Raises
+    ------
+    CaseError
+        If there is no such robot or file, or anything in it is wrong: one line naming the file,
+        the field and the mend.
+
+    Examples
+    --------
+    >>> load_robot("puma560").labels
+    ('1', '2', '3', '4', '5', '6')
+    """
+    robot = robot_file(source)
+    return robot.dh.chain(robot.name)
+
+
+def robot_file(source: str | Path) -> RobotFile:
+    """Load a robot file with its source and its printed table.
+
+    Parameters
+    ----------
+    source : str or Path
+        As for `load_robot`.
+
+    Returns
+    -------
+    RobotFile
+
+    Raises
+    ------
+    CaseError
+        As `load_robot`.
+    """
+    known = robot_ids()
+    if isinstance(source, str) and source in known:
+        return _shipped(source)
+    path = Path(source)
+    if not path.suffix and not path.exists():
+        raise CaseError(
+            str(source), "", f"neither a shipped robot nor a file; {nearest(str(source), known)}"
+        )
+    return parse_robot(read_text(path), str(source))
+
+
+@lru_cache(maxsize=32)
+def _shipped(robot_id: str) -> RobotFile:
+    path = files(_ROBOTS).joinpath(f"{robot_id}.toml")
+    return parse_robot(path.read_text("utf-8"), robot_id)
+
+
+def parse_robot(text: str, file: str) -> RobotFile:
+    """Read the text of a robot file.
+
+    Parameters
+    ----------
+    text : str
+        TOML.
+    file : str
+        Name for error messages.
+
+    Returns
+    -------
+    RobotFile
+
+    Raises
+    ------
+    CaseError
+        As `load_robot`.
+    """
+    raw = parse_toml(text, file)
+    version = raw.get("format")
+    if version is None:
+        raise CaseError(file, "format", f"is missing; add `format = {FORMAT}`")
+    if version != FORMAT or isinstance(version, bool):
+        raise CaseError(file, "format", f"is {version!r}; this version reads {FORMAT}")
+    try:
+        return RobotFile.model_validate(raw)
+    except ValidationError as error:
+        raise CaseError(file, *first_fault(error)) from None

@@ -1,0 +1,247 @@
+"""A table of way-points (CSV) turned into the text of a case file to start from."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import cast
+
+from ..errors import CaseError, TrajgapError
+from ..printed import Printed
+from ..textfile import read_text
+from ..units import CHOICES, Quantity, check_unit
+from .load import parse_case
+
+_LABEL_HEADERS = ("", "waypoint", "way-point", "point", "label", "name")
+
+
+def scaffold(
+    csv_path: str | Path,
+    units: Mapping[str, str],
+    *,
+    case_id: str | None = None,
+    family: str | None = None,
+    velocity: str | None = None,
+    acceleration: str | None = None,
+    jerk: str | None = None,
+) -> str:
+    """Write a case file for a table of way-points.
+
+    Parameters
+    ----------
+    csv_path : str or Path
+        Table separated by commas, semicolons or tabs. The header names the joints, each further
+        row is a way-point; a first column headed "waypoint", "point" or "label" names them.
+    units : mapping
+        Unit of "position", and of "velocity", "acceleration" and "jerk" where a limit is given;
+        "time" is "s" if left out.
+    case_id : str, optional
+        Id of the case; the file's name by default.
+    family : str, optional
+        Interpolant; by default 3-5-3 for four way-points, else the cubic spline with two virtual
+        way-points.
+    velocity, acceleration, jerk : str, optional
+        Limit of every joint, meant exactly.
+
+    Returns
+    -------
+    str
+        TOML with every number as it stands in the table, and comments on what to add. It loads.
+
+    Raises
+    ------
+    CaseError
+        If the table or a unit cannot be used.
+    """
+    path = Path(csv_path)
+    name = str(csv_path)
+    limits = {"velocity": velocity, "acceleration": acceleration, "jerk": jerk}
+    given = {key: number for key, number in limits.items() if number is not None}
+    checked = _units(name, units, given)
+    header, rows = _table(name, read_text(path))
+    labelled = header[0].strip().lower() in _LABEL_HEADERS
+    joints = header[1:] if labelled else header
+    labels = [row[0] for row in rows] if labelled else [str(k + 1) for k in range(len(rows))]
+    numbers = [row[1:] if labelled else row for row in rows]
+    for key, number in given.items():
+        _digits(name, key, number)
+    identity = case_id if case_id is not None else _identity(path.stem)
+    text = _text(
+        identity,
+        path.name,
+        joints,
+        labels,
+        numbers,
+        checked,
+        given,
+        family or ("3-5-3" if len(rows) == 4 else "cubic-spline-virtual"),
+    )
+    parse_case(text, name)
+    return text
+
+
+def _units(name: str, units: Mapping[str, str], limits: Mapping[str, str]) -> dict[str, str]:
+    for key in units:
+        if key not in CHOICES:
+            raise CaseError(name, f"units.{key}", f"no such quantity; known: {', '.join(CHOICES)}")
+    checked: dict[str, str] = {}
+    for key in ("position", *limits, "time"):
+        quantity = cast(Quantity, key)
+        unit = units.get(key, "s" if key == "time" else None)
+        if unit is None:
+            choices = ", ".join(CHOICES[key])
+            raise CaseError(name, f"units.{key}", f"is missing; give one of {choices}")
+        try:
+            checked[key] = check_unit(unit, quantity)
+        except TrajgapError as error:
+            raise CaseError(name, f"units.{key}", str(error)) from None
+    return checked
+
+
+def _table(name: str, text: str) -> tuple[list[str], list[list[str]]]:
+    delimiter = max(",;\t", key=text.split("\n", 1)[0].count)
+    reader = csv.reader(text.splitlines(), delimiter=delimiter, strict=True)
+    lines: list[tuple[int, list[str]]] = []
+    try:
+        for row in reader:
+            if any(cell.strip() for cell in row):
+                lines.append((reader.line_num, [cell.strip() for cell in row]))
+    except csv.Error as error:
+        raise CaseError(
+            name, f"line {reader.line_num}", f"not valid CSV, {error}; mend it"
+        ) from None
+    _, header = lines[0]
+    first = 1 if header[0].lower() in _LABEL_HEADERS else 0
+    if len(header) == first:
+        raise CaseError(name, "line 1", "names no joint; head one column per joint")
+    for column, label in enumerate(header[first:], first + 1):
+        where = f"line 1, column {column}"
+        if not label:
+            raise CaseError(name, where, "the joint has no name; head every column")
+        if label in header[first : column - 1]:
+            raise CaseError(name, where, f"joint {label!r} is named twice; rename one")
+    if _is_number(header[first:]):
+        raise CaseError(
+            name, "line 1", "holds numbers; the first line names the joints, put a header above it"
+        )
+    rows: list[list[str]] = []
+    for line, row in lines[1:]:
+        if len(row) != len(header):
+            raise CaseError(
+                name,
+                f"line {line}",
+                f"has {len(row)} cells, the header {len(header)}; fill or remove cells",
+            )
+        for column, cell in enumerate(row[first:], first + 1):
+            _digits(name, f"line {line}, column {column}", cell)
+        rows.append(row)
+    if len(rows) < 2:
+        raise CaseError(
+            name, "", f"holds {len(rows)} way-points; give at least two rows of numbers"
+        )
+    return header, rows
+
+
+def _is_number(cells: Sequence[str]) -> bool:
+    # Joints are often named 1, 2, 3: only signs and decimals give a row of angles away.
+    return any(re.fullmatch(r"[-−+]?[0-9]*\.[0-9]+|[-−][0-9.]+", cell) for cell in cells)
+
+
+def _digits(name: str, field: str, text: str) -> None:
+    try:
+        Printed(text)
+    except TrajgapError as error:
+        mend = str(error)
+        if re.fullmatch(r"\s*[-+−]?[0-9]+,[0-9]+\s*", text):
+            mend = f"{text!r} has a decimal comma; write a decimal point"
+        raise CaseError(name, field, mend) from None
+
+
+def _identity(stem: str) -> str:
+    return re.sub(r"[^a-z0-9.]+", "-", stem.lower()).strip("-.") or "case"
+
+
+def _quoted(text: str) -> str:
+    # TOML's basic strings escape as JSON's do, except that DEL must be escaped too.
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def _text(
+    identity: str,
+    file: str,
+    joints: Sequence[str],
+    labels: Sequence[str],
+    numbers: Sequence[Sequence[str]],
+    units: Mapping[str, str],
+    limits: Mapping[str, str],
+    family: str,
+) -> str:
+    rows = [f"  [{', '.join(map(_quoted, row))}],  # {_comment(labels[k])}"
+            for k, row in enumerate(numbers)]  # fmt: skip
+    unit_lines = [
+        f"{key} = {_quoted(units[key])}" if key in units else f'# {key} = "{choices[0]}"'
+        for key, choices in CHOICES.items()
+    ]
+    limit_lines = [
+        f"{key} = {Printed(limits[key]).decimal}" if key in limits else f"# {key} = 6"
+        for key in ("velocity", "acceleration", "jerk")
+    ]
+    parts = [
+        "# A number in quotes stands for every value that rounds to its digits.",
+        "# A bare number is exact. Uncomment and fill in what the paper prints.",
+        "",
+        "format = 1",
+        f"id = {_quoted(identity)}",
+        f"title = {_quoted(identity)}",
+        'coupling = "shared"  # or "per-joint": each joint by itself, longest per segment',
+        "",
+        "[source]",
+        f"note = {_quoted(f'way-points from {file}')}",
+        '# authors = ""',
+        '# title = ""',
+        "# year = 2024",
+        '# doi = ""',
+        "",
+        "[robot]",
+        'name = "robot"',
+        f"joints = [{', '.join(map(_quoted, joints))}]",
+        "",
+        "[units]",
+        *unit_lines,
+        "",
+        "[waypoints]",
+        '# where = "Table 1"',
+        f"labels = [{', '.join(map(_quoted, labels))}]",
+        "waypoint_rows = [",
+        *rows,
+        "]",
+        "",
+        "[limits]  # one for all joints, or a list with one per joint; absent means none",
+        *limit_lines,
+        "",
+        "[interpolant]  # 3-5-3, polynomials, cubic-spline, quintic-spline, cubic-spline-virtual,",
+        f"family = {_quoted(family)}  # or rest-to-rest",
+        "",
+        "[durations]",
+        "lower = 0  # 0 means positive",
+        "",
+        "# [[claims]]",
+        '# id = "total"',
+        '# quantity = "total_time"',
+        '# where = "abstract"',
+        '# value = "3.528"',
+        "",
+        "# [[assumptions]]",
+        '# id = "limits-everywhere"',
+        '# text = "What the paper leaves open."',
+        '# choice = "What was chosen."',
+        "",
+    ]
+    return "\n".join(parts)
+
+
+def _comment(label: str) -> str:
+    return "".join(c if c.isprintable() else " " for c in label)

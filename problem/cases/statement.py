@@ -1,0 +1,350 @@
+"""From a case file, a problem and a reading to the numbers of one question."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..curves import Curve, Interpolant
+from ..errors import CaseError, TrajgapError
+from ..fields import Strict
+from ..limits import Limits
+from ..printed import Printed
+from ..problem import Coupling, Problem
+from ..units import CHOICES, Measured, Quantity, to_si
+from .declaration import InterpolantBlock, declare
+from .schema import (
+    CaseFile,
+    Durations,
+    LimitsBlock,
+    Override,
+    ProblemBlock,
+    Reading,
+    Units,
+    Waypoints,
+)
+
+Block = TypeVar("Block", bound=Strict)
+Data = tuple[Curve, Limits, NDArray[np.float64], NDArray[np.float64]]
+"""Curve, limits, and bounds on the durations."""
+_DERIVATIVES: tuple[Quantity, ...] = ("velocity", "acceleration", "jerk")
+_LARGEST = 1e12
+"""Largest number of a case file, rad and s: squares and quotients stay far from overflow."""
+_LOWER = "durations.lower"
+
+
+@dataclass(frozen=True)
+class Posing:
+    """One problem under one reading, still in printed digits.
+
+    ``joints`` are the positions, in the robot's list, of the joints that take part.
+    """
+
+    file: str
+    name: str
+    selected: str
+    labels: tuple[str, ...]
+    joints: tuple[int, ...]
+    units: Units
+    waypoints: Waypoints
+    limits: LimitsBlock
+    declaration: InterpolantBlock
+    durations: Durations
+    coupling: Coupling
+
+    def fail(self, field: str, reason: str) -> CaseError:
+        """Make an error at a field, naming the problem and reading under which it shows."""
+        return CaseError(self.file, field, reason + self.selected)
+
+    def si(self, number: Printed, quantity: Quantity, field: str = "") -> Measured:
+        """Convert printed digits with this reading's unit of ``quantity``.
+
+        Parameters
+        ----------
+        number : Printed
+        quantity : str
+        field : str
+            Where the number stands in the file, for messages.
+
+        Raises
+        ------
+        CaseError
+            If the unit is not stated, or the number is so large or small that no motion can be
+            computed with it.
+        """
+        unit = getattr(self.units, quantity)
+        if unit is None:
+            raise self.fail(
+                f"units.{quantity}", f"is missing; add one of {', '.join(CHOICES[quantity])}"
+            )
+        try:
+            measured = to_si(number, unit)
+        except TrajgapError as error:
+            raise self.fail(field or quantity, str(error)) from None
+        size = abs(measured.value)
+        # An angle may be near 0, and so may a lower bound that says "positive".
+        near_zero = quantity == "position" or field == _LOWER
+        if size > _LARGEST or (0 < size < 1 / _LARGEST and not near_zero):
+            raise self.fail(
+                field or quantity,
+                f"{number} {unit} lies outside the magnitudes from {1 / _LARGEST:g} to "
+                f"{_LARGEST:g} rad and s that are computed with; correct digits or unit",
+            )
+        return measured
+
+    def points(self) -> list[list[Measured]]:
+        """Way-points in radians, one row per way-point, one entry per joint that takes part."""
+        rows = self.waypoints.points
+        if not rows:
+            raise self.fail(
+                "waypoints",
+                f"are not printed ({self.waypoints.not_printed}); add them as joint_rows or "
+                "waypoint_rows",
+            )
+        if len(rows[0]) != len(self.labels):
+            field = "joint_rows" if self.waypoints.joint_rows is not None else "waypoint_rows"
+            raise self.fail(
+                f"waypoints.{field}",
+                f"gives {len(rows[0])} joints, but robot.joints lists {len(self.labels)}; "
+                "list every joint in both",
+            )
+        by_joint = self.waypoints.joint_rows is not None
+        return [
+            [
+                self.si(
+                    row[j],
+                    "position",
+                    f"waypoints.joint_rows[{j}][{k}]"
+                    if by_joint
+                    else f"waypoints.waypoint_rows[{k}][{j}]",
+                )
+                for j in self.joints
+            ]
+            for k, row in enumerate(rows)
+        ]
+
+    @property
+    def posed(self) -> bool:
+        """Whether the way-points are printed, so that there is a problem to solve."""
+        return bool(self.waypoints.points)
+
+    def interpolant(self) -> Curve:
+        """Declare the curve for the number of way-points.
+
+        Raises
+        ------
+        CaseError
+            If the conditions don't determine the curve, or it needs another number of way-points.
+        """
+        block, count = self.declaration, self.waypoints.number
+        ends = tuple((order, self._end_value(order)) for order in block.orders)
+        try:
+            interpolant = declare(block, count, ends)
+        except TrajgapError as error:
+            raise self.fail("interpolant", _unprefixed(error)) from None
+        if len(interpolant.waypoint_breaks) != count:
+            raise self.fail(
+                "interpolant",
+                f"{interpolant.name} of {interpolant.segments} segments passes "
+                f"{len(interpolant.waypoint_breaks)} way-points, but {count} are given; "
+                "change the family, the degrees or the way-points",
+            )
+        if isinstance(interpolant, Interpolant) and interpolant.free != block.free:
+            raise self.fail(
+                "interpolant",
+                f"under-determined, {interpolant.conditions} conditions on "
+                f"{interpolant.coefficients} coefficients leave {interpolant.free} free, "
+                f"not {block.free}; add conditions, lower a degree, or state "
+                f"free = {interpolant.free}",
+            )
+        return interpolant
+
+    def _end_value(self, order: int) -> float:
+        values = self.declaration.end_derivatives
+        if values is None or order > len(_DERIVATIVES):
+            return 0.0
+        number = values[self.declaration.orders.index(order)]
+        return 0.0 if number.fraction == 0 else self.si(number, _DERIVATIVES[order - 1]).value
+
+    def problem(self) -> Problem:
+        """Problem in radians and seconds.
+
+        Raises
+        ------
+        CaseError
+            If the numbers don't fit together, or the way-points are not printed.
+        """
+        data = self.data()
+        return self._at(data, np.array([[angle.value for angle in row] for row in self.points()]))
+
+    def problem_at(self, waypoints: NDArray[np.float64]) -> Problem:
+        """The same question through other way-points.
+
+        Parameters
+        ----------
+        waypoints : ndarray, shape (way-points, joints of the robot)
+            rad; as many way-points as the file states.
+
+        Returns
+        -------
+        Problem
+
+        Raises
+        ------
+        CaseError
+            If the numbers don't fit together.
+        """
+        return self._at(self.data(), waypoints[:, list(self.joints)])
+
+    def _at(self, data: Data, waypoints: NDArray[np.float64]) -> Problem:
+        interpolant, limits, lower, upper = data
+        try:
+            return Problem(
+                waypoints=waypoints,
+                limits=limits,
+                interpolant=interpolant,
+                duration_lower=lower,
+                duration_upper=upper,
+                coupling=self.coupling,
+                joints=tuple(self.labels[j] for j in self.joints),
+                name=self.name,
+            )
+        except TrajgapError as error:
+            raise self.fail("", str(error)) from None
+
+    def data(self) -> Data:
+        """All but the way-points: curve, limits, and bounds on the durations, rad and s.
+
+        Raises
+        ------
+        CaseError
+            If the numbers don't fit together.
+        """
+        interpolant = self.interpolant()
+        segments = interpolant.segments
+        lower = self._each("durations", "lower", "time", segments, "segment", 0.0)
+        upper = self._each("durations", "upper", "time", segments, "segment", np.inf)
+        if (lower > upper).any():
+            at = int(np.argmax(lower > upper))
+            raise self.fail(
+                "durations.lower",
+                f"lies above durations.upper in segment {at + 1}; exchange or change them",
+            )
+        if (upper == 0).any():
+            raise self.fail("durations.upper", "is 0; a duration is positive, give more")
+        position_lower = self._limit("position_lower", "position", -np.inf)
+        position_upper = self._limit("position_upper", "position", np.inf)
+        if (position_lower > position_upper).any():
+            raise self.fail(
+                "limits.position_lower", "lies above limits.position_upper; exchange them"
+            )
+        limits = Limits(
+            velocity=self._limit("velocity", "velocity"),
+            acceleration=self._limit("acceleration", "acceleration"),
+            jerk=self._limit("jerk", "jerk"),
+            position_lower=position_lower,
+            position_upper=position_upper,
+        )
+        return interpolant, limits, lower, upper
+
+    def _limit(self, name: str, quantity: Quantity, default: float = np.inf) -> NDArray[np.float64]:
+        every = self._each("limits", name, quantity, len(self.labels), "joint", default)
+        return every[list(self.joints)]
+
+    def _each(
+        self, block: str, name: str, quantity: Quantity, count: int, item: str, default: float
+    ) -> NDArray[np.float64]:
+        given: Sequence[Printed | None] | Printed | None = getattr(getattr(self, block), name)
+        if given is None:
+            return np.full(count, default)
+        if isinstance(given, Printed):
+            return np.full(count, self.si(given, quantity, f"{block}.{name}").value)
+        if len(given) != count:
+            raise self.fail(
+                f"{block}.{name}",
+                f"{len(given)} values for {count} {item}s; give one for all, or one each",
+            )
+        return np.array(
+            [
+                default if one is None else self.si(one, quantity, f"{block}.{name}").value
+                for one in given
+            ]
+        )
+
+
+def pose(document: CaseFile, file: str, problem: ProblemBlock, reading: Reading) -> Posing:
+    """Lay a problem over the file's own statements, and a reading over both.
+
+    Parameters
+    ----------
+    document : CaseFile
+    file : str
+        Name for error messages.
+    problem : ProblemBlock
+    reading : Reading
+
+    Returns
+    -------
+    Posing
+
+    Raises
+    ------
+    CaseError
+        If way-points or interpolant are missing, or an unknown joint is selected.
+    """
+    selected = f" (problem {problem.id!r}, reading {reading.id!r})"
+    if not document.problems and not document.readings:
+        selected = ""
+    layers: tuple[Override, ...] = (problem, reading)
+    waypoints, interpolant = document.waypoints, document.interpolant
+    coupling, chosen = document.coupling, None
+    for layer in layers:
+        waypoints = layer.waypoints or waypoints
+        if not isinstance(layer, Reading) or problem.id in (layer.interpolant_of or (problem.id,)):
+            interpolant = layer.interpolant or interpolant
+        coupling = layer.coupling or coupling
+        chosen = layer.joints or chosen
+    if waypoints is None:
+        raise CaseError(file, "waypoints", f"is missing; add the table of way-points{selected}")
+    if interpolant is None:
+        raise CaseError(
+            file, "interpolant", f'is missing; add family = "3-5-3" or another{selected}'
+        )
+    labels = document.robot.joints
+    for label in chosen or ():
+        if label not in labels:
+            raise CaseError(
+                file,
+                "joints",
+                f"joint {label!r} is unknown; robot.joints lists {', '.join(labels)}{selected}",
+            )
+    taken = labels if chosen is None else chosen
+    return Posing(
+        file=file,
+        name=f"{document.id}, {problem.id}, {reading.id}",
+        selected=selected,
+        labels=labels,
+        joints=tuple(j for j, label in enumerate(labels) if label in taken),
+        units=_merged(document.units, *(layer.units for layer in layers)),
+        waypoints=waypoints,
+        limits=_merged(document.limits, *(layer.limits for layer in layers)),
+        declaration=interpolant,
+        durations=_merged(document.durations, *(layer.durations for layer in layers)),
+        coupling=coupling or Coupling.SHARED,
+    )
+
+
+def _merged(base: Block, *changes: Block) -> Block:
+    for change in changes:
+        base = base.model_copy(
+            update={key: getattr(change, key) for key in change.model_fields_set}
+        )
+    return base
+
+
+def _unprefixed(error: TrajgapError) -> str:
+    return str(error).removeprefix("interpolant").lstrip(".: ")

@@ -1,0 +1,526 @@
+"""The only judge of feasibility: true peaks against limits, with a bound on rounding errors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .curves import (
+    Trajectory,
+    as_durations,
+    batch_peaks,
+    enclosed,
+    extrema,
+    motion_values,
+    segment_of,
+)
+from .errors import CurveError, TrajgapError
+from .limits import QUANTITIES, Limits
+from .problem import Problem
+
+TOLERANCE = 1e-9
+"""Relative excess over a limit that still counts as keeping it."""
+
+
+class Verdict(StrEnum):
+    """Outcome of a check, for all t."""
+
+    PASS = "pass"
+    """Every limit is kept within the tolerance, rounding errors included."""
+    VIOLATED = "violated"
+    """Some limit is exceeded by more than the tolerance, whatever the rounding errors."""
+    DISCONTINUOUS = "discontinuous"
+    """Position or velocity jumps at a break (or acceleration, where jerk is limited)."""
+    UNDECIDED = "undecided"
+    """The bound on rounding errors does not separate the peak from its limit."""
+
+
+@dataclass(frozen=True)
+class Peak:
+    """The largest value of one quantity of one joint, set beside its limit.
+
+    Attributes
+    ----------
+    joint : str or None
+        Joint label; None for a segment duration.
+    quantity : str
+        "position", "velocity", "acceleration", "jerk", "duration"; or "curve" where the durations
+        define none.
+    segment : int
+        Segment, from 0.
+    time : float or None
+        Where on the trajectory, s.
+    value, limit : float
+        In rad, s.
+    ratio : float
+        |value|/limit; above 1 the limit is exceeded.
+    error : float
+        Bound on the rounding error of ``value``.
+    """
+
+    joint: str | None
+    quantity: str
+    segment: int
+    time: float | None
+    value: float
+    limit: float
+    ratio: float
+    error: float
+
+    @property
+    def margin(self) -> float:
+        """1 − ratio: what is left of the limit."""
+        return 1.0 - self.ratio
+
+
+@dataclass(frozen=True)
+class Jump:
+    """A derivative that differs on the two sides of a break.
+
+    Attributes
+    ----------
+    joint : str
+    order : int
+        0 position, 1 velocity, 2 acceleration.
+    break_index : int
+        Break between two pieces of the trajectory, from 1.
+    time : float
+        s.
+    size : float
+        Value after the break less the value before it, rad/sᵒʳᵈᵉʳ.
+    """
+
+    joint: str
+    order: int
+    break_index: int
+    time: float
+    size: float
+
+
+_DERIVATIVES = ("position", *QUANTITIES)
+
+
+@dataclass(frozen=True, eq=False)
+class Check:
+    """What the checker found about one duration vector.
+
+    Attributes
+    ----------
+    verdict : Verdict
+    limits : Verdict
+        The verdict about the limits alone, jumps apart: pass, violated or undecided. Inside the
+        pieces every limit may be kept while the motion jumps between them.
+    worst : Peak or None
+        Largest ratio; None if nothing is limited. A duration counts only beyond its bound.
+    peaks : tuple of Peak
+        One per joint and quantity.
+    jumps : tuple of Jump
+        Discontinuities of position, velocity and acceleration.
+    total_time : float
+        Sum of the durations, s.
+    stretch : float
+        c* = max (|v|/V, √(|a|/A), ∛(|j|/J)): stretching all durations by it makes them tight.
+    feasible_time, tight_time : float or None
+        T·max(1, c*), the uniform repair; T·c*, the free rescaling. None with the reason beside.
+    tolerance : float
+        Relative excess that counts as kept.
+    """
+
+    verdict: Verdict
+    limits: Verdict
+    worst: Peak | None
+    peaks: tuple[Peak, ...]
+    jumps: tuple[Jump, ...]
+    total_time: float
+    stretch: float
+    feasible_time: float | None
+    feasible_why: str | None
+    tight_time: float | None
+    tight_why: str | None
+    tolerance: float
+
+    @property
+    def continuous(self) -> bool:
+        """Whether position, velocity and acceleration agree on both sides of every break."""
+        return not self.jumps
+
+    @property
+    def max_violation(self) -> float:
+        """Largest relative excess over any limit, 0 if none."""
+        return max([0.0, *(p.ratio - 1.0 for p in self.peaks)])
+
+    def __str__(self) -> str:
+        lines = [f"{self.verdict} (for all t, relative tolerance {self.tolerance:g})"]
+        lines.append(f"total time      {self.total_time:.6f} s")
+        if self.worst is not None:
+            w = self.worst
+            where = f"joint {w.joint}" if w.joint is not None else f"segment {w.segment + 1}"
+            at = f" at t = {w.time:.6f} s" if w.time is not None else ""
+            lines.append(
+                f"worst           {where} {w.quantity} {w.value:.6g} against {w.limit:.6g}"
+                f" (ratio {w.ratio:.9f}){at}"
+            )
+        if self.jumps:
+            top = max(self.jumps, key=lambda jump: (-jump.order, abs(jump.size)))
+            lines.append(
+                f"jumps           {len(self.jumps)}, the largest of {_DERIVATIVES[top.order]} by "
+                f"{top.size:.6g} at t = {top.time:.6f} s (joint {top.joint}); "
+                f"limits, apart from jumps: {self.limits}"
+            )
+        for name, time, why in (
+            ("feasible time", self.feasible_time, self.feasible_why),
+            ("tight time", self.tight_time, self.tight_why),
+        ):
+            lines.append(f"{name:<15} " + (f"{time:.6f} s" if time is not None else f"none: {why}"))
+        return "\n".join(lines)
+
+
+def _ratio(value: float, limit: float, error: float) -> float:
+    if limit == 0.0:
+        return 0.0 if abs(value) <= error else np.inf
+    return abs(value) / limit
+
+
+def _derivative_peaks(
+    problem: Problem,
+    h: NDArray[np.float64],
+    trajectory: Trajectory,
+    error: NDArray[np.float64],
+) -> list[Peak]:
+    limits = problem.limits.derivatives
+    peaks = []
+    for j, label in enumerate(problem.joints):
+        for r, quantity in enumerate(QUANTITIES, start=1):
+            if not np.isfinite(limits[j, r - 1]):
+                continue
+            points = extrema(trajectory, j, r)
+            bounds = [float(error[e.segment, r, j]) for e in points]
+            i = int(np.argmax([abs(e.value) for e in points]))
+            top = points[i]
+            bound = max(bounds)
+            limit = float(limits[j, r - 1])
+            ratio = _ratio(top.value, limit, bound)
+            at = segment_of(problem.interpolant, h, top)
+            peaks.append(Peak(label, quantity, at, top.time, top.value, limit, ratio, bound))
+    return peaks
+
+
+def _half_range(low: float, high: float, limit: float) -> float:
+    """What an excess of position is set beside, so that its ratio is 1 at the limit."""
+    return float((high - low) / 2) if np.isfinite(high - low) else max(1.0, abs(limit))
+
+
+def _position_peaks(
+    problem: Problem,
+    h: NDArray[np.float64],
+    trajectory: Trajectory,
+    error: NDArray[np.float64],
+) -> list[Peak]:
+    peaks = []
+    for j, label in enumerate(problem.joints):
+        low, high = problem.limits.position_lower[j], problem.limits.position_upper[j]
+        if not (np.isfinite(low) or np.isfinite(high)):
+            continue
+        points = extrema(trajectory, j, 0)
+        for limit, sign in ((low, -1.0), (high, 1.0)):
+            if not np.isfinite(limit):
+                continue
+            top = max(points, key=lambda e: sign * e.value)
+            excess = sign * (top.value - limit)
+            half = _half_range(low, high, limit)
+            bound = float(error[:, 0, j].max())
+            ratio = 1.0 + excess / half if half > 0 else _ratio(excess, 0.0, bound)
+            at = segment_of(problem.interpolant, h, top)
+            peaks.append(
+                Peak(label, "position", at, top.time, top.value, float(limit), ratio, bound)
+            )
+    return peaks
+
+
+def _slack(problem: Problem, peak: Peak) -> float:
+    """Bound on the rounding error of a peak's ratio."""
+    scale = peak.limit
+    if peak.quantity == "position":
+        limits, j = problem.limits, problem.joints.index(str(peak.joint))
+        scale = _half_range(limits.position_lower[j], limits.position_upper[j], peak.limit)
+    return peak.error / scale if scale else 0.0
+
+
+def _duration_peaks(problem: Problem, h: NDArray[np.float64]) -> list[Peak]:
+    peaks = []
+    for k, d in enumerate(h):
+        low, high = problem.duration_lower[k], problem.duration_upper[k]
+        if low > 0:
+            peaks.append(Peak(None, "duration", k, None, float(d), float(low), float(low / d), 0.0))
+        if np.isfinite(high):
+            peaks.append(
+                Peak(None, "duration", k, None, float(d), float(high), float(d / high), 0.0)
+            )
+    return peaks
+
+
+def _jumps(problem: Problem, trajectory: Trajectory, error: NDArray[np.float64]) -> list[Jump]:
+    jumps = []
+    for b in range(1, len(trajectory.durations)):
+        for j, label in enumerate(problem.joints):
+            for order in range(3):
+                left, right, scale = trajectory.sides(b, j, order)
+                size = right - left
+                bound = float(error[b - 1, order, j] + error[b, order, j]) + 1e-9 * scale
+                if abs(size) > bound:
+                    jumps.append(Jump(label, order, b, float(trajectory.breaks[b]), size))
+    return jumps
+
+
+def _no_curve(problem: Problem, h: NDArray[np.float64], why: CurveError, tolerance: float) -> Check:
+    """Durations that define no curve keep no limit."""
+    peak = Peak(None, "curve", why.segment, None, why.value, 0.0, np.inf, 0.0)
+    return Check(
+        verdict=Verdict.VIOLATED,
+        limits=Verdict.VIOLATED,
+        worst=peak,
+        peaks=(peak, *_duration_peaks(problem, h)),
+        jumps=(),
+        total_time=float(h.sum()),
+        stretch=np.inf,
+        feasible_time=None,
+        feasible_why=str(why),
+        tight_time=None,
+        tight_why=str(why),
+        tolerance=tolerance,
+    )
+
+
+def _rescaled(
+    problem: Problem, h: NDArray[np.float64], factor: float, peaks: list[Peak]
+) -> tuple[float | None, str | None]:
+    stretched = h * factor
+    slack = 1 + TOLERANCE
+    if not np.isfinite(factor):
+        return None, "a joint with limit 0 moves; no stretch repairs that"
+    if factor != 1.0 and not problem.interpolant.homogeneous:
+        return None, "a prescribed end derivative is not 0; stretching would change it"
+    if any(p.quantity == "position" and p.ratio > 1 + TOLERANCE for p in peaks):
+        return None, "a position limit is exceeded; stretching does not move the path"
+    if (stretched * slack < problem.duration_lower).any():
+        return None, "a stretched duration falls below its lower bound"
+    if (stretched > problem.duration_upper * slack).any():
+        return None, "a stretched duration exceeds its upper bound"
+    if factor == 0.0:
+        return None, "nothing moves or nothing is limited; the total time can shrink to 0"
+    return float(stretched.sum()), None
+
+
+def check(
+    problem: Problem,
+    durations: ArrayLike,
+    nodal: ArrayLike | None = None,
+    tolerance: float = TOLERANCE,
+) -> Check:
+    """Judge one duration vector, for all t, knowing nothing of who produced it.
+
+    Parameters
+    ----------
+    problem : Problem
+    durations : array_like, shape (segments,)
+        Segment durations shared by all joints, s.
+    nodal : array_like, shape (free, joints), optional
+        Values of the free derivatives of an under-determined interpolant.
+    tolerance : float
+        Relative excess over a limit that still counts as keeping it.
+
+    Returns
+    -------
+    Check
+
+    Raises
+    ------
+    TrajgapError
+        If the durations have the wrong length or are not positive and finite.
+    """
+    h = as_durations(durations, problem.segments)
+    extra = None if nodal is None else np.asarray(nodal, dtype=np.float64)
+    try:
+        found = enclosed(problem.interpolant, problem.waypoints, h, extra)
+    except CurveError as why:
+        return _no_curve(problem, h, why, tolerance)
+    trajectory, error = found.trajectory, found.error
+    peaks = [
+        *_derivative_peaks(problem, h, trajectory, error),
+        *_position_peaks(problem, h, trajectory, error),
+        *_duration_peaks(problem, h),
+    ]
+    jumps = _jumps(problem, trajectory, error)
+    serious = [
+        jump
+        for jump in jumps
+        if jump.order < 2 or np.isfinite(problem.limits.jerk[problem.joints.index(jump.joint)])
+    ]
+    verdict = Verdict.PASS
+    for p in peaks:
+        slack = _slack(problem, p)
+        if p.ratio - slack > 1 + tolerance:
+            verdict = Verdict.VIOLATED
+            break
+        if not p.ratio + slack <= 1 + tolerance:
+            verdict = Verdict.UNDECIDED
+    about_limits = verdict
+    if serious and verdict is not Verdict.VIOLATED:
+        verdict = Verdict.DISCONTINUOUS
+    roots = {q: 1.0 / r for r, q in enumerate(QUANTITIES, start=1)}
+    stretch = max([0.0, *(p.ratio ** roots[p.quantity] for p in peaks if p.quantity in roots)])
+    feasible_time, feasible_why = _rescaled(problem, h, max(1.0, stretch), peaks)
+    tight_time, tight_why = _rescaled(problem, h, stretch, peaks)
+    if serious:
+        feasible_time, tight_time = None, None
+        feasible_why = tight_why = "the motion jumps at a break; stretching does not mend that"
+    return Check(
+        verdict=verdict,
+        limits=about_limits,
+        worst=max(
+            (p for p in peaks if p.quantity != "duration" or p.ratio > 1 + tolerance),
+            key=lambda p: p.ratio,
+            default=None,
+        ),
+        peaks=tuple(peaks),
+        jumps=tuple(jumps),
+        total_time=float(h.sum()),
+        stretch=float(stretch),
+        feasible_time=feasible_time,
+        feasible_why=feasible_why,
+        tight_time=tight_time,
+        tight_why=tight_why,
+        tolerance=tolerance,
+    )
+
+
+def reachable_total(
+    problem: Problem, durations: ArrayLike, lower: ArrayLike, upper: ArrayLike
+) -> float | None:
+    """A total that these durations, stretched, keep for every way-point in a box.
+
+    For fixed durations the curve is linear in the way-points, so its peaks over the box are at
+    most those at ``problem.waypoints`` plus, for each way-point, its deviation times the peaks of
+    the cardinal curve (that way-point 1, the others 0).
+
+    Parameters
+    ----------
+    problem : Problem
+        With a determined, homogeneous interpolant.
+    durations : array_like, shape (segments,)
+        s.
+    lower, upper : array_like, shape (way-points, joints)
+        Box around ``problem.waypoints``, rad.
+
+    Returns
+    -------
+    float or None
+        An upper bound, s, on the optimum of every problem in the box, rounding errors of the
+        peaks included; None if no stretch is known to repair all of them.
+    """
+    h = as_durations(durations, problem.segments)
+    q, points = problem.waypoints, len(problem.waypoints)
+    plain = not problem.interpolant.free and problem.interpolant.homogeneous
+    if not plain or problem.limits.limits_position:
+        return None
+    away = np.maximum(np.asarray(upper) - q, q - np.asarray(lower))
+    unlimited = Limits(joints=points)
+    cardinal = replace(
+        problem,
+        waypoints=np.eye(points),
+        limits=unlimited.with_derivatives(np.ones((points, 3))),
+        joints=(),
+    )
+    unit = evaluate(cardinal, h[None]).ratios[0]
+    own = evaluate(problem, h[None]).ratios[0]
+    limits = problem.limits.derivatives
+    moves = away.T @ unit
+    with np.errstate(invalid="ignore", divide="ignore"):
+        ratios = own + np.where(np.isfinite(limits), moves / limits, 0.0)
+    if not np.isfinite(ratios).all():
+        return None
+    slack = 1.0 + TOLERANCE
+    roots = [ratios[:, 0], np.sqrt(ratios[:, 1]), np.cbrt(ratios[:, 2])]
+    stretch = max(1.0, float(np.max(roots)) * slack)
+    stretched = h * stretch
+    inside = (stretched * slack >= problem.duration_lower).all()
+    if not inside or (stretched > problem.duration_upper * slack).any():
+        return None
+    return float(stretched.sum())
+
+
+@dataclass(frozen=True, eq=False)
+class Evaluation:
+    """True peak ratios of a batch of duration vectors.
+
+    Attributes
+    ----------
+    ratios : ndarray, shape (batch, joints, 3)
+        max over t of |v|/V, |a|/A, |j|/J; 0 where there is no limit, inf where a duration is
+        not positive and finite.
+    stretch : ndarray, shape (batch,)
+        c* of each vector.
+    """
+
+    ratios: NDArray[np.float64]
+    stretch: NDArray[np.float64]
+
+
+def evaluate(problem: Problem, durations: ArrayLike, nodal: ArrayLike | None = None) -> Evaluation:
+    """Exact peak ratios for many duration vectors at once.
+
+    Parameters
+    ----------
+    problem : Problem
+    durations : array_like, shape (batch, segments)
+        Duration vectors, s.
+    nodal : array_like, shape (free, joints), optional
+        Free derivatives, the same for every vector.
+
+    Returns
+    -------
+    Evaluation
+
+    Raises
+    ------
+    TrajgapError
+        If the shape is not (batch, segments).
+    """
+    try:
+        h = np.asarray(durations, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise TrajgapError("durations: not numbers; give seconds, (batch, segments)") from None
+    if nodal is None:
+        values, limits, wanted = _fixed_question(problem)
+    else:
+        values, limits, wanted = _question(problem, np.asarray(nodal, dtype=np.float64))
+    peaks = batch_peaks(problem.interpolant, values, h, wanted)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        ratios = peaks / limits
+    undefined = np.isnan(ratios)  # 0/0 is kept, inf/inf is not
+    if undefined.any():
+        ratios[undefined] = np.where(peaks[undefined] > 0, np.inf, 0.0)
+    top = ratios[:, 0].copy()
+    for j in range(1, ratios.shape[1]):  # far quicker than max() along a middle axis
+        np.maximum(top, ratios[:, j], out=top)
+    stretch = np.maximum(top[:, 0], np.maximum(np.sqrt(top[:, 1]), np.cbrt(top[:, 2])))
+    return Evaluation(ratios, stretch)
+
+
+Question = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]
+
+
+def _question(problem: Problem, nodal: NDArray[np.float64] | None) -> Question:
+    limits = problem.limits.derivatives
+    values = motion_values(problem.interpolant, problem.waypoints, nodal)
+    return values, limits, np.isfinite(limits)
+
+
+@lru_cache(maxsize=64)
+def _fixed_question(problem: Problem) -> Question:
+    """Keyed by the problem's identity: a swarm asks the same problem thousands of times."""
+    return _question(problem, None)

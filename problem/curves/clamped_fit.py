@@ -1,0 +1,289 @@
+"""From a clamped B-spline's declaration to polynomial pieces between its knots."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from math import comb
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import TrajgapError
+from . import clamped_kernel, kernel, stretched
+from . import kind as kinds
+from .clamped import ClampedBSpline, average_matrix, fractions_of
+from .clamped_system import EPS, Numbers, Spline, interpolated
+from .kind import Array, Enclosed, PeakGradients, derivative_row, value_errors
+from .peak import Extremum
+from .spline import as_durations, trajectory_from_scaled
+from .stretched import Shape, as_waypoints
+from .trajectory import Trajectory
+from .uniform import Timing
+
+_SLIVER = 1e-12
+
+
+def _times(durations: Numbers) -> Numbers:
+    return np.concatenate([np.zeros(1, dtype=durations.dtype), np.cumsum(durations)])
+
+
+def _splines(curve: ClampedBSpline, waypoints: Numbers, durations: Numbers) -> list[Spline]:
+    """Splines of the joints in time: one for all, or one for each."""
+    times = _times(durations)
+    average = average_matrix(curve)
+    fractions = fractions_of(curve, waypoints.real)
+    if fractions is None:
+        return [interpolated(curve, times, average @ times, waypoints)]
+    rows = [average @ np.array(row) * times[-1] for row in fractions]
+    if len(rows) == 1:
+        return [interpolated(curve, times, rows[0], waypoints)]
+    return [
+        interpolated(curve, times, inner, waypoints[:, j : j + 1]) for j, inner in enumerate(rows)
+    ]
+
+
+def clamped_control_points(
+    curve: ClampedBSpline, waypoints: ArrayLike, durations: ArrayLike
+) -> tuple[Array, Array]:
+    """Control points of each joint, and the knots they belong to.
+
+    Parameters
+    ----------
+    curve : ClampedBSpline
+        With time "timed".
+    waypoints : array_like, shape (way-points, joints)
+        rad.
+    durations : array_like, shape (segments,)
+        s.
+
+    Returns
+    -------
+    control : ndarray, shape (control points, joints)
+        rad.
+    knots : ndarray, shape (control points + degree + 1, joints)
+        s.
+
+    Raises
+    ------
+    TrajgapError
+        If shapes disagree, a duration is not positive, or no such curve passes the way-points.
+    """
+    q = as_waypoints(curve, waypoints)
+    h = as_durations(durations, curve.segments)
+    splines = _splines(curve, q, h)
+    p = curve.degree
+    columns = [
+        np.concatenate([np.zeros(p), s.knots, np.full(p, s.knots[-1])])
+        for s in splines
+        for _ in range(s.scaled.shape[2])
+    ]
+    return np.concatenate([s.control for s in splines], axis=1), np.stack(columns, axis=1)
+
+
+def _cut(spline: Spline, breaks: Numbers) -> tuple[Numbers, Array, Numbers]:
+    """Coefficients, errors and derivatives by way-points on finer pieces."""
+    real = np.asarray(breaks.real, dtype=np.float64)
+    own = np.asarray(spline.knots.real, dtype=np.float64)
+    middle = 0.5 * (real[:-1] + real[1:])
+    parent = np.clip(np.searchsorted(own, middle, side="right") - 1, 0, own.size - 2)
+    width = spline.knots[parent + 1] - spline.knots[parent]
+    low = (breaks[:-1] - spline.knots[parent]) / width
+    high = (breaks[1:] - spline.knots[parent]) / width
+    size = spline.scaled.shape[1]
+    shift = np.zeros((middle.size, size, size), dtype=breaks.dtype)
+    for m in range(size):
+        for k in range(m, size):
+            shift[:, m, k] = comb(k, m) * low ** (k - m) * (high - low) ** m
+    moved = np.einsum("pmk,pkj->pmj", shift, spline.scaled[parent])
+    if np.iscomplexobj(moved):
+        return moved, np.empty(0), np.empty(0)
+    error = np.einsum("pmk,pkj->pmj", np.abs(shift), spline.error[parent])
+    error = error + 4 * size * EPS * np.einsum(
+        "pmk,pkj->pmj", np.abs(shift), np.abs(spline.scaled[parent])
+    )
+    return moved, error, np.einsum("pmk,pkw->pmw", shift, spline.by_waypoint[parent])
+
+
+@dataclass(frozen=True, eq=False)
+class Pieces:
+    """All joints on common pieces.
+
+    ``breaks`` (pieces + 1,), ``scaled`` and ``error`` (pieces, 10, joints), ``by_waypoint``
+    (joints, pieces, 10, way-points).
+    """
+
+    breaks: Numbers
+    scaled: Numbers
+    error: Array
+    by_waypoint: Numbers
+
+
+def _union(breaks: list[Numbers]) -> Numbers:
+    """All breaks in order, those that differ by rounding only once.
+
+    A sliver between two such breaks would be as long as its own rounding error, and a derivative
+    divides by that; its polynomial is that of a neighbour up to the jump at one of its ends.
+    """
+    together = np.concatenate(breaks)
+    together = together[np.argsort(together.real, kind="stable")]
+    least = _SLIVER * float(together.real[-1] - together.real[0])
+    keep = np.append(np.diff(together.real) > least, True)
+    # The first break of all must stay, whatever follows it closely.
+    kept = together[keep]
+    kept[0] = together[0]
+    return np.asarray(kept)
+
+
+def _joined(splines: list[Spline], joints: int, cuts: Numbers | None = None) -> Pieces:
+    """Common pieces of splines with different knots, also cut at ``cuts``."""
+    parts = [s.knots for s in splines] + ([] if cuts is None else [cuts])
+    if len(parts) == 1:
+        breaks, cut = parts[0], [(s.scaled, s.error, s.by_waypoint) for s in splines]
+    else:
+        breaks = _union(parts)
+        cut = [_cut(s, breaks) for s in splines]
+    pieces, size = breaks.size - 1, cut[0][0].shape[1]
+    scaled = np.zeros((pieces, kernel.MAX_COEFFICIENTS, joints), dtype=cut[0][0].dtype)
+    scaled[:, :size] = np.concatenate([c[0] for c in cut], axis=2)
+    if np.iscomplexobj(scaled):
+        return Pieces(breaks, scaled, np.empty(0), np.empty(0))
+    error = np.zeros(scaled.shape)
+    error[:, :size] = np.concatenate([c[1] for c in cut], axis=2)
+    waypoints = cut[0][2].shape[2]
+    by_waypoint = np.zeros((len(cut), pieces, kernel.MAX_COEFFICIENTS, waypoints))
+    by_waypoint[:, :, :size] = np.array([c[2] for c in cut])
+    by_waypoint = np.broadcast_to(by_waypoint, (joints, *by_waypoint.shape[1:]))
+    return Pieces(breaks, scaled, error, by_waypoint)
+
+
+def _pieces(curve: ClampedBSpline, waypoints: Array, durations: Numbers) -> Pieces:
+    return _joined(_splines(curve, waypoints, durations), waypoints.shape[1])
+
+
+@stretched.shape.register
+def _(curve: ClampedBSpline, waypoints: Array) -> Shape:
+    fractions = fractions_of(curve, waypoints)
+    assert fractions is not None
+    average, joints = average_matrix(curve), waypoints.shape[1]
+    wide = waypoints.astype(np.longdouble)
+    # Every segment has its own 0..1 on the axis of e, so that joints with other parameters meet.
+    axis = np.arange(curve.waypoints, dtype=np.longdouble)
+    splines, groups = [], len(fractions)
+    for g, row in enumerate(fractions):
+        sites = np.array(row, dtype=np.longdouble)
+        columns = slice(None) if groups == 1 else slice(g, g + 1)
+        spline = interpolated(curve, sites, average @ sites, wide[:, columns])
+        splines.append(_on_axis(spline, np.asarray(sites, dtype=np.float64)))
+    found = _joined(splines, joints, axis.astype(np.float64))
+    lengths = np.diff(found.breaks)
+    middle = 0.5 * (found.breaks[:-1] + found.breaks[1:])
+    return Shape(
+        segment=np.asarray(middle, dtype=np.int64),
+        share=np.asarray(lengths, dtype=np.float64),
+        degree=curve.degree,
+        scaled=np.asarray(found.scaled, dtype=np.float64),
+        error=found.error,
+        by_waypoint=np.asarray(found.by_waypoint, dtype=np.float64),
+    )
+
+
+def _on_axis(spline: Spline, sites: Array) -> Spline:
+    """The spline cut at its sites, its parameter replaced by the segment's number plus 0..1."""
+    breaks = _union([spline.knots, sites])
+    scaled, error, by_waypoint = _cut(spline, breaks)
+    mapped = np.interp(np.asarray(breaks, dtype=np.float64), sites, np.arange(sites.size))
+    return Spline(mapped, scaled, error, by_waypoint, spline.control)
+
+
+@kinds.fit.register
+def _(
+    curve: ClampedBSpline,
+    waypoints: ArrayLike,
+    durations: ArrayLike,
+    nodal: ArrayLike | None = None,
+) -> Trajectory:
+    q = as_waypoints(curve, waypoints)
+    return _enclosed(curve, q, as_durations(durations, curve.segments)).trajectory
+
+
+@kinds.enclosed.register
+def _enclosed(
+    curve: ClampedBSpline, waypoints: Array, durations: Array, nodal: Array | None = None
+) -> Enclosed:
+    if curve.time is Timing.STRETCHED:
+        return stretched.stretched_enclosed(curve, waypoints, durations)
+    wide = waypoints.astype(np.longdouble)
+    found = _joined(_splines(curve, wide, durations.astype(np.longdouble)), waypoints.shape[1])
+    lengths = np.diff(np.asarray(found.breaks, dtype=np.float64))
+    scaled = np.asarray(found.scaled, dtype=np.float64)
+    trajectory = trajectory_from_scaled(scaled, (curve.degree,) * lengths.size, lengths)
+    return Enclosed(trajectory, value_errors(trajectory, found.error))
+
+
+@kinds.motion_values.register
+def _(curve: ClampedBSpline, waypoints: Array, nodal: Array | None = None) -> Array:
+    if curve.time is Timing.STRETCHED:
+        return stretched.stretched_values(curve, waypoints)
+    return waypoints
+
+
+@lru_cache(maxsize=64)
+def _plan(curve: ClampedBSpline) -> tuple[Array, NDArray[np.int64]]:
+    return average_matrix(curve), np.array(curve.end_orders, dtype=np.int64)
+
+
+@kinds.batch_peaks.register
+def _(curve: ClampedBSpline, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
+    if curve.time is Timing.STRETCHED:
+        return stretched.stretched_peaks(curve, values, durations, wanted)
+    h = np.ascontiguousarray(durations, dtype=np.float64)
+    if h.ndim != 2 or h.shape[1] != curve.segments:
+        raise TrajgapError(
+            f"durations: a batch has shape (vectors, {curve.segments}), got {h.shape}"
+        )
+    average, orders = _plan(curve)
+    rows = fractions_of(curve, values)
+    fractions = np.empty((0, curve.waypoints)) if rows is None else np.array(rows)
+    peaks = np.empty((h.shape[0], values.shape[1], 3))
+    clamped_kernel.batch_peaks(
+        h, np.ascontiguousarray(values), average, fractions, curve.degree, orders, wanted, peaks
+    )
+    return peaks
+
+
+@kinds.value_gradients.register
+def _(
+    curve: ClampedBSpline,
+    waypoints: Array,
+    durations: Array,
+    points: list[Extremum],
+    nodal: Array | None = None,
+) -> PeakGradients:
+    """By complex steps in the durations; by the way-points with knots and parameters held."""
+    if curve.time is Timing.STRETCHED:
+        return stretched.stretched_gradients(curve, waypoints, durations, points)
+    found = _pieces(curve, waypoints, durations)
+    lengths = np.diff(found.breaks)
+    n = curve.segments
+    by_duration = np.empty((len(points), n))
+    by_waypoint = np.empty((len(points), curve.waypoints))
+    rows = [derivative_row(e.s, e.order) for e in points]
+    for k in range(n):
+        step = durations.astype(np.complex128)
+        step[k] += 1e-30j
+        moved = _pieces(curve, waypoints, step)
+        scaled, widths = moved.scaled.imag / 1e-30, np.diff(moved.breaks).imag / 1e-30
+        for i, (e, row) in enumerate(zip(points, rows, strict=True)):
+            change = row @ scaled[e.segment, :, e.joint] / lengths[e.segment] ** e.order
+            fade = e.order * e.value * widths[e.segment] / lengths[e.segment]
+            by_duration[i, k] = change - fade
+    for i, (e, row) in enumerate(zip(points, rows, strict=True)):
+        by_waypoint[i] = row @ found.by_waypoint[e.joint, e.segment] / lengths[e.segment] ** e.order
+    return PeakGradients(by_duration, by_waypoint, np.empty((len(points), 0)))
+
+
+@kinds.segment_of.register
+def _(curve: ClampedBSpline, durations: Array, point: Extremum) -> int:
+    inner = np.cumsum(durations)[:-1]
+    return int(np.searchsorted(inner, point.time, side="left"))

@@ -1,0 +1,190 @@
+"""The linear system of a clamped B-spline, and its polynomial pieces with an error bound."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import perm
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import CurveError
+from .clamped import ClampedBSpline
+from .kind import Array
+
+Numbers = NDArray[Any]
+EPS = np.finfo(np.float64).eps
+
+
+def span_bases(knots: Numbers, degree: int, sign: int = -1) -> Numbers:
+    """Powers of the basis functions on every span, shape (pieces, functions, powers).
+
+    Cox–de Boor (2) on polynomials in the span's own 0..1, for all spans at once and any kind of
+    number. With ``sign`` + the terms are added instead, which bounds their sizes.
+    """
+    p = degree
+    pieces = knots.size - 2 * p - 1
+    at = p + np.arange(pieces)
+    start, width = knots[at], knots[at + 1] - knots[at]
+    bases = np.zeros((pieces, p + 1, p + 1), dtype=knots.dtype)
+    bases[:, 0, 0] = 1
+    for q in range(1, p + 1):
+        raised = np.zeros_like(bases)
+        for a in range(q):
+            left, right = knots[at - q + 1 + a], knots[at + 1 + a]
+            c = bases[:, a, :q] / (right - left)[:, None]
+            raised[:, a + 1, :q] += (start - left)[:, None] * c
+            raised[:, a + 1, 1 : q + 1] += width[:, None] * c
+            raised[:, a, :q] += (right - start)[:, None] * c
+            raised[:, a, 1 : q + 1] += sign * width[:, None] * c
+        bases = raised
+    return bases
+
+
+def _places(knots: Numbers, degree: int, sites: Numbers) -> tuple[NDArray[np.int64], Numbers]:
+    """Span of each site, and where in it."""
+    p = degree
+    inner = np.asarray(knots.real[p : knots.size - p], dtype=np.float64)
+    span = np.searchsorted(inner, np.asarray(sites.real, dtype=np.float64), side="right") - 1
+    span = np.clip(span, 0, inner.size - 2)
+    low, high = knots[p + span], knots[p + span + 1]
+    return span, np.asarray((sites - low) / (high - low))
+
+
+def _system(
+    bases: Numbers, span: NDArray[np.int64], place: Numbers, end_orders: tuple[int, ...]
+) -> Numbers:
+    """Conditions (3) at the sites and of the ends on the control points, one row each."""
+    pieces, functions, _ = bases.shape
+    matrix = np.zeros((span.size + 2 * len(end_orders), pieces + functions - 1), bases.dtype)
+    for w, (k, s) in enumerate(zip(span, place, strict=True)):
+        matrix[w, k : k + functions] = bases[k] @ s ** np.arange(functions)
+    for i, r in enumerate(end_orders):
+        row = span.size + 2 * i
+        # Scaled by the span's width to the order, which does not matter for a derivative of 0.
+        matrix[row, :functions] = bases[0, :, r]
+        falling = np.array([perm(m, r) for m in range(functions)])
+        matrix[row + 1, pieces - 1 :] = bases[-1] @ falling
+    return matrix
+
+
+@dataclass(frozen=True, eq=False)
+class Spline:
+    """Polynomial pieces of the joints that share one knot vector.
+
+    Attributes
+    ----------
+    knots : ndarray, shape (pieces + 1,)
+        Where the pieces meet, without repetition.
+    scaled, error : ndarray, shape (pieces, degree + 1, joints)
+        Ascending coefficients in the piece's own 0..1, and a bound on their error.
+    by_waypoint : ndarray, shape (pieces, degree + 1, way-points)
+        Their derivatives by the way-points.
+    control : ndarray, shape (control points, joints)
+    """
+
+    knots: Numbers
+    scaled: Numbers
+    error: Array
+    by_waypoint: Numbers
+    control: Numbers
+
+
+def _knot_vector(inner: Numbers, end: Numbers, degree: int) -> Numbers:
+    zero = np.zeros(degree + 1, dtype=inner.dtype)
+    return np.concatenate([zero, inner, np.repeat(end, degree + 1)])
+
+
+def interpolated(
+    curve: ClampedBSpline, sites: Numbers, inner: Numbers, waypoints: Numbers
+) -> Spline:
+    """Solve for the control points of the B-spline through the way-points at the sites.
+
+    In extended precision where the sites are: an approximate inverse B of the system A in float64
+    refines the solution, and (I − |BA − I|)⁻¹ |B| |residual| bounds its error, entry by entry.
+
+    Raises
+    ------
+    CurveError
+        If a site leaves the support of its basis function (Schoenberg and Whitney).
+    """
+    p = curve.degree
+    knots = _knot_vector(inner, sites[-1:], p)
+    bases = span_bases(knots, p)
+    span, place = _places(knots, p, sites)
+    matrix = _system(bases, span, place, curve.end_orders)
+    _schoenberg_whitney(curve, knots, sites)
+    right = np.zeros((matrix.shape[0], waypoints.shape[1]), dtype=matrix.dtype)
+    right[: sites.size] = waypoints
+    index = np.arange(bases.shape[0])[:, None] + np.arange(p + 1)
+
+    def powers(control: Numbers, of: Numbers) -> Numbers:
+        return np.asarray(np.einsum("pam,paj->pmj", of, control[index]))
+
+    inverse: Numbers
+    if np.iscomplexobj(matrix):
+        inverse = np.linalg.inv(matrix)
+        return Spline(
+            knots[p : knots.size - p],
+            powers(inverse @ right, bases),
+            np.empty(0),
+            np.empty(0),
+            inverse @ right,
+        )
+    narrow = matrix.astype(np.float64)
+    try:
+        inverse = np.linalg.inv(narrow)
+    except np.linalg.LinAlgError:
+        raise _not_passing(curve, sites, 0) from None
+    control: Numbers = inverse @ right.astype(np.float64)
+    for _ in range(2):
+        control = control + inverse @ (right - matrix @ control).astype(np.float64)
+    sizes = span_bases(knots, p, 1)
+    absolute = np.abs(_system(sizes, span, np.abs(place), curve.end_orders))
+    gap = float(np.diff(knots[p : knots.size - p]).min() / sites[-1])
+    # Knots carry a rounding of their own, which counts against the smallest gap between them.
+    rounding = float(np.finfo(matrix.dtype).eps) * (4 * p + 12 + matrix.shape[0]) * (1 + 2 / gap)
+    residual = np.abs(right - matrix @ control) + rounding * (
+        absolute @ np.abs(control) + np.abs(right)
+    )
+    first = np.abs(inverse) @ residual.astype(np.float64)
+    defect = np.abs(inverse @ narrow - np.eye(len(narrow)))
+    defect += EPS * (len(narrow) + 2) * (np.abs(inverse) @ np.abs(narrow))
+    unsure = first
+    for _ in range(3):
+        unsure = first + 1.1 * (defect @ unsure)
+    if not (first + defect @ unsure <= unsure).all():
+        raise _not_passing(curve, sites, 0)
+    scaled = powers(control, bases)
+    error = powers(unsure.astype(matrix.dtype), sizes) + rounding * powers(np.abs(control), sizes)
+    rounded = np.asarray(scaled, dtype=np.float64)
+    return Spline(
+        np.asarray(knots[p : knots.size - p], dtype=np.float64),
+        rounded,
+        np.asarray(error, dtype=np.float64) + EPS * np.abs(rounded),
+        np.asarray(powers(inverse[:, : sites.size].astype(matrix.dtype), bases), dtype=np.float64),
+        np.asarray(control, dtype=np.float64),
+    )
+
+
+def _schoenberg_whitney(curve: ClampedBSpline, knots: Numbers, sites: Numbers) -> None:
+    p, repeats = curve.degree, len(curve.end_orders)
+    u = np.asarray(knots.real, dtype=np.float64)
+    x = np.asarray(sites.real, dtype=np.float64)
+    x = np.concatenate([np.repeat(x[:1], repeats), x, np.repeat(x[-1:], repeats)])
+    inside = (u[: x.size] < x) & (x < u[p + 1 : p + 1 + x.size])
+    inside |= (x == x[0]) & (u[: x.size] == x[0]) | (x == x[-1]) & (u[p + 1 :] == x[-1])
+    if not inside.all():
+        raise _not_passing(curve, sites, int(np.argmin(inside)) - repeats)
+
+
+def _not_passing(curve: ClampedBSpline, sites: Numbers, waypoint: int) -> CurveError:
+    k = min(max(waypoint, 0), curve.segments - 1)
+    return CurveError(
+        f"durations: no {curve.name} passes the way-points at these times (way-point {waypoint} "
+        "lies outside the support of its basis function); bring the durations nearer to the "
+        "proportions of the knots",
+        k,
+        0.0,
+    )

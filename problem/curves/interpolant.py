@@ -1,0 +1,355 @@
+"""The declaration of an interpolant: degrees, continuity, prescribed derivatives, and its rows."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from enum import IntEnum
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import TrajgapError
+
+_DENSE = 300
+
+Prescribed = tuple[tuple[tuple[int, float], ...], ...]
+
+
+class RowKind(IntEnum):
+    """What one linear condition on the coefficients states."""
+
+    LEFT_VALUE = 0
+    """A derivative of the segment that ends at the break takes a given value."""
+    RIGHT_VALUE = 1
+    """A derivative of the segment that starts at the break takes a given value."""
+    MATCH = 2
+    """A derivative is the same on both sides of the break."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """One condition: at break ``at``, derivative ``order``, of the kind ``kind``."""
+
+    kind: RowKind
+    at: int
+    order: int
+
+
+@dataclass(frozen=True)
+class Interpolant:
+    """A piecewise polynomial with breaks at the way-points, declared once.
+
+    Everything else is derived from this declaration: the numeric evaluator, the exact NLP and the
+    heuristics' objective.
+
+    Parameters
+    ----------
+    degrees : tuple of int
+        Polynomial degree of each segment.
+    continuity : tuple of int
+        For each interior break, the highest derivative order that is continuous there (2 for C2).
+    prescribed : tuple, one entry per break
+        ``((order, value), ...)``: derivatives (rad/sᵒʳᵈᵉʳ) that both sides take at that break.
+    virtual : tuple of int
+        Interior breaks without a way-point: their position is free.
+
+    Raises
+    ------
+    TrajgapError
+        If the declaration contradicts itself or states more conditions than there are
+        coefficients.
+
+    Notes
+    -----
+    A break with a way-point gives one position condition per adjacent segment; a virtual break
+    gives one (the position matches). Every order 1..continuity gives one condition unless it is
+    prescribed, which gives one per adjacent segment. 3-5-3 polynomials with C2 via-points and
+    v = a = 0 at the ends have 14 conditions on 14 coefficients.
+    """
+
+    degrees: tuple[int, ...]
+    continuity: tuple[int, ...]
+    prescribed: Prescribed
+    virtual: tuple[int, ...] = ()
+    name: str = "piecewise polynomial"
+
+    def __post_init__(self) -> None:
+        n = len(self.degrees)
+        if n < 1:
+            raise TrajgapError("interpolant.degrees: at least one segment is needed")
+        if len(self.continuity) != n - 1:
+            raise TrajgapError(
+                f"interpolant.continuity: {n} segments have {n - 1} via-points, "
+                f"got {len(self.continuity)} orders"
+            )
+        if len(self.prescribed) != n + 1:
+            raise TrajgapError(
+                f"interpolant.prescribed: {n} segments have {n + 1} breaks, "
+                f"got {len(self.prescribed)} entries"
+            )
+        if any(d < 1 or d > 9 for d in self.degrees):
+            raise TrajgapError("interpolant.degrees: every degree must lie in 1..9")
+        if any(c < 0 for c in self.continuity):
+            raise TrajgapError("interpolant.continuity: every order must be 0 or more")
+        if any(not 0 < b < n for b in self.virtual):
+            raise TrajgapError("interpolant.virtual: only interior breaks can be virtual")
+        for b, entries in enumerate(self.prescribed):
+            orders = [order for order, _ in entries]
+            if len(set(orders)) != len(orders) or any(order < 1 for order in orders):
+                raise TrajgapError(
+                    f"interpolant.prescribed[{b}]: orders must be distinct and at least 1"
+                )
+            if not all(math.isfinite(value) for _, value in entries):
+                raise TrajgapError(f"interpolant.prescribed[{b}]: values must be finite")
+        if self.conditions > self.coefficients:
+            raise TrajgapError(
+                f"interpolant {self.name}: over-determined, {self.conditions} conditions on "
+                f"{self.coefficients} coefficients; raise a degree or drop a condition"
+            )
+        if self.rank < self.conditions:
+            raise TrajgapError(
+                f"interpolant {self.name}: {self.conditions} conditions on {self.coefficients} "
+                f"coefficients contradict each other (rank {self.rank}); spread the degrees"
+            )
+
+    @property
+    def segments(self) -> int:
+        """Number of segments."""
+        return len(self.degrees)
+
+    @property
+    def waypoint_breaks(self) -> tuple[int, ...]:
+        """Breaks that carry a way-point, in order."""
+        return tuple(b for b in range(self.segments + 1) if b not in self.virtual)
+
+    @property
+    def coefficients(self) -> int:
+        """Number of coefficients of one joint."""
+        return sum(d + 1 for d in self.degrees)
+
+    @property
+    def conditions(self) -> int:
+        """Number of conditions on them."""
+        return len(self.rows)
+
+    @property
+    def free(self) -> int:
+        """Coefficients left to the optimiser."""
+        return self.coefficients - self.conditions
+
+    @property
+    def homogeneous(self) -> bool:
+        """Whether stretching time maps admissible curves to admissible curves."""
+        return all(value == 0.0 for entries in self.prescribed for _, value in entries)
+
+    @cached_property
+    def rows(self) -> tuple[Row, ...]:
+        """The conditions, ordered by break, so that the linear system is banded."""
+        rows: list[Row] = []
+        n = self.segments
+        for b in range(n + 1):
+            given = {order for order, _ in self.prescribed[b]}
+            if b not in self.virtual:
+                given.add(0)
+            kinds = [kind for kind, there in _SIDES if there(b, n)]
+            rows += [Row(kind, b, order) for kind in kinds for order in sorted(given)]
+            if 0 < b < n:
+                orders = range(self.continuity[b - 1] + 1)
+                rows += [Row(RowKind.MATCH, b, order) for order in orders if order not in given]
+        return tuple(rows)
+
+    @cached_property
+    def rank(self) -> int:
+        """Rank of the conditions for equal durations."""
+        if self.conditions == self.coefficients > _DENSE:
+            return self.conditions if self._sparse_regular() else self.conditions - 1
+        return int(np.linalg.matrix_rank(self._unit_matrix(self.rows)))
+
+    @cached_property
+    def free_derivatives(self) -> tuple[tuple[int, int], ...]:
+        """Nodal derivatives ``(break, order)`` that complete an under-determined declaration.
+
+        Lowest orders first; with their values prescribed the coefficients are determined.
+        """
+        rows = list(self.rows)
+        chosen: list[tuple[int, int]] = []
+        matrix, rank = self._unit_matrix(rows), self.rank
+        for order in range(max(self.degrees) + 1):
+            for b in range(self.segments + 1):
+                for kind, there in _SIDES:
+                    row = Row(kind, b, order)
+                    if rank == self.coefficients or row in rows or not there(b, self.segments):
+                        continue
+                    shared = b in (0, self.segments) or order <= self.continuity[b - 1]
+                    if (b, order) in chosen or not shared:
+                        continue
+                    extended = np.vstack([matrix, self._unit_matrix([row])])
+                    if np.linalg.matrix_rank(extended) > rank:
+                        matrix, rank = extended, rank + 1
+                        rows.append(row)
+                        chosen.append((b, order))
+        return tuple(chosen)
+
+    def completed(self) -> Interpolant:
+        """Determined declaration in which `free_derivatives` are prescribed (with value 0).
+
+        Raises
+        ------
+        TrajgapError
+            If derivatives shared by both sides of the breaks do not suffice.
+        """
+        if len(self.free_derivatives) < self.free:
+            raise TrajgapError(
+                f"interpolant {self.name}: {self.free} free coefficients, of which only "
+                f"{len(self.free_derivatives)} are nodal derivatives; raise the continuity"
+            )
+        entries = [dict(e) for e in self.prescribed]
+        virtual = list(self.virtual)
+        for b, order in self.free_derivatives:
+            if order == 0:
+                virtual.remove(b)
+            else:
+                entries[b][order] = 0.0
+        return replace(
+            self,
+            prescribed=tuple(tuple(sorted(e.items())) for e in entries),
+            virtual=tuple(virtual),
+        )
+
+    def _sparse_regular(self) -> bool:
+        """Whether a long, determined declaration has a regular system for equal durations."""
+        from scipy.sparse import csc_array
+        from scipy.sparse.linalg import splu
+
+        entries = [(i, c, v) for i, row in enumerate(self.rows) for c, v in self._entries(row)]
+        i, c, v = zip(*entries, strict=True)
+        matrix = csc_array((v, (i, c)), shape=(self.conditions, self.coefficients))
+        try:
+            pivots = np.abs(splu(matrix).U.diagonal())
+        except RuntimeError:
+            return False
+        return bool(pivots.min() > 1e-13 * pivots.max())
+
+    def _entries(self, row: Row) -> list[tuple[int, float]]:
+        """Columns and values of one row for equal durations."""
+        entries: list[tuple[int, float]] = []
+        if row.kind != RowKind.RIGHT_VALUE:
+            k = row.at - 1
+            powers = range(row.order, self.degrees[k] + 1)
+            entries += [(self._first[k] + p, float(math.perm(p, row.order))) for p in powers]
+        if row.kind != RowKind.LEFT_VALUE and row.order <= self.degrees[row.at]:
+            sign = 1.0 if row.kind == RowKind.RIGHT_VALUE else -1.0
+            entries.append((self._first[row.at] + row.order, sign * math.factorial(row.order)))
+        return entries
+
+    @cached_property
+    def _first(self) -> tuple[int, ...]:
+        """Column of each segment's constant coefficient."""
+        return tuple(itertools.accumulate((d + 1 for d in self.degrees), initial=0))
+
+    def _unit_matrix(self, rows: tuple[Row, ...] | list[Row]) -> NDArray[np.float64]:
+        matrix = np.zeros((len(rows), self.coefficients))
+        for i, row in enumerate(rows):
+            for column, value in self._entries(row):
+                matrix[i, column] = value
+        return matrix
+
+
+_SIDES: tuple[tuple[RowKind, Callable[[int, int], bool]], ...] = (
+    (RowKind.LEFT_VALUE, lambda b, n: b > 0),
+    (RowKind.RIGHT_VALUE, lambda b, n: b < n),
+)
+
+
+def piecewise(
+    degrees: tuple[int, ...],
+    continuity: int = 2,
+    ends: tuple[tuple[int, float], ...] = ((1, 0.0), (2, 0.0)),
+    name: str | None = None,
+) -> Interpolant:
+    """Polynomials of the given degrees, equally continuous at all via-points.
+
+    Parameters
+    ----------
+    degrees : tuple of int
+        Degree of each segment.
+    continuity : int
+        Highest continuous derivative order at the via-points.
+    ends : tuple of (order, value)
+        Derivatives prescribed at both ends.
+
+    Returns
+    -------
+    Interpolant
+    """
+    n = len(degrees)
+    inner: Prescribed = ((),) * max(n - 1, 0)
+    return Interpolant(
+        tuple(degrees),
+        (continuity,) * max(n - 1, 0),
+        (tuple(ends), *inner, tuple(ends)),
+        name=name or "-".join(map(str, degrees)) + f" polynomials, C{continuity}",
+    )
+
+
+def three_five_three() -> Interpolant:
+    """3-5-3 polynomials, C2, at rest with zero acceleration at both ends (puma560 (1)–(8))."""
+    return piecewise((3, 5, 3), 2, name="3-5-3 polynomials")
+
+
+def cubic_spline(segments: int, ends: tuple[tuple[int, float], ...] = ((1, 0.0),)) -> Interpolant:
+    """C2 cubic spline; clamped (velocity 0 at the ends) unless ``ends`` says otherwise."""
+    return piecewise((3,) * segments, 2, ends, name="C2 cubic spline")
+
+
+def quintic_spline(segments: int) -> Interpolant:
+    """C4 quintic spline with zero velocity and acceleration at both ends."""
+    return piecewise((5,) * segments, 4, name="C4 quintic spline")
+
+
+def cubic_spline_virtual(waypoints: int) -> Interpolant:
+    """C2 cubic spline with two virtual way-points and v = a = 0 at both ends.
+
+    The virtual breaks follow the first and precede the last way-point.
+    """
+    if waypoints < 2:
+        raise TrajgapError("interpolant: at least two way-points are needed")
+    n = waypoints + 1
+    ends = ((1, 0.0), (2, 0.0))
+    inner: Prescribed = ((),) * (n - 1)
+    return Interpolant(
+        (3,) * n,
+        (2,) * (n - 1),
+        (ends, *inner, ends),
+        virtual=(1, n - 1),
+        name="C2 cubic spline with two virtual way-points",
+    )
+
+
+def rest_to_rest(segments: int, degree: int) -> Interpolant:
+    """Polynomials of odd degree that stand still at every way-point.
+
+    Degree 3: velocity 0; degree 5: also acceleration 0; degree 7: also jerk 0.
+    """
+    if degree not in (3, 5, 7, 9):
+        raise TrajgapError("interpolant.degree: rest-to-rest needs degree 3, 5, 7 or 9")
+    orders = tuple((r, 0.0) for r in range(1, (degree + 1) // 2))
+    return Interpolant(
+        (degree,) * segments,
+        (0,) * (segments - 1),
+        (orders,) * (segments + 1),
+        name=f"rest-to-rest polynomials of degree {degree}",
+    )
+
+
+def jtraj(segments: int) -> Interpolant:
+    """Quintic from rest to rest in every segment, as the robot toolboxes' ``jtraj`` joins points.
+
+    The same curve as ``rest_to_rest(segments, 5)`` under the name that papers compare with:
+    velocity and acceleration are 0 at every way-point.
+    """
+    return replace(rest_to_rest(segments, 5), name="jtraj (rest-to-rest quintics)")

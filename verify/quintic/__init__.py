@@ -1,5 +1,0 @@
-"""Proofs of lower bounds for C4 quintic splines: the one kind that needs numpy."""
-
-from .kind import QuinticSpline
-
-__all__ = ["QuinticSpline"]
