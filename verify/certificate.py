@@ -24,7 +24,7 @@ from .reading import (
     listed,
     need,
     number,
-    parsed,
+    read_document,
     shown,
     text,
 )
@@ -36,7 +36,8 @@ STATE_FORMAT = "trajgap-state-2"
 """Of a stopped run: a certificate of what is proved so far, and proposals that prove nothing."""
 SECONDS = 60.0
 """For one file, unless another time is given: the largest shipped proof takes two."""
-_OLD = {"trajgap-certificate-1", "trajgap-state-1"}
+OLD_FORMATS = ("trajgap-certificate-1", "trajgap-state-1")
+"""That were once written; what is in them is not read."""
 _NAME_ONE = "name a certificate"
 _KEYS = ("format", "made_by", "question", "problem", "problem_hash", "claim", "proof", "seal")
 _CLAIM = ("subject", "infeasible", "lower", "upper", "durations", "speeds")
@@ -162,7 +163,7 @@ def verify_certificate(
     Parameters
     ----------
     source : str, Path or dict
-        File, or its parsed JSON.
+        File, or its read_document JSON.
     seconds : float
         Time limit.
 
@@ -175,7 +176,7 @@ def verify_certificate(
     altered = False
     question, problem_hash = CertifiedQuestion(), None
     try:
-        document = _document(source if isinstance(source, dict) else parsed(source))
+        document = _document(source if isinstance(source, dict) else read_document(source))
         problem_hash = seal(document["problem"])
         altered = problem_hash != document["problem_hash"]
         altered |= document["seal"] != seal({k: x for k, x in document.items() if k != "seal"})
@@ -208,7 +209,7 @@ def verify_certificate(
 def _document(data: Any) -> dict[str, Any]:
     need(type(data) is dict, f"no JSON object; {_NAME_ONE}")
     found = data.get("format")
-    if type(found) is str and found in _OLD:
+    if type(found) is str and found in OLD_FORMATS:
         raise Refused(f"{found}: an old format; `trajgap solve CASE --certify` makes it again")
     wanted = type(found) is str and found in (CERTIFICATE_FORMAT, STATE_FORMAT)
     need(wanted, f"no {CERTIFICATE_FORMAT}; {_NAME_ONE}")

@@ -119,7 +119,7 @@ def shown(words: str, most: int = 80) -> str:
 # --- the file -------------------------------------------------------------------------------------
 
 
-def parsed(path: str | Path) -> Any:
+def read_document(path: str | Path) -> Any:
     """The JSON in a regular file of bounded size.
 
     Keys may not occur twice, and numbers are integers: readers could take either value of the
