@@ -250,9 +250,10 @@ def _judged(document: dict[str, Any], clock: Clock) -> Claimed:
             any_curve.check_motion(problem, h, speeds, clock)
         else:
             check_answer(problem, h, clock)
-        need(lower <= sum(h), "the lower bound exceeds the answer")
     if kind is not None:
         walk(kind, document["proof"]["tree"], clock)
+    contradicted = answer is not None and total > sum(answer[0])
+    need(not contradicted, "the proof contradicts the answer: one of them is wrong")
     if infeasible:
         longest = [x for x in problem.longest if x is not None]
         above = len(longest) == problem.segments and lower > sum(longest)

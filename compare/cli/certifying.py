@@ -142,25 +142,32 @@ def certify_case(
 
 
 def _questions(case: Case, one: Posed) -> Iterator[Question]:
+    """What is asked under one reading, of all joints or of each, with why it is not covered."""
+    for question in _stated(case, one, one.problem.coupling):
+        exact = question.problem
+        why = exact if isinstance(exact, str) else covered(exact)
+        yield question if why is None else replace(question, problem=why)
+
+
+def _stated(case: Case, one: Posed, coupling: Coupling) -> Iterator[Question]:
+    """What is asked under one reading, covered or not."""
     posing = case.posing(one.problem_id, one.reading_id)
     name = f"{case.id}.{one.problem_id}.{one.reading_id}"
-    ids = (case.id, one.problem_id, one.reading_id)
-    content = _hash(case)
+    ids, content = (case.id, one.problem_id, one.reading_id), _hash(case)
     labels: list[str | None] = [None]
-    if one.problem.coupling is Coupling.PER_JOINT:
+    if coupling is Coupling.PER_JOINT:
         labels = list(one.problem.joints)
     for j, label in enumerate(labels):
         own = name if label is None else f"{name}.joint-{label}"
+        exact: ExactProblem | str
         try:
             exact = printed_problem(posing)
             exact = exact if label is None else exact.joint(j)
-            why = covered(exact)
         except CaseError:
             raise
         except TrajgapError as error:
-            why = str(error)
-        asked = CertifiedQuestion(*ids, label, content)
-        yield Question(own, one, asked, exact if why is None else why)
+            exact = str(error)
+        yield Question(own, one, CertifiedQuestion(*ids, label, content), exact)
 
 
 def _hash(case: Case) -> str | None:
@@ -303,10 +310,12 @@ def verify_files(
     asked = None
     if case is not None:
         stated = read_case(case)
-        chosen = select(stated, None, None)
-        asked = [q for one in chosen for q in _questions(stated, one)]
-        chosen = select(stated, None, None, str(Coupling.SHARED))
-        asked += [q for one in chosen for q in _questions(stated, one)]
+        asked = [
+            question
+            for one in select(stated, None, None)
+            for coupling in Coupling
+            for question in _stated(stated, one, coupling)
+        ]
     with new_file(out) as write:
         verdicts: list[Judged] = []
         with progress("verify", len(files)) as step:
