@@ -1,4 +1,4 @@
-"""Bounds over all motions for the shipped cases: the table of docs/certificates-family-free.md.
+"""Bounds over all motions for the shipped cases: the table of docs/certificates-any-curve.md.
 
 Without options each problem is certified and its certificate written beside the others; problems
 that differ in the declared curve alone share one. With --convergence the effort for several gaps

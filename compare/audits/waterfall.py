@@ -6,11 +6,12 @@ from dataclasses import dataclass
 from decimal import ROUND_FLOOR, Context, Decimal, localcontext
 from fractions import Fraction
 
-from ...nlp import Evidence, Solution, Subject, proved, stated_exactly
+from ...nlp import Evidence, Solution, proved, stated_exactly
 from ...nlp.proofs.any_curve import family_free
 from ...nlp.retiming import retime
 from ...problem import Coupling, down, fit, up
 from ...problem.cases import AnyClaim, DurationsClaim, MaximumClaim
+from ...verify import Subject
 from .study import Study
 
 _ROUNDING = 1e-12
