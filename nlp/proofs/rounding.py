@@ -19,7 +19,8 @@ def down(value: Fraction, digits: int) -> Fraction:
     while value >= 10 * first:
         first *= 10
     step = first / 10**digits
-    return (value // step) * step
+    steps = math.floor(value / step)
+    return steps * step
 
 
 def below(value: Fraction) -> Fraction:

@@ -7,19 +7,20 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...problem import TrajgapError, evaluate
+from ...verify import Subject
 from ..optimum import solve
-from ..verify import Subject
 from .answer import float_problem, prove_feasible
 from .exact import ExactProblem
 from .outcome import Argument, Certified, Outcome, Progress, Request
 
 Array = NDArray[np.float64]
+T = TypeVar("T")
 
 OFTEN = 0.2
 """Seconds between reports: a reader follows them, and they cost nothing beside the boxes."""
@@ -77,8 +78,10 @@ class Session:
         The best bound proved, s.
     proof : Argument or None
         What proves it.
+    speeds : tuple or None
+        Of an answer of any curve, at the way-points.
     proposals : Argument or None
-        Where a stopped run can go on; a kind of proof sets it before it is interrupted.
+        What a stopped run had not finished; a kind of proof sets it before it is interrupted.
     infeasible : bool
         A kind of proof showed that nothing is feasible.
     one_sided : bool
@@ -93,11 +96,40 @@ class Session:
         self.durations: tuple[Fraction, ...] | None = None
         self.lower = Fraction(0)
         self.proof: Argument | None = None
+        self.speeds: tuple[tuple[Fraction, ...], ...] | None = None
         self.proposals: Argument | None = None
         self.infeasible = self.one_sided = False
         self.nodes = self.open_boxes = 0
         self._began = time.perf_counter()
         self._reported = -math.inf
+        resumed = request.resume
+        if resumed is not None:
+            self.durations, self.speeds = resumed.durations, resumed.speeds
+            self.lower, self.proof = resumed.lower, resumed.proof
+
+    def taken_up(self, read: Callable[[dict[str, Any]], T]) -> T | None:
+        """What a stopped run had not finished, read by its kind of proof; None if there is nothing.
+
+        Parameters
+        ----------
+        read : callable
+            Trusts nothing in what it reads.
+
+        Raises
+        ------
+        TrajgapError
+            If it is malformed, or not proved where that is asked for.
+        """
+        resumed = self.request.resume
+        if resumed is None or resumed.proposals is None:
+            return None
+        try:
+            return read(resumed.proposals)
+        except (KeyError, IndexError, TypeError, ValueError, ArithmeticError) as error:
+            if isinstance(error, TrajgapError):
+                raise
+            name = type(error).__name__
+            raise TrajgapError(f"resume: malformed state ({name}: {error})") from None
 
     @property
     def upper(self) -> Fraction | None:
@@ -231,8 +263,10 @@ class Session:
             0 if complete else self.open_boxes,
             self.seconds,
             self.proof,
+            outcome in (Outcome.INTERVAL, Outcome.OPEN) and not (complete and self.proof is None),
             None if complete else self.proposals,
             subject,
+            self.speeds,
         )
 
 
@@ -249,8 +283,8 @@ class Certifier:
     missing : callable
         Why such a problem is not covered all the same, or None.
     prove : callable
-        Raises the bound of a session, from the proposals of a stopped run if there are any;
-        returns whether nothing is left to do. Keyboard interrupts and `OutOfTime` end it.
+        Raises the bound of a session, and returns whether nothing is left to do. Keyboard
+        interrupts and `OutOfTime` end it.
     subject : Subject
         What its interval speaks about.
     instant : bool
@@ -260,7 +294,7 @@ class Certifier:
     family: str
     declares: Callable[[ExactProblem], bool]
     missing: Callable[[ExactProblem], str | None]
-    prove: Callable[[Session, dict[str, Any] | None], bool]
+    prove: Callable[[Session], bool]
     subject: Subject = Subject.DECLARED
     instant: bool = False
 
@@ -274,7 +308,7 @@ class Certifier:
         """
         session = Session(exact, request)
         try:
-            complete = self.prove(session, request.resume)
+            complete = self.prove(session)
         except (KeyboardInterrupt, OutOfTime):
             complete = False
         return session.result(complete, self.subject)

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from typing import Any
 
 import numpy as np
 
-from ...verify import Subject
+from ....verify import Subject
 from ..answer import float_problem
 from ..exact import ExactProblem
 from ..rounding import down
 from ..session import Certifier, Session
-from .estimate import family_free
+from .estimate import estimate_any_curve
 from .exact import FreeQuestion, missing, prove_motion, question, unanswered
 from .local import Question, local_optimum
 from .proof import DIGITS, free_bound, restored
@@ -30,7 +29,7 @@ _DIGITS = 15
 Motion = tuple[tuple[Fraction, ...], tuple[tuple[Fraction, ...], ...]]
 
 
-def _prove(session: Session, proposals: dict[str, Any] | None) -> bool:
+def _prove(session: Session) -> bool:
     """Raise the least bound of all boxes until it is near the best motion.
 
     Of the curve only the velocities prescribed at its two ends count. Limits of jerk and position
@@ -72,8 +71,9 @@ def _prove(session: Session, proposals: dict[str, Any] | None) -> bool:
 
     if motion is not None:
         take(motion)
-    if proposals is not None:
-        root = restored(search, proposals, target())
+    resumed = session.request.resume
+    if resumed is not None and resumed.proof is not None:
+        root = restored(search, resumed.proof.document(), target())
     else:
         root = search.root(*_floats(asked, motion), target())
     try:
@@ -98,8 +98,8 @@ def _close(session: Session, search: Search, root: Node, motion: Motion | None) 
     least = min(search.exact(leaf, DIGITS[-1])[0] for leaf in root.leaves)
     total = down(min(least, top), _DIGITS)
     if total > 0:
-        session.keep(total, free_bound(search, root, total, _all_speeds(exact, search, answer)))
-    session.proposals = session.proof
+        session.keep(total, free_bound(search, root, total))
+    session.speeds = _all_speeds(exact, search, answer)
     wanted = float(top) * (1 - session.request.gap if motion is not None else 1.0)
     session.report(sum(leaf.lower < wanted for leaf in root.leaves), search.nodes)
 
@@ -115,7 +115,7 @@ def _first_motion(exact: ExactProblem, asked: FreeQuestion, seed: int) -> Motion
         position_lower=(None,) * len(exact.joints),
         position_upper=(None,) * len(exact.joints),
     )
-    known = family_free(float_problem(alone), seed=seed)
+    known = estimate_any_curve(float_problem(alone), seed=seed)
     if known.durations is None or known.nodal_velocities is None:
         return None
     return prove_motion(asked, known.durations, known.nodal_velocities[:, list(asked.joints)])

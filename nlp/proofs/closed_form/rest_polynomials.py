@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ....problem import Interpolant
+from ....verify import LEAF
 from ..answer import solve_exactly
 from ..exact import ExactProblem, decimal
 from ..rounding import root_below
@@ -43,8 +44,9 @@ class ClosedForm:
 
     def document(self) -> dict[str, Any]:
         """Kinds "rest-to-rest" and "stretched" of docs/certificates.md."""
-        rows = [[b.joint, b.order, b.place, decimal(b.least)] for b in self.bounds]
-        return {"kind": self.kind, "segments": rows}
+        leaf = [LEAF, *([b.joint, b.order, b.place, decimal(b.least)] for b in self.bounds)]
+        total = sum((b.least for b in self.bounds), Fraction(0))
+        return {"kind": self.kind, "total": decimal(total), "tree": [leaf]}
 
 
 def is_rest_to_rest(problem: ExactProblem) -> bool:
@@ -110,7 +112,7 @@ def closed_form(problem: ExactProblem) -> tuple[list[SegmentBound], list[float]]
     durations : list of float
         s.
     """
-    tops = peaks(problem.interpolant.degrees[0])
+    tops = peaks(problem.piecewise.degrees[0])
     bounds, durations = [], []
     for k in range(problem.segments):
         best = SegmentBound(problem.duration_lower[k])
@@ -132,10 +134,10 @@ def closed_form(problem: ExactProblem) -> tuple[list[SegmentBound], list[float]]
 
 def proving(
     kind: str, closed: Callable[[ExactProblem], tuple[list[SegmentBound], list[float]]]
-) -> Callable[[Session, dict[str, Any] | None], bool]:
+) -> Callable[[Session], bool]:
     """A proof from bounds of the segments, and durations to try as the answer."""
 
-    def prove(session: Session, proposals: dict[str, Any] | None) -> bool:
+    def prove(session: Session) -> bool:
         bounds, durations = closed(session.exact)
         session.keep(sum((b.least for b in bounds), Fraction(0)), ClosedForm(kind, tuple(bounds)))
         longest = session.exact.duration_upper

@@ -4,20 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
 from typing import Any
 
 import numpy as np
 
+from ....verify import MOST_CUBIC_SEGMENTS, TICKS
 from ..exact import ExactProblem
 from ..session import Certifier, Ladder, Session
 from .ranges import implied
 from .replay import replayed
 from .search import Search
 from .system import Array, CubicSystem, cubic_system, kind_of_ends
-from .tree import TICKS, Box, Prover, proof_document
+from .tree import Box, Prover, proof_document
 
 _LADDER = Ladder((0.1, 0.01, 1e-3, 1e-4, 1e-5), 0.98, 3.0)
 """A lower cap narrows every box from the start: each stage is cheap beside the next."""
@@ -29,11 +30,12 @@ _BETTER = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Tree:
-    """The proof of a lower bound, in ticks."""
+    """The proof of a lower bound, in ticks; unfinished: open boxes of it are proposed."""
 
     prover: Prover
     root: Box
     lower: int
+    unfinished: bool = False
 
     @property
     def seconds(self) -> Fraction:
@@ -42,7 +44,7 @@ class Tree:
 
     def document(self) -> dict[str, Any]:
         """The proof, ready for JSON."""
-        return proof_document(self.prover, self.root, self.lower)
+        return proof_document(self.prover, self.root, self.lower, self.unfinished)
 
 
 class _Watch:
@@ -88,12 +90,13 @@ class _Stage:
     restart: int = 0
 
 
-def _prove(session: Session, proposals: dict[str, Any] | None) -> bool:
+def _prove(session: Session) -> bool:
     watch = _Watch(session)
-    pending = None if proposals is None else Tree(*replayed(session.exact, proposals))
+    # The steps that a state proposes are proved on the way, or it is refused.
+    pending = session.taken_up(lambda document: Tree(*replayed(session.exact, document)))
     if pending is not None:
         session.keep(pending.seconds, pending)
-        session.proposals = pending
+        session.proposals = replace(pending, unfinished=True)
     session.seek()
     for stage in _stages(session, pending):
         search = Search(watch, stage.prover, stage.root)
@@ -103,7 +106,7 @@ def _prove(session: Session, proposals: dict[str, Any] | None) -> bool:
             watch.nodes += search.boxes
             tree = Tree(stage.prover, stage.root, search.lower)
             session.keep(tree.seconds, tree)
-            session.proposals = tree
+            session.proposals = replace(tree, unfinished=True)
             left = sum(1 for _ in stage.root.leaves())
             session.report(left, watch.nodes)
         if not finished:
@@ -156,6 +159,8 @@ def _declares(problem: ExactProblem) -> bool:
 
 
 def _missing(problem: ExactProblem) -> str | None:
+    if problem.segments > MOST_CUBIC_SEGMENTS:
+        return f"more than {MOST_CUBIC_SEGMENTS} segments"
     system = cubic_system(problem, Fraction(1))
     moving = [any(step[j] for step in system.steps) for j in range(system.joints)]
     speeds = [v for v, _ in implied(system, Fraction(1))]

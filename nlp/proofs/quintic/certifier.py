@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -10,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....problem import Interpolant, Verdict, check
-from ...verify_quintic import MOST_JOINTS, MOST_SEGMENTS, SMALLEST
+from ....verify import MOST_POWER, MOST_QUINTIC_JOINTS, MOST_QUINTIC_SEGMENTS, SMALLEST
 from ..exact import ExactProblem, decimal
 from ..rounding import below
 from ..session import Certifier, Ladder, OutOfTime, Session, Shorter
@@ -30,13 +31,29 @@ _STACK = 600
 """Boxes that wait: depth first, more than the deepest tree that the verifier takes."""
 _SLIGHT = 1e-7
 """Share by which durations must be shorter to be worth a new start of the ladder."""
+_NEAR = 8
+"""Powers of two by which a size may differ from 1 before the units are changed."""
 _REST = ((1, 0.0), (2, 0.0))
+
+
+@dataclass(frozen=True)
+class Units:
+    """Joint j is measured in 2**powers[j] of the problem's unit of angle, time in 2**second s."""
+
+    powers: tuple[int, ...]
+    second: int
+
+    @property
+    def time(self) -> Fraction:
+        """In s."""
+        return Fraction(2) ** self.second
 
 
 @dataclass(frozen=True, eq=False)
 class Tree:
-    """Bisections of the simplex of durations that prove a total."""
+    """Bisections of the simplex of durations that prove a total; both in the units of the proof."""
 
+    units: Units
     total: Fraction
     low: tuple[Fraction, ...]
     windows: Windows
@@ -46,8 +63,10 @@ class Tree:
         """Kind "quintic-spline" of docs/certificates-quintic.md."""
         return {
             "kind": "quintic-spline",
-            "total": decimal(self.total),
-            "low": [decimal(x) for x in self.low],
+            "total": decimal(self.total * self.units.time),
+            "powers": list(self.units.powers),
+            "second": self.units.second,
+            "low": [decimal(x * self.units.time) for x in self.low],
             **self.leaves.document(self.windows),
         }
 
@@ -65,13 +84,15 @@ def _declares(problem: ExactProblem) -> bool:
 
 def _missing(problem: ExactProblem) -> str | None:
     inner = ((),) * (problem.segments - 1)
-    if problem.interpolant.prescribed != (_REST, *inner, _REST):
+    if problem.piecewise.prescribed != (_REST, *inner, _REST):
         return f"{problem.curve.name}: only rest with zero acceleration at both ends is covered"
-    if problem.segments > MOST_SEGMENTS or len(problem.joints) > MOST_JOINTS:
-        return f"more than {MOST_SEGMENTS} segments or {MOST_JOINTS} joints"
-    q = problem.waypoints
+    if problem.segments > MOST_QUINTIC_SEGMENTS or len(problem.joints) > MOST_QUINTIC_JOINTS:
+        return f"more than {MOST_QUINTIC_SEGMENTS} segments or {MOST_QUINTIC_JOINTS} joints"
+    units = _units(problem)
+    own = problem.in_units(units.powers, units.second)
+    q = own.waypoints
     sizes = [abs(b - a) for k in range(len(q) - 1) for a, b in zip(q[k], q[k + 1], strict=True)]
-    sizes += [x.high for row in problem.limits for x in row if x is not None]
+    sizes += [x.high for row in own.limits for x in row if x is not None]
     if not all(x == 0 or SMALLEST < x < 1 / SMALLEST for x in sizes):
         return "a step or a limit is of unusual size"
     if all(problem.duration_lower):
@@ -109,66 +130,96 @@ def shortest(problem: ExactProblem) -> tuple[Fraction, ...]:
 
 
 class _Search:
-    """What the stages share: the numbers of the problem, and windows that exclude boxes."""
+    """What the stages share: numbers in the units of the proof, and windows that exclude boxes."""
 
     def __init__(self, session: Session) -> None:
-        self.session = session
-        self.low = shortest(session.exact)
-        self.steps, self.limits = _steps(session.exact), _limits(session.exact)
+        self.session, self.units = session, _units(session.exact)
+        own = session.exact.in_units(self.units.powers, self.units.second)
+        self.low = shortest(own)
+        self.steps, self.limits = _steps(own), _limits(own)
         assert session.durations is not None
-        near = np.array([float(h) for h in session.durations])
+        near = np.array([float(h / self.units.time) for h in session.durations])
         self.library = windows(self.steps, self.limits, near)
 
+    def rounded(self, total: Fraction) -> Fraction:
+        """A total that is exact in floating point in the units of the proof, s."""
+        return below(total / self.units.time) * self.units.time
+
     def stage(self, target: Fraction) -> Tree:
-        """Prove that no total is below ``target``."""
+        """Prove that no total is below ``target``, s."""
         session = self.session
         session.check_clock()
         n, joints = self.steps.shape
-        total = float(target)
+        own = target / self.units.time
+        total = float(own)
         low, high = np.zeros((_STACK, n)), np.zeros((_STACK, n))
         low[0], high[0] = [float(x) for x in self.low], total
         depth, counts = np.array([1]), np.zeros(3, np.int64)
         leaves, wary, patience = Leaves.empty(), True, _CHUNK
-        upper = 0.0 if session.upper is None else float(session.upper) * (1.0 - _SLIGHT)
+        upper = session.upper
+        look = 0.0 if upper is None else float(upper / self.units.time) * (1.0 - _SLIGHT)
         while True:
             code = search(
                 n, joints, self.steps, self.limits, total, self.library.terms, low, high, depth,
-                patience, upper if wary and patience > 1 else 0.0, *leaves.arrays, counts,
+                patience, look if wary and patience > 1 else 0.0, *leaves.arrays, counts,
             )  # fmt: skip
             session.report(int(depth[0]), session.nodes + int(counts[0]))
             counts[:] = 0
             if code == DONE:
-                return Tree(target, self.low, self.library, leaves)
+                return Tree(self.units, own, self.low, self.library, leaves)
             if code == FULL:
                 leaves = leaves.larger()
             patience = 1 if code == SHORTER else _CHUNK
             if code == SHORTER:
                 at = depth[0] - 1
-                wary = self._look(2.0 / (1.0 / low[at] + 1.0 / high[at]), upper)
+                wary = self._look(2.0 / (1.0 / low[at] + 1.0 / high[at]), look)
             elif code not in (DONE, FULL, PAUSED):
                 raise OutOfTime
             else:
                 session.check_clock()
 
-    def _look(self, durations: Array, upper: float) -> bool:
-        """Raise `Shorter` if the direction of ``durations`` holds a total below ``upper``.
+    def _look(self, durations: Array, below_it: float) -> bool:
+        """Raise `Shorter` if the direction of ``durations`` holds a total below the one given.
 
         False if it does but for bounds that stretching cannot mend: more would follow.
         """
-        found = self.session.stretched(durations[None])[0]
-        if not found.sum() < upper:
+        time = float(self.units.time)
+        found = self.session.stretched(durations[None] * time)[0]
+        if not found.sum() < below_it * time:
             return True
         if check(self.session.floats, found).verdict is Verdict.PASS:
             raise Shorter(found)
         return False
 
 
-def _prove(session: Session, proposals: dict[str, Any] | None) -> bool:
+def _units(exact: ExactProblem) -> Units:
+    """Units in which steps and total are not far from 1; those of the problem where they are not.
+
+    Weights, multipliers and totals of a proof have ranges, which these units keep to.
+    """
+    steps, limits = np.abs(_steps(exact)), _limits(exact)
+    powers = [_power(float(column.max())) for column in steps.T]
+    least = np.array([float(x) for x in exact.duration_lower])
+    with np.errstate(divide="ignore"):
+        for order in (1, 2, 3):
+            needs = (steps / limits[:, order - 1]) ** (1.0 / order)
+            least = np.maximum(least, needs.max(axis=1))
+    return Units(tuple(powers), _power(float(least.sum())))
+
+
+def _power(size: float) -> int:
+    """Of two, for a size far from 1; else 0."""
+    power = math.frexp(size)[1] if size > 0.0 else 0
+    return 0 if abs(power) <= _NEAR else max(-MOST_POWER, min(MOST_POWER, power))
+
+
+def _prove(session: Session) -> bool:
     # A stage that was interrupted begins anew: of a stopped run only the proof counts.
     session.seek()
     if session.upper is None:
         return False
-    session.climb(_LADDER, below, _Search(session).stage)
+    stages = _Search(session)
+    session.climb(_LADDER, stages.rounded, stages.stage)
     return True
 
 

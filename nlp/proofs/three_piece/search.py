@@ -11,14 +11,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ....problem import Verdict, check
+from ....problem import TrajgapError, Verdict, check
 from ..exact import ExactProblem
 from ..rounding import down
 from ..session import Certifier, Ladder, OutOfTime, Session, Shorter
 from .boxes import Boxes, Proof, Proposer
 from .ratios import shape_of
 from .rows import STRICT, shape_for
-from .tree import State, tree_document, tree_state
+from .tree import State, proposed, tree_document
 
 _BATCH = 256
 _LOOKS = 3
@@ -35,14 +35,14 @@ _DEEPEST = 44
 
 @dataclass(frozen=True, eq=False)
 class Tree:
-    """Boxes that prove a total, as the proof of a certificate; with open ones, as proposals."""
+    """Boxes that prove a total, or are to prove it: kind of proof, and what is known."""
 
     kind: str
     state: State
 
     def document(self) -> dict[str, Any]:
         """Kind "three-piece" or "four-three-four" of docs/certificates.md."""
-        return {"kind": self.kind, **tree_document(self.state)}
+        return tree_document(self.kind, self.state)
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,13 +141,12 @@ def _missing(problem: ExactProblem) -> str | None:
     return None
 
 
-def _prove(session: Session, proposals: dict[str, Any] | None) -> bool:
-    if proposals is None:
-        start = np.zeros((1, 2), np.int64)
+def _prove(session: Session) -> bool:
+    start, kind = np.zeros((1, 2), np.int64), shape_for(session.exact).proof
+    given = session.taken_up(partial(_proposed, session.exact, kind))
+    if given is None:
         given = State(Fraction(0), Boxes(start, start), (None,))
-    else:
-        given = tree_state(session.exact, proposals)
-    session.proposals = Tree(shape_for(session.exact).proof, given)
+    session.proposals = Tree(kind, given)
     search = _Search(session, given.boxes, given.proofs)
     session.seek()
     while session.upper is None:
@@ -164,6 +163,13 @@ def _prove(session: Session, proposals: dict[str, Any] | None) -> bool:
             return True
     session.climb(_LADDER, partial(down, digits=_DIGITS), search.stage)
     return True
+
+
+def _proposed(exact: ExactProblem, kind: str, document: dict[str, Any]) -> State:
+    """Boxes of a stopped run: what they say of themselves only proposes."""
+    if document["kind"] != kind:
+        raise TrajgapError(f"resume: a state of kind {document['kind']!r}")
+    return proposed(exact, document)
 
 
 def _above_all(exact: ExactProblem) -> Fraction | None:
