@@ -39,10 +39,10 @@ def problems() -> Iterator[tuple[str, ExactProblem, float]]:
         case = load_case(case_id)
         for problem in case.problems:
             for reading in case.readings:
-                posing = case.posing(problem.id, reading.id)
-                if not posing.posed:
+                statement = case.statement(problem.id, reading.id)
+                if not statement.complete:
                     continue
-                exact = printed_problem(posing)
+                exact = printed_problem(statement)
                 asked = json.dumps(question(problem_document(exact), Subject.ANY), sort_keys=True)
                 if missing(exact) is None and asked not in seen:
                     seen.add(asked)

@@ -151,7 +151,7 @@ def _questions(case: Case, one: Posed) -> Iterator[Question]:
 
 def _stated(case: Case, one: Posed, coupling: Coupling) -> Iterator[Question]:
     """What is asked under one reading, covered or not."""
-    posing = case.posing(one.problem_id, one.reading_id)
+    statement = case.statement(one.problem_id, one.reading_id)
     name = f"{case.id}.{one.problem_id}.{one.reading_id}"
     ids, content = (case.id, one.problem_id, one.reading_id), _hash(case)
     labels: list[str | None] = [None]
@@ -161,7 +161,7 @@ def _stated(case: Case, one: Posed, coupling: Coupling) -> Iterator[Question]:
         own = name if label is None else f"{name}.joint-{label}"
         exact: ExactProblem | str
         try:
-            exact = printed_problem(posing)
+            exact = printed_problem(statement)
             exact = exact if label is None else exact.joint(j)
         except CaseError:
             raise

@@ -122,7 +122,7 @@ def closed_form(problem: ExactProblem) -> tuple[list[SegmentBound], list[float]]
     durations : list of float
         s.
     """
-    tops = peaks(problem.interpolant.degrees[0])
+    tops = peaks(problem.piecewise.degrees[0])
     bounds, durations = [], []
     for k in range(problem.segments):
         best = SegmentBound(problem.duration_lower[k])

@@ -94,7 +94,7 @@ def _declares(problem: ExactProblem) -> bool:
 
 def _missing(problem: ExactProblem) -> str | None:
     inner = ((),) * (problem.segments - 1)
-    if problem.interpolant.prescribed != (_REST, *inner, _REST):
+    if problem.piecewise.prescribed != (_REST, *inner, _REST):
         return f"{problem.curve.name}: only rest with zero acceleration at both ends is covered"
     if problem.segments > MOST_QUINTIC_SEGMENTS or len(problem.joints) > MOST_QUINTIC_JOINTS:
         return f"more than {MOST_QUINTIC_SEGMENTS} segments or {MOST_QUINTIC_JOINTS} joints"
