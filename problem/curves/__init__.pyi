@@ -9,6 +9,18 @@ from .clamped import (
 from .clamped_counts import ClampedReading, Count, clamped_readings
 from .clamped_fit import clamped_control_points
 from .compilation import compiler
+from .every_kind import (
+    batch_peaks,
+    enclosed,
+    end_conditions,
+    fit,
+    for_joint,
+    motion_values,
+    segment_of,
+    shape,
+    smooth_order,
+    value_gradients,
+)
 from .interpolant import (
     Condition,
     ConditionKind,
@@ -22,19 +34,7 @@ from .interpolant import (
     three_five_three,
 )
 from .kernel import MAX_COEFFICIENTS, roots_in_unit
-from .kind import (
-    Curve,
-    PeakGradients,
-    batch_peaks,
-    enclosed,
-    end_conditions,
-    fit,
-    for_joint,
-    motion_values,
-    segment_of,
-    smooth_order,
-    value_gradients,
-)
+from .kind import Curve, PeakGradients
 from .peak import Extremum, critical_points, extrema
 from .spline import (
     PERM,
@@ -44,7 +44,7 @@ from .spline import (
     right_hand_sides,
     trajectory_from_scaled,
 )
-from .stretched import segment_peaks, shape, solve_in_closed_form
+from .stretched import segment_peaks, solve_in_closed_form
 from .timed import ClockedTrajectory, numerators
 from .trajectory import Trajectory
 from .uniform import (
