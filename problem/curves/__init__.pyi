@@ -36,10 +36,10 @@ from .kind import (
     value_gradients,
 )
 from .peak import Extremum, critical_points, extrema
+from .refined import coefficient_gradient
 from .spline import (
     PERM,
     as_durations,
-    coefficient_gradient,
     layout,
     right_hand_sides,
     trajectory_from_scaled,
