@@ -40,6 +40,7 @@ from .refined import coefficient_gradient
 from .spline import (
     PERM,
     as_durations,
+    batch_coefficients,
     layout,
     right_hand_sides,
     trajectory_from_scaled,
@@ -79,6 +80,7 @@ __all__ = [
     "Trajectory",
     "as_durations",
     "average_matrix",
+    "batch_coefficients",
     "batch_peaks",
     "clamped_control_points",
     "clamped_readings",

@@ -120,20 +120,23 @@ def right_hand_sides(
     return values
 
 
-def coefficients(
+def batch_coefficients(
     interpolant: Interpolant,
     waypoints: NDArray[np.float64],
     durations: NDArray[np.float64],
     nodal: NDArray[np.float64] | None = None,
 ) -> NDArray[np.float64]:
-    """Coefficients in the segments' own parameter s in [0, 1], shape (segments, 10, joints)."""
+    """`coefficients` of many duration vectors, shape (vectors, segments, 10, joints).
+
+    Not finite where the system is singular.
+    """
     plan = layout(interpolant)
     values = right_hand_sides(interpolant, waypoints, nodal)
-    joints = waypoints.shape[1]
-    out = np.zeros((interpolant.segments, kernel.MAX_COEFFICIENTS, joints))
+    vectors, joints = len(durations), waypoints.shape[1]
+    out = np.zeros((interpolant.segments, kernel.MAX_COEFFICIENTS, joints * vectors))
     kernel.fit_coefficients(
-        np.ascontiguousarray(durations).reshape(-1, 1),
-        1,
+        np.ascontiguousarray(durations.T),
+        vectors,
         values,
         plan.kinds,
         plan.breaks,
@@ -143,10 +146,21 @@ def coefficients(
         plan.lower,
         plan.upper,
         PERM,
-        np.empty((plan.unknowns, 2 * plan.lower + plan.upper + 1, 1)),
-        np.empty((plan.unknowns, joints)),
+        np.empty((plan.unknowns, 2 * plan.lower + plan.upper + 1, vectors)),
+        np.empty((plan.unknowns, joints * vectors)),
         out,
     )
+    return out.reshape(*out.shape[:2], joints, vectors).transpose(3, 0, 1, 2)
+
+
+def coefficients(
+    interpolant: Interpolant,
+    waypoints: NDArray[np.float64],
+    durations: NDArray[np.float64],
+    nodal: NDArray[np.float64] | None = None,
+) -> NDArray[np.float64]:
+    """Coefficients in the segments' own parameter s in [0, 1], shape (segments, 10, joints)."""
+    out: NDArray[np.float64] = batch_coefficients(interpolant, waypoints, durations[None], nodal)[0]
     if not np.isfinite(out).all():
         raise singular(interpolant, durations)
     return out
