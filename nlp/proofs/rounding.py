@@ -18,7 +18,7 @@ def down(value: Fraction, digits: int) -> Fraction:
         first /= 10
     while value >= 10 * first:
         first *= 10
-    step = first / 10**digits
+    step: Fraction = first / 10**digits
     steps = math.floor(value / step)
     return steps * step
 

@@ -36,10 +36,11 @@ from .interpolant import (
 from .kernel import MAX_COEFFICIENTS, roots_in_unit
 from .kind import Curve, PeakGradients
 from .peak import Extremum, critical_points, extrema
+from .refined import coefficient_gradient
 from .spline import (
     PERM,
     as_durations,
-    coefficient_gradient,
+    batch_coefficients,
     layout,
     right_hand_sides,
     trajectory_from_scaled,
@@ -79,6 +80,7 @@ __all__ = [
     "Trajectory",
     "as_durations",
     "average_matrix",
+    "batch_coefficients",
     "batch_peaks",
     "clamped_control_points",
     "clamped_readings",
