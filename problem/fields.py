@@ -210,8 +210,10 @@ OneOrEachUpperPosition = Annotated[
     Discriminator(_form),
 ]
 
-Row = Annotated[tuple[Number, ...], Field(min_length=1)]
-Rows = Annotated[tuple[Row, ...], Field(min_length=1)]
+PrintedRows = Annotated[
+    tuple[Annotated[tuple[Number, ...], Field(min_length=1)], ...], Field(min_length=1)
+]
+"""A table of numbers, no row empty."""
 
 Id = Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9.-]*$")]
 """Lower-case letters, digits, dots and dashes."""

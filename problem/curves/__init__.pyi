@@ -22,9 +22,9 @@ from .every_kind import (
     value_gradients,
 )
 from .interpolant import (
+    Condition,
+    ConditionKind,
     Interpolant,
-    Row,
-    RowKind,
     cubic_spline,
     cubic_spline_virtual,
     jtraj,
@@ -36,10 +36,11 @@ from .interpolant import (
 from .kernel import MAX_COEFFICIENTS, roots_in_unit
 from .kind import Curve, PeakGradients
 from .peak import Extremum, critical_points, extrema
+from .refined import coefficient_gradient
 from .spline import (
     PERM,
     as_durations,
-    coefficient_gradient,
+    batch_coefficients,
     layout,
     right_hand_sides,
     trajectory_from_scaled,
@@ -64,6 +65,8 @@ __all__ = [
     "ClampedBSpline",
     "ClampedReading",
     "ClockedTrajectory",
+    "Condition",
+    "ConditionKind",
     "Count",
     "Curve",
     "Extremum",
@@ -71,14 +74,13 @@ __all__ = [
     "Knots",
     "Parameters",
     "PeakGradients",
-    "Row",
-    "RowKind",
     "StretchedUniformBSpline",
     "TimedUniformBSpline",
     "Timing",
     "Trajectory",
     "as_durations",
     "average_matrix",
+    "batch_coefficients",
     "batch_peaks",
     "clamped_control_points",
     "clamped_readings",

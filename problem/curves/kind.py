@@ -9,14 +9,13 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import TrajgapError
-from . import spline
+from . import refined, spline
 from .interpolant import Interpolant
 from .peak import Extremum
 from .spline import PERM
 from .trajectory import Trajectory
-
-Array = NDArray[np.float64]
 
 
 class Curve(Protocol):
@@ -223,7 +222,7 @@ batch_peaks.register(Interpolant, spline.batch_peaks)
 def _(
     curve: Interpolant, waypoints: Array, durations: Array, nodal: Array | None = None
 ) -> Enclosed:
-    scaled, error = spline.refined_coefficients(curve, waypoints, durations, nodal)
+    scaled, error = refined.refined_coefficients(curve, waypoints, durations, nodal)
     trajectory = spline.trajectory_from_scaled(scaled, curve.degrees, durations)
     return Enclosed(trajectory, value_errors(trajectory, error))
 
@@ -246,14 +245,16 @@ def _(
     points: list[Extremum],
     nodal: Array | None = None,
 ) -> PeakGradients:
-    g = spline.coefficient_gradient(curve, waypoints, durations, nodal)
-    by_duration = np.empty((len(points), curve.segments))
-    by_waypoint = np.empty((len(points), waypoints.shape[0]))
-    by_nodal = np.empty((len(points), curve.free))
-    for i, e in enumerate(points):
-        basis = derivative_row(e.s, e.order) / durations[e.segment] ** e.order
-        by_duration[i] = g.durations[:, e.segment, :, e.joint] @ basis
-        by_duration[i, e.segment] -= e.order * e.value / durations[e.segment]
-        by_waypoint[i] = g.waypoints[:, e.segment] @ basis
-        by_nodal[i] = g.nodal[:, e.segment] @ basis
+    g = refined.coefficient_gradient(curve, waypoints, durations, nodal)
+    segment = np.array([e.segment for e in points], dtype=np.int64)
+    joint = np.array([e.joint for e in points], dtype=np.int64)
+    order = np.array([e.order for e in points], dtype=np.int64)
+    value = np.array([e.value for e in points])
+    basis = np.array([derivative_row(e.s, e.order) for e in points]).reshape(-1, len(PERM))
+    basis /= durations[segment, None] ** order[:, None]
+    # Index arrays on both sides of a slice put their common axis first: (extrema, segments, 10).
+    by_duration = np.einsum("inp,ip->in", g.durations[:, segment, :, joint], basis)
+    by_duration[np.arange(len(points)), segment] -= order * value / durations[segment]
+    by_waypoint = np.einsum("wip,ip->iw", g.waypoints[:, segment], basis)
+    by_nodal = np.einsum("fip,ip->if", g.nodal[:, segment], basis)
     return PeakGradients(by_duration, by_waypoint, by_nodal)

@@ -24,7 +24,7 @@ def posed(**changes: object) -> Problem:
     given = {
         "waypoints": WAYPOINTS,
         "limits": LIMITS,
-        "interpolant": three_five_three(),
+        "curve": three_five_three(),
         "duration_lower": [0.2, 0.3, 0.1],
         "duration_upper": [2.0, 3.0, 2.5],
     }
@@ -33,7 +33,7 @@ def posed(**changes: object) -> Problem:
 
 def sampled_ratio(problem: Problem, durations: np.ndarray) -> float:
     """Largest |derivative|/limit at 4,000 points: what an author's program would look at."""
-    curve = fit(problem.interpolant, problem.waypoints, durations)
+    curve = fit(problem.curve, problem.waypoints, durations)
     worst = 0.0
     t = np.linspace(0.0, durations.sum(), 4000)
     for j in range(len(problem.joints)):
@@ -152,7 +152,7 @@ def test_position_limits_are_not_judged(side: str) -> None:
 def test_free_derivatives_are_not_searched() -> None:
     free = piecewise((5, 5, 5), 2, ((1, 0.0), (2, 0.0)))
     with pytest.raises(TrajgapError, match=r"leaves 4 derivatives per joint free.*prescribe them"):
-        DeathPenalty(posed(interpolant=free))
+        DeathPenalty(posed(curve=free))
 
 
 def test_other_interpolants() -> None:

@@ -21,7 +21,7 @@ from trajgap.heuristics import (
     run_per_joint,
     states,
 )
-from trajgap.heuristics.repair import pose
+from trajgap.heuristics.repair import judge_of
 from trajgap.problem import (
     Limits,
     Problem,
@@ -49,7 +49,7 @@ def posed(**changes: object) -> Problem:
     given = {
         "waypoints": WAYPOINTS,
         "limits": LIMITS,
-        "interpolant": three_five_three(),
+        "curve": three_five_three(),
         "duration_lower": 0.1,
         "duration_upper": 9.0,
     }
@@ -139,7 +139,7 @@ def test_rescaling_where_nothing_is_limited() -> None:
 
 
 def test_a_prescribed_derivative_cannot_be_stretched() -> None:
-    problem = posed(interpolant=cubic_spline(3, ((1, 0.5),)))
+    problem = posed(curve=cubic_spline(3, ((1, 0.5),)))
     DeathPenalty(problem)
     with pytest.raises(TrajgapError, match=r"^stretch: a prescribed .* use the death penalty"):
         Stretch(problem)
@@ -153,8 +153,8 @@ def test_it_refuses_what_the_death_penalty_refuses() -> None:
 
 
 def test_handlings_by_name() -> None:
-    assert isinstance(pose(posed(), np.inf, "death-penalty"), DeathPenalty)
-    stretch, rescale = (pose(posed(), np.inf, name) for name in ("stretch", "rescale"))
+    assert isinstance(judge_of(posed(), np.inf, "death-penalty"), DeathPenalty)
+    stretch, rescale = (judge_of(posed(), np.inf, name) for name in ("stretch", "rescale"))
     assert isinstance(stretch, Stretch)
     assert isinstance(rescale, Stretch)
     assert (stretch.shorten, rescale.shorten) == (False, True)
@@ -181,7 +181,7 @@ def test_the_account_is_that_of_the_decoded_durations(
 ) -> None:
     found = run(algorithm, problem, 3, 60, objective=handling)
     assert found.objective is Handling(handling)
-    judge = pose(problem, np.inf, handling)
+    judge = judge_of(problem, np.inf, handling)
     np.testing.assert_array_equal(judge.decode(found.position[None])[0], found.durations)
     assert found.reported_time == found.trace[-1] == found.durations.sum()
     assert check(problem, found.durations).verdict is Verdict.PASS

@@ -24,9 +24,10 @@ PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 
 MAY_IMPORT = {
     "problem": set(),
-    "nlp": {"problem"},
+    "verify": set(),
+    "nlp": {"problem", "verify"},
     "heuristics": {"problem"},
-    "compare": {"problem", "nlp", "heuristics"},
+    "compare": {"problem", "verify", "nlp", "heuristics"},
 }
 SOLVERS = {"casadi", "toppra", "scipy.optimize"}
 

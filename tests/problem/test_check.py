@@ -149,7 +149,7 @@ def test_permuted_joints(name: str, seed: int) -> None:
     other = Problem(
         problem.waypoints[:, order],
         Limits(*problem.limits.derivatives[order].T),
-        problem.interpolant,
+        problem.curve,
         joints=tuple(problem.joints[i] for i in order),
     )
     mine, theirs = check(problem, h), check(other, h)
@@ -188,7 +188,7 @@ def backwards(interpolant: Interpolant) -> Interpolant:
 @given(st.sampled_from(list(DECLARATIONS)), SEEDS)
 def test_time_reversal(name: str, seed: int) -> None:
     problem, h = posed(DECLARATIONS[name], seed)
-    other = Problem(problem.waypoints[::-1], problem.limits, backwards(problem.interpolant))
+    other = Problem(problem.waypoints[::-1], problem.limits, backwards(problem.curve))
     forth, back = check(problem, h), check(other, h[::-1])
     np.testing.assert_allclose(
         table(back, problem.joints), table(forth, problem.joints), rtol=1e-9, atol=1e-12
@@ -206,7 +206,7 @@ def test_degrees_or_radians(name: str, seed: int) -> None:
     in_degrees = Problem(
         np.degrees(problem.waypoints),
         Limits(*np.degrees(problem.limits.derivatives).T),
-        problem.interpolant,
+        problem.curve,
     )
     np.testing.assert_allclose(
         table(check(in_degrees, h), problem.joints),
@@ -443,7 +443,7 @@ def test_repeated_waypoints() -> None:
     result = check(problem, [0.9, 0.4, 1.1])
     for p in result.peaks:
         j, order = problem.joints.index(str(p.joint)), QUANTITIES.index(p.quantity) + 1
-        pieces = exact_route.fitted(problem.interpolant, q[:, j], [0.9, 0.4, 1.1])
+        pieces = exact_route.fitted(problem.curve, q[:, j], [0.9, 0.4, 1.1])
         truth = float(exact_route.peak(pieces, [0.9, 0.4, 1.1], order))
         assert abs(p.value) == pytest.approx(truth, rel=1e-12)
     # rest-to-rest stands still between equal way-points
@@ -482,7 +482,7 @@ def test_position_limits() -> None:
     wide = Problem(q, Limits(9, position_lower=0.0, position_upper=1.2), cubic_spline(2))
     result = check(wide, [1.0, 0.5])
     top = next(p for p in result.peaks if p.quantity == "position" and p.limit == 1.2)
-    pieces = exact_route.fitted(wide.interpolant, q[:, 0], [1.0, 0.5])
+    pieces = exact_route.fitted(wide.curve, q[:, 0], [1.0, 0.5])
     peak = float(exact_route.peak(pieces, [1.0, 0.5], 0))
     assert top.value == pytest.approx(peak, rel=1e-13)
     assert 1.0 < peak < 1.2

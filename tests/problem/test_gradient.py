@@ -16,7 +16,7 @@ def interior(
     problem: Problem, h: np.ndarray, nodal: np.ndarray | None, orders: range = range(4)
 ) -> list[Extremum]:
     """Extrema that a small change moves a little: not flat, and not about to leave the segment."""
-    curve = fit(problem.interpolant, problem.waypoints, h, nodal)
+    curve = fit(problem.curve, problem.waypoints, h, nodal)
     found = []
     for j in range(len(problem.joints)):
         for order in orders:
@@ -32,7 +32,7 @@ def moved(
     problem: Problem, h: np.ndarray, nodal: np.ndarray | None, points: list[Extremum]
 ) -> np.ndarray:
     """Values of the same extrema after a small change: nearest of the same kind."""
-    curve = fit(problem.interpolant, problem.waypoints, h, nodal)
+    curve = fit(problem.curve, problem.waypoints, h, nodal)
     values = []
     for e in points:
         near = [
@@ -99,7 +99,7 @@ def test_against_finite_differences(name: str) -> None:
 def test_euler_identity(name: str, seed: int) -> None:
     # f(c·h) = f(h)/cʳ, so h · ∂f/∂h = −r f; f is linear in the way-points, and blind to a shift
     problem, h = posed(DECLARATIONS[name], seed)
-    curve = fit(problem.interpolant, problem.waypoints, h)
+    curve = fit(problem.curve, problem.waypoints, h)
     points = [e for j in range(3) for r in (1, 2, 3) for e in extrema(curve, j, r)]
     gradient = peak_gradients(problem, h, points)
     values = np.array([e.value for e in points])
@@ -114,7 +114,7 @@ def test_euler_identity(name: str, seed: int) -> None:
 
 def test_position_extrema_move_with_a_shift() -> None:
     problem, h = posed(DECLARATIONS["3-5-3"], 2)
-    curve = fit(problem.interpolant, problem.waypoints, h)
+    curve = fit(problem.curve, problem.waypoints, h)
     points = [e for j in range(3) for e in extrema(curve, j, 0)]
     gradient = peak_gradients(problem, h, points)
     np.testing.assert_allclose(gradient.waypoints.sum(axis=1), 1.0, atol=1e-12)
@@ -122,7 +122,7 @@ def test_position_extrema_move_with_a_shift() -> None:
 
 def test_gradient_predicts_the_batched_peaks() -> None:
     problem, h = posed(DECLARATIONS["quintic"], 77)
-    curve = fit(problem.interpolant, problem.waypoints, h)
+    curve = fit(problem.curve, problem.waypoints, h)
     tops = [
         max(extrema(curve, j, r), key=lambda e: abs(e.value)) for j in range(3) for r in (1, 2, 3)
     ]

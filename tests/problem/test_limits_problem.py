@@ -23,7 +23,7 @@ def posed(**changes: object) -> Problem:
     given = {
         "waypoints": WAYPOINTS,
         "limits": Limits([5.0, 3.0], [8.0, 11.0]),
-        "interpolant": three_five_three(),
+        "curve": three_five_three(),
     }
     return Problem(**{**given, **changes})  # type: ignore[arg-type]
 
@@ -155,7 +155,7 @@ def test_joint_alone_is_judged_alike() -> None:
             r"waypoints: 3-5-3 polynomials with 3 segments needs 4, got 3",
         ),
         (
-            {"interpolant": cubic_spline_virtual(5)},
+            {"curve": cubic_spline_virtual(5)},
             r"waypoints: C2 cubic spline with two virtual .* with 6 segments needs 5, got 4",
         ),
         (

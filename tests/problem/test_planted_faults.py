@@ -277,7 +277,7 @@ CHECKER: list[tuple[str, str, Killer]] = [
         named("test_check", "test_prescribed_velocity_has_no_repair"),
     ),
     (
-        "if factor != 1.0 and not problem.interpolant.homogeneous:",
+        "if factor != 1.0 and not problem.curve.homogeneous:",
         "if False:",
         named("test_check", "test_prescribed_velocity_has_no_repair"),
     ),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from string import ascii_lowercase
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,7 @@ Path_ = tuple[str | int, ...]
 
 
 def places(node: Any, path: Path_ = ()) -> list[Path_]:
-    """Path of every number, printed ones too, and of the tree."""
+    """Path of every number, printed ones too, cuts of the tree included."""
     if isinstance(node, dict):
         return [p for key, x in node.items() for p in places(x, (*path, key))]
     if isinstance(node, list):
@@ -22,15 +21,15 @@ def places(node: Any, path: Path_ = ()) -> list[Path_]:
     if isinstance(node, int):
         return [path]
     numeric = path[0] in ("problem", "claim", "proof") and any(c.isdigit() for c in node)
-    return [path] if numeric or path[-1] == "tree" else []
+    return [path] if numeric else []
 
 
 def changed(value: Any, rng: np.random.Generator) -> Any:
+    if rng.random() < 0.1:
+        # Not the type that it has: a leaf that is cut, a number that is none.
+        return [["."], 0, 1, ["?"], True, "0", None, []][int(rng.integers(0, 8))]
     if isinstance(value, int):
         return int(rng.choice([value + 1, value - 1, -value, int(rng.integers(0, 20_000)), 0]))
-    if set(value) <= set(f"{ascii_lowercase}."):
-        k = int(rng.integers(0, len(value)))
-        return value[:k] + str(rng.choice(["a", "b", ".", "", "..", "x"])) + value[k + 1 :]
     try:
         number = Fraction(value)
     except ValueError:
@@ -65,10 +64,11 @@ def get(data: dict[str, Any], path: Path_) -> Any:
 def field(path: Path_) -> str:
     """Name of the field that a number belongs to; columns of a table are fields of their own."""
     names = [key for key in path if isinstance(key, str)]
-    if names[-1] in ("rows", "segments"):
-        return f"{'.'.join(names)} column {path[-1]}"
-    if names[-1] == "leaves":
-        return "proof.leaves weight" if int(path[-1]) % 2 else "proof.leaves row"
+    if names[-1] == "rows":
+        return f"proof.rows column {path[-1]}"
+    if names[-1] == "tree":
+        # A cut, a row or its weight in a leaf, or a column of the bounds in closed form.
+        return ("cut", f"entry {int(path[-1]) % 2}", f"column {path[-1]}")[len(path) - 3]
     return ".".join(names)
 
 

@@ -102,7 +102,7 @@ def rest_optimum(problem: Problem) -> float:
 def stretched_optimum(problem: Problem) -> float:
     """The floating-point closed form of `trajgap.problem`."""
     limits = problem.limits.derivatives
-    return _alone(solve_in_closed_form(problem.interpolant, problem.waypoints, limits), problem)
+    return _alone(solve_in_closed_form(problem.curve, problem.waypoints, limits), problem)
 
 
 KINDS = {
@@ -134,7 +134,7 @@ def stated(document: Document) -> Problem:
     return Problem(
         np.array([numbers(row, 0.0) for row in p["waypoints"]]),
         limits,
-        KINDS[document["proof"]["kind"]].make().interpolant,
+        KINDS[document["proof"]["kind"]].make().curve,
         numbers(p["duration_lower"], 0.0),
         numbers(p["duration_upper"], np.inf),
     )

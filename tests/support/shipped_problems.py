@@ -12,14 +12,14 @@ def posed() -> list[tuple[str, ExactProblem]]:
         case = load_case(case_id)
         for problem in case.problems:
             for reading in case.readings:
-                posing = case.posing(problem.id, reading.id)
-                if not posing.posed:
+                statement = case.statement(problem.id, reading.id)
+                if not statement.complete:
                     continue
-                exact = printed_problem(posing)
+                exact = printed_problem(statement)
                 if covered(exact) is not None:
                     continue
                 found.append((f"{case_id}.{problem.id}.{reading.id}", exact))
-                if len(exact.joints) > 1 and posing.coupling is Coupling.PER_JOINT:
+                if len(exact.joints) > 1 and statement.coupling is Coupling.PER_JOINT:
                     for j, label in enumerate(exact.joints):
                         name = f"{case_id}.{problem.id}.{reading.id}.joint-{label}"
                         found.append((name, exact.joint(j)))

@@ -41,7 +41,7 @@ def dense_best(problem: Problem, count: int = 161) -> float:
         if not np.isfinite(totals[i]):
             break
         h = shares[i] * stretch[i]
-        curve = fit(problem.interpolant, problem.waypoints, h)
+        curve = fit(problem.curve, problem.waypoints, h)
         angle = np.stack([curve(x) for x in np.linspace(0.0, h.sum(), 60)])
         inside = (angle >= problem.limits.position_lower).all()
         if inside and check(problem, h).verdict is Verdict.PASS:

@@ -96,7 +96,7 @@ def test_segments_over_a_limit_are_those_of_a_dense_sample() -> None:
             continue
         problem = one.case.problem(reading_id=outcome.reading)
         durations = one.case.claim_durations(one.case.claim("after"), outcome.reading).value
-        trajectory = fit(problem.interpolant, problem.waypoints, durations)
+        trajectory = fit(problem.curve, problem.waypoints, durations)
         over = set()
         for k, (low, high) in enumerate(pairwise([0.0, *np.cumsum(durations)])):
             ends = np.array([low, high]) + np.array([1e-9, -1e-9])

@@ -38,7 +38,7 @@ from trajgap.problem import (
     three_five_three,
 )
 from trajgap.problem.cases.load import load_case
-from trajgap.problem.curves.interpolant import RowKind
+from trajgap.problem.curves.interpolant import ConditionKind
 
 MOVING_ENDS = piecewise((4, 3, 4), 2, ((1, 0.3), (2, -0.7)))
 
@@ -118,13 +118,13 @@ def exact_coefficients(
     for row in interpolant.rows:
         b, r = row.at, row.order
         line = [Fraction(0)] * (first[-1] + 1)
-        if row.kind != RowKind.RIGHT_VALUE:
+        if row.kind != ConditionKind.RIGHT_VALUE:
             for p in range(r, interpolant.degrees[b - 1] + 1):
                 line[first[b - 1] + p] = Fraction(math.perm(p, r)) / durations[b - 1] ** r
-        if row.kind != RowKind.LEFT_VALUE and r <= interpolant.degrees[b]:
-            sign = 1 if row.kind == RowKind.RIGHT_VALUE else -1
+        if row.kind != ConditionKind.LEFT_VALUE and r <= interpolant.degrees[b]:
+            sign = 1 if row.kind == ConditionKind.RIGHT_VALUE else -1
             line[first[b] + r] = sign * math.factorial(r) / durations[b] ** r
-        if row.kind != RowKind.MATCH:
+        if row.kind != ConditionKind.MATCH:
             prescribed = dict(interpolant.prescribed[b])
             line[-1] = angle[b] if r == 0 else Fraction(prescribed[r])
         system.append(line)
@@ -196,7 +196,7 @@ def test_enclosure_is_not_far_too_wide():
     assert worst_escape(three_five_three(), 5e-4, seed=3) > 0.1
     _, h = posed(3, quintic_spline(3))
     problem, _ = posed(3, quintic_spline(3))
-    found = enclose_spline(problem.interpolant, Ball.exact(h), Ball.exact(problem.waypoints))
+    found = enclose_spline(problem.curve, Ball.exact(h), Ball.exact(problem.waypoints))
     assert found is not None
     assert found.coefficients.rad.max() < 1e-12
 
@@ -204,9 +204,9 @@ def test_enclosure_is_not_far_too_wide():
 def test_a_wide_box_is_not_enclosed():
     problem, h = posed(0, quintic_spline(3))
     wide = Ball.between(0.3 * h, 1.7 * h)
-    assert enclose_spline(problem.interpolant, wide, Ball.exact(problem.waypoints)) is None
+    assert enclose_spline(problem.curve, wide, Ball.exact(problem.waypoints)) is None
     zero = Ball.between(0.0 * h, 1.7 * h)
-    assert enclose_spline(problem.interpolant, zero, Ball.exact(problem.waypoints)) is None
+    assert enclose_spline(problem.curve, zero, Ball.exact(problem.waypoints)) is None
 
 
 def _narrow_quotient(monkeypatch):

@@ -279,7 +279,7 @@ def test_new_asks_for_units(run: Run, table: str, monkeypatch: pytest.MonkeyPatc
     assert case.id == "other"
     assert case.document.units.acceleration == "rad/s^2"
     assert case.document.units.time == "s"
-    assert case.problem().interpolant.degrees == (5, 5, 5)
+    assert case.problem().curve.degrees == (5, 5, 5)
 
 
 def test_new_asks_again_on_a_terminal(table: str) -> None:

@@ -108,7 +108,7 @@ def test_a_shared_solution() -> None:
     problem = posed(duration_lower=[0.0, 0.0, 2.5])
     answer = solve(problem)
     assert answer.durations is not None
-    path = retime(fit(problem.interpolant, problem.waypoints, answer.durations), problem.limits)
+    path = retime(fit(problem.curve, problem.waypoints, answer.durations), problem.limits)
     result = documents.solve_result("c", "p", "r", answer, [path])
     document = documents.results_document([result])
     assert_valid(document, "solve")

@@ -261,9 +261,9 @@ def test_the_polishing_case_shows_jumps_and_polygon(irb1600: Study) -> None:
 
 def test_the_polygon_of_the_case_agrees_with_the_rule(irb1600: Study) -> None:
     claim = irb1600.case.claim("control-vertices")
-    posing = irb1600.case.posing()
-    rows = [[number.value for number in row] for row in posing.waypoints.points]
-    found = vertices(claim, posing)  # type: ignore[arg-type]
+    statement = irb1600.case.statement()
+    rows = [[number.value for number in row] for row in statement.waypoints.points]
+    found = vertices(claim, statement)  # type: ignore[arg-type]
     figure = polygon_picture(rows, found, title="T")
     assert figure.description.count("12 of 12 within rounding") == 6
 

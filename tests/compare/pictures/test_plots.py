@@ -40,7 +40,7 @@ def test_a_curve_with_a_clock_is_drawn_and_marked_in_time(order: int) -> None:
     problem = Problem(
         rng.normal(0.3, 1.0, (6, 2)), Limits([1.0, 1.2], [2.0, 3.0]), TimedUniformBSpline(6)
     )
-    trajectory = fit(problem.interpolant, problem.waypoints, h)
+    trajectory = fit(problem.curve, problem.waypoints, h)
     limit = float(problem.limits.derivatives[1, order - 1])
     found = beyond(trajectory, 1, order, -limit, limit)
     assert found
@@ -271,7 +271,7 @@ def _hidden_ticks(axes: matplotlib.axes.Axes) -> list[Text]:
 
 
 def test_peaks_stand_at_their_exact_places(problem: Problem, pictures: dict[str, Picture]) -> None:
-    trajectory = fit(problem.interpolant, problem.waypoints, DURATIONS)
+    trajectory = fit(problem.curve, problem.waypoints, DURATIONS)
     panels = np.array(pictures["curves"].axes).reshape(2, 3)
     for j in range(2):
         for r in (1, 2):
@@ -295,7 +295,7 @@ def test_limits_and_way_points_are_drawn(problem: Problem, pictures: dict[str, P
 
 
 def test_stretches_beyond_a_limit_agree_with_dense_sampling(problem: Problem) -> None:
-    trajectory = fit(problem.interpolant, problem.waypoints, 0.6 * DURATIONS)
+    trajectory = fit(problem.curve, problem.waypoints, 0.6 * DURATIONS)
     times = np.linspace(0, trajectory.total_time, 20_001)[1:-1]
     some = 0
     for j in range(2):
@@ -314,7 +314,7 @@ def test_stretches_beyond_a_limit_agree_with_dense_sampling(problem: Problem) ->
 
 def test_what_keeps_its_limit_exactly_is_not_red(problem: Problem) -> None:
     tight = DURATIONS * check(problem, DURATIONS).stretch
-    trajectory = fit(problem.interpolant, problem.waypoints, tight)
+    trajectory = fit(problem.curve, problem.waypoints, tight)
     for j in range(2):
         for r in (1, 2):
             top = float(problem.limits.derivatives[j, r - 1])

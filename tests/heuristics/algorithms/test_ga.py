@@ -11,7 +11,7 @@ from trajgap.heuristics.algorithms.genes import (
     Crossover,
     FitnessRule,
     Genetics,
-    Mutated,
+    MutationUnit,
     chosen,
     crossed,
     elite_kept,
@@ -120,9 +120,9 @@ def test_crossover(rule: str, numbers: list[float], expected: list[list[float]])
 
 
 def test_mutated_genes() -> None:
-    hits = chosen(Mutated.GENE, 0.25, (2, 2), Script([0.24, 0.25, 0.0, 0.9]))
+    hits = chosen(MutationUnit.GENE, 0.25, (2, 2), Script([0.24, 0.25, 0.0, 0.9]))
     np.testing.assert_array_equal(hits, [[True, False], [True, False]])
-    one = chosen(Mutated.INDIVIDUAL, 0.25, (3, 4), Script([0.24, 0.25, 0.0], [0.5, 0.5, 0.99]))
+    one = chosen(MutationUnit.INDIVIDUAL, 0.25, (3, 4), Script([0.24, 0.25, 0.0], [0.5, 0.5, 0.99]))
     np.testing.assert_array_equal(one, [[0, 0, 1, 0], [0, 0, 0, 0], [0, 0, 0, 1]])
 
 

@@ -41,9 +41,7 @@ UNITS = tuple(BEST)
 @pytest.mark.parametrize("units", UNITS)
 def test_stretched_agrees_with_the_closed_form_under_every_unit_reading(units: str) -> None:
     problem = load_case(POLISH).problem(reading_id=f"{units}-stretched")
-    expected = solve_in_closed_form(
-        problem.interpolant, problem.waypoints, problem.limits.derivatives
-    )
+    expected = solve_in_closed_form(problem.curve, problem.waypoints, problem.limits.derivatives)
     solution = solve(problem, starts=2)
     assert solution.status is Status.OPTIMAL
     assert solution.total_time == pytest.approx(expected.sum(), rel=1e-9, abs=0)
@@ -61,9 +59,7 @@ def test_stretched_agrees_with_the_closed_form_under_every_unit_reading(units: s
 def test_the_stretched_optimum_is_found_by_the_solver_from_afar(units: str) -> None:
     """A stretch of the start as a whole, all that happens beside the NLP, stays far above."""
     problem = load_case(POLISH).problem(reading_id=f"{units}-stretched")
-    total = solve_in_closed_form(
-        problem.interpolant, problem.waypoints, problem.limits.derivatives
-    ).sum()
+    total = solve_in_closed_form(problem.curve, problem.waypoints, problem.limits.derivatives).sum()
     start = random_starts(problem, 1, np.random.default_rng(11))
     stretched = float(start.sum() * evaluate(problem, start).stretch[0])
     assert stretched > 1.5 * total
@@ -75,9 +71,7 @@ def test_the_stretched_optimum_is_found_by_the_solver_from_afar(units: str) -> N
 @pytest.mark.parametrize("seed", range(3))
 def test_stretched_agrees_with_the_closed_form_with_jerk_limits(seed: int) -> None:
     problem, _ = uniform("stretched", seed + 20, count=5)
-    expected = solve_in_closed_form(
-        problem.interpolant, problem.waypoints, problem.limits.derivatives
-    )
+    expected = solve_in_closed_form(problem.curve, problem.waypoints, problem.limits.derivatives)
     solution = solve(problem, starts=2)
     assert solution.total_time == pytest.approx(expected.sum(), rel=1e-9, abs=0)
 
@@ -172,7 +166,7 @@ def test_clamped_splines_are_solved_to_a_kkt_point(kind) -> None:
     assert solution.kkt_residual <= 1e-8
     if kind[3] == "stretched":
         expected = solve_in_closed_form(
-            problem.interpolant, problem.waypoints, problem.limits.derivatives
+            problem.curve, problem.waypoints, problem.limits.derivatives
         )
         assert solution.total_time == pytest.approx(expected.sum(), rel=1e-9)
         return
@@ -185,7 +179,7 @@ def test_clamped_splines_are_solved_to_a_kkt_point(kind) -> None:
 
 def test_degree_5_at_the_waypoints_has_the_optimum_of_the_quintic_spline() -> None:
     problem, _ = clamped((5, "waypoints", "times", "timed"), 22, count=6)
-    other = solve(replace(problem, interpolant=quintic_spline(5)))
+    other = solve(replace(problem, curve=quintic_spline(5)))
     found = solve(problem)
     assert found.status is Status.OPTIMAL
     assert found.total_time == pytest.approx(other.total_time, rel=1e-9)

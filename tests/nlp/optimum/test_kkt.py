@@ -69,6 +69,6 @@ def test_a_formulation_prints_its_sizes_and_is_built_once_per_shape(form: Form) 
     assert sizes["variables"] == (3 if form is Form.REDUCED else 3 + 6 * 3 * 6)
     assert sizes["equalities"] == (0 if form is Form.REDUCED else 6 * 14)
     assert f"{sizes['inequalities']} inequalities" in str(built)
-    other = Problem(problem.waypoints * 0.7, Limits(5.0, 9.0, joints=6), problem.interpolant)
+    other = Problem(problem.waypoints * 0.7, Limits(5.0, 9.0, joints=6), problem.curve)
     assert structure_of(other, form) == structure
-    assert structure == Structure(problem.interpolant, 6, (1, 2), form)
+    assert structure == Structure(problem.curve, 6, (1, 2), form)

@@ -39,10 +39,10 @@ def test_twenty_problems_of_seven_segments_and_six_joints() -> None:
     assert len(INSTANCES) == 20
     _, again = _instances()
     assert len({p.name for p in INSTANCES}) == 20
-    _, limits, _, _ = load_case("z1-woa-bspline").posing("b-spline", "v-deg-a-deg").data()
+    _, limits, _, _ = load_case("z1-woa-bspline").statement("b-spline", "v-deg-a-deg").data()
     for k, (problem, same) in enumerate(zip(INSTANCES, again, strict=True)):
         np.testing.assert_array_equal(problem.waypoints, same.waypoints)
-        assert problem.interpolant == quintic_spline(7)
+        assert problem.curve == quintic_spline(7)
         np.testing.assert_allclose(
             problem.limits.derivatives[:, :2], limits.derivatives[:, :2], rtol=1e-15
         )

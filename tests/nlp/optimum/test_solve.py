@@ -212,7 +212,7 @@ def test_sensitivities_are_the_finite_differences_of_the_total() -> None:
                 other = Problem(
                     problem.waypoints,
                     problem.limits.with_derivatives(changed),
-                    problem.interpolant,
+                    problem.curve,
                     problem.duration_lower,
                 )
                 totals.append(solve(other, initial=base.durations).total_time)
@@ -274,7 +274,7 @@ def test_nothing_that_moves_or_nothing_that_limits_has_infimum_zero() -> None:
 )
 def test_what_is_plainly_impossible_is_infeasible_with_its_reason(change, reason) -> None:
     q = np.array([[0.3, 1.0], [0.9, 0.2], [0.5, 0.4], [1.4, 0.8]])
-    given = {"waypoints": q, "limits": Limits([1.0, 2.0], 3.0), "interpolant": three_five_three()}
+    given = {"waypoints": q, "limits": Limits([1.0, 2.0], 3.0), "curve": three_five_three()}
     solution = solve(Problem(**(given | change)))
     assert solution.status is Status.INFEASIBLE
     assert reason in solution.why
@@ -283,11 +283,9 @@ def test_what_is_plainly_impossible_is_infeasible_with_its_reason(change, reason
 
 def test_an_infeasibility_without_proof_says_so() -> None:
     problem = puma()
-    short = Problem(
-        problem.waypoints, problem.limits, problem.interpolant, problem.duration_lower, 0.9
-    )
+    short = Problem(problem.waypoints, problem.limits, problem.curve, problem.duration_lower, 0.9)
     solution = solve(short, starts=2)
-    assert solution.status is Status.INFEASIBLE
+    assert solution.status is Status.NONE_FOUND
     assert "not a proof" in solution.why
 
 
@@ -301,11 +299,11 @@ def test_a_joint_that_must_not_move_and_does_not_is_no_obstacle() -> None:
 
 def test_duration_and_position_limits_are_kept_and_listed() -> None:
     problem = puma()
-    longer = solve(Problem(problem.waypoints, problem.limits, problem.interpolant, [0.3, 0.3, 1.4]))
+    longer = solve(Problem(problem.waypoints, problem.limits, problem.curve, [0.3, 0.3, 1.4]))
     assert longer.durations[2] == pytest.approx(1.4, rel=1e-9)
     assert any(a.joint is None and a.quantity == "duration" for a in longer.active)
     tight = Limits(6.0, 8.0, np.inf, -3.0, 0.9, joints=6)
-    solution = solve(Problem(problem.waypoints, tight, problem.interpolant, 0.3))
+    solution = solve(Problem(problem.waypoints, tight, problem.curve, 0.3))
     assert solution.status is Status.OPTIMAL
     assert solution.check.verdict is Verdict.PASS
     assert solution.total_time > solve(problem).total_time

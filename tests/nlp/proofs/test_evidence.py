@@ -24,7 +24,7 @@ from trajgap.nlp import (
     Subject,
     certificate,
     certify,
-    family_free,
+    estimate_any_curve,
     proved,
     shipped,
     solve,
@@ -76,7 +76,7 @@ def test_what_is_proved_is_called_certified() -> None:
     assert Evidence.CERTIFIED in words
     assert any("certified optimum" in text and "proved, gap" in text for text in texts)
     answer = study.optimum(*PAIR)
-    interval = proved(printed_problem(study.case.posing(*PAIR)))
+    interval = proved(printed_problem(study.case.statement(*PAIR)))
     assert interval is not None
     assert answer.lower_bound is not None
     assert Fraction(answer.lower_bound) <= interval.lower < answer.total_time
@@ -161,7 +161,7 @@ def test_every_shipped_reading_that_is_covered_is_certified() -> None:
     case = load_case(GA)
     words = {}
     for reading in case.readings:
-        exact = printed_problem(case.posing("nine-segments", reading.id))
+        exact = printed_problem(case.statement("nine-segments", reading.id))
         words[reading.id] = proved(exact) is not None
     assert {name for name, found in words.items() if found} == {
         name for name in words if name.endswith("stretched")
@@ -200,7 +200,7 @@ def test_a_worse_answer_is_replaced_by_that_of_the_certificate() -> None:
 def test_the_output_of_a_procedure_is_not_certified() -> None:
     case = load_case(PUMA)
     pair = ("six-joints", "durations-positive")
-    answer = with_certificates(solve_per_joint(case.problem(*pair)), case.posing(*pair))
+    answer = with_certificates(solve_per_joint(case.problem(*pair)), case.statement(*pair))
     assert {s.evidence for s in answer.joints} == {Evidence.CERTIFIED}
     assert answer.joint_evidence is Evidence.CERTIFIED
     assert answer.evidence is Evidence.BEST_KNOWN
@@ -267,7 +267,7 @@ def test_a_bound_for_any_curve_may_round_above_the_answer_and_no_more(
     monkeypatch: pytest.MonkeyPatch, above: float, certified: bool
 ) -> None:
     study = one_study()
-    found = family_free(study.problem(*study.pairs[0])).total_time
+    found = estimate_any_curve(study.problem(*study.pairs[0])).total_time
     assert found is not None
     lower = Fraction(found) * Fraction(1 + above)
     bound = Interval(lower, lower + Fraction(1, 10**9), None, False)

@@ -344,7 +344,7 @@ def test_many_segments_get_more_cells() -> None:
     limits = Limits(3.0, 8.0, joints=3)
     problem = Problem(q, limits, quintic_spline(40))
     h = np.full(40, 0.7)
-    curve = fit(problem.interpolant, q, h * check(problem, h).stretch)
+    curve = fit(problem.curve, q, h * check(problem, h).stretch)
     found = retime(curve, limits, gridpoints=(200, 400, 800))
     assert found.inequality_holds
     assert found.error < 0.01 * found.extrapolated

@@ -152,7 +152,7 @@ def test_families(declaration, degrees, conditions):
     text = head.replace('family = "3-5-3"', declaration).replace(
         "upper = [3, 4, inf]", "upper = inf"
     )
-    interpolant = load(text).problem().interpolant
+    interpolant = load(text).problem().curve
     assert interpolant.degrees == degrees
     assert interpolant.conditions == conditions
 
@@ -162,7 +162,7 @@ def test_end_derivatives_are_converted():
         'family = "polynomials"\ndegrees = [3, 5, 3]\n'
         'end_orders = [2, 1]\nend_derivatives = ["90", 180]'
     )
-    interpolant = load(changed(('family = "3-5-3"', declaration))).problem().interpolant
+    interpolant = load(changed(('family = "3-5-3"', declaration))).problem().curve
     assert interpolant.prescribed[0] == interpolant.prescribed[-1]
     values = dict(interpolant.prescribed[0])
     assert values == {1: pytest.approx(np.pi), 2: pytest.approx(np.pi / 2)}
@@ -218,7 +218,7 @@ value = "70.0"
     )
     problem = case.problem()
     assert problem.segments == 1
-    assert problem.interpolant.conditions == problem.interpolant.coefficients == 8
+    assert problem.curve.conditions == problem.curve.coefficients == 8
     np.testing.assert_allclose(problem.limits.jerk[1], np.deg2rad(66), rtol=1e-15)
     # The printed optimum is the jerk limit of joint 4: |Δq| · 52.5 / T³ for this septic's 7-point.
     travel = np.abs(np.diff(problem.waypoints[:, 3]))[0]
@@ -261,7 +261,7 @@ values = ["16.1", "20.57"]
 """
     )
     assert case.problem().segments == 5
-    assert case.problem().interpolant.virtual == (1, 4)
+    assert case.problem().curve.virtual == (1, 4)
 
 
 # The schema

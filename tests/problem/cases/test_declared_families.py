@@ -154,6 +154,6 @@ def test_a_straight_line_becomes_a_case_file(tmp_path: Path) -> None:
     text = scaffold(path, units, family="cubic-spline", velocity="2.0", acceleration="8.0")
     problem = parse_case(text, "line.toml").problem()
     np.testing.assert_array_equal(problem.waypoints, line.waypoints)
-    assert problem.interpolant == cubic_spline(4)
+    assert problem.curve == cubic_spline(4)
     assert problem.joints == line.chain.labels
     through(problem)

@@ -35,7 +35,7 @@ def test_a_labelled_table(table):
     np.testing.assert_array_equal(problem.waypoints, [[0.5, -1], [1, 2], [1.25, 0.3], [0, 0]])
     np.testing.assert_array_equal(problem.limits.velocity, [6, 6])
     np.testing.assert_array_equal(problem.limits.acceleration, [0.5, 0.5])
-    assert problem.interpolant.degrees == (3, 5, 3)
+    assert problem.curve.degrees == (3, 5, 3)
     assert "trajgap" not in text
     assert '# jerk = "rad/s^3"' in text
 
@@ -45,13 +45,13 @@ def test_a_plain_table_in_degrees(table):
     case = parse_case(scaffold(path, {"position": "deg", "time": "ms"}, case_id="mine"), "x")
     assert case.id == "mine"
     np.testing.assert_allclose(case.problem().waypoints[1], np.deg2rad([40, 50, 60]), rtol=1e-15)
-    assert case.problem().interpolant.virtual == (1, 2)
+    assert case.problem().curve.virtual == (1, 2)
 
 
 def test_the_family_can_be_chosen(table):
     path = table("a\n1\n2\n3\n")
     case = parse_case(scaffold(path, {"position": "rad"}, family="quintic-spline"), "x")
-    assert case.problem().interpolant.degrees == (5, 5)
+    assert case.problem().curve.degrees == (5, 5)
 
 
 def test_a_gap_in_the_last_line_end_does_not_matter(table):

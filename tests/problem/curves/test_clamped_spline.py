@@ -76,7 +76,7 @@ def chords(q: np.ndarray) -> np.ndarray:
 
 def independent(problem: Problem, h: np.ndarray, joint: int) -> tuple[BSpline, np.ndarray]:
     """One joint's spline in its parameter, and the parameter of each way-point."""
-    curve, q = problem.interpolant, problem.waypoints
+    curve, q = problem.curve, problem.waypoints
     assert isinstance(curve, ClampedBSpline)
     times = np.concatenate([[0.0], np.cumsum(h)])
     along = {"chord": chords(q), "joint-chord": chords(q[:, [joint]])}
@@ -201,12 +201,12 @@ def test_what_cannot_be_declared(change, message) -> None:
 @each_kind
 def test_the_curve_is_scipys(kind) -> None:
     problem, h = clamped(kind)
-    trajectory = fit(problem.interpolant, problem.waypoints, h)
+    trajectory = fit(problem.curve, problem.waypoints, h)
     nodes = np.concatenate([[0.0], np.cumsum(h)])
     np.testing.assert_allclose(trajectory(nodes), problem.waypoints, rtol=0, atol=1e-11)
     rng = np.random.default_rng(9)
     t = np.sort(rng.uniform(0, nodes[-1] * (1 - 1e-9), 200))
-    stretched = problem.interpolant.time is Timing.STRETCHED
+    stretched = problem.curve.time is Timing.STRETCHED
     for joint in range(3):
         spline, sites = independent(problem, h, joint)
         u = np.interp(t, nodes, sites) if stretched else t
@@ -232,18 +232,18 @@ def test_degree_5_at_the_waypoints_is_the_quintic_spline(count: int) -> None:
     ends = [(1, zero), (2, zero)]
     scipys = make_interp_spline(times, q, k=5, bc_type=(ends, ends))
     declared = fit(quintic_spline(count - 1), q, h)
-    found = fit(problem.interpolant, q, h)
+    found = fit(problem.curve, q, h)
     for order in range(4):
         np.testing.assert_allclose(found(t, order), scipys(t, order), rtol=0, atol=1e-10)
         np.testing.assert_allclose(found(t, order), declared(t, order), rtol=0, atol=1e-10)
-    other = check(replace(problem, interpolant=quintic_spline(count - 1)), h)
+    other = check(replace(problem, curve=quintic_spline(count - 1)), h)
     assert check(problem, h).stretch == pytest.approx(other.stretch, rel=1e-12)
 
 
 @each_kind
 def test_rest_at_the_ends_and_continuity(kind) -> None:
     problem, h = clamped(kind, 4)
-    trajectory = fit(problem.interpolant, problem.waypoints, h)
+    trajectory = fit(problem.curve, problem.waypoints, h)
     last = len(trajectory.durations) - 1
     for joint in range(3):
         for order in (1, 2):
@@ -275,7 +275,7 @@ def test_batch_and_checker_agree_and_time_scales(kind) -> None:
     swapped = Problem(
         problem.waypoints[:, order],
         Limits(*problem.limits.derivatives[order].T),
-        problem.interpolant,
+        problem.curve,
     )
     np.testing.assert_allclose(evaluate(swapped, h[None]).ratios[0], found[order], rtol=1e-11)
 
@@ -283,7 +283,7 @@ def test_batch_and_checker_agree_and_time_scales(kind) -> None:
 @each_kind
 def test_peaks_are_those_of_dense_samples(kind) -> None:
     problem, h = clamped(kind, 6)
-    trajectory = fit(problem.interpolant, problem.waypoints, h)
+    trajectory = fit(problem.curve, problem.waypoints, h)
     exact = evaluate(problem, h[None]).ratios[0] * problem.limits.derivatives
     s = np.linspace(0, 1, 1001)
     for order in (1, 2, 3):
@@ -301,7 +301,7 @@ def test_peaks_are_those_of_dense_samples(kind) -> None:
 @each_kind
 def test_gradients_of_peaks_are_finite_differences(kind) -> None:
     problem, h = clamped(kind, 7, count=5)
-    curve, q = problem.interpolant, problem.waypoints
+    curve, q = problem.curve, problem.waypoints
     trajectory = fit(curve, q, h)
     points = [e for j in range(3) for r in (1, 2, 3) for e in extrema(trajectory, j, r)]
     gradients = peak_gradients(problem, h, points)
@@ -341,8 +341,8 @@ def test_one_joint_alone_keeps_the_curve_that_it_has_among_all(parameters: str) 
         for joint in range(3):
             alone = evaluate(problem.joint(joint), h[None]).ratios[0, 0]
             np.testing.assert_allclose(alone, together[joint], rtol=1e-11)
-    again = for_joint(problem.joint(1).interpolant, problem.joint(1).waypoints, 0)
-    assert again == problem.joint(1).interpolant
+    again = for_joint(problem.joint(1).curve, problem.joint(1).waypoints, 0)
+    assert again == problem.joint(1).curve
 
 
 def test_average_matrix_is_the_printed_sum() -> None:
@@ -361,7 +361,7 @@ def test_control_points_are_those_of_scipys_basis(kind) -> None:
     if kind[3] == "stretched":
         return
     problem, h = clamped(kind, 10)
-    control, knots = clamped_control_points(problem.interpolant, problem.waypoints, h)
+    control, knots = clamped_control_points(problem.curve, problem.waypoints, h)
     assert control.shape == (12, 3)
     for joint in range(3):
         spline, _ = independent(problem, h, joint)
@@ -372,7 +372,7 @@ def test_control_points_are_those_of_scipys_basis(kind) -> None:
 def test_closed_form_of_a_stretched_chord_curve() -> None:
     for parameters in ("chord", "joint-chord"):
         problem, _ = clamped((4, "averaged-continued", parameters, "stretched"), 11)
-        h = solve_in_closed_form(problem.interpolant, problem.waypoints, problem.limits.derivatives)
+        h = solve_in_closed_form(problem.curve, problem.waypoints, problem.limits.derivatives)
         assert check(problem, h).stretch == pytest.approx(1.0, rel=1e-12)
         for k in range(7):
             shorter = h.copy()
@@ -389,7 +389,7 @@ def test_durations_far_from_the_chords_define_no_curve() -> None:
     far[0], far[1] = 60.0, 0.001
     assert np.isinf(evaluate(problem, far[None]).stretch[0])
     with pytest.raises(CurveError, match=r"no clamped B-spline .* passes the way-points at these"):
-        fit(problem.interpolant, problem.waypoints, far)
+        fit(problem.curve, problem.waypoints, far)
     verdict = check(problem, far)
     assert verdict.verdict is Verdict.VIOLATED
     assert verdict.worst is not None
@@ -402,7 +402,7 @@ def test_chords_need_waypoints_that_differ() -> None:
     still = problem.waypoints.copy()
     still[4] = still[3]
     with pytest.raises(TrajgapError, match="waypoints: 3 and 4 coincide, chord parameters do not"):
-        fit(problem.interpolant, still, h)
+        fit(problem.curve, still, h)
 
 
 def test_bad_input_is_one_line() -> None:
@@ -410,7 +410,7 @@ def test_bad_input_is_one_line() -> None:
     with pytest.raises(TrajgapError, match=r"^durations: expected 7 \(one per segment\), got 6$"):
         check(problem, h[:6])
     with pytest.raises(TrajgapError, match=r"needs 8 rows, got shape \(7, 3\)"):
-        fit(problem.interpolant, problem.waypoints[:7], h)
+        fit(problem.curve, problem.waypoints[:7], h)
     with pytest.raises(TrajgapError, match=r"a batch has shape \(vectors, 7\)"):
         evaluate(problem, np.ones((2, 4)))
     assert np.isinf(evaluate(problem, [[1, 1, 1, 0, 1, 1, 1.0]]).stretch[0])

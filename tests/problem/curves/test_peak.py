@@ -201,7 +201,7 @@ def test_extrema_against_fifty_digits(name: str) -> None:
 
 def test_every_sampled_bump_is_an_extremum() -> None:
     problem, h = posed(DECLARATIONS["quintic"], 4)
-    curve = fit(problem.interpolant, problem.waypoints, h)
+    curve = fit(problem.curve, problem.waypoints, h)
     t = np.linspace(0.0, h.sum(), 20_001)
     for j in range(3):
         for order in range(4):
@@ -218,7 +218,7 @@ def test_batched_evaluation_against_fifty_digits() -> None:
     ratios = evaluate(problem, batch).ratios
     for i, h in enumerate(batch):
         for j in range(2):
-            pieces = exact_route.fitted(problem.interpolant, problem.waypoints[:, j], h)
+            pieces = exact_route.fitted(problem.curve, problem.waypoints[:, j], h)
             for order in (1, 2, 3):
                 limit = problem.limits.derivatives[j, order - 1]
                 truth = exact_route.peak(pieces, h, order) / Decimal(float(limit))

@@ -84,7 +84,7 @@ def test_clock_passes_the_time_nodes_and_is_linear_in_the_durations() -> None:
 @pytest.mark.parametrize("time", TIMES)
 def test_waypoints_are_passed_at_their_times(time: str) -> None:
     problem, h = uniform(time, 4)
-    trajectory = fit(problem.interpolant, problem.waypoints, h)
+    trajectory = fit(problem.curve, problem.waypoints, h)
     nodes = np.concatenate([[0.0], np.cumsum(h)])
     np.testing.assert_allclose(trajectory(nodes), problem.waypoints, rtol=0, atol=1e-12)
     assert trajectory.total_time == pytest.approx(h.sum(), rel=1e-14)
@@ -119,7 +119,7 @@ def test_identities_of_scaling_mirror_reversal_and_order_of_joints(time: str) ->
     swapped = Problem(
         problem.waypoints[:, order],
         Limits(*problem.limits.derivatives[order].T),
-        problem.interpolant,
+        problem.curve,
     )
     assert check(swapped, h).stretch == pytest.approx(base, rel=1e-12)
     assert {p.joint for p in check(problem.joint(1), h).peaks} == {"2"}
@@ -128,12 +128,12 @@ def test_identities_of_scaling_mirror_reversal_and_order_of_joints(time: str) ->
 @pytest.mark.parametrize("time", TIMES)
 def test_gradients_of_peaks_are_finite_differences(time: str) -> None:
     problem, h = uniform(time, 6, count=5)
-    trajectory = fit(problem.interpolant, problem.waypoints, h)
+    trajectory = fit(problem.curve, problem.waypoints, h)
     points = [e for j in range(3) for r in (1, 2, 3) for e in extrema(trajectory, j, r)]
     gradients = peak_gradients(problem, h, points)
 
     def values(q: np.ndarray, durations: np.ndarray) -> np.ndarray:
-        moved = fit(problem.interpolant, q, durations)
+        moved = fit(problem.curve, q, durations)
         if isinstance(moved, ClockedTrajectory):
             return np.array([moved.value(e.segment, e.joint, e.order, e.s) for e in points])
         return np.array(
@@ -173,7 +173,7 @@ def test_heuristics_and_baseline_take_it(time: str) -> None:
 @pytest.mark.parametrize("time", TIMES)
 def test_bad_input_is_one_line(time: str) -> None:
     problem, h = uniform(time)
-    curve = problem.interpolant
+    curve = problem.curve
     with pytest.raises(TrajgapError, match=r"^durations: expected 5 \(one per segment\), got 3$"):
         check(problem, h[:3])
     with pytest.raises(TrajgapError, match="must all be positive and finite"):
@@ -218,12 +218,12 @@ def sampled_segment_peaks(q: np.ndarray) -> np.ndarray:
 def test_closed_form_from_dense_samples() -> None:
     problem, _ = uniform("stretched", 8)
     peaks = sampled_segment_peaks(problem.waypoints)
-    exact = segment_peaks(problem.interpolant, problem.waypoints)
+    exact = segment_peaks(problem.curve, problem.waypoints)
     assert (peaks <= exact * (1 + 1e-12)).all()
     np.testing.assert_allclose(peaks, exact, rtol=1e-7)
     ratios = peaks / problem.limits.derivatives
     expected = (ratios ** (1 / np.arange(1, 4))).max(axis=(1, 2))
-    found = solve_in_closed_form(problem.interpolant, problem.waypoints, problem.limits.derivatives)
+    found = solve_in_closed_form(problem.curve, problem.waypoints, problem.limits.derivatives)
     np.testing.assert_allclose(found, expected, rtol=1e-7)
     verdict = check(problem, found)
     assert verdict.limits is Verdict.PASS
@@ -285,7 +285,7 @@ def test_the_verdict_about_limits_stands_beside_the_jumps() -> None:
 def test_derivatives_in_time_are_finite_differences_of_an_independent_inversion(seed: int) -> None:
     problem, h = uniform("timed", seed)
     other = ByScipy(problem.waypoints, h)
-    trajectory = fit(problem.interpolant, problem.waypoints, h)
+    trajectory = fit(problem.curve, problem.waypoints, h)
     rng = np.random.default_rng(seed + 50)
     for e in rng.uniform(0.05, 0.95, 5) + np.arange(5):
         t, step = other.time(e), 1e-3
@@ -321,7 +321,7 @@ def test_it_is_scipys_cubic_spline_with_its_own_end_slopes() -> None:
     w, v = problem.waypoints, vertices_by_solving(problem.waypoints)
     ends = ((1, (v[2] - v[0]) / 2), (1, (v[-1] - v[-3]) / 2))
     spline = CubicSpline(np.arange(len(w)), w, bc_type=ends)
-    trajectory = fit(problem.interpolant, w, h)
+    trajectory = fit(problem.curve, w, h)
     for k in range(5):
         value = np.polynomial.polynomial.polyval(0.37, trajectory.scaled[k])
         np.testing.assert_allclose(value, spline(k + 0.37), rtol=0, atol=1e-12)
@@ -332,7 +332,7 @@ def test_c2_in_time_without_rest_at_the_ends() -> None:
     verdict = check(problem, 9 * h)
     assert verdict.verdict is Verdict.PASS
     assert verdict.continuous
-    trajectory = fit(problem.interpolant, problem.waypoints, h)
+    trajectory = fit(problem.curve, problem.waypoints, h)
     end = float(h.sum())
     np.testing.assert_allclose(trajectory([0.0, end], 2), 0.0, atol=1e-11)
     assert (np.abs(trajectory([0.0, end], 1)) > 0.01).all()
@@ -353,7 +353,7 @@ def test_time_must_not_run_backwards() -> None:
     with pytest.raises(
         CurveError, match=r"^durations: time would not increase along the curve, dt/"
     ):
-        fit(problem.interpolant, problem.waypoints, h)
+        fit(problem.curve, problem.waypoints, h)
     verdict = check(problem, h)
     assert verdict.verdict is verdict.limits is Verdict.VIOLATED
     assert verdict.worst is not None
@@ -371,7 +371,7 @@ def test_time_must_not_run_backwards() -> None:
 
 def test_a_derivative_is_no_polynomial() -> None:
     problem, h = uniform("timed", 15)
-    trajectory = fit(problem.interpolant, problem.waypoints, h)
+    trajectory = fit(problem.curve, problem.waypoints, h)
     assert trajectory.derivative(1, 2, 0) == pytest.approx(trajectory.scaled[1, :4, 2])
     with pytest.raises(TrajgapError, match="time is not linear here"):
         trajectory.derivative(1, 2, 1)
@@ -379,7 +379,7 @@ def test_a_derivative_is_no_polynomial() -> None:
 
 def test_position_limits_are_found_between_waypoints() -> None:
     problem, h = uniform("timed", 16)
-    top = max(e.value for e in extrema(fit(problem.interpolant, problem.waypoints, h), 0, 0))
+    top = max(e.value for e in extrema(fit(problem.curve, problem.waypoints, h), 0, 0))
     assert top > problem.waypoints[:, 0].max()
     limits = Limits(99.0, position_upper=[top - 1e-3, 99.0, 99.0], position_lower=-99.0)
     verdict = check(replace(problem, limits=limits), h)

@@ -193,7 +193,7 @@ def test_polish_limits_and_readings():
             problem.limits.acceleration, printed[:, 1] * units[a], rtol=1e-15
         )
         assert np.isinf(problem.limits.jerk).all()
-        assert problem.interpolant == uniform_cubic_b_spline(10, time)
+        assert problem.curve == uniform_cubic_b_spline(10, time)
         seen.add((q, v, a, time))
     assert len(seen) == len(case.readings) == 16
     assert case.default_reading.id == "angles-rad-v-rad-a-rad-stretched"
@@ -220,8 +220,8 @@ def test_whale_limits():
     units = {"rad": 1.0, "deg": np.pi / 180}
     for velocity in units:
         for acceleration in units:
-            posing = case.posing("b-spline", f"v-{velocity}-a-{acceleration}")
-            _, limits, lower, upper = posing.data()
+            statement = case.statement("b-spline", f"v-{velocity}-a-{acceleration}")
+            _, limits, lower, upper = statement.data()
             for name, unit in (("velocity", velocity), ("acceleration", acceleration)):
                 printed = np.array([float(cell) for cell in table[name]])
                 np.testing.assert_allclose(getattr(limits, name), printed * units[unit], rtol=1e-15)
@@ -256,17 +256,17 @@ def test_whale_table():
 
 def test_whale_readings_change_the_b_spline_and_leave_the_quintic():
     case = load_case(WHALE)
-    curves = {reading: case.posing("b-spline", reading).interpolant() for _, reading in
+    curves = {reading: case.statement("b-spline", reading).curve() for _, reading in
               case.selections("b-spline")}  # fmt: skip
     assert len(set(curves.values())) == 10
     assert all(curve.segments == 7 for curve in curves.values())
-    quintics = {case.posing(*pair).interpolant() for pair in case.selections("quintic")}
+    quintics = {case.statement(*pair).curve() for pair in case.selections("quintic")}
     assert quintics == {jtraj(7), quintic_spline(7)}
 
 
 def test_whale_has_no_waypoints_and_says_so():
     case = load_case(WHALE)
-    assert not case.posed
+    assert not case.complete
     with pytest.raises(CaseError, match=r"^z1-woa-bspline: waypoints: are not printed \(the text"):
         case.problem()
     with pytest.raises(CaseError, match=r"add them as joint_rows or waypoint_rows \(problem 'b-sp"):
@@ -280,7 +280,7 @@ def test_whale_waypoints_dropped_into_the_file_pose_every_problem():
     angles[2][3] = "1.2345"
     table = ",\n".join(f"  {json.dumps(row)}" for row in angles)
     case = parse_case(text[:start] + f"joint_rows = [\n{table}\n]\n\n" + text[end:], "found.toml")
-    assert case.posed
+    assert case.complete
     problems = [case.problem(*pair) for pair in case.selections()]
     assert len(problems) == 28
     assert all(problem.waypoints[3, 2] == 1.2345 for problem in problems)
@@ -318,7 +318,7 @@ def test_the_id_is_the_file_name_and_every_selection_is_posed(case_id):
     case = load_case(case_id)
     assert case.id == case_id
     assert str(case.title)
-    for problem_id, reading_id in case.selections() if case.posed else ():
+    for problem_id, reading_id in case.selections() if case.complete else ():
         problem = case.problem(problem_id, reading_id)
         lower, upper = case.waypoint_box(problem_id, reading_id)
         assert lower.shape == upper.shape == problem.waypoints.shape

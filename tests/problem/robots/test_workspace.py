@@ -9,7 +9,7 @@ import pytest
 from trajgap.problem.cases.robot_file import load_robot
 from trajgap.problem.errors import TrajgapError
 from trajgap.problem.robots.chain import Chain, Convention, forward_kinematics
-from trajgap.problem.robots.workspace import StepKind, sample_workspace, waypoint_family
+from trajgap.problem.robots.workspace import StepKind, sample_workspace, waypoint_sequences
 
 PUMA = load_robot("puma560")
 CLOUD = sample_workspace(PUMA, 4000, 7)
@@ -55,7 +55,7 @@ def test_a_planar_arm_fills_its_ring():
 
 @pytest.mark.parametrize("step", [0.05, 0.3, 1.5])
 def test_joint_steps(step):
-    family = waypoint_family(CLOUD, step=step, count=6, seed=3)
+    family = waypoint_sequences(CLOUD, step=step, count=6, seed=3)
     assert family.shape == (6, 8, 6)
     assert (PUMA.lower <= family).all()
     assert (family <= PUMA.upper).all()
@@ -68,7 +68,7 @@ def test_joint_steps(step):
 
 @pytest.mark.parametrize("orientation", [False, True])
 def test_end_steps(orientation):
-    family = waypoint_family(
+    family = waypoint_sequences(
         CLOUD, step=0.3, count=2, waypoints=4, seed=3, kind=StepKind.END, orientation=orientation
     )
     ends = forward_kinematics(PUMA, family)[..., :3, 3]
@@ -82,10 +82,10 @@ def test_end_steps(orientation):
 
 def test_a_longer_family_begins_with_the_shorter():
     kind = StepKind.END
-    long = waypoint_family(CLOUD, step=0.2, count=3, waypoints=3, seed=9, kind=kind)
-    short = waypoint_family(CLOUD, step=0.2, count=2, waypoints=3, seed=9, kind=kind)
+    long = waypoint_sequences(CLOUD, step=0.2, count=3, waypoints=3, seed=9, kind=kind)
+    short = waypoint_sequences(CLOUD, step=0.2, count=2, waypoints=3, seed=9, kind=kind)
     np.testing.assert_array_equal(long[:2], short)
-    other = waypoint_family(CLOUD, step=0.2, count=2, waypoints=3, seed=10, kind=kind)
+    other = waypoint_sequences(CLOUD, step=0.2, count=2, waypoints=3, seed=10, kind=kind)
     assert not np.array_equal(other, short)
 
 
@@ -94,10 +94,10 @@ def test_a_longer_family_begins_with_the_shorter():
     [
         (
             {"count": 0},
-            "family: 0 sequences of 8 way-points, step 0.1; give at least 1, at least 2",
+            "0 sequences of 8 way-points, step 0.1; give at least 1, at least 2",
         ),
-        ({"waypoints": 1}, "family: 1 sequences of 1 way-points, step 0.1; give at least 1"),
-        ({"step": 0.0}, "family: 1 sequences of 8 way-points, step 0.0; give at least 1, at least"),
+        ({"waypoints": 1}, "1 sequences of 1 way-points, step 0.1; give at least 1"),
+        ({"step": 0.0}, "1 sequences of 8 way-points, step 0.0; give at least 1, at least"),
         ({"step": np.nan}, "step nan; give at least 1, at least 2, and a positive length"),
         ({"kind": "stride"}, "kind: 'stride' is unknown; use joint, end"),
         (
@@ -108,7 +108,7 @@ def test_a_longer_family_begins_with_the_shorter():
 )
 def test_faults(change, message):
     with pytest.raises(TrajgapError, match=re.escape(message)):
-        waypoint_family(CLOUD, **{"step": 0.1, "count": 1, "seed": 0, **change})
+        waypoint_sequences(CLOUD, **{"step": 0.1, "count": 1, "seed": 0, **change})
 
 
 def test_an_empty_sample_is_refused():

@@ -46,7 +46,7 @@ from trajgap.problem import (
     parse_case,
     quintic_spline,
 )
-from trajgap.problem.cases.instances import family_waypoints
+from trajgap.problem.cases.instances import instance_waypoints
 from trajgap.problem.curves.clamped import polynomial_form
 
 WHALE = "z1-woa-bspline"
@@ -169,7 +169,7 @@ def drawn(*changes: tuple[str, str]) -> np.ndarray:
     case = small(*changes)
     chain = case.chain()
     assert chain is not None
-    return family_waypoints(case.families[0], chain, case.robot.joints, 3)
+    return instance_waypoints(case.instances[0], chain, case.robot.joints, 3)
 
 
 def test_steps_of_joints_keep_their_length_and_every_step_has_its_own_stream() -> None:
@@ -185,10 +185,10 @@ def test_steps_of_joints_keep_their_length_and_every_step_has_its_own_stream() -
 
 def test_steps_of_the_end_are_measured_at_the_end() -> None:
     case = load_case(WHALE)
-    block = case.families[0].model_copy(update={"instances": 1, "samples": 5000})
+    block = case.instances[0].model_copy(update={"instances": 1, "samples": 5000})
     chain = case.chain()
     assert chain is not None
-    points = family_waypoints(block, chain, case.robot.joints, 8)
+    points = instance_waypoints(block, chain, case.robot.joints, 8)
     assert points.shape == (3, 1, 8, 6)
     ends = forward_kinematics(chain, points.reshape(-1, 6))[:, :3, 3].reshape(3, 8, 3)
     way = np.linalg.norm(np.diff(ends, axis=1), axis=2)
@@ -255,7 +255,7 @@ def test_optima_against_a_scan_of_the_shares(result: FamilyResult) -> None:
     unit = np.stack([shares, 1 - shares], axis=1)
     case = small()
     for s in result.of("as-printed"):
-        posed = {pid: case.posing(pid).problem_at(s.waypoints) for pid in ("spline", "stops")}
+        posed = {pid: case.statement(pid).problem_at(s.waypoints) for pid in ("spline", "stops")}
         spline = evaluate(posed["spline"], unit).stretch.min()
         assert s.faster.total == pytest.approx(spline, rel=1e-4)
         assert s.faster.total <= spline * (1 + 1e-9)
@@ -284,7 +284,7 @@ def test_no_answer_is_below_the_best_known_optimum_of_its_curve(result: FamilyRe
 def test_the_faster_form_of_a_clamped_spline_is_the_same_curve() -> None:
     rng = np.random.default_rng(4)
     points, durations = rng.normal(size=(5, 2)), rng.uniform(0.4, 2.0, (9, 4))
-    limits = small().posing("spline").data()[1]
+    limits = small().statement("spline").data()[1]
     for degree, orders in ((5, (1, 2)), (3, (1,))):
         clamped = ClampedBSpline(5, degree, end_orders=orders)
         fast = polynomial_form(clamped)
@@ -325,7 +325,7 @@ def made(before: list[float], after: list[float], printed: tuple[float, float]) 
     """One instance with given totals of the slower and the faster procedure."""
     totals = np.array([[before, before, after]] * 2)
     known = [Optimum(t, Evidence.BEST_KNOWN, "optimal") for t in (2.0, 1.0)]
-    block = small().families[0]
+    block = small().instances[0]
     sample = Sample(
         "as-printed", 0.3, 0, np.zeros((3, 2)), *known, totals, np.zeros(totals.shape, np.intp)
     )  # fmt: skip
@@ -363,7 +363,7 @@ def test_the_printed_reduction_is_an_interval_of_the_digits() -> None:
     assert low == pytest.approx(1 - 11.715 / 13.075, rel=1e-12)
     assert high == pytest.approx(1 - 11.705 / 13.085, rel=1e-12)
     printed = small(('slower = "old-total"', 'slower = "old-total"\npercent = "24.9"'))
-    low, high = Study(printed, seeds=2).family(printed.families[0]).printed or (0, 0)
+    low, high = Study(printed, seeds=2).family(printed.instances[0]).printed or (0, 0)
     assert (low, high) == (pytest.approx(0.2485), pytest.approx(0.2495))
 
 

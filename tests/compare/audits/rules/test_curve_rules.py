@@ -48,7 +48,7 @@ def test_every_printed_control_vertex_is_inside_what_rounding_allows() -> None:
     (found,) = of(judge_vertices(study), "TG205")
     assert found.verdict is ClaimVerdict.SUPPORTED
     assert found.computed == "72 of 72 inside"
-    every = vertices(study.case.claim("control-vertices"), study.case.posing())
+    every = vertices(study.case.claim("control-vertices"), study.case.statement())
     # Half a digit of W through the inverse, at most 3 times, plus half a digit of V.
     assert max(v.width for v in every) <= Fraction(2, 10**4)
     assert max(v.width for v in every) > Fraction(199, 10**6)
@@ -133,7 +133,7 @@ def test_control_vertices_are_counted(old: str, new: str, message: str) -> None:
 @pytest.mark.parametrize("time", TIMES)
 def test_balls_hold_values_and_gradients_all_over_the_box(time: str) -> None:
     problem, h = uniform(time, 41, count=5)
-    curve, q = problem.interpolant, problem.waypoints
+    curve, q = problem.curve, problem.waypoints
     trajectory = fit(curve, q, h)
     points = [e for j in range(3) for r in (1, 2, 3) for e in extrema(trajectory, j, r)]
     points = [e for e in points if covered(curve, np.array([e.order]))[0]]

@@ -642,7 +642,7 @@ def test_ctrl_c_keeps_what_is_proved() -> None:
 
 
 def printed(case: str, problem: str, reading: str) -> ExactProblem:
-    return printed_problem(load_case(case).posing(problem, reading))
+    return printed_problem(load_case(case).statement(problem, reading))
 
 
 @pytest.mark.parametrize("least", ["at-least-0.3", "positive"])
@@ -652,7 +652,7 @@ def test_puma_to_nine_digits(least: str) -> None:
     )
     assert found.outcome is Outcome.CERTIFIED
     proved(found)
-    known = family_free(load_case("puma560-mnam-pso-353").posing("six-joints").problem())
+    known = family_free(load_case("puma560-mnam-pso-353").statement("six-joints").problem())
     assert known.total_time is not None
     assert float(found.lower) <= known.total_time * (1 + 1e-12)
     assert float(found.upper or 0) == pytest.approx(known.total_time, rel=1e-9)
@@ -667,22 +667,22 @@ def test_every_shipped_question_has_a_bound_that_is_proved() -> None:
         case = load_case(case_id)
         for problem in case.problems:
             for reading in case.readings:
-                posing = case.posing(problem.id, reading.id)
-                if not posing.posed or missing(printed_problem(posing)) is not None:
+                statement = case.statement(problem.id, reading.id)
+                if not statement.complete or missing(printed_problem(statement)) is not None:
                     continue
                 name = f"{case_id}, {problem.id}, {reading.id}"
-                found = evidence.proved(printed_problem(posing), Subject.ANY)
+                found = evidence.proved(printed_problem(statement), Subject.ANY)
                 assert found is not None, f"{name}: run benchmarks/family_free_bound.py"
                 assert found.upper is not None
                 assert found.upper - found.lower <= found.upper / 10**5, name
-                estimate = family_free(posing.problem(), starts=1).total_time
+                estimate = family_free(statement.problem(), starts=1).total_time
                 assert estimate is not None
                 assert float(found.lower) <= estimate * (1 + 1e-12), name
                 assert float(found.upper) == pytest.approx(estimate, rel=1e-9), name
 
 
 def test_the_table_in_the_docs_is_that_of_the_files() -> None:
-    page = ROOT / "docs" / "certificates-family-free.md"
+    page = ROOT / "docs" / "certificates-any-curve.md"
     rows = {}
     for line in page.read_text("utf-8").splitlines():
         cells = [cell.strip() for cell in line.strip("|").split("|")]

@@ -35,9 +35,7 @@ def test_the_interval_holds_the_closed_form(seed: int) -> None:
     found = certify(problem)
     assert found.outcome is Outcome.CERTIFIED
     assert found.gap < 1e-11
-    durations = solve_in_closed_form(
-        problem.interpolant, problem.waypoints, problem.limits.derivatives
-    )
+    durations = solve_in_closed_form(problem.curve, problem.waypoints, problem.limits.derivatives)
     best = float(np.maximum(durations, problem.duration_lower).sum())
     assert float(found.lower) <= best * (1 + 1e-12)
     assert found.upper is not None

@@ -14,16 +14,17 @@ import pytest
 from support.checkout import ROOT
 from support.shipped_problems import POSED
 from support.three_pieces import dense_best, random_problem
+from support.unjudged import unjudged
 from trajgap.nlp import solve
 from trajgap.nlp.proofs.answer import exact_coefficients, keeps_limits, never_above
 from trajgap.nlp.proofs.certifiers import certify
 from trajgap.nlp.proofs.document import certificate, problem_document, shipped, shipped_folder
 from trajgap.nlp.proofs.exact import ExactProblem, decimal, exact_problem
 from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress
+from trajgap.nlp.proofs.state import resumed, state_document
 from trajgap.nlp.proofs.three_piece import rows as three_piece
 from trajgap.nlp.proofs.three_piece.boxes import Boxes
 from trajgap.nlp.proofs.three_piece.rows import PLACES, Prover, Row, exact_row
-from trajgap.nlp.verify import Subject, verify
 from trajgap.problem import (
     Limits,
     Problem,
@@ -33,6 +34,8 @@ from trajgap.problem import (
     three_five_three,
     uniform_cubic_b_spline,
 )
+from trajgap.verify import Subject
+from trajgap.verify import verify_certificate as verify
 
 module = import_module("trajgap.nlp.proofs.three_piece.search")
 
@@ -131,10 +134,14 @@ def test_a_broken_relaxation_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
     def broken(problem: ExactProblem, row: Row, total: Fraction) -> three_piece.Poly:
         return exact_row(problem, row, total * Fraction(9, 10))
 
+    raw = unjudged(monkeypatch)
     monkeypatch.setattr(three_piece, "exact_row", broken)
     optimum, found = unlucky(monkeypatch, seconds=20.0)
-    assert found.lower > optimum, "the attack above would not have seen it"
-    assert not verify(certificate(found)).proves
+    assert raw[0].lower > optimum, "the attack above would not have seen it"
+    assert not verify(certificate(raw[0])).proves
+    assert (found.outcome, found.lower, found.proof) == (Outcome.OPEN, 0, None)
+    assert found.verdict is not None
+    assert "leaf at node" in found.verdict.reason
 
 
 def test_a_local_answer_is_replaced_by_a_better_one(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -167,12 +174,12 @@ def test_a_stopped_run_goes_on_where_it_stopped(monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr(module, "_BATCH", 16)
     first = certify(exact, report=interrupt)
     assert first.outcome is Outcome.INTERVAL
-    assert first.resume is not None
+    assert first.proposals is not None
     assert first.open_boxes > 0
     assert first.lower > 0
     assert 1e-6 < first.gap < 1
     assert verify(certificate(first)).proves
-    second = certify(exact, resume=first.resume)
+    second = certify(exact, resume=first)
     assert second.outcome is Outcome.CERTIFIED
     assert second.nodes < 400
     assert verify(certificate(second)).proves
@@ -191,37 +198,46 @@ def stopped_at(name: str, monkeypatch: pytest.MonkeyPatch) -> Certified:
     return found
 
 
+def state_of(found: Certified) -> dict[str, Any]:
+    """The state of a stopped run, through JSON."""
+    document = state_document(found)
+    assert document is not None
+    return dict(json.loads(json.dumps(document)))
+
+
 def test_an_edited_state_proves_nothing_false(monkeypatch: pytest.MonkeyPatch) -> None:
     name = "irb460-pso-353.limit-80.waypoints-rad"
     exact, found = POSED[name], stopped_at(name, monkeypatch)
-    assert found.resume is not None
     assert found.upper is not None
-    base = json.loads(json.dumps(found.resume.document()))
-    assert module._resumed(exact, base).proved.target == found.lower
+    base = state_of(found)
+    assert resumed(exact, base).lower == found.lower
     rng = np.random.default_rng(3)
-    places = state_places(base)
     outcomes = []
-    for _ in range(250):
-        path = places[rng.integers(0, len(places))]
-        data = copy.deepcopy(base)
-        node = data
-        for key in path[:-1]:
-            node = node[key]
-        node[path[-1]] = mangled(node[path[-1]], rng)
-        try:
-            state = module._resumed(exact, data)
-        except TrajgapError:
-            outcomes.append("refused")
-            continue
-        outcomes.append("taken")
-        if state.proved is not None:
-            assert state.proved.target <= found.upper, path
-        if state.durations is not None:
-            assert keeps_limits(exact, state.durations), path
-        for tree in (state.proved, state.pending):
-            assert tree is None or (0.5**tree.boxes.level).prod(axis=1).sum() == 1.0
-    assert outcomes.count("refused") > 50
-    assert outcomes.count("taken") > 20
+    for part in ("claim", "proof", "proposals"):
+        places = state_places(base[part], (part,))
+        for _ in range(120):
+            path = places[rng.integers(0, len(places))]
+            data = copy.deepcopy(base)
+            node = data
+            for key in path[:-1]:
+                node = node[key]
+            node[path[-1]] = mangled(node[path[-1]], rng)
+            try:
+                state = resumed(exact, data)
+                pending = module._pending(exact, state)
+            except TrajgapError:
+                outcomes.append((part, "refused"))
+                continue
+            outcomes.append((part, "taken"))
+            assert state.lower <= found.upper, path
+            assert (state.proof is None) == (state.lower == 0)
+            if state.durations is not None:
+                assert keeps_limits(exact, state.durations), path
+            assert pending is None or (0.5**pending.boxes.level).prod(axis=1).sum() == 1.0
+    for part in ("claim", "proof", "proposals"):
+        assert outcomes.count((part, "refused")) > 20
+    assert outcomes.count(("proof", "taken")) > 0
+    assert outcomes.count(("proposals", "taken")) > 20
 
 
 def state_places(node: Any, path: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
@@ -242,9 +258,8 @@ def mangled(value: Any, rng: np.random.Generator) -> Any:
         return "1"
     if isinstance(value, int):
         return value + int(rng.choice([-1, 1, 5]))
-    if isinstance(value, str) and value and set(value) <= set("ab."):
-        k = int(rng.integers(0, len(value)))
-        return value[:k] + str(rng.choice(["a", "b", ".", "", ".."])) + value[k + 1 :]
+    if value == ".":
+        return ["?", "/", "r", "x"][int(rng.integers(0, 4))]
     if isinstance(value, str) and value[:1].isdigit():
         return str(Fraction(value) * (1 + Fraction(int(rng.integers(-9, 9)), 10)))
     if isinstance(value, list):
@@ -255,10 +270,9 @@ def mangled(value: Any, rng: np.random.Generator) -> Any:
 def test_a_resumed_bound_alone_proves_nothing_infeasible(monkeypatch: pytest.MonkeyPatch) -> None:
     name = "irb460-pso-353.limit-80.waypoints-rad"
     exact, found = POSED[name], stopped_at(name, monkeypatch)
-    assert found.resume is not None
-    state = json.loads(json.dumps(found.resume.document()))
-    state["durations"] = None
-    assert state["proved"] is not None
+    state = state_of(found)
+    state["claim"] |= {"durations": None, "upper": None}
+    assert state["proof"] is not None
     assert None in exact.duration_upper
     monkeypatch.setattr(module, "_answer", lambda *_: None)
     again = certify(exact, resume=state)
@@ -270,10 +284,9 @@ def test_a_resumed_bound_alone_proves_nothing_infeasible(monkeypatch: pytest.Mon
 def test_edited_open_boxes_only_cost_time(monkeypatch: pytest.MonkeyPatch) -> None:
     name = "irb460-pso-353.limit-80.waypoints-rad"
     exact, found = POSED[name], stopped_at(name, monkeypatch)
-    assert found.resume is not None
-    state = json.loads(json.dumps(found.resume.document()))
+    state = state_of(found)
     # "Everything is proved by any row", and a total that is far too long.
-    state["open"] |= {"tree": ".", "leaves": [[0, "1"]], "total": "100"}
+    state["proposals"] |= {"tree": [[".", 0, "1"]], "total": "100"}
     again = certify(exact, gap=1e-3, resume=state)
     assert again.outcome is Outcome.CERTIFIED
     assert again.lower >= found.lower
@@ -281,33 +294,51 @@ def test_edited_open_boxes_only_cost_time(monkeypatch: pytest.MonkeyPatch) -> No
 
 
 @pytest.mark.parametrize(
-    ("change", "reason"),
+    ("part", "change", "reason"),
     [
-        ({"kind": "stretched"}, "a state of kind"),
-        ({"open": None}, "malformed"),
-        ({"durations": ["0.1", "0.1", "0.1"]}, "do not keep the limits"),
-        ({"durations": ["1", "1"]}, "malformed"),
+        ("proposals", {"kind": "stretched"}, "a state of kind"),
+        ("proposals", {"tree": None}, "malformed"),
+        ("claim", {"durations": ["0.1", "0.1", "0.1"]}, "not proved .answer"),
+        ("claim", {"durations": ["0.4", "0.4"]}, "not proved .answer: one duration per segment"),
+        ("claim", {"lower": "1e-9"}, "not proved .the lower bound exceeds the total"),
+        ("problem", {"unit": "deg"}, "about another problem"),
     ],
 )
-def test_a_bad_state_is_refused(change: dict[str, Any], reason: str) -> None:
+def test_a_bad_state_is_refused(part: str, change: dict[str, Any], reason: str) -> None:
     exact = POSED["irb460-pso-353.limit-80.waypoints-rad"]
-    found = certify(exact, seconds=0.0)
-    assert found.resume is not None
+    state = state_of(certify(exact, seconds=0.0))
+    state[part] |= change
     with pytest.raises(TrajgapError, match=reason):
-        certify(exact, resume={**found.resume.document(), **change})
+        certify(exact, resume=state)
+
+
+def test_what_is_no_state_is_refused() -> None:
+    exact = POSED["irb460-pso-353.limit-80.waypoints-rad"]
+    finished = certify(exact, gap=0.1)
+    for other in (finished, certificate(finished), {}, {"format": "trajgap-state-1"}):
+        with pytest.raises(TrajgapError, match="resume: no trajgap-state-2"):
+            certify(exact, resume=other)
 
 
 def test_a_proof_that_is_not_one_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     name = "irb460-pso-353.limit-80.waypoints-rad"
     found = stopped_at(name, monkeypatch)
-    assert found.resume is not None
-    state = json.loads(json.dumps(found.resume.document()))
-    state["proved"]["total"] = str(found.upper)
-    with pytest.raises(TrajgapError, match="does not prove its lower bound"):
+    state = state_of(found)
+    total = state["proof"]["total"]
+    state["proof"]["total"] = str(found.upper)
+    with pytest.raises(TrajgapError, match=r"not proved .leaf at node"):
         certify(POSED[name], resume=state)
-    state["proved"]["leaves"][0] = None
-    with pytest.raises(TrajgapError, match="does not prove its lower bound"):
+    state["proof"]["total"] = total
+    state["proof"]["tree"][-1] = ["?"]
+    with pytest.raises(TrajgapError, match=r"not proved .the tree leaves a part open"):
         certify(POSED[name], resume=state)
+
+
+def test_a_state_is_proved_like_a_certificate(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = stopped_at("irb460-pso-353.limit-80.waypoints-rad", monkeypatch)
+    verdict = verify(state_of(found))
+    assert str(verdict).startswith("proves: ")
+    assert (verdict.lower, verdict.upper) == (found.lower, found.upper)
 
 
 def test_no_time_gives_no_lower_bound() -> None:
@@ -357,8 +388,8 @@ def test_rest_to_rest_is_certified_in_closed_form(degree: int) -> None:
     assert verdict.lower == found.lower
     for k in range(3):
         wrong = copy.deepcopy(document)
-        least = Fraction(wrong["proof"]["segments"][k][3]) * (1 + Fraction(1, 10**9))
-        wrong["proof"]["segments"][k][3] = decimal(least)
+        least = Fraction(wrong["proof"]["tree"][0][k + 1][3]) * (1 + Fraction(1, 10**9))
+        wrong["proof"]["tree"][0][k + 1][3] = decimal(least)
         assert not verify(wrong).proves
     document["claim"]["lower"] = decimal(found.lower * (1 + Fraction(1, 10**12)))
     assert "exceeds the total" in verify(document).reason
@@ -412,7 +443,7 @@ def test_rows_are_the_limits_of_the_curve() -> None:
     rng = np.random.default_rng(5)
     for _ in range(20):
         h = rng.uniform(0.2, 1.5, 3)
-        curve = fit(exact.interpolant, q, h)
+        curve = fit(exact.curve, q, h)
         joint, order = int(rng.integers(0, 6)), int(rng.integers(1, 3))
         place, sign = int(rng.integers(0, PLACES + 1)), int(rng.choice([-1, 1]))
         total = Fraction(float(h.sum()))

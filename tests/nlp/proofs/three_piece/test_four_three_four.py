@@ -42,7 +42,7 @@ CURVE = piecewise((4, 3, 4))
 
 def random_434(seed: int) -> Problem:
     """As for 3-5-3: every kind of limit and bound turns up."""
-    return replace(random_problem(seed), interpolant=CURVE)
+    return replace(random_problem(seed), curve=CURVE)
 
 
 def fixed(joints: int = 2) -> Problem:
@@ -88,7 +88,7 @@ def test_rows_are_the_exact_spline() -> None:
 @pytest.mark.parametrize("shape", SHAPES, ids=lambda shape: shape.proof)
 def test_solver_and_verifier_have_the_same_rows(shape: Shape) -> None:
     limits = Limits(2.0, 3.0, 5.0, -9.0, 7.0)
-    problem = replace(fixed(), limits=limits, interpolant=piecewise(shape.degrees))
+    problem = replace(fixed(), limits=limits, curve=piecewise(shape.degrees))
     bounded = replace(problem, duration_lower=np.full(3, 0.5), duration_upper=np.full(3, 9.0))
     found = certify(bounded, gap=0.5)
     document = certificate(found)
@@ -266,7 +266,7 @@ def test_a_stopped_run_goes_on_where_it_stopped(monkeypatch: pytest.MonkeyPatch)
     second = certify(fixed(), resume=state)
     assert second.outcome is Outcome.CERTIFIED
     with pytest.raises(TrajgapError, match="a state of kind"):
-        certify(replace(fixed(), interpolant=three_five_three()), resume=state)
+        certify(replace(fixed(), curve=three_five_three()), resume=state)
     state["proved"]["total"] = str(second.upper)
     with pytest.raises(TrajgapError, match="does not prove its lower bound"):
         certify(fixed(), resume=state)
@@ -275,7 +275,7 @@ def test_a_stopped_run_goes_on_where_it_stopped(monkeypatch: pytest.MonkeyPatch)
 def test_a_proof_of_one_curve_says_nothing_of_the_other() -> None:
     other = {"three-piece": "four-three-four", "four-three-four": "three-piece"}
     for curve in (CURVE, three_five_three()):
-        document = certificate(certify(replace(fixed(), interpolant=curve), gap=0.1))
+        document = certificate(certify(replace(fixed(), curve=curve), gap=0.1))
         assert verify(document).proves
         kind = document["proof"]["kind"]
         renamed = {**document, "proof": {**document["proof"], "kind": other[kind]}}

@@ -1,6 +1,6 @@
 """C2 cubic splines as a certificate states them: equations, conditions, and what limits imply.
 
-Standard library only. Symbols are those of docs/certificates-cubic.md.
+Symbols are those of docs/certificates-cubic.md.
 """
 
 from __future__ import annotations
@@ -10,31 +10,30 @@ from itertools import pairwise
 from math import ceil, isqrt
 from typing import Any
 
-from .verify_problem import Bounds, Declaration, need, read_problem, whole
-
-TICKS = 2**24
-PLACES = 64
-MOST = 2**28
-"""Of the integers in a proof."""
+from ..problem import Bounds, Declaration, StatedProblem
+from ..ranges import MOST_CUBIC_SEGMENTS, MOST_INTEGER, MOST_POWER, SPOTS, TICKS
+from ..reading import given, listed, need, sign_of, whole
 
 Vector = dict[Any, Fraction]
+"""Factors by unknown, or by (coordinate, unknown) for a product."""
 ZERO = Fraction(0)
+_FINE = 2**60
+"""A square root is rounded up to its multiples: some digits more than a float has."""
 
 
 class Cubic:
     """The problem in its own units: equations, conditions, and what the limits imply."""
 
-    def __init__(self, document: dict[str, Any]) -> None:
-        problem, proof = read_problem(document["problem"]), document["proof"]
+    def __init__(self, problem: StatedProblem, proof: dict[str, Any]) -> None:
         self.problem = problem
-        need(problem.declaration is not None, "the curve is no declared piecewise polynomial")
-        assert problem.declaration is not None
-        self.ends, self.virtual = _kind_of_ends(problem.declaration)
+        declared = given(problem.declaration, "the curve is no declared piecewise polynomial")
+        self.ends, self.virtual = _kind_of_ends(declared)
         q = problem.waypoints
-        self.n, self.m, self.joints = len(problem.shortest), len(q) - 1, len(problem.limits)
-        powers = [whole(p, -60, 60) for p in proof["powers"]]
-        need(len(powers) == self.joints, "powers: one for each joint")
-        self.second = Fraction(2) ** whole(proof["second"], -60, 60)
+        self.n, self.m, self.joints = problem.segments, len(q) - 1, problem.joints
+        need(self.n <= MOST_CUBIC_SEGMENTS, f"more than {MOST_CUBIC_SEGMENTS} segments")
+        stated = listed(proof["powers"], "powers", self.joints, self.joints)
+        powers = [whole(p, -MOST_POWER, MOST_POWER) for p in stated]
+        self.second = Fraction(2) ** whole(proof["second"], -MOST_POWER, MOST_POWER)
         angle = [Fraction(2) ** p for p in powers]
         self.steps = [
             [(y - x) / a for x, y, a in zip(*rows, angle, strict=True)] for rows in pairwise(q)
@@ -49,7 +48,7 @@ class Cubic:
         ]
         self.shortest = [x / self.second for x in problem.shortest]
         self.longest = [None if x is None else x / self.second for x in problem.longest]
-        self.cap = Fraction(whole(proof["cap"], 1, MOST), TICKS)
+        self.cap = Fraction(whole(proof["cap"], 1, MOST_INTEGER), TICKS)
         self.free = self.m + (2 if self.virtual else 0)
         self.breaks = list(range(self.n + 1))
         if self.virtual:
@@ -99,32 +98,30 @@ class Cubic:
 
     def condition(self, entry: Any) -> tuple[int, Vector, Vector, Fraction]:
         """Joint, terms in the unknowns, terms in the coordinates, constant: their sum is ≤ 0."""
-        kind, joint, k, sign, place = entry
-        need(abs(whole(sign, -1, 1)) == 1, "sign of a condition")
+        kind, joint, k, sign, place = listed(entry, "a row", 5, 5)
+        sign_of(sign)
         if kind == "total":
             return -1, {}, {t: Fraction(1) for t in range(self.m)}, -self.cap
         if kind in ("lower", "upper"):
-            bound = self.shortest[whole(k, 0, self.n - 1)] if kind == "lower" else self.longest[k]
-            need(bound is not None and k >= 0, "a bound of a duration that is not there")
-            assert bound is not None
-            side = -1 if kind == "lower" else 1
-            return (
-                -1,
-                {},
-                {c: Fraction(side * x) for c, x in self.lengths[k].items()},
-                -side * bound,
+            whole(k, 0, self.n - 1)
+            bound = given(
+                self.shortest[k] if kind == "lower" else self.longest[k],
+                "a bound of a duration that is not there",
             )
+            side = -1 if kind == "lower" else 1
+            along = {c: Fraction(side * x) for c, x in self.lengths[k].items()}
+            return -1, {}, along, -side * bound
         limits = self.limits[whole(joint, 0, self.joints - 1)]
-        limit = limits[2 if kind == "jerk" else 0]
-        need(limit is not None, "a condition leans on a limit that is not there")
-        assert limit is not None
+        need(kind in ("jerk", "velocity"), "a row of an unknown kind")
+        limit = given(
+            limits[2 if kind == "jerk" else 0], "a condition leans on a limit that is not there"
+        )
         if kind == "jerk":
             whole(k, 0, self.n - 1)
             along = {c: -limit * x for c, x in self.lengths[k].items()}
             return joint, {k + 1: Fraction(sign), k: Fraction(-sign)}, along, ZERO
-        need(kind == "velocity", "unknown condition")
         whole(k, 0, self.m - 1)
-        s = Fraction(whole(place, 0, PLACES), PLACES)
+        s = Fraction(whole(place, 0, SPOTS), SPOTS)
         # v(s) = v(0) + length·(a(0)(s − s²/2) + a(1)s²/2)
         one, two = sign * (s - s * s / 2), sign * s * s / 2
         if self.virtual and k in (0, self.m - 1):
@@ -146,10 +143,10 @@ class Cubic:
         other = a * self.cap / still if still and a is not None else None
         return smaller(velocity, other), a
 
-    def root(self, given: Any) -> tuple[list[int], list[int]]:
+    def root(self, stated: Any) -> tuple[list[int], list[int]]:
         """Lower sides, which are proved here, and upper sides of the outermost box."""
-        low, high = [whole(x, 0, MOST) for x in given], []
-        need(len(low) == self.free, "root: shape")
+        stated = listed(stated, "root", self.free, self.free)
+        low, high = [whole(x, 0, MOST_INTEGER) for x in stated], []
         for c in range(self.free):
             held = [k for k, x in enumerate(self.lengths) if x.get(c, 0) > 0]
             if self.virtual and c in (0, self.m - 1):
@@ -181,8 +178,7 @@ def _kind_of_ends(declared: Declaration) -> tuple[tuple[int, int], bool]:
 
 def _root_above(x: Fraction) -> Fraction:
     """An upper bound of a square root."""
-    fine = 2**60
-    return Fraction(isqrt(ceil(x * fine**2)) + 1, fine)
+    return Fraction(isqrt(ceil(x * _FINE**2)) + 1, _FINE)
 
 
 def smaller(a: Fraction | None, b: Fraction | None) -> Fraction | None:

@@ -1,4 +1,4 @@
-"""Boxes of durations, and ranges of a C2 cubic spline's unknowns over them: standard library only.
+"""Boxes of durations, and ranges of a C2 cubic spline's unknowns over them.
 
 Ranges are rounded outward to multiples of 1/FINE, which only weakens them.
 """
@@ -9,10 +9,16 @@ from collections.abc import Sequence
 from fractions import Fraction
 from math import ceil, floor
 
-from .verify_cubic_system import TICKS, ZERO, Cubic, smaller
+from ..ranges import TICKS
+from ..reading import Clock
+from .system import ZERO, Cubic, smaller
 
 FINE = 2**44
+"""Ranges are multiples of 1/FINE: fine enough for gaps of 1e-9, and no number grows in a tree."""
 _ROUNDS = 6
+"""Of narrowing one range by the others: more gain nothing that the next box would not."""
+_SINGULAR = 1e-12
+"""A pivot below it is taken for 0: without an inverse the ranges stay what they are."""
 
 Range = tuple[Fraction, Fraction] | None
 """None: unbounded."""
@@ -52,7 +58,7 @@ class Box:
             out.append((least, max(least, min(most, out[h][1]))))
         return out
 
-    def meet(self) -> None:
+    def narrow(self, clock: Clock) -> None:
         """Narrow the ranges by the limits, then by the equations at the centre of the box."""
         cubic, sides = self.cubic, self.sides()
         self._from_limits(sides)
@@ -71,13 +77,14 @@ class Box:
                 if not isinstance(key, int):
                     linear[key[0]].append((i, v, a))
             rows.append(row)
-        y = _inverse(rows)
+        y = _inverse(rows, clock)
         if y is None:
             return
         known = [j for j in range(cubic.joints) if None not in self.x[j]]
         middles: dict[int, list[Fraction]] = {}
         offsets: dict[int, list[Fraction]] = {}
         for j in known:
+            clock.check()
             force = {i: sign * 6 * cubic.steps[t][j] for i, t, sign in moving}
             right = {i: force[i] / centre[t] for i, t, _ in moving}
             x = [_nearest(sum((line[i] * b for i, b in right.items()), ZERO)) for line in y]
@@ -100,6 +107,7 @@ class Box:
                 pulls.append((half[k], ends[0], ends[1]))
             offset = []
             for line in y:
+                clock.check()
                 total: Fraction = abs(sum((a * b for a, b in zip(line, miss, strict=True)), ZERO))
                 for width, first, second in pulls:
                     total += width * max(
@@ -110,8 +118,9 @@ class Box:
                 total += sum(map(abs, line), ZERO) * sum(half, ZERO) / FINE
                 offset.append(total)
             middles[j], offsets[j] = x, offset
-        change = _changes(y, rows, linear, half)
+        change = _changes(y, rows, linear, half, clock)
         for j in known:
+            clock.check()
             self._contract(j, middles[j], offsets[j], change)
 
     def _from_limits(self, sides: Sequence[tuple[Fraction, Fraction]]) -> None:
@@ -176,7 +185,7 @@ def _nearest(x: Fraction) -> Fraction:
     return Fraction(round(x * FINE), FINE)
 
 
-def _inverse(rows: Sequence[dict[int, Fraction]]) -> list[list[Fraction]] | None:
+def _inverse(rows: Sequence[dict[int, Fraction]], clock: Clock) -> list[list[Fraction]] | None:
     """About the inverse, by Gauss-Jordan elimination in floats; None if singular."""
     n = len(rows)
     table = [
@@ -184,8 +193,9 @@ def _inverse(rows: Sequence[dict[int, Fraction]]) -> list[list[Fraction]] | None
         for i, row in enumerate(rows)
     ]
     for k in range(n):
+        clock.check()
         pivot = max(range(k, n), key=lambda i: abs(table[i][k]))
-        if abs(table[pivot][k]) < 1e-12:
+        if abs(table[pivot][k]) < _SINGULAR:
             return None
         table[k], table[pivot] = table[pivot], table[k]
         scale = table[k][k]
@@ -202,10 +212,12 @@ def _changes(
     rows: Sequence[dict[int, Fraction]],
     linear: Sequence[Sequence[tuple[int, int, Fraction]]],
     half: Sequence[Fraction],
+    clock: Clock,
 ) -> list[list[int]]:
     """|I − Y M(c)| + Σ half_k |Y B_k|, rounded up, in units of 1/FINE."""
     out = []
     for r, line in enumerate(y):
+        clock.check()
         left = [Fraction(int(r == v)) for v in range(len(rows))]
         for i, row in enumerate(rows):
             for v, x in row.items():

@@ -1,4 +1,4 @@
-"""Re-proof of a C4 quintic spline's lower bound: own derivation, numpy, many leaves at once.
+"""Lower bounds of weighted limits over boxes of a C4 quintic spline, many leaves at once.
 
 The argument is that of docs/certificates-quintic.md. Nothing is shared with the solver: the nodal
 equations come from the jumps of q''' and q'''' (the solver has the energy ∫q'''²), arrays lead with
@@ -8,29 +8,24 @@ the same sum over absolute values: `ROUND` of that sum is taken off.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from fractions import Fraction
-from itertools import islice
-from math import comb, sqrt
+from collections.abc import Sequence
+from math import comb
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .verify_answer import check_answer, read_answer
-from .verify_problem import Proved, Refused, Stated, need, number, read_problem, whole
+from .ranges import MOST_LIMITS, MOST_WEIGHT, QUINTIC_PLACES
+from .reading import Refused, listed, need, whole
 
 Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
-ROUND, SLACK, PLACES, UNIT, BATCH = 1e-12, 1e-12, 1024, 65536.0, 256
-MOST_SEGMENTS, MOST_JOINTS, MOST_ROWS = 26, 12, 64
-"""What the number of roundings was counted for; rows are those of a leaf."""
-SMALLEST = Fraction(1, 10**30)
-"""Steps and limits are 0 or above it, so that nothing underflows."""
-LEAST_TAU, BRIEFEST, DEEPEST = Fraction(1, 10**60), 1e-40, 10_000
-"""A window's tau is 0 or above it, durations in a leaf with limits too, for the same reason;
-cuts of one box."""
+ROUND = 1e-12
+"""Of a sum over absolute values: four times what its roundings can amount to."""
+SLACK = 1e-12
+"""Of the sides of a box: far more than the rounding of the sums that shrink it."""
+BRIEFEST = 1e-40
+"""Durations in a leaf with limits are above it, so that nothing underflows."""
 
 # Quintic with (q0, q1, v0, v1, a0, a1): rows of ascending powers; exact, entries are halves.
 _AT = np.array(
@@ -48,154 +43,31 @@ _LOAD_POWER = np.array([4, 4, 3, 3])
 _POWER = _LOAD_POWER[:, None] - np.array([1, 1, 2, 2])
 
 
-def prove(document: dict[str, Any]) -> Proved:
-    """Prove a certificate of kind "quintic-spline" again.
+class Task:
+    """What all leaves with limits have in common: steps, limits and the table of rows.
 
     Parameters
     ----------
-    document : dict
-
-    Returns
-    -------
-    Proved
-
-    Raises
-    ------
-    Refused
-        If it does not prove its claim.
+    steps : ndarray, shape (segments, joints)
+    limits : ndarray, shape (joints, 3)
+        inf where there is none.
+    total : float
+    rows : list
+        ``proof.rows`` of the file.
     """
-    problem, claim, proof = read_problem(document["problem"]), document["claim"], document["proof"]
-    need(claim["infeasible"] is False, "infeasible only by another kind of proof")
-    total, lower = number(proof["total"]), number(claim["lower"])
-    need(lower <= total, "the lower bound exceeds the total that is proved")
-    answer, upper = read_answer(claim), None
-    if answer is not None:
-        upper = answer[1]
-        check_answer(problem, answer[0])
-    prove_total(problem, proof)
-    need(answer is None or total <= sum(answer[0]), "the proof contradicts the answer")
-    return Proved(lower, upper)
 
-
-def prove_total(problem: Stated, proof: dict[str, Any]) -> Fraction:
-    """The total below which a proof leaves nothing feasible.
-
-    Parameters
-    ----------
-    problem : Stated
-    proof : dict
-        ``proof`` of the file.
-
-    Returns
-    -------
-    Fraction
-
-    Raises
-    ------
-    Refused
-        If it proves nothing.
-    """
-    given = problem.declaration
-    rest = {1: Fraction(0), 2: Fraction(0)}
-    n = len(problem.shortest)
-    need(
-        given is not None
-        and n > 1
-        and given.degrees == [5] * n
-        and given.continuity == [4] * (n - 1)
-        and given.prescribed == [rest, *[{}] * (n - 1), rest]
-        and not given.virtual,
-        "declaration not covered: no C4 quintic spline at rest at the ends",
-    )
-    total, q = number(proof["total"]), problem.waypoints
-    need(
-        Fraction(1, 10**9) < total < 10**9 and Fraction(float(total)) == total,
-        "a total that is no float of usual size is not proved",
-    )
-    steps = [[b - a for a, b in zip(q[k], q[k + 1], strict=True)] for k in range(n)]
-    sizes = [abs(d) for row in steps for d in row if d]
-    sizes += [x[1] for row in problem.limits for x in row if x is not None and x[1] > 0]
-    need(all(SMALLEST < x < 1 / SMALLEST for x in sizes), "a number is of unusual size")
-    limits = np.array(
-        [[np.inf if x is None or x[1] <= 0 else float(x[1]) for x in row] for row in problem.limits]
-    )
-    task = _Task(np.array([[float(x) for x in row] for row in steps]), limits, float(total), proof)
-    low = [number(x) for x in proof["low"]]
-    need(len(low) == n, "one least duration per segment")
-    for k, x in enumerate(low):
-        mean = any(
-            v[0] is not None and v[0][1] > 0 and x * v[0][1] <= abs(d)
-            for v, d in zip(problem.limits, steps[k], strict=True)
-        )
-        need(
-            Fraction(float(x)) == x >= 0 and (mean or x <= problem.shortest[k]),
-            f"segment {k + 1}: its least duration is not proved",
-        )
-    tree, leaves = proof["tree"], proof["leaves"]
-    need(isinstance(tree, str), "the tree is no text")
-    need(
-        isinstance(leaves, list) and len(leaves) == tree.count("."),
-        "leaves and tree differ in number",
-    )
-    boxes = _boxes(tree, [float(x) for x in low], float(total), n)
-    with np.errstate(all="ignore"):  # what is not finite fails every comparison
-        for first in range(0, len(leaves), BATCH):
-            part = leaves[first : first + BATCH]
-            found = list(islice(boxes, len(part)))
-            need(len(found) == len(part), "the tree has too many letters")
-            task.check(np.array(found), part)
-    need(next(boxes, None) is None, "the tree has too many letters")
-    return total
-
-
-def _shrunk(low: list[float], high: list[float], total: float) -> tuple[list[float], list[float]]:
-    """Part of a box whose durations can add up to the total, with something to spare."""
-    below, above = sum(low), sum(high)
-    slack = SLACK * (above + total)
-    least = [max(a, total - (above - b) - slack) for a, b in zip(low, high, strict=True)]
-    most = [min(b, total - (below - a) + slack) for a, b in zip(low, high, strict=True)]
-    return least, most
-
-
-def _boxes(
-    tree: str, low: list[float], total: float, n: int
-) -> Iterator[tuple[list[float], list[float]]]:
-    """Leaves of a tree in preorder, the lower part of a cut first: each shrunk, maybe empty."""
-    stack = [(low, [total] * n)]
-    for letter in tree:
-        need(0 < len(stack) < DEEPEST, "the tree has too many letters or is too deep")
-        least, most = _shrunk(*stack.pop(), total)
-        if letter == ".":
-            yield least, most
-            continue
-        k = ord(letter) - ord("a")
-        need(0 <= k < n, f"the tree has an unknown letter {letter!r}")
-        a, b = least[k], most[k]
-        middle = sqrt(a * b) if 0.0 < 0.1 * b < a else 0.3 * b
-        # Where the parts overlap or leave the box they still cover it.
-        stack.append(([*least[:k], middle, *least[k + 1 :]], most))
-        stack.append((least, [*most[:k], middle, *most[k + 1 :]]))
-    need(not stack, "the tree leaves a part of the simplex open")
-
-
-class _Task:
-    """What all leaves of a proof have in common, and their check."""
-
-    def __init__(self, steps: Array, limits: Array, total: float, proof: dict[str, Any]) -> None:
+    def __init__(self, steps: Array, limits: Array, total: float, rows: list[Any]) -> None:
         self.steps, self.limits, self.total = steps, limits, total
         n, joints = steps.shape
-        self.windows = [
-            [whole(w[0], 0, joints - 1), *(whole(x, -(2**20), 2**20) for x in w[1:])]
-            for w in proof["windows"]
-        ]
-        need(n <= MOST_SEGMENTS and joints <= MOST_JOINTS, "too many segments or joints")
-        need(all(len(w) == 2 * n + 2 for w in self.windows), "windows: shape")
-        tops = (n - 1, joints - 1, 3, 1, PLACES)
+        tops = (n - 1, joints - 1, 3, 1, QUINTIC_PLACES)
         bottoms = (0, 0, 1, -1, 0)
         self.rows = np.array(
             [
-                [whole(x, a, b) for x, a, b in zip(row, bottoms, tops, strict=True)]
-                for row in proof["rows"]
+                [
+                    whole(x, a, b)
+                    for x, a, b in zip(listed(row, "a row", 5, 5), bottoms, tops, strict=True)
+                ]
+                for row in rows
             ],
             np.int64,
         ).reshape(-1, 5)
@@ -203,7 +75,7 @@ class _Task:
         self.caps = limits[self.rows[:, 1], self.rows[:, 2] - 1]
         need(bool(np.isfinite(self.caps).all()), "a row leans on a limit that is not there")
         # Derivative of (step, v0, v1, a0, a1) at the place.
-        s = self.rows[:, 4] / PLACES
+        s = self.rows[:, 4] / QUINTIC_PLACES
         self.shapes = np.zeros((len(s), 5))
         for order in (1, 2, 3):
             at = self.rows[:, 2] == order
@@ -214,67 +86,19 @@ class _Task:
                 self.shapes[at] += factor * power[:, None] * _HERMITE[None, 1:, p]
         self.shapes *= self.rows[:, 3:4]
 
-    def check(self, boxes: Array, leaves: list[Any]) -> None:
-        """Refuse a batch of leaves unless each box is excluded."""
-        weighted = []
-        for i, (leaf, (low, high)) in enumerate(zip(leaves, boxes, strict=True)):
-            need(isinstance(leaf, list), "a leaf is no list")
-            if len(leaf) == 0:
-                need(bool((low > high).any()), "a leaf that is not empty is not proved")
-            elif len(leaf) == 2:
-                window = self.windows[whole(leaf[0], 0, len(self.windows) - 1)]
-                exact = number(leaf[1])
-                need(
-                    exact == 0 or LEAST_TAU < abs(exact) < 1 / LEAST_TAU,
-                    "a window's tau is of unusual size",
-                )
-                tau = float(exact)
-                need(
-                    self._window(window, tau, low, high) > 0.0, "a leaf with a window is not proved"
-                )
-            else:
-                weighted.append(i)
-        if weighted:
-            which = np.array(weighted)
-            bound = _Bound(self, boxes[which, 0], boxes[which, 1], [leaves[i] for i in weighted])
-            need(bool((bound.least() > 0.0).all()), "a leaf with limits is not proved")
 
-    def _window(self, window: list[int], tau: float, low: Array, high: Array) -> float:
-        """Least of Σ cΔ/h − A Σ m h − V Σ|c + ψ' h| + tau (Σ h − total) over a box."""
-        n, j = low.size, window[0]
-        psi, c = np.array(window[1 : n + 2]) / UNIT, np.array(window[n + 2 :]) / UNIT
-        a, b = np.abs(psi[:-1]), np.abs(psi[1:])
-        squares = (a * a + b * b) / np.maximum(2.0 * (a + b), 1e-300)
-        mean = np.where(psi[:-1] * psi[1:] < 0.0, squares, 0.5 * (a + b))
-        left = np.abs(c + np.diff(psi))
-        velocity, acceleration = self.limits[j, :2]
-        need(
-            bool(np.isfinite(acceleration)) or not mean.any(),
-            "a window leans on a limit that is not there",
-        )
-        need(
-            bool(np.isfinite(velocity)) or not left.any(),
-            "a window leans on a limit that is not there",
-        )
-        pay = acceleration * mean if mean.any() else np.zeros(n)
-        fixed = velocity * left.sum() if left.any() else 0.0
-        p, q = c * self.steps[:, j], tau - pay
-        start = np.where(low > 0.0, p / low + q * low, np.where(p > 0.0, np.inf, 0.0))
-        start = np.where((low <= 0.0) & (p < 0.0), -np.inf, start)
-        turn = np.where((p > 0.0) & (q > 0.0), np.sqrt(p / q), -1.0)
-        bottom = 2.0 * np.sqrt(np.maximum(p * q, 0.0)) * (1.0 - 1e-12)
-        least = np.minimum(start, p / high + q * high)
-        inside = (low < turn) & (turn < high)
-        least = np.where(inside, np.minimum(least, bottom), least)
-        size = fixed + 2.0 * abs(tau) * self.total + ((abs(tau) + pay) * high).sum()
-        size += np.abs(least).sum()
-        return float(least.sum() - fixed - tau * self.total - 10.0 * ROUND * size)
+class Bound:
+    """Weighted limits on a batch of boxes: arrays (leaf, ...) in the symbols of the docs page.
 
+    Parameters
+    ----------
+    task : Task
+    low, high : ndarray, shape (leaf, segments)
+    leaves : sequence of list
+        τ, row, weight, row, weight, …
+    """
 
-class _Bound:
-    """Weighted limits on a batch of boxes: arrays (leaf, ...) in the symbols of the docs page."""
-
-    def __init__(self, task: _Task, low: Array, high: Array, leaves: list[Any]) -> None:
+    def __init__(self, task: Task, low: Array, high: Array, leaves: Sequence[list[Any]]) -> None:
         need(
             bool((low > BRIEFEST).all() and (low <= high).all()),
             "a leaf that is too wide is not proved",
@@ -287,13 +111,13 @@ class _Bound:
         need(bool((self.e < 0.6 * self.r).all()), "a leaf that is too wide is not proved")
         at, row, weight, tau = [], [], [], []
         for i, leaf in enumerate(leaves):
-            tau.append(whole(leaf[0], -(2**52), 2**52))
+            tau.append(whole(leaf[0], -MOST_WEIGHT, MOST_WEIGHT))
             need(len(leaf) % 2 == 1, "a leaf misses a weight")
-            need(len(leaf) <= 2 * MOST_ROWS + 1, "a leaf has too many rows")
+            need(len(leaf) <= 2 * MOST_LIMITS + 1, "a leaf has too many rows")
             for which, share in zip(leaf[1::2], leaf[2::2], strict=True):
                 at.append(i)
                 row.append(whole(which, 0, len(task.rows) - 1))
-                weight.append(whole(share, 1, 2**52))
+                weight.append(whole(share, 1, MOST_WEIGHT))
         self.at, self.row = np.array(at), np.array(row)
         self.weight, self.tau = np.array(weight, float), np.array(tau, float)
         self._parts()
