@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
@@ -98,12 +99,7 @@ def _improve(
             wide[0][:n] = np.maximum(wide[0][:n], x[:n] * (1 - radius))
             wide[1][:n] = np.minimum(wide[1][:n], x[:n] * (1 + radius))
             trajectory = fit(problem.curve, problem.waypoints, own)
-            trajectory = type(trajectory)(
-                trajectory.polynomial,
-                trajectory.durations,
-                trajectory.scaled / s.angle_unit,
-                trajectory.degrees,
-            )
+            trajectory = replace(trajectory, scaled=trajectory.scaled / s.angle_unit)
             places, newton = place_slots(f, trajectory)
             p.append(pack_parameters(f, s.values, s.inverse_limits, s.position, places, newton))
             x0.append(x)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...problem import Array, Check, Interpolant, Problem, check
+from ...problem import Array, Check, Problem, check
 from .near_optimal import longest_per_segment_range
 from .solution import Evidence, Solution, Status, weakest
 from .solver import STARTS, solve
@@ -145,7 +145,7 @@ def solve_per_joint(
         verdict = check(problem, durations)
         why = None
         settled = all(s.status is Status.OPTIMAL for s in solutions)
-        if not isinstance(problem.curve, Interpolant):
+        if problem.curve.piecewise is None:
             why = "ranges are computed for declared piecewise polynomials only"
         elif problem.segments > _MOST_SEGMENTS:
             why = f"ranges are computed for at most {_MOST_SEGMENTS} segments"

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from ...problem import Array, Extremum, Problem, check, extrema, fit, peak_gradients
-from ...problem.curves import segment_of
 from .optimality import KKT, Active, kkt
 
 _STEPS = 4
@@ -81,7 +80,7 @@ def _nearest(problem: Problem, h: Array, active: Active) -> Extremum:
         _ORDERS[active.quantity],
     )
     # Where a derivative jumps, two extrema share a time.
-    own = [e for e in points if segment_of(curve, h, e) == active.segment]
+    own = [e for e in points if curve.segment_of(h, e) == active.segment]
     return min(own, key=lambda e: abs(e.time - time))
 
 

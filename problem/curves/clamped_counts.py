@@ -7,8 +7,9 @@ from enum import StrEnum
 from itertools import product
 
 from ..errors import TrajgapError
-from .clamped import ClampedBSpline, Knots, Parameters
-from .uniform import Timing
+from .clamped import ClampedBSpline
+from .clamped_knots import Knots, Parameters
+from .stretched import Timing
 
 DEGREES = (3, 4, 5, 6, 7)
 
