@@ -99,6 +99,7 @@ class Jump:
 
 
 _DERIVATIVES = ("position", *QUANTITIES)
+"""Words for derivative orders 0 to 3."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,7 +17,9 @@ from .places import LimitRows, linear_program, rows_at
 from .uniform import Centred, centred_stretched, centred_timed
 
 MOST_BOXES = 100
+"""Boxes after which a bisection gives up: the bound so far holds, and may not decide."""
 _NAMES = ("position", *QUANTITIES)
+"""Words for derivative orders 0 to 3."""
 
 
 @dataclass(frozen=True)

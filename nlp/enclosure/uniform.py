@@ -16,6 +16,7 @@ from ...problem.curves import (
 from .balls import EPS, Ball, quotient_power
 
 _POWERS = 4
+"""Coefficients of a cubic."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,6 +24,7 @@ from .tracking import (
 )
 
 _PASSES = 12
+"""Solves from one optimum: a bound against endless shrinking of the region."""
 _OPTIONS = {
     "print_time": False,
     "ipopt.print_level": 0,
@@ -34,6 +35,7 @@ _OPTIONS = {
     "ipopt.mu_init": 1e-4,
     "ipopt.max_iter": 200,
 }
+"""Options of IPOPT as `tracking.ipopt_options`, begun near a solution (small barrier)."""
 
 
 @lru_cache(maxsize=32)

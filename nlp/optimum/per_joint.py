@@ -15,6 +15,7 @@ from .solver import STARTS, solve
 OPTIMUM_SLACK = 1e-6
 """Excess over each joint's own optimum (s) within which the procedure's output is reported."""
 _MOST_SEGMENTS = 4
+"""Ranges go through every assignment of segments to joints, 2ⁿ subsets: up to here."""
 
 
 @dataclass(frozen=True)

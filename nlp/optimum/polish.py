@@ -8,7 +8,9 @@ from ...problem import Array, Extremum, Problem, check, extrema, fit, peak_gradi
 from .optimality import KKT, Active, kkt
 
 _STEPS = 4
+"""Newton steps: few are needed, since interior-point answers are near and it is quadratic."""
 _DIFFERENCE = 1e-6
+"""Step of the central differences in log durations: their truncation is 1e-12, rounding 1e-10."""
 
 
 def polish(problem: Problem, durations: Array, report: KKT) -> tuple[Array, KKT]:
@@ -68,6 +70,7 @@ def polish(problem: Problem, durations: Array, report: KKT) -> tuple[Array, KKT]
 
 
 _ORDERS = {"velocity": 1, "acceleration": 2, "jerk": 3}
+"""Quantities whose active limit is a peak of this derivative."""
 
 
 def _nearest(problem: Problem, h: Array, active: Active) -> Extremum:

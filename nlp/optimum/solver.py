@@ -33,11 +33,13 @@ from .tracking import (
 )
 
 STARTS = 4
+"""Equal durations first, then three screened random ones: a second opinion at small cost."""
 SAME = 1e-6
 """Relative difference below which two totals count as the same."""
 FLOORS = (1e-3, 1e-4)
 """Smallest durations tried, relative to the mean, where the case sets no lower bound."""
 KKT_TOLERANCE = 1e-8
+"""Residual of the optimality conditions up to which an answer is called optimal."""
 POLISHED = 1e-11
 """KKT residual above which an answer is sharpened by Newton steps on its active set."""
 

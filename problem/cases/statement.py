@@ -32,9 +32,11 @@ Block = TypeVar("Block", bound=Strict)
 Data = tuple[Curve, Limits, Array, Array]
 """Curve, limits, and bounds on the durations."""
 _DERIVATIVES: tuple[Quantity, ...] = ("velocity", "acceleration", "jerk")
+"""What orders 1 to 3 measure; higher ones have no unit in a case file."""
 _LARGEST = 1e12
 """Largest number of a case file, rad and s: squares and quotients stay far from overflow."""
 _LOWER = "durations.lower"
+"""The field whose value may be as near 0 as it likes: a lower bound of 0 says "positive"."""
 
 
 @dataclass(frozen=True)

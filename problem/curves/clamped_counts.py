@@ -12,6 +12,7 @@ from .clamped_knots import Knots, Parameters
 from .stretched import Timing
 
 DEGREES = (3, 4, 5, 6, 7)
+"""Degrees that `ClampedBSpline` takes: from C2 in time up to the highest compared anywhere."""
 
 
 class Count(StrEnum):
@@ -162,3 +163,4 @@ _CHORDS = {
         "chords' proportions. With one u = t/T for all, only the total is left of the durations"
     ),
 }
+"""What is added to the words of a determined reading with chord parameters."""

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 Numbers = NDArray[Any]
 EPS = np.finfo(np.float64).eps
+"""Spacing of float64 at 1: twice the unit roundoff, so that bounds have room."""
 
 
 def span_bases(knots: Numbers, degree: int, sign: int = -1) -> Numbers:

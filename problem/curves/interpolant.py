@@ -29,6 +29,7 @@ from .spline import trajectory_from_scaled
 from .trajectory import Trajectory
 
 _DENSE = 300
+"""Coefficients above which the rank is judged by a sparse factorisation: a dense one is cubic."""
 
 
 @dataclass(frozen=True)
@@ -306,6 +307,7 @@ _SIDES: tuple[tuple[ConditionKind, Callable[[int, int], bool]], ...] = (
     (ConditionKind.LEFT_VALUE, lambda b, n: b > 0),
     (ConditionKind.RIGHT_VALUE, lambda b, n: b < n),
 )
+"""Kinds of condition on a value, and at which of the breaks 0..n their side exists."""
 
 
 def piecewise(

@@ -25,8 +25,11 @@ if TYPE_CHECKING:
 PERM = np.array(
     [[float(math.perm(p, r)) for r in range(kernel.MAX_COEFFICIENTS)] for p in range(10)]
 )
+"""PERM[p, r] = p!/(p − r)!: the factor of sᵖ⁻ʳ in the r-th derivative of sᵖ."""
 _THREAD_WORK = 4000
+"""Polynomials (vectors times joints) below which starting threads costs more than it saves."""
 _LONGEST = 1e30
+"""Durations, s, beyond which, or below whose reciprocal, ninth powers leave float64's range."""
 
 
 @dataclass(frozen=True, eq=False)
