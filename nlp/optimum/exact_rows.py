@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...problem import Array, CurveError, Extremum, Problem, evaluate, extrema, fit, peak_gradients
-from ...problem.curves import smooth_order
 
 NEAR = 0.3
 """Extrema below this share of their limit are left out: no step of a trust region reaches it."""
@@ -60,7 +59,7 @@ def _limited(problem: Problem, h: Array) -> list[tuple[Extremum, float, float]]:
                 continue
             for e in extrema(trajectory, j, r):
                 size = abs(e.value) / limit
-                repeated = e.s == 0.0 and e.segment > 0 and smooth_order(curve, e.segment) >= r
+                repeated = e.s == 0.0 and e.segment > 0 and curve.smooth_order(e.segment) >= r
                 if size > NEAR and not repeated:
                     found.append((e, float(np.sign(e.value)), float(np.log(size)) / r))
         sides = ((float(limits.position_lower[j]), -1.0), (float(limits.position_upper[j]), 1.0))

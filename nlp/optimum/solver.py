@@ -10,10 +10,9 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...problem import Array, Interpolant, Problem, TrajgapError, check, fit
+from ...problem import Array, Problem, TrajgapError, check, fit
 from ...problem.curves import coefficient_gradient, segment_peaks
 from .curve_formulation import compiled_curve, curve_structure
-from .curve_symbols import shape_key
 from .curve_tracking import curve_multistart
 from .exact_multistart import (
     UNEQUAL,
@@ -44,7 +43,7 @@ from .tracking import (
 from .wide_search import Basin
 
 STARTS = 4
-"""Starts of a solve: equal durations, and the three best other basins of the screening."""
+"""Equal durations first, then three screened random ones: a second opinion at small cost."""
 FLOORS = (1e-3, 1e-4)
 """Smallest durations tried, relative to the mean, where the case sets no lower bound."""
 DEEPER = (1e-6, 1e-8)
@@ -276,7 +275,7 @@ def _search(
     problem: Problem, form: Form | None
 ) -> tuple[Callable[[Array, float], list[Local]], float]:
     """Local search from starts above a floor, and the time its build took, s."""
-    if isinstance(problem.curve, Interpolant):
+    if problem.curve.piecewise is not None:
         build_ = compiled(structure_of(problem, form))
         return partial(_multistart, problem, build_), build_.build_seconds
     built = compiled_curve(curve_structure(problem))
@@ -284,8 +283,9 @@ def _search(
 
 
 def _reduced(problem: Problem, form: Form | None) -> bool:
-    declared = isinstance(problem.curve, Interpolant)
-    return declared and structure_of(problem, form).form is Form.REDUCED
+    if problem.curve.piecewise is None:
+        return False
+    return structure_of(problem, form).form is Form.REDUCED
 
 
 def _multistart(problem: Problem, build_: Compiled, points: Array, floor: float) -> list[Local]:
@@ -318,14 +318,15 @@ def idle_segments(problem: Problem) -> list[int]:
     """Segments in which nothing moves and whose duration nothing else depends on."""
     if problem.curve.free:
         return []
-    if not isinstance(problem.curve, Interpolant):
-        if not shape_key(problem):
-            return []
+    if problem.curve.shape(problem.waypoints) is not None:
         still = segment_peaks(problem.curve, problem.waypoints).max(axis=(1, 2)) == 0.0
         return np.flatnonzero(still).tolist()
+    polynomials = problem.curve.piecewise
+    if polynomials is None:
+        return []
     h = equal_start(problem)
     trajectory = fit(problem.curve, problem.waypoints, h)
-    gradient = coefficient_gradient(problem.piecewise, problem.waypoints, h).durations
+    gradient = coefficient_gradient(polynomials, problem.waypoints, h).durations
     size = 1e-12 * max(1.0, float(np.abs(trajectory.scaled).max()))
     still = np.abs(trajectory.scaled[:, 1:]).max(axis=(1, 2)) <= size
     apart = np.abs(gradient * h[:, None, None, None]).max(axis=(1, 2, 3)) <= size

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,8 +12,11 @@ from scipy.linalg import solve_triangular
 
 from ..arrays import Array
 from . import kernel
-from .interpolant import ConditionKind, Interpolant
+from .condition import ConditionKind
 from .spline import PERM, coefficients, layout, right_hand_sides, singular
+
+if TYPE_CHECKING:
+    from .interpolant import Interpolant
 
 DENSE_UNKNOWNS = 400
 """Up to this many coefficients one dense inverse takes a few milliseconds; windows gain nothing."""

@@ -7,6 +7,7 @@ import os
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,14 +16,20 @@ from scipy.interpolate import PPoly
 from ..arrays import Array
 from ..errors import TrajgapError
 from . import kernel
-from .interpolant import ConditionKind, Interpolant
+from .condition import ConditionKind
 from .trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from .interpolant import Interpolant
 
 PERM = np.array(
     [[float(math.perm(p, r)) for r in range(kernel.MAX_COEFFICIENTS)] for p in range(10)]
 )
+"""PERM[p, r] = p!/(p − r)!: the factor of sᵖ⁻ʳ in the r-th derivative of sᵖ."""
 _THREAD_WORK = 4000
+"""Polynomials (vectors times joints) below which starting threads costs more than it saves."""
 _LONGEST = 1e30
+"""Durations, s, beyond which, or below whose reciprocal, ninth powers leave float64's range."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -196,41 +203,6 @@ def as_durations(durations: ArrayLike, segments: int) -> Array:
     return h
 
 
-def fit(
-    interpolant: Interpolant,
-    waypoints: ArrayLike,
-    durations: ArrayLike,
-    nodal: ArrayLike | None = None,
-) -> Trajectory:
-    """The trajectory that the declaration, the way-points and the durations determine.
-
-    Parameters
-    ----------
-    interpolant : Interpolant
-        Declaration.
-    waypoints : array_like, shape (way-points, joints)
-        Joint angles, rad.
-    durations : array_like, shape (segments,)
-        Segment durations, s.
-    nodal : array_like, shape (free, joints), optional
-        Values of ``interpolant.free_derivatives`` where the declaration leaves some open.
-
-    Returns
-    -------
-    Trajectory
-
-    Raises
-    ------
-    TrajgapError
-        If shapes disagree, a duration is not positive, or the system is singular.
-    """
-    q = np.asarray(waypoints, dtype=np.float64)
-    h = as_durations(durations, interpolant.segments)
-    extra = None if nodal is None else np.asarray(nodal, dtype=np.float64)
-    scaled = coefficients(interpolant, q, h, extra)
-    return trajectory_from_scaled(scaled, interpolant.degrees, h)
-
-
 def trajectory_from_scaled(scaled: Array, degrees: tuple[int, ...], durations: Array) -> Trajectory:
     """Trajectory over scipy's ``PPoly`` from coefficients in s, shape (segments, power, joints)."""
     top = max(degrees)
@@ -279,12 +251,7 @@ def batch_peaks(
     ndarray, shape (batch, joints, 3)
         rad/s, rad/s², rad/s³; the same bits whatever the order, the size or the threads.
     """
-    plan = layout(interpolant)
-    h = np.ascontiguousarray(durations, dtype=np.float64)
-    if h.ndim != 2 or h.shape[1] != interpolant.segments:
-        raise TrajgapError(
-            f"durations: a batch has shape (vectors, {interpolant.segments}), got {h.shape}"
-        )
+    plan, h = layout(interpolant), durations
     peaks = np.empty((h.shape[0], values.shape[1], 3))
 
     def run(part: slice) -> None:

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ....problem import Problem, TrajgapError
-from ....problem.curves import end_conditions
 from ...optimum import Evidence
 from .local import KEPT, Question, local_optimum, starting_points
 from .reach import profile
@@ -176,7 +175,7 @@ def _initial(problem: Problem, initial: ArrayLike | None) -> NDArray[np.float64]
 
 
 def _ends(problem: Problem) -> tuple[float | None, float | None]:
-    start, end = end_conditions(problem.curve)
+    start, end = problem.curve.ends
     return dict(start).get(1), dict(end).get(1)
 
 

@@ -256,7 +256,9 @@ def test_durations_refused(durations: object, message: str) -> None:
 
 
 def test_waypoints_and_nodal_values_refused() -> None:
-    with pytest.raises(TrajgapError, match="3-5-3 polynomials with 3 segments needs 4, got 5"):
+    with pytest.raises(
+        TrajgapError, match=r"3-5-3 polynomials with 3 segments needs 4 rows, got shape \(5, "
+    ):
         fit(three_five_three(), waypoints(5), [1.0, 1.0, 1.0])
     quintics = piecewise((5, 5, 5), 2)
     message = r"14 conditions on 18 coefficients; give nodal derivatives of shape \(4, 3\)"
@@ -390,11 +392,11 @@ def test_motion_values_count_from_the_first_waypoint() -> None:
 
 def test_unwanted_peaks_are_zero() -> None:
     problem, h = posed(DECLARATIONS["quintic"], 4)
-    values = motion_values(problem.curve, problem.waypoints)
-    every = batch_peaks(problem.curve, values, h[None], np.ones((3, 3), bool))
+    values = problem.curve.motion_values(problem.waypoints)
+    every = problem.curve.batch_peaks(values, h[None], np.ones((3, 3), bool))
     assert (every > 0).all()
     wanted = np.array([[True, False, True], [False, True, False], [False, False, False]])
-    some = batch_peaks(problem.curve, values, h[None], wanted)
+    some = problem.curve.batch_peaks(values, h[None], wanted)
     np.testing.assert_array_equal(some, np.where(wanted, every, 0.0))
 
 
