@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from trajgap.compare import audit
-from trajgap.compare.audits.finding import ClaimVerdict, Scope, Severity
+from trajgap.compare.documents import ClaimVerdict, Scope, Severity
 
 EXAMPLES = Path(__file__).parents[1] / "docs" / "examples"
 

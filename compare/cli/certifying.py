@@ -36,13 +36,18 @@ from ...nlp.proofs import (
     state_document,
 )
 from ...problem import Case, CaseError, Coupling, TrajgapError
-from ..documents import certify_document, certify_result, verify_document
+from ..documents import (
+    CertifiedResult,
+    CertifyDocument,
+    certify_result,
+    json_text,
+    verify_document,
+)
 from . import proof_tables as cli_proofs
 from .input import Posed, naming, read_case, select
 from .output import (
     Steps,
     emit,
-    json_text,
     new_file,
     progress,
     replace_file,
@@ -50,9 +55,11 @@ from .output import (
 )
 
 CERTIFICATE_FOLDER = Path("trajgap-certificates")
+"""Where certificates go, unless the command line says otherwise."""
 NOT_PROVED = 3
 """Exit code where an interval is wider than asked for, or nothing is proved."""
 _SETTLED = (Outcome.CERTIFIED, Outcome.INFEASIBLE)
+"""Outcomes that leave nothing to prove."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,7 +97,7 @@ def certify_case(
     if folder is not None:
         _check_folder(folder)
         _check_files(folder, asked)
-    results: list[dict[str, Any]] = []
+    results: list[CertifiedResult] = []
     unsettled, stop = False, _Stop()
     with new_file(out) as write:
         with progress("certify", len(asked)) as step, naming(case.file), stop.listening():
@@ -118,10 +125,10 @@ def certify_case(
                 files = _written(folder, one.name, found)
                 ids = (case.id, one.posed.problem_id, one.posed.reading_id, one.joint)
                 results.append(certify_result(*ids, found, *files, why))
-        document = certify_document(results)
+        document = CertifyDocument(intervals=tuple(results))
         write(json_text(document))
     emit(document, cli_proofs.certified, as_json)
-    if folder is not None and not as_json and any(r["certificate"] for r in results):
+    if folder is not None and not as_json and any(r.certificate for r in results):
         say(f"certificates: {folder}\n")
     if stop.asked:
         raise KeyboardInterrupt

@@ -21,10 +21,11 @@ from ...problem import (
     fit,
 )
 from ...problem.curves import ClockedTrajectory, numerators
+from ..documents import UNITS
 from .drawing import BLUE, GRID, INK, PAPER, RED, Picture, drawing, finish, shown
 
-UNITS = {"position": "rad", "velocity": "rad/s", "acceleration": "rad/s²", "jerk": "rad/s³"}
 _SAMPLES = 48
+"""Points of a segment that are drawn, beside its exact extrema: smooth at the width of a page."""
 _OFF_SCALE = 0.12
 """Share of a limit below which drawing the limit would flatten the curve."""
 

@@ -16,11 +16,25 @@ from .instances import FamilyBlock, family_waypoints
 from .load import load_case, parse_case, published_ids
 from .robot_file import load_robot, robot_ids
 from .scaffolding import scaffold
-from .schema import Cartesian, CaseFile, case_schema
+from .schema import (
+    Algorithm,
+    Assumption,
+    Cartesian,
+    CaseFile,
+    NotCheckable,
+    ProblemBlock,
+    Reading,
+    Robot,
+    Source,
+    Table,
+    case_schema,
+)
 from .statement import Posing
 
 __all__ = [
+    "Algorithm",
     "AnyClaim",
+    "Assumption",
     "Cartesian",
     "Case",
     "CaseFile",
@@ -33,9 +47,15 @@ __all__ = [
     "FamilyBlock",
     "ImprovementClaim",
     "MaximumClaim",
+    "NotCheckable",
     "PeakClaim",
     "Posing",
+    "ProblemBlock",
+    "Reading",
+    "Robot",
+    "Source",
     "StatementClaim",
+    "Table",
     "TotalTimeClaim",
     "case_schema",
     "family_waypoints",

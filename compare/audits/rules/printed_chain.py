@@ -10,11 +10,10 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from ....nlp import Evidence
 from ....problem import Measured, to_si
 from ....problem.cases import Cartesian, Posing
 from ....problem.robots import Chain, Convention, DhTable, JointKind, Proximity, proximity
-from ..finding import Basis, ClaimVerdict, Finding, Scope, Severity
+from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..study import Study
 
 _NEGLIGIBLE = 1e-9
@@ -92,7 +91,7 @@ def _compared(study: Study, dh: DhTable, posing: Posing, rid: str, pid: str | No
                 tuple(c) for n in range(len(dh.twisted)) for c in combinations(dh.twisted, n + 1)
             ]
         matches.append(_match(study, dh, convention, joints, places, flips))
-    return _finding(study, posing, rid, pid, [label for _, label in named], places, matches)
+    return _judged(study, posing, rid, pid, [label for _, label in named], places, matches)
 
 
 def _joints(study: Study, posing: Posing) -> Joints:
@@ -173,7 +172,7 @@ def _misses(near: tuple[Proximity, ...], slack: tuple[float, ...]) -> bool:
     return any(n.lower > s for n, s in zip(near, slack, strict=True))
 
 
-def _finding(
+def _judged(
     study: Study,
     posing: Posing,
     rid: str,
@@ -227,15 +226,11 @@ def _finding(
         rule="TG601",
         severity=severity,
         verdict=verdict,
-        scope=Scope.ALL,
-        evidence=Evidence.NONE,
         basis=Basis.KINEMATICS,
-        claim=None,
         problem=pid,
         reading=rid,
         printed="; ".join(dict.fromkeys(place.where for _, place in places)),
         computed=f"farthest position, as near as it gets: {worst}",
-        gap=None,
         message=message,
     )
 
@@ -265,18 +260,4 @@ def _up(metres: float) -> str:
 
 
 def _not_checkable(rid: str | None, message: str) -> Finding:
-    return Finding(
-        rule="TG601",
-        severity=Severity.INFO,
-        verdict=ClaimVerdict.NOT_CHECKABLE,
-        scope=Scope.NO,
-        evidence=Evidence.NONE,
-        basis=Basis.KINEMATICS,
-        claim=None,
-        problem=None,
-        reading=rid,
-        printed=None,
-        computed=None,
-        gap=None,
-        message=message,
-    )
+    return Finding(rule="TG601", basis=Basis.KINEMATICS, reading=rid, message=message)
