@@ -634,7 +634,7 @@ def test_a_full_disk(arguments: tuple[str, ...]) -> None:
 def test_interrupted() -> None:
     # CasADi swallows a KeyboardInterrupt and would go on with a solve that was cut short.
     started = (
-        "import sys, trajgap.compare.cli.commands as c; from trajgap.compare.cli import main\n"
+        "import sys, trajgap.compare.cli.solving as c; from trajgap.compare.cli import main\n"
         "solve = c.solve_per_joint\n"
         "def slow(*a, **k):\n"
         "    print('solving', file=sys.stderr, flush=True)\n"
@@ -662,7 +662,7 @@ def test_interrupted_inside_a_library(run: Run, monkeypatch: pytest.MonkeyPatch)
     def stop(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("trajgap.compare.cli.commands.solve_per_joint", stop)
+    monkeypatch.setattr("trajgap.compare.cli.solving.solve_per_joint", stop)
     ended = run("solve", "mine.toml", "--out", "answer.json")
     assert ended == (130, "", "trajgap: interrupted\n")
     assert sorted(p.name for p in Path().iterdir()) == ["mine.toml"]
@@ -672,7 +672,7 @@ def test_a_fault_of_ours_is_told_apart(run: Run, monkeypatch: pytest.MonkeyPatch
     def fail(*_: object, **__: object) -> None:
         raise ZeroDivisionError
 
-    monkeypatch.setattr("trajgap.compare.cli.commands.solve_per_joint", fail)
+    monkeypatch.setattr("trajgap.compare.cli.solving.solve_per_joint", fail)
     code, out, err = run("solve", "mine.toml", "--out", "answer.json")
     assert (code, out) == (70, "")
     assert err.endswith("trajgap: a fault of trajgap itself, please report the lines above\n")
