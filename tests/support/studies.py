@@ -28,7 +28,7 @@ class Reworded(Study):
         """Whether the changed case poses the very same problem, digit by digit."""
         if (pid, rid) not in self.original.pairs:
             return False
-        one, other = (s.case.posing(pid, rid) for s in (self, self.original))
+        one, other = (s.case.statement(pid, rid) for s in (self, self.original))
         exact = stated_exactly(one, None) == stated_exactly(other, None)
         return exact and pickle.dumps(one.problem()) == pickle.dumps(other.problem())
 
