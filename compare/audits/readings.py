@@ -10,7 +10,6 @@ import numpy as np
 
 from ...problem import QUANTITIES, Verdict, extrema, fit
 from ...problem.cases import AnyClaim
-from ...problem.curves import segment_of
 from ..documents import (
     Excess,
     Fit,
@@ -57,7 +56,7 @@ def readings_summary(
     outcomes = tuple(_outcome(study, one) for one in waterfalls)
     why = None
     if not outcomes:
-        missing = study.case.posing().waypoints.not_printed
+        missing = study.case.statement().waypoints.not_printed
         why = f"no way-points are printed: {missing}" if missing else "no problem is posed"
     fits = _fits(outcomes)
     least = fits[0].factor if fits else 0.0
@@ -140,10 +139,10 @@ def _excesses(study: Study, claim: AnyClaim, pid: str, rid: str) -> tuple[Excess
     ]
     if not any(p.quantity == "curve" for p in checked.peaks):
         durations = study.case.claim_durations(claim, rid).value
-        trajectory = fit(problem.interpolant, problem.waypoints, durations)
+        trajectory = fit(problem.curve, problem.waypoints, durations)
         over += [
             Excess(
-                segment=segment_of(problem.interpolant, durations, e),
+                segment=problem.curve.segment_of(durations, e),
                 joint=problem.joints[j],
                 quantity=Limited(name),
                 ratio=float(abs(e.value) / limit),

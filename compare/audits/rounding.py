@@ -8,7 +8,6 @@ import numpy as np
 
 from ...nlp.enclosure import (
     EPS,
-    Array,
     Ball,
     Place,
     bound_by_bisection,
@@ -16,7 +15,16 @@ from ...nlp.enclosure import (
     linear_program,
     rows_at,
 )
-from ...problem import TOLERANCE, Check, Problem, TrajgapError, Verdict, check, peak_gradients
+from ...problem import (
+    TOLERANCE,
+    Array,
+    Check,
+    Problem,
+    TrajgapError,
+    Verdict,
+    check,
+    peak_gradients,
+)
 from ..documents import Rounding
 
 _MOST_STEPS = 12

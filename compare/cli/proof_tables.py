@@ -9,7 +9,14 @@ from fractions import Fraction
 from rich.console import RenderableType
 
 from ...nlp import Outcome
-from ..documents import CertifiedResult, CertifyDocument, VerifyDocument, Why
+from ..documents import (
+    UNNAMED,
+    AskedQuestion,
+    CertifiedResult,
+    CertifyDocument,
+    VerifyDocument,
+    Why,
+)
 from .table import Columns, line, plain
 
 _PROVED: dict[str, str] = {Outcome.INFEASIBLE: "infeasible: proved", Outcome.OPEN: "nothing proved"}
@@ -55,6 +62,25 @@ def _bound(exact: str | None, side: int) -> str:
 
 
 def verified(document: VerifyDocument) -> str:
-    """Text of the `verify` document: one line a file, whatever the window."""
-    lines = (f"{one.file}: {one.worth}: {one.reason}" for one in document.verified)
-    return "".join(f"{plain(one)}\n" for one in lines)
+    """Text of the `verify` document: a line a file, whatever the window, and what was asked."""
+    lines = []
+    for one in document.verified:
+        lines.append(f"{one.file}: {one.worth}: {one.reason}")
+        if one.problem_hash is not None:
+            lines.append(f"    {_asked(one.question)}; problem sha256 {one.problem_hash}")
+        if isinstance(one.in_case, AskedQuestion):
+            lines.append(f"    the same problem as in the case: {_asked(one.in_case)}")
+        elif one.in_case.reason not in (UNNAMED, one.worth):
+            lines.append(f"    not in the case: {one.in_case.reason}")
+    return "".join(f"{plain(line)}\n" for line in lines)
+
+
+def _asked(question: AskedQuestion) -> str:
+    named = {
+        "case": question.case,
+        "problem": question.problem,
+        "reading": question.reading,
+        "joint": question.joint,
+    }
+    parts = (f"{key} {value}" for key, value in named.items() if value is not None)
+    return ", ".join(parts) or "a problem without a case"

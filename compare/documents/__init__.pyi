@@ -26,7 +26,15 @@ from .listed import CasesDocument, ListedCase, cases_document
 from .shown import ShowDocument, show_document
 from .side_by_side import Excess, Fit, ReadingOutcome, ReadingsSummary, Tally
 from .solved import ActiveLimit, Answer, SolvedJoint, SolveDocument, SolveResult, solve_result
-from .verified import VerifiedFile, VerifyDocument, verify_document, worth
+from .verified import (
+    UNNAMED,
+    AskedQuestion,
+    JudgedFile,
+    VerifiedFile,
+    VerifyDocument,
+    verify_document,
+    worth,
+)
 from .vocabulary import (
     RULES,
     TERMS,
@@ -60,9 +68,11 @@ __all__ = [
     "TIMES",
     "UNCERTIFIED",
     "UNITS",
+    "UNNAMED",
     "VOCABULARY",
     "ActiveLimit",
     "Answer",
+    "AskedQuestion",
     "AuditDocument",
     "AuditedCase",
     "Basis",
@@ -86,6 +96,7 @@ __all__ = [
     "Instance",
     "InstanceUnderReading",
     "Judged",
+    "JudgedFile",
     "Judgement",
     "Keeping",
     "KnownOptimum",

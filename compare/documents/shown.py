@@ -9,10 +9,10 @@ from pydantic.json_schema import JsonSchemaValue
 
 from ...problem import Case
 from ...problem.cases import (
-    Algorithm,
+    AlgorithmBlock,
     AnyClaim,
     Assumption,
-    FamilyBlock,
+    InstancesBlock,
     NotCheckable,
     ProblemBlock,
     Reading,
@@ -72,8 +72,8 @@ class ShowDocument(Document):
     assumptions: tuple[
         Annotated[SkipValidation[Assumption], _WRITTEN, _keys("id", "text", "choice")], ...
     ]
-    algorithms: tuple[Annotated[SkipValidation[Algorithm], _WRITTEN, _keys("id")], ...]
-    families: tuple[Annotated[SkipValidation[FamilyBlock], _WRITTEN, _keys("id")], ...]
+    algorithms: tuple[Annotated[SkipValidation[AlgorithmBlock], _WRITTEN, _keys("id")], ...]
+    families: tuple[Annotated[SkipValidation[InstancesBlock], _WRITTEN, _keys("id")], ...]
     tables: tuple[Annotated[SkipValidation[Table], _WRITTEN, _keys("id")], ...]
     not_checkable: tuple[Annotated[SkipValidation[NotCheckable], _WRITTEN, _keys("id")], ...]
 
@@ -116,7 +116,7 @@ def show_document(
         claims=tuple(c for c in case.claims if c.problem is None or c.problem in problems),
         assumptions=case.assumptions,
         algorithms=case.algorithms,
-        families=case.families,
+        families=case.instances,
         tables=case.tables,
         not_checkable=case.not_checkable,
     )

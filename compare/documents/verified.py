@@ -3,11 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import asdict
 
-from ...nlp import Subject, Verdict
+from ...verify import CertificateVerdict, CertifiedQuestion, Subject
 from .certified import outwards
-from .entry import Document, Entry, OrWhy
+from .entry import Document, Entry, OrWhy, Why
 from .vocabulary import Worth
+
+UNNAMED = "no case was named"
+"""Why a certificate is compared with no case."""
+
+JudgedFile = tuple[str, CertificateVerdict, CertifiedQuestion | str | None]
+"""A file, its verdict, and the question of a case that it is about, or why there is none; None
+where no case was named."""
+
+
+class AskedQuestion(Entry):
+    """Where a problem comes from."""
+
+    case: str | None
+    problem: str | None
+    reading: str | None
+    joint: str | None
+    """Null for all joints together."""
+    case_sha256: str | None
+    """Of the case file."""
 
 
 class VerifiedFile(Entry):
@@ -23,6 +43,12 @@ class VerifiedFile(Entry):
     """s, rounded down."""
     upper: OrWhy[float]
     """s, rounded up."""
+    question: AskedQuestion
+    """As the file names it; nothing proves it."""
+    problem_hash: str | None
+    """SHA-256 of the problem in the file, computed anew."""
+    in_case: OrWhy[AskedQuestion]
+    """With `--case`: the question of the case that has exactly this problem."""
 
 
 class VerifyDocument(Document):
@@ -31,13 +57,12 @@ class VerifyDocument(Document):
     verified: tuple[VerifiedFile, ...]
 
 
-def verify_document(verdicts: Iterable[tuple[str, Verdict]]) -> VerifyDocument:
+def verify_document(verdicts: Iterable[JudgedFile]) -> VerifyDocument:
     """Document of `verify`: one verdict per file.
 
     Parameters
     ----------
-    verdicts : iterable of (str, Verdict)
-        By file.
+    verdicts : iterable of JudgedFile
 
     Returns
     -------
@@ -46,15 +71,19 @@ def verify_document(verdicts: Iterable[tuple[str, Verdict]]) -> VerifyDocument:
     return VerifyDocument(verified=tuple(_verified(*one) for one in verdicts))
 
 
-def worth(verdict: Verdict) -> Worth:
+def worth(verdict: CertificateVerdict) -> Worth:
     """The words for a verdict."""
+    if verdict.out_of_time:
+        return Worth.OUT_OF_TIME
     if not verdict.proves:
         return Worth.REFUSED
     return Worth.ALTERED if verdict.altered else Worth.PROVES
 
 
-def _verified(file: str, verdict: Verdict) -> VerifiedFile:
-    why = "none is claimed" if verdict.proves else "refused"
+def _verified(
+    file: str, verdict: CertificateVerdict, about: CertifiedQuestion | str | None
+) -> VerifiedFile:
+    why = "none is claimed" if verdict.proves else str(worth(verdict))
     return VerifiedFile(
         file=file,
         worth=worth(verdict),
@@ -63,4 +92,11 @@ def _verified(file: str, verdict: Verdict) -> VerifiedFile:
         infeasible=verdict.infeasible,
         lower=outwards(verdict.lower, why, -1),
         upper=outwards(verdict.upper, why, 1),
+        question=_asked(verdict.question),
+        problem_hash=verdict.problem_hash,
+        in_case=_asked(about) if isinstance(about, CertifiedQuestion) else Why(about or UNNAMED),
     )
+
+
+def _asked(question: CertifiedQuestion) -> AskedQuestion:
+    return AskedQuestion(**asdict(question))

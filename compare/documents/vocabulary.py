@@ -11,8 +11,9 @@ from dataclasses import dataclass
 from enum import StrEnum
 from itertools import pairwise
 
-from ...nlp import Evidence, Outcome, Status, Subject
+from ...nlp import Evidence, Outcome, Status
 from ...problem import Coupling, Verdict
+from ...verify import Subject
 
 
 class Severity(StrEnum):
@@ -133,6 +134,8 @@ class Worth(StrEnum):
     """Its claim is proved, but a seal does not match: this is not what was written."""
     REFUSED = "refused"
     """Its claim is not proved."""
+    OUT_OF_TIME = "out of time"
+    """The time was over before anything was decided."""
 
 
 class Uncovered(StrEnum):

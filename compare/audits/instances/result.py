@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....nlp import Evidence
-from ....problem.cases import FamilyBlock
+from ....problem.cases import InstancesBlock
 from ...documents import Effect, Procedure
 
 Array = NDArray[np.float64]
@@ -133,7 +133,7 @@ class InstancesResult:
 
     Attributes
     ----------
-    block : FamilyBlock
+    block : InstancesBlock
     slower, faster : Procedure
         The one that is said to be slower, and the paper's.
     printed : tuple of float or None
@@ -145,7 +145,7 @@ class InstancesResult:
         By step, instance and reading, in this order; failures included.
     """
 
-    block: FamilyBlock
+    block: InstancesBlock
     slower: Procedure
     faster: Procedure
     printed: tuple[float, float] | None

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....problem import Measured, to_si
-from ....problem.cases import Cartesian, Posing
+from ....problem.cases import Cartesian, Statement
 from ....problem.robots import Chain, Convention, DhTable, JointKind, Proximity, proximity
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..study import Study
@@ -60,16 +60,16 @@ def judge_kinematics(study: Study) -> Iterator[Finding]:
         yield _not_checkable(None, "Positions of the end are printed, but no table of the robot.")
         return
     for reading in study.readings:
-        posed: dict[object, tuple[str, Posing]] = {}
+        posed: dict[object, tuple[str, Statement]] = {}
         for pid, rid in study.pairs:
-            posing = case.posing(pid, rid)
+            posing = case.statement(pid, rid)
             if rid == reading:
                 posed.setdefault((posing.waypoints.points, posing.units.position), (pid, posing))
         for pid, posing in posed.values():
             yield _compared(study, dh, posing, reading, pid if len(posed) > 1 else None)
 
 
-def _compared(study: Study, dh: DhTable, posing: Posing, rid: str, pid: str | None) -> Finding:
+def _compared(study: Study, dh: DhTable, posing: Statement, rid: str, pid: str | None) -> Finding:
     printed = study.case.chain()
     assert printed is not None
     joints = _joints(study, posing)
@@ -94,7 +94,7 @@ def _compared(study: Study, dh: DhTable, posing: Posing, rid: str, pid: str | No
     return _judged(study, posing, rid, pid, [label for _, label in named], places, matches)
 
 
-def _joints(study: Study, posing: Posing) -> Joints:
+def _joints(study: Study, posing: Statement) -> Joints:
     """Angles of every printed joint: those of the problems, and those in columns of their own."""
     rows = posing.waypoints.points
     found = {
@@ -107,7 +107,7 @@ def _joints(study: Study, posing: Posing) -> Joints:
     return found
 
 
-def _places(study: Study, posing: Posing) -> list[tuple[int | None, Cartesian]]:
+def _places(study: Study, posing: Statement) -> list[tuple[int | None, Cartesian]]:
     """Printed positions with the index of their way-point; None where there is none."""
     labels, count = posing.waypoints.labels, len(posing.waypoints.points)
     places = study.case.cartesian
@@ -174,7 +174,7 @@ def _misses(near: tuple[Proximity, ...], slack: tuple[float, ...]) -> bool:
 
 def _judged(
     study: Study,
-    posing: Posing,
+    posing: Statement,
     rid: str,
     pid: str | None,
     printed: list[str],

@@ -93,7 +93,7 @@ def _compared(
 
 
 def _unit(study: Study) -> str:
-    return study.case.posing().units.time or "s"
+    return study.case.statement().units.time or "s"
 
 
 def _sums(study: Study) -> Iterator[Finding]:
@@ -317,7 +317,7 @@ def _significant(number: Printed) -> str:
 def _repeated_digits(study: Study) -> Iterator[Finding]:
     """Way-point digits that stand in another printed column too."""
     case = study.case
-    posing = case.posing()
+    posing = case.statement()
     for j, label in zip(posing.joints, posing.labels, strict=False):
         entries = [row[j] for row in posing.waypoints.points]
         for group in _column_groups([*case.columns, *case.cartesian]):
