@@ -8,6 +8,7 @@ from .objective import Bounds, Counted, DeathPenalty, Objective
 from .registry import KINDS, from_settings, open_choices
 from .repair import Handling, Stretch
 from .result import JointRuns, Run
+from .workers import in_processes
 
 __all__ = [
     "GA",
@@ -34,6 +35,7 @@ __all__ = [
     "differential_evolution",
     "dual_annealing",
     "from_settings",
+    "in_processes",
     "one_by_one",
     "open_choices",
     "run",

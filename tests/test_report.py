@@ -17,7 +17,7 @@ from trajgap.compare.audits.readings import Keeping
 from trajgap.compare.pages.blocks import Cell, Drawn, Grid, Page, Prose, Section, Terms, slug
 from trajgap.compare.pages.markdown_text import markdown, plain
 from trajgap.compare.pages.writer import MARK, case_page
-from trajgap.problem import Case, TrajgapError
+from trajgap.problem import Case, TrajgapError, file_name
 from trajgap.problem.cases.load import check_case
 
 ID = "irb460-pso-353"
@@ -318,9 +318,9 @@ def test_a_shipped_case_shows_each_joint_by_itself() -> None:
     page = case_page(report.cases[0])
     names = [p.name for p in page.pictures]
     assert [n for n in names if "-joint-" in n] == [
-        f"landscape-six-joints-joint-{j}" for j in range(1, 7)
+        file_name("landscape", "six-joints", "joint", str(j)) for j in range(1, 7)
     ]
-    assert "motion-six-joints-joints-table-2" in names
+    assert file_name("motion", "six-joints", "joints", "table-2") in names
     text = markdown(page)
     study = report.cases[0].study
     for joint in "123456":

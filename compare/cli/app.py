@@ -33,6 +33,7 @@ Exit codes:
   130  interrupted
 """
 BAD_INPUT, FAULT, CLOSED_PIPE = 2, 70, 141
+"""Exit codes: as typer's own for bad options; EX_SOFTWARE of BSD; 128 and the number of SIGPIPE."""
 
 Source = Annotated[
     str, typer.Argument(metavar="CASE|FILE", help="Id of a published case, or a case file.")
@@ -347,8 +348,13 @@ def _settle() -> None:
 
 
 def _run(arguments: Sequence[str]) -> int:
+    from ...problem import TrajgapError, check_name
+
     command = typer.main.get_command(app)
     try:
+        for argument in arguments:
+            # Nothing that is printed or written could state such a name.
+            check_name(argument)
         with command.make_context("trajgap", list(arguments)) as context:
             result = command.invoke(context)
             return result if isinstance(result, int) else 0
@@ -363,8 +369,6 @@ def _run(arguments: Sequence[str]) -> int:
             return _fail(f"{str(usage()).rstrip('.')}; see `{about} --help`", BAD_INPUT)
         if isinstance(error, OSError) and error.filename is None:
             return _unwritten(error)
-        from ...problem import TrajgapError
-
         if isinstance(error, TrajgapError):
             return _fail(str(error), BAD_INPUT)
         traceback.print_exc()
@@ -376,7 +380,7 @@ def _unwritten(error: OSError) -> int:
 
 
 def _fail(message: str, code: int) -> int:
-    line = " ".join(message.split())
-    printable = "".join(c if c.isprintable() else "?" for c in line)
-    print(f"trajgap: {printable}", file=sys.stderr)
+    from ...problem import visible
+
+    print(f"trajgap: {visible(' '.join(message.split()))}", file=sys.stderr)
     return code

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import signal
 import threading
 from collections.abc import Callable, Iterator, Sequence
@@ -35,23 +34,34 @@ from ...nlp.proofs import (
     read_state,
     state_document,
 )
-from ...problem import Case, CaseError, Coupling, TrajgapError
+from ...problem import (
+    Case,
+    CaseError,
+    Coupling,
+    TrajgapError,
+    check_regular,
+    file_name,
+    read_regular,
+)
 from ..documents import certify_document, certify_result, verify_document
 from . import proof_tables as cli_proofs
 from .input import Posed, naming, read_case, select
 from .output import (
     Steps,
+    check_certificates,
     emit,
     json_text,
-    new_file,
+    new_output,
     progress,
-    replace_file,
+    replace_output,
     say,
 )
 
 CERTIFICATE_FOLDER = Path("trajgap-certificates")
 NOT_PROVED = 3
 """Exit code where an interval is wider than asked for, or nothing is proved."""
+_LARGEST = 64_000_000
+"""Largest certificate or state that is looked at before it is replaced, bytes."""
 _SETTLED = (Outcome.CERTIFIED, Outcome.INFEASIBLE)
 
 
@@ -88,11 +98,11 @@ def certify_case(
     if not 0 <= gap < 1:
         raise CaseError(source, "--gap", f"{gap:g} is no relative width; give 0 or more, below 1")
     if folder is not None:
-        _check_folder(folder)
+        check_certificates(folder)
         _check_files(folder, asked)
     results: list[dict[str, Any]] = []
     unsettled, stop = False, _Stop()
-    with new_file(out) as write:
+    with new_output(out) as write:
         with progress("certify", len(asked)) as step, naming(case.file), stop.listening():
             for one in asked:
                 if stop.asked:
@@ -173,17 +183,7 @@ def _checked(found: Certified) -> tuple[Certified, str | None]:
 
 
 def _file(folder: Path, name: str, kind: str = "") -> Path:
-    plain = "".join(c if c.isalnum() or c in "-_." else "_" for c in name)
-    return folder / f"{plain}{kind}.json"
-
-
-def _check_folder(folder: Path) -> None:
-    """Find out before computing whether the folder can be made and written to."""
-    there = next(p for p in (folder, *folder.absolute().parents) if os.path.lexists(p))
-    if not there.is_dir():
-        raise CaseError(str(there), "--certificates", "is no folder; name another")
-    if not os.access(there, os.W_OK | os.X_OK):
-        raise CaseError(str(there), "--certificates", "cannot be written to; name another folder")
+    return folder / f"{file_name(name)}{kind}.json"
 
 
 def _check_files(folder: Path, asked: Sequence[Question]) -> None:
@@ -197,8 +197,8 @@ def _check_files(folder: Path, asked: Sequence[Question]) -> None:
 
 def _read(path: Path) -> dict[str, Any]:
     try:
-        document = json.loads(path.read_text("utf-8"))
-    except (OSError, ValueError, RecursionError):
+        document = json.loads(read_regular(path, _LARGEST, "name another folder"))
+    except (ValueError, RecursionError):
         return {}
     return document if isinstance(document, dict) else {}
 
@@ -212,11 +212,11 @@ def _written(
     certificate, state = _file(folder, name), _file(folder, name, ".state")
     document = state_document(found)
     if document is not None:
-        replace_file(state, json.dumps(document, separators=(",", ":")) + "\n")
+        replace_output(state, json.dumps(document, separators=(",", ":")) + "\n")
     if found.proof is not None:
         text = certificate_text(found)
         if not _narrower(certificate, json.loads(text), found):
-            replace_file(certificate, text)
+            replace_output(certificate, text)
     return (
         str(certificate) if found.proof is not None else None,
         str(state) if document is not None else None,
@@ -278,7 +278,9 @@ class _Stop:
 
 def verify_files(files: Sequence[Path], as_json: bool, out: Path | None) -> int:
     """Prove certificates again; 1 if any is refused."""
-    with new_file(out) as write:
+    for path in files:
+        check_regular(path)
+    with new_output(out) as write:
         verdicts: list[tuple[str, Verdict]] = []
         with progress("verify", len(files)) as step:
             for path in files:

@@ -47,14 +47,14 @@ from .input import (
     waypoint_box,
 )
 from .interrupt import unwinding
-from .output import check_folder, emit, json_text, new_file, progress, say
+from .output import check_folder, emit, json_text, new_output, progress, say
 
 AUDIT_FOLDER = Path("trajgap-audit")
 
 
 def cases(as_json: bool, out: Path | None) -> int:
     """List the published cases."""
-    with new_file(out) as write:
+    with new_output(out) as write:
         document = cases_document(read_case(name) for name in published_ids())
         write(json_text(document))
     emit(document, cli_summary.cases, as_json)
@@ -65,7 +65,7 @@ def show(
     source: str, problem: str | None, reading: str | None, as_json: bool, out: Path | None
 ) -> int:
     """Show one case."""
-    with new_file(out) as write:
+    with new_output(out) as write:
         document = show_document(read_case(source), problem, reading)
         write(json_text(document))
     emit(document, cli_summary.show, as_json)
@@ -86,7 +86,7 @@ def check_durations(
     posed = select(case, problem, reading, coupling)
     printed = read_durations(text, case.file)
     boxes = [duration_box(case, one, printed) for one in posed]
-    with new_file(out) as write:
+    with new_output(out) as write:
         results = []
         with progress("check", len(posed)) as step, naming(case.file):
             for one, box in zip(posed, boxes, strict=True):
@@ -131,7 +131,7 @@ def solve_case(
     """Solve each selected problem and reading."""
     case = read_case(source)
     posed = select(case, problem, reading, coupling)
-    with new_file(out) as write:
+    with new_output(out) as write:
         results = []
         with progress("solve", len(posed)) as step, naming(case.file):
             for one in posed:

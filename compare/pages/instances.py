@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...problem import file_name
 from ..audits import CaseAudit, Study
 from ..audits.instances import STARTS, Effect, FamilyResult, distribution, percent_range
 from ..audits.rules import HANDLED, attributed, placed
@@ -49,7 +50,7 @@ def _family(study: Study, result: FamilyResult) -> list[Block]:
             "note",
         ),
         Terms(_design(study, result)),
-        Drawn(f"family-{block.id}", svg(picture), title, caption),
+        Drawn(file_name("family", block.id), svg(picture), title, caption),
         Grid(_COLUMNS, _rows(result, None), "Reductions of the total, in %"),
         Folded(
             "Reductions by step length",

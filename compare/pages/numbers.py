@@ -9,7 +9,7 @@ from decimal import ROUND_FLOOR, Decimal
 import numpy as np
 
 from ...nlp import Evidence, PerJointSolution, Solution
-from ...problem import Coupling
+from ...problem import Coupling, file_name
 from ...problem.cases import DurationsClaim
 from ..audits import CaseAudit, Step, Study, Waterfall
 from ..audits.rules import reference_of
@@ -60,7 +60,7 @@ def _drawn(fall: Waterfall) -> tuple[Plain, ...]:
     caption = "Bars start at 0; best known values are hatched, certified ones solid." + (
         f" The first bar is claim {fall.claim}." if fall.claim else ""
     )
-    name = f"waterfall-{fall.problem}-{fall.reading}"
+    name = file_name("waterfall", fall.problem, fall.reading)
     return Drawn(name, svg(picture), title, caption), _steps(fall)
 
 

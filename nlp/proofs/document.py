@@ -10,7 +10,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from ...problem import Curve, Interpolant, TrajgapError
+from ...problem import Curve, Interpolant, TrajgapError, replace_file
 from ...problem.curves import StretchedUniformBSpline, TimedUniformBSpline, end_conditions
 from ..verify import FORMAT, Subject, seal
 from .exact import ExactProblem, Real, decimal
@@ -160,7 +160,7 @@ def write_certificate(certified: Certified, path: str | Path) -> int:
         If nothing is proved.
     """
     text = certificate_text(certified)
-    Path(path).write_text(text, encoding="utf-8")
+    replace_file(Path(path), text)
     return len(text.encode())
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ...problem import TrajgapError
+from ...problem import TrajgapError, check_regular
 from ..verify import seal
 from .document import problem_document, question
 from .exact import ExactProblem
@@ -80,6 +80,7 @@ def read_state(path: str | Path) -> StateFile:
         alone: `certify` proves everything in it again.
     """
     name = str(path)
+    check_regular(Path(path))
     try:
         document = json.loads(Path(path).read_text("utf-8"))
     except OSError as error:
