@@ -20,6 +20,13 @@ KINDS: tuple[str, ...] = tuple(_RECORDS)
 """Kinds of algorithm that are implemented."""
 
 
+MOST_COUNT = 100_000
+"""Largest whole number in the settings of an algorithm, such as its population or iterations.
+
+A hundred times what papers print; a population of that size still fits into memory.
+"""
+
+
 def _record(kind: str) -> Callable[..., Algorithm[Any]]:
     if kind not in _RECORDS:
         raise TrajgapError(f"algorithm kind: {kind!r} is unknown; {nearest(str(kind), KINDS)}")
@@ -56,6 +63,9 @@ def from_settings(kind: str, settings: Mapping[str, object]) -> Algorithm[Any]:
     for key in settings:
         if key not in known:
             raise TrajgapError(f"{kind}: {key}: unknown setting; {nearest(str(key), known)}")
+    for key, value in settings.items():
+        if isinstance(value, int) and value > MOST_COUNT:
+            raise TrajgapError(f"{kind}: {key}: {value} is more than {MOST_COUNT}; give less")
     return record(**settings)
 
 

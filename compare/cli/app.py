@@ -35,6 +35,9 @@ Exit codes:
 BAD_INPUT, FAULT, CLOSED_PIPE = 2, 70, 141
 """Exit codes: as typer's own for bad options; EX_SOFTWARE of BSD; 128 and the number of SIGPIPE."""
 
+MOST = 10_000
+"""Largest number of starts, seeds and workers: what they make is kept in memory."""
+
 Source = Annotated[
     str, typer.Argument(metavar="CASE|FILE", help="Id of a published case, or a case file.")
 ]
@@ -130,7 +133,7 @@ def solve(
     problem: ProblemId = None,
     reading: ReadingId = None,
     coupling: Coupled = None,
-    starts: Annotated[int, typer.Option(min=1, help="Starts of the solver.")] = 4,
+    starts: Annotated[int, typer.Option(min=1, max=MOST, help="Starts of the solver.")] = 4,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the random starts.")] = 0,
     certify: Annotated[
         bool, typer.Option("--certify", help="Prove an interval of each optimum instead.")
@@ -230,11 +233,12 @@ def audit(
     ] = None,
     problem: ProblemId = None,
     reading: ReadingId = None,
-    seeds: Annotated[int, typer.Option(min=2, help="Seeds of each replay.")] = 30,
+    seeds: Annotated[int, typer.Option(min=2, max=MOST, help="Seeds of each replay.")] = 30,
     workers: Annotated[
         int,
         typer.Option(
             min=1,
+            max=MOST,
             help="Processes for the replays; the result does not depend on it. Starting one takes "
             "longer than a few dozen short replays.",
         ),
