@@ -1,4 +1,4 @@
-"""Bounds over all motions for the shipped cases: the table of docs/certificates-family-free.md.
+"""Bounds over all motions for the shipped cases: the table of docs/certificates-any-curve.md.
 
 Without options each problem is certified and its certificate written beside the others; problems
 that differ in the declared curve alone share one. With --convergence the effort for several gaps
@@ -39,10 +39,10 @@ def problems() -> Iterator[tuple[str, ExactProblem, float]]:
         case = load_case(case_id)
         for problem in case.problems:
             for reading in case.readings:
-                posing = case.posing(problem.id, reading.id)
-                if not posing.posed:
+                statement = case.statement(problem.id, reading.id)
+                if not statement.complete:
                     continue
-                exact = printed_problem(posing)
+                exact = printed_problem(statement)
                 asked = json.dumps(question(problem_document(exact), Subject.ANY), sort_keys=True)
                 if missing(exact) is None and asked not in seen:
                     seen.add(asked)

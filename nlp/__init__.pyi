@@ -36,10 +36,8 @@ from .proofs import (
 )
 from .proofs.any_curve import FamilyFree, certify_family_free, family_free
 from .retiming import Retiming, retime, retime_joints
-from .verify import FORMAT, Subject, Verdict, verify
 
 __all__ = [
-    "FORMAT",
     "KKT",
     "Active",
     "Certified",
@@ -57,8 +55,6 @@ __all__ = [
     "Solution",
     "Status",
     "Structure",
-    "Subject",
-    "Verdict",
     "build",
     "certificate",
     "certify",
@@ -76,7 +72,6 @@ __all__ = [
     "solve_per_joint",
     "stated_exactly",
     "structure_of",
-    "verify",
     "weakest",
     "with_certificate",
     "with_certificates",

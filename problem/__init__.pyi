@@ -1,3 +1,4 @@
+from .arrays import Array
 from .cases import (
     Case,
     CaseFile,
@@ -84,7 +85,7 @@ from .robots import (
     link_frames,
     proximity,
     sample_workspace,
-    waypoint_family,
+    waypoint_sequences,
 )
 from .units import CHOICES, Measured, Scale, scale, to_si
 
@@ -93,6 +94,7 @@ __all__ = [
     "LONGEST_NAME",
     "QUANTITIES",
     "TOLERANCE",
+    "Array",
     "CartesianLine",
     "Case",
     "CaseError",
@@ -180,5 +182,5 @@ __all__ = [
     "uniform_cubic_b_spline",
     "up",
     "visible",
-    "waypoint_family",
+    "waypoint_sequences",
 ]

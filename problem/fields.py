@@ -219,9 +219,11 @@ OneOrEachUpperPosition = Annotated[
     Discriminator(_form),
 ]
 
-Row = Annotated[tuple[Number, ...], Field(min_length=1, max_length=MOST_WAYPOINTS + 2)]
-"""Two more than way-points: control vertices are as many."""
-Rows = Annotated[tuple[Row, ...], Field(min_length=1, max_length=MOST_WAYPOINTS)]
+PrintedRows = Annotated[
+    tuple[Annotated[tuple[Number, ...], Field(min_length=1, max_length=MOST_WAYPOINTS + 2)], ...],
+    Field(min_length=1, max_length=MOST_WAYPOINTS),
+]
+"""A table of numbers, no row empty; control vertices are two more than way-points."""
 
 Id = Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9.-]*$")]
 """Lower-case letters, digits, dots and dashes."""

@@ -9,7 +9,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..objective import Array, Bounds, Objective
+from ...problem import Array
+from ..objective import Bounds, Objective
 from ..settings import choice, clean, reject, share, whole
 from .genes import (
     READERS,
@@ -17,8 +18,8 @@ from .genes import (
     Encoding,
     FitnessRule,
     Genetics,
-    Mutated,
     Mutation,
+    MutationUnit,
     elite_kept,
     fitness_values,
     roulette,
@@ -89,7 +90,7 @@ class GA:
         acts on what they stand for.
     mutation : Mutation
         "redraw" or "creep"; not printed. Bits are flipped.
-    mutated : Mutated
+    mutated : MutationUnit
         "gene" or "individual"; not printed.
     mutation_reach : float
         Half-width of "creep" as a share of the range; not printed.
@@ -125,7 +126,7 @@ class GA:
     position_range: tuple[float, float] = (0.1, 2.0)
     crossover: Crossover = Crossover.ARITHMETIC
     mutation: Mutation = Mutation.REDRAW
-    mutated: Mutated = Mutated.GENE
+    mutated: MutationUnit = MutationUnit.GENE
     mutation_reach: float = 0.1
     elite: int = 0
     penalty: float = np.inf

@@ -8,18 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ...problem import QUANTITIES, Interpolant, Problem
+from ...problem import QUANTITIES, Array, Interpolant, Problem
 from ...problem.curves import StretchedUniformBSpline, TimedUniformBSpline
-from .balls import (
-    EPS,
-    Array,
-    Ball,
-    enclose_spline,
-    place_basis,
-    quotient_power,
-    raised,
-)
-from .places import Rows, linear_program, rows_at
+from .balls import EPS, Ball, enclose_spline, place_basis, quotient_power, raised
+from .places import LimitRows, linear_program, rows_at
 from .uniform import centred, covered
 
 MOST_BOXES = 100
@@ -59,7 +51,7 @@ class Place:
 class _MeanValue:
     """The rows' derivatives f over a box: f(centre) + by_duration·Δh + by_waypoint·Δq, in balls."""
 
-    rows: Rows
+    rows: LimitRows
     joint: NDArray[np.int64]
     value: Ball
     by_duration: Ball
@@ -89,7 +81,7 @@ class _MeanValue:
         return np.where(low > 0.0, np.nextafter(low / width, -np.inf), -np.inf)
 
     def moves_where_it_must_not(self) -> NDArray[np.bool_]:
-        """Rows with limit 0 whose derivative is not 0 anywhere in the box, beyond rounding.
+        """LimitRows with limit 0 whose derivative is not 0 anywhere in the box, beyond rounding.
 
         The relative slack of 1e-9 exceeds the few roundings of this sum by far.
         """
@@ -102,13 +94,13 @@ class _MeanValue:
         return found
 
 
-def _mean_value(problem: Problem, h: Ball, q: Ball, more: Rows | None) -> _MeanValue | None:
+def _mean_value(problem: Problem, h: Ball, q: Ball, more: LimitRows | None) -> _MeanValue | None:
     """Enclose f and its gradient.
 
     By the durations the gradient holds over all of the box; by the way-points, in which f is
     linear for fixed durations, it is needed at the central durations only.
     """
-    curve = problem.interpolant
+    curve = problem.curve
     if not isinstance(curve, Interpolant):
         uniform = isinstance(curve, StretchedUniformBSpline | TimedUniformBSpline)
         return _uniform_mean_value(problem, h, q, more) if uniform else None
@@ -152,8 +144,10 @@ def _mean_value(problem: Problem, h: Ball, q: Ball, more: Rows | None) -> _MeanV
     )
 
 
-def _uniform_mean_value(problem: Problem, h: Ball, q: Ball, more: Rows | None) -> _MeanValue | None:
-    curve = problem.interpolant
+def _uniform_mean_value(
+    problem: Problem, h: Ball, q: Ball, more: LimitRows | None
+) -> _MeanValue | None:
+    curve = problem.curve
     assert isinstance(curve, StretchedUniformBSpline | TimedUniformBSpline)
     rows = rows_at(replace(problem, waypoints=q.mid), h.mid)
     rows = rows if more is None else rows + more
@@ -202,7 +196,7 @@ class Bound:
 
 
 def bound_ratio(
-    problem: Problem, lower: Array, upper: Array, waypoints: Ball, more: Rows | None = None
+    problem: Problem, lower: Array, upper: Array, waypoints: Ball, more: LimitRows | None = None
 ) -> Bound:
     """Bound the worst ratio from below over a box of durations and a ball of way-points.
 
@@ -218,7 +212,7 @@ def bound_ratio(
         Durations, s.
     waypoints : Ball, shape (way-points, joints)
         rad.
-    more : Rows, optional
+    more : LimitRows, optional
         Further places, beside the extrema at the centre.
 
     Returns
@@ -237,7 +231,7 @@ def bound_ratio(
 
 def _mean_speed(problem: Problem, lower: Array, upper: Array, waypoints: Ball) -> Bound:
     """Bound from the mean speed between way-points, which some instant attains; any box will do."""
-    breaks = problem.interpolant.waypoint_breaks
+    breaks = problem.curve.waypoint_breaks
     speed = np.where(problem.limits.velocity > 0.0, problem.limits.velocity, np.inf)
     value, place = -np.inf, None
     for w in range(len(breaks) - 1):
@@ -306,7 +300,7 @@ def _weights(form: _MeanValue, some: NDArray[np.int64], remainder: Array) -> Arr
 
 
 def bound_by_bisection(
-    problem: Problem, root: Bound, waypoints: Ball, target: float, more: Rows | None = None
+    problem: Problem, root: Bound, waypoints: Ball, target: float, more: LimitRows | None = None
 ) -> Bound:
     """Bisect the durations, the weakest box first, until the bound exceeds ``target``.
 

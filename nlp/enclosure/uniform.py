@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...problem import Curve
+from ...problem import Array, Curve
 from ...problem.curves import (
     PERM,
     StretchedUniformBSpline,
@@ -15,7 +15,7 @@ from ...problem.curves import (
     clock_matrix,
     shape_matrix,
 )
-from .balls import EPS, Array, Ball, quotient_power
+from .balls import EPS, Ball, quotient_power
 
 _POWERS = 4
 

@@ -10,9 +10,8 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
 
-from ...problem import ClampedBSpline, Curve, Problem, Timing
+from ...problem import Array, ClampedBSpline, Curve, Problem, Timing
 from ...problem.curves import (
     StretchedUniformBSpline,
     TimedUniformBSpline,
@@ -23,12 +22,11 @@ from ...problem.curves import (
     shape_matrix,
 )
 
-Array = NDArray[np.float64]
 Polynomial = list[Any]
 
 
 @dataclass(frozen=True, eq=False)
-class Piece:
+class SymbolicPiece:
     """One polynomial piece of one joint.
 
     Attributes
@@ -50,14 +48,14 @@ class Symbols:
     Attributes
     ----------
     durations, parameters : casadi.SX
-    pieces : list, one entry per joint, of lists of Piece
+    pieces : list, one entry per joint, of lists of SymbolicPiece
     speeds : list of polynomials
         t′ on each piece where time is not linear: must stay positive.
     """
 
     durations: Any
     parameters: Any
-    pieces: list[list[Piece]]
+    pieces: list[list[SymbolicPiece]]
     speeds: list[Polynomial]
 
 
@@ -82,17 +80,17 @@ def _product(a: Polynomial, b: Polynomial) -> Polynomial:
     return out
 
 
-def _in_time(a: Polynomial, width: Any, highest: int) -> Piece:
+def _in_time(a: Polynomial, width: Any, highest: int) -> SymbolicPiece:
     """Piece whose time is linear: derivative r is N_r over the r-th power of its duration."""
     found = [a]
     for _ in range(highest):
         found.append(derived(found[-1]))
-    return Piece(found, lambda r, e: width**r)
+    return SymbolicPiece(found, lambda r, e: width**r)
 
 
 def shape_key(problem: Problem) -> tuple[int, ...]:
     """Segment of each piece of a stretched curve; empty for other kinds."""
-    curve = problem.interpolant
+    curve = problem.curve
     if isinstance(curve, StretchedUniformBSpline) or (
         isinstance(curve, ClampedBSpline) and curve.time is Timing.STRETCHED
     ):
@@ -160,7 +158,7 @@ def _(curve: TimedUniformBSpline, joints: int, highest: int, key: tuple[int, ...
     return Symbols(h, ca.vec(c), pieces, speeds)
 
 
-def _clocked(q: Polynomial, speed: Polynomial, highest: int) -> Piece:
+def _clocked(q: Polynomial, speed: Polynomial, highest: int) -> SymbolicPiece:
     bend = derived(speed)
     found = [q, derived(q)]
     for r in range(1, highest):
@@ -168,7 +166,7 @@ def _clocked(q: Polynomial, speed: Polynomial, highest: int) -> Piece:
         first, second = _product(derived(a), speed), _product(a, bend)
         following = [x - (2 * r - 1) * y for x, y in zip(first, second, strict=True)]
         found.append(following[:3] if r == 1 else following)
-    return Piece(found, lambda r, e: evaluated(speed, e) ** (2 * r - 1) if r else 1)
+    return SymbolicPiece(found, lambda r, e: evaluated(speed, e) ** (2 * r - 1) if r else 1)
 
 
 @numbers.register
@@ -187,7 +185,7 @@ def _(curve: ClampedBSpline, joints: int, highest: int, key: tuple[int, ...]) ->
     average = average_matrix(curve)
     groups = _groups(curve, joints)
     fractions = ca.SX.sym("u", groups, w)
-    pieces: list[list[Piece]] = []
+    pieces: list[list[SymbolicPiece]] = []
     for g in range(max(1, groups)):
         sites = [fractions[g, k] * times[-1] for k in range(w)] if groups else times
         inner = [sum(a * u for a, u in zip(row, sites, strict=True) if a) for row in average]
@@ -239,7 +237,7 @@ def _spline_pieces(
     columns: list[Any],
     p: int,
     highest: int,
-) -> list[list[Piece]]:
+) -> list[list[SymbolicPiece]]:
     knots = [ca.SX(0)] * (p + 1) + inner + [times[-1]] * (p + 1)
     bases = _span_bases(knots, p)
     size, last = len(inner) + p + 1, len(bases) - 1

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...problem import Problem, Verdict, check, evaluate
+from ...problem import Array, Problem, Verdict, check, evaluate
 from .curve_formulation import CompiledCurve, ScaledCurve, follow, packed, scaled_curve
 from .tracking import Local, run
 
 _PASSES = 40
-Array = NDArray[np.float64]
 
 
 def curve_merit(problem: Problem, h: Array) -> tuple[float, Array]:

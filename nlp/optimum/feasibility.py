@@ -23,14 +23,14 @@ def impossible(problem: Problem) -> str | None:
 
 def _limit_zero(problem: Problem) -> str | None:
     moves = np.ptp(problem.waypoints, axis=0) > 0
-    orders = {order for end in end_conditions(problem.interpolant) for order, _ in end}
-    if isinstance(problem.interpolant, Interpolant):
-        orders |= {order for entries in problem.interpolant.prescribed for order, _ in entries}
+    orders = {order for end in end_conditions(problem.curve) for order, _ in end}
+    if isinstance(problem.curve, Interpolant):
+        orders |= {order for entries in problem.curve.prescribed for order, _ in entries}
     for r, quantity in enumerate(QUANTITIES, start=1):
         # A joint that must not accelerate may still glide, unless it is at rest somewhere.
         pinned = all(lower in orders for lower in range(1, r))
         for j in np.flatnonzero(moves & (problem.limits.derivatives[:, r - 1] == 0)):
-            if pinned and problem.interpolant.homogeneous:
+            if pinned and problem.curve.homogeneous:
                 return f"joint {problem.joints[j]} moves, but its {quantity} limit is 0"
     return None
 
@@ -45,9 +45,9 @@ def _outside_range(problem: Problem) -> str | None:
 
 
 def _prescribed_beyond_limit(problem: Problem) -> str | None:
-    if not isinstance(problem.interpolant, Interpolant):
+    if not isinstance(problem.curve, Interpolant):
         return None
-    for b, entries in enumerate(problem.interpolant.prescribed):
+    for b, entries in enumerate(problem.curve.prescribed):
         for order, value in entries:
             if order > 3:
                 continue
@@ -60,7 +60,7 @@ def _prescribed_beyond_limit(problem: Problem) -> str | None:
 
 
 def _too_little_time(problem: Problem) -> str | None:
-    breaks = problem.interpolant.waypoint_breaks
+    breaks = problem.curve.waypoint_breaks
     for w in range(len(breaks) - 1):
         room = float(problem.duration_upper[breaks[w] : breaks[w + 1]].sum())
         distance = np.abs(problem.waypoints[w + 1] - problem.waypoints[w])

@@ -5,10 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import nnls
 
-from ...problem import QUANTITIES, Extremum, Problem, extrema, fit, peak_gradients
+from ...problem import QUANTITIES, Array, Extremum, Problem, extrema, fit, peak_gradients
 from ...problem.curves import segment_of, smooth_order
 
 ACTIVE = 1e-7
@@ -67,11 +66,11 @@ class _Constraint:
 
 
 def _peaks_near_limit(
-    problem: Problem, durations: NDArray[np.float64], nodal: NDArray[np.float64] | None, near: float
+    problem: Problem, durations: Array, nodal: Array | None, near: float
 ) -> list[_Constraint]:
-    trajectory = fit(problem.interpolant, problem.waypoints, durations, nodal)
+    trajectory = fit(problem.curve, problem.waypoints, durations, nodal)
     limits = problem.limits
-    curve = problem.interpolant
+    curve = problem.curve
     every_break = len(curve.waypoint_breaks) == curve.segments + 1
     found: list[_Constraint] = []
     for j, name in enumerate(problem.joints):
@@ -101,8 +100,8 @@ def _peaks_near_limit(
 
 def kkt(
     problem: Problem,
-    durations: NDArray[np.float64],
-    nodal: NDArray[np.float64] | None = None,
+    durations: Array,
+    nodal: Array | None = None,
     active: float = ACTIVE,
 ) -> KKT:
     """Optimality conditions of min Σh over durations (and free nodal derivatives).
@@ -122,7 +121,7 @@ def kkt(
     """
     n, total = problem.segments, float(durations.sum())
     joints = problem.waypoints.shape[1]
-    free = problem.interpolant.free
+    free = problem.curve.free
     rows = _peaks_near_limit(problem, durations, nodal, active)
     points = [c.extremum for c in rows if c.extremum is not None]
     gradients = peak_gradients(problem, durations, points, nodal)

@@ -6,10 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from enum import StrEnum
 
-import numpy as np
-from numpy.typing import NDArray
-
-from ...problem import Check, Problem
+from ...problem import Array, Check, Problem
 from .optimality import Active
 
 
@@ -59,7 +56,7 @@ class Solution:
         The reason, where the status needs one.
     durations : ndarray, shape (segments,), or None
     nodal : ndarray, shape (free, joints), or None
-        Free derivatives of an under-determined interpolant.
+        Free derivatives of an under-determined curve.
     check : Check or None
         The checker's verdict on the durations.
     infimum : float or None
@@ -80,8 +77,8 @@ class Solution:
     problem: Problem
     status: Status
     why: str | None = None
-    durations: NDArray[np.float64] | None = None
-    nodal: NDArray[np.float64] | None = None
+    durations: Array | None = None
+    nodal: Array | None = None
     check: Check | None = None
     infimum: float | None = None
     lower_bound: float | None = None

@@ -8,9 +8,9 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ...problem import Interpolant, Problem, TrajgapError, Verdict, check, fit
+from ...problem import Array, Interpolant, Problem, TrajgapError, Verdict, check, fit
 from ...problem.curves import coefficient_gradient, segment_peaks
 from .curve_formulation import compiled_curve, curve_structure
 from .curve_symbols import shape_key
@@ -132,9 +132,9 @@ def _solve_moving(
 
 def _search(
     problem: Problem, form: Form | None
-) -> tuple[Callable[[NDArray[np.float64], float], list[Local]], float]:
+) -> tuple[Callable[[Array, float], list[Local]], float]:
     """Local search from starts above a floor, and the time its build took, s."""
-    if isinstance(problem.interpolant, Interpolant):
+    if isinstance(problem.curve, Interpolant):
         build_ = compiled(structure_of(problem, form))
         return partial(_multistart, problem, build_), build_.build_seconds
     built = compiled_curve(curve_structure(problem))
@@ -142,15 +142,13 @@ def _search(
 
 
 def _reduced(problem: Problem, form: Form | None) -> bool:
-    declared = isinstance(problem.interpolant, Interpolant)
+    declared = isinstance(problem.curve, Interpolant)
     return declared and structure_of(problem, form).form is Form.REDUCED
 
 
-def _multistart(
-    problem: Problem, build_: Compiled, points: NDArray[np.float64], floor: float
-) -> list[Local]:
+def _multistart(problem: Problem, build_: Compiled, points: Array, floor: float) -> list[Local]:
     """Local optima of all starts; the same coarse solution is tracked only once."""
-    tracked: list[tuple[NDArray[np.float64], Local]] = []
+    tracked: list[tuple[Array, Local]] = []
     found: list[Local] = []
     for start in points:
         near = settled(problem, start)
@@ -217,21 +215,21 @@ def _judged(problem: Problem, found: list[Local], floor: float, starts: int) -> 
     )
 
 
-def _at_floor(problem: Problem, durations: NDArray[np.float64], floor: float) -> list[int]:
+def _at_floor(problem: Problem, durations: Array, floor: float) -> list[int]:
     return np.flatnonzero((problem.duration_lower == 0) & (durations <= 1.01 * floor)).tolist()
 
 
 def idle_segments(problem: Problem) -> list[int]:
     """Segments in which nothing moves and whose duration nothing else depends on."""
-    if problem.interpolant.free:
+    if problem.curve.free:
         return []
-    if not isinstance(problem.interpolant, Interpolant):
+    if not isinstance(problem.curve, Interpolant):
         if not shape_key(problem):
             return []
-        still = segment_peaks(problem.interpolant, problem.waypoints).max(axis=(1, 2)) == 0.0
+        still = segment_peaks(problem.curve, problem.waypoints).max(axis=(1, 2)) == 0.0
         return np.flatnonzero(still).tolist()
     h = equal_start(problem)
-    trajectory = fit(problem.interpolant, problem.waypoints, h)
+    trajectory = fit(problem.curve, problem.waypoints, h)
     gradient = coefficient_gradient(problem.piecewise, problem.waypoints, h).durations
     size = 1e-12 * max(1.0, float(np.abs(trajectory.scaled).max()))
     still = np.abs(trajectory.scaled[:, 1:]).max(axis=(1, 2)) <= size
@@ -293,7 +291,7 @@ def _nothing_found(problem: Problem, found: list[Local]) -> tuple[Status, str]:
     limits = problem.limits
     stretchable = (
         np.isinf(problem.duration_upper).all()
-        and problem.interpolant.homogeneous
+        and problem.curve.homogeneous
         and not limits.limits_position
         and (limits.derivatives > 0).all()
     )

@@ -9,8 +9,10 @@ from ...problem import Problem, TrajgapError
 from .closed_form import REST_TO_REST, STRETCHED
 from .cubic import CUBIC
 from .exact import ExactProblem, exact_problem
-from .outcome import GAP, Argument, Certified, Certifier, Progress, Request
+from .judged import judged, unstated
+from .outcome import GAP, Certified, Certifier, Progress, Request
 from .quintic import QUINTIC
+from .state import resumed
 from .three_piece import THREE_PIECE
 
 CERTIFIERS: tuple[Certifier, ...] = (
@@ -35,7 +37,7 @@ def covered(problem: ExactProblem) -> str | None:
     """
     for certifier in CERTIFIERS:
         if certifier.declares(problem):
-            return certifier.missing(problem)
+            return unstated(problem) or certifier.missing(problem)
     families = ", ".join(certifier.family for certifier in CERTIFIERS)
     return f"{problem.curve.name}: not covered; covered are {families}"
 
@@ -51,7 +53,7 @@ def certify(
     gap: float = GAP,
     seconds: float = 60.0,
     seed: int = 0,
-    resume: Argument | dict[str, Any] | None = None,
+    resume: Certified | dict[str, Any] | None = None,
     report: Callable[[Progress], None] | None = None,
 ) -> Certified:
     """Prove an interval of the least total of a problem with shared durations.
@@ -67,14 +69,15 @@ def certify(
         Time limit. At the limit, or at Ctrl-C, the best interval proved so far is returned.
     seed : int
         Of the starts of the local solver that finds the answer.
-    resume : Argument or dict, optional
-        ``resume`` of a stopped run, or its document; everything in it is proved again.
+    resume : Certified or dict, optional
+        A stopped run, or its `state_document`: `trajgap.verify` proves it again.
     report : callable, optional
         Called with a `Progress` after every batch of boxes.
 
     Returns
     -------
     Certified
+        Certified or infeasible only if `trajgap.verify` proves its certificate.
 
     Raises
     ------
@@ -88,7 +91,6 @@ def certify(
         raise TrajgapError(f"certify: {why}")
     if not 0 <= gap < 1 or not seconds >= 0:
         raise TrajgapError("certify: the gap must lie in [0, 1), the seconds must be 0 or more")
-    if resume is not None and not isinstance(resume, dict):
-        resume = resume.document()
+    taken_up = None if resume is None else resumed(exact, resume)
     method = next(c for c in CERTIFIERS if c.declares(exact))
-    return method.certify(exact, Request(gap, seconds, seed, resume, report))
+    return judged(method.certify(exact, Request(gap, seconds, seed, taken_up, report)))

@@ -6,7 +6,7 @@ from typing import Any
 
 from ..errors import CaseError
 from ..fields import MOST_ENTRIES
-from .schema import CaseFile
+from .schema import LISTS, CaseFile
 
 _MOST_VALUES = 100_000
 """Values in a file: 1,000 way-points of 10 joints take a tenth, reading them all a few seconds."""
@@ -15,22 +15,9 @@ _MOST_PAIRS = 1_000
 _MOST_ANGLES = 200_000
 """Joint angles over all problems and readings, 50 microseconds each: about ten seconds."""
 _MOST_RUNS = 100_000
-"""Runs for one family of instances: a millisecond or more each, as a rule hundreds."""
+"""Runs on the instances of one block: a millisecond or more each, as a rule hundreds."""
 _MOST_INSTANCES = 10_000
-"""Instances of one family, all step lengths together: each is solved for every reading."""
-_BLOCKS = (
-    "problems",
-    "readings",
-    "algorithms",
-    "families",
-    "tables",
-    "claims",
-    "assumptions",
-    "columns",
-    "cartesian",
-    "not_checkable",
-)
-"""Lists of a case file whose entries refer to each other."""
+"""Instances of one block, all step lengths together: each is solved for every reading."""
 
 
 def check_values(raw: dict[str, Any], file: str) -> None:
@@ -47,7 +34,7 @@ def check_values(raw: dict[str, Any], file: str) -> None:
     ------
     CaseError
     """
-    for name in _BLOCKS:
+    for name in LISTS:
         entries = raw.get(name)
         if isinstance(entries, list) and len(entries) > MOST_ENTRIES:
             raise _exceeded(file, name, len(entries), "entries", MOST_ENTRIES)
@@ -86,13 +73,13 @@ def check_sizes(document: CaseFile, file: str) -> None:
     if pairs * largest * joints > _MOST_ANGLES:
         what = f"joint angles over {pairs} pairs of problem and reading"
         raise _exceeded(file, "waypoints", pairs * largest * joints, what, _MOST_ANGLES)
-    for index, family in enumerate(document.families):
+    for index, block in enumerate(document.families):
         at = f"families[{index}]"
-        instances = len(family.steps) * family.instances
+        instances = len(block.steps) * block.instances
         if instances > _MOST_INSTANCES:
             raise _exceeded(file, f"{at}.instances", instances, "instances", _MOST_INSTANCES)
-        posed = len(family.readings) or readings
-        runs = instances * family.runs * len(family.objectives) * posed
+        posed = len(block.readings) or readings
+        runs = instances * block.runs * len(block.objectives) * posed
         if runs > _MOST_RUNS:
             raise _exceeded(file, f"{at}.runs", runs, "runs", _MOST_RUNS)
 

@@ -10,9 +10,9 @@ from .clamped_counts import ClampedReading, Count, clamped_readings
 from .clamped_fit import clamped_control_points
 from .compilation import compiler
 from .interpolant import (
+    Condition,
+    ConditionKind,
     Interpolant,
-    Row,
-    RowKind,
     cubic_spline,
     cubic_spline_virtual,
     jtraj,
@@ -64,6 +64,8 @@ __all__ = [
     "ClampedBSpline",
     "ClampedReading",
     "ClockedTrajectory",
+    "Condition",
+    "ConditionKind",
     "Count",
     "Curve",
     "Extremum",
@@ -71,8 +73,6 @@ __all__ = [
     "Knots",
     "Parameters",
     "PeakGradients",
-    "Row",
-    "RowKind",
     "StretchedUniformBSpline",
     "TimedUniformBSpline",
     "Timing",

@@ -8,9 +8,10 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import TrajgapError
 from .interpolant import piecewise, quintic_spline
-from .kind import Array, Curve, Ends, end_conditions, for_joint, smooth_order
+from .kind import Curve, Ends, end_conditions, for_joint, smooth_order
 from .uniform import Timing
 
 

@@ -9,12 +9,13 @@ from math import comb
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..arrays import Array
 from ..errors import TrajgapError
 from . import clamped_kernel, kernel, stretched
 from . import kind as kinds
 from .clamped import ClampedBSpline, average_matrix, fractions_of
 from .clamped_system import EPS, Numbers, Spline, interpolated
-from .kind import Array, Enclosed, PeakGradients, derivative_row, value_errors
+from .kind import Enclosed, PeakGradients, derivative_row, value_errors
 from .peak import Extremum
 from .spline import as_durations, trajectory_from_scaled
 from .stretched import Shape, as_waypoints

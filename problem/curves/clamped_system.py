@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import CurveError
 from .clamped import ClampedBSpline
-from .kind import Array
 
 Numbers = NDArray[Any]
 EPS = np.finfo(np.float64).eps

@@ -10,8 +10,8 @@ from enum import IntEnum
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import TrajgapError
 
 _DENSE = 300
@@ -19,7 +19,7 @@ _DENSE = 300
 Prescribed = tuple[tuple[tuple[int, float], ...], ...]
 
 
-class RowKind(IntEnum):
+class ConditionKind(IntEnum):
     """What one linear condition on the coefficients states."""
 
     LEFT_VALUE = 0
@@ -31,10 +31,10 @@ class RowKind(IntEnum):
 
 
 @dataclass(frozen=True)
-class Row:
+class Condition:
     """One condition: at break ``at``, derivative ``order``, of the kind ``kind``."""
 
-    kind: RowKind
+    kind: ConditionKind
     at: int
     order: int
 
@@ -147,19 +147,23 @@ class Interpolant:
         return all(value == 0.0 for entries in self.prescribed for _, value in entries)
 
     @cached_property
-    def rows(self) -> tuple[Row, ...]:
+    def rows(self) -> tuple[Condition, ...]:
         """The conditions, ordered by break, so that the linear system is banded."""
-        rows: list[Row] = []
+        rows: list[Condition] = []
         n = self.segments
         for b in range(n + 1):
             given = {order for order, _ in self.prescribed[b]}
             if b not in self.virtual:
                 given.add(0)
             kinds = [kind for kind, there in _SIDES if there(b, n)]
-            rows += [Row(kind, b, order) for kind in kinds for order in sorted(given)]
+            rows += [Condition(kind, b, order) for kind in kinds for order in sorted(given)]
             if 0 < b < n:
                 orders = range(self.continuity[b - 1] + 1)
-                rows += [Row(RowKind.MATCH, b, order) for order in orders if order not in given]
+                rows += [
+                    Condition(ConditionKind.MATCH, b, order)
+                    for order in orders
+                    if order not in given
+                ]
         return tuple(rows)
 
     @cached_property
@@ -181,7 +185,7 @@ class Interpolant:
         for order in range(max(self.degrees) + 1):
             for b in range(self.segments + 1):
                 for kind, there in _SIDES:
-                    row = Row(kind, b, order)
+                    row = Condition(kind, b, order)
                     if rank == self.coefficients or row in rows or not there(b, self.segments):
                         continue
                     shared = b in (0, self.segments) or order <= self.continuity[b - 1]
@@ -234,15 +238,15 @@ class Interpolant:
             return False
         return bool(pivots.min() > 1e-13 * pivots.max())
 
-    def _entries(self, row: Row) -> list[tuple[int, float]]:
+    def _entries(self, row: Condition) -> list[tuple[int, float]]:
         """Columns and values of one row for equal durations."""
         entries: list[tuple[int, float]] = []
-        if row.kind != RowKind.RIGHT_VALUE:
+        if row.kind != ConditionKind.RIGHT_VALUE:
             k = row.at - 1
             powers = range(row.order, self.degrees[k] + 1)
             entries += [(self._first[k] + p, float(math.perm(p, row.order))) for p in powers]
-        if row.kind != RowKind.LEFT_VALUE and row.order <= self.degrees[row.at]:
-            sign = 1.0 if row.kind == RowKind.RIGHT_VALUE else -1.0
+        if row.kind != ConditionKind.LEFT_VALUE and row.order <= self.degrees[row.at]:
+            sign = 1.0 if row.kind == ConditionKind.RIGHT_VALUE else -1.0
             entries.append((self._first[row.at] + row.order, sign * math.factorial(row.order)))
         return entries
 
@@ -251,7 +255,7 @@ class Interpolant:
         """Column of each segment's constant coefficient."""
         return tuple(itertools.accumulate((d + 1 for d in self.degrees), initial=0))
 
-    def _unit_matrix(self, rows: tuple[Row, ...] | list[Row]) -> NDArray[np.float64]:
+    def _unit_matrix(self, rows: tuple[Condition, ...] | list[Condition]) -> Array:
         matrix = np.zeros((len(rows), self.coefficients))
         for i, row in enumerate(rows):
             for column, value in self._entries(row):
@@ -259,9 +263,9 @@ class Interpolant:
         return matrix
 
 
-_SIDES: tuple[tuple[RowKind, Callable[[int, int], bool]], ...] = (
-    (RowKind.LEFT_VALUE, lambda b, n: b > 0),
-    (RowKind.RIGHT_VALUE, lambda b, n: b < n),
+_SIDES: tuple[tuple[ConditionKind, Callable[[int, int], bool]], ...] = (
+    (ConditionKind.LEFT_VALUE, lambda b, n: b > 0),
+    (ConditionKind.RIGHT_VALUE, lambda b, n: b < n),
 )
 
 

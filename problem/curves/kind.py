@@ -9,14 +9,13 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import TrajgapError
 from . import spline
 from .interpolant import Interpolant
 from .peak import Extremum
 from .spline import PERM
 from .trajectory import Trajectory
-
-Array = NDArray[np.float64]
 
 
 class Curve(Protocol):

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from functools import singledispatch
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from . import kernel
 from .trajectory import Trajectory
 
@@ -39,7 +39,7 @@ class Extremum:
     value: float
 
 
-def critical_points(a: NDArray[np.float64]) -> NDArray[np.float64]:
+def critical_points(a: Array) -> Array:
     """Places in (0, 1) where the polynomial with ascending coefficients ``a`` turns.
 
     The derivative's sign changes are found on monotone pieces (roots of the next derivative cut

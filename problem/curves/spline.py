@@ -12,9 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import PPoly
 
+from ..arrays import Array
 from ..errors import TrajgapError
 from . import kernel
-from .interpolant import Interpolant, RowKind
+from .interpolant import ConditionKind, Interpolant
 from .trajectory import Trajectory
 
 PERM = np.array(
@@ -36,7 +37,7 @@ class Layout:
     unknowns: int
     lower: int
     upper: int
-    prescribed: NDArray[np.float64]
+    prescribed: Array
     waypoint: NDArray[np.int64]
     nodal: NDArray[np.int64]
 
@@ -48,7 +49,7 @@ def layout(interpolant: Interpolant) -> Layout:
     rows = full.rows
     n = full.segments
     column = np.full((n, kernel.MAX_COEFFICIENTS), -1, dtype=np.int64)
-    given = {(r.at, r.order) for r in rows if r.kind == RowKind.RIGHT_VALUE}
+    given = {(r.at, r.order) for r in rows if r.kind == ConditionKind.RIGHT_VALUE}
     count = 0
     for k, d in enumerate(full.degrees):
         for p in range(d + 1):
@@ -56,11 +57,11 @@ def layout(interpolant: Interpolant) -> Layout:
                 column[k, p] = count
                 count += 1
     lower = upper = 0
-    equations = [r for r in rows if r.kind != RowKind.RIGHT_VALUE]
+    equations = [r for r in rows if r.kind != ConditionKind.RIGHT_VALUE]
     for e, row in enumerate(equations):
         k = row.at - 1
         touched = [column[k, p] for p in range(row.order, full.degrees[k] + 1)]
-        if row.kind == RowKind.MATCH and row.order <= full.degrees[row.at]:
+        if row.kind == ConditionKind.MATCH and row.order <= full.degrees[row.at]:
             touched.append(column[row.at, row.order])
         used = [c for c in touched if c >= 0]
         lower = max([lower, *(e - c for c in used)])
@@ -78,25 +79,23 @@ def layout(interpolant: Interpolant) -> Layout:
         lower=lower,
         upper=upper,
         prescribed=np.array(
-            [0.0 if r.kind == RowKind.MATCH else values[r.at].get(r.order, 0.0) for r in rows]
+            [0.0 if r.kind == ConditionKind.MATCH else values[r.at].get(r.order, 0.0) for r in rows]
         ),
         waypoint=np.array(
             [
-                waypoint.get(r.at, -1) if r.order == 0 and r.kind != RowKind.MATCH else -1
+                waypoint.get(r.at, -1) if r.order == 0 and r.kind != ConditionKind.MATCH else -1
                 for r in rows
             ],
             dtype=np.int64,
         ),
         nodal=np.array(
-            [free.get((r.at, r.order), -1) if r.kind != RowKind.MATCH else -1 for r in rows],
+            [free.get((r.at, r.order), -1) if r.kind != ConditionKind.MATCH else -1 for r in rows],
             dtype=np.int64,
         ),
     )
 
 
-def right_hand_sides(
-    interpolant: Interpolant, waypoints: NDArray[np.float64], nodal: NDArray[np.float64] | None
-) -> NDArray[np.float64]:
+def right_hand_sides(interpolant: Interpolant, waypoints: Array, nodal: Array | None) -> Array:
     """Values of the rows, shape (rows, joints): way-points, prescribed and free derivatives."""
     plan = layout(interpolant)
     joints = waypoints.shape[1]
@@ -122,10 +121,10 @@ def right_hand_sides(
 
 def coefficients(
     interpolant: Interpolant,
-    waypoints: NDArray[np.float64],
-    durations: NDArray[np.float64],
-    nodal: NDArray[np.float64] | None = None,
-) -> NDArray[np.float64]:
+    waypoints: Array,
+    durations: Array,
+    nodal: Array | None = None,
+) -> Array:
     """Coefficients in the segments' own parameter s in [0, 1], shape (segments, 10, joints)."""
     plan = layout(interpolant)
     values = right_hand_sides(interpolant, waypoints, nodal)
@@ -152,11 +151,11 @@ def coefficients(
     return out
 
 
-def _singular(interpolant: Interpolant, durations: NDArray[np.float64]) -> TrajgapError:
+def _singular(interpolant: Interpolant, durations: Array) -> TrajgapError:
     return TrajgapError(f"interpolant {interpolant.name}: singular for durations {durations} s")
 
 
-def as_durations(durations: ArrayLike, segments: int) -> NDArray[np.float64]:
+def as_durations(durations: ArrayLike, segments: int) -> Array:
     """Duration vector as a clean float64 array, or a clear refusal.
 
     Raises
@@ -217,9 +216,7 @@ def fit(
     return trajectory_from_scaled(scaled, interpolant.degrees, h)
 
 
-def trajectory_from_scaled(
-    scaled: NDArray[np.float64], degrees: tuple[int, ...], durations: NDArray[np.float64]
-) -> Trajectory:
+def trajectory_from_scaled(scaled: Array, degrees: tuple[int, ...], durations: Array) -> Trajectory:
     """Trajectory over scipy's ``PPoly`` from coefficients in s, shape (segments, power, joints)."""
     top = max(degrees)
     powers = np.arange(top + 1)
@@ -231,25 +228,25 @@ def trajectory_from_scaled(
 
 def motion_values(
     interpolant: Interpolant,
-    waypoints: NDArray[np.float64],
-    nodal: NDArray[np.float64] | None = None,
-) -> NDArray[np.float64]:
+    waypoints: Array,
+    nodal: Array | None = None,
+) -> Array:
     """`right_hand_sides` with positions counted from the first way-point, for `batch_peaks`.
 
     Derivatives do not depend on that shift; a joint that stands still gets exact zeros by it.
     """
     plan = layout(interpolant)
     values = right_hand_sides(interpolant, waypoints, nodal)
-    values[(plan.orders == 0) & (plan.kinds != RowKind.MATCH)] -= waypoints[0]
+    values[(plan.orders == 0) & (plan.kinds != ConditionKind.MATCH)] -= waypoints[0]
     return values
 
 
 def batch_peaks(
     interpolant: Interpolant,
-    values: NDArray[np.float64],
-    durations: NDArray[np.float64],
+    values: Array,
+    durations: Array,
     wanted: NDArray[np.bool_],
-) -> NDArray[np.float64]:
+) -> Array:
     """True peaks of |v|, |a|, |j| for a batch of duration vectors.
 
     Parameters
@@ -316,14 +313,14 @@ def dense_system(
     factor = np.ones(size, dtype=durations.dtype)
     for i in range(size):
         kind, b, r = plan.kinds[i], plan.breaks[i], plan.orders[i]
-        if kind == RowKind.RIGHT_VALUE:
+        if kind == ConditionKind.RIGHT_VALUE:
             matrix[i, first[b] + r] = PERM[r, r]
             factor[i] = durations[b] ** r
             continue
         k = b - 1
         powers = np.arange(r, plan.degrees[k] + 1)
         matrix[i, first[k] + powers] = PERM[powers, r]
-        if kind == RowKind.LEFT_VALUE:
+        if kind == ConditionKind.LEFT_VALUE:
             factor[i] = durations[k] ** r
         elif r <= plan.degrees[b]:
             matrix[i, first[b] + r] = -PERM[r, r] * (durations[k] / durations[b]) ** r
@@ -331,12 +328,12 @@ def dense_system(
     return matrix / scale[:, None], factor / scale, first
 
 
-def _flat(interpolant: Interpolant, scaled: NDArray[np.float64]) -> NDArray[np.float64]:
+def _flat(interpolant: Interpolant, scaled: Array) -> Array:
     plan = layout(interpolant)
     return np.concatenate([scaled[k, : d + 1] for k, d in enumerate(plan.degrees)])
 
 
-def _unflat(interpolant: Interpolant, flat: NDArray[np.float64]) -> NDArray[np.float64]:
+def _unflat(interpolant: Interpolant, flat: Array) -> Array:
     """Coefficients of axis 0 put back into (segments, powers)."""
     plan = layout(interpolant)
     first = np.concatenate([[0], np.cumsum(plan.degrees + 1)])
@@ -348,10 +345,10 @@ def _unflat(interpolant: Interpolant, flat: NDArray[np.float64]) -> NDArray[np.f
 
 def refined_coefficients(
     interpolant: Interpolant,
-    waypoints: NDArray[np.float64],
-    durations: NDArray[np.float64],
-    nodal: NDArray[np.float64] | None = None,
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    waypoints: Array,
+    durations: Array,
+    nodal: Array | None = None,
+) -> tuple[Array, Array]:
     """Coefficients after iterative refinement in extended precision, with an error bound.
 
     The residual is taken in ``longdouble``; its rounding is bounded by that type's own epsilon,
@@ -391,9 +388,7 @@ def refined_coefficients(
     return _unflat(interpolant, rounded), _unflat(interpolant, error)
 
 
-def _inverse(
-    interpolant: Interpolant, matrix: NDArray[np.floating], durations: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _inverse(interpolant: Interpolant, matrix: NDArray[np.floating], durations: Array) -> Array:
     try:
         return np.asarray(np.linalg.inv(matrix), dtype=np.float64)
     except np.linalg.LinAlgError:
@@ -414,16 +409,16 @@ class CoefficientGradient:
         d coefficients of a joint / d that joint's free derivative.
     """
 
-    durations: NDArray[np.float64]
-    waypoints: NDArray[np.float64]
-    nodal: NDArray[np.float64]
+    durations: Array
+    waypoints: Array
+    nodal: Array
 
 
 def coefficient_gradient(
     interpolant: Interpolant,
-    waypoints: NDArray[np.float64],
-    durations: NDArray[np.float64],
-    nodal: NDArray[np.float64] | None = None,
+    waypoints: Array,
+    durations: Array,
+    nodal: Array | None = None,
 ) -> CoefficientGradient:
     """Derivatives of the coefficients by implicit differentiation of the linear system."""
     plan = layout(interpolant)
@@ -437,13 +432,13 @@ def coefficient_gradient(
         kind, b, r = plan.kinds[i], plan.breaks[i], plan.orders[i]
         if r == 0:
             continue
-        if kind == RowKind.MATCH:
+        if kind == ConditionKind.MATCH:
             if r <= plan.degrees[b]:
                 entry = matrix[i, first[b] + r] * flat[first[b] + r]
                 by_duration[b - 1, i] -= r * entry / durations[b - 1]
                 by_duration[b, i] += r * entry / durations[b]
         else:
-            k = b if kind == RowKind.RIGHT_VALUE else b - 1
+            k = b if kind == ConditionKind.RIGHT_VALUE else b - 1
             by_duration[k, i] += r * factor[i] / durations[k] * values[i]
     one_hot_w = (plan.waypoint[None, :] == np.arange(waypoints.shape[0])[:, None]) * factor
     one_hot_n = (plan.nodal[None, :] == np.arange(interpolant.free)[:, None]) * factor

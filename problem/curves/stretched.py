@@ -8,18 +8,12 @@ from functools import singledispatch
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..arrays import Array
 from ..errors import TrajgapError
 from ..limits import QUANTITIES
 from . import kernel
 from . import kind as kinds
-from .kind import (
-    Array,
-    Curve,
-    Enclosed,
-    PeakGradients,
-    derivative_row,
-    value_errors,
-)
+from .kind import Curve, Enclosed, PeakGradients, derivative_row, value_errors
 from .peak import Extremum, critical_points
 from .spline import as_durations, trajectory_from_scaled
 from .trajectory import Trajectory

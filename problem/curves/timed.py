@@ -10,10 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import PPoly
 
+from ..arrays import Array
 from ..errors import CurveError, TrajgapError
 from . import kernel, timed_kernel
 from . import kind as kinds
-from .kind import Array, Enclosed, PeakGradients
+from .kind import Enclosed, PeakGradients
 from .peak import Extremum, critical_points, extrema
 from .spline import as_durations
 from .stretched import as_waypoints

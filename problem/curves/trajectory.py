@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.interpolate import PPoly
+
+from ..arrays import Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,16 +28,16 @@ class Trajectory:
     """
 
     polynomial: PPoly
-    durations: NDArray[np.float64]
-    scaled: NDArray[np.float64]
+    durations: Array
+    scaled: Array
     degrees: tuple[int, ...]
 
-    def __call__(self, time: ArrayLike, order: int = 0) -> NDArray[np.float64]:
+    def __call__(self, time: ArrayLike, order: int = 0) -> Array:
         """Derivative ``order`` at ``time`` (s); shape of ``time`` plus (joints,)."""
         return np.asarray(self.polynomial(time, nu=order), dtype=np.float64)
 
     @property
-    def breaks(self) -> NDArray[np.float64]:
+    def breaks(self) -> Array:
         """Times at which the pieces meet, s."""
         return np.asarray(self.polynomial.x, dtype=np.float64)
 
@@ -49,7 +51,7 @@ class Trajectory:
         """Number of joints."""
         return int(self.scaled.shape[2])
 
-    def derivative(self, segment: int, joint: int, order: int) -> NDArray[np.float64]:
+    def derivative(self, segment: int, joint: int, order: int) -> Array:
         """Ascending coefficients in s of a time derivative on one piece."""
         d = self.degrees[segment]
         a = self.scaled[segment, : d + 1, joint].copy()

@@ -11,6 +11,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..arrays import Array
 from ..errors import TrajgapError
 
 _SIXTH = Fraction(1, 6)
@@ -226,7 +227,7 @@ def _wide(x: Fraction) -> np.longdouble:
     return np.longdouble(high) + np.longdouble(float(x - Fraction(high)))
 
 
-def control_vertices(waypoints: ArrayLike) -> NDArray[np.float64]:
+def control_vertices(waypoints: ArrayLike) -> Array:
     """Control vertices of the uniform cubic B-spline through way-points.
 
     Source: `irb1600-ga-cubic-bspline`, (2) and (3).

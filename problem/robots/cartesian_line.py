@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation, Slerp
 
+from ..arrays import Array
 from ..curves import Trajectory
 from ..errors import TrajgapError
-from .chain import Array, Chain, forward_kinematics
+from .chain import Chain, forward_kinematics
 from .inverse import inverse_kinematics
 
 POINTS = 9

@@ -11,6 +11,7 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from pydantic import Field, PlainSerializer, PlainValidator, WithJsonSchema, model_validator
 
+from ..arrays import Array
 from ..fields import (
     MOST_JOINTS,
     JointLabels,
@@ -23,7 +24,7 @@ from ..fields import (
 )
 from ..printed import Printed
 from ..units import LengthUnit, Measured, PositionUnit, to_si
-from .chain import Array, Chain, Convention, JointKind
+from .chain import Chain, Convention, JointKind
 
 _PI_MULTIPLE = re.compile(r"([+-]?)\s*([0-9]*)\s*(?:π|pi)\s*(?:/\s*([1-9][0-9]*))?")
 _MINUS_SIGNS = str.maketrans({"\u2212": "-", "\u2013": "-"})

@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
+from ..arrays import Array
 from ..errors import TrajgapError
-from .chain import Array, Chain, forward_kinematics, jacobian_of, link_frames
+from .chain import Chain, forward_kinematics, jacobian_of, link_frames
 
 POSITION = ("x", "y", "z")
 """Components of a position in the base frame."""

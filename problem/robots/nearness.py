@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..arrays import Array
 from ..errors import TrajgapError
-from .chain import Array, Chain, forward_kinematics
+from .chain import Chain, forward_kinematics
 from .inverse import inverse_kinematics
 
 _MOST_BOXES = 400_000

@@ -108,8 +108,8 @@ def _examined(task: Task) -> tuple[Sample, ...]:
 
 def _fast_form(problem: Problem) -> Problem:
     """The problem with shared durations, its curve in the form that is evaluated fastest."""
-    curve = polynomial_form(problem.interpolant)
-    return replace(problem, interpolant=curve, coupling=Coupling.SHARED)
+    curve = polynomial_form(problem.curve)
+    return replace(problem, curve=curve, coupling=Coupling.SHARED)
 
 
 def _key(problem: Problem) -> tuple[object, ...]:
@@ -123,7 +123,7 @@ def _key(problem: Problem) -> tuple[object, ...]:
         problem.duration_upper,
         problem.waypoints,
     )
-    return (problem.interpolant, *(array.tobytes() for array in arrays))
+    return (problem.curve, *(array.tobytes() for array in arrays))
 
 
 def _ran(
@@ -144,9 +144,7 @@ def _ran(
 def _optimum(kept: Kept, problem: Problem) -> Optimum:
     key = _key(problem)
     if key not in kept:
-        alone = isinstance(problem.interpolant, Interpolant) and set(
-            problem.interpolant.continuity
-        ) <= {0}
+        alone = isinstance(problem.curve, Interpolant) and set(problem.curve.continuity) <= {0}
         kept[key] = _told(solve(problem, starts=1 if alone else STARTS))
     known: Optimum = kept[key]
     return known

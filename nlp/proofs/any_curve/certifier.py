@@ -11,10 +11,12 @@ from typing import Any
 import numpy as np
 
 from ....problem import Problem, TrajgapError
-from ...verify import Subject
+from ....verify import Subject
 from ..answer import float_problem
 from ..exact import ExactProblem, exact_problem
+from ..judged import judged, unstated
 from ..outcome import GAP, Certified, Outcome, Progress
+from ..state import resumed
 from .estimate import family_free
 from .exact import FreeQuestion, missing, prove_motion, question, unanswered
 from .local import Question, local_optimum
@@ -35,7 +37,7 @@ def certify_family_free(
     gap: float = GAP,
     seconds: float = 60.0,
     seed: int = 0,
-    resume: dict[str, Any] | None = None,
+    resume: Certified | dict[str, Any] | None = None,
     report: Callable[[Progress], None] | None = None,
 ) -> Certified:
     """Prove an interval of the least total over all C1 motions with |v| ≤ V and |a| ≤ A.
@@ -52,8 +54,8 @@ def certify_family_free(
         Time limit. At the limit, or at Ctrl-C, the interval proved so far is returned.
     seed : int
         Of the starts of the local solver that finds the answer.
-    resume : dict, optional
-        Document of a stopped run's ``resume``; its boxes are bounded anew.
+    resume : Certified or dict, optional
+        A stopped run, or its `state_document`; its boxes are bounded anew.
     report : callable, optional
         Called with a `Progress` for every box; its lower bound is not yet proved in rationals.
 
@@ -68,9 +70,10 @@ def certify_family_free(
         If the problem is not covered, or ``resume`` is malformed.
     """
     exact = exact_problem(problem) if isinstance(problem, Problem) else problem
-    why = missing(exact)
+    why = unstated(exact) or missing(exact)
     if why is not None:
         raise TrajgapError(f"certify: {why}")
+    taken_up = None if resume is None else resumed(exact, resume, Subject.ANY)
     began = time.perf_counter()
     asked = question(exact)
     motion = _first_motion(exact, asked, seed)
@@ -104,8 +107,8 @@ def certify_family_free(
         found.append(better)
         return True
 
-    if resume is not None:
-        root = restored(search, resume, target())
+    if taken_up is not None and taken_up.proof is not None:
+        root = restored(search, taken_up.proof.document(), target())
     else:
         root = search.root(*_floats(asked, motion), target())
     complete = False
@@ -114,7 +117,7 @@ def certify_family_free(
         complete = search.grow(root, target(), began + seconds, told, improve)
         if len(found) == known:
             break
-    return _result(exact, search, root, found[-1] if found else None, gap, began)
+    return judged(_result(exact, search, root, found[-1] if found else None, gap, began))
 
 
 def _result(
@@ -140,7 +143,7 @@ def _result(
         enough = reached - total <= Fraction(gap) * reached
         outcome = Outcome.CERTIFIED if enough and upper is not None else Outcome.INTERVAL
     speeds = _all_speeds(exact, search, answer)
-    proof = None if total <= 0 else free_bound(search, root, total, speeds)
+    proof = None if total <= 0 else free_bound(search, root, total)
     wanted = float(sum(motion[0])) * (1 - gap) if motion is not None else float(search.cap)
     return Certified(
         exact,
@@ -152,8 +155,10 @@ def _result(
         sum(leaf.lower < wanted for leaf in leaves),
         time.perf_counter() - began,
         proof,
-        proof if outcome in (Outcome.INTERVAL, Outcome.OPEN) else None,
+        proof is not None and outcome in (Outcome.INTERVAL, Outcome.OPEN),
+        None,
         Subject.ANY,
+        speeds,
     )
 
 

@@ -155,7 +155,7 @@ def family_free(
 
 def _merge(problem: Problem, values: NDArray[np.float64]) -> NDArray[np.float64]:
     """Values per segment of the interpolant added up between way-points, along the last axis."""
-    breaks = problem.interpolant.waypoint_breaks
+    breaks = problem.curve.waypoint_breaks
     return np.add.reduceat(values, breaks[:-1], axis=-1)
 
 
@@ -172,7 +172,7 @@ def _initial(problem: Problem, initial: ArrayLike | None) -> NDArray[np.float64]
 
 
 def _ends(problem: Problem) -> tuple[float | None, float | None]:
-    start, end = end_conditions(problem.interpolant)
+    start, end = end_conditions(problem.curve)
     return dict(start).get(1), dict(end).get(1)
 
 

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from ....problem import Interpolant
+from ....verify import LEAF
 from ..answer import prove_feasible, solve_exactly
 from ..exact import ExactProblem, decimal
 from ..outcome import Certified, Certifier, Outcome, Request
@@ -43,8 +44,9 @@ class ClosedForm:
 
     def document(self) -> dict[str, Any]:
         """Kinds "rest-to-rest" and "stretched" of docs/certificates.md."""
-        rows = [[b.joint, b.order, b.place, decimal(b.least)] for b in self.bounds]
-        return {"kind": self.kind, "segments": rows}
+        leaf = [LEAF, *([b.joint, b.order, b.place, decimal(b.least)] for b in self.bounds)]
+        total = sum((b.least for b in self.bounds), Fraction(0))
+        return {"kind": self.kind, "total": decimal(total), "tree": [leaf]}
 
 
 def is_rest_to_rest(problem: ExactProblem) -> bool:
@@ -120,7 +122,7 @@ def closed_form(problem: ExactProblem) -> tuple[list[SegmentBound], list[float]]
     durations : list of float
         s.
     """
-    tops = peaks(problem.interpolant.degrees[0])
+    tops = peaks(problem.piecewise.degrees[0])
     bounds, durations = [], []
     for k in range(problem.segments):
         best = SegmentBound(problem.duration_lower[k])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
 from typing import Any
@@ -14,16 +14,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....problem import TrajgapError, evaluate
+from ....verify import MOST_CUBIC_SEGMENTS, TICKS
 from ...optimum import solve
-from ...verify_problem import number
-from ..answer import float_problem, keeps_limits, prove_feasible
+from ..answer import float_problem, prove_feasible
 from ..exact import ExactProblem
-from ..outcome import Certified, Certifier, Outcome, Progress, Request
+from ..outcome import Argument, Certified, Certifier, Outcome, Progress, Request, Resumed
 from .ranges import implied
 from .replay import replayed
 from .search import Search
 from .system import CubicSystem, cubic_system, kind_of_ends
-from .tree import TICKS, Box, Prover, proof_document
+from .tree import Box, Prover, proof_document
 
 _STAGES = (0.1, 0.01, 1e-3, 1e-4, 1e-5)
 _APART = 3.0
@@ -38,11 +38,12 @@ _OFTEN = 0.2
 
 @dataclass(frozen=True, eq=False)
 class Tree:
-    """The proof of a lower bound, in ticks."""
+    """The proof of a lower bound, in ticks; unfinished: open boxes of it are proposed."""
 
     prover: Prover
     root: Box
     lower: int
+    unfinished: bool = False
 
     @property
     def seconds(self) -> Fraction:
@@ -51,25 +52,7 @@ class Tree:
 
     def document(self) -> dict[str, Any]:
         """The proof, ready for JSON."""
-        return proof_document(self.prover, self.root, self.lower)
-
-
-@dataclass(frozen=True, eq=False)
-class Stopped:
-    """Where a stopped run can go on."""
-
-    proved: Tree | None
-    pending: Tree | None
-    durations: tuple[Fraction, ...] | None
-
-    def document(self) -> dict[str, Any]:
-        """The state, ready for JSON."""
-        return {
-            "kind": "cubic",
-            "proved": None if self.proved is None else self.proved.document(),
-            "pending": None if self.pending is None else self.pending.document(),
-            "durations": None if self.durations is None else [str(h) for h in self.durations],
-        }
+        return proof_document(self.prover, self.root, self.lower, self.unfinished)
 
 
 class _Stop(Exception):
@@ -84,7 +67,9 @@ class _Run:
         self.began = time.perf_counter()
         self.floats = float_problem(exact)
         self.durations: tuple[Fraction, ...] | None = None
-        self.proved: Tree | None = None
+        self.proof: Argument | None = None
+        self.lower = Fraction(0)
+        """What it proves, s."""
         self.nodes = 0
         """Boxes of the stages that are over."""
         self._told = 0.0
@@ -135,7 +120,7 @@ class _Run:
             return
         self._told = now
         tree = Tree(search.prover, search.root, search.lower)
-        lower = max(tree.seconds, Fraction(0) if self.proved is None else self.proved.seconds)
+        lower = max(tree.seconds, self.lower)
         upper = math.inf if self.upper is None else float(self.upper)
         gap = math.inf if self.upper is None else float(1 - lower / self.upper)
         nodes = self.nodes + search.boxes
@@ -146,8 +131,8 @@ class _Run:
     def keep(self, prover: Prover, root: Box, lower: int) -> None:
         """Keep a proof if it is the best."""
         tree = Tree(prover, root, lower)
-        if lower > 0 and (self.proved is None or tree.seconds > self.proved.seconds):
-            self.proved = tree
+        if tree.seconds > self.lower:
+            self.proof, self.lower = tree, tree.seconds
 
 
 def _target(run: _Run, gap: float) -> Fraction:
@@ -207,9 +192,7 @@ def _stages(run: _Run, resumed: Tree | None) -> Iterator[_Stage]:
         yield _Stage(resumed.prover, resumed.root, partial(_ticks, run, 0.0, resumed.prover.system))
     last = _SHARE * run.request.gap
     for gap in (*(g for g in _STAGES if g > _APART * last), last):
-        while run.proved is None or run.proved.seconds < min(
-            _target(run, gap * (1 + _NEAR)), _target(run, run.request.gap)
-        ):
+        while run.lower < min(_target(run, gap * (1 + _NEAR)), _target(run, run.request.gap)):
             system = cubic_system(run.exact, _target(run, gap))
             cap = _ticks(run, gap, system)
             prover, goal = Prover(system, cap), partial(_ticks, run, gap, system)
@@ -223,8 +206,7 @@ def _ticks(run: _Run, gap: float, system: CubicSystem) -> int:
 
 
 def _result(run: _Run, pending: Tree | None, stopped: bool) -> Certified:
-    upper, proved = run.upper, run.proved
-    lower = Fraction(0) if proved is None else proved.seconds
+    upper, lower = run.upper, run.lower
     if upper is not None:
         near = upper - lower <= upper * Fraction(run.request.gap)
         outcome = Outcome.CERTIFIED if near else Outcome.INTERVAL
@@ -232,7 +214,6 @@ def _result(run: _Run, pending: Tree | None, stopped: bool) -> Certified:
         longest = [x for x in run.exact.duration_upper if x is not None]
         above = len(longest) == run.exact.segments and lower > sum(longest)
         outcome = Outcome.INFEASIBLE if above and not stopped else Outcome.OPEN
-    resume = Stopped(proved, pending, run.durations) if stopped else None
     return Certified(
         run.exact,
         outcome,
@@ -242,33 +223,25 @@ def _result(run: _Run, pending: Tree | None, stopped: bool) -> Certified:
         run.nodes,
         0 if pending is None else sum(1 for _ in pending.root.leaves()),
         time.perf_counter() - run.began,
-        proved,
-        resume,
+        run.proof,
+        stopped,
+        None if pending is None else replace(pending, unfinished=True),
     )
 
 
-def _resumed(run: _Run, document: dict[str, Any]) -> Tree | None:
-    """Read a state; everything in it is proved again."""
+def _resumed(run: _Run, resumed: Resumed) -> Tree | None:
+    """Take up what a state proves; the steps that it proposes are proved here, or it is refused."""
+    run.durations, run.proof, run.lower = resumed.durations, resumed.proof, resumed.lower
+    if resumed.proposals is None:
+        return None
     try:
-        if document["kind"] != "cubic":
-            raise TrajgapError(f"resume: a state of kind {document['kind']!r}")
-        trees = [
-            None if document[key] is None else Tree(*replayed(run.exact, document[key]))
-            for key in ("proved", "pending")
-        ]
-        answer = document["durations"]
-        durations = None if answer is None else tuple(number(h) for h in answer)
-    except TrajgapError:
-        raise
+        tree = Tree(*replayed(run.exact, resumed.proposals))
     except (KeyError, IndexError, TypeError, ValueError, AttributeError, ArithmeticError) as error:
+        if isinstance(error, TrajgapError):
+            raise
         raise TrajgapError(f"resume: malformed state ({type(error).__name__}: {error})") from None
-    if durations is not None and not keeps_limits(run.exact, durations):
-        raise TrajgapError("resume: the durations of the state do not keep the limits")
-    run.durations = durations
-    for tree in trees:
-        if tree is not None:
-            run.keep(tree.prover, tree.root, tree.lower)
-    return trees[1]
+    run.keep(tree.prover, tree.root, tree.lower)
+    return tree
 
 
 def _declares(problem: ExactProblem) -> bool:
@@ -276,6 +249,8 @@ def _declares(problem: ExactProblem) -> bool:
 
 
 def _missing(problem: ExactProblem) -> str | None:
+    if problem.segments > MOST_CUBIC_SEGMENTS:
+        return f"more than {MOST_CUBIC_SEGMENTS} segments"
     system = cubic_system(problem, Fraction(1))
     moving = [any(step[j] for step in system.steps) for j in range(system.joints)]
     speeds = [v for v, _ in implied(system, Fraction(1))]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import dataclass
 from fractions import Fraction
@@ -11,12 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....problem import Interpolant, Problem, TrajgapError, Verdict, check, evaluate
+from ....verify import MOST_POWER, MOST_QUINTIC_JOINTS, MOST_QUINTIC_SEGMENTS, SMALLEST
 from ...optimum import solve
-from ...verify_problem import Declaration, Refused, Stated, number
-from ...verify_quintic import MOST_JOINTS, MOST_SEGMENTS, SMALLEST, prove_total
-from ..answer import float_problem, keeps_limits, prove_feasible
+from ..answer import float_problem, prove_feasible
 from ..exact import ExactProblem, decimal
-from ..outcome import Certified, Certifier, Outcome, Progress, Request
+from ..outcome import Certified, Certifier, Given, Outcome, Progress, Request
 from .leaves import Leaves
 from .search import DONE, FULL, PAUSED, SHORTER, search
 from .windows import Windows, windows
@@ -30,13 +30,29 @@ _CHUNK = 500
 _STACK = 600
 _SLIGHT = 1e-7
 _WORTH = 1.5
+_NEAR = 8
+"""Powers of two by which a size may differ from 1 before the units are changed."""
 _REST = ((1, 0.0), (2, 0.0))
+
+
+@dataclass(frozen=True)
+class Units:
+    """Joint j is measured in 2**powers[j] of the problem's unit of angle, time in 2**second s."""
+
+    powers: tuple[int, ...]
+    second: int
+
+    @property
+    def time(self) -> Fraction:
+        """In s."""
+        return Fraction(2) ** self.second
 
 
 @dataclass(frozen=True, eq=False)
 class Tree:
-    """Bisections of the simplex of durations that prove a total."""
+    """Bisections of the simplex of durations that prove a total; both in the units of the proof."""
 
+    units: Units
     total: Fraction
     low: tuple[Fraction, ...]
     windows: Windows
@@ -46,39 +62,12 @@ class Tree:
         """Kind "quintic-spline" of docs/certificates-quintic.md."""
         return {
             "kind": "quintic-spline",
-            "total": decimal(self.total),
-            "low": [decimal(x) for x in self.low],
+            "total": decimal(self.total * self.units.time),
+            "powers": list(self.units.powers),
+            "second": self.units.second,
+            "low": [decimal(x * self.units.time) for x in self.low],
             **self.leaves.document(self.windows),
         }
-
-
-@dataclass(frozen=True, eq=False)
-class Stopped:
-    """Where a stopped run can go on: the last proof and the answer."""
-
-    proved: dict[str, Any] | None
-    durations: tuple[Fraction, ...] | None
-
-    def document(self) -> dict[str, Any]:
-        """The state of docs/certificates-quintic.md."""
-        answer = self.durations
-        return {
-            "kind": "quintic-spline",
-            "proved": self.proved,
-            "durations": None if answer is None else [decimal(h) for h in answer],
-        }
-
-
-@dataclass(frozen=True)
-class Given:
-    """A proof from a state file, proved again."""
-
-    total: Fraction
-    proof: dict[str, Any]
-
-    def document(self) -> dict[str, Any]:
-        """As it was read."""
-        return self.proof
 
 
 class _Shorter(Exception):
@@ -105,13 +94,15 @@ def _declares(problem: ExactProblem) -> bool:
 
 def _missing(problem: ExactProblem) -> str | None:
     inner = ((),) * (problem.segments - 1)
-    if problem.interpolant.prescribed != (_REST, *inner, _REST):
+    if problem.piecewise.prescribed != (_REST, *inner, _REST):
         return f"{problem.curve.name}: only rest with zero acceleration at both ends is covered"
-    if problem.segments > MOST_SEGMENTS or len(problem.joints) > MOST_JOINTS:
-        return f"more than {MOST_SEGMENTS} segments or {MOST_JOINTS} joints"
-    q = problem.waypoints
+    if problem.segments > MOST_QUINTIC_SEGMENTS or len(problem.joints) > MOST_QUINTIC_JOINTS:
+        return f"more than {MOST_QUINTIC_SEGMENTS} segments or {MOST_QUINTIC_JOINTS} joints"
+    units = _units(problem)
+    own = problem.in_units(units.powers, units.second)
+    q = own.waypoints
     sizes = [abs(b - a) for k in range(len(q) - 1) for a, b in zip(q[k], q[k + 1], strict=True)]
-    sizes += [x.high for row in problem.limits for x in row if x is not None]
+    sizes += [x.high for row in own.limits for x in row if x is not None]
     if not all(x == 0 or SMALLEST < x < 1 / SMALLEST for x in sizes):
         return "a step or a limit is of unusual size"
     if all(problem.duration_lower):
@@ -156,7 +147,10 @@ def shortest(problem: ExactProblem) -> tuple[Fraction, ...]:
 
 @dataclass(eq=False)
 class _Run:
+    """Everything here is in the units of the proof."""
+
     problem: ExactProblem
+    units: Units
     request: Request
     began: float
     answer: tuple[Fraction, ...] | None = None
@@ -197,7 +191,7 @@ class _Run:
             self.open_boxes = int(depth[0])
             self._tell()
             if code == DONE:
-                return Tree(target, self.low, library, leaves)
+                return Tree(self.units, target, self.low, library, leaves)
             if code == FULL:
                 leaves = leaves.larger()
             patience = 1 if code == SHORTER else _CHUNK
@@ -227,20 +221,21 @@ class _Run:
         seconds = time.perf_counter() - self.began
         upper = float("inf") if self.upper is None else float(self.upper)
         gap = 1.0 - float(self.lower) / upper if np.isfinite(upper) else float("inf")
-        rate = self.nodes / max(seconds, 1e-9)
-        self.request.report(
-            Progress(float(self.lower), upper, gap, self.open_boxes, self.nodes, rate)
-        )
+        rate, time_ = self.nodes / max(seconds, 1e-9), float(self.units.time)
+        lower = float(self.lower) * time_
+        self.request.report(Progress(lower, upper * time_, gap, self.open_boxes, self.nodes, rate))
 
 
 def _certify(exact: ExactProblem, request: Request) -> Certified:
-    run = _Run(exact, request, time.perf_counter())
+    began, units = time.perf_counter(), _units(exact)
+    own = exact.in_units(units.powers, units.second)
+    run = _Run(own, units, request, began)
     if request.resume is not None:
-        run.answer, run.proof = _resumed(exact, request.resume)
-        run.lower = Fraction(0) if run.proof is None else run.proof.total
+        run.answer, run.proof = _over(request.resume.durations, units.time), request.resume.proof
+        run.lower = request.resume.lower / units.time
     stopped = True
     try:
-        run.answer = _shorter_of(run.answer, _answer(run.floats, exact, request.seed, None))
+        run.answer = _shorter_of(run.answer, _answer(run.floats, own, request.seed, None))
         stopped = run.answer is None or not _raise_lower(run)
     except (KeyboardInterrupt, _Stop):
         pass
@@ -253,21 +248,43 @@ def _certify(exact: ExactProblem, request: Request) -> Certified:
         outcome = Outcome.CERTIFIED
     else:
         outcome = Outcome.INTERVAL
-    state = None
-    if outcome is not Outcome.CERTIFIED:
-        state = Stopped(None if run.proof is None else run.proof.document(), run.answer)
     return Certified(
         exact,
         outcome,
-        run.lower,
-        upper,
-        run.answer,
+        run.lower * units.time,
+        None if upper is None else upper * units.time,
+        _over(run.answer, 1 / units.time),
         run.nodes,
         run.open_boxes if stopped else 0,
         time.perf_counter() - run.began,
         run.proof,
-        state,
+        outcome is not Outcome.CERTIFIED,
     )
+
+
+def _over(durations: tuple[Fraction, ...] | None, unit: Fraction) -> tuple[Fraction, ...] | None:
+    return None if durations is None else tuple(h / unit for h in durations)
+
+
+def _units(exact: ExactProblem) -> Units:
+    """Units in which steps and total are not far from 1; those of the problem where they are not.
+
+    Weights, multipliers and totals of a proof have ranges, which these units keep to.
+    """
+    steps, limits = np.abs(_steps(exact)), _limits(exact)
+    powers = [_power(float(column.max())) for column in steps.T]
+    least = np.array([float(x) for x in exact.duration_lower])
+    with np.errstate(divide="ignore"):
+        for order in (1, 2, 3):
+            needs = (steps / limits[:, order - 1]) ** (1.0 / order)
+            least = np.maximum(least, needs.max(axis=1))
+    return Units(tuple(powers), _power(float(least.sum())))
+
+
+def _power(size: float) -> int:
+    """Of two, for a size far from 1; else 0."""
+    power = math.frexp(size)[1] if size > 0.0 else 0
+    return 0 if abs(power) <= _NEAR else max(-MOST_POWER, min(MOST_POWER, power))
 
 
 def _raise_lower(run: _Run) -> bool:
@@ -306,47 +323,6 @@ def _shorter_of(
     one: tuple[Fraction, ...] | None, other: tuple[Fraction, ...] | None
 ) -> tuple[Fraction, ...] | None:
     return min([h for h in (one, other) if h is not None], key=sum, default=None)
-
-
-def _resumed(
-    exact: ExactProblem, document: dict[str, Any]
-) -> tuple[tuple[Fraction, ...] | None, Given | None]:
-    """Read a state; its proof and its answer are proved again."""
-    try:
-        if document["kind"] != "quintic-spline":
-            raise TrajgapError(f"resume: a state of kind {document['kind']!r}")
-        answer, proof = document["durations"], document["proved"]
-        durations = None if answer is None else tuple(number(h) for h in answer)
-        given = None
-        if proof is not None:
-            given = Given(prove_total(_stated(exact), proof), proof)
-    except Refused as error:
-        raise TrajgapError(f"resume: the state is not proved ({error})") from None
-    except (KeyError, IndexError, TypeError, ValueError, AttributeError, ArithmeticError) as error:
-        raise TrajgapError(f"resume: malformed state ({type(error).__name__}: {error})") from None
-    if durations is not None and not keeps_limits(exact, durations):
-        raise TrajgapError("resume: the durations of the state do not keep the limits")
-    return durations, given
-
-
-def _stated(exact: ExactProblem) -> Stated:
-    """The question as a verifier reads it; positions take no part."""
-    nothing: list[tuple[Fraction, Fraction] | None] = [None] * len(exact.joints)
-    curve = exact.interpolant
-    return Stated(
-        [list(row) for row in exact.waypoints],
-        [[None if x is None else x.ends for x in row] for row in exact.limits],
-        [nothing, nothing],
-        list(exact.duration_lower),
-        list(exact.duration_upper),
-        Declaration(
-            list(curve.degrees),
-            list(curve.continuity),
-            [{order: Fraction(value) for order, value in row} for row in curve.prescribed],
-            list(curve.virtual),
-        ),
-        None,
-    )
 
 
 QUINTIC = Certifier("C4 quintic splines at rest at the ends", _declares, _missing, _certify)

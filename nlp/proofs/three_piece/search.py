@@ -13,14 +13,13 @@ from numpy.typing import NDArray
 
 from ....problem import Problem, TrajgapError, Verdict, check, evaluate
 from ...optimum import solve
-from ...verify_problem import number
-from ..answer import float_problem, keeps_limits, prove_feasible
-from ..exact import ExactProblem, decimal
-from ..outcome import Certified, Certifier, Outcome, Progress, Request
+from ..answer import float_problem, prove_feasible
+from ..exact import ExactProblem
+from ..outcome import Argument, Certified, Certifier, Outcome, Progress, Request, Resumed
 from .boxes import Boxes, Proof, Proposer
 from .ratios import shape_of
 from .rows import STRICT, shape_for
-from .tree import State, tree_document, tree_state
+from .tree import State, proposed, tree_document
 
 _BATCH = 256
 _LOOKS = 3
@@ -33,34 +32,14 @@ _DEEPEST = 44
 
 @dataclass(frozen=True, eq=False)
 class Tree:
-    """Boxes that prove a total, as the proof of a certificate."""
+    """Boxes that prove a total, or are to prove it: kind of proof, and what is known."""
 
     kind: str
     state: State
 
     def document(self) -> dict[str, Any]:
         """Kind "three-piece" or "four-three-four" of docs/certificates.md."""
-        return {"kind": self.kind, **tree_document(self.state)}
-
-
-@dataclass(frozen=True, eq=False)
-class Stopped:
-    """Where a stopped run can go on: the proof so far, open boxes, and the answer."""
-
-    kind: str
-    proved: State | None
-    pending: State
-    durations: tuple[Fraction, ...] | None
-
-    def document(self) -> dict[str, Any]:
-        """The state of docs/certificates.md."""
-        answer = self.durations
-        return {
-            "kind": self.kind,
-            "proved": None if self.proved is None else tree_document(self.proved),
-            "open": tree_document(self.pending),
-            "durations": None if answer is None else [decimal(h) for h in answer],
-        }
+        return tree_document(self.kind, self.state)
 
 
 class _Stop(Exception):
@@ -101,7 +80,7 @@ class _Run:
     report: Callable[[Progress], None] | None
     lower: Fraction = Fraction(0)
     nodes: int = 0
-    state: State | None = None
+    proof: Argument | None = None
     pending: State | None = None
     stopped: bool = False
     better: NDArray[np.float64] | None = None
@@ -190,18 +169,19 @@ def _missing(problem: ExactProblem) -> str | None:
 
 
 def _certify(exact: ExactProblem, request: Request) -> Certified:
-    began = time.perf_counter()
+    began, kind = time.perf_counter(), shape_for(exact).proof
     run = _Run(exact, began + request.seconds, began, None, request.report)
     start = np.zeros((1, 2), np.int64)
     proofs: tuple[Proof | None, ...] = (None,)
     boxes = Boxes(start, start)
-    given = None if request.resume is None else _resumed(exact, request.resume)
-    if given is not None:
-        boxes, proofs = given.pending.boxes, given.pending.proofs
-        if given.proved is not None:
-            run.state, run.lower = given.proved, given.proved.target
+    answer: tuple[Fraction, ...] | None = None
+    if request.resume is not None:
+        run.proof, run.lower = request.resume.proof, request.resume.lower
+        answer = request.resume.durations
+        pending = _pending(exact, request.resume)
+        if pending is not None:
+            boxes, proofs = pending.boxes, pending.proofs
     run.pending = State(run.lower, boxes, proofs)
-    answer: tuple[Fraction, ...] | None = given.durations if given is not None else None
     try:
         found = _answer(run.floats, exact, request.seed, None)
         answer = min([h for h in (answer, found) if h is not None], key=sum, default=None)
@@ -215,7 +195,7 @@ def _certify(exact: ExactProblem, request: Request) -> Certified:
             state = run.stage(target, boxes, proofs)
             if state is None:
                 break
-            run.state, run.lower, run.pending = state, target, None
+            run.proof, run.lower, run.pending = Tree(kind, state), target, None
             boxes, proofs = state.boxes, state.proofs
         searching = run.better is not None
         if run.better is not None:
@@ -234,12 +214,12 @@ def _result(run: _Run, answer: tuple[Fraction, ...] | None, began: float, gap: f
     upper = sum(answer, Fraction(0)) if answer is not None else None
     pending = run.pending if run.stopped else None
     if upper is not None:
-        enough = run.state is not None and upper - run.lower <= upper * Fraction(gap)
+        enough = run.proof is not None and upper - run.lower <= upper * Fraction(gap)
         outcome = Outcome.CERTIFIED if enough else Outcome.INTERVAL
     else:
         # A resumed proof may be of any total, and nothing may be left to prove.
         wanted = _targets(run.problem, None, 0.0, Fraction(0))
-        above = run.state is not None and not run.stopped and run.lower in wanted
+        above = run.proof is not None and not run.stopped and run.lower in wanted
         outcome = Outcome.INFEASIBLE if above else Outcome.OPEN
     return Certified(
         run.problem,
@@ -250,30 +230,26 @@ def _result(run: _Run, answer: tuple[Fraction, ...] | None, began: float, gap: f
         run.nodes,
         0 if pending is None else sum(p is None for p in pending.proofs),
         time.perf_counter() - began,
-        None if run.state is None else Tree(kind, run.state),
-        None if pending is None else Stopped(kind, run.state, pending, answer),
+        run.proof,
+        pending is not None,
+        None if pending is None else Tree(kind, pending),
     )
 
 
-def _resumed(exact: ExactProblem, document: dict[str, Any]) -> Stopped:
-    """Read a state; its proof and its answer are proved again, its open boxes only propose."""
+def _pending(exact: ExactProblem, resumed: Resumed) -> State | None:
+    """Boxes of a stopped run: what they say of themselves only proposes."""
+    document = resumed.proposals
+    if document is None:
+        return None
+    kind = shape_for(exact).proof
     try:
-        kind = shape_for(exact).proof
         if document["kind"] != kind:
             raise TrajgapError(f"resume: a state of kind {document['kind']!r}")
-        proved = document["proved"]
-        state = None if proved is None else tree_state(exact, proved, proof=True)
-        pending = tree_state(exact, document["open"], proof=False)
-        answer = document["durations"]
-        durations = None if answer is None else tuple(number(h) for h in answer)
-        kept = durations is None or keeps_limits(exact, durations)
-    except TrajgapError:
-        raise
+        return proposed(exact, document)
     except (KeyError, IndexError, TypeError, ValueError, AttributeError, ArithmeticError) as error:
+        if isinstance(error, TrajgapError):
+            raise
         raise TrajgapError(f"resume: malformed state ({type(error).__name__}: {error})") from None
-    if not kept:
-        raise TrajgapError("resume: the durations of the state do not keep the limits")
-    return Stopped(kind, state, pending, durations)
 
 
 def _answer(
