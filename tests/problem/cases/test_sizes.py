@@ -47,7 +47,8 @@ def test_a_million_waypoints_in_one_line(tmp_path: Path) -> None:
     (tmp_path / "count_bomb.toml").write_text(HEAD + ROBOT + ABSENT.format(1_000_000))
     with pytest.raises(CaseError, match=r"waypoints\.count: 1000000 is out of range; give at most"):
         load_case(tmp_path / "count_bomb.toml")
-    assert parse_case(HEAD + ROBOT + ABSENT.format(10_000), "f").posing().waypoints.number == 10_000
+    case = parse_case(HEAD + ROBOT + ABSENT.format(10_000), "f")
+    assert case.document.waypoints.number == 10_000
 
 
 def test_waypoints_rows_and_joints() -> None:
