@@ -137,7 +137,9 @@ def _plain(number: Printed | None) -> str | int | float | None:
 
 
 _DIGITS = r"^\s*[+\-−]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?\s*$"
+"""Digits as `printed.Printed` reads them, for the JSON Schema alone."""
 _NUMBER_SCHEMA = {"anyOf": [{"type": "number"}, {"type": "string", "pattern": _DIGITS}]}
+"""A bare number is exact, a string is printed digits."""
 _LIMIT_SCHEMA = {
     "anyOf": [
         {"type": "number"},
@@ -146,6 +148,7 @@ _LIMIT_SCHEMA = {
         {"enum": ["inf", "-inf"]},
     ]
 }
+"""As a number, and the words for no limit."""
 
 Number = Annotated[
     Printed, PlainValidator(read_number), PlainSerializer(_plain), WithJsonSchema(_NUMBER_SCHEMA)

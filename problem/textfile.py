@@ -11,7 +11,7 @@ from .errors import CaseError
 from .files import read_regular
 
 LARGEST_BYTES = 5_000_000
-"""Largest text file, bytes: a paper's numbers take a hundredth of it."""
+"""Two hundred times the longest case file shipped: what is larger is no case file."""
 
 
 def read_text(path: Path) -> str:

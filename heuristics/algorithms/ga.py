@@ -44,6 +44,7 @@ SHARED_OPEN = (
     "budget: N iterations are N generations after the initial one, N + 1 evaluations of the "
     "population",
 )
+"""What the paper leaves open for both of its genetic algorithms, and what was chosen."""
 
 OPEN_CHOICES = (
     "selection: 'roulette in proportion to the fitness' is said of the traditional algorithm; "

@@ -33,7 +33,9 @@ from .schema import (
 from .statement import Statement, overlaid
 
 _ONLY_PROBLEM = ProblemBlock(id="main")
+"""Stands for the one problem of a file that lists none; its id is what `--problem` then takes."""
 _ONLY_READING = Reading(id="as-printed", why="the numbers and units as printed", default=True)
+"""Stands for the one reading of a file that lists none."""
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,9 @@ from .schema import LISTS, CaseFile
 from .statement import Statement
 
 _BLOCKS = ("units", "waypoints", "limits", "interpolant", "durations", "coupling", "robot")
+"""Single blocks that an assumption may say it affects; they have no ids."""
 _OF_ONE_PROBLEM = (DurationsClaim, MaximumClaim, TotalTimeClaim, PeakClaim, ControlVerticesClaim)
+"""Claims whose numbers belong to one problem, which a file with several must name."""
 
 
 def check_references(document: CaseFile, file: str) -> None:

@@ -48,7 +48,7 @@ LISTS = (
     "cartesian",
     "not_checkable",
 )
-"""Lists of a case file whose entries refer to each other."""
+"""Lists of blocks with ids, in the order in which their faults are told."""
 
 
 class Source(Strict):

@@ -11,8 +11,7 @@ import sys
 from pathlib import Path
 
 import pytest
-
-from tests.verify.small import rest_to_rest
+from support.small_certificates import rest_to_rest
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "verify"

@@ -12,11 +12,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from support.small_certificates import REST, Document, rest_to_rest, sealed
 from trajgap.verify import STATE_FORMAT, CertificateVerdict, seal
 from trajgap.verify import verify_certificate as verify
 from trajgap.verify.ranges import MOST_BYTES, MOST_DEPTH
-
-from tests.verify.small import REST, Document, rest_to_rest, sealed
 
 QUICK = 2.0
 """Seconds within which anything malformed is refused, on a machine with other work on it."""

@@ -38,7 +38,7 @@ from trajgap.problem import (
     three_five_three,
 )
 from trajgap.problem.cases.load import load_case
-from trajgap.problem.curves.interpolant import ConditionKind
+from trajgap.problem.curves.condition import ConditionKind
 
 MOVING_ENDS = piecewise((4, 3, 4), 2, ((1, 0.3), (2, -0.7)))
 

@@ -26,7 +26,7 @@ from trajgap.problem import (
     load_case,
     three_five_three,
 )
-from trajgap.problem.curves.uniform import control_vertices, uniform_cubic_b_spline
+from trajgap.problem.curves import control_vertices, uniform_cubic_b_spline
 from trajgap.problem.printed import Interval
 
 WAYPOINTS = np.array([[0.3, 1.9], [1.4, 1.2], [0.9, 2.6], [2.0, 2.1], [1.6, 0.7]])

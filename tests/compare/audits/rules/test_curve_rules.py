@@ -18,7 +18,7 @@ from trajgap.compare.audits.rules.printed_digits import judge_digits
 from trajgap.compare.audits.rules.printed_vertices import judge_vertices, vertices
 from trajgap.compare.audits.study import Study
 from trajgap.nlp.enclosure.balls import Ball
-from trajgap.nlp.enclosure.uniform import centred, covered
+from trajgap.nlp.enclosure.uniform import centred_stretched, centred_timed
 from trajgap.problem import (
     CaseError,
     Verdict,
@@ -30,7 +30,6 @@ from trajgap.problem import (
     parse_case,
     peak_gradients,
 )
-from trajgap.problem.curves.timed import ClockedTrajectory
 
 WHALE = "z1-woa-bspline"
 TIMES = ("stretched", "timed")
@@ -135,14 +134,15 @@ def test_balls_hold_values_and_gradients_all_over_the_box(time: str) -> None:
     problem, h = uniform(time, 41, count=5)
     curve, q = problem.curve, problem.waypoints
     trajectory = fit(curve, q, h)
-    points = [e for j in range(3) for r in (1, 2, 3) for e in extrema(trajectory, j, r)]
-    points = [e for e in points if covered(curve, np.array([e.order]))[0]]
+    centred, highest = (centred_timed, 2) if time == "timed" else (centred_stretched, 3)
+    orders = range(1, highest + 1)
+    points = [e for j in range(3) for r in orders for e in extrema(trajectory, j, r)]
     joint, segment, order = (
         np.array([getattr(e, name) for e in points]) for name in ("joint", "segment", "order")
     )
     place = np.array([e.s for e in points])
     wide_h, wide_q = Ball(h, 0.01 * h), Ball(q, np.full_like(q, 5e-5))
-    form = centred(curve, joint, segment, order, place, wide_h, wide_q)
+    form = centred(len(q), joint, segment, order, place, wide_h, wide_q)
     exact = np.array([e.value for e in points])
     np.testing.assert_allclose(form.value.mid, exact, rtol=1e-9, atol=1e-12)
     assert (np.abs(form.value.mid - exact) <= form.value.rad + 1e-11 * form.amplitude).all()
@@ -152,12 +152,7 @@ def test_balls_hold_values_and_gradients_all_over_the_box(time: str) -> None:
         there = h * (1 + 0.01 * rng.uniform(-1, 1, h.size))
         moved = q + 5e-5 * rng.uniform(-1, 1, q.shape)
         at = fit(curve, moved, there)
-        values = [
-            at.value(e.segment, e.joint, e.order, e.s)
-            if isinstance(at, ClockedTrajectory)
-            else np.polynomial.polynomial.polyval(e.s, at.derivative(e.segment, e.joint, e.order))
-            for e in points
-        ]
+        values = [float(at.values(e.segment, e.joint, e.order, np.array([e.s]))[0]) for e in points]
         fixed = [replace(e, value=v) for e, v in zip(points, values, strict=True)]
         slope = peak_gradients(replace(problem, waypoints=moved), there, fixed).durations
         excess = np.abs(slope - form.by_duration.mid) - form.by_duration.rad

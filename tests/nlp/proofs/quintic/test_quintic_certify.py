@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import make_interp_spline
 from support.checkout import ROOT
+from support.unjudged import unjudged
 from trajgap.nlp import solve
 from trajgap.nlp.proofs.certifiers import certify, covered
 from trajgap.nlp.proofs.document import certificate
@@ -22,9 +23,11 @@ from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress, Request
 from trajgap.nlp.proofs.quintic.bound import bound, centre
 from trajgap.nlp.proofs.quintic.rows import PLACES, row_shape
 from trajgap.nlp.proofs.quintic.windows import window, window_bound, window_terms
-from trajgap.nlp.verify import seal, verify
-from trajgap.nlp.verify_problem import number
+from trajgap.nlp.proofs.state import state_document
 from trajgap.problem import Limits, Problem, TrajgapError, evaluate, quintic_spline
+from trajgap.verify import seal
+from trajgap.verify import verify_certificate as verify
+from trajgap.verify.quintic import QuinticSpline
 
 module = import_module("trajgap.nlp.proofs.quintic.certifier")
 ENDS = [(1, 0.0), (2, 0.0)]
@@ -181,13 +184,17 @@ def test_limits_falsified_on_purpose_prove_too_much_and_are_refused(
     assert truth.upper is not None
     limits: Callable[[Any], np.ndarray] = module._limits
     monkeypatch.setattr(module, "_limits", lambda problem: 0.9 * limits(problem))
-    false = certify(small(), gap=0.01)
-    run = module._Run(exact_problem(small()), Request(), 0.0, truth.durations)
+    false = unjudged(monkeypatch)
+    judged = certify(small(), gap=0.01)
+    assert (judged.outcome, judged.proof) == (Outcome.OPEN, None)
+    units = module._units(exact_problem(small()))
+    assert units == module.Units((0, 0), 0)
+    run = module._Run(exact_problem(small()), units, Request(), 0.0, truth.durations)
     library = module.windows(run.steps, run.limits, np.array([float(h) for h in truth.durations]))
     run.deadline = np.inf
     too_much = run.stage(module._below(truth.upper * Fraction(101, 100)), library)
     assert too_much.total > truth.upper
-    document = certificate(false)
+    document = certificate(false[0])
     document["proof"], document["claim"]["lower"] = too_much.document(), str(truth.upper)
     document["seal"] = seal({key: x for key, x in document.items() if key != "seal"})
     verdict = verify(document)
@@ -229,10 +236,9 @@ def test_a_stopped_run_keeps_what_it_proved_and_goes_on() -> None:
     assert found.outcome is Outcome.INTERVAL
     assert found.upper is not None
     assert 0 < found.lower < found.upper
-    assert found.resume is not None
     verdict = verify(json.loads(json.dumps(certificate(found))))
     assert verdict.proves
-    state = json.loads(json.dumps(found.resume.document()))
+    state = json.loads(json.dumps(state_document(found)))
     waited = certify(small(), gap=1e-3, seconds=0.0, resume=state)
     assert waited.lower == found.lower
     assert verify(certificate(waited)).proves
@@ -244,17 +250,15 @@ def test_a_stopped_run_keeps_what_it_proved_and_goes_on() -> None:
 @pytest.mark.parametrize(
     ("alter", "match"),
     [
-        (lambda s: s["proved"].update(total=str(Fraction(s["proved"]["total"]) * 2)), "not proved"),
-        (lambda s: s["proved"].update(tree="."), "differ in number"),
-        (lambda s: s.update(kind="three-piece"), "kind"),
-        (lambda s: s.update(durations=["1", "0.1", "1"]), "do not keep the limits"),
-        (lambda s: s.pop("proved"), "malformed"),
+        (lambda s: s["proof"].update(total=str(Fraction(s["proof"]["total"]) * 2)), "not proved"),
+        (lambda s: s["proof"].update(tree=[["."]]), "not proved"),
+        (lambda s: s["proof"].update(kind="three-piece"), "not proved"),
+        (lambda s: s["claim"].update(durations=["1", "0.1", "1"]), "exceeds its limit"),
+        (lambda s: s.pop("proof"), "missing"),
     ],
 )
 def test_an_altered_state_is_refused(alter: Callable[[Any], Any], match: str) -> None:
-    found = stopped(4)
-    assert found.resume is not None
-    state = json.loads(json.dumps(found.resume.document()))
+    state = json.loads(json.dumps(state_document(stopped(4))))
     alter(state)
     with pytest.raises(TrajgapError, match=match):
         certify(small(), resume=state)
@@ -273,7 +277,11 @@ def forged(total: str, low: list[str], **proof: Any) -> dict[str, Any]:
 def test_a_window_below_the_smallest_floats_proves_nothing() -> None:
     # tau·0.53125 is rounded up to tau, twice, and tau·1.25 down to it.
     tau = f"0.{'0' * 323}5"
-    nothing = {"tree": ".", "windows": [[0] * 6], "rows": [], "leaves": [[0, tau]]}
+    nothing = {"tree": [[".", 0, tau]], "windows": [[0] * 6], "rows": []}
+    verdict = verify(forged("1.25", ["0.53125", "0.53125"], **nothing))
+    assert not verdict.proves
+    assert "no number of at most 120 digits" in verdict.reason
+    nothing["tree"] = [[".", 0, "5e-61"]]
     verdict = verify(forged("1.25", ["0.53125", "0.53125"], **nothing))
     assert not verdict.proves
     assert "unusual size" in verdict.reason
@@ -281,51 +289,77 @@ def test_a_window_below_the_smallest_floats_proves_nothing() -> None:
 
 def test_a_leaf_with_more_rows_than_were_counted_is_refused() -> None:
     # Each addition is rounded: the margin is for a number of them.
-    rows = {"tree": ".", "windows": [], "rows": [[0, 0, 1, 1, 512]], "leaves": [[1] + [0, 1] * 65]}
+    leaf = [".", 1] + [0, 1] * 65
+    rows = {"tree": [leaf], "windows": [], "rows": [[0, 0, 1, 1, 512]]}
     verdict = verify(forged("1.109375", ["0.546875", "0.546875"], **rows))
     assert not verdict.proves
     assert "too many rows" in verdict.reason
 
 
 @pytest.mark.parametrize(
-    ("tree", "leaves", "reason"),
+    ("tree", "reason"),
     [
-        ("", [], "open"),
-        ("..", [[], []], "too many"),
-        ("a" * 100_000 + ".", [[]], "too deep"),
-        (".", [], "differ"),
-        (".", {}, "differ"),
-        ("a..", [[], []], "not empty"),
-        ("A..", [[], []], "unknown"),
-        ("ab...", [[], [], []], "not empty"),
+        ([], "tree: not 1 to"),
+        ([0, ["."]], "not empty"),
+        ([["."], ["."]], "not empty"),
+        ([0] * 100_000 + [["."]], "too deep"),
+        ({}, "no list"),
+        ([0, ["."], ["."]], "not empty"),
+        ([2, ["."], ["."]], "no integer in 0..1"),
+        ([["/", 0, "0.55"], ["."], ["."]], "is not stated"),
+        ([0, 1, ["."], ["."], ["."]], "not empty"),
+        ([["r"]], "unknown tag"),
+        ([["?"]], "open"),
     ],
 )
-def test_trees_that_cover_nothing_are_refused(tree: str, leaves: Any, reason: str) -> None:
-    document = forged("1.109375", ["0.546875", "0.546875"], tree=tree, leaves=leaves)
-    verdict = verify(document)
+def test_trees_that_cover_nothing_are_refused(tree: Any, reason: str) -> None:
+    verdict = verify(forged("1.109375", ["0.546875", "0.546875"], tree=tree))
     assert not verdict.proves
     assert reason in verdict.reason
 
 
 def test_a_box_that_is_empty_may_be_cut_but_not_left_open() -> None:
     low = ["0.546875", "0.546875"]
-    assert verify(forged("1", low, tree="a..", leaves=[[], []])).proves
-    assert "open" in verify(forged("1", low, tree="a.", leaves=[[]])).reason
+    assert verify(forged("1", low, tree=[0, ["."], ["."]])).proves
+    assert "open" in verify(forged("1", low, tree=[0, ["."]])).reason
+    assert "open" in verify(forged("1", low, tree=[0, ["."], ["?"]])).reason
+    assert "too many" in verify(forged("1", low, tree=[["."], ["."]])).reason
 
 
 def test_a_proof_that_contradicts_the_answer_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     found = certify(small(), gap=0.1)
     document = certificate(found)
-    verifier = import_module("trajgap.nlp.verify_quintic")
-    monkeypatch.setattr(verifier, "prove_total", lambda problem, proof: number(proof["total"]))
+    monkeypatch.setattr(QuinticSpline, "leaf", lambda *_: None)
     assert verify(document).proves
     document["proof"]["total"] = "100"
-    assert verify(document).reason == "the proof contradicts the answer"
+    reason = "the proof contradicts the answer: one of them is wrong"
+    assert verify(document).reason == reason
     # The solver says so, too.
-    state = {"kind": "quintic-spline", "proved": {"total": "100"}, "durations": None}
-    monkeypatch.setattr(module, "prove_total", verifier.prove_total)
+    state = state_document(certify(small(), gap=0.1, seconds=0.0))
+    assert state is not None
+    state["claim"] |= {"durations": None, "upper": None, "lower": "100"}
+    state["proof"] = document["proof"]
     with pytest.raises(TrajgapError, match="contradicts"):
         certify(small(), gap=0.1, resume=state)
+
+
+FAST = np.array([[0.0], [0.01], [0.005], [-0.01]])
+"""Way-points, rad, that take about 1 ms at limits of 200 rad/s and 1.2e6 rad/s²."""
+
+
+def test_motions_of_a_millisecond_are_proved_in_units_of_their_own() -> None:
+    problem = Problem(FAST, Limits(200.0, 1.2e6), quintic_spline(3))
+    found = certify(problem, gap=0.03, seconds=20.0)
+    assert found.outcome is Outcome.CERTIFIED
+    assert found.verdict is not None
+    assert found.verdict.lower == found.lower
+    assert found.proof is not None
+    proof = found.proof.document()
+    assert proof["second"] < -8
+    # The same motion in units of 2⁻¹⁰ s, which are powers of two and so spoil no digit.
+    slow = Problem(FAST, Limits(200.0 / 2**10, 1.2e6 / 2**20), quintic_spline(3))
+    again = certify(slow, gap=0.03, seconds=20.0)
+    assert float(again.lower) == pytest.approx(float(found.lower) * 2**10, rel=1e-6)
 
 
 def test_what_is_not_covered_is_said() -> None:
@@ -336,7 +370,7 @@ def test_what_is_not_covered_is_said() -> None:
     jerk = replace(problem, limits=Limits([np.inf] * 2, [np.inf] * 2, [9.0] * 2))
     assert "no joint that moves" in str(covered(exact_problem(jerk)))
     assert covered(exact_problem(replace(jerk, duration_lower=np.full(3, 0.1)))) is None
-    huge = replace(problem, waypoints=problem.waypoints * 1e31)
+    huge = replace(problem, waypoints=problem.waypoints * 1e61)
     assert "unusual size" in str(covered(exact_problem(huge)))
     many = Problem(np.zeros((30, 1)), Limits(1.0, 1.0), quintic_spline(29))
     assert "segments" in str(covered(exact_problem(many)))

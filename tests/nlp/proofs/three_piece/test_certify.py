@@ -14,12 +14,12 @@ import pytest
 from support.checkout import ROOT
 from support.shipped_problems import POSED
 from support.three_pieces import dense_best, random_problem
+from support.unjudged import unjudged
 from trajgap.nlp import solve
 from trajgap.nlp.proofs.answer import exact_coefficients, keeps_limits, never_above
 from trajgap.nlp.proofs.certifiers import certify
 from trajgap.nlp.proofs.document import certificate, problem_document, shipped, shipped_folder
 from trajgap.nlp.proofs.exact import ExactProblem, decimal, exact_problem
-from trajgap.nlp.proofs.judged import judged
 from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress
 from trajgap.nlp.proofs.state import resumed, state_document
 from trajgap.nlp.proofs.three_piece import rows as three_piece
@@ -134,13 +134,8 @@ def test_a_broken_relaxation_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
     def broken(problem: ExactProblem, row: Row, total: Fraction) -> three_piece.Poly:
         return exact_row(problem, row, total * Fraction(9, 10))
 
-    def seen(found: Certified) -> Certified:
-        raw.append(found)
-        return judged(found)
-
-    raw: list[Certified] = []
+    raw = unjudged(monkeypatch)
     monkeypatch.setattr(three_piece, "exact_row", broken)
-    monkeypatch.setattr(import_module("trajgap.nlp.proofs.certifiers"), "judged", seen)
     optimum, found = unlucky(monkeypatch, seconds=20.0)
     assert raw[0].lower > optimum, "the attack above would not have seen it"
     assert not verify(certificate(raw[0])).proves
