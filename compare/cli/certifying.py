@@ -35,14 +35,21 @@ from ...verify import (
     read_document,
     verify_certificate,
 )
-from ..documents import Judged, certify_document, certify_result, verify_document, worth
+from ..documents import (
+    CertifiedResult,
+    CertifyDocument,
+    JudgedFile,
+    certify_result,
+    json_text,
+    verify_document,
+    worth,
+)
 from . import proof_tables as cli_proofs
 from .input import Posed, naming, read_case, select
 from .output import (
     Steps,
     check_certificates,
     emit,
-    json_text,
     new_output,
     progress,
     replace_output,
@@ -52,9 +59,11 @@ from .output import (
 _LONGEST = 150
 """Characters of a file's name, its ending apart: most file systems take 255 bytes."""
 CERTIFICATE_FOLDER = Path("trajgap-certificates")
+"""Where certificates go, unless the command line says otherwise."""
 NOT_PROVED = 3
 """Exit code where an interval is wider than asked for, or nothing is proved."""
 _SETTLED = (Outcome.CERTIFIED, Outcome.INFEASIBLE)
+"""Outcomes that leave nothing to prove."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,7 +116,7 @@ def certify_case(
     if folder is not None:
         check_certificates(folder)
         _check_files(folder, asked)
-    results: list[dict[str, Any]] = []
+    results: list[CertifiedResult] = []
     unsettled, stop = False, _Stop()
     with new_output(out) as write:
         with progress("certify", len(asked)) as step, naming(case.file), stop.listening():
@@ -131,10 +140,10 @@ def certify_case(
                 files = _written(folder, one, found)
                 ids = (case.id, one.posed.problem_id, one.posed.reading_id, one.asked.joint)
                 results.append(certify_result(*ids, found, *files, _why(found)))
-        document = certify_document(results)
+        document = CertifyDocument(intervals=tuple(results))
         write(json_text(document))
     emit(document, cli_proofs.certified, as_json)
-    if folder is not None and not as_json and any(r["certificate"] for r in results):
+    if folder is not None and not as_json and any(r.certificate for r in results):
         say(f"certificates: {folder}\n")
     if stop.asked:
         raise KeyboardInterrupt
@@ -310,7 +319,7 @@ def verify_files(
             for question in _stated(stated, one, coupling)
         ]
     with new_output(out) as write:
-        verdicts: list[Judged] = []
+        verdicts: list[JudgedFile] = []
         with progress("verify", len(files)) as step:
             for path in files:
                 step(path.name)

@@ -14,7 +14,7 @@ from types import FrameType
 from ...problem import remove_drafts
 
 INTERRUPTED = 130
-"""Exit code after Ctrl-C, as shells count: 128 and the number of the signal."""
+"""Exit code: what a shell says of SIGINT."""
 
 
 def catch_interrupts() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import sys
 from collections import Counter
@@ -12,26 +11,27 @@ from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
+from pydantic import BaseModel, Field
 
 from ...nlp.optimum import KKT_TOLERANCE, SAME, STARTS
 from ...problem import (
     LONGEST_NAME,
     TOLERANCE,
     TrajgapError,
-    escaped,
     file_name,
+    read_regular,
     recover_folder,
     replace_folder,
     visible,
 )
-from ..audits import AuditReport, CaseAudit, ClaimVerdict
-from ..documents import audit_document
+from ..audits import AuditReport, CaseAudit
+from ..documents import AuditDocument, ClaimVerdict, json_text
 from ..pictures import embedded
 from . import motions_shown as report_pictures
 from .blocks import Page, Prose, Section, Terms, slug
 from .exhibits import exhibits_of_motion, exhibits_of_search
 from .glossary import glossary
-from .instances import families
+from .instances import other_instances
 from .markdown_text import markdown
 from .numbers import optima, sensitivities, where_time_goes
 from .readings import side_by_side
@@ -39,8 +39,12 @@ from .verdicts import audited, claim_table, findings, foundations, summary
 
 MARK = "audit.json"
 """The file by which the folder of an earlier report is known."""
+_LARGEST_MARK = 1_000_000_000
+"""Bytes that are read to know an earlier report: hundreds of times the largest one shipped."""
 _INDEX = "index.html"
+"""The page that leads to those of the cases."""
 _TEMPLATES = Path(__file__).parent / "templates"
+"""Where the pages' templates and style lie, as package data."""
 _LIBRARIES = (
     "casadi",
     "jinja2",
@@ -51,6 +55,18 @@ _LIBRARIES = (
     "scipy",
     "toppra",
 )
+"""Libraries whose versions can move a digit or a pixel."""
+
+
+class _MarkedCase(BaseModel):
+    case: str
+
+
+class _Mark(BaseModel):
+    """What is read of an earlier report, of whatever version."""
+
+    version: str = Field(alias="schema")
+    cases: tuple[_MarkedCase, ...]
 
 
 def write_report(report: AuditReport, out: Path) -> None:
@@ -99,12 +115,12 @@ def foreign(out: Path) -> str | None:
     if not there:
         return None
     try:
-        document = json.loads((out / MARK).read_text(encoding="utf-8"))
-        cases = [str(one["case"]) for one in document["cases"]]
-        if not str(document["schema"]).startswith("trajgap/"):
-            return MARK
-    except (OSError, ValueError, KeyError, TypeError):
+        mark = _Mark.model_validate_json(read_regular(out / MARK, _LARGEST_MARK, "name another"))
+    except (OSError, ValueError):
         return there[0]
+    if not mark.version.startswith("trajgap/"):
+        return MARK
+    cases = [one.case for one in mark.cases]
     pages = [file_name(case) for case in cases]
     known = {_INDEX, MARK, *(f"{page}.{end}" for page in pages for end in ("html", "md", "json"))}
     drawn = tuple(f"pictures/{f'{case}-'[:LONGEST_NAME]}" for case in cases)
@@ -115,16 +131,16 @@ def foreign(out: Path) -> str | None:
 
 
 def _files(report: AuditReport) -> dict[str, str]:
-    document = audit_document(report)
+    document = report.document
     style = (_TEMPLATES / "style.css").read_text(encoding="utf-8")
     environment = _environment()
     files: dict[str, str] = {}
-    for one, own in zip(report.cases, document["cases"], strict=True):
+    for one in report.cases:
         page = case_page(one)
         name = page.file
         files[f"{name}.html"] = environment.get_template("case.html").render(page=page, style=style)
         files[f"{name}.md"] = markdown(page)
-        files[f"{name}.json"] = _json({"schema": document["schema"], "cases": [own]})
+        files[f"{name}.json"] = json_text(AuditDocument(cases=(one.document,)))
         for picture in page.pictures:
             files[page.picture(picture)] = picture.document
     index = environment.get_template(_INDEX)
@@ -134,12 +150,8 @@ def _files(report: AuditReport) -> dict[str, str]:
         version=_version("trajgap"),
         style=style,
     )
-    files[MARK] = _json(document)
+    files[MARK] = json_text(document)
     return files
-
-
-def _json(document: dict[str, Any]) -> str:
-    return escaped(json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False)) + "\n"
 
 
 def _row(one: CaseAudit) -> dict[str, Any]:
@@ -174,7 +186,7 @@ def case_page(one: CaseAudit) -> Page:
             claim_table(one),
             side_by_side(one),
             where_time_goes(one),
-            *families(one),
+            *other_instances(one),
             findings(one),
             optima(one),
             sensitivities(one),

@@ -61,7 +61,7 @@ def no_computing(monkeypatch: pytest.MonkeyPatch) -> None:
     def compute(*_: object, **__: object) -> None:
         raise AssertionError("computes")
 
-    for name in ("commands.solve", "commands.solve_per_joint", "commands.check"):
+    for name in ("solving.solve", "solving.solve_per_joint", "checking.check"):
         monkeypatch.setattr(f"trajgap.compare.cli.{name}", compute)
     monkeypatch.setattr("trajgap.compare.cli.certifying.certify", compute)
     monkeypatch.setattr(import_module("trajgap.compare.audits.case_audit"), "audit", compute)

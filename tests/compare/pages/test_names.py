@@ -1,5 +1,6 @@
 """Pictures, pages and places in a page: one name each, whatever the ids of a case."""
 
+import os
 import re
 import xml.etree.ElementTree as ElementTree
 from collections import Counter
@@ -101,6 +102,11 @@ def test_an_earlier_report_is_known_by_the_names_of_its_time(folder: Path) -> No
     known.write_text("<svg/>", encoding="utf-8")
     assert foreign(folder) is None
     known.unlink()
+
+
+def test_a_folder_with_a_pipe_is_foreign(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "audit.json")
+    assert foreign(tmp_path) == "audit.json"
 
 
 def test_what_hides_or_steers_is_shown(folder: Path) -> None:

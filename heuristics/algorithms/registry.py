@@ -6,10 +6,16 @@ from collections.abc import Callable, Mapping
 from dataclasses import fields
 from typing import Any
 
-from ..problem import TrajgapError
-from .algorithm import Algorithm
-from .algorithms import GA, MNAMPSO, PSO, WOA, ConstrainedPSO, ImprovedGA, ImprovedWOA
-from .settings import nearest
+from ...problem import TrajgapError
+from ..algorithm import Algorithm
+from ..settings import nearest
+from .constrained_pso import ConstrainedPSO
+from .ga import GA
+from .improved_ga import ImprovedGA
+from .improved_woa import ImprovedWOA
+from .mnam_pso import MNAMPSO
+from .pso import PSO
+from .woa import WOA
 
 _RECORDS: dict[str, Any] = {
     record.kind: record
@@ -64,10 +70,13 @@ def from_settings(kind: str, settings: Mapping[str, object]) -> Algorithm[Any]:
     for key in settings:
         if key not in known:
             raise TrajgapError(f"{kind}: {key}: unknown setting; {nearest(str(key), known)}")
-    for key, value in settings.items():
+    made = record(**settings)
+    for key in settings:
+        value = getattr(made, key)
+        # Clean by now: a whole number is a count, whatever else may be large is a float.
         if isinstance(value, int) and value > MOST_COUNT:
             raise TrajgapError(f"{kind}: {key}: {value} is more than {MOST_COUNT}; give less")
-    return record(**settings)
+    return made
 
 
 def open_choices(kind: str) -> tuple[str, ...]:
