@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 import signal
 import threading
 from collections.abc import Callable, Iterator, Sequence
@@ -25,7 +24,7 @@ from ...nlp.proofs import (
     state_document,
     unlike,
 )
-from ...problem import Case, CaseError, Coupling, TrajgapError
+from ...problem import Case, CaseError, Coupling, TrajgapError, check_regular
 from ...verify import (
     CERTIFICATE_FORMAT,
     OLD_FORMATS,
@@ -49,10 +48,11 @@ from . import proof_tables as cli_proofs
 from .input import Posed, naming, read_case, select
 from .output import (
     Steps,
+    check_certificates,
     emit,
-    new_file,
+    new_output,
     progress,
-    replace_file,
+    replace_output,
     say,
 )
 
@@ -114,11 +114,11 @@ def certify_case(
     if not 0 <= gap < 1:
         raise CaseError(source, "--gap", f"{gap:g} is no relative width; give 0 or more, below 1")
     if folder is not None:
-        _check_folder(folder)
+        check_certificates(folder)
         _check_files(folder, asked)
     results: list[CertifiedResult] = []
     unsettled, stop = False, _Stop()
-    with new_file(out) as write:
+    with new_output(out) as write:
         with progress("certify", len(asked)) as step, naming(case.file), stop.listening():
             for one in asked:
                 if stop.asked:
@@ -212,15 +212,6 @@ def _file(folder: Path, one: Question, kind: str = "") -> Path:
     return folder / f"{one.file}{kind}.json"
 
 
-def _check_folder(folder: Path) -> None:
-    """Find out before computing whether the folder can be made and written to."""
-    there = next(p for p in (folder, *folder.absolute().parents) if os.path.lexists(p))
-    if not there.is_dir():
-        raise CaseError(str(there), "--certificates", "is no folder; name another")
-    if not os.access(there, os.W_OK | os.X_OK):
-        raise CaseError(str(there), "--certificates", "cannot be written to; name another folder")
-
-
 def _check_files(folder: Path, asked: Sequence[Question]) -> None:
     """Find out before computing whether what is in the way may be replaced."""
     for one in asked:
@@ -247,9 +238,9 @@ def _written(
     certificate, state = _file(folder, one), _file(folder, one, ".state")
     document = state_document(found, one.asked)
     if document is not None:
-        replace_file(state, json.dumps(document, separators=(",", ":")) + "\n")
+        replace_output(state, json.dumps(document, separators=(",", ":")) + "\n")
     if found.proof is not None and not _narrower(certificate, found):
-        replace_file(certificate, certificate_text(found, one.asked))
+        replace_output(certificate, certificate_text(found, one.asked))
     if document is None:
         # What a state of an earlier run would lead to is there.
         state.unlink(missing_ok=True)
@@ -316,6 +307,8 @@ def verify_files(
     out: Path | None,
 ) -> int:
     """Prove certificates again; 1 if any is refused, or is about no problem of the case."""
+    for path in files:
+        check_regular(path)
     asked = None
     if case is not None:
         stated = read_case(case)
@@ -325,7 +318,7 @@ def verify_files(
             for coupling in Coupling
             for question in _stated(stated, one, coupling)
         ]
-    with new_file(out) as write:
+    with new_output(out) as write:
         verdicts: list[JudgedFile] = []
         with progress("verify", len(files)) as step:
             for path in files:

@@ -19,7 +19,7 @@ from trajgap.compare.documents import Basis, Gap, Keeping, Why
 from trajgap.compare.pages.blocks import Cell, Drawn, Grid, Page, Prose, Section, Terms, slug
 from trajgap.compare.pages.markdown_text import markdown, plain
 from trajgap.compare.pages.writer import MARK, case_page
-from trajgap.problem import Case, TrajgapError
+from trajgap.problem import Case, TrajgapError, file_name
 from trajgap.problem.cases.load import check_case
 
 ID = "irb460-pso-353"
@@ -320,9 +320,9 @@ def test_a_shipped_case_shows_each_joint_by_itself() -> None:
     page = case_page(one)
     names = [p.name for p in page.pictures]
     assert [n for n in names if "-joint-" in n] == [
-        f"landscape-six-joints-joint-{j}" for j in range(1, 7)
+        file_name("landscape", "six-joints", "joint", str(j)) for j in range(1, 7)
     ]
-    assert "motion-six-joints-joints-table-2" in names
+    assert file_name("motion", "six-joints", "joints", "table-2") in names
     text = markdown(page)
     for joint in "123456":
         total = one.study.optimum("six-joints", one.study.main_reading, joint).total_time
