@@ -122,10 +122,7 @@ def _number(key: str, value: Fraction | None, why: str, side: int) -> Document:
     """A bound in floats, rounded outwards."""
     if value is None:
         return {key: None, f"{key}_why": why}
-    try:
-        rounded = float(value)
-    except OverflowError:
-        return {key: None, f"{key}_why": "beyond the range of floating point"}
+    rounded = float(value)
     if side * (Fraction(rounded) - value) < 0:
         rounded = math.nextafter(rounded, side * math.inf)
     return {key: rounded}
