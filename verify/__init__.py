@@ -5,7 +5,7 @@ does the same as ``python -I FOLDER FILE...``, with the standard library only; p
 quintic splines need numpy. Format and mathematics are in docs/certificates.md.
 """
 
-from .certificate import (
+from .verdict import (
     CERTIFICATE_FORMAT,
     OLD_FORMATS,
     SECONDS,
