@@ -14,8 +14,10 @@ from pathlib import Path
 from types import FrameType
 
 INTERRUPTED = 130
+"""Exit code: what a shell says of SIGINT."""
 
 _drafts: set[Path] = set()
+"""Files and folders that an interrupted run removes."""
 
 
 @contextmanager

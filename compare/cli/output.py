@@ -3,29 +3,27 @@
 from __future__ import annotations
 
 import io
-import json
 import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, TypeVar
 
 from ...problem import Case, CaseError
+from ..documents import Document, json_text
 from .interrupt import draft
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
+D = TypeVar("D", bound=Document)
+
 _PIPE_WIDTH = 120
 """Columns where nobody's window limits them."""
 
 
-def emit(
-    document: dict[str, Any],
-    summary: Callable[[dict[str, Any]], Sequence[RenderableType]],
-    as_json: bool,
-) -> None:
+def emit(document: D, summary: Callable[[D], Sequence[RenderableType]], as_json: bool) -> None:
     """Print a document, as JSON or as its summary for reading."""
     if as_json:
         # Standard output may not be able to carry more than ASCII.
@@ -54,11 +52,6 @@ def say(text: str) -> None:
         raise CaseError(
             "standard output", "", f"cannot be written ({reason}); send it elsewhere"
         ) from None
-
-
-def json_text(document: dict[str, Any], ascii_only: bool = False) -> str:
-    """JSON of a document; NaN and infinities are a fault of ours and raise ValueError."""
-    return json.dumps(document, indent=2, ensure_ascii=ascii_only, allow_nan=False) + "\n"
 
 
 def rendered(parts: Sequence[RenderableType]) -> str:

@@ -14,6 +14,7 @@ from rich.text import Text
 _NARROWEST = 16
 """Columns that prose keeps in the narrowest window."""
 _GAP = 2
+"""Columns between two columns of a table."""
 _STYLES = {
     "pass": "green",
     "keeps": "green",
@@ -33,6 +34,7 @@ _STYLES = {
     "refuted": "red",
     "error": "red",
 }
+"""Colour of a word: green where all is well, yellow where it may be, red where it is not."""
 
 
 def plain(text: object) -> str:

@@ -110,7 +110,9 @@ class Folded:
 
 
 Plain: TypeAlias = Prose | Grid | Terms | Drawn
+"""What may stand anywhere."""
 Block: TypeAlias = Plain | Folded
+"""What a section holds."""
 
 
 @dataclass(frozen=True)

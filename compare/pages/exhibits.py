@@ -28,7 +28,9 @@ from .blocks import Block, Drawn, Folded, Grid, Section, number, text
 from .motions_shown import whole_claims
 
 _SAMPLES = 20_000
+"""Positions of the workspace that its bounding box is taken from, as by default in case files."""
 _SEED = 0
+"""Of the sampled positions, so that every page shows the same."""
 _NEGLIGIBLE = 1e-9
 """Distance that float arithmetic alone could leave, m."""
 Array = NDArray[np.float64]

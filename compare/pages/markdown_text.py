@@ -7,7 +7,9 @@ import re
 from .blocks import Block, Drawn, Folded, Grid, Page, Prose, Terms
 
 _SPECIAL = re.compile(r"([\\`*_\[\]<>#|~$&])")
+"""Characters that may begin markup anywhere."""
 _LIST = re.compile(r"^(\s*)([-+]|\d+[.)])(\s)", re.MULTILINE)
+"""What begins an item of a list, at the start of a line."""
 
 
 def markdown(page: Page) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import shutil
 import sys
@@ -14,17 +13,18 @@ from uuid import uuid4
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
+from pydantic import BaseModel, Field
 
 from ...nlp.optimum import KKT_TOLERANCE, SAME, STARTS
 from ...problem import TOLERANCE, TrajgapError
-from ..audits import AuditReport, CaseAudit, ClaimVerdict
-from ..documents import audit_document
+from ..audits import AuditReport, CaseAudit
+from ..documents import AuditDocument, ClaimVerdict, json_text
 from ..pictures import embedded
 from . import motions_shown as report_pictures
 from .blocks import Page, Prose, Section, Terms, slug
 from .exhibits import exhibits_of_motion, exhibits_of_search
 from .glossary import glossary
-from .instances import families
+from .instances import other_instances
 from .markdown_text import markdown
 from .numbers import optima, sensitivities, where_time_goes
 from .readings import side_by_side
@@ -33,7 +33,9 @@ from .verdicts import audited, claim_table, findings, foundations, summary
 MARK = "audit.json"
 """The file by which the folder of an earlier report is known."""
 _INDEX = "index.html"
+"""The page that leads to those of the cases."""
 _TEMPLATES = Path(__file__).parent / "templates"
+"""Where the pages' templates and style lie, as package data."""
 _LIBRARIES = (
     "casadi",
     "jinja2",
@@ -44,6 +46,18 @@ _LIBRARIES = (
     "scipy",
     "toppra",
 )
+"""Libraries whose versions can move a digit or a pixel."""
+
+
+class _MarkedCase(BaseModel):
+    case: str
+
+
+class _Mark(BaseModel):
+    """What is read of an earlier report, of whatever version."""
+
+    version: str = Field(alias="schema")
+    cases: tuple[_MarkedCase, ...]
 
 
 def write_report(report: AuditReport, out: Path) -> None:
@@ -91,12 +105,12 @@ def foreign(out: Path) -> str | None:
     if not there:
         return None
     try:
-        document = json.loads((out / MARK).read_text(encoding="utf-8"))
-        cases = [str(one["case"]) for one in document["cases"]]
-        if not str(document["schema"]).startswith("trajgap/"):
-            return MARK
-    except (OSError, ValueError, KeyError, TypeError):
+        mark = _Mark.model_validate_json((out / MARK).read_bytes())
+    except (OSError, ValueError):
         return there[0]
+    if not mark.version.startswith("trajgap/"):
+        return MARK
+    cases = [one.case for one in mark.cases]
     known = {_INDEX, MARK, *(f"{c}.{end}" for c in cases for end in ("html", "md", "json"))}
     drawn = tuple(f"pictures/{c}-" for c in cases)
     for name in there:
@@ -128,16 +142,16 @@ def _replace(out: Path, files: dict[str, str]) -> None:
 
 
 def _files(report: AuditReport) -> dict[str, str]:
-    document = audit_document(report)
+    document = report.document
     style = (_TEMPLATES / "style.css").read_text(encoding="utf-8")
     environment = _environment()
     files: dict[str, str] = {}
-    for one, own in zip(report.cases, document["cases"], strict=True):
+    for one in report.cases:
         page = case_page(one)
         name = page.id
         files[f"{name}.html"] = environment.get_template("case.html").render(page=page, style=style)
         files[f"{name}.md"] = markdown(page)
-        files[f"{name}.json"] = _json({"schema": document["schema"], "cases": [own]})
+        files[f"{name}.json"] = json_text(AuditDocument(cases=(one.document,)))
         for picture in page.pictures:
             files[f"pictures/{name}-{picture.name}.svg"] = picture.document
     index = environment.get_template(_INDEX)
@@ -147,12 +161,8 @@ def _files(report: AuditReport) -> dict[str, str]:
         version=_version("trajgap"),
         style=style,
     )
-    files[MARK] = _json(document)
+    files[MARK] = json_text(document)
     return files
-
-
-def _json(document: dict[str, Any]) -> str:
-    return json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def _row(one: CaseAudit) -> dict[str, Any]:
@@ -186,7 +196,7 @@ def case_page(one: CaseAudit) -> Page:
             claim_table(one),
             side_by_side(one),
             where_time_goes(one),
-            *families(one),
+            *other_instances(one),
             findings(one),
             optima(one),
             sensitivities(one),

@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties, findfont
 from matplotlib.ft2font import FT2Font
 
-# Okabe & Ito's colours, told apart with any common colour blindness.
+# Okabe & Ito's colours, told apart with any common colour blindness, on a white page.
 INK = "#1f2933"
 MUTED = "#5b6673"
 GRID = "#d5dae1"
@@ -43,9 +43,12 @@ THEME = {
 }
 """Colours that a page may replace, by the name of their CSS variable."""
 Line = Literal["-", "--", "-.", ":"]
+"""Line styles of matplotlib."""
 SERIES: tuple[tuple[str, Line], ...] = ((BLUE, "-"), (ORANGE, "--"), (GREEN, "-."), (PURPLE, ":"))
 """Colour and line style of the algorithms, in order; told apart without colour too."""
 
+# What every picture shares: small type for a page's column, a font that is always there, and thin
+# lines without a frame.
 _STYLE: dict[str, Any] = {
     "font.family": ["DejaVu Sans"],
     "font.size": 9.0,

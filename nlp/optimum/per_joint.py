@@ -65,6 +65,7 @@ class PerJointSolution:
             Status.NOT_ATTAINED,
             Status.LIMIT,
             Status.FAILED,
+            Status.NONE_FOUND,
             Status.INFEASIBLE,
         ]
         return max((s.status for s in self.joints), key=order.index)

@@ -18,7 +18,9 @@ class Status(StrEnum):
     FEASIBLE = "feasible"
     """Feasible for all t; the optimality conditions were not reached."""
     INFEASIBLE = "infeasible"
-    """No duration vector within the bounds keeps the limits; `why` says how that is known."""
+    """No duration vector within the bounds keeps the limits: `why` is the proof."""
+    NONE_FOUND = "none found"
+    """No feasible duration vector found, and no proof that there is none; `why` says how near."""
     NOT_ATTAINED = "not_attained"
     """The total only approaches its infimum as a duration goes to 0."""
     LIMIT = "limit"
@@ -33,9 +35,11 @@ class Evidence(StrEnum):
     CERTIFIED = "certified"
     """Lower and upper bound within the stated gap, re-checked."""
     BEST_KNOWN = "best known"
-    """The best value found; nothing is proved below it."""
+    """The best value found and checked, with nothing proved below it. A gap against it is a lower
+    estimate of the true one."""
     NONE = "none"
-    """No value."""
+    """No value. A verdict that rests on none rests on the printed digits, a count, a check of what
+    is printed, or a shorter motion that was checked and needs no optimum beside it."""
 
 
 def weakest(evidence: Iterable[Evidence]) -> Evidence:

@@ -11,8 +11,8 @@ import numpy as np
 
 from ...problem import TrajgapError
 from ...problem.cases import Statement
+from ...verify import Subject, verify_certificate
 from ..optimum import PerJointSolution, Solution, solve
-from ..verify import Subject, verify
 from .certifiers import certify, covered, instant
 from .document import certificate, shipped
 from .exact import ExactProblem, printed_problem
@@ -65,10 +65,10 @@ def proved(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> Interv
             return None
         found = certify(problem)
         document = None if found.proof is None else certificate(found)
-    if document is None:
-        return None
-    verdict = verify(document)
-    if not verdict.proves or verdict.lower is None:
+        verdict = found.verdict
+    else:
+        verdict = None if document is None else verify_certificate(document)
+    if document is None or verdict is None or not verdict.proves or verdict.lower is None:
         return None
     if verdict.upper is not None and verdict.upper - verdict.lower > WIDEST * verdict.lower:
         return None

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
@@ -126,6 +127,28 @@ class ExactProblem:
             self.duration_lower,
             self.duration_upper,
             self.unit,
+        )
+
+    def in_units(self, powers: Sequence[int], second: int) -> ExactProblem:
+        """The same problem in units of 2**powers[j] of its angle for joint j, and 2**second s."""
+        angle, time = [Fraction(2) ** p for p in powers], Fraction(2) ** second
+
+        def over(x: Real | None, unit: Fraction) -> Real | None:
+            return None if x is None else Real(x.rational / unit, x.pi)
+
+        return replace(
+            self,
+            waypoints=tuple(
+                tuple(q / a for q, a in zip(row, angle, strict=True)) for row in self.waypoints
+            ),
+            limits=tuple(
+                tuple(over(x, a / time**r) for r, x in enumerate(row, 1))
+                for row, a in zip(self.limits, angle, strict=True)
+            ),
+            position_lower=tuple(map(over, self.position_lower, angle)),
+            position_upper=tuple(map(over, self.position_upper, angle)),
+            duration_lower=tuple(x / time for x in self.duration_lower),
+            duration_upper=tuple(None if x is None else x / time for x in self.duration_upper),
         )
 
     def derivative_limits(self) -> NDArray[np.float64]:

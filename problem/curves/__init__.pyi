@@ -17,10 +17,11 @@ from .interpolant import (
 from .kernel import MAX_COEFFICIENTS, roots_in_unit
 from .kind import Curve, PeakGradients, as_curve, fit
 from .peak import Extremum, critical_points, extrema
+from .refined import coefficient_gradient
 from .spline import (
     PERM,
     as_durations,
-    coefficient_gradient,
+    batch_coefficients,
     layout,
     right_hand_sides,
     trajectory_from_scaled,
@@ -53,6 +54,7 @@ __all__ = [
     "as_curve",
     "as_durations",
     "average_matrix",
+    "batch_coefficients",
     "clamped_control_points",
     "clamped_readings",
     "clock_matrix",

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..errors import TrajgapError
-from . import spline
+from . import refined, spline
 from .condition import Condition, ConditionKind
 from .kind import (
     Curve,
@@ -154,7 +154,7 @@ class Interpolant(Curve):
 
     def enclosed(self, waypoints: Array, durations: Array, nodal: Array | None = None) -> Enclosed:
         """`fit` refined in extended precision, with the bound of `refined_coefficients`."""
-        scaled, error = spline.refined_coefficients(self, waypoints, durations, nodal)
+        scaled, error = refined.refined_coefficients(self, waypoints, durations, nodal)
         trajectory = trajectory_from_scaled(scaled, self.degrees, durations)
         return Enclosed(trajectory, value_errors(trajectory, error))
 
@@ -174,7 +174,7 @@ class Interpolant(Curve):
         nodal: Array | None = None,
     ) -> PeakGradients:
         """Gradients by implicit differentiation of the linear system."""
-        g = spline.coefficient_gradient(self, waypoints, durations, nodal)
+        g = refined.coefficient_gradient(self, waypoints, durations, nodal)
         by_duration = np.empty((len(points), self.segments))
         by_waypoint = np.empty((len(points), waypoints.shape[0]))
         by_nodal = np.empty((len(points), self.free))

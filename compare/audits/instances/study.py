@@ -1,4 +1,4 @@
-"""A relative claim on a family of instances: optima and runs of the two procedures it compares."""
+"""A relative claim on instances: optima and runs of the two procedures it compares."""
 
 from __future__ import annotations
 
@@ -18,8 +18,9 @@ from ...gaps import SETTLED, settled_at
 from .result import Array, Optimum, Sample
 
 STARTS = 2
-"""Starts of every solve; one where the segments do not depend on each other."""
+"""Starts of every solve, for there are hundreds; one where the segments are independent."""
 _ROUTES = 3
+"""The slower procedure, its algorithm on the faster one's curve, and the faster procedure."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,6 +77,7 @@ def examine(
 
 
 Kept = dict[tuple[object, ...], Any]
+"""What was computed already, by what tells one question from another."""
 
 
 def _examined(task: Task) -> tuple[Sample, ...]:
@@ -150,12 +152,12 @@ def _optimum(kept: Kept, problem: Problem) -> Optimum:
     if key not in kept:
         polynomials = problem.curve.piecewise
         alone = polynomials is not None and set(polynomials.continuity) <= {0}
-        kept[key] = _told(solve(problem, starts=1 if alone else STARTS))
+        kept[key] = _ended(solve(problem, starts=1 if alone else STARTS))
     known: Optimum = kept[key]
     return known
 
 
-def _told(solution: Solution) -> Optimum:
+def _ended(solution: Solution) -> Optimum:
     words = f"{solution.status}" + (f" ({solution.why})" if solution.why else "")
     total = solution.total_time if solution.infimum is None else solution.infimum
     return Optimum(total, solution.evidence, words)
