@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from .characters import visible
+
 
 class TrajgapError(ValueError):
     """Root of every exception that trajgap raises on purpose."""
@@ -57,4 +59,4 @@ class CaseError(TrajgapError):
         parts = (part for part in (self.file, self.field, self.reason) if part)
         line = " ".join(": ".join(parts).split())
         # File names and values come from outside; nothing of them may steer a terminal.
-        return "".join(c if c.isprintable() else "?" for c in line)
+        return visible(line)

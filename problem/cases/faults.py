@@ -79,6 +79,8 @@ def _reason(kind: str, raw: object, context: Mapping[str, Any], message: str) ->
         return f"{_short(raw)} is not an id; use lower-case letters, digits, dots and dashes"
     if kind in ("string_too_short", "too_short"):
         return "is empty; fill it in or leave the key out"
+    if kind == "too_long":
+        return f"has more than {context['max_length']:,} entries; leave some out"
     if kind in ("greater_than_equal", "less_than_equal"):
         word, bound = ("least", "ge") if kind.startswith("greater") else ("most", "le")
         return f"{_short(raw)} is out of range; give at {word} {context[bound]}"
