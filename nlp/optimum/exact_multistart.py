@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...problem import Array, Check, Interpolant, Problem, Verdict, check
+from ...problem import Array, Check, Problem, Verdict, check
 from .descent import Box, Descent, descend
 from .starts import SETTLED_SEGMENTS, equal_start
 from .tracking import Local
@@ -73,7 +73,7 @@ def ordinary(problem: Problem, basin: Basin) -> bool:
 
 def kept(problem: Problem, verdict: Check) -> bool:
     """Whether a motion counts as feasible: curves that always jump are judged by their limits."""
-    if isinstance(problem.curve, Interpolant):
+    if problem.curve.piecewise is not None:
         return verdict.verdict is Verdict.PASS
     return verdict.limits is Verdict.PASS
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...problem import Array, CurveError, Interpolant, Problem, evaluate, fit
+from ...problem import Array, CurveError, Problem, evaluate, fit
 from ...problem.curves import batch_coefficients
 from .descent import Box
 
@@ -30,9 +30,9 @@ HOPELESS = 10.0
 
 def _scaled(problem: Problem, h: Array) -> Array:
     """Coefficients of all vectors, shape (vectors, pieces, powers, joints); NaN without a curve."""
-    curve = problem.curve
-    if isinstance(curve, Interpolant):
-        return batch_coefficients(curve, problem.waypoints, h)
+    curve, polynomials = problem.curve, problem.curve.piecewise
+    if polynomials is not None:
+        return batch_coefficients(polynomials, problem.waypoints, h)
     found: list[Array | None] = []
     for one in h:
         try:
