@@ -8,7 +8,6 @@ from enum import StrEnum
 from typing import Any, TypeVar, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...heuristics import (
     KINDS,
@@ -31,6 +30,7 @@ from ...nlp import (
 )
 from ...nlp.optimum import OPTIMUM_SLACK
 from ...problem import (
+    Array,
     Case,
     Check,
     Coupling,
@@ -50,7 +50,6 @@ Pair = tuple[str, str]
 Replays = tuple[Run, ...] | tuple[JointRuns, ...]
 """Runs of one algorithm, one for each seed: of all joints, or of each joint by itself."""
 
-Array = NDArray[np.float64]
 
 SEEDS = 30
 """Seeds of a replay by default: enough for a median and its spread, a minute or so of one core."""

@@ -7,11 +7,12 @@ from itertools import pairwise
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ...problem import (
     QUANTITIES,
     TOLERANCE,
+    Array,
     Check,
     Extremum,
     Problem,
@@ -97,7 +98,7 @@ def motion_picture(
     return figure
 
 
-def _array(values: ArrayLike | None) -> NDArray[np.float64] | None:
+def _array(values: ArrayLike | None) -> Array | None:
     return None if values is None else np.asarray(values, dtype=np.float64)
 
 
@@ -185,9 +186,7 @@ def _mark_peak(axes: Axes, top: Extremum, limit: float) -> None:
     axes.set_title(text, color=colour, fontsize=8, loc="right")
 
 
-def sampled(
-    trajectory: Trajectory, column: int, order: int
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def sampled(trajectory: Trajectory, column: int, order: int) -> tuple[Array, Array]:
     """Times and values, with the exact extrema among them and a gap where the curve jumps.
 
     Parameters
@@ -201,8 +200,8 @@ def sampled(
     times, values : ndarray, shape (samples,)
         s and rad/sᵒʳᵈᵉʳ; a value is NaN at a jump.
     """
-    times: list[NDArray[np.float64]] = []
-    values: list[NDArray[np.float64]] = []
+    times: list[Array] = []
+    values: list[Array] = []
     scale = max(abs(e.value) for e in extrema(trajectory, column, order)) or 1.0
     for k, start in enumerate(trajectory.breaks[:-1]):
         own = [e.s for e in extrema(trajectory, column, order) if e.segment == k]
