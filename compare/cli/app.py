@@ -36,6 +36,9 @@ Exit codes:
 BAD_INPUT, FAULT, CLOSED_PIPE = 2, 70, 141
 """Exit codes: that of argument parsers, EX_SOFTWARE, and what a shell says of SIGPIPE."""
 
+MOST = 10_000
+"""Largest number of starts, seeds and workers: what they make is kept in memory."""
+
 # Arguments and options that several commands share.
 Source = Annotated[
     str, typer.Argument(metavar="CASE|FILE", help="Id of a published case, or a case file.")
@@ -132,7 +135,7 @@ def solve(
     problem: ProblemId = None,
     reading: ReadingId = None,
     coupling: Coupled = None,
-    starts: Annotated[int, typer.Option(min=1, help="Starts of the solver.")] = 4,
+    starts: Annotated[int, typer.Option(min=1, max=MOST, help="Starts of the solver.")] = 4,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the random starts.")] = 0,
     certify: Annotated[
         bool, typer.Option("--certify", help="Prove an interval of each optimum instead.")
@@ -246,11 +249,12 @@ def audit(
     ] = None,
     problem: ProblemId = None,
     reading: ReadingId = None,
-    seeds: Annotated[int, typer.Option(min=2, help="Seeds of each replay.")] = 30,
+    seeds: Annotated[int, typer.Option(min=2, max=MOST, help="Seeds of each replay.")] = 30,
     workers: Annotated[
         int,
         typer.Option(
             min=1,
+            max=MOST,
             help="Processes for the replays; the result does not depend on it. Starting one takes "
             "longer than a few dozen short replays.",
         ),
@@ -362,8 +366,13 @@ def _settle() -> None:
 
 
 def _run(arguments: Sequence[str]) -> int:
+    from ...problem import TrajgapError, check_name
+
     command = typer.main.get_command(app)
     try:
+        for argument in arguments:
+            # Nothing that is printed or written could state such a name.
+            check_name(argument)
         with command.make_context("trajgap", list(arguments)) as context:
             result = command.invoke(context)
             return result if isinstance(result, int) else 0
@@ -378,8 +387,6 @@ def _run(arguments: Sequence[str]) -> int:
             return _fail(f"{str(usage()).rstrip('.')}; see `{about} --help`", BAD_INPUT)
         if isinstance(error, OSError) and error.filename is None:
             return _unwritten(error)
-        from ...problem import TrajgapError
-
         if isinstance(error, TrajgapError):
             return _fail(str(error), BAD_INPUT)
         traceback.print_exc()
@@ -391,7 +398,7 @@ def _unwritten(error: OSError) -> int:
 
 
 def _fail(message: str, code: int) -> int:
-    line = " ".join(message.split())
-    printable = "".join(c if c.isprintable() else "?" for c in line)
-    print(f"trajgap: {printable}", file=sys.stderr)
+    from ...problem import visible
+
+    print(f"trajgap: {visible(' '.join(message.split()))}", file=sys.stderr)
     return code

@@ -35,7 +35,7 @@ from .input import (
     select,
     waypoint_box,
 )
-from .output import emit, new_file, progress
+from .output import emit, new_output, progress
 from .result_tables import by_result, place, reasons, seconds
 from .table import line
 
@@ -54,7 +54,7 @@ def check_durations(
     posed = select(case, problem, reading, coupling)
     printed = read_durations(text, case.file)
     boxes = [duration_box(case, one, printed) for one in posed]
-    with new_file(out) as write:
+    with new_output(out) as write:
         results = []
         with progress("check", len(posed)) as step, naming(case.file):
             for one, box in zip(posed, boxes, strict=True):

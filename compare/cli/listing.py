@@ -9,13 +9,13 @@ from rich.console import RenderableType
 from ...problem import published_ids
 from ..documents import CasesDocument, cases_document, json_text
 from .input import read_case
-from .output import emit, new_file
+from .output import emit, new_output
 from .table import Columns
 
 
 def list_cases(as_json: bool, out: Path | None) -> int:
     """List the published cases."""
-    with new_file(out) as write:
+    with new_output(out) as write:
         document = cases_document(read_case(name) for name in published_ids())
         write(json_text(document))
     emit(document, _table, as_json)

@@ -17,7 +17,7 @@ from ...problem.cases import (
 )
 from ..documents import ShowDocument, json_text, show_document
 from .input import read_case
-from .output import emit, new_file
+from .output import emit, new_output
 from .table import Columns, line
 
 
@@ -25,7 +25,7 @@ def show_case(
     source: str, problem: str | None, reading: str | None, as_json: bool, out: Path | None
 ) -> int:
     """Show one case."""
-    with new_file(out) as write:
+    with new_output(out) as write:
         document = show_document(read_case(source), problem, reading)
         write(json_text(document))
     emit(document, _tables, as_json)

@@ -30,7 +30,7 @@ from ..documents import (
     solve_result,
 )
 from .input import Posed, naming, read_case, select
-from .output import emit, new_file, progress
+from .output import emit, new_output, progress
 from .result_tables import by_result, place, reasons, seconds
 from .table import Columns, line
 
@@ -48,7 +48,7 @@ def solve_case(
     """Solve each selected problem and reading."""
     case = read_case(source)
     posed = select(case, problem, reading, coupling)
-    with new_file(out) as write:
+    with new_output(out) as write:
         results = []
         with progress("solve", len(posed)) as step, naming(case.file):
             for one in posed:

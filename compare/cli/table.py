@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 
 from rich import box
@@ -10,6 +11,8 @@ from rich.console import Console, ConsoleOptions, RenderResult
 from rich.measure import Measurement
 from rich.table import Table
 from rich.text import Text
+
+from ...problem import visible
 
 _NARROWEST = 16
 """Columns that prose keeps in the narrowest window."""
@@ -39,7 +42,7 @@ _STYLES = {
 
 def plain(text: object) -> str:
     """Text from a file without anything that could steer a terminal."""
-    return "".join(c if c.isprintable() else " " for c in str(text))
+    return visible(" ".join(re.split(r"[\n\t]", str(text))))
 
 
 def line(text: object, style: str = "") -> Text:

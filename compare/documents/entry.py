@@ -20,6 +20,8 @@ from pydantic.fields import FieldInfo
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
+from ...problem import escaped
+
 T = TypeVar("T")
 
 SCHEMA: Literal["trajgap/1"] = "trajgap/1"
@@ -152,4 +154,5 @@ class Document(Entry):
 def json_text(document: Entry, ascii_only: bool = False) -> str:
     """JSON of a document; NaN and infinities are a fault of ours and raise ValueError."""
     plain = document.model_dump(mode="json", by_alias=True)
-    return json.dumps(plain, indent=2, ensure_ascii=ascii_only, allow_nan=False) + "\n"
+    text = json.dumps(plain, indent=2, ensure_ascii=ascii_only, allow_nan=False)
+    return escaped(text) + "\n"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...problem import file_name
 from ..audits import CaseAudit, Study
 from ..audits.instances import STARTS, InstancesResult, percent_range
 from ..audits.rules import HANDLED, attributed, placed
@@ -50,7 +51,7 @@ def _examined(study: Study, result: InstancesResult, examined: ExaminedInstances
             "note",
         ),
         Terms(_design(study, result)),
-        Drawn(f"family-{block.id}", svg(picture), title, caption),
+        Drawn(file_name("family", block.id), svg(picture), title, caption),
         Grid(_COLUMNS, _rows(examined, result, None), "Reductions of the total, in %"),
         Folded(
             "Reductions by step length",

@@ -9,7 +9,7 @@ from decimal import ROUND_FLOOR, Decimal
 import numpy as np
 
 from ...nlp import Evidence, PerJointSolution, Solution
-from ...problem import Coupling
+from ...problem import Coupling, file_name
 from ...problem.cases import DurationsClaim
 from ..audits import CaseAudit, Study
 from ..documents import Gap, Step, Waterfall, Why
@@ -62,7 +62,7 @@ def _drawn(waterfall: Waterfall) -> tuple[Plain, ...]:
     caption = "Bars start at 0; best known values are hatched, certified ones solid." + (
         f" The first bar is claim {waterfall.claim}." if waterfall.claim else ""
     )
-    name = f"waterfall-{waterfall.problem}-{waterfall.reading}"
+    name = file_name("waterfall", waterfall.problem, waterfall.reading)
     return Drawn(name, svg(picture), title, caption), _steps(waterfall)
 
 

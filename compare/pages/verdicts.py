@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from ...nlp import Evidence
-from ...problem import QUANTITIES, Case, Coupling, Problem
+from ...problem import QUANTITIES, Case, Coupling, Problem, file_name
 from ...problem.cases import (
     AnyClaim,
     ConditionsClaim,
@@ -200,7 +200,7 @@ def claim_table(one: CaseAudit) -> Section:
         claim = one.case.claim(judgement.claim)
         rows.append(
             (
-                Cell(f"{claim_text(claim)}\n[{claim.id}]", anchor=f"claim-{claim.id}"),
+                Cell(f"{claim_text(claim)}\n[{claim.id}]", anchor=file_name("claim", claim.id)),
                 text(claim.where),
                 text(printed(one.case, claim)),
                 word(judgement.verdict),
@@ -315,7 +315,10 @@ def _finding_grid(found: list[Finding], readings: int) -> Grid:
         rows.append(
             (
                 Cell(f"{f.rule}\n{_TITLES.get(f.rule, '')}", target=f"word-{f.rule}"),
-                Cell("\n".join(x for x in under if x), target=f"claim-{about}" if about else ""),
+                Cell(
+                    "\n".join(x for x in under if x),
+                    target=file_name("claim", about) if about else "",
+                ),
                 text(f.printed),
                 text(f.computed),
                 text(_gap(f)),

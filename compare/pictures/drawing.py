@@ -18,6 +18,8 @@ from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties, findfont
 from matplotlib.ft2font import FT2Font
 
+from ...problem import visible
+
 # Okabe & Ito's colours, told apart with any common colour blindness, on a white page.
 INK = "#1f2933"
 MUTED = "#5b6673"
@@ -144,8 +146,7 @@ def light_grid(axes: Axes, which: str = "both") -> None:
 
 
 def _xml(text: str) -> str:
-    printable = "".join(c if c.isprintable() else " " for c in text)
-    return escape(printable.encode("utf-8", "replace").decode("utf-8"))
+    return escape(visible(text))
 
 
 def _coarser(match: re.Match[str]) -> str:
@@ -221,7 +222,7 @@ def embedded(document: str, prefix: str) -> str:
     document : str
         What `svg` returned.
     prefix : str
-        Unique in the page; letters, digits and hyphens.
+        Unique in the page; made by `file_name`.
     """
     text = document[document.index("<svg ") :]
     text = re.sub(r'\bid="([^"]+)"', rf'id="{prefix}-\1"', text)

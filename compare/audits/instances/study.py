@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from concurrent.futures import ProcessPoolExecutor
-from contextlib import ExitStack
+from contextlib import ExitStack, closing
 from dataclasses import dataclass, replace
-from multiprocessing import get_context
 from typing import Any
 
 import numpy as np
 
-from ....heuristics import Algorithm, run
+from ....heuristics import Algorithm, in_processes, run
 from ....nlp import Solution, solve
 from ....problem import TOLERANCE, Coupling, Problem, check
 from ...gaps import SETTLED, settled_at
@@ -65,10 +63,7 @@ def examine(
     with ExitStack() as stack:
         results: Iterable[tuple[Sample, ...]] = map(_examined, todo)
         if workers > 1:
-            # Spawned, because a fork copies the locks of the compiled libraries.
-            context = get_context("spawn")
-            pool = stack.enter_context(ProcessPoolExecutor(workers, mp_context=context))
-            results = pool.map(_examined, todo)
+            results = stack.enter_context(closing(in_processes(_examined, todo, workers)))
         for done, samples in enumerate(results, start=1):
             found += samples
             if progress is not None:

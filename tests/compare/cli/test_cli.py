@@ -345,9 +345,9 @@ def test_a_broken_file(run: Run, command: str, name: str) -> None:
         (".", "is a directory; name a file in it"),
         ("", "is empty; name a published case or a file"),
         ("x" * 5000, "cannot be read"),
-        ("a\x1b[31mb", "a?[31mb: neither a published case nor a file"),
+        ("a\x1b[31mb", "a<U+001B>[31mb: neither a published case nor a file"),
         ("two\nlines", "neither a published case nor a file"),
-        ("\udcff", "neither a published case nor a file"),
+        ("\udcff", "<U+DCFF>: is not UTF-8; rename the file"),
     ],
 )
 def test_no_such_case(run: Run, source: str, reason: str) -> None:
@@ -583,7 +583,7 @@ def test_nothing_from_a_file_steers_the_terminal(run: Run) -> None:
     )
     code, out, _ = run("show", "evil.toml")
     assert code == 0
-    assert "[red]x [31m" in out
+    assert "[red]x<U+001B>[31m<U+0007>" in out
     assert "\x1b" not in out
     assert "\x07" not in out
 
