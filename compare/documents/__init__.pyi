@@ -1,5 +1,5 @@
 from .audited import AuditDocument, AuditedCase
-from .case_contents import ShowDocument, show_document
+from .case_shown import ShowDocument, show_document
 from .certified import CertifiedResult, CertifyDocument, certify_result
 from .checked import (
     BrokenPlace,

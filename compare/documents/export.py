@@ -11,7 +11,7 @@ from typing import Any
 from pydantic.json_schema import GenerateJsonSchema, models_json_schema
 
 from .audited import AuditDocument
-from .case_contents import ShowDocument
+from .case_shown import ShowDocument
 from .certified import CertifyDocument
 from .checked import CheckDocument
 from .entry import SCHEMA, Document, Why
