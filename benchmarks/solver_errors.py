@@ -116,7 +116,7 @@ def _outside(problem: Problem, h: NDArray[np.float64], places: int) -> NDArray[n
 
     Way-points are left out: a range that just holds them is met there, whatever the durations.
     """
-    limits, curve = problem.limits, problem.interpolant
+    limits, curve = problem.limits, problem.curve
     assert isinstance(curve, Interpolant)
     span = np.ptp(problem.waypoints, axis=0)
     span = np.where(span > 0, span, 1.0)
@@ -224,7 +224,7 @@ def main() -> int:
             if given.verbose:
                 gain = 1 - brute.total / solution.best if brute.total < np.inf else np.nan
                 print(
-                    f"{k}: {fault}, {solution.status}, {problem.interpolant.name}, gain {gain:.3g}",
+                    f"{k}: {fault}, {solution.status}, {problem.curve.name}, gain {gain:.3g}",
                     flush=True,
                 )
     print(f"{given.count} problems, seeds {given.seed} to {given.seed + given.count - 1}")

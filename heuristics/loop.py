@@ -2,24 +2,22 @@
 
 from __future__ import annotations
 
-import signal
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import ProcessPoolExecutor
-from contextlib import ExitStack
+from contextlib import ExitStack, closing
 from dataclasses import replace
 from functools import partial
-from multiprocessing import get_context
-from typing import Any, TypeVar, cast
+from typing import Annotated, Any, TypeVar, cast
 
 import numpy as np
 
-from ..problem import Problem, TrajgapError
+from ..problem import Array, Problem
 from .algorithm import Algorithm, S, Search, State
 from .budget import searched
-from .objective import Array, Bounds, Counted, Objective
-from .repair import Handling, pose
+from .objective import Bounds, Counted, Objective
+from .repair import Handling, judge_of
 from .result import JointRuns, Run
-from .settings import whole
+from .settings import checked, whole
+from .workers import in_processes
 
 
 def states(
@@ -46,13 +44,10 @@ def states(
         yield state
 
 
-def _whole(name: str, value: object, least: int) -> int:
-    try:
-        return whole(least)(value)
-    except TrajgapError as error:
-        raise TrajgapError(f"{name}: {error}") from None
-
-
+_SEED = Annotated[int, whole(0)]
+"""What numpy takes as entropy, told in one line."""
+_WORKERS = Annotated[int, whole(1)]
+"""The calling process counts as one."""
 Method = Algorithm[Any] | Search
 """What can be run: an algorithm step by step, or a search that owns its loop."""
 
@@ -80,7 +75,7 @@ def _stepped(
 def _run(
     method: Method, problem: Problem, seed: int, stream: tuple[int, ...], handling: str
 ) -> Run:
-    judge = pose(problem, method.penalty, handling)
+    judge = judge_of(problem, method.penalty, handling)
     bounds = Bounds.of(problem)
     # Named, not numpy's default, which may change: the same seed must give the same bits.
     rng = np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed, spawn_key=stream)))
@@ -149,7 +144,7 @@ def run(
     True
     """
     record = _with_budget(algorithm, iterations)
-    return _run(record, problem, _whole("seed", seed, 0), (), objective)
+    return _run(record, problem, checked(_SEED, "seed", seed), (), objective)
 
 
 def run_per_joint(
@@ -183,7 +178,7 @@ def run_per_joint(
     TrajgapError
         As `run`.
     """
-    root = _whole("seed", seed, 0)
+    root = checked(_SEED, "seed", seed)
     record = _with_budget(algorithm, iterations)
     runs = tuple(
         _run(record, problem.joint(j), root, (j,), objective) for j in range(len(problem.joints))
@@ -210,26 +205,14 @@ def _each(
     workers: int,
     progress: Callable[[R], None] | None,
 ) -> tuple[R, ...]:
-    checked = [_whole("seed", seed, 0) for seed in seeds]
-    workers = min(_whole("workers", workers, 1), max(1, len(checked)))
+    clean = [checked(_SEED, "seed", seed) for seed in seeds]
+    workers = min(checked(_WORKERS, "workers", workers), max(1, len(clean)))
     collected = []
     with ExitStack() as stack:
-        results: Iterable[R] = map(one, checked)
+        results: Iterable[R] = map(one, clean)
         if workers > 1:
             # Threads would be slower than one: half of each iteration holds the interpreter.
-            # Spawned, because a fork copies the locks of the compiled libraries.
-            context = get_context("spawn")
-            # A terminal sends Ctrl-C to the workers too; the parent alone answers it.
-            pool = stack.enter_context(
-                ProcessPoolExecutor(
-                    workers,
-                    mp_context=context,
-                    initializer=signal.signal,
-                    initargs=(signal.SIGINT, signal.SIG_IGN),
-                )
-            )
-            share = -(-len(checked) // (4 * workers))
-            results = pool.map(one, checked, chunksize=share)
+            results = stack.enter_context(closing(in_processes(one, clean, workers)))
         for result in results:
             collected.append(result)
             if progress is not None:
@@ -267,7 +250,8 @@ def run_many(
     seeds : iterable of int
     workers : int
         Processes. More than one costs about a second to start, and a script that asks for them
-        must guard its entry point with ``if __name__ == "__main__":``.
+        must guard its entry point with ``if __name__ == "__main__":``. The work of a process that
+        is killed is done again, once.
     iterations : int, optional
         Replaces the algorithm's own.
     progress : callable, optional
@@ -282,7 +266,8 @@ def run_many(
     Raises
     ------
     TrajgapError
-        As `run`, or if workers is not a whole number of 1 or more.
+        As `run`, if workers is not a whole number of 1 or more, or if processes end twice at the
+        same run.
     """
     one = partial(_run_seed, algorithm, problem, iterations, objective)
     return _each(one, seeds, workers, progress)

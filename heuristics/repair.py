@@ -9,9 +9,9 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ..problem import Problem, TrajgapError, evaluate
-from .objective import Array, DeathPenalty
-from .settings import choice
+from ..problem import Array, Problem, TrajgapError, evaluate
+from .objective import DeathPenalty
+from .settings import checked
 
 
 class Handling(StrEnum):
@@ -20,7 +20,7 @@ class Handling(StrEnum):
     DEATH_PENALTY = "death-penalty"
     """It gets the penalty, as the papers print."""
     STRETCH = "stretch"
-    """It stands for its durations times max(1, c*), the shortest uniform stretch that mends it."""
+    """It stands for its durations times max(1, c*), the shortest stretch that repairs it."""
     RESCALE = "rescale"
     """Every vector stands for its durations times c*: one that could be shorter is shortened."""
 
@@ -72,7 +72,7 @@ class Stretch:
 
     def __post_init__(self) -> None:
         DeathPenalty(self.problem, self.penalty)
-        if not self.problem.interpolant.homogeneous:
+        if not self.problem.curve.homogeneous:
             raise TrajgapError(
                 "stretch: a prescribed derivative is not 0, stretching would change it; "
                 "use the death penalty"
@@ -92,7 +92,7 @@ class Stretch:
         return stretched, kept
 
     def decode(self, durations: Array) -> Array:
-        """Durations that positions stand for; a position that no stretch mends is left as it is.
+        """Durations that positions stand for; a position that no stretch repairs is left as it is.
 
         Parameters
         ----------
@@ -126,7 +126,7 @@ class Stretch:
         return fitness
 
 
-def pose(problem: Problem, penalty: float, handling: str = Handling.DEATH_PENALTY) -> Judge:
+def judge_of(problem: Problem, penalty: float, handling: str = Handling.DEATH_PENALTY) -> Judge:
     """Objective of a problem under one handling of infeasible durations.
 
     Parameters
@@ -142,10 +142,7 @@ def pose(problem: Problem, penalty: float, handling: str = Handling.DEATH_PENALT
     TrajgapError
         If the handling is unknown, or the objective cannot judge the problem.
     """
-    try:
-        chosen = choice(Handling)(handling)
-    except TrajgapError as error:
-        raise TrajgapError(f"objective: {error}") from None
+    chosen = checked(Handling, "objective", handling)
     if chosen is Handling.DEATH_PENALTY:
         return DeathPenalty(problem, penalty)
     return Stretch(problem, penalty, shorten=chosen is Handling.RESCALE)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from decimal import Decimal
 from difflib import get_close_matches
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import (
     BaseModel,
@@ -25,10 +25,21 @@ from .errors import TrajgapError
 from .printed import Printed
 from .units import CHOICES, Quantity, check_unit
 
+MOST_WAYPOINTS = 10_000
+"""Way-points of one problem: the curve through them takes half a second and 50 MB to declare."""
+MOST_JOINTS = 100
+"""Joints of one robot: no arm and no humanoid has as many."""
+MOST_ENTRIES = 1_000
+"""Entries of one list of a case file, such as its claims: no paper prints as many."""
+LARGEST_SEED = 2**63 - 1
+"""Largest seed: what TOML promises to keep."""
 
-def fault(path: str, reason: str) -> PydanticCustomError:
+
+def fault(
+    path: str, reason: str, kind: Literal["fault", "unknown_key"] = "fault"
+) -> PydanticCustomError:
     """Make a validation error at ``path``, relative to the field being validated."""
-    return PydanticCustomError("fault", "{reason}", {"path": path, "reason": reason})
+    return PydanticCustomError(kind, "{reason}", {"path": path, "reason": reason})
 
 
 def nearest(word: str, known: Iterable[str]) -> str:
@@ -54,7 +65,8 @@ class Strict(BaseModel):
             raise fault("", f"expected a table of keys, got {describe(data)}; write it as a table")
         for key in data:
             if key not in cls.model_fields:
-                raise fault(f".{key}", f"unknown key; {nearest(str(key), cls.model_fields)}")
+                near = nearest(str(key), cls.model_fields)
+                raise fault(f".{key}", f"unknown key; {near}", "unknown_key")
         return data
 
 
@@ -128,7 +140,9 @@ def _plain(number: Printed | None) -> str | int | float | None:
 
 
 _DIGITS = r"^\s*[+\-−]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?\s*$"
+"""Digits as `printed.Printed` reads them, for the JSON Schema alone."""
 _NUMBER_SCHEMA = {"anyOf": [{"type": "number"}, {"type": "string", "pattern": _DIGITS}]}
+"""A bare number is exact, a string is printed digits."""
 _LIMIT_SCHEMA = {
     "anyOf": [
         {"type": "number"},
@@ -137,6 +151,7 @@ _LIMIT_SCHEMA = {
         {"enum": ["inf", "-inf"]},
     ]
 }
+"""As a number, and the words for no limit."""
 
 Number = Annotated[
     Printed, PlainValidator(read_number), PlainSerializer(_plain), WithJsonSchema(_NUMBER_SCHEMA)
@@ -210,13 +225,18 @@ OneOrEachUpperPosition = Annotated[
     Discriminator(_form),
 ]
 
-Row = Annotated[tuple[Number, ...], Field(min_length=1)]
-Rows = Annotated[tuple[Row, ...], Field(min_length=1)]
+PrintedRows = Annotated[
+    tuple[Annotated[tuple[Number, ...], Field(min_length=1, max_length=MOST_WAYPOINTS + 2)], ...],
+    Field(min_length=1, max_length=MOST_WAYPOINTS),
+]
+"""A table of numbers, no row empty; control vertices are two more than way-points."""
 
 Id = Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9.-]*$")]
 """Lower-case letters, digits, dots and dashes."""
 
 Text = Annotated[str, Field(min_length=1)]
+
+JointLabels = Annotated[tuple[Text, ...], Field(min_length=1, max_length=MOST_JOINTS)]
 
 
 def _unit(quantity: Quantity) -> tuple[PlainValidator, WithJsonSchema]:

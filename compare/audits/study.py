@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...heuristics import (
+    KINDS,
     Algorithm,
     JointRuns,
     Run,
@@ -40,18 +41,22 @@ from ...problem import (
     fit,
     reachable_total,
 )
-from ...problem.cases import Claim, DurationsClaim, FamilyBlock, MaximumClaim, TotalTimeClaim
-from .instances import FamilyResult, examined, readings_of
-from .rounding import Box, RoundingVerdict, judge_rounding
+from ...problem.cases import Claim, DurationsClaim, InstancesBlock, MaximumClaim, TotalTimeClaim
+from .instances import InstancesResult, examined, readings_of
+from .rounding import RoundingBox, RoundingVerdict, judge_rounding
 
 T = TypeVar("T")
 Pair = tuple[str, str]
 """Problem id and reading id."""
 Replays = tuple[Run, ...] | tuple[JointRuns, ...]
+"""Runs of one algorithm, one for each seed: of all joints, or of each joint by itself."""
+
+Array = NDArray[np.float64]
 
 SEEDS = 30
-Array = NDArray[np.float64]
+"""Seeds of a replay by default: enough for a median and its spread, a minute or so of one core."""
 VARIANT_SEEDS = 6
+"""Seeds under each changed choice, of which there are many: enough to see a median move."""
 
 
 class Study:
@@ -87,7 +92,7 @@ class Study:
         selected = case.selections(problem, reading)
         self.selected: tuple[Pair, ...] = tuple(selected)
         self.readings: tuple[str, ...] = tuple(dict.fromkeys(rid for _, rid in selected))
-        self.pairs: tuple[Pair, ...] = tuple(p for p in selected if case.posing(*p).posed)
+        self.pairs: tuple[Pair, ...] = tuple(p for p in selected if case.statement(*p).complete)
         self._progress = progress or (lambda _: None)
         self._kept: dict[tuple[Any, ...], Any] = {}
 
@@ -126,7 +131,7 @@ class Study:
             index = None if joint is None else problem.joints.index(joint)
             one = problem if index is None else problem.joint(index)
             found = solve(one, known=self.known_motions(pid, rid, joint))
-            return with_certificate(found, stated_exactly(self.case.posing(pid, rid), index))
+            return with_certificate(found, stated_exactly(self.case.statement(pid, rid), index))
 
         if joint is not None and len(self.problem(pid, rid).joints) == 1:
             joint = None
@@ -167,7 +172,7 @@ class Study:
             problem = self.problem(pid, rid)
             known = {label: self.known_motions(pid, rid, label) for label in problem.joints}
             found = solve_per_joint(problem, slacks=tuple(slacks), known=known)
-            return with_certificates(found, self.case.posing(pid, rid))
+            return with_certificates(found, self.case.statement(pid, rid))
 
         return self._once(("per joint", pid, rid), compute)
 
@@ -187,7 +192,7 @@ class Study:
 
         def compute() -> Solution:
             problem = self.problem(pid, rid)
-            given = problem.interpolant
+            given = problem.curve
             if not isinstance(given, Interpolant):
                 why = "only a declared piecewise polynomial is a member of its relaxed family"
                 return Solution(problem, Status.FAILED, why)
@@ -200,7 +205,7 @@ class Study:
                 virtual=given.virtual,
                 name="relaxed family",
             )
-            relaxed = replace(problem, interpolant=family, coupling=Coupling.SHARED)
+            relaxed = replace(problem, curve=family, coupling=Coupling.SHARED)
             member = self.optimum(pid, rid)
             if member.durations is None or given.free:
                 return solve(relaxed)
@@ -264,8 +269,8 @@ class Study:
         self._progress(f"{self.case.id}: rounding box of {claim.id}, {rid}")
         problem = self.claim_problem(claim, pid, rid)
         printed = self.case.claim_durations(claim, rid)
-        durations = Box(printed.value, printed.lower, printed.upper)
-        waypoints = Box(problem.waypoints, *self._box_columns(problem, pid, rid))
+        durations = RoundingBox(printed.value, printed.lower, printed.upper)
+        waypoints = RoundingBox(problem.waypoints, *self._box_columns(problem, pid, rid))
         if cut:
             durations, waypoints = _or_cut_off(durations), _or_cut_off(waypoints)
         return judge_rounding(problem, durations, waypoints)
@@ -288,11 +293,11 @@ class Study:
     def algorithm(self, algorithm_id: str) -> Algorithm[Any] | None:
         """The case's algorithm, or None if its kind is not implemented."""
         block = next(a for a in self.case.algorithms if a.id == algorithm_id)
+        if block.kind not in KINDS:
+            return None
         try:
             return from_settings(block.kind, block.parameters)
         except TrajgapError as error:
-            if "is unknown" in str(error):
-                return None
             raise TrajgapError(f"{self.case.file}: algorithms.{algorithm_id}: {error}") from None
 
     def runs(self, algorithm_id: str, pid: str, rid: str) -> Replays:
@@ -351,25 +356,29 @@ class Study:
         return self._once(("variants", algorithm_id, pid, rid), compute)
 
     @property
-    def families(self) -> tuple[FamilyBlock, ...]:
-        """Families of which both problems and some reading are selected, all of it implemented."""
-        return tuple(block for block in self.case.families if readings_of(self, block))
+    def instance_blocks(self) -> tuple[InstancesBlock, ...]:
+        """Designs of instances of which both problems and some reading are selected.
 
-    def family(self, block: FamilyBlock) -> FamilyResult:
-        """What the two procedures of an improvement do on the instances of a family."""
+        All of it is implemented.
+        """
+        return tuple(block for block in self.case.instances if readings_of(self, block))
 
-        def compute() -> FamilyResult:
+    def instances(self, block: InstancesBlock) -> InstancesResult:
+        """What the two procedures of an improvement do on instances that are drawn for it."""
+
+        def compute() -> InstancesResult:
             what = f"{self.case.id}: family {block.id}"
             self._progress(what)
             return examined(self, block, lambda done: self._progress(f"{what}, {done}"))
 
-        return self._once(("family", block.id), compute)
+        return self._once(("instances", block.id), compute)
 
 
-def _or_cut_off(box: Box) -> Box:
+def _or_cut_off(box: RoundingBox) -> RoundingBox:
     """The box widened by the inputs whose further digits were cut off instead of rounded."""
     up, down = 2.0 * (box.upper - box.value), 2.0 * (box.value - box.lower)
+    # A little more than one unit of the last digit, whose own value is rounded.
     wide = 1.0 + 1e-9
     lower = np.where(box.value > 0, box.lower, box.value - down * wide)
     upper = np.where(box.value < 0, box.upper, box.value + up * wide)
-    return Box(box.value, np.minimum(lower, box.lower), np.maximum(upper, box.upper))
+    return RoundingBox(box.value, np.minimum(lower, box.lower), np.maximum(upper, box.upper))

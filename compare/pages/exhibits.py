@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...heuristics.algorithms import ImprovedWOA, InitialRule, TentRule
-from ...problem import TrajgapError, forward_kinematics, to_si
+from ...problem import TrajgapError, file_name, forward_kinematics, to_si
 from ...problem.cases import ControlVerticesClaim, DurationsClaim, MaximumClaim
 from ...problem.robots import Chain, DhTable, proximity, sample_workspace
 from ..audits import Study
@@ -28,7 +28,9 @@ from .blocks import Block, Drawn, Folded, Grid, Section, number, text
 from .motions_shown import whole_claims
 
 _SAMPLES = 20_000
+"""Positions of the workspace that its bounding box is taken from, as by default in case files."""
 _SEED = 0
+"""Of the sampled positions, so that every page shows the same."""
 _NEGLIGIBLE = 1e-9
 """Distance that float arithmetic alone could leave, m."""
 Array = NDArray[np.float64]
@@ -98,7 +100,7 @@ def _jumps_of(
         f"{where}. Reading {rid}. The velocity jumps under {len(jumping)} of {len(readings)} "
         "readings. Limits are judged apart from jumps, inside the segments."
     )
-    yield _drawn(f"jumps-{pid}-{first.id}", picture, caption)
+    yield _drawn(file_name("jumps", pid, first.id), picture, caption)
     rows = tuple(
         (
             text(jump.joint),
@@ -119,22 +121,23 @@ def _polygons(study: Study) -> Iterator[Block]:
     for claim in study.case.claims:
         if not isinstance(claim, ControlVerticesClaim):
             continue
-        posing = study.case.posing(claim.problem)
-        if not posing.posed:
+        statement = study.case.statement(claim.problem)
+        if not statement.complete:
             continue
-        joints = range(len(posing.labels))
-        waypoints = [[row[j].value for j in joints] for row in posing.waypoints.points]
+        joints = range(len(statement.labels))
+        waypoints = [[row[j].value for j in joints] for row in statement.waypoints.points]
         picture = polygon_picture(
             waypoints,
-            vertices(claim, posing),
+            vertices(claim, statement),
             title=f"Control polygon of every joint: {claim.where}",
         )
         caption = (
             f"{claim.where} beside the vertices computed from the printed way-points "
-            f"({posing.waypoints.where}). A grey bar holds every difference that rounding of both "
-            "explains. No reading enters: both are printed in one unit, and time plays no part."
+            f"({statement.waypoints.where}). A grey bar holds every difference that rounding of "
+            "both explains. No reading enters: both are printed in one unit, and time plays no "
+            "part."
         )
-        yield _drawn(f"polygon-{claim.id}", picture, caption)
+        yield _drawn(file_name("polygon", claim.id), picture, caption)
 
 
 # --- workspace ------------------------------------------------------------------------------------
@@ -225,7 +228,7 @@ def _joint_path(study: Study, chain: Chain) -> _Path | None:
         return None
     order = [problem.joints.index(label) for label in chain.labels]
     q = problem.waypoints[:, order]
-    labels = study.case.posing(study.problems[0], study.main_reading).waypoints.labels
+    labels = study.case.statement(study.problems[0], study.main_reading).waypoints.labels
     # Whole turns do not move the end.
     base = np.where(np.isfinite(chain.lower), chain.lower, q)
     outside = np.argwhere(base + np.mod(q - base, 2 * np.pi) > chain.upper)
@@ -248,7 +251,7 @@ def _joint_path(study: Study, chain: Chain) -> _Path | None:
 
 def _tents(study: Study) -> Iterator[Block]:
     segments = [
-        study.case.posing(pid, rid).waypoints.number - 1
+        study.case.statement(pid, rid).waypoints.number - 1
         for pid in dict.fromkeys(p for p, _ in study.case.selections())
         for rid in study.readings[:1]
     ]
@@ -272,7 +275,7 @@ def _tents(study: Study) -> Iterator[Block]:
             f"{high:g} s; first two durations of every member. How orbits fill the population is "
             f"{printed}; the listed choice is “{built.tent_rule}”."
         )
-        yield _drawn(f"tent-{block.id}", picture, caption)
+        yield _drawn(file_name("tent", block.id), picture, caption)
         lengths = {
             TentRule.COORDINATE: built.whales,
             TentRule.MEMBER: dimensions,

@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from ...problem import Jump, Problem, Trajectory, TrajgapError, check, fit
+from ..documents import UNITS
 from .drawing import (
     BLUE,
     GRID,
@@ -18,9 +19,10 @@ from .drawing import (
     finish,
     shown,
 )
-from .motion import UNITS, sampled
+from .motion import sampled
 
 _VELOCITY = 1
+"""Order of the derivative whose jumps are drawn."""
 
 
 def velocity_jumps(problem: Problem, durations: ArrayLike) -> tuple[Jump, ...]:
@@ -66,7 +68,7 @@ def jump_picture(problem: Problem, durations: ArrayLike, *, title: str) -> Pictu
         raise TrajgapError(
             f"jump_picture: expected durations of shape ({problem.segments},), got {h.shape}"
         )
-    motion = fit(problem.interpolant, problem.waypoints, h)
+    motion = fit(problem.curve, problem.waypoints, h)
     jumps = velocity_jumps(problem, h)
     joints = problem.joints
     columns = min(3, len(joints))

@@ -21,10 +21,11 @@ from ...problem import (
     fit,
 )
 from ...problem.curves import ClockedTrajectory, numerators
+from ..documents import UNITS
 from .drawing import BLUE, GRID, INK, PAPER, RED, Picture, drawing, finish, shown
 
-UNITS = {"position": "rad", "velocity": "rad/s", "acceleration": "rad/s²", "jerk": "rad/s³"}
 _SAMPLES = 48
+"""Points of a segment that are drawn, beside its exact extrema: smooth at the width of a page."""
 _OFF_SCALE = 0.12
 """Share of a limit below which drawing the limit would flatten the curve."""
 
@@ -72,12 +73,11 @@ def motion_picture(
             f"({joints}, {problem.segments}), got {h.shape}"
         )
     if h.ndim == 1:
-        motion = fit(problem.interpolant, problem.waypoints, h, _array(nodal))
+        motion = fit(problem.curve, problem.waypoints, h, _array(nodal))
         rows = [(motion, j) for j in range(joints)]
     else:
         rows = [
-            (fit(problem.interpolant, problem.waypoints[:, j : j + 1], h[j]), 0)
-            for j in range(joints)
+            (fit(problem.curve, problem.waypoints[:, j : j + 1], h[j]), 0) for j in range(joints)
         ]
     orders = [0, 1, 2] + ([3] if np.isfinite(problem.limits.jerk).any() else [])
     description = "; ".join(
@@ -152,7 +152,7 @@ def _panel(
     axes.set_ylabel(UNITS[quantity])
     if order == 0:
         axes.plot(
-            trajectory.breaks[list(problem.interpolant.waypoint_breaks)],
+            trajectory.breaks[list(problem.curve.waypoint_breaks)],
             problem.waypoints[:, joint],
             linestyle="none",
             marker="o",

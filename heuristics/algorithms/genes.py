@@ -9,9 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ...problem import TrajgapError
-from ..objective import Array
-from ..settings import Reader, choice, interval, number, share, whole
+from ...problem import Array, TrajgapError
 from .swarm import held
 
 
@@ -44,7 +42,7 @@ class Mutation(StrEnum):
     """It moves uniformly within ± a share of the range, and is held in the range."""
 
 
-class Mutated(StrEnum):
+class MutationUnit(StrEnum):
     """What the mutation probability is the probability of."""
 
     GENE = "gene"
@@ -92,7 +90,7 @@ class Genetics:
     encoding: Encoding
     crossover: Crossover
     mutation: Mutation
-    mutated: Mutated
+    mutated: MutationUnit
     mutation_reach: float
     position_range: tuple[float, float]
     resolution: float
@@ -182,11 +180,11 @@ def crossed(pool: Array, rule: Crossover, rate: float, rng: np.random.Generator)
 
 
 def chosen(
-    unit: Mutated, rate: float, shape: tuple[int, ...], rng: np.random.Generator
+    unit: MutationUnit, rate: float, shape: tuple[int, ...], rng: np.random.Generator
 ) -> NDArray[np.bool_]:
     """Draw which genes mutate."""
     members, genes = shape
-    if unit is Mutated.GENE:
+    if unit is MutationUnit.GENE:
         each: NDArray[np.bool_] = rng.random(shape) < rate
         return each
     which, place = rng.random((2, members, 1))
@@ -218,19 +216,3 @@ def elite_kept(
     kept, totals = children.copy(), child_totals.copy()
     kept[worst], totals[worst] = parents[best], parent_totals[best]
     return kept, totals
-
-
-READERS: dict[str, Reader] = {
-    "population": whole(2),
-    "iterations": whole(0),
-    "encoding": choice(Encoding),
-    "resolution": number(positive=True),
-    "position_range": interval(),
-    "fitness_rule": choice(FitnessRule),
-    "crossover": choice(Crossover),
-    "mutation": choice(Mutation),
-    "mutated": choice(Mutated),
-    "mutation_reach": share(),
-    "penalty": number(positive=True, infinite=True),
-}
-"""Readers of the settings that standard and improved GA share."""

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 
-from ..objective import Array, Bounds, Objective
-from ..settings import choice, clean, interval, number, reject, whole
+from ...problem import Array
+from ..objective import Bounds, Objective
+from ..settings import Span, clean, number, positive, reject, whole
 from .swarm import (
     Draws,
     PositionRule,
@@ -66,7 +67,7 @@ class NichesRule(StrEnum):
     """Niche k starts in a box of width range/m around a random centre, held in the range."""
 
 
-class Mutated(StrEnum):
+class MutatedCoordinates(StrEnum):
     """Which coordinates of the global best a mutation moves."""
 
     ALL = "all"
@@ -95,7 +96,7 @@ class MNAMPSO:
         "falls" or "rises": (12) and the text disagree.
     niches_rule : NichesRule
         "stratified", "diagonal" or "clusters"; not in the text.
-    mutated : Mutated
+    mutated : MutatedCoordinates
         "all" or "one"; not in the text.
     mutation_scale : float
         Mutation bound as a multiple of the smallest coordinate of the global best; not in the
@@ -129,48 +130,26 @@ class MNAMPSO:
     kind: ClassVar[str] = "mnam-pso"
     open_choices: ClassVar[tuple[str, ...]] = OPEN_CHOICES
 
-    particles: int = 30
-    iterations: int = 200
-    niches: int = 3
-    c1: float = 2.0
-    c2: float = 2.0
-    inertia_max: float = 0.9
-    inertia_min: float = 0.4
+    particles: Annotated[int, whole(1)] = 30
+    iterations: Annotated[int, whole(0)] = 200
+    niches: Annotated[int, whole(1)] = 3
+    c1: Annotated[float, number()] = 2.0
+    c2: Annotated[float, number()] = 2.0
+    inertia_max: Annotated[float, number()] = 0.9
+    inertia_min: Annotated[float, number()] = 0.4
     inertia_reading: InertiaReading = InertiaReading.FALLS
     niches_rule: NichesRule = NichesRule.STRATIFIED
-    mutated: Mutated = Mutated.ALL
-    mutation_scale: float = 1.0
-    position_initial: tuple[float, float] = (0.3, 3.0)
-    velocity_initial: tuple[float, float] = (-2.0, 2.0)
+    mutated: MutatedCoordinates = MutatedCoordinates.ALL
+    mutation_scale: Annotated[float, number()] = 1.0
+    position_initial: Span = (0.3, 3.0)
+    velocity_initial: Span = (-2.0, 2.0)
     velocity_rule: VelocityRule = VelocityRule.CLAMP
     position_rule: PositionRule = PositionRule.BOUNDS
     draws: Draws = Draws.COORDINATE
-    penalty: float = np.inf
+    penalty: Annotated[float, positive(infinite=True)] = np.inf
 
     def __post_init__(self) -> None:
-        clean(
-            self,
-            self.kind,
-            {
-                "particles": whole(1),
-                "iterations": whole(0),
-                "niches": whole(1),
-                "c1": number(),
-                "c2": number(),
-                "inertia_max": number(),
-                "inertia_min": number(),
-                "inertia_reading": choice(InertiaReading),
-                "niches_rule": choice(NichesRule),
-                "mutated": choice(Mutated),
-                "mutation_scale": number(),
-                "position_initial": interval(),
-                "velocity_initial": interval(),
-                "velocity_rule": choice(VelocityRule),
-                "position_rule": choice(PositionRule),
-                "draws": choice(Draws),
-                "penalty": number(positive=True, infinite=True),
-            },
-        )
+        clean(self)
         if self.niches > self.particles:
             raise reject(
                 self.kind, "niches", f"{self.niches} niches for {self.particles} particles"
@@ -204,7 +183,7 @@ class MNAMPSO:
     def mutant(self, best: Array, rng: np.random.Generator) -> Array:
         """Draw a mutant of the global best, within bounds tied to its smallest coordinate."""
         reach = self.mutation_scale * float(best.min())
-        if self.mutated is Mutated.ONE:
+        if self.mutated is MutatedCoordinates.ONE:
             where, size = rng.random(2)
             moved = best.copy()
             moved[int(where * best.size)] += reach * (2.0 * size - 1.0)

@@ -10,14 +10,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, cholesky, solve_triangular
 from scipy.optimize import nnls
 
-from ...problem import Problem
-from .exact_rows import ExactRows, exact_rows
-
-Array = NDArray[np.float64]
+from ...problem import Array, Problem
+from .limit_rows import ExactRows, exact_rows
 
 STEPS = 80
 """Most steps of one descent; with a superlinear end 10 to 30 suffice."""
@@ -137,7 +134,7 @@ def _onto_limits(problem: Problem, h: Array, box: Box) -> ExactRows:
         derivatives = [e.order > 0 for e in rows.points]
         stretch = float(rows.excess[derivatives].max(initial=-np.inf))
         outside = rows.excess[np.logical_not(derivatives)].max(initial=-np.inf) > KEPT
-        free = np.isfinite(stretch) and not outside and problem.interpolant.homogeneous
+        free = np.isfinite(stretch) and not outside and problem.curve.homogeneous
         if rows.worst <= KEPT:
             if not (free and stretch < -KEPT and (z + stretch >= box.low).all()):
                 break

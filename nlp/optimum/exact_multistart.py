@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...problem import Check, Interpolant, Problem, Verdict, check
-from ...problem.curves import TimedUniformBSpline
+from ...problem import Array, Check, Problem, Verdict, check
 from .descent import Box, Descent, descend
 from .starts import SETTLED_SEGMENTS, equal_start
 from .tracking import Local
 from .wide_search import Basin, basins
-
-Array = NDArray[np.float64]
 
 ROUND = 1e-9
 """Relative room below a least duration, which rounding may take: the checker's tolerance."""
@@ -29,7 +25,7 @@ AT_BOUND = 0.99
 
 def searchable(problem: Problem) -> bool:
     """Whether the exact descents apply: a determined curve, few enough durations."""
-    return not problem.interpolant.free and problem.segments <= SETTLED_SEGMENTS
+    return not problem.curve.free and problem.segments <= SETTLED_SEGMENTS
 
 
 def least_durations(problem: Problem) -> Array:
@@ -38,7 +34,7 @@ def least_durations(problem: Problem) -> Array:
     Between two way-points a joint covers |Δq|, which takes |Δq|/V at least.
     """
     least = np.array(problem.duration_lower)
-    breaks = problem.interpolant.waypoint_breaks
+    breaks = problem.curve.waypoint_breaks
     distance = np.abs(np.diff(problem.waypoints, axis=0))
     with np.errstate(divide="ignore", invalid="ignore"):
         needed = np.where(distance > 0, distance / problem.limits.velocity, 0.0).max(axis=1)
@@ -72,11 +68,12 @@ def ordinary(problem: Problem, basin: Basin) -> bool:
     IPOPT then often runs into its iteration limit, and the descents are several times as quick.
     """
     h = basin.durations
-    clocked = isinstance(problem.interpolant, TimedUniformBSpline)
+    curve = problem.curve
+    clocked = curve.piecewise is None and curve.shape(problem.waypoints) is None
     return bool(
         basin.excess == 0.0
         and not (clocked and np.isfinite(problem.limits.jerk).any())
-        and problem.interpolant.homogeneous
+        and problem.curve.homogeneous
         and not problem.limits.limits_position
         and (h >= UNEQUAL * h.mean()).all()
         and (h < AT_BOUND * problem.duration_upper).all()
@@ -85,7 +82,7 @@ def ordinary(problem: Problem, basin: Basin) -> bool:
 
 def kept(problem: Problem, verdict: Check) -> bool:
     """Whether a motion counts as feasible: curves that always jump are judged by their limits."""
-    if isinstance(problem.interpolant, Interpolant):
+    if problem.curve.piecewise is not None:
         return verdict.verdict is Verdict.PASS
     return verdict.limits is Verdict.PASS
 
@@ -94,7 +91,7 @@ def as_local(problem: Problem, found: Descent) -> Local:
     """The end of a descent, judged by the checker."""
     h = np.clip(found.durations, problem.duration_lower, problem.duration_upper)
     verdict = check(problem, h)
-    if found.feasible and 1.0 < verdict.stretch < 1.0 + ROUND and problem.interpolant.homogeneous:
+    if found.feasible and 1.0 < verdict.stretch < 1.0 + ROUND and problem.curve.homogeneous:
         h = np.clip(h * verdict.stretch, problem.duration_lower, problem.duration_upper)
         verdict = check(problem, h)
     return Local(h, None, float(h.sum()), found.converged, kept(problem, verdict), found.steps)

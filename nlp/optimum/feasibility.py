@@ -6,19 +6,13 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...problem import QUANTITIES, Interpolant, Problem, Verdict, check
-from ...problem.curves import RowKind, end_conditions, smooth_order
-from .curve_symbols import shape_key
-
-Array = NDArray[np.float64]
+from ...problem import QUANTITIES, Array, Problem, Verdict, check
 
 SURE = 1.0 + 1e-6
 """What a need must exceed to be a proof: far above the checker's tolerance and rounding."""
 AMPLE = 1e6
 """Duration of a segment without an upper bound, in shares of the others: nothing is reached."""
-
 ENDLESS = 1e29
 """s; longer than this is beyond what `check` takes."""
 
@@ -41,14 +35,13 @@ def impossible(problem: Problem) -> str | None:
 
 def _limit_zero(problem: Problem) -> str | None:
     moves = np.ptp(problem.waypoints, axis=0) > 0
-    orders = {order for end in end_conditions(problem.interpolant) for order, _ in end}
-    if isinstance(problem.interpolant, Interpolant):
-        orders |= {order for entries in problem.interpolant.prescribed for order, _ in entries}
+    curve = problem.curve
+    orders = {r for b in range(curve.segments + 1) for r, _ in curve.prescribed_at(b)}
     for r, quantity in enumerate(QUANTITIES, start=1):
         # A joint that must not accelerate may still glide, unless it is at rest somewhere.
         pinned = all(lower in orders for lower in range(1, r))
         for j in np.flatnonzero(moves & (problem.limits.derivatives[:, r - 1] == 0)):
-            if pinned and problem.interpolant.homogeneous:
+            if pinned and curve.homogeneous:
                 return f"joint {problem.joints[j]} moves, but its {quantity} limit is 0"
     return None
 
@@ -63,10 +56,8 @@ def _outside_range(problem: Problem) -> str | None:
 
 
 def _prescribed_beyond_limit(problem: Problem) -> str | None:
-    if not isinstance(problem.interpolant, Interpolant):
-        return None
-    for b, entries in enumerate(problem.interpolant.prescribed):
-        for order, value in entries:
+    for b in range(problem.segments + 1):
+        for order, value in problem.curve.prescribed_at(b):
             if order > 3:
                 continue
             over = abs(value) > problem.limits.derivatives[:, order - 1]
@@ -78,7 +69,7 @@ def _prescribed_beyond_limit(problem: Problem) -> str | None:
 
 
 def _too_little_time(problem: Problem) -> str | None:
-    breaks = problem.interpolant.waypoint_breaks
+    breaks = problem.curve.waypoint_breaks
     for w in range(len(breaks) - 1):
         room = float(problem.duration_upper[breaks[w] : breaks[w + 1]].sum())
         distance = np.abs(problem.waypoints[w + 1] - problem.waypoints[w])
@@ -99,14 +90,14 @@ def _smooth(problem: Problem, order: int) -> bool:
 
     `check` demands it of declared curves; other kinds may jump, unless they say that they do not.
     """
-    curve = problem.interpolant
+    curve = problem.curve
     inner = range(1, curve.segments)
-    return isinstance(curve, Interpolant) or all(smooth_order(curve, b) >= order for b in inner)
+    return curve.piecewise is not None or all(curve.smooth_order(b) >= order for b in inner)
 
 
 def _room(problem: Problem) -> tuple[Array, Array]:
     """Least and largest time, s, between successive way-points."""
-    breaks = np.array(problem.interpolant.waypoint_breaks)
+    breaks = np.array(problem.curve.waypoint_breaks)
     low, high = (
         np.add.reduceat(bound, breaks[:-1])
         for bound in (problem.duration_lower, problem.duration_upper)
@@ -116,7 +107,7 @@ def _room(problem: Problem) -> tuple[Array, Array]:
 
 def _from_rest(problem: Problem) -> Iterator[tuple[bool, int]]:
     """Ends (the last one if true) and orders of the limits that hold the motion back there."""
-    for last, end in enumerate(end_conditions(problem.interpolant)):
+    for last, end in enumerate(problem.curve.ends):
         still = {order for order, value in end if value == 0.0}
         for order in (2, 3):
             if still >= set(range(1, order)) and _smooth(problem, order - 1):
@@ -173,11 +164,15 @@ def _too_sharp_a_turn(problem: Problem) -> str | None:
 
 def _apart(problem: Problem) -> bool:
     """Whether each segment's curve depends on its own duration only, by a stretch."""
-    curve = problem.interpolant
-    if isinstance(curve, Interpolant):
-        alone = all(row.kind != RowKind.MATCH for row in curve.rows)
-        return alone and curve.homogeneous and not curve.free
-    return bool(shape_key(problem))
+    curve = problem.curve.piecewise
+    if curve is None:
+        return problem.curve.shape(problem.waypoints) is not None
+    given = [{order for order, _ in curve.prescribed_at(b)} for b in range(1, curve.segments)]
+    alone = all(
+        set(range(1, order + 1)) <= orders
+        for order, orders in zip(curve.continuity, given, strict=True)
+    )
+    return alone and curve.homogeneous and not curve.free and not curve.virtual
 
 
 def _each_segment_by_itself(problem: Problem) -> str | None:

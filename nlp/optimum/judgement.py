@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...problem import Problem, Verdict, check
+from ...problem import Array, Problem, Verdict, check
 from .optimality import kkt
 from .polish import polish
 from .solution import Solution, Status
@@ -21,9 +20,7 @@ TRIED = 3
 """Ends of descents, best first, of which the sharpest with the best total becomes the answer."""
 
 
-def judged(
-    problem: Problem, found: list[Local], floor: NDArray[np.float64], starts: int
-) -> Solution:
+def judged(problem: Problem, found: list[Local], floor: Array, starts: int) -> Solution:
     """The best answer that the checker passes, with its optimality conditions.
 
     Parameters
@@ -84,7 +81,7 @@ def stretchable(problem: Problem) -> bool:
     """Whether a long enough stretch repairs every duration vector."""
     return bool(
         np.isinf(problem.duration_upper).all()
-        and problem.interpolant.homogeneous
+        and problem.curve.homogeneous
         and not problem.limits.limits_position
         and (problem.limits.derivatives > 0).all()
     )

@@ -6,10 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from enum import StrEnum
 
-import numpy as np
-from numpy.typing import NDArray
-
-from ...problem import Check, Problem
+from ...problem import Array, Check, Problem
 from .optimality import Active
 
 
@@ -38,9 +35,11 @@ class Evidence(StrEnum):
     CERTIFIED = "certified"
     """Lower and upper bound within the stated gap, re-checked."""
     BEST_KNOWN = "best known"
-    """The best value found; nothing is proved below it."""
+    """The best value found and checked, with nothing proved below it. A gap against it is a lower
+    estimate of the true one."""
     NONE = "none"
-    """No value."""
+    """No value. A verdict that rests on none rests on the printed digits, a count, a check of what
+    is printed, or a shorter motion that was checked and needs no optimum beside it."""
 
 
 def weakest(evidence: Iterable[Evidence]) -> Evidence:
@@ -61,7 +60,7 @@ class Solution:
         The reason, where the status needs one.
     durations : ndarray, shape (segments,), or None
     nodal : ndarray, shape (free, joints), or None
-        Free derivatives of an under-determined interpolant.
+        Free derivatives of an under-determined curve.
     check : Check or None
         The checker's verdict on the durations.
     infimum : float or None
@@ -82,8 +81,8 @@ class Solution:
     problem: Problem
     status: Status
     why: str | None = None
-    durations: NDArray[np.float64] | None = None
-    nodal: NDArray[np.float64] | None = None
+    durations: Array | None = None
+    nodal: Array | None = None
     check: Check | None = None
     infimum: float | None = None
     lower_bound: float | None = None

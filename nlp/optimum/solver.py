@@ -8,12 +8,11 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ...problem import Interpolant, Problem, TrajgapError, check, fit
+from ...problem import Array, Problem, TrajgapError, check, fit
 from ...problem.curves import coefficient_gradient, segment_peaks
 from .curve_formulation import compiled_curve, curve_structure
-from .curve_symbols import shape_key
 from .curve_tracking import curve_multistart
 from .descent import restored
 from .exact_multistart import (
@@ -47,7 +46,7 @@ from .tracking import (
 from .wide_search import Basin
 
 STARTS = 4
-"""Starts of a solve: equal durations, and the three best other basins of the screening."""
+"""Equal durations first, then three screened random ones: a second opinion at small cost."""
 FLOORS = (1e-3, 1e-4)
 """Smallest durations tried, relative to the mean, where the case sets no lower bound."""
 DEEPER = (1e-6, 1e-8)
@@ -115,7 +114,7 @@ def solve(
         None if known_nodal is None else np.asarray(known_nodal, dtype=np.float64),
         form,
     )
-    wanted = (len(ask.known), problem.interpolant.free, len(problem.joints))
+    wanted = (len(ask.known), problem.curve.free, len(problem.joints))
     if ask.known_nodal is not None and ask.known_nodal.shape != wanted:
         raise TrajgapError(f"known_nodal: expected shape {wanted}, got {ask.known_nodal.shape}")
     idle = idle_segments(problem)
@@ -130,13 +129,13 @@ class _Ask:
 
     starts: int
     seed: int
-    initial: NDArray[np.float64] | None
-    known: NDArray[np.float64]
-    known_nodal: NDArray[np.float64] | None
+    initial: Array | None
+    known: Array
+    known_nodal: Array | None
     form: Form | None
 
 
-def _vectors(problem: Problem, name: str, given: ArrayLike) -> NDArray[np.float64]:
+def _vectors(problem: Problem, name: str, given: ArrayLike) -> Array:
     points = np.atleast_2d(np.asarray(given, dtype=np.float64))
     if points.size == 0:
         return np.empty((0, problem.segments))
@@ -169,7 +168,7 @@ def _solve_moving(problem: Problem, ask: _Ask) -> Solution:
     return replace(solution, solve_seconds=time.perf_counter() - began - solution.build_seconds)
 
 
-def _floor(problem: Problem, share: float) -> NDArray[np.float64]:
+def _floor(problem: Problem, share: float) -> Array:
     return made_up(problem, share * float(equal_start(problem).mean()))
 
 
@@ -202,9 +201,7 @@ def _tracked(problem: Problem, ask: _Ask) -> Solution:
     return replace(solution, build_seconds=build_seconds)
 
 
-def _searched(
-    problem: Problem, ask: _Ask, durations: NDArray[np.float64] | None = None
-) -> Solution:
+def _searched(problem: Problem, ask: _Ask, durations: Array | None = None) -> Solution:
     """Exact descents from the basins of a wide search, or from the given starts.
 
     Where an answer ends at a floor, the floor is lowered, with a search of its own; where it still
@@ -243,7 +240,7 @@ def _searched(
 
 def _after_restoration(problem: Problem, ask: _Ask, solution: Solution) -> Solution:
     """The tracked NLP once more, from starts that a feasibility phase has brought to the limits."""
-    if problem.interpolant.free:
+    if problem.curve.free:
         usual = equal_start(problem)  # stretched to be tight, with the free derivatives at rest
         nodal = first_nodal(problem)
         if not kept(problem, check(problem, usual, nodal)):
@@ -261,11 +258,11 @@ def _after_restoration(problem: Problem, ask: _Ask, solution: Solution) -> Solut
     return _tracked(problem, replace(ask, initial=np.array(ends)))
 
 
-def _nearly_coincident(problem: Problem, solution: Solution, floor: NDArray[np.float64]) -> bool:
+def _nearly_coincident(problem: Problem, solution: Solution, floor: Array) -> bool:
     """Whether a joint moves in a segment at its floor: the total rises again further down."""
     assert solution.durations is not None
     at = (floor > 0) & (solution.durations <= 1.01 * floor)
-    breaks = problem.interpolant.waypoint_breaks
+    breaks = problem.curve.waypoint_breaks
     return any(
         at[b] and (problem.waypoints[w] != problem.waypoints[w + 1]).any()
         for w, b in enumerate(breaks[:-1])
@@ -303,8 +300,8 @@ def _settled(solution: Solution) -> bool:
 
 def _with_known(problem: Problem, solution: Solution, ask: _Ask) -> Solution:
     """The answer, or the shortest known motion that `check` passes, made shorter if possible."""
-    nodal: list[NDArray[np.float64] | None] = [None] * len(ask.known)
-    if problem.interpolant.free:
+    nodal: list[Array | None] = [None] * len(ask.known)
+    if problem.curve.free:
         if ask.known_nodal is None:
             return solution
         nodal = list(ask.known_nodal)
@@ -330,9 +327,9 @@ def _with_known(problem: Problem, solution: Solution, ask: _Ask) -> Solution:
 
 def _search(
     problem: Problem, form: Form | None
-) -> tuple[Callable[[NDArray[np.float64], float], list[Local]], float]:
+) -> tuple[Callable[[Array, float], list[Local]], float]:
     """Local search from starts above a floor, and the time its build took, s."""
-    if isinstance(problem.interpolant, Interpolant):
+    if problem.curve.piecewise is not None:
         build_ = compiled(structure_of(problem, form))
         return partial(_multistart, problem, build_), build_.build_seconds
     built = compiled_curve(curve_structure(problem))
@@ -340,15 +337,14 @@ def _search(
 
 
 def _reduced(problem: Problem, form: Form | None) -> bool:
-    declared = isinstance(problem.interpolant, Interpolant)
-    return declared and structure_of(problem, form).form is Form.REDUCED
+    if problem.curve.piecewise is None:
+        return False
+    return structure_of(problem, form).form is Form.REDUCED
 
 
-def _multistart(
-    problem: Problem, build_: Compiled, points: NDArray[np.float64], floor: float
-) -> list[Local]:
+def _multistart(problem: Problem, build_: Compiled, points: Array, floor: float) -> list[Local]:
     """Local optima of all starts; the same coarse solution is tracked only once."""
-    tracked: list[tuple[NDArray[np.float64], Local]] = []
+    tracked: list[tuple[Array, Local]] = []
     found: list[Local] = []
     for start in points:
         near = settled(problem, start)
@@ -374,16 +370,17 @@ def _multistart(
 
 def idle_segments(problem: Problem) -> list[int]:
     """Segments in which nothing moves and whose duration nothing else depends on."""
-    if problem.interpolant.free:
+    if problem.curve.free:
         return []
-    if not isinstance(problem.interpolant, Interpolant):
-        if not shape_key(problem):
-            return []
-        still = segment_peaks(problem.interpolant, problem.waypoints).max(axis=(1, 2)) == 0.0
+    if problem.curve.shape(problem.waypoints) is not None:
+        still = segment_peaks(problem.curve, problem.waypoints).max(axis=(1, 2)) == 0.0
         return np.flatnonzero(still).tolist()
+    polynomials = problem.curve.piecewise
+    if polynomials is None:
+        return []
     h = equal_start(problem)
-    trajectory = fit(problem.interpolant, problem.waypoints, h)
-    gradient = coefficient_gradient(problem.piecewise, problem.waypoints, h).durations
+    trajectory = fit(problem.curve, problem.waypoints, h)
+    gradient = coefficient_gradient(polynomials, problem.waypoints, h).durations
     size = 1e-12 * max(1.0, float(np.abs(trajectory.scaled).max()))
     still = np.abs(trajectory.scaled[:, 1:]).max(axis=(1, 2)) <= size
     apart = np.abs(gradient * h[:, None, None, None]).max(axis=(1, 2, 3)) <= size

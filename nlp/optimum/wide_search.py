@@ -5,13 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...problem import CurveError, Interpolant, Problem, evaluate, fit
+from ...problem import Array, CurveError, Problem, evaluate, fit
 from ...problem.curves import batch_coefficients
 from .descent import Box
-
-Array = NDArray[np.float64]
 
 MEMBERS, MOST_MEMBERS = 16, 128
 """Members of a population for each segment, and at most."""
@@ -33,9 +30,9 @@ HOPELESS = 10.0
 
 def _scaled(problem: Problem, h: Array) -> Array:
     """Coefficients of all vectors, shape (vectors, pieces, powers, joints); NaN without a curve."""
-    curve = problem.interpolant
-    if isinstance(curve, Interpolant):
-        return batch_coefficients(curve, problem.waypoints, h)
+    curve = problem.curve
+    if curve.piecewise is not None:
+        return batch_coefficients(curve.piecewise, problem.waypoints, h)
     found: list[Array | None] = []
     for one in h:
         try:
@@ -69,7 +66,7 @@ def excess_and_total(problem: Problem, h: Array, box: Box) -> tuple[Array, Array
         wanted = h[left] * stretch[left, None]
         h[left] = np.clip(wanted, low, high)
         # Where the whole stretch fits and time can be stretched, the limits are met exactly.
-        bent = (h[left] != wanted).any(axis=1) | (not problem.interpolant.homogeneous)
+        bent = (h[left] != wanted).any(axis=1) | (not problem.curve.homogeneous)
         left = left[bent]
         if left.size == 0:
             break

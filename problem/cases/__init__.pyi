@@ -12,15 +12,29 @@ from .claim import (
     StatementClaim,
     TotalTimeClaim,
 )
-from .instances import FamilyBlock, family_waypoints
+from .instances import InstancesBlock, instance_waypoints
 from .load import load_case, parse_case, published_ids
 from .robot_file import load_robot, robot_ids
 from .scaffolding import scaffold
-from .schema import Cartesian, CaseFile, case_schema
-from .statement import Posing
+from .schema import (
+    AlgorithmBlock,
+    Assumption,
+    Cartesian,
+    CaseFile,
+    NotCheckable,
+    ProblemBlock,
+    Reading,
+    Robot,
+    Source,
+    Table,
+    case_schema,
+)
+from .statement import Statement
 
 __all__ = [
+    "AlgorithmBlock",
     "AnyClaim",
+    "Assumption",
     "Cartesian",
     "Case",
     "CaseFile",
@@ -30,15 +44,21 @@ __all__ = [
     "ConvergenceClaim",
     "DurationBox",
     "DurationsClaim",
-    "FamilyBlock",
     "ImprovementClaim",
+    "InstancesBlock",
     "MaximumClaim",
+    "NotCheckable",
     "PeakClaim",
-    "Posing",
+    "ProblemBlock",
+    "Reading",
+    "Robot",
+    "Source",
+    "Statement",
     "StatementClaim",
+    "Table",
     "TotalTimeClaim",
     "case_schema",
-    "family_waypoints",
+    "instance_waypoints",
     "load_case",
     "load_robot",
     "parse_case",

@@ -1,4 +1,4 @@
-"""Families of instances: way-points drawn from a robot's workspace where a paper prints none."""
+"""Instances: way-points drawn from a robot's workspace where a paper prints none."""
 
 from __future__ import annotations
 
@@ -7,14 +7,16 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, StrictInt, field_validator
 
-from ..fields import Id, Length, Strict, Text, fault
+from ..arrays import Array
+from ..fields import LARGEST_SEED, MOST_ENTRIES, Id, Length, Strict, Text, fault
 from ..printed import Printed
-from ..robots import Array, Chain, StepKind, sample_workspace, waypoint_family
+from ..robots import Chain, StepKind, sample_workspace, waypoint_sequences
 
 Count = Annotated[StrictInt, Field(ge=1, le=10_000)]
+"""How many; all together are bounded as well, by `check_sizes`."""
 
 
-class FamilyBlock(Strict):
+class InstancesBlock(Strict):
     """Instances on which a relative claim is examined, drawn from the workspace of the robot."""
 
     id: Id
@@ -24,11 +26,11 @@ class FamilyBlock(Strict):
     """Why such instances say something about the claim."""
     kind: Literal["joint", "end"] = "end"
     """What a step measures: the largest change of a joint, or the way of the end."""
-    steps: Annotated[tuple[Length, ...], Field(min_length=1)]
+    steps: Annotated[tuple[Length, ...], Field(min_length=1, max_length=MOST_ENTRIES)]
     """Step lengths, rad where kind is "joint", m where it is "end"."""
     instances: Count
     """Instances of each step length."""
-    seed: Annotated[StrictInt, Field(ge=0)] = 0
+    seed: Annotated[StrictInt, Field(ge=0, le=LARGEST_SEED)] = 0
     """Of the workspace and of the way-points."""
     samples: Annotated[StrictInt, Field(ge=1, le=1_000_000)] = 20_000
     """Positions of the workspace that way-points are drawn from."""
@@ -39,7 +41,7 @@ class FamilyBlock(Strict):
     ] = ("death-penalty", "stretch")
     """What happens to durations that break a limit; the first is the paper's."""
     readings: tuple[Id, ...] = ()
-    """Readings under which the instances are posed; all of them if empty."""
+    """Readings under which the instances are examined; all of them if empty."""
 
     @field_validator("steps")
     @classmethod
@@ -62,17 +64,17 @@ class FamilyBlock(Strict):
         return tuple(step.value for step in self.steps)
 
 
-def family_waypoints(
-    block: FamilyBlock, chain: Chain, labels: tuple[str, ...], waypoints: int
+def instance_waypoints(
+    block: InstancesBlock, chain: Chain, labels: tuple[str, ...], waypoints: int
 ) -> Array:
-    """Draw the way-points of every instance of a family.
+    """Draw the way-points of every instance of a block.
 
     Every step length has a stream of its own: its instances depend neither on the other steps nor,
     save for their number, on how many there are.
 
     Parameters
     ----------
-    block : FamilyBlock
+    block : InstancesBlock
     chain : Chain
     labels : tuple of str
         Joints of the chain to keep, in order.
@@ -97,7 +99,7 @@ def family_waypoints(
         named = int(np.float64(step).view(np.uint64))
         stream = np.random.SeedSequence([block.seed, named])
         drawn.append(
-            waypoint_family(
+            waypoint_sequences(
                 workspace,
                 step=step,
                 count=block.instances,

@@ -16,6 +16,7 @@ from ..units import CHOICES, Quantity, check_unit
 from .load import parse_case
 
 _LABEL_HEADERS = ("", "waypoint", "way-point", "point", "label", "name")
+"""Headers, in lower case, of a first column that holds names and not angles."""
 
 
 def scaffold(
@@ -154,10 +155,10 @@ def _digits(name: str, field: str, text: str) -> None:
     try:
         Printed(text)
     except TrajgapError as error:
-        mend = str(error)
+        fix = str(error)
         if re.fullmatch(r"\s*[-+−]?[0-9]+,[0-9]+\s*", text):
-            mend = f"{text!r} has a decimal comma; write a decimal point"
-        raise CaseError(name, field, mend) from None
+            fix = f"{text!r} has a decimal comma; write a decimal point"
+        raise CaseError(name, field, fix) from None
 
 
 def _identity(stem: str) -> str:

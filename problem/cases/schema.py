@@ -9,16 +9,18 @@ from pydantic import BeforeValidator, Field, StrictBool, StrictInt, WithJsonSche
 
 from ..errors import TrajgapError
 from ..fields import (
+    MOST_WAYPOINTS,
     AccelerationUnit,
     Id,
     JerkUnit,
+    JointLabels,
     Number,
     OneOrEachLength,
     OneOrEachLowerPosition,
     OneOrEachUpper,
     OneOrEachUpperPosition,
     PositionUnit,
-    Rows,
+    PrintedRows,
     Strict,
     Text,
     TimeUnit,
@@ -32,7 +34,21 @@ from ..robots import DhTable
 from ..units import LengthUnit
 from .claim import AnyClaim
 from .declaration import InterpolantBlock
-from .instances import FamilyBlock
+from .instances import InstancesBlock
+
+LISTS = (
+    "problems",
+    "readings",
+    "algorithms",
+    "families",
+    "tables",
+    "claims",
+    "assumptions",
+    "columns",
+    "cartesian",
+    "not_checkable",
+)
+"""Lists of blocks with ids, in the order in which their faults are told."""
 
 
 class Source(Strict):
@@ -50,7 +66,7 @@ class Robot(Strict):
     """The robot and the labels of the joints, in the order of every per-joint list."""
 
     name: Text
-    joints: Annotated[tuple[Text, ...], Field(min_length=1)]
+    joints: JointLabels
     dh: DhTable | None = None
     """Its Denavit-Hartenberg table as printed."""
     model: Id | None = None
@@ -92,13 +108,13 @@ class Waypoints(Strict):
     where: str = ""
     labels: tuple[str, ...] = ()
     """Names of the way-points."""
-    joint_rows: Rows | None = None
+    joint_rows: PrintedRows | None = None
     """One row per joint, one number per way-point."""
-    waypoint_rows: Rows | None = None
+    waypoint_rows: PrintedRows | None = None
     """One row per way-point, one number per joint."""
     not_printed: Text | None = None
     """Why there are no rows, where the paper prints none; with `count`."""
-    count: Annotated[StrictInt, Field(ge=2)] | None = None
+    count: Annotated[StrictInt, Field(ge=2, le=MOST_WAYPOINTS)] | None = None
     """How many way-points there are, where none is printed."""
 
     @model_validator(mode="after")
@@ -121,6 +137,11 @@ class Waypoints(Strict):
         count = len(self.points)
         if count < 2:
             raise fault(f".{name}", "holds one way-point only; give at least two")
+        if count > MOST_WAYPOINTS:
+            raise fault(
+                f".{name}",
+                f"holds {count:,} way-points, at most {MOST_WAYPOINTS:,} are read; leave some out",
+            )
         self._check_labels()
         return self
 
@@ -173,7 +194,7 @@ class Durations(Strict):
     """Longest duration; none by default."""
 
 
-class Pose(Strict):
+class ProblemData(Strict):
     """What can be said for the whole file and changed by a problem or a reading."""
 
     units: Units = Units()
@@ -184,15 +205,15 @@ class Pose(Strict):
     coupling: Coupling | None = None
 
 
-class Override(Pose):
-    """A `Pose` that changes another one; units, limits and durations key by key."""
+class Override(ProblemData):
+    """A `ProblemData` that changes another one; units, limits and durations key by key."""
 
-    joints: Annotated[tuple[Text, ...], Field(min_length=1)] | None = None
+    joints: JointLabels | None = None
     """The joints that take part; all if absent. Per-joint lists keep listing every joint."""
 
 
 class ProblemBlock(Override):
-    """One of the problems that the paper poses."""
+    """One of the problems that the paper states."""
 
     id: Id
     title: str = ""
@@ -235,7 +256,7 @@ Setting = Annotated[
 ]
 
 
-class Algorithm(Strict):
+class AlgorithmBlock(Strict):
     """An algorithm of the paper and its settings."""
 
     id: Id
@@ -322,7 +343,7 @@ class NotCheckable(Strict):
     why: Text
 
 
-class CaseFile(Pose):
+class CaseFile(ProblemData):
     """A case file: what one paper prints, and how it can be read."""
 
     format: Literal[1]
@@ -332,8 +353,8 @@ class CaseFile(Pose):
     robot: Robot
     problems: tuple[ProblemBlock, ...] = ()
     readings: tuple[Reading, ...] = ()
-    algorithms: tuple[Algorithm, ...] = ()
-    families: tuple[FamilyBlock, ...] = ()
+    algorithms: tuple[AlgorithmBlock, ...] = ()
+    families: tuple[InstancesBlock, ...] = ()
     tables: tuple[Table, ...] = ()
     claims: tuple[AnyClaim, ...] = ()
     assumptions: tuple[Assumption, ...] = ()

@@ -4,14 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
 
+from ..arrays import Array
 from . import kernel
-from .interpolant import Interpolant, RowKind
+from .condition import ConditionKind
 from .spline import PERM, coefficients, layout, right_hand_sides, singular
+
+if TYPE_CHECKING:
+    from .interpolant import Interpolant
 
 DENSE_UNKNOWNS = 400
 """Up to this many coefficients one dense inverse takes a few milliseconds; windows gain nothing."""
@@ -36,7 +41,7 @@ class _Pattern:
 
     first: NDArray[np.int64]
     columns: NDArray[np.int64]
-    constant: NDArray[np.float64]
+    constant: Array
     segment: NDArray[np.int64]
     jumps: NDArray[np.int64]
     slots: NDArray[np.int64]
@@ -52,13 +57,13 @@ def _pattern(interpolant: Interpolant) -> _Pattern:
     jumps, slots = [], []
     for i in range(size):
         kind, b, r = plan.kinds[i], plan.breaks[i], plan.orders[i]
-        if kind == RowKind.RIGHT_VALUE:
+        if kind == ConditionKind.RIGHT_VALUE:
             columns[i, 0], constant[i, 0] = first[b] + r, PERM[r, r]
             continue
         powers = np.arange(r, plan.degrees[b - 1] + 1)
         columns[i, : powers.size] = first[b - 1] + powers
         constant[i, : powers.size] = PERM[powers, r]
-        if kind == RowKind.MATCH and r <= plan.degrees[b]:
+        if kind == ConditionKind.MATCH and r <= plan.degrees[b]:
             columns[i, powers.size] = first[b] + r
             jumps.append(i)
             slots.append(powers.size)
@@ -66,7 +71,7 @@ def _pattern(interpolant: Interpolant) -> _Pattern:
         first=first,
         columns=columns,
         constant=constant,
-        segment=np.where(plan.kinds == RowKind.RIGHT_VALUE, plan.breaks, plan.breaks - 1),
+        segment=np.where(plan.kinds == ConditionKind.RIGHT_VALUE, plan.breaks, plan.breaks - 1),
         jumps=np.array(jumps, dtype=np.int64),
         slots=np.array(slots, dtype=np.int64),
     )
@@ -99,7 +104,7 @@ class System:
             out += self.values[:, m, None] * flat[self.columns[:, m]]
         return out
 
-    def dense(self, rows: NDArray[np.int64], low: int, high: int) -> NDArray[np.float64]:
+    def dense(self, rows: NDArray[np.int64], low: int, high: int) -> Array:
         """The given rows over columns low to high − 1, which must hold all their entries."""
         out = np.zeros((rows.size, high - low))
         values = self.values[rows].astype(np.float64)
@@ -116,7 +121,7 @@ def system(interpolant: Interpolant, durations: NDArray[np.floating]) -> System:
     r = plan.orders[i]
     values[i, pattern.slots] = -PERM[r, r] * (durations[b - 1] / durations[b]) ** r
     factor = np.where(
-        plan.kinds == RowKind.MATCH,
+        plan.kinds == ConditionKind.MATCH,
         durations.dtype.type(1),
         durations[pattern.segment] ** plan.orders,
     )
@@ -131,11 +136,11 @@ def _places(interpolant: Interpolant) -> tuple[NDArray[np.int64], NDArray[np.int
     return segment, np.arange(first[-1]) - first[segment]
 
 
-def _flat(interpolant: Interpolant, scaled: NDArray[np.float64]) -> NDArray[np.float64]:
+def _flat(interpolant: Interpolant, scaled: Array) -> Array:
     return np.asarray(scaled[_places(interpolant)])
 
 
-def _unflat(interpolant: Interpolant, flat: NDArray[np.float64]) -> NDArray[np.float64]:
+def _unflat(interpolant: Interpolant, flat: Array) -> Array:
     """Coefficients of the last axis but one put back into (segments, powers)."""
     shape = (interpolant.segments, kernel.MAX_COEFFICIENTS)
     out = np.zeros((*flat.shape[:-2], *shape, flat.shape[-1]))
@@ -155,13 +160,11 @@ class _Block:
     own: slice
     window: slice
     rows: NDArray[np.int64]
-    inverse: NDArray[np.float64]
-    defect: NDArray[np.float64]
+    inverse: Array
+    defect: Array
 
 
-def _defect(
-    inverse: NDArray[np.float64], matrix: NDArray[np.float64], at: int
-) -> NDArray[np.float64]:
+def _defect(inverse: Array, matrix: Array, at: int) -> Array:
     """Bound on |BA − I| for some rows of B, their rounding and that of A's entries included."""
     size = np.finfo(np.float64).eps * (len(matrix) + 2)
     found = inverse @ matrix
@@ -170,7 +173,7 @@ def _defect(
 
 
 def _blocks(
-    interpolant: Interpolant, rows: System, durations: NDArray[np.float64], halo: int | None
+    interpolant: Interpolant, rows: System, durations: Array, halo: int | None
 ) -> list[_Block]:
     """An approximate inverse: dense, or (with a halo) by windows of neighbouring segments.
 
@@ -207,10 +210,10 @@ def _blocks(
 
 def refined_coefficients(
     interpolant: Interpolant,
-    waypoints: NDArray[np.float64],
-    durations: NDArray[np.float64],
-    nodal: NDArray[np.float64] | None = None,
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    waypoints: Array,
+    durations: Array,
+    nodal: Array | None = None,
+) -> tuple[Array, Array]:
     """Coefficients after iterative refinement in extended precision, with an error bound.
 
     The residual is taken in ``longdouble``; its rounding is bounded by that type's own epsilon,
@@ -253,7 +256,7 @@ def _bounded(
     blocks: list[_Block],
     right: NDArray[np.floating],
     flat: NDArray[np.floating],
-) -> NDArray[np.float64] | None:
+) -> Array | None:
     """An error that contains its own image, or None."""
     tiny = np.finfo(np.longdouble).eps * (len(right) + 24)
     sizes = System(rows.columns, np.abs(rows.values), rows.factor, rows.first)
@@ -261,7 +264,7 @@ def _bounded(
     excess = (np.abs(right - rows.times(flat)) + rounding).astype(np.float64)
     first = _POSITIVE + np.concatenate([np.abs(b.inverse) @ excess[b.rows] for b in blocks])
 
-    def image(error: NDArray[np.float64]) -> NDArray[np.float64]:
+    def image(error: Array) -> Array:
         return np.concatenate([b.defect @ error[b.window] for b in blocks])
 
     error = first
@@ -270,9 +273,7 @@ def _bounded(
     return error if (first + image(error) <= error).all() else None
 
 
-def _inverse(
-    interpolant: Interpolant, matrix: NDArray[np.floating], durations: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _inverse(interpolant: Interpolant, matrix: NDArray[np.floating], durations: Array) -> Array:
     try:
         return np.asarray(np.linalg.inv(matrix), dtype=np.float64)
     except np.linalg.LinAlgError:
@@ -293,16 +294,16 @@ class CoefficientGradient:
         d coefficients of a joint / d that joint's free derivative.
     """
 
-    durations: NDArray[np.float64]
-    waypoints: NDArray[np.float64]
-    nodal: NDArray[np.float64]
+    durations: Array
+    waypoints: Array
+    nodal: Array
 
 
 def coefficient_gradient(
     interpolant: Interpolant,
-    waypoints: NDArray[np.float64],
-    durations: NDArray[np.float64],
-    nodal: NDArray[np.float64] | None = None,
+    waypoints: Array,
+    durations: Array,
+    nodal: Array | None = None,
 ) -> CoefficientGradient:
     """Derivatives of the coefficients by implicit differentiation of the linear system."""
     plan, pattern = layout(interpolant), _pattern(interpolant)
@@ -319,7 +320,7 @@ def coefficient_gradient(
     by_duration[b - 1, i] -= slope / durations[b - 1, None]
     by_duration[b, i] += slope / durations[b, None]
     # The right-hand side of a given derivative holds hʳ.
-    i = np.flatnonzero((plan.kinds != RowKind.MATCH) & (plan.orders > 0))
+    i = np.flatnonzero((plan.kinds != ConditionKind.MATCH) & (plan.orders > 0))
     k = pattern.segment[i]
     by_duration[k, i] += (plan.orders[i] * rows.factor[i] / durations[k])[:, None] * values[i]
     one_hot_w = (plan.waypoint[None, :] == np.arange(waypoints.shape[0])[:, None]) * rows.factor

@@ -7,21 +7,29 @@ import os
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import PPoly
 
+from ..arrays import Array
 from ..errors import TrajgapError
 from . import kernel
-from .interpolant import Interpolant, RowKind
+from .condition import ConditionKind
 from .trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from .interpolant import Interpolant
 
 PERM = np.array(
     [[float(math.perm(p, r)) for r in range(kernel.MAX_COEFFICIENTS)] for p in range(10)]
 )
+"""PERM[p, r] = p!/(p − r)!: the factor of sᵖ⁻ʳ in the r-th derivative of sᵖ."""
 _THREAD_WORK = 4000
+"""Polynomials (vectors times joints) below which starting threads costs more than it saves."""
 _LONGEST = 1e30
+"""Durations, s, beyond which, or below whose reciprocal, ninth powers leave float64's range."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +44,7 @@ class Layout:
     unknowns: int
     lower: int
     upper: int
-    prescribed: NDArray[np.float64]
+    prescribed: Array
     waypoint: NDArray[np.int64]
     nodal: NDArray[np.int64]
 
@@ -48,7 +56,7 @@ def layout(interpolant: Interpolant) -> Layout:
     rows = full.rows
     n = full.segments
     column = np.full((n, kernel.MAX_COEFFICIENTS), -1, dtype=np.int64)
-    given = {(r.at, r.order) for r in rows if r.kind == RowKind.RIGHT_VALUE}
+    given = {(r.at, r.order) for r in rows if r.kind == ConditionKind.RIGHT_VALUE}
     count = 0
     for k, d in enumerate(full.degrees):
         for p in range(d + 1):
@@ -56,11 +64,11 @@ def layout(interpolant: Interpolant) -> Layout:
                 column[k, p] = count
                 count += 1
     lower = upper = 0
-    equations = [r for r in rows if r.kind != RowKind.RIGHT_VALUE]
+    equations = [r for r in rows if r.kind != ConditionKind.RIGHT_VALUE]
     for e, row in enumerate(equations):
         k = row.at - 1
         touched = [column[k, p] for p in range(row.order, full.degrees[k] + 1)]
-        if row.kind == RowKind.MATCH and row.order <= full.degrees[row.at]:
+        if row.kind == ConditionKind.MATCH and row.order <= full.degrees[row.at]:
             touched.append(column[row.at, row.order])
         used = [c for c in touched if c >= 0]
         lower = max([lower, *(e - c for c in used)])
@@ -78,25 +86,23 @@ def layout(interpolant: Interpolant) -> Layout:
         lower=lower,
         upper=upper,
         prescribed=np.array(
-            [0.0 if r.kind == RowKind.MATCH else values[r.at].get(r.order, 0.0) for r in rows]
+            [0.0 if r.kind == ConditionKind.MATCH else values[r.at].get(r.order, 0.0) for r in rows]
         ),
         waypoint=np.array(
             [
-                waypoint.get(r.at, -1) if r.order == 0 and r.kind != RowKind.MATCH else -1
+                waypoint.get(r.at, -1) if r.order == 0 and r.kind != ConditionKind.MATCH else -1
                 for r in rows
             ],
             dtype=np.int64,
         ),
         nodal=np.array(
-            [free.get((r.at, r.order), -1) if r.kind != RowKind.MATCH else -1 for r in rows],
+            [free.get((r.at, r.order), -1) if r.kind != ConditionKind.MATCH else -1 for r in rows],
             dtype=np.int64,
         ),
     )
 
 
-def right_hand_sides(
-    interpolant: Interpolant, waypoints: NDArray[np.float64], nodal: NDArray[np.float64] | None
-) -> NDArray[np.float64]:
+def right_hand_sides(interpolant: Interpolant, waypoints: Array, nodal: Array | None) -> Array:
     """Values of the rows, shape (rows, joints): way-points, prescribed and free derivatives."""
     plan = layout(interpolant)
     joints = waypoints.shape[1]
@@ -122,10 +128,10 @@ def right_hand_sides(
 
 def batch_coefficients(
     interpolant: Interpolant,
-    waypoints: NDArray[np.float64],
-    durations: NDArray[np.float64],
-    nodal: NDArray[np.float64] | None = None,
-) -> NDArray[np.float64]:
+    waypoints: Array,
+    durations: Array,
+    nodal: Array | None = None,
+) -> Array:
     """`coefficients` of many duration vectors, shape (vectors, segments, 10, joints).
 
     Not finite where the system is singular.
@@ -155,23 +161,23 @@ def batch_coefficients(
 
 def coefficients(
     interpolant: Interpolant,
-    waypoints: NDArray[np.float64],
-    durations: NDArray[np.float64],
-    nodal: NDArray[np.float64] | None = None,
-) -> NDArray[np.float64]:
+    waypoints: Array,
+    durations: Array,
+    nodal: Array | None = None,
+) -> Array:
     """Coefficients in the segments' own parameter s in [0, 1], shape (segments, 10, joints)."""
-    out: NDArray[np.float64] = batch_coefficients(interpolant, waypoints, durations[None], nodal)[0]
+    out: Array = batch_coefficients(interpolant, waypoints, durations[None], nodal)[0]
     if not np.isfinite(out).all():
         raise singular(interpolant, durations)
     return out
 
 
-def singular(interpolant: Interpolant, durations: NDArray[np.float64]) -> TrajgapError:
+def singular(interpolant: Interpolant, durations: Array) -> TrajgapError:
     """The error of a system that these durations make singular."""
     return TrajgapError(f"interpolant {interpolant.name}: singular for durations {durations} s")
 
 
-def as_durations(durations: ArrayLike, segments: int) -> NDArray[np.float64]:
+def as_durations(durations: ArrayLike, segments: int) -> Array:
     """Duration vector as a clean float64 array, or a clear refusal.
 
     Raises
@@ -197,44 +203,7 @@ def as_durations(durations: ArrayLike, segments: int) -> NDArray[np.float64]:
     return h
 
 
-def fit(
-    interpolant: Interpolant,
-    waypoints: ArrayLike,
-    durations: ArrayLike,
-    nodal: ArrayLike | None = None,
-) -> Trajectory:
-    """The trajectory that the declaration, the way-points and the durations determine.
-
-    Parameters
-    ----------
-    interpolant : Interpolant
-        Declaration.
-    waypoints : array_like, shape (way-points, joints)
-        Joint angles, rad.
-    durations : array_like, shape (segments,)
-        Segment durations, s.
-    nodal : array_like, shape (free, joints), optional
-        Values of ``interpolant.free_derivatives`` where the declaration leaves some open.
-
-    Returns
-    -------
-    Trajectory
-
-    Raises
-    ------
-    TrajgapError
-        If shapes disagree, a duration is not positive, or the system is singular.
-    """
-    q = np.asarray(waypoints, dtype=np.float64)
-    h = as_durations(durations, interpolant.segments)
-    extra = None if nodal is None else np.asarray(nodal, dtype=np.float64)
-    scaled = coefficients(interpolant, q, h, extra)
-    return trajectory_from_scaled(scaled, interpolant.degrees, h)
-
-
-def trajectory_from_scaled(
-    scaled: NDArray[np.float64], degrees: tuple[int, ...], durations: NDArray[np.float64]
-) -> Trajectory:
+def trajectory_from_scaled(scaled: Array, degrees: tuple[int, ...], durations: Array) -> Trajectory:
     """Trajectory over scipy's ``PPoly`` from coefficients in s, shape (segments, power, joints)."""
     top = max(degrees)
     powers = np.arange(top + 1)
@@ -246,25 +215,25 @@ def trajectory_from_scaled(
 
 def motion_values(
     interpolant: Interpolant,
-    waypoints: NDArray[np.float64],
-    nodal: NDArray[np.float64] | None = None,
-) -> NDArray[np.float64]:
+    waypoints: Array,
+    nodal: Array | None = None,
+) -> Array:
     """`right_hand_sides` with positions counted from the first way-point, for `batch_peaks`.
 
     Derivatives do not depend on that shift; a joint that stands still gets exact zeros by it.
     """
     plan = layout(interpolant)
     values = right_hand_sides(interpolant, waypoints, nodal)
-    values[(plan.orders == 0) & (plan.kinds != RowKind.MATCH)] -= waypoints[0]
+    values[(plan.orders == 0) & (plan.kinds != ConditionKind.MATCH)] -= waypoints[0]
     return values
 
 
 def batch_peaks(
     interpolant: Interpolant,
-    values: NDArray[np.float64],
-    durations: NDArray[np.float64],
+    values: Array,
+    durations: Array,
     wanted: NDArray[np.bool_],
-) -> NDArray[np.float64]:
+) -> Array:
     """True peaks of |v|, |a|, |j| for a batch of duration vectors.
 
     Parameters
@@ -282,12 +251,7 @@ def batch_peaks(
     ndarray, shape (batch, joints, 3)
         rad/s, rad/s², rad/s³; the same bits whatever the order, the size or the threads.
     """
-    plan = layout(interpolant)
-    h = np.ascontiguousarray(durations, dtype=np.float64)
-    if h.ndim != 2 or h.shape[1] != interpolant.segments:
-        raise TrajgapError(
-            f"durations: a batch has shape (vectors, {interpolant.segments}), got {h.shape}"
-        )
+    plan, h = layout(interpolant), durations
     peaks = np.empty((h.shape[0], values.shape[1], 3))
 
     def run(part: slice) -> None:

@@ -1,4 +1,4 @@
-"""From a declared family to its instances, posed for the two procedures that a claim compares."""
+"""From a declared design to its instances, posed for the two procedures that a claim compares."""
 
 from __future__ import annotations
 
@@ -7,30 +7,33 @@ from typing import TYPE_CHECKING, Any, cast
 
 from ....heuristics import Algorithm
 from ....problem import TrajgapError
-from ....problem.cases import Claim, FamilyBlock, ImprovementClaim, family_waypoints
-from .result import FamilyResult, Procedure
+from ....problem.cases import Claim, ImprovementClaim, InstancesBlock, instance_waypoints
+from ...documents import Procedure
+from .result import InstancesResult
 from .study import Task, examine
 
 if TYPE_CHECKING:
     from ..study import Study
 
 
-def _claimed(study: Study, block: FamilyBlock) -> ImprovementClaim:
+def _claimed(study: Study, block: InstancesBlock) -> ImprovementClaim:
     return cast(ImprovementClaim, study.case.claim(block.claim))
 
 
-def _sides(study: Study, block: FamilyBlock) -> tuple[Claim, Claim]:
+def _sides(study: Study, block: InstancesBlock) -> tuple[Claim, Claim]:
     claim = _claimed(study, block)
     return study.case.claim(claim.slower), study.case.claim(claim.faster)
 
 
 def _procedure(study: Study, side: Claim) -> Procedure:
     # A case file names both; the problem may be its only one.
-    return Procedure(side.problem or study.case.problems[0].id, cast(str, side.algorithm))
+    return Procedure(
+        problem=side.problem or study.case.problems[0].id, algorithm=cast(str, side.algorithm)
+    )
 
 
-def readings_of(study: Study, block: FamilyBlock) -> tuple[str, ...]:
-    """Selected readings of a family; none if an algorithm is not implemented."""
+def readings_of(study: Study, block: InstancesBlock) -> tuple[str, ...]:
+    """Selected readings of a design; none if an algorithm is not implemented."""
     sides = [_procedure(study, side) for side in _sides(study, block)]
     if any(study.algorithm(side.algorithm) is None for side in sides):
         return ()
@@ -38,13 +41,13 @@ def readings_of(study: Study, block: FamilyBlock) -> tuple[str, ...]:
     return tuple(r for r in wanted if all((side.problem, r) in study.selected for side in sides))
 
 
-def printed_reduction(study: Study, block: FamilyBlock) -> tuple[float, float] | None:
+def printed_reduction(study: Study, block: InstancesBlock) -> tuple[float, float] | None:
     """Smallest and largest reduction that the printed digits allow, as shares of the slower total.
 
     Parameters
     ----------
     study : Study
-    block : FamilyBlock
+    block : InstancesBlock
 
     Returns
     -------
@@ -63,21 +66,21 @@ def printed_reduction(study: Study, block: FamilyBlock) -> tuple[float, float] |
 
 
 def examined(
-    study: Study, block: FamilyBlock, progress: Callable[[str], None] | None = None
-) -> FamilyResult:
-    """Draw a family, pose it under its readings, and examine it.
+    study: Study, block: InstancesBlock, progress: Callable[[str], None] | None = None
+) -> InstancesResult:
+    """Draw instances, pose them under their readings, and examine them.
 
     Parameters
     ----------
     study : Study
-    block : FamilyBlock
+    block : InstancesBlock
         For which `readings_of` names some reading.
     progress : callable, optional
         Called with a few words after each instance.
 
     Returns
     -------
-    FamilyResult
+    InstancesResult
 
     Raises
     ------
@@ -92,9 +95,9 @@ def examined(
     readings = readings_of(study, block)
     chain = case.chain()
     assert chain is not None
-    count = case.posing(faster.problem, readings[0]).waypoints.number
+    count = case.statement(faster.problem, readings[0]).waypoints.number
     try:
-        drawn = family_waypoints(block, chain, case.robot.joints, count)
+        drawn = instance_waypoints(block, chain, case.robot.joints, count)
     except TrajgapError as error:
         raise TrajgapError(f"{case.file}: families.{block.id}: {error}") from None
     tasks = [
@@ -103,8 +106,8 @@ def examined(
             index=index,
             waypoints=points,
             readings=readings,
-            slower=tuple(case.posing(slower.problem, r).problem_at(points) for r in readings),
-            faster=tuple(case.posing(faster.problem, r).problem_at(points) for r in readings),
+            slower=tuple(case.statement(slower.problem, r).problem_at(points) for r in readings),
+            faster=tuple(case.statement(faster.problem, r).problem_at(points) for r in readings),
             algorithms=(first, last),
             runs=block.runs,
             objectives=block.objectives,
@@ -112,7 +115,7 @@ def examined(
         for step, instances in zip(block.lengths, drawn, strict=True)
         for index, points in enumerate(instances)
     ]
-    return FamilyResult(
+    return InstancesResult(
         block=block,
         slower=slower,
         faster=faster,

@@ -1,26 +1,24 @@
-"""A relative claim on a family of instances: optima and runs of the two procedures it compares."""
+"""A relative claim on instances: optima and runs of the two procedures it compares."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from concurrent.futures import ProcessPoolExecutor
-from contextlib import ExitStack
+from contextlib import ExitStack, closing
 from dataclasses import dataclass, replace
-from multiprocessing import get_context
 from typing import Any
 
 import numpy as np
 
-from ....heuristics import Algorithm, run
+from ....heuristics import Algorithm, in_processes, run
 from ....nlp import Solution, solve
-from ....problem import TOLERANCE, Coupling, Interpolant, Problem, check
-from ....problem.curves import polynomial_form
+from ....problem import TOLERANCE, Coupling, Problem, check
 from ...gaps import SETTLED, settled_at
 from .result import Array, Optimum, Sample
 
 STARTS = 2
-"""Starts of every solve; one where the segments do not depend on each other."""
+"""Starts of every solve, for there are hundreds; one where the segments are independent."""
 _ROUTES = 3
+"""The slower procedure, its algorithm on the faster one's curve, and the faster procedure."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,10 +63,7 @@ def examine(
     with ExitStack() as stack:
         results: Iterable[tuple[Sample, ...]] = map(_examined, todo)
         if workers > 1:
-            # Spawned, because a fork copies the locks of the compiled libraries.
-            context = get_context("spawn")
-            pool = stack.enter_context(ProcessPoolExecutor(workers, mp_context=context))
-            results = pool.map(_examined, todo)
+            results = stack.enter_context(closing(in_processes(_examined, todo, workers)))
         for done, samples in enumerate(results, start=1):
             found += samples
             if progress is not None:
@@ -77,6 +72,7 @@ def examine(
 
 
 Kept = dict[tuple[object, ...], Any]
+"""What was computed already, by what tells one question from another."""
 
 
 def _examined(task: Task) -> tuple[Sample, ...]:
@@ -113,8 +109,8 @@ def _examined(task: Task) -> tuple[Sample, ...]:
 
 def _fast_form(problem: Problem) -> Problem:
     """The problem with shared durations, its curve in the form that is evaluated fastest."""
-    curve = polynomial_form(problem.interpolant)
-    return replace(problem, interpolant=curve, coupling=Coupling.SHARED)
+    curve = problem.curve.polynomial_form()
+    return replace(problem, curve=curve, coupling=Coupling.SHARED)
 
 
 def _key(problem: Problem) -> tuple[object, ...]:
@@ -128,7 +124,7 @@ def _key(problem: Problem) -> tuple[object, ...]:
         problem.duration_upper,
         problem.waypoints,
     )
-    return (problem.interpolant, *(array.tobytes() for array in arrays))
+    return (problem.curve, *(array.tobytes() for array in arrays))
 
 
 def _ran(
@@ -149,15 +145,14 @@ def _ran(
 def _optimum(kept: Kept, problem: Problem) -> Optimum:
     key = _key(problem)
     if key not in kept:
-        alone = isinstance(problem.interpolant, Interpolant) and set(
-            problem.interpolant.continuity
-        ) <= {0}
-        kept[key] = _told(solve(problem, starts=1 if alone else STARTS))
+        polynomials = problem.curve.piecewise
+        alone = polynomials is not None and set(polynomials.continuity) <= {0}
+        kept[key] = _ended(solve(problem, starts=1 if alone else STARTS))
     known: Optimum = kept[key]
     return known
 
 
-def _told(solution: Solution) -> Optimum:
+def _ended(solution: Solution) -> Optimum:
     words = f"{solution.status}" + (f" ({solution.why})" if solution.why else "")
     total = solution.total_time if solution.infimum is None else solution.infimum
     return Optimum(total, solution.evidence, words)

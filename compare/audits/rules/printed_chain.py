@@ -10,11 +10,10 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from ....nlp import Evidence
 from ....problem import Measured, to_si
-from ....problem.cases import Cartesian, Posing
+from ....problem.cases import Cartesian, Statement
 from ....problem.robots import Chain, Convention, DhTable, JointKind, Proximity, proximity
-from ..finding import Basis, ClaimVerdict, Finding, Scope, Severity
+from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..study import Study
 
 _NEGLIGIBLE = 1e-9
@@ -61,16 +60,16 @@ def judge_kinematics(study: Study) -> Iterator[Finding]:
         yield _not_checkable(None, "Positions of the end are printed, but no table of the robot.")
         return
     for reading in study.readings:
-        posed: dict[object, tuple[str, Posing]] = {}
+        posed: dict[object, tuple[str, Statement]] = {}
         for pid, rid in study.pairs:
-            posing = case.posing(pid, rid)
+            posing = case.statement(pid, rid)
             if rid == reading:
                 posed.setdefault((posing.waypoints.points, posing.units.position), (pid, posing))
         for pid, posing in posed.values():
             yield _compared(study, dh, posing, reading, pid if len(posed) > 1 else None)
 
 
-def _compared(study: Study, dh: DhTable, posing: Posing, rid: str, pid: str | None) -> Finding:
+def _compared(study: Study, dh: DhTable, posing: Statement, rid: str, pid: str | None) -> Finding:
     printed = study.case.chain()
     assert printed is not None
     joints = _joints(study, posing)
@@ -92,10 +91,10 @@ def _compared(study: Study, dh: DhTable, posing: Posing, rid: str, pid: str | No
                 tuple(c) for n in range(len(dh.twisted)) for c in combinations(dh.twisted, n + 1)
             ]
         matches.append(_match(study, dh, convention, joints, places, flips))
-    return _finding(study, posing, rid, pid, [label for _, label in named], places, matches)
+    return _judged(study, posing, rid, pid, [label for _, label in named], places, matches)
 
 
-def _joints(study: Study, posing: Posing) -> Joints:
+def _joints(study: Study, posing: Statement) -> Joints:
     """Angles of every printed joint: those of the problems, and those in columns of their own."""
     rows = posing.waypoints.points
     found = {
@@ -108,7 +107,7 @@ def _joints(study: Study, posing: Posing) -> Joints:
     return found
 
 
-def _places(study: Study, posing: Posing) -> list[tuple[int | None, Cartesian]]:
+def _places(study: Study, posing: Statement) -> list[tuple[int | None, Cartesian]]:
     """Printed positions with the index of their way-point; None where there is none."""
     labels, count = posing.waypoints.labels, len(posing.waypoints.points)
     places = study.case.cartesian
@@ -173,9 +172,9 @@ def _misses(near: tuple[Proximity, ...], slack: tuple[float, ...]) -> bool:
     return any(n.lower > s for n, s in zip(near, slack, strict=True))
 
 
-def _finding(
+def _judged(
     study: Study,
-    posing: Posing,
+    posing: Statement,
     rid: str,
     pid: str | None,
     printed: list[str],
@@ -227,15 +226,11 @@ def _finding(
         rule="TG601",
         severity=severity,
         verdict=verdict,
-        scope=Scope.ALL,
-        evidence=Evidence.NONE,
         basis=Basis.KINEMATICS,
-        claim=None,
         problem=pid,
         reading=rid,
         printed="; ".join(dict.fromkeys(place.where for _, place in places)),
         computed=f"farthest position, as near as it gets: {worst}",
-        gap=None,
         message=message,
     )
 
@@ -265,18 +260,4 @@ def _up(metres: float) -> str:
 
 
 def _not_checkable(rid: str | None, message: str) -> Finding:
-    return Finding(
-        rule="TG601",
-        severity=Severity.INFO,
-        verdict=ClaimVerdict.NOT_CHECKABLE,
-        scope=Scope.NO,
-        evidence=Evidence.NONE,
-        basis=Basis.KINEMATICS,
-        claim=None,
-        problem=None,
-        reading=rid,
-        printed=None,
-        computed=None,
-        gap=None,
-        message=message,
-    )
+    return Finding(rule="TG601", basis=Basis.KINEMATICS, reading=rid, message=message)

@@ -1,0 +1,144 @@
+import numpy as np
+import pytest
+from trajgap.compare.audits.judging import judge, weigh
+from trajgap.compare.documents import (
+    RULES,
+    Basis,
+    ClaimVerdict,
+    Finding,
+    GapKind,
+    Reference,
+    Scope,
+    Severity,
+)
+from trajgap.compare.gaps.optimality_gap import gap
+from trajgap.compare.gaps.statistics import settled_at, share_of_luck, share_of_pairs, spread
+from trajgap.nlp import Evidence, solve
+from trajgap.problem import TrajgapError, load_case
+
+
+def finding(verdict: ClaimVerdict, reading: str | None, **change: object) -> Finding:
+    said = {"rule": "TG101", "basis": Basis.DIGITS, "claim": "c", "message": "m"}
+    return Finding(verdict=verdict, reading=reading, **(said | change))
+
+
+def test_a_gap_is_an_interval_against_both_ends_of_the_reference() -> None:
+    distance = gap((3.5, 3.6), Reference(upper=3.2, lower=3.0))
+    assert distance.lowest == pytest.approx(3.5 / 3.2 - 1)
+    assert distance.highest == pytest.approx(3.6 / 3.0 - 1)
+    assert distance.reference.evidence is Evidence.CERTIFIED
+
+
+def test_a_time_below_the_reference_keeps_its_sign() -> None:
+    distance = gap(3.0, 3.2)
+    assert distance.lowest == distance.highest == pytest.approx(3.0 / 3.2 - 1)
+    assert "-6.25 %" in str(distance)
+
+
+def test_an_infeasible_time_has_a_difference_and_no_optimality_gap() -> None:
+    assert gap(3.0, 3.2, feasible=False).kind is GapKind.REPORTED
+    assert gap(3.0, 3.2).kind is GapKind.OPTIMALITY
+
+
+def test_a_solution_is_a_reference() -> None:
+    solution = solve(load_case("irb460-pso-353").problem("limit-80"))
+    assert gap(solution.total_time, solution).lowest == 0
+    assert gap(solution.total_time, solution).reference.evidence is Evidence.BEST_KNOWN
+
+
+def test_a_distance_of_many_times_the_reference_is_a_factor() -> None:
+    assert gap(5.0, 0.1).percent == "50 times the reference"
+
+
+@pytest.mark.parametrize("reference", [0.0, -1.0, float("inf"), float("nan")])
+def test_a_reference_must_be_a_positive_finite_time(reference: float) -> None:
+    with pytest.raises(TrajgapError, match="is not a positive finite time"):
+        gap(1.0, reference)
+
+
+S, R, X, N = (
+    ClaimVerdict.SUPPORTED,
+    ClaimVerdict.REFUTED,
+    ClaimVerdict.INCONSISTENT,
+    ClaimVerdict.NOT_CHECKABLE,
+)
+
+
+@pytest.mark.parametrize(
+    ("found", "verdict", "scope"),
+    [
+        ([(S, "a"), (S, "b")], S, Scope.ALL),
+        ([(R, "a"), (R, "b")], R, Scope.ALL),
+        ([(R, "a"), (S, "b")], S, Scope.SOME),
+        ([(R, "a"), (N, "b")], R, Scope.SOME),
+        ([(S, "a")], S, Scope.SOME),
+        ([(N, "a"), (N, "b")], N, Scope.NO),
+        ([], N, Scope.NO),
+        ([(S, None), (R, "a"), (R, "b")], R, Scope.ALL),
+        ([(S, None), (X, None)], X, Scope.ALL),
+        ([(S, None)], S, Scope.ALL),
+    ],
+)
+def test_a_claim_is_judged_reading_by_reading(found, verdict, scope) -> None:
+    findings = [finding(v, reading) for v, reading in found]
+    judged = judge("c", findings, ["a", "b"])
+    assert (judged.verdict, judged.scope) == (verdict, scope)
+
+
+def test_findings_about_other_claims_or_beside_the_point_do_not_decide() -> None:
+    findings = [finding(R, None, claim="other"), finding(R, None, decides=False), finding(S, None)]
+    assert judge("c", findings, ["a"]).verdict is S
+
+
+def test_a_claim_that_nothing_decides_names_what_stands_beside_it() -> None:
+    beside = finding(S, None, decides=False, rule="TG403", message="replays")
+    judged = judge("c", [beside], ["a"])
+    assert (judged.verdict, judged.why) == (N, "TG403, which decides nothing: replays")
+    assert judge("c", [], ["a"]).why == "no rule applies to this claim"
+
+
+@pytest.mark.parametrize(
+    ("found", "errors"),
+    [
+        ([(R, "a"), (R, "b")], 2),
+        ([(R, "a"), (X, "b")], 2),
+        ([(R, "a"), (N, "b")], 0),
+        ([(R, "a"), (S, "b")], 0),
+        ([(R, "a")], 0),
+        ([(R, None)], 1),
+        ([(R, None), (S, "a")], 1),
+    ],
+)
+def test_a_severity_fits_the_verdict_on_the_claim(found, errors) -> None:
+    findings = [
+        finding(v, reading, severity=Severity.ERROR if v in (R, X) else Severity.INFO)
+        for v, reading in found
+    ]
+    weighed = weigh(findings, [judge("c", findings, ["a", "b"])])
+    assert sum(f.severity is Severity.ERROR for f in weighed) == errors
+    softened = sum(f.severity is Severity.WARNING for f in weighed)
+    assert errors + softened == sum(v in (R, X) for v, _ in found)
+
+
+def test_rule_ids_are_unique() -> None:
+    ids = [rule.id for rule in RULES]
+    assert len(ids) == len(set(ids))
+
+
+def test_shares_count_pairs_and_never_a_run_against_itself() -> None:
+    slower, faster = np.array([2.0, 4.0]), np.array([1.0, 3.0])
+    assert share_of_pairs(slower, faster, 0.25) == 3 / 4
+    assert share_of_luck(slower, 0.5) == 1 / 2
+    assert np.isnan(share_of_pairs(np.array([np.inf]), faster, 0.1))
+
+
+def test_a_spread_counts_failures_apart() -> None:
+    found = spread(np.array([np.inf, 3.0, 1.0, 2.0]))
+    assert (found.runs, found.failed, found.lowest, found.median, found.highest) == (4, 1, 1, 2, 3)
+    assert "1 of 4 without answer" in str(found)
+    assert "no feasible answer" in str(spread(np.array([np.inf])))
+
+
+def test_a_run_settles_when_it_stays_near_its_end() -> None:
+    assert settled_at(np.array([9.0, 5.0, 1.05, 1.0, 1.0]), 0.1) == 2
+    assert settled_at(np.array([np.inf, np.inf]), 0.1) == 2

@@ -1,0 +1,65 @@
+"""What a page does with many readings, with none posed, and with sections that hold nothing."""
+
+import re
+from dataclasses import replace
+
+from trajgap.compare.audits.case_audit import CaseAudit, audit
+from trajgap.compare.audits.study import Study
+from trajgap.compare.documents import Step, Waterfall, Why
+from trajgap.compare.pages.blocks import Cell, Grid, Page, Prose, Section
+from trajgap.compare.pages.markdown_text import markdown
+from trajgap.compare.pages.numbers import where_time_goes
+from trajgap.compare.pages.writer import _TEMPLATES, _environment, case_page
+from trajgap.nlp import Evidence
+from trajgap.problem import load_case
+
+
+def test_many_readings_share_a_table_and_few_have_pictures() -> None:
+    case = load_case("irb460-pso-353")
+    steps = (
+        Step(name="published", time=1.9, low=1.8, high=2.0, note="printed"),
+        Step(name="optimum", time=1.7, evidence=Evidence.BEST_KNOWN),
+        Step.missing("retimed", "no acceleration is limited"),
+    )
+    first = Waterfall(problem="limit-80", reading=case.default_reading.id, claim=None, steps=steps)
+    one = CaseAudit(case, Study(case, seeds=2), (), (), (first,))
+    for others in (3, 5):
+        more = [first.model_copy(update={"reading": f"reading-{k}"}) for k in range(others)]
+        section = where_time_goes(replace(one, waterfalls=(first, *more)))
+        drawn = Page("p", "t", (section,)).pictures
+        tables = [b for b in section.blocks if isinstance(b, Grid) and b.columns[0] == "reading"]
+        assert len(drawn) == (4 if others == 3 else 1)
+        assert [len(t.rows) for t in tables] == ([] if others == 3 else [5])
+    known = [s for s in first.steps if not isinstance(s.time, Why)]
+    assert tables[0].columns == ("reading", *(s.name for s in known))
+    for cell, step in zip(tables[0].rows[0][1:], known, strict=True):
+        assert cell.text.startswith(f"{step.time:.4f} s")
+        assert str(step.evidence) in (*cell.text.split("\n"), "none")
+
+
+def test_a_section_that_holds_nothing_is_left_out() -> None:
+    page = Page("p", "t", (Section("a", "A", ()), Section("b", "B", (Prose("x"),))))
+    assert [s.id for s in page.filled.sections] == ["b"]
+
+
+def test_a_case_without_waypoints_says_once_what_is_not_computed() -> None:
+    whale = load_case("z1-woa-bspline")
+    alone = replace(whale, document=whale.document.model_copy(update={"families": ()}))
+    (one,) = audit(alone, seeds=2).cases
+    page = case_page(one)
+    ids = [s.id for s in page.sections]
+    assert "not-computed" in ids
+    assert not {"waterfall", "optima", "sensitivities", "motions", "landscapes"} & set(ids)
+    text = markdown(page)
+    assert text.count("way-points are not printed (the text gives their number, 8") == 1
+    assert "\nNone." not in text
+
+
+def test_long_tables_of_readings_scroll_in_a_box_and_print_whole() -> None:
+    grid = Grid(("problem", "reading"), ((Cell("p"), Cell("r")),) * 13)
+    page = Page("p", "t", (Section("a", "A", (grid, replace(grid, rows=grid.rows[:12]))),))
+    environment = _environment()
+    html_page = environment.get_template("case.html").render(page=page, style="")
+    assert re.findall(r'<div class="(scroll[^"]*)"', html_page) == ["scroll tall", "scroll"]
+    style = (_TEMPLATES / "style.css").read_text(encoding="utf-8")
+    assert "max-height: none" in style.split("@media print")[1]
