@@ -30,9 +30,9 @@ HOPELESS = 10.0
 
 def _scaled(problem: Problem, h: Array) -> Array:
     """Coefficients of all vectors, shape (vectors, pieces, powers, joints); NaN without a curve."""
-    curve, polynomials = problem.curve, problem.curve.piecewise
-    if polynomials is not None:
-        return batch_coefficients(polynomials, problem.waypoints, h)
+    curve = problem.curve
+    if curve.piecewise is not None:
+        return batch_coefficients(curve.piecewise, problem.waypoints, h)
     found: list[Array | None] = []
     for one in h:
         try:
