@@ -42,11 +42,11 @@ class CaseError(TrajgapError):
         Path of the field inside it, such as ``waypoints.joint_rows[2]``; empty if the file as a
         whole is at fault.
     reason : str
-        What is wrong, and after a semicolon how to mend it.
+        What is wrong, and after a semicolon how to fix it.
 
     Notes
     -----
-    The message is always one line, ``FILE: field: what is wrong; mend``.
+    The message is always one line, ``FILE: field: what is wrong; how to fix it``.
     """
 
     def __init__(self, file: str, field: str, reason: str) -> None:

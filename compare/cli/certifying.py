@@ -9,6 +9,7 @@ import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from importlib.resources import files
 from pathlib import Path
 from types import FrameType
 from typing import Any
@@ -24,7 +25,14 @@ from ...nlp.proofs import (
     state_document,
     unlike,
 )
-from ...problem import Case, CaseError, Coupling, TrajgapError, check_regular
+from ...problem import (
+    Case,
+    CaseError,
+    Coupling,
+    TrajgapError,
+    check_regular,
+    published_ids,
+)
 from ...verify import (
     CERTIFICATE_FORMAT,
     OLD_FORMATS,
@@ -56,6 +64,8 @@ from .output import (
     say,
 )
 
+_PUBLISHED = "trajgap.problem.published"
+"""Package that holds the published cases as data."""
 _LONGEST = 150
 """Characters of a file's name, its ending apart: most file systems take 255 bytes."""
 CERTIFICATE_FOLDER = Path("trajgap-certificates")
@@ -180,9 +190,11 @@ def _stated(case: Case, one: Posed, coupling: Coupling) -> Iterator[Question]:
 
 
 def _hash(case: Case) -> str | None:
-    """SHA-256 of a case file; None for one that is no file of its own."""
+    """SHA-256 of a case file; None if it cannot be read any more."""
+    published = case.file in published_ids()
+    path = files(_PUBLISHED) / f"{case.file}.toml" if published else Path(case.file)
     try:
-        return hashlib.sha256(Path(case.file).read_bytes()).hexdigest()
+        return hashlib.sha256(path.read_bytes()).hexdigest()
     except OSError:
         return None
 

@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
-from pydantic import Field
-
-from .entry import Document, Entry, OrWhy
+from .entry import Count, Document, Entry, OrWhy
 from .finding import Finding, Judgement
 from .instances import ExaminedInstances
 from .side_by_side import ReadingsSummary
@@ -18,7 +14,7 @@ class AuditedCase(Entry):
 
     case: str
     title: str
-    errors: Annotated[int, Field(ge=0)]
+    errors: Count
     """How many findings have severity error."""
     findings: tuple[Finding, ...]
     verdicts: tuple[Judgement, ...]

@@ -4,16 +4,11 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
-from typing import Annotated
-
-from pydantic import Field
 
 from ...nlp import Certified, Outcome
 from ...nlp.proofs import decimal
-from .entry import Document, Entry, OrWhy, Why, known
+from .entry import Count, Document, Entry, OrWhy, Why, known
 from .vocabulary import Uncovered
-
-Nodes = Annotated[int, Field(ge=0)]
 
 
 class CertifiedResult(Entry):
@@ -32,9 +27,9 @@ class CertifiedResult(Entry):
     """Total of durations proved feasible, s; rounded up."""
     gap: OrWhy[float]
     """(upper - lower)/upper"""
-    nodes: OrWhy[Nodes]
+    nodes: OrWhy[Count]
     """Boxes visited."""
-    open_nodes: OrWhy[Nodes]
+    open_nodes: OrWhy[Count]
     """Boxes not yet proved."""
     seconds: OrWhy[float]
     lower_exact: str | None

@@ -2,16 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
-from pydantic import Field
-
 from ...problem import Coupling, Verdict
-from .entry import Document, Entry, OrLeftOut, OrWhy, Real
+from .entry import Count, Document, Entry, OrLeftOut, OrWhy, Real
 from .vocabulary import Limited, Rounding
-
-Segment = Annotated[int, Field(ge=0)]
-"""From 0."""
 
 
 class WorstPeak(Entry):
@@ -20,7 +13,7 @@ class WorstPeak(Entry):
     joint: str | None
     """Null for a duration."""
     quantity: Limited
-    segment: Segment
+    segment: Count
     time: OrWhy[float]
     """s"""
     value: Real
@@ -42,7 +35,7 @@ class BrokenPlace(Entry):
 
     joint: str | None
     quantity: Limited
-    segment: Segment
+    segment: Count
 
 
 class RoundingExhibit(Entry):

@@ -49,6 +49,9 @@ OrWhy: TypeAlias = Annotated[T | Annotated[Why, WithJsonSchema({"type": "null"})
 Real: TypeAlias = Annotated[float, _SAID, WithJsonSchema({"type": ["number", "null"]})]
 """A number that may be beyond the range of JSON, which knows no infinity: then null, and why."""
 
+Count: TypeAlias = Annotated[int, Field(ge=0)]
+"""How many, or which one, from 0."""
+
 OrLeftOut: TypeAlias = Annotated[T | None, _LEFT_OUT]
 """A value whose key is left out where there is none."""
 

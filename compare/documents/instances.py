@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
-
-from pydantic import Field
+from typing import Literal
 
 from ...nlp import Evidence
-from .entry import Entry, OrWhy
+from .entry import Count, Entry, OrWhy
 from .vocabulary import Effect
-
-Count = Annotated[int, Field(ge=0)]
 
 
 class Procedure(Entry):

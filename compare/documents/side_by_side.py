@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
-from pydantic import Field
-
 from ...nlp import Evidence
-from .entry import Entry, OrLeftOut, OrWhy, Real
+from .entry import Count, Entry, OrLeftOut, OrWhy, Real
 from .finding import Gap
 from .vocabulary import ClaimVerdict, Keeping, Limited, Scope
 
@@ -15,7 +11,7 @@ from .vocabulary import ClaimVerdict, Keeping, Limited, Scope
 class Excess(Entry):
     """Where the printed point exceeds a limit most, in one segment."""
 
-    segment: Annotated[int, Field(ge=0)]
+    segment: Count
     joint: str | None
     """Null for a duration outside its bounds."""
     quantity: Limited
@@ -31,7 +27,7 @@ class ReadingOutcome(Entry):
     claim: str | None
     """The printed durations for all joints of the problem; null if none are printed."""
     keeping: OrWhy[Keeping]
-    jumps: Annotated[int, Field(ge=0)]
+    jumps: Count
     """Jumps of velocity at the printed point."""
     excesses: tuple[Excess, ...]
     """Segments in which the printed point exceeds a limit, where `keeping` is "breaks"."""

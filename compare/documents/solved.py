@@ -3,19 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Annotated
-
-from pydantic import Field
 
 from ...nlp import Evidence, PerJointSolution, Solution, Status
 from ...nlp.optimum import Active
 from ...nlp.retiming import Retiming
 from ...problem import Coupling, Verdict
-from .entry import Document, Entry, OrLeftOut, OrWhy, Real, Why, known
+from .entry import Count, Document, Entry, OrLeftOut, OrWhy, Real, Why, known
 from .finding import UNCERTIFIED
 from .vocabulary import Limited
-
-Count = Annotated[int, Field(ge=0)]
 
 NOT_ASKED = "not asked for"
 """Why a path is not retimed, where nobody wanted it."""

@@ -89,7 +89,7 @@ def read_state(path: str | Path) -> StateFile:
     try:
         document = read_document(path)
     except Refused as error:
-        raise TrajgapError(f"{name}: {error}".replace("a certificate", "a state file")) from None
+        raise TrajgapError(f"{name}: {error}") from None
     if not isinstance(document, dict) or document.get("format") != STATE_FORMAT:
         raise TrajgapError(f"{name}: is no {STATE_FORMAT}; name a state file")
     rest = {key: value for key, value in document.items() if key != "seal"}

@@ -47,7 +47,7 @@ def load_case(source: str | Path) -> Case:
     ------
     CaseError
         If there is no such case or file, or anything in it is wrong: one line naming the file,
-        the field and the mend.
+        the field and how to fix it.
     """
     known = published_ids()
     if isinstance(source, str) and source in known:

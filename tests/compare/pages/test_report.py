@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 from support.checkout import ROOT
+from support.studies import audited
 from trajgap.compare import AuditReport, audit, write_report
 from trajgap.compare.documents import Basis, Gap, Keeping, Why
 from trajgap.compare.pages.blocks import Cell, Drawn, Grid, Page, Prose, Section, Terms, slug
@@ -315,27 +316,18 @@ def test_the_index_names_every_case_and_its_counts(folder: Path) -> None:
 
 
 def test_a_shipped_case_shows_each_joint_by_itself() -> None:
-    report = audit(_quick("puma560-mnam-pso-353"), seeds=2, reading="durations-at-least-0.3")
-    page = case_page(report.cases[0])
+    one = audited("puma560-mnam-pso-353")
+    page = case_page(one)
     names = [p.name for p in page.pictures]
     assert [n for n in names if "-joint-" in n] == [
         file_name("landscape", "six-joints", "joint", str(j)) for j in range(1, 7)
     ]
     assert file_name("motion", "six-joints", "joints", "table-2") in names
     text = markdown(page)
-    study = report.cases[0].study
     for joint in "123456":
-        total = study.optimum("six-joints", study.main_reading, joint).total_time
+        total = one.study.optimum("six-joints", one.study.main_reading, joint).total_time
         assert f"{total:.6f} s" in text
     assert "3.298 s (Table 2, row 1; Table 3, row 1)" in text
-
-
-def _quick(name: str) -> Case:
-    text = (files("trajgap.problem") / "published" / f"{name}.toml").read_text(encoding="utf-8")
-    raw = tomllib.loads(text, parse_float=Decimal)
-    for algorithm in raw["algorithms"]:
-        algorithm["settings"]["iterations"] = 3
-    return check_case(raw, name)
 
 
 # --- the same every time --------------------------------------------------------------------------

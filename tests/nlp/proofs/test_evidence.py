@@ -21,7 +21,6 @@ from trajgap.nlp import (
     Evidence,
     ExactProblem,
     Interval,
-    Subject,
     certificate,
     certify,
     estimate_any_curve,
@@ -43,6 +42,7 @@ from trajgap.problem import (
     rest_to_rest,
     three_five_three,
 )
+from trajgap.verify import Subject
 
 evidence_module = import_module("trajgap.nlp.proofs.evidence")
 waterfall_module = import_module("trajgap.compare.audits.waterfall")
