@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterator
 from decimal import Decimal
 from fractions import Fraction
 
-from trajgap.nlp.proofs.any_curve.certifier import certify_family_free
+from trajgap.nlp import certify
 from trajgap.nlp.proofs.any_curve.exact import missing
 from trajgap.nlp.proofs.document import (
     problem_document,
@@ -56,13 +56,11 @@ def nine(value: Fraction, rounding: Callable[[Fraction], int]) -> str:
     return f"{Decimal(rounding(value * 10**9)).scaleb(-9):.9f}"
 
 
-def line(
-    name: str, asked: CertifiedQuestion, exact: ExactProblem, gap: float, seconds: float
-) -> str:
+def line(asked: CertifiedQuestion, exact: ExactProblem, gap: float, seconds: float) -> str:
     """Certify, write, and prove again."""
     name = f"{asked.case}.{asked.problem}.{asked.reading}"
     path = shipped_folder() / f"{name}.any-curve.json"
-    found = certify_family_free(exact, gap=gap, seconds=seconds)
+    found = certify(exact, subject=Subject.ANY, gap=gap, seconds=seconds)
     size = write_certificate(found, path, asked)
     began = time.perf_counter()
     verdict = verify_certificate(path)
@@ -77,7 +75,7 @@ def line(
 
 def convergence(exact: ExactProblem, gap: float, seconds: float) -> str:
     """Boxes and seconds for one gap."""
-    found = certify_family_free(exact, gap=gap, seconds=seconds)
+    found = certify(exact, subject=Subject.ANY, gap=gap, seconds=seconds)
     return (
         f"| {gap:.0e} | {found.outcome} | {found.gap:.1e} | {found.nodes} | {found.seconds:.1f} |"
     )

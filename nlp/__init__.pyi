@@ -34,16 +34,16 @@ from .proofs import (
     with_certificates,
     write_certificate,
 )
-from .proofs.any_curve import FamilyFree, certify_family_free, family_free
+from .proofs.any_curve import AnyCurveEstimate, estimate_any_curve
 from .retiming import Retiming, retime, retime_joints
 
 __all__ = [
     "KKT",
     "Active",
+    "AnyCurveEstimate",
     "Certified",
     "Evidence",
     "ExactProblem",
-    "FamilyFree",
     "Form",
     "Formulation",
     "Interval",
@@ -58,9 +58,8 @@ __all__ = [
     "build",
     "certificate",
     "certify",
-    "certify_family_free",
+    "estimate_any_curve",
     "exact_problem",
-    "family_free",
     "kkt",
     "printed_problem",
     "proved",

@@ -13,11 +13,7 @@ from .arrays import Array
 from .curves import (
     Trajectory,
     as_durations,
-    batch_peaks,
-    enclosed,
     extrema,
-    motion_values,
-    segment_of,
 )
 from .errors import CurveError, TrajgapError
 from .limits import QUANTITIES, Limits
@@ -103,6 +99,7 @@ class Jump:
 
 
 _DERIVATIVES = ("position", *QUANTITIES)
+"""Words for derivative orders 0 to 3."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -205,7 +202,7 @@ def _derivative_peaks(
             bound = max(bounds)
             limit = float(limits[j, r - 1])
             ratio = _ratio(top.value, limit, bound)
-            at = segment_of(problem.curve, h, top)
+            at = problem.curve.segment_of(h, top)
             peaks.append(Peak(label, quantity, at, top.time, top.value, limit, ratio, bound))
     return peaks
 
@@ -235,7 +232,7 @@ def _position_peaks(
             half = _half_range(low, high, limit)
             bound = float(error[:, 0, j].max())
             ratio = 1.0 + excess / half if half > 0 else _ratio(excess, 0.0, bound)
-            at = segment_of(problem.curve, h, top)
+            at = problem.curve.segment_of(h, top)
             peaks.append(
                 Peak(label, "position", at, top.time, top.value, float(limit), ratio, bound)
             )
@@ -346,7 +343,7 @@ def check(
     h = as_durations(durations, problem.segments)
     extra = None if nodal is None else np.asarray(nodal, dtype=np.float64)
     try:
-        found = enclosed(problem.curve, problem.waypoints, h, extra)
+        found = problem.curve.enclosed(problem.waypoints, h, extra)
     except CurveError as why:
         return _no_curve(problem, h, why, tolerance)
     trajectory, error = found.trajectory, found.error
@@ -499,7 +496,7 @@ def evaluate(problem: Problem, durations: ArrayLike, nodal: ArrayLike | None = N
         values, limits, wanted = _fixed_question(problem)
     else:
         values, limits, wanted = _question(problem, np.asarray(nodal, dtype=np.float64))
-    peaks = batch_peaks(problem.curve, values, h, wanted)
+    peaks = problem.curve.batch_peaks(values, h, wanted)
     with np.errstate(invalid="ignore", divide="ignore"):
         ratios = peaks / limits
     undefined = np.isnan(ratios)  # 0/0 is kept, inf/inf is not
@@ -517,7 +514,7 @@ Question = tuple[Array, Array, NDArray[np.bool_]]
 
 def _question(problem: Problem, nodal: Array | None) -> Question:
     limits = problem.limits.derivatives
-    values = motion_values(problem.curve, problem.waypoints, nodal)
+    values = problem.curve.motion_values(problem.waypoints, nodal)
     return values, limits, np.isfinite(limits)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .arrays import Array
-from .curves import Extremum, PeakGradients, value_gradients
+from .curves import Extremum, PeakGradients
 from .problem import Problem
 
 
@@ -28,4 +28,4 @@ def peak_gradients(
     PeakGradients
         By the way-points with everything else held, also parameters that are taken from chords.
     """
-    return value_gradients(problem.curve, problem.waypoints, durations, points, nodal)
+    return problem.curve.value_gradients(problem.waypoints, durations, points, nodal)

@@ -8,7 +8,7 @@ from enum import StrEnum
 import numpy as np
 
 from .arrays import Array
-from .curves import Curve, Interpolant, for_joint
+from .curves import Curve, Interpolant, as_curve
 from .errors import TrajgapError
 from .limits import Limits
 
@@ -69,7 +69,7 @@ class Problem:
             raise TrajgapError(f"waypoints: expected shape (way-points, joints), got {q.shape}")
         if not np.isfinite(q).all():
             raise TrajgapError("waypoints: every angle must be finite")
-        wanted = len(self.curve.waypoint_breaks)
+        wanted = len(as_curve(self.curve).waypoint_breaks)
         if q.shape[0] != wanted:
             raise TrajgapError(
                 f"waypoints: {self.curve.name} with {self.curve.segments} segments "
@@ -138,18 +138,19 @@ class Problem:
         TrajgapError
             If it is of another kind.
         """
-        if not isinstance(self.curve, Interpolant):
+        polynomials = self.curve.piecewise
+        if polynomials is None:
             raise TrajgapError(
                 f"curve: {self.curve.name} is no piecewise polynomial with breaks at "
                 "the way-points, which is needed here"
             )
-        return self.curve
+        return polynomials
 
     def joint(self, index: int) -> Problem:
         """The same question for one joint alone, with shared coupling."""
         return replace(
             self,
-            curve=for_joint(self.curve, self.waypoints, index),
+            curve=self.curve.for_joint(self.waypoints, index),
             waypoints=self.waypoints[:, index : index + 1],
             limits=self.limits.joint(index),
             joints=(self.joints[index],),

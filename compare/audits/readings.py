@@ -13,7 +13,6 @@ import numpy as np
 from ...nlp import Evidence
 from ...problem import QUANTITIES, Verdict, extrema, fit
 from ...problem.cases import AnyClaim
-from ...problem.curves import segment_of
 from ..gaps import Gap, gap
 from .finding import ClaimVerdict, Judgement, Scope
 from .rounding import Rounding
@@ -223,7 +222,7 @@ def _excesses(study: Study, claim: AnyClaim, pid: str, rid: str) -> tuple[Excess
         trajectory = fit(problem.curve, problem.waypoints, durations)
         over += [
             Excess(
-                segment_of(problem.curve, durations, e),
+                problem.curve.segment_of(durations, e),
                 problem.joints[j],
                 name,
                 float(abs(e.value) / limit),

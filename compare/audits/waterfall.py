@@ -7,7 +7,7 @@ from decimal import ROUND_FLOOR, Context, Decimal, localcontext
 from fractions import Fraction
 
 from ...nlp import Evidence, Solution, proved, stated_exactly
-from ...nlp.proofs.any_curve import family_free
+from ...nlp.proofs.any_curve import estimate_any_curve
 from ...nlp.retiming import retime
 from ...problem import Coupling, down, fit, up
 from ...problem.cases import AnyClaim, DurationsClaim, MaximumClaim
@@ -161,7 +161,7 @@ def _retimed(relaxed: Solution) -> Step:
 
 def _free(study: Study, pid: str, rid: str) -> Step:
     name = "any curve through the way-points"
-    answer = family_free(study.problem(pid, rid))
+    answer = estimate_any_curve(study.problem(pid, rid))
     if answer.total_time is None:
         return Step(name, None, None, None, Evidence.NONE, answer.why or "")
     note = "upper estimate" + (f"; {answer.why}" if answer.why else "")

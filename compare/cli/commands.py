@@ -18,7 +18,6 @@ from ...nlp.retiming import Retiming, retime
 from ...problem import (
     Case,
     Check,
-    ClockedTrajectory,
     Coupling,
     check,
     fit,
@@ -163,7 +162,7 @@ def _retimed(answer: Solution) -> Retiming | str:
     if answer.durations is None:
         return "no durations, so no path"
     trajectory = fit(problem.curve, problem.waypoints, answer.durations, answer.nodal)
-    if isinstance(trajectory, ClockedTrajectory):
+    if not trajectory.polynomial_in_time:
         return "time is not linear in the curve's parameter: its path is no polynomial in time"
     return retime(trajectory, problem.limits)
 

@@ -23,7 +23,9 @@ from ...problem import Array, Interpolant
 from ...problem.curves import PERM, ConditionKind, layout, right_hand_sides
 
 EPS = float(np.finfo(np.float64).eps)
+"""Spacing of float64 at 1, 2u: see the error argument above."""
 TINY = 1e-300
+"""Above all that underflow can lose in one expression: see the error argument above."""
 
 
 def raised(value: Array, roundings: int) -> Array:

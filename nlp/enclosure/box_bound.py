@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import heapq
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...problem import QUANTITIES, Array, Interpolant, Problem
+from ...problem import QUANTITIES, Array, Curve, Interpolant, Problem
 from ...problem.curves import StretchedUniformBSpline, TimedUniformBSpline
 from .balls import EPS, Ball, enclose_spline, place_basis, quotient_power, raised
 from .places import LimitRows, linear_program, rows_at
-from .uniform import centred, covered
+from .uniform import Centred, centred_stretched, centred_timed
 
 MOST_BOXES = 100
+"""Boxes after which a bisection gives up: the bound so far holds, and may not decide."""
 _NAMES = ("position", *QUANTITIES)
+"""Words for derivative orders 0 to 3."""
 
 
 @dataclass(frozen=True)
@@ -100,10 +104,14 @@ def _mean_value(problem: Problem, h: Ball, q: Ball, more: LimitRows | None) -> _
     By the durations the gradient holds over all of the box; by the way-points, in which f is
     linear for fixed durations, it is needed at the central durations only.
     """
-    curve = problem.curve
-    if not isinstance(curve, Interpolant):
-        uniform = isinstance(curve, StretchedUniformBSpline | TimedUniformBSpline)
-        return _uniform_mean_value(problem, h, q, more) if uniform else None
+    enclose = _ENCLOSURES.get(type(problem.curve))
+    return None if enclose is None else enclose(problem, h, q, more)
+
+
+def _polynomial_mean_value(
+    problem: Problem, h: Ball, q: Ball, more: LimitRows | None
+) -> _MeanValue | None:
+    curve = problem.piecewise
     still = Ball.exact(h.mid)
     at_centre = enclose_spline(curve, still, Ball.exact(q.mid))
     over_box = enclose_spline(curve, h, q)
@@ -145,21 +153,24 @@ def _mean_value(problem: Problem, h: Ball, q: Ball, more: LimitRows | None) -> _
 
 
 def _uniform_mean_value(
-    problem: Problem, h: Ball, q: Ball, more: LimitRows | None
+    centred: Callable[..., Centred],
+    highest: int,
+    problem: Problem,
+    h: Ball,
+    q: Ball,
+    more: LimitRows | None,
 ) -> _MeanValue | None:
-    curve = problem.curve
-    assert isinstance(curve, StretchedUniformBSpline | TimedUniformBSpline)
     rows = rows_at(replace(problem, waypoints=q.mid), h.mid)
     rows = rows if more is None else rows + more
     order = np.array([e.order for e in rows.points], dtype=np.int64)
-    rows = rows.pick(np.flatnonzero(covered(curve, order)))
+    rows = rows.pick(np.flatnonzero((order >= 1) & (order <= highest)))
     if not rows.points:
         return None
     joint = np.array([e.joint for e in rows.points])
     segment = np.array([e.segment for e in rows.points])
     order = np.array([e.order for e in rows.points])
     place = np.array([e.s for e in rows.points])
-    form = centred(curve, joint, segment, order, place, h, q)
+    form = centred(len(q.mid), joint, segment, order, place, h, q)
     return _MeanValue(
         rows,
         joint,
@@ -170,6 +181,17 @@ def _uniform_mean_value(
         h.rad,
         q.rad,
     )
+
+
+_ENCLOSURES: dict[
+    type[Curve], Callable[[Problem, Ball, Ball, LimitRows | None], _MeanValue | None]
+] = {
+    Interpolant: _polynomial_mean_value,
+    StretchedUniformBSpline: partial(_uniform_mean_value, centred_stretched, 3),
+    TimedUniformBSpline: partial(_uniform_mean_value, centred_timed, 2),
+}
+"""Kinds of curve whose derivatives are enclosed over a box, with the highest order that is; of any
+other kind only the mean speed is known."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,6 +11,7 @@ from scipy.optimize import linprog
 from ...problem import Array, Extremum, Problem, extrema, fit
 
 _MOST_PLACES = 100
+"""Rows of one linear program: the largest ratios come first, and few are active."""
 
 
 @dataclass(frozen=True, eq=False)

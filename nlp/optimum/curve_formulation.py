@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
 import casadi as ca
 import numpy as np
 
-from ...problem import Array, ClampedBSpline, Curve, Problem
+from ...problem import Array, Curve, Problem
 from ...problem.curves import (
     MAX_COEFFICIENTS,
-    end_conditions,
-    fractions_of,
     roots_in_unit,
-    smooth_order,
 )
 from .curve_symbols import Symbols, derived, evaluated, numbers, shape_key, symbols
 from .tracking import ipopt_options
@@ -38,7 +35,7 @@ class CurveStructure:
     orders : tuple of int
         Limited derivative orders (0 position).
     key : tuple of int
-        Segment of each piece of a stretched curve, whose number depends on the way-points.
+        What else it depends on, see `shape_key`.
     """
 
     curve: Curve
@@ -103,13 +100,13 @@ def curve_structure(problem: Problem) -> CurveStructure:
 
 
 def _places(structure: CurveStructure, known: Symbols) -> tuple[LimitPlace, ...]:
-    start, end = ({order for order, _ in side} for side in end_conditions(structure.curve))
+    start, end = ({order for order, _ in side} for side in structure.curve.ends)
     found = []
     for r in structure.orders:
         for j, pieces in enumerate(known.pieces):
             last = len(pieces) - 1
             for k, piece in enumerate(pieces):
-                joined = k > 0 and smooth_order(structure.curve, k) >= r
+                joined = k > 0 and structure.curve.smooth_order(k) >= r
                 if r and not joined and not (k == 0 and r in start):
                     found.append(LimitPlace(r, j, k, 0.0, -1))
                 if r and len(piece.numerators[r]) > 1 and not (k == last and r in end):
@@ -254,10 +251,8 @@ def scaled_curve(problem: Problem, time_unit: float) -> ScaledCurve:
             np.isfinite(high).astype(float),
         ]
     )
-    curve = problem.curve
-    if isinstance(curve, ClampedBSpline):
-        # Chords are lengths of the joint vector as it is, not in these units.
-        curve = replace(curve, fractions=fractions_of(curve, problem.waypoints))
+    # Chords are lengths of the joint vector as it is, not in these units.
+    curve = problem.curve.fixed_by(problem.waypoints)
     own = numbers(curve, (problem.waypoints - first) / angle)
     return ScaledCurve(time_unit, own, np.concatenate([inverse.T.ravel("F"), position.ravel("F")]))
 

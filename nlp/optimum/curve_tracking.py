@@ -9,6 +9,7 @@ from .curve_formulation import CompiledCurve, ScaledCurve, follow, packed, scale
 from .tracking import Local, run
 
 _PASSES = 40
+"""Solves from one start: a bound against endless shrinking of the trust region."""
 
 
 def curve_merit(problem: Problem, h: Array) -> tuple[float, Array]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
@@ -23,6 +24,7 @@ from .tracking import (
 )
 
 _PASSES = 12
+"""Solves from one optimum: a bound against endless shrinking of the region."""
 _OPTIONS = {
     "print_time": False,
     "ipopt.print_level": 0,
@@ -33,6 +35,7 @@ _OPTIONS = {
     "ipopt.mu_init": 1e-4,
     "ipopt.max_iter": 200,
 }
+"""Options of IPOPT as `tracking.ipopt_options`, begun near a solution (small barrier)."""
 
 
 @lru_cache(maxsize=32)
@@ -98,12 +101,7 @@ def _improve(
             wide[0][:n] = np.maximum(wide[0][:n], x[:n] * (1 - radius))
             wide[1][:n] = np.minimum(wide[1][:n], x[:n] * (1 + radius))
             trajectory = fit(problem.curve, problem.waypoints, own)
-            trajectory = type(trajectory)(
-                trajectory.polynomial,
-                trajectory.durations,
-                trajectory.scaled / s.angle_unit,
-                trajectory.degrees,
-            )
+            trajectory = replace(trajectory, scaled=trajectory.scaled / s.angle_unit)
             places, newton = place_slots(f, trajectory)
             p.append(pack_parameters(f, s.values, s.inverse_limits, s.position, places, newton))
             x0.append(x)

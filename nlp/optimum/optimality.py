@@ -8,7 +8,6 @@ import numpy as np
 from scipy.optimize import nnls
 
 from ...problem import QUANTITIES, Array, Extremum, Problem, extrema, fit, peak_gradients
-from ...problem.curves import segment_of, smooth_order
 
 ACTIVE = 1e-7
 """Relative distance to a limit within which a peak counts as active."""
@@ -79,11 +78,11 @@ def _peaks_near_limit(
             if not np.isfinite(limit) or limit == 0:
                 continue
             for e in extrema(trajectory, j, r):
-                repeated = e.s == 0.0 and e.segment > 0 and smooth_order(curve, e.segment) >= r
+                repeated = e.s == 0.0 and e.segment > 0 and curve.smooth_order(e.segment) >= r
                 excess = abs(e.value) / limit - 1
                 if excess >= -near and not repeated:
                     sign = float(np.sign(e.value))
-                    label = (name, quantity, segment_of(curve, durations, e), e.time)
+                    label = (name, quantity, curve.segment_of(durations, e), e.time)
                     found.append(_Constraint(e, label, excess, sign, limit))
         low, high = float(limits.position_lower[j]), float(limits.position_upper[j])
         if np.isfinite(low) or np.isfinite(high):
@@ -93,7 +92,7 @@ def _peaks_near_limit(
                     excess = sign * (e.value - limit) / size
                     given = e.s in (0.0, 1.0) and every_break
                     if np.isfinite(limit) and excess >= -near and not given:
-                        label = (name, "position", segment_of(curve, durations, e), e.time)
+                        label = (name, "position", curve.segment_of(durations, e), e.time)
                         found.append(_Constraint(e, label, excess, sign, size))
     return found
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...problem import Array, Check, Interpolant, Problem, check
+from ...problem import Array, Check, Problem, check
 from .near_optimal import longest_per_segment_range
 from .solution import Evidence, Solution, Status, weakest
 from .solver import STARTS, solve
@@ -15,6 +15,7 @@ from .solver import STARTS, solve
 OPTIMUM_SLACK = 1e-6
 """Excess over each joint's own optimum (s) within which the procedure's output is reported."""
 _MOST_SEGMENTS = 4
+"""Ranges go through every assignment of segments to joints, 2ⁿ subsets: up to here."""
 
 
 @dataclass(frozen=True)
@@ -64,6 +65,7 @@ class PerJointSolution:
             Status.NOT_ATTAINED,
             Status.LIMIT,
             Status.FAILED,
+            Status.NONE_FOUND,
             Status.INFEASIBLE,
         ]
         return max((s.status for s in self.joints), key=order.index)
@@ -145,7 +147,7 @@ def solve_per_joint(
         verdict = check(problem, durations)
         why = None
         settled = all(s.status is Status.OPTIMAL for s in solutions)
-        if not isinstance(problem.curve, Interpolant):
+        if problem.curve.piecewise is None:
             why = "ranges are computed for declared piecewise polynomials only"
         elif problem.segments > _MOST_SEGMENTS:
             why = f"ranges are computed for at most {_MOST_SEGMENTS} segments"

@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from ...problem import Array, Extremum, Problem, check, extrema, fit, peak_gradients
-from ...problem.curves import segment_of
 from .optimality import KKT, Active, kkt
 
 _STEPS = 4
+"""Newton steps: few are needed, since interior-point answers are near and it is quadratic."""
 _DIFFERENCE = 1e-6
+"""Step of the central differences in log durations: their truncation is 1e-12, rounding 1e-10."""
 
 
 def polish(problem: Problem, durations: Array, report: KKT) -> tuple[Array, KKT]:
@@ -69,6 +70,7 @@ def polish(problem: Problem, durations: Array, report: KKT) -> tuple[Array, KKT]
 
 
 _ORDERS = {"velocity": 1, "acceleration": 2, "jerk": 3}
+"""Quantities whose active limit is a peak of this derivative."""
 
 
 def _nearest(problem: Problem, h: Array, active: Active) -> Extremum:
@@ -81,7 +83,7 @@ def _nearest(problem: Problem, h: Array, active: Active) -> Extremum:
         _ORDERS[active.quantity],
     )
     # Where a derivative jumps, two extrema share a time.
-    own = [e for e in points if segment_of(curve, h, e) == active.segment]
+    own = [e for e in points if curve.segment_of(h, e) == active.segment]
     return min(own, key=lambda e: abs(e.time - time))
 
 

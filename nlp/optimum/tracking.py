@@ -23,6 +23,7 @@ from .formulation import (
 from .starts import first_nodal
 
 _PASSES = 40
+"""Solves from one start: a bound against endless shrinking of the trust region."""
 _PATIENCE = 8
 """Passes without a gain after which a start is given up."""
 ADAPTIVE_VARIABLES = 1000

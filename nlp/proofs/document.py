@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from ...problem import Curve, Interpolant, TrajgapError
-from ...problem.curves import StretchedUniformBSpline, TimedUniformBSpline, end_conditions
+from ...problem.curves import StretchedUniformBSpline, TimedUniformBSpline
 from ...verify import CERTIFICATE_FORMAT, CertifiedQuestion, Subject, number, seal
 from .exact import ExactProblem, Real, decimal
 from .outcome import Certified, Outcome
@@ -56,7 +56,7 @@ def problem_document(problem: ExactProblem) -> dict[str, Any]:
 
 def _other(curve: Curve) -> dict[str, Any]:
     """A curve of another kind: its name, and the velocities prescribed at its ends, if any."""
-    ends = [dict(side).get(1) for side in end_conditions(curve)]
+    ends = [dict(side).get(1) for side in curve.ends]
     if ends == [None, None]:
         return {"curve": _named(curve)}
     return {

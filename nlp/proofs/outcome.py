@@ -172,28 +172,3 @@ class Certified:
                 f"gap {self.gap:.1e}, {self.outcome}"
             )
         return f"{self.problem.name}: {head}; {self.nodes} boxes, {self.seconds:.1f} s"
-
-
-@dataclass(frozen=True)
-class Certifier:
-    """One method, for one kind of curve.
-
-    Attributes
-    ----------
-    family : str
-        Words for the curves that it covers.
-    declares : callable
-        Whether a problem's curve is of its kind.
-    missing : callable
-        Why such a problem is not covered all the same, or None.
-    certify : callable
-        Keyboard interrupts and the time limit end it with what is proved so far.
-    instant : bool
-        Whether it is a closed form.
-    """
-
-    family: str
-    declares: Callable[[ExactProblem], bool]
-    missing: Callable[[ExactProblem], str | None]
-    certify: Callable[[ExactProblem, Request], Certified]
-    instant: bool = False

@@ -11,8 +11,11 @@ from ...problem import Array
 from .path import PathPiece, SegmentPart
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
+"""Gauss–Legendre of 6 nodes: exact for degree 11, so that a cell's arc length is, to rounding."""
 _TABLE, _REFINEMENTS = 256, 4
+"""Points of a stretch's first table, and rounds in which points move to where the path turns."""
 _SEGMENTS = 5
+"""Segments that a piece may have before its number of cells grows in proportion."""
 
 
 @dataclass(frozen=True, eq=False)

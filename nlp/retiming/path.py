@@ -16,7 +16,9 @@ STANDSTILL = 1e-5
 Exact standstills lie at 1e-12; a turn taken at a speed in between is sharper than TOPPRA's linear
 programs resolve, and stopping there costs less than this share of the time."""
 _VANISHING = 1e-9
+"""Coefficients below this share of the largest are rounding where all joints stand still."""
 _IDLE = 1e-11
+"""A segment that moves by less than this share of what the fastest speed covers stands still."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,6 +15,7 @@ from .grid import measure, sample
 from .path import jump, pieces
 
 GRIDPOINTS = (500, 1000, 2000)
+"""Three sizes, each twice the last, to fit the order of the grid's error."""
 KEPT = 1e-9
 """Relative excess over a limit that still counts as keeping it."""
 _RESOLUTION = 1e-5

@@ -33,7 +33,9 @@ from .schema import (
 from .statement import Statement, overlaid
 
 _ONLY_PROBLEM = ProblemBlock(id="main")
+"""Stands for the one problem of a file that lists none; its id is what `--problem` then takes."""
 _ONLY_READING = Reading(id="as-printed", why="the numbers and units as printed", default=True)
+"""Stands for the one reading of a file that lists none."""
 
 
 @dataclass(frozen=True)
@@ -235,7 +237,7 @@ class Case:
             If the problem or reading is unknown.
         """
         first = self.default_reading
-        ordered = [first, *(r for r in self.readings if r is not first)]
+        ordered = [first, *(r for r in self.readings if r.id != first.id)]
         problems = self.problems if problem is None else (self._problem(problem),)
         readings = ordered if reading is None else [self._reading(reading)]
         return [(p.id, r.id) for p in problems for r in readings]

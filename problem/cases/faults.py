@@ -19,6 +19,7 @@ _ONE_OR_EACH = (
     "lower",
     "upper",
 )
+"""Fields that take one number or a list: pydantic puts the union's tag into their path."""
 _EXPECTED = {
     "string_type": ("a string", "put it in quotes"),
     "tuple_type": ("a list", "write it in [ ]"),
@@ -26,10 +27,11 @@ _EXPECTED = {
     "bool_type": ("true or false", "write one of them"),
     "dict_type": ("a table of keys", "write it as a table"),
 }
+"""Pydantic's error type to what was wanted, and how to give it in TOML."""
 
 
 def first_fault(error: ValidationError) -> tuple[str, str]:
-    """Field path and reason of the fault to mend first.
+    """Field path and reason of the fault to fix first.
 
     Parameters
     ----------
@@ -41,13 +43,13 @@ def first_fault(error: ValidationError) -> tuple[str, str]:
     field : str
         Path such as ``claims[3].durations[1]``.
     reason : str
-        What is wrong and how to mend it; one line, with the number of further faults.
+        What is wrong and how to fix it; one line, with the number of further faults.
     """
-    faults = [_read(detail) for detail in error.errors(include_url=False)]
-    # A misspelt key is also a missing one; the spelling is what needs mending.
-    faults.sort(key=lambda fault: not fault[1].startswith("unknown key"))
-    field, reason = faults[0]
-    more = len(faults) - 1
+    details = error.errors(include_url=False)
+    # A misspelt key is also a missing one; the spelling is what to fix.
+    details.sort(key=lambda detail: detail["type"] != "unknown_key")
+    field, reason = _read(details[0])
+    more = len(details) - 1
     return field, reason + (f" (and {more} more)" if more else "")
 
 
@@ -55,7 +57,7 @@ def _read(detail: Mapping[str, Any]) -> tuple[str, str]:
     context = detail.get("ctx", {})
     kind, raw = detail["type"], detail["input"]
     path = _path(detail["loc"])
-    if kind == "fault":
+    if kind in ("fault", "unknown_key"):
         return (path + context["path"]).removeprefix("."), context["reason"]
     if kind in ("union_tag_invalid", "union_tag_not_found"):
         given = raw.get("quantity") if isinstance(raw, dict) else None

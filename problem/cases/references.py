@@ -34,8 +34,11 @@ _LISTS = (
     "cartesian",
     "not_checkable",
 )
+"""Lists of blocks with ids, in the order in which their faults are told."""
 _BLOCKS = ("units", "waypoints", "limits", "interpolant", "durations", "coupling", "robot")
+"""Single blocks that an assumption may say it affects; they have no ids."""
 _OF_ONE_PROBLEM = (DurationsClaim, MaximumClaim, TotalTimeClaim, PeakClaim, ControlVerticesClaim)
+"""Claims whose numbers belong to one problem, which a file with several must name."""
 
 
 def check_references(document: CaseFile, file: str) -> None:

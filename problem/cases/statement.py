@@ -9,7 +9,7 @@ from typing import TypeVar
 import numpy as np
 
 from ..arrays import Array
-from ..curves import Curve, Interpolant
+from ..curves import Curve
 from ..errors import CaseError, TrajgapError
 from ..fields import Strict
 from ..limits import Limits
@@ -32,9 +32,11 @@ Block = TypeVar("Block", bound=Strict)
 Data = tuple[Curve, Limits, Array, Array]
 """Curve, limits, and bounds on the durations."""
 _DERIVATIVES: tuple[Quantity, ...] = ("velocity", "acceleration", "jerk")
+"""What orders 1 to 3 measure; higher ones have no unit in a case file."""
 _LARGEST = 1e12
 """Largest number of a case file, rad and s: squares and quotients stay far from overflow."""
 _LOWER = "durations.lower"
+"""The field whose value may be as near 0 as it likes: a lower bound of 0 says "positive"."""
 
 
 @dataclass(frozen=True)
@@ -153,13 +155,14 @@ class Statement:
                 f"{len(curve.waypoint_breaks)} way-points, but {count} are given; "
                 "change the family, the degrees or the way-points",
             )
-        if isinstance(curve, Interpolant) and curve.free != block.free:
+        polynomials = curve.piecewise
+        if polynomials is not None and polynomials.free != block.free:
             raise self.fail(
                 "interpolant",
-                f"under-determined, {curve.conditions} conditions on "
-                f"{curve.coefficients} coefficients leave {curve.free} free, "
+                f"under-determined, {polynomials.conditions} conditions on "
+                f"{polynomials.coefficients} coefficients leave {polynomials.free} free, "
                 f"not {block.free}; add conditions, lower a degree, or state "
-                f"free = {curve.free}",
+                f"free = {polynomials.free}",
             )
         return curve
 

@@ -1,4 +1,4 @@
-"""From a declaration, way-points and durations to coefficients, and their derivatives."""
+"""From a declaration, way-points and durations to coefficients and batches of peaks."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import os
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,14 +16,20 @@ from scipy.interpolate import PPoly
 from ..arrays import Array
 from ..errors import TrajgapError
 from . import kernel
-from .interpolant import ConditionKind, Interpolant
+from .condition import ConditionKind
 from .trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from .interpolant import Interpolant
 
 PERM = np.array(
     [[float(math.perm(p, r)) for r in range(kernel.MAX_COEFFICIENTS)] for p in range(10)]
 )
+"""PERM[p, r] = p!/(p − r)!: the factor of sᵖ⁻ʳ in the r-th derivative of sᵖ."""
 _THREAD_WORK = 4000
+"""Polynomials (vectors times joints) below which starting threads costs more than it saves."""
 _LONGEST = 1e30
+"""Durations, s, beyond which, or below whose reciprocal, ninth powers leave float64's range."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,20 +126,23 @@ def right_hand_sides(interpolant: Interpolant, waypoints: Array, nodal: Array | 
     return values
 
 
-def coefficients(
+def batch_coefficients(
     interpolant: Interpolant,
     waypoints: Array,
     durations: Array,
     nodal: Array | None = None,
 ) -> Array:
-    """Coefficients in the segments' own parameter s in [0, 1], shape (segments, 10, joints)."""
+    """`coefficients` of many duration vectors, shape (vectors, segments, 10, joints).
+
+    Not finite where the system is singular.
+    """
     plan = layout(interpolant)
     values = right_hand_sides(interpolant, waypoints, nodal)
-    joints = waypoints.shape[1]
-    out = np.zeros((interpolant.segments, kernel.MAX_COEFFICIENTS, joints))
+    vectors, joints = len(durations), waypoints.shape[1]
+    out = np.zeros((interpolant.segments, kernel.MAX_COEFFICIENTS, joints * vectors))
     kernel.fit_coefficients(
-        np.ascontiguousarray(durations).reshape(-1, 1),
-        1,
+        np.ascontiguousarray(durations.T),
+        vectors,
         values,
         plan.kinds,
         plan.breaks,
@@ -142,16 +152,28 @@ def coefficients(
         plan.lower,
         plan.upper,
         PERM,
-        np.empty((plan.unknowns, 2 * plan.lower + plan.upper + 1, 1)),
-        np.empty((plan.unknowns, joints)),
+        np.empty((plan.unknowns, 2 * plan.lower + plan.upper + 1, vectors)),
+        np.empty((plan.unknowns, joints * vectors)),
         out,
     )
+    return out.reshape(*out.shape[:2], joints, vectors).transpose(3, 0, 1, 2)
+
+
+def coefficients(
+    interpolant: Interpolant,
+    waypoints: Array,
+    durations: Array,
+    nodal: Array | None = None,
+) -> Array:
+    """Coefficients in the segments' own parameter s in [0, 1], shape (segments, 10, joints)."""
+    out: Array = batch_coefficients(interpolant, waypoints, durations[None], nodal)[0]
     if not np.isfinite(out).all():
-        raise _singular(interpolant, durations)
+        raise singular(interpolant, durations)
     return out
 
 
-def _singular(interpolant: Interpolant, durations: Array) -> TrajgapError:
+def singular(interpolant: Interpolant, durations: Array) -> TrajgapError:
+    """The error of a system that these durations make singular."""
     return TrajgapError(f"interpolant {interpolant.name}: singular for durations {durations} s")
 
 
@@ -179,41 +201,6 @@ def as_durations(durations: ArrayLike, segments: int) -> Array:
             f"durations: {h.tolist()} s must all lie between {1 / _LONGEST:g} and {_LONGEST:g} s"
         )
     return h
-
-
-def fit(
-    interpolant: Interpolant,
-    waypoints: ArrayLike,
-    durations: ArrayLike,
-    nodal: ArrayLike | None = None,
-) -> Trajectory:
-    """The trajectory that the declaration, the way-points and the durations determine.
-
-    Parameters
-    ----------
-    interpolant : Interpolant
-        Declaration.
-    waypoints : array_like, shape (way-points, joints)
-        Joint angles, rad.
-    durations : array_like, shape (segments,)
-        Segment durations, s.
-    nodal : array_like, shape (free, joints), optional
-        Values of ``interpolant.free_derivatives`` where the declaration leaves some open.
-
-    Returns
-    -------
-    Trajectory
-
-    Raises
-    ------
-    TrajgapError
-        If shapes disagree, a duration is not positive, or the system is singular.
-    """
-    q = np.asarray(waypoints, dtype=np.float64)
-    h = as_durations(durations, interpolant.segments)
-    extra = None if nodal is None else np.asarray(nodal, dtype=np.float64)
-    scaled = coefficients(interpolant, q, h, extra)
-    return trajectory_from_scaled(scaled, interpolant.degrees, h)
 
 
 def trajectory_from_scaled(scaled: Array, degrees: tuple[int, ...], durations: Array) -> Trajectory:
@@ -264,12 +251,7 @@ def batch_peaks(
     ndarray, shape (batch, joints, 3)
         rad/s, rad/s², rad/s³; the same bits whatever the order, the size or the threads.
     """
-    plan = layout(interpolant)
-    h = np.ascontiguousarray(durations, dtype=np.float64)
-    if h.ndim != 2 or h.shape[1] != interpolant.segments:
-        raise TrajgapError(
-            f"durations: a batch has shape (vectors, {interpolant.segments}), got {h.shape}"
-        )
+    plan, h = layout(interpolant), durations
     peaks = np.empty((h.shape[0], values.shape[1], 3))
 
     def run(part: slice) -> None:
@@ -297,155 +279,3 @@ def batch_peaks(
     with ThreadPoolExecutor(workers) as pool:
         list(pool.map(run, map(slice, cuts[:-1], cuts[1:])))
     return peaks
-
-
-def dense_system(
-    interpolant: Interpolant, durations: NDArray[np.floating]
-) -> tuple[NDArray[np.floating], NDArray[np.floating], NDArray[np.int64]]:
-    """Matrix over all coefficients, the factor hʳ of each right-hand side, and first columns.
-
-    Computed in the precision of ``durations``.
-    """
-    plan = layout(interpolant)
-    first = np.concatenate([[0], np.cumsum(plan.degrees + 1)])
-    size = plan.kinds.size
-    matrix = np.zeros((size, first[-1]), dtype=durations.dtype)
-    factor = np.ones(size, dtype=durations.dtype)
-    for i in range(size):
-        kind, b, r = plan.kinds[i], plan.breaks[i], plan.orders[i]
-        if kind == ConditionKind.RIGHT_VALUE:
-            matrix[i, first[b] + r] = PERM[r, r]
-            factor[i] = durations[b] ** r
-            continue
-        k = b - 1
-        powers = np.arange(r, plan.degrees[k] + 1)
-        matrix[i, first[k] + powers] = PERM[powers, r]
-        if kind == ConditionKind.LEFT_VALUE:
-            factor[i] = durations[k] ** r
-        elif r <= plan.degrees[b]:
-            matrix[i, first[b] + r] = -PERM[r, r] * (durations[k] / durations[b]) ** r
-    scale = np.abs(matrix).max(axis=1)
-    return matrix / scale[:, None], factor / scale, first
-
-
-def _flat(interpolant: Interpolant, scaled: Array) -> Array:
-    plan = layout(interpolant)
-    return np.concatenate([scaled[k, : d + 1] for k, d in enumerate(plan.degrees)])
-
-
-def _unflat(interpolant: Interpolant, flat: Array) -> Array:
-    """Coefficients of axis 0 put back into (segments, powers)."""
-    plan = layout(interpolant)
-    first = np.concatenate([[0], np.cumsum(plan.degrees + 1)])
-    out = np.zeros((interpolant.segments, kernel.MAX_COEFFICIENTS, *flat.shape[1:]))
-    for k, d in enumerate(plan.degrees):
-        out[k, : d + 1] = flat[first[k] : first[k + 1]]
-    return out
-
-
-def refined_coefficients(
-    interpolant: Interpolant,
-    waypoints: Array,
-    durations: Array,
-    nodal: Array | None = None,
-) -> tuple[Array, Array]:
-    """Coefficients after iterative refinement in extended precision, with an error bound.
-
-    The residual is taken in ``longdouble``; its rounding is bounded by that type's own epsilon,
-    so the bound holds (only wider) where ``longdouble`` is float64. The approximate inverse B of
-    the matrix A bounds the error by (I − |BA − I|)⁻¹ |B| |residual|, entry by entry; an ``error``
-    that contains its own image is above that.
-
-    Returns
-    -------
-    coefficients, error : ndarray, shape (segments, 10, joints)
-        Scaled coefficients and a bound on their absolute error.
-    """
-    wide = np.longdouble
-    values = right_hand_sides(interpolant, waypoints, nodal).astype(wide)
-    flat = _flat(interpolant, coefficients(interpolant, waypoints, durations, nodal)).astype(wide)
-    matrix, factor, _ = dense_system(interpolant, durations.astype(wide))
-    right = factor[:, None] * values
-    narrow = matrix.astype(np.float64)
-    inverse = _inverse(interpolant, narrow, durations)
-    for _ in range(2):
-        residual = (right - matrix @ flat).astype(np.float64)
-        flat = flat + inverse @ residual
-    residual = np.abs(right - matrix @ flat)
-    rounding = np.finfo(wide).eps * (matrix.shape[0] + 24)
-    rounding = rounding * (np.abs(matrix) @ np.abs(flat) + np.abs(right))
-    first = np.abs(inverse) @ (residual + rounding).astype(np.float64)
-    epsilon = np.finfo(np.float64).eps
-    defect = np.abs(inverse @ narrow - np.eye(len(narrow)))
-    defect += epsilon * (len(narrow) + 2) * (np.abs(inverse) @ np.abs(narrow))
-    error = first
-    for _ in range(3):
-        error = first + 1.1 * (defect @ error)
-    if not (first + defect @ error <= error).all():
-        raise _singular(interpolant, durations)
-    rounded = flat.astype(np.float64)
-    error = error + epsilon * np.abs(rounded)
-    return _unflat(interpolant, rounded), _unflat(interpolant, error)
-
-
-def _inverse(interpolant: Interpolant, matrix: NDArray[np.floating], durations: Array) -> Array:
-    try:
-        return np.asarray(np.linalg.inv(matrix), dtype=np.float64)
-    except np.linalg.LinAlgError:
-        raise _singular(interpolant, durations) from None
-
-
-@dataclass(frozen=True, eq=False)
-class CoefficientGradient:
-    """Derivatives of the scaled coefficients, one joint-independent matrix per variable.
-
-    Attributes
-    ----------
-    durations : ndarray, shape (segments, segments, 10, joints)
-        d coefficients / d durations; first axis the duration.
-    waypoints : ndarray, shape (way-points, segments, 10)
-        d coefficients of a joint / d that joint's way-point.
-    nodal : ndarray, shape (free, segments, 10)
-        d coefficients of a joint / d that joint's free derivative.
-    """
-
-    durations: Array
-    waypoints: Array
-    nodal: Array
-
-
-def coefficient_gradient(
-    interpolant: Interpolant,
-    waypoints: Array,
-    durations: Array,
-    nodal: Array | None = None,
-) -> CoefficientGradient:
-    """Derivatives of the coefficients by implicit differentiation of the linear system."""
-    plan = layout(interpolant)
-    values = right_hand_sides(interpolant, waypoints, nodal)
-    matrix, factor, first = dense_system(interpolant, durations)
-    n, joints = interpolant.segments, waypoints.shape[1]
-    flat = _flat(interpolant, coefficients(interpolant, waypoints, durations, nodal))
-    inverse = _inverse(interpolant, matrix, durations)
-    by_duration = np.zeros((n, matrix.shape[0], joints))
-    for i in range(matrix.shape[0]):
-        kind, b, r = plan.kinds[i], plan.breaks[i], plan.orders[i]
-        if r == 0:
-            continue
-        if kind == ConditionKind.MATCH:
-            if r <= plan.degrees[b]:
-                entry = matrix[i, first[b] + r] * flat[first[b] + r]
-                by_duration[b - 1, i] -= r * entry / durations[b - 1]
-                by_duration[b, i] += r * entry / durations[b]
-        else:
-            k = b if kind == ConditionKind.RIGHT_VALUE else b - 1
-            by_duration[k, i] += r * factor[i] / durations[k] * values[i]
-    one_hot_w = (plan.waypoint[None, :] == np.arange(waypoints.shape[0])[:, None]) * factor
-    one_hot_n = (plan.nodal[None, :] == np.arange(interpolant.free)[:, None]) * factor
-    return CoefficientGradient(
-        durations=np.stack([_unflat(interpolant, inverse @ row) for row in by_duration]),
-        waypoints=np.array([_unflat(interpolant, inverse @ row) for row in one_hot_w]),
-        nodal=np.array([_unflat(interpolant, inverse @ row) for row in one_hot_n]).reshape(
-            interpolant.free, n, kernel.MAX_COEFFICIENTS
-        ),
-    )

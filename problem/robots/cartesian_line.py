@@ -15,6 +15,7 @@ from .chain import Chain, forward_kinematics
 from .inverse import inverse_kinematics
 
 POINTS = 9
+"""Poses of a line by default: eight steps, so that a joint curve stays near the line."""
 LARGEST_STEP = np.pi / 2
 """Joint motion between neighbouring poses that counts as another branch of the inverse, rad."""
 

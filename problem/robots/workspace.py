@@ -13,9 +13,13 @@ from .chain import Chain, forward_kinematics
 from .inverse import POSE, POSITION, inverse_kinematics
 
 _SHELL = 0.1
+"""Half-width of the shell that the next position is drawn from, as a share of the step."""
 _DRAWS = 20
+"""Positions tried before a step is given up as out of reach."""
 _STARTS = 8
+"""Starts of the inverse kinematics for each of them."""
 _BATCH = 50_000
+"""Configurations evaluated at once, to bound the memory."""
 
 
 class StepKind(StrEnum):

@@ -267,6 +267,63 @@ def test_faces_import_nothing_heavy() -> None:
     assert loaded & heavy == set()
 
 
+# --- kinds of curve -------------------------------------------------------------------------------
+
+KINDS = r"Interpolant|\w+BSpline|StretchedCurve|ClockedTrajectory"
+ASK_FOR_A_KIND = {
+    # Named in docs/interpolants.md, with the reason.
+    "nlp/optimum/curve_symbols.py",
+    "nlp/enclosure/box_bound.py",
+    "compare/pages/readings.py",
+}
+
+
+def asks_for_a_kind(source: str) -> list[str]:
+    """Places that decide by the type of a curve or trajectory, whatever the spelling."""
+    found = []
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Call) and ast.unparse(node.func) in ("isinstance", "issubclass"):
+            tested = re.fullmatch(rf".*\b({KINDS})\b.*", ast.unparse(node.args[1]))
+            found += [ast.unparse(node)] if tested else []
+        if isinstance(node, ast.Call) and ast.unparse(node) in ("type(curve)", "type(trajectory)"):
+            found.append(ast.unparse(node))
+        if isinstance(node, ast.Dict) and any(
+            key is not None and re.fullmatch(KINDS, ast.unparse(key)) for key in node.keys
+        ):
+            found.append(ast.unparse(node))
+        if isinstance(node, ast.FunctionDef) and any(
+            ast.unparse(one).endswith("register") for one in node.decorator_list
+        ):
+            found.append(node.name)
+    return found
+
+
+def test_only_the_documented_places_ask_for_a_kind_of_curve() -> None:
+    asking = set()
+    for path in (p for folder in MAY_IMPORT for p in source_modules(folder).values()):
+        name = path.relative_to(ROOT).as_posix()
+        if asks_for_a_kind(path.read_text(encoding="utf-8")):
+            # Each proof applies to the kinds that it was derived for, and says so by type.
+            asking |= {name} if not name.startswith("nlp/proofs/") else set()
+    assert asking == ASK_FOR_A_KIND
+    page = (ROOT / "docs" / "interpolants.md").read_text(encoding="utf-8")
+    assert {name for name in ASK_FOR_A_KIND if f"`{name}`" not in page} == set()
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        "isinstance(a.curve, Interpolant)",
+        "isinstance(c, A | curves.TimedUniformBSpline)",
+        "if type(trajectory) is X: pass",
+        "{ClampedBSpline: 1}",
+        "@shape.register\ndef _(curve: X): pass",
+    ],
+)
+def test_the_kind_rule_sees(source: str) -> None:
+    assert asks_for_a_kind(source)
+
+
 # --- packaging ------------------------------------------------------------------------------------
 
 

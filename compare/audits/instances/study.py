@@ -13,8 +13,7 @@ import numpy as np
 
 from ....heuristics import Algorithm, run
 from ....nlp import Solution, solve
-from ....problem import TOLERANCE, Coupling, Interpolant, Problem, check
-from ....problem.curves import polynomial_form
+from ....problem import TOLERANCE, Coupling, Problem, check
 from ...gaps import SETTLED, settled_at
 from .result import Array, Optimum, Sample
 
@@ -113,7 +112,7 @@ def _examined(task: Task) -> tuple[Sample, ...]:
 
 def _fast_form(problem: Problem) -> Problem:
     """The problem with shared durations, its curve in the form that is evaluated fastest."""
-    curve = polynomial_form(problem.curve)
+    curve = problem.curve.polynomial_form()
     return replace(problem, curve=curve, coupling=Coupling.SHARED)
 
 
@@ -149,7 +148,8 @@ def _ran(
 def _optimum(kept: Kept, problem: Problem) -> Optimum:
     key = _key(problem)
     if key not in kept:
-        alone = isinstance(problem.curve, Interpolant) and set(problem.curve.continuity) <= {0}
+        polynomials = problem.curve.piecewise
+        alone = polynomials is not None and set(polynomials.continuity) <= {0}
         kept[key] = _told(solve(problem, starts=1 if alone else STARTS))
     known: Optimum = kept[key]
     return known

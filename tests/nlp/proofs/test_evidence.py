@@ -23,7 +23,7 @@ from trajgap.nlp import (
     Interval,
     certificate,
     certify,
-    family_free,
+    estimate_any_curve,
     proved,
     shipped,
     solve,
@@ -267,7 +267,7 @@ def test_a_bound_for_any_curve_may_round_above_the_answer_and_no_more(
     monkeypatch: pytest.MonkeyPatch, above: float, certified: bool
 ) -> None:
     study = one_study()
-    found = family_free(study.problem(*study.pairs[0])).total_time
+    found = estimate_any_curve(study.problem(*study.pairs[0])).total_time
     assert found is not None
     lower = Fraction(found) * Fraction(1 + above)
     bound = Interval(lower, lower + Fraction(1, 10**9), None, False)

@@ -30,8 +30,7 @@ from trajgap.problem import (
     quintic_spline,
     solve_in_closed_form,
 )
-from trajgap.problem.curves.clamped import average_matrix, chord_fractions
-from trajgap.problem.curves.kind import for_joint
+from trajgap.problem.curves.clamped_knots import average_matrix, chord_fractions
 
 KINDS = [
     (degree, knots, parameters, time)
@@ -341,8 +340,8 @@ def test_one_joint_alone_keeps_the_curve_that_it_has_among_all(parameters: str) 
         for joint in range(3):
             alone = evaluate(problem.joint(joint), h[None]).ratios[0, 0]
             np.testing.assert_allclose(alone, together[joint], rtol=1e-11)
-    again = for_joint(problem.joint(1).curve, problem.joint(1).waypoints, 0)
-    assert again == problem.joint(1).curve
+    alone = problem.joint(1)
+    assert alone.curve.for_joint(alone.waypoints, 0) == alone.curve
 
 
 def test_average_matrix_is_the_printed_sum() -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.interpolate import BPoly, make_interp_spline
+from scipy.interpolate import BPoly, CubicSpline, make_interp_spline
 from support import exact_route
 from support.checkout import ROOT
 from support.samples import DECLARATIONS, FREE, posed
@@ -25,13 +25,9 @@ from trajgap.problem import (
     rest_to_rest,
     three_five_three,
 )
-from trajgap.problem.curves.spline import (
-    batch_peaks,
-    coefficient_gradient,
-    coefficients,
-    motion_values,
-    refined_coefficients,
-)
+from trajgap.problem.curves import refined
+from trajgap.problem.curves.refined import coefficient_gradient, refined_coefficients
+from trajgap.problem.curves.spline import batch_peaks, coefficients, motion_values
 
 BREAKS = (0.0, 0.7, 1.2, 2.6, 2.9, 4.4, 5.1, 6.7)
 
@@ -260,7 +256,9 @@ def test_durations_refused(durations: object, message: str) -> None:
 
 
 def test_waypoints_and_nodal_values_refused() -> None:
-    with pytest.raises(TrajgapError, match="3-5-3 polynomials with 3 segments needs 4, got 5"):
+    with pytest.raises(
+        TrajgapError, match=r"3-5-3 polynomials with 3 segments needs 4 rows, got shape \(5, "
+    ):
         fit(three_five_three(), waypoints(5), [1.0, 1.0, 1.0])
     quintics = piecewise((5, 5, 5), 2)
     message = r"14 conditions on 18 coefficients; give nodal derivatives of shape \(4, 3\)"
@@ -394,11 +392,11 @@ def test_motion_values_count_from_the_first_waypoint() -> None:
 
 def test_unwanted_peaks_are_zero() -> None:
     problem, h = posed(DECLARATIONS["quintic"], 4)
-    values = motion_values(problem.curve, problem.waypoints)
-    every = batch_peaks(problem.curve, values, h[None], np.ones((3, 3), bool))
+    values = problem.curve.motion_values(problem.waypoints)
+    every = problem.curve.batch_peaks(values, h[None], np.ones((3, 3), bool))
     assert (every > 0).all()
     wanted = np.array([[True, False, True], [False, True, False], [False, False, False]])
-    some = batch_peaks(problem.curve, values, h[None], wanted)
+    some = problem.curve.batch_peaks(values, h[None], wanted)
     np.testing.assert_array_equal(some, np.where(wanted, every, 0.0))
 
 
@@ -433,3 +431,35 @@ def test_error_bound_at_extreme_durations() -> None:
             for s, piece in enumerate(exact):
                 for p, c in enumerate(piece):
                     assert abs(Fraction(found[s, p, 0]) - c) <= Fraction(error[s, p, 0])
+
+
+@pytest.mark.parametrize("halo", [2, 5])
+def test_windows_of_the_inverse_bound_the_error_like_all_of_it(
+    monkeypatch: pytest.MonkeyPatch, halo: int
+) -> None:
+    problem, h = posed(quintic_spline(14), 5, joints=1)
+    exact = exact_scaled(problem.curve, problem, h, 0, None)
+    monkeypatch.setattr(refined, "DENSE_UNKNOWNS", 0)
+    monkeypatch.setattr(refined, "CHUNK", 3)
+    monkeypatch.setattr(refined, "HALOS", (halo,))
+    found, error = refined_coefficients(problem.curve, problem.waypoints, h)
+    for s, piece in enumerate(exact):
+        for p, c in enumerate(piece):
+            assert abs(Fraction(found[s, p, 0]) - c) <= Fraction(error[s, p, 0])
+    assert error.max() < 1e-9 * np.abs(found).max()
+
+
+def test_a_spline_of_1000_segments_needs_no_dense_inverse(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object) -> None:
+        raise AssertionError("a dense inverse of 4,000 coefficients")
+
+    monkeypatch.setattr(refined, "_inverse", refuse)
+    q = np.cumsum(waypoints(1001), axis=0)
+    h = np.random.default_rng(8).uniform(0.3, 3.0, 1000)
+    times = np.concatenate([[0.0], np.cumsum(h)])
+    found, error = refined_coefficients(cubic_spline(1000), q, h)
+    reference = CubicSpline(times, q, bc_type="clamped").c
+    scaled = reference[::-1] * h[None, :, None] ** np.arange(4)[:, None, None]
+    size = np.abs(scaled).max()
+    np.testing.assert_allclose(found[:, :4], scaled.transpose(1, 0, 2), atol=1e-12 * size)
+    assert error.max() < 1e-12 * size

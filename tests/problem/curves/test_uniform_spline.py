@@ -30,7 +30,7 @@ from trajgap.problem import (
     uniform_cubic_b_spline,
 )
 from trajgap.problem.curves.stretched import segment_peaks
-from trajgap.problem.curves.uniform import clock_matrix, shape_matrix, vertex_matrix
+from trajgap.problem.curves.uniform_matrices import clock_matrix, shape_matrix, vertex_matrix
 
 POLISH = "irb1600-ga-cubic-bspline"
 TIMES = tuple(Timing)
@@ -200,6 +200,8 @@ def test_declarations_are_checked() -> None:
         assert len(uniform_cubic_b_spline(2, time).waypoint_breaks) == 2
     with pytest.raises(TrajgapError, match="str is no kind of curve known here"):
         fit("3-5-3", [[0.0]], [1.0])
+    with pytest.raises(TrajgapError, match="curve: str is no kind of curve known here"):
+        Problem([[0.0], [1.0]], Limits(1.0), "rest-to-rest")
 
 
 # --- (a) stretched --------------------------------------------------------------------------------

@@ -47,7 +47,6 @@ from trajgap.problem import (
     quintic_spline,
 )
 from trajgap.problem.cases.instances import instance_waypoints
-from trajgap.problem.curves.clamped import polynomial_form
 
 WHALE = "z1-woa-bspline"
 
@@ -287,16 +286,16 @@ def test_the_faster_form_of_a_clamped_spline_is_the_same_curve() -> None:
     limits = small().statement("spline").data()[1]
     for degree, orders in ((5, (1, 2)), (3, (1,))):
         clamped = ClampedBSpline(5, degree, end_orders=orders)
-        fast = polynomial_form(clamped)
+        fast = clamped.polynomial_form()
         one, other = (evaluate(Problem(points, limits, c), durations) for c in (clamped, fast))
         np.testing.assert_allclose(other.ratios, one.ratios, rtol=1e-9)
-    assert polynomial_form(ClampedBSpline(5, 5)) == quintic_spline(4)
+    assert ClampedBSpline(5, 5).polynomial_form() == quintic_spline(4)
     averaged = ClampedBSpline(5, 5, "averaged-continued")
-    assert polynomial_form(averaged) is averaged
+    assert averaged.polynomial_form() is averaged
     chord = ClampedBSpline(5, 5, "waypoints", "chord")
-    assert polynomial_form(chord) is chord
+    assert chord.polynomial_form() is chord
     stops = jtraj(3)
-    assert polynomial_form(stops) is stops
+    assert stops.polynomial_form() is stops
 
 
 def test_failures_are_kept_and_counted() -> None:

@@ -8,7 +8,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from support.b_splines import clamped, uniform, vertices_by_solving
-from support.polishing import POLISH, SOURCE, polish, shipped
+from support.studies import changed, shipped, source
 from trajgap.compare.audits.finding import Basis, ClaimVerdict, Finding, Severity
 from trajgap.compare.audits.rounding import Box, Rounding, judge_rounding
 from trajgap.compare.audits.rules.continuous_time import judge_motions
@@ -18,7 +18,7 @@ from trajgap.compare.audits.rules.printed_digits import judge_digits
 from trajgap.compare.audits.rules.printed_vertices import judge_vertices, vertices
 from trajgap.compare.audits.study import Study
 from trajgap.nlp.enclosure.balls import Ball
-from trajgap.nlp.enclosure.uniform import centred, covered
+from trajgap.nlp.enclosure.uniform import centred_stretched, centred_timed
 from trajgap.problem import (
     CaseError,
     Verdict,
@@ -30,9 +30,8 @@ from trajgap.problem import (
     parse_case,
     peak_gradients,
 )
-from trajgap.problem.curves.timed import ClockedTrajectory
 
-WHALE = "z1-woa-bspline"
+POLISH, WHALE = "irb1600-ga-cubic-bspline", "z1-woa-bspline"
 TIMES = ("stretched", "timed")
 
 
@@ -44,7 +43,7 @@ def of(findings, rule: str, claim: str | None = None) -> list[Finding]:
 
 
 def test_every_printed_control_vertex_is_inside_what_rounding_allows() -> None:
-    study = polish()
+    study = shipped(POLISH)
     (found,) = of(judge_vertices(study), "TG205")
     assert found.verdict is ClaimVerdict.SUPPORTED
     assert found.computed == "72 of 72 inside"
@@ -73,7 +72,7 @@ def test_every_printed_control_vertex_is_inside_what_rounding_allows() -> None:
 def test_one_changed_digit_is_seen_where_neither_rounding_nor_cutting_explains_it(
     digits_: str, verdict: ClaimVerdict, severity: Severity
 ) -> None:
-    study = polish(('"-2.1070"', f'"{digits_}"'))
+    study = changed(POLISH, ('"-2.1070"', f'"{digits_}"'))
     (found,) = of(judge_vertices(study), "TG205")
     assert (found.verdict, found.severity) == (verdict, severity)
     if severity is Severity.WARNING:
@@ -96,11 +95,11 @@ def test_vertices_of_waypoints_whose_digits_were_cut_off_accuse_nobody() -> None
         + "\n]"
         for table in cut
     ]
-    source = SOURCE
+    text = source(POLISH)
     for table in rows:
-        head, _, tail = source.partition("joint_rows = [\n")
-        source = f"{head}joint-rows = {table}{tail[tail.index(chr(10) + ']') + 2 :]}"
-    study = Study(parse_case(source.replace("joint-rows", "joint_rows"), "cut.toml"), seeds=4)
+        head, _, tail = text.partition("joint_rows = [\n")
+        text = f"{head}joint-rows = {table}{tail[tail.index(chr(10) + ']') + 2 :]}"
+    study = Study(parse_case(text.replace("joint-rows", "joint_rows"), "cut.toml"), seeds=2)
     (found,) = of(judge_vertices(study), "TG205")
     assert (found.verdict, found.severity) == (ClaimVerdict.SUPPORTED, Severity.WARNING)
 
@@ -123,7 +122,7 @@ def test_vertices_of_waypoints_whose_digits_were_cut_off_accuse_nobody() -> None
 )
 def test_control_vertices_are_counted(old: str, new: str, message: str) -> None:
     with pytest.raises(CaseError) as caught:
-        polish((old, new))
+        changed(POLISH, (old, new))
     assert message in str(caught.value)
 
 
@@ -135,14 +134,15 @@ def test_balls_hold_values_and_gradients_all_over_the_box(time: str) -> None:
     problem, h = uniform(time, 41, count=5)
     curve, q = problem.curve, problem.waypoints
     trajectory = fit(curve, q, h)
-    points = [e for j in range(3) for r in (1, 2, 3) for e in extrema(trajectory, j, r)]
-    points = [e for e in points if covered(curve, np.array([e.order]))[0]]
+    centred, highest = (centred_timed, 2) if time == "timed" else (centred_stretched, 3)
+    orders = range(1, highest + 1)
+    points = [e for j in range(3) for r in orders for e in extrema(trajectory, j, r)]
     joint, segment, order = (
         np.array([getattr(e, name) for e in points]) for name in ("joint", "segment", "order")
     )
     place = np.array([e.s for e in points])
     wide_h, wide_q = Ball(h, 0.01 * h), Ball(q, np.full_like(q, 5e-5))
-    form = centred(curve, joint, segment, order, place, wide_h, wide_q)
+    form = centred(len(q), joint, segment, order, place, wide_h, wide_q)
     exact = np.array([e.value for e in points])
     np.testing.assert_allclose(form.value.mid, exact, rtol=1e-9, atol=1e-12)
     assert (np.abs(form.value.mid - exact) <= form.value.rad + 1e-11 * form.amplitude).all()
@@ -152,12 +152,7 @@ def test_balls_hold_values_and_gradients_all_over_the_box(time: str) -> None:
         there = h * (1 + 0.01 * rng.uniform(-1, 1, h.size))
         moved = q + 5e-5 * rng.uniform(-1, 1, q.shape)
         at = fit(curve, moved, there)
-        values = [
-            at.value(e.segment, e.joint, e.order, e.s)
-            if isinstance(at, ClockedTrajectory)
-            else np.polynomial.polynomial.polyval(e.s, at.derivative(e.segment, e.joint, e.order))
-            for e in points
-        ]
+        values = [float(at.values(e.segment, e.joint, e.order, np.array([e.s]))[0]) for e in points]
         fixed = [replace(e, value=v) for e, v in zip(points, values, strict=True)]
         slope = peak_gradients(replace(problem, waypoints=moved), there, fixed).durations
         excess = np.abs(slope - form.by_duration.mid) - form.by_duration.rad
@@ -221,7 +216,7 @@ def test_clamped_splines_are_kept_consistent_or_undecided() -> None:
 
 
 def test_jumps_are_named_apart_from_the_limits() -> None:
-    found = list(judge_motions(polish()))
+    found = list(judge_motions(shipped(POLISH)))
     jumping = of(found, "TG202", "after")
     assert {f.reading.rpartition("-")[2] for f in jumping} == {"stretched"}
     assert len(jumping) == 8
@@ -243,7 +238,7 @@ def test_jumps_are_named_apart_from_the_limits() -> None:
 
 def test_the_printed_durations_are_optimal_under_no_reading() -> None:
     """Under each, a shorter motion is exhibited, or no rounding lets them keep the limits."""
-    found = {f.reading: f for f in of(judge_distances(shipped()), "TG302", "time-optimal")}
+    found = {f.reading: f for f in of(judge_distances(shipped(POLISH)), "TG302", "time-optimal")}
     assert len(found) == 16
     assert {f.verdict for f in found.values()} == {ClaimVerdict.REFUTED}
     shorter = {rid for rid, f in found.items() if f.message.startswith("Not the shortest: after")}
@@ -262,13 +257,15 @@ def test_the_printed_durations_are_optimal_under_no_reading() -> None:
 
 
 def test_acceleration_said_to_jump_does_in_the_reading_that_stretches() -> None:
-    found = {f.reading: f for f in of(judge_motions(polish()), "TG206", "acceleration-jumps")}
+    found = {
+        f.reading: f for f in of(judge_motions(shipped(POLISH)), "TG206", "acceleration-jumps")
+    }
     assert len(found) == 16
     for reading, finding in found.items():
         jumps = reading.endswith("stretched")
         expected = ClaimVerdict.SUPPORTED if jumps else ClaimVerdict.NOT_CHECKABLE
         assert finding.verdict is expected
-    study = polish()
+    study = shipped(POLISH)
     claim = study.case.claim("after")
     at = study.claim_check(claim, "nine-segments", study.main_reading).jumps
     largest = max((j for j in at if j.order == 2 and j.joint == "2"), key=lambda j: abs(j.size))
@@ -276,7 +273,7 @@ def test_acceleration_said_to_jump_does_in_the_reading_that_stretches() -> None:
 
 
 def test_totals_and_the_saving_follow_from_the_digits() -> None:
-    found = list(judge_digits(polish()))
+    found = list(judge_digits(shipped(POLISH)))
     assert {f.claim: f.verdict for f in found if f.rule in ("TG101", "TG103")} == dict.fromkeys(
         ("before", "after", "improvement"), ClaimVerdict.SUPPORTED
     )
@@ -286,7 +283,7 @@ def test_totals_and_the_saving_follow_from_the_digits() -> None:
 
 
 def test_a_case_without_waypoints_says_of_each_time_why_it_is_not_checkable() -> None:
-    study = Study(load_case(WHALE), seeds=2)
+    study = shipped(WHALE)
     assert not study.posed
     found = list(list_open_points(study))
     for claim in ("b-spline-total", "quintic-total", "convergence"):
@@ -300,7 +297,7 @@ def test_a_case_without_waypoints_says_of_each_time_why_it_is_not_checkable() ->
 
 
 def test_a_posed_case_has_no_such_finding() -> None:
-    study = polish()
+    study = shipped(POLISH)
     assert study.posed
     assert not of(list_open_points(study), "TG501", "after")
     assert check(study.case.problem(), np.full(9, 1.0)).verdict is Verdict.PASS

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from importlib.resources import files
-
 import pytest
+from support.studies import audited, changed
 from trajgap.compare.audits.case_audit import audit
 from trajgap.compare.audits.finding import ClaimVerdict, Finding, Severity
 from trajgap.compare.audits.rules.condition_count import conditions, judge_counts
@@ -16,18 +15,10 @@ from trajgap.compare.audits.rules.replays import judge_replays
 from trajgap.compare.audits.rules.scaling_law import judge_scaling
 from trajgap.compare.audits.study import Study
 from trajgap.nlp import Evidence
-from trajgap.problem import TrajgapError, load_case, parse_case
+from trajgap.problem import TrajgapError, load_case
 
 PUMA = "puma560-mnam-pso-353"
 IRB = "irb460-pso-353"
-
-
-def changed(case_id: str, *swaps: tuple[str, str], tail: str = "") -> Study:
-    source = files("trajgap.problem.published").joinpath(f"{case_id}.toml").read_text("utf-8")
-    for old, new in swaps:
-        assert old in source
-        source = source.replace(old, new)
-    return Study(parse_case(source + tail, f"{case_id}.toml"), seeds=4)
 
 
 def of(findings, rule: str, claim: str | None = None) -> list[Finding]:
@@ -270,21 +261,20 @@ def test_no_error_rests_on_the_plain_check() -> None:
     from trajgap.compare.audits.finding import Basis
 
     for case in (PUMA, IRB):
-        report = audit(case, seeds=4)
-        for finding in report.cases[0].findings:
+        for finding in audited(case).findings:
             if finding.severity is Severity.ERROR:
                 assert finding.basis is not Basis.CHECK
 
 
 def test_an_audit_keeps_to_a_chosen_problem_and_reading() -> None:
-    report = audit(IRB, seeds=4, problem="limit-80", reading="waypoints-rad")
+    report = audit(IRB, seeds=2, problem="limit-80", reading="waypoints-rad")
     assert {f.problem for f in report.cases[0].findings} <= {"limit-80", None}
     assert {f.reading for f in report.cases[0].findings} <= {"waypoints-rad", None}
 
 
 def test_the_same_seeds_give_the_same_findings() -> None:
-    first, second = (audit(IRB, seeds=4).cases[0] for _ in range(2))
-    assert [f.message for f in first.findings] == [f.message for f in second.findings]
+    second = audit(IRB, seeds=audited(IRB).study.seeds).cases[0]
+    assert [f.message for f in audited(IRB).findings] == [f.message for f in second.findings]
 
 
 def test_a_replay_needs_a_spread() -> None:

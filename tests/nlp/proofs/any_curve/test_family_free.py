@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import linprog, minimize_scalar
 from trajgap.nlp import Evidence, solve
-from trajgap.nlp.proofs.any_curve.estimate import FamilyFree, family_free
+from trajgap.nlp.proofs.any_curve.estimate import AnyCurveEstimate, estimate_any_curve
 from trajgap.nlp.proofs.any_curve.reach import furthest, profile, reachable
 from trajgap.nlp.retiming.toppra_check import retime
 from trajgap.problem import (
@@ -64,7 +64,7 @@ def rest_to_rest_time(distance: float, velocity: float, acceleration: float) -> 
     return d / velocity + velocity / acceleration
 
 
-def verified(problem: Problem, found: FamilyFree) -> float:
+def verified(problem: Problem, found: AnyCurveEstimate) -> float:
     """Total of an answer whose curves are built and judged one by one."""
     assert found.total_time is not None, found.why
     assert found.durations is not None
@@ -97,7 +97,7 @@ def verified(problem: Problem, found: FamilyFree) -> float:
 @pytest.mark.parametrize("step", [1.4, -0.3])
 def test_two_waypoints(velocity: float, acceleration: float, step: float) -> None:
     problem = posed([0.3, 0.3 + step], velocity, acceleration)
-    total = verified(problem, family_free(problem))
+    total = verified(problem, estimate_any_curve(problem))
     assert total == pytest.approx(rest_to_rest_time(step, velocity, acceleration), rel=1e-9)
 
 
@@ -105,13 +105,13 @@ def test_two_waypoints(velocity: float, acceleration: float, step: float) -> Non
 @pytest.mark.parametrize("velocity", [9.0, 1.1])
 def test_a_waypoint_on_the_way_costs_nothing(middle: float, velocity: float) -> None:
     problem = posed([0.2, 0.2 + middle, 1.5], velocity, 4.0)
-    total = verified(problem, family_free(problem))
+    total = verified(problem, estimate_any_curve(problem))
     assert total == pytest.approx(rest_to_rest_time(1.3, velocity, 4.0), rel=1e-8)
 
 
 def test_there_and_back_stops_at_the_turning_point() -> None:
     problem = posed([0.2, 1.5, -0.1], 1.7, 4.0)
-    found = family_free(problem)
+    found = estimate_any_curve(problem)
     expected = rest_to_rest_time(1.3, 1.7, 4.0) + rest_to_rest_time(1.6, 1.7, 4.0)
     assert verified(problem, found) == pytest.approx(expected, rel=1e-8)
     assert found.nodal_velocities == pytest.approx(0.0, abs=1e-5)
@@ -121,7 +121,7 @@ def test_there_and_back_stops_at_the_turning_point() -> None:
 def test_free_end_velocities() -> None:
     # Flat out from way-point to way-point; with a limit only on acceleration v0 would be endless.
     problem = posed([0.2, 1.5], 1.7, 4.0, ends=())
-    assert verified(problem, family_free(problem)) == pytest.approx(1.3 / 1.7, rel=1e-9)
+    assert verified(problem, estimate_any_curve(problem)) == pytest.approx(1.3 / 1.7, rel=1e-9)
 
 
 @pytest.mark.parametrize(("first", "last"), [(0.5, 0.9), (-0.8, 0.0), (1.2, -1.2)])
@@ -131,20 +131,20 @@ def test_prescribed_end_velocities(first: float, last: float) -> None:
     problem = Problem([[0.2], [0.2 + d]], Limits(50.0, a), interpolant)
     # Accelerate to p, brake to the end: (2p² − v0² − v1²)/2a = d.
     peak = np.sqrt((2 * a * d + first**2 + last**2) / 2)
-    found = family_free(problem)
+    found = estimate_any_curve(problem)
     assert verified(problem, found) == pytest.approx((2 * peak - first - last) / a, rel=1e-9)
     assert found.nodal_velocities[:, 0] == pytest.approx([first, last], abs=1e-15)
 
 
 def test_rest_at_waypoints_of_the_interpolant_is_not_asked_for() -> None:
-    smooth = family_free(PUMA_PROBLEM)
-    stopping = family_free(replace(PUMA_PROBLEM, curve=rest_to_rest(3, 5)))
+    smooth = estimate_any_curve(PUMA_PROBLEM)
+    stopping = estimate_any_curve(replace(PUMA_PROBLEM, curve=rest_to_rest(3, 5)))
     assert stopping.total_time == pytest.approx(smooth.total_time, rel=1e-9)
 
 
 def test_the_slowest_joint_decides() -> None:
     problem = posed([[0.0, 1.0], [0.5, 0.4], [0.9, -0.5]], [2.0, 9.0], [50.0, 1.5])
-    total = verified(problem, family_free(problem))
+    total = verified(problem, estimate_any_curve(problem))
     assert total == pytest.approx(rest_to_rest_time(1.5, 9.0, 1.5), rel=1e-8)
 
 
@@ -153,7 +153,7 @@ def test_the_slowest_joint_decides() -> None:
 
 def test_velocity_limits_only() -> None:
     velocity = np.array([1.5, 0.4, 2.0, 3.0, 0.7, 1.1])
-    found = family_free(Problem(PUMA, Limits(velocity), three_five_three()))
+    found = estimate_any_curve(Problem(PUMA, Limits(velocity), three_five_three()))
     expected = (np.abs(np.diff(PUMA, axis=0)) / velocity).max(axis=1)
     assert found.durations == pytest.approx(expected, rel=1e-15)
     assert found.total_time == pytest.approx(expected.sum(), rel=1e-15)
@@ -164,20 +164,20 @@ def test_velocity_limits_only() -> None:
 
 
 def test_velocity_limits_only_may_be_attained() -> None:
-    assert family_free(posed([0.0, 1.0, 3.0], 2.0, ends=())).attained
-    assert not family_free(posed([0.0, 1.0, 3.0], 2.0)).attained
-    assert not family_free(posed([0.0, 1.0, 0.0], 2.0, ends=())).attained
-    assert family_free(posed([0.0, 1.0, 0.0], 2.0, duration_lower=0.6)).attained
+    assert estimate_any_curve(posed([0.0, 1.0, 3.0], 2.0, ends=())).attained
+    assert not estimate_any_curve(posed([0.0, 1.0, 3.0], 2.0)).attained
+    assert not estimate_any_curve(posed([0.0, 1.0, 0.0], 2.0, ends=())).attained
+    assert estimate_any_curve(posed([0.0, 1.0, 0.0], 2.0, duration_lower=0.6)).attained
 
 
 def test_a_joint_without_acceleration_limit_only_needs_its_speed() -> None:
     q = np.array([[0.0, 0.3], [0.5, 1.9], [0.2, 0.1]])
     problem = posed(q, [3.0, 1.5], [6.0, np.inf])
-    found = family_free(problem)
+    found = estimate_any_curve(problem)
     both = verified(problem, found)
     floor = np.abs(np.diff(q[:, 1])) / 1.5
     alone = posed(q[:, :1], 3.0, 6.0, duration_lower=floor)
-    assert both == pytest.approx(verified(alone, family_free(alone)), rel=1e-9)
+    assert both == pytest.approx(verified(alone, estimate_any_curve(alone)), rel=1e-9)
     assert np.isnan(found.nodal_velocities[:, 1]).all()
 
 
@@ -201,7 +201,7 @@ def test_one_joint_against_a_grid_of_nodal_velocities(
     waypoints: list[float], velocity: float
 ) -> None:
     problem = posed(waypoints, velocity, 3.0)
-    total = verified(problem, family_free(problem))
+    total = verified(problem, estimate_any_curve(problem))
     v = np.linspace(-1.0, 1.0, 301) * min(velocity, 2.5)
     steps = np.diff(waypoints)
     time = np.vectorize(double_integrator_time, otypes=[float])
@@ -246,7 +246,7 @@ def test_two_joints_against_a_linear_program() -> None:
     # the best share of the time for the first segment is then searched on one axis.
     q = np.array([[0.0, 0.4], [0.8, -0.1], [0.3, -1.5]])
     problem = posed(q, [1.6, 1.2], [4.0, 3.0])
-    found = family_free(problem)
+    found = estimate_any_curve(problem)
     total = verified(problem, found)
     cells = 24
 
@@ -312,7 +312,7 @@ def test_no_spline_is_faster(interpolant: Interpolant) -> None:
     problem = replace(PUMA_PROBLEM, curve=interpolant, duration_lower=0.0, duration_upper=np.inf)
     solution = solve(problem, starts=1)
     assert solution.durations is not None
-    found = family_free(problem, initial=solution.durations)
+    found = estimate_any_curve(problem, initial=solution.durations)
     assert verified(problem, found) <= solution.total_time
     assert found.starts == 7
 
@@ -323,7 +323,7 @@ def test_no_retiming_is_faster() -> None:
     retimed = retime(curve, PUMA_PROBLEM.limits)
     assert retimed.extrapolated is not None
     assert retimed.error is not None
-    assert family_free(PUMA_PROBLEM).total_time <= retimed.extrapolated + retimed.error
+    assert estimate_any_curve(PUMA_PROBLEM).total_time <= retimed.extrapolated + retimed.error
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -337,22 +337,22 @@ def test_random_feasible_splines_are_not_faster(seed: int) -> None:
     )
     h = generator.uniform(0.3, 1.5, segments)
     repaired = h * check(problem, h).stretch
-    found = family_free(problem, starts=3, initial=repaired)
+    found = estimate_any_curve(problem, starts=3, initial=repaired)
     assert verified(problem, found) <= repaired.sum()
 
 
 def test_time_scaling_mirror_and_permutation() -> None:
-    base = verified(PUMA_PROBLEM, family_free(PUMA_PROBLEM))
+    base = verified(PUMA_PROBLEM, estimate_any_curve(PUMA_PROBLEM))
     faster = replace(PUMA_PROBLEM, limits=Limits(6.0 * 3, 8.0 * 9, joints=6))
-    assert verified(faster, family_free(faster)) == pytest.approx(base / 3, rel=1e-8)
+    assert verified(faster, estimate_any_curve(faster)) == pytest.approx(base / 3, rel=1e-8)
     for waypoints in (1.0 - PUMA, PUMA[::-1], PUMA[:, [3, 0, 5, 1, 4, 2]]):
         other = replace(PUMA_PROBLEM, waypoints=waypoints)
-        assert verified(other, family_free(other)) == pytest.approx(base, rel=1e-8)
+        assert verified(other, estimate_any_curve(other)) == pytest.approx(base, rel=1e-8)
 
 
 def test_more_of_a_limit_never_takes_longer() -> None:
     totals = [
-        verified(p, family_free(p))
+        verified(p, estimate_any_curve(p))
         for v, a in ((1.0, 4.0), (1.0, 8.0), (2.0, 8.0), (6.0, 8.0), (6.0, 20.0))
         for p in [replace(PUMA_PROBLEM, limits=Limits(v, a, joints=6))]
     ]
@@ -360,13 +360,13 @@ def test_more_of_a_limit_never_takes_longer() -> None:
 
 
 def test_same_seed_same_bits() -> None:
-    one, two = (family_free(PUMA_PROBLEM, starts=3, seed=5) for _ in range(2))
+    one, two = (estimate_any_curve(PUMA_PROBLEM, starts=3, seed=5) for _ in range(2))
     assert one.total_time == two.total_time
     assert (one.nodal_velocities == two.nodal_velocities).all()
 
 
 def test_every_start_reaches_the_best_of_the_puma_problem() -> None:
-    found = family_free(PUMA_PROBLEM, starts=20, seed=1)
+    found = estimate_any_curve(PUMA_PROBLEM, starts=20, seed=1)
     assert found.starts_at_best == found.starts == 20
     assert verified(PUMA_PROBLEM, found) == pytest.approx(1.53528793, abs=1e-7)
 
@@ -376,29 +376,29 @@ def test_every_start_reaches_the_best_of_the_puma_problem() -> None:
 
 def test_duration_bounds_hold_between_waypoints() -> None:
     bounded = replace(PUMA_PROBLEM, duration_lower=[0.9, 0.0, 0.0], duration_upper=[2.0, 0.6, 3.0])
-    found = family_free(bounded)
-    assert verified(bounded, found) > family_free(PUMA_PROBLEM).total_time
+    found = estimate_any_curve(bounded)
+    assert verified(bounded, found) > estimate_any_curve(PUMA_PROBLEM).total_time
     assert found.durations[0] == pytest.approx(0.9, rel=1e-9)
     assert found.durations[1] <= 0.6 * (1 + 1e-9)
 
 
 def test_virtual_breaks_are_merged() -> None:
     virtual = Problem(PUMA, PUMA_PROBLEM.limits, cubic_spline_virtual(4))
-    found = family_free(virtual)
+    found = estimate_any_curve(virtual)
     assert found.durations.shape == (3,)
-    assert found.total_time == pytest.approx(family_free(PUMA_PROBLEM).total_time, rel=1e-9)
+    assert found.total_time == pytest.approx(estimate_any_curve(PUMA_PROBLEM).total_time, rel=1e-9)
     lower = replace(virtual, duration_lower=[0.5, 0.4, 0.0, 0.0, 0.0])
-    assert family_free(lower).durations[0] == pytest.approx(0.9, rel=1e-9)
+    assert estimate_any_curve(lower).durations[0] == pytest.approx(0.9, rel=1e-9)
 
 
 def test_repeated_waypoints_are_passed_in_no_time() -> None:
     q = [0.2, 1.5, 1.5, 2.0]
-    found = family_free(posed(q, 9.0, 4.0))
+    found = estimate_any_curve(posed(q, 9.0, 4.0))
     assert found.total_time == pytest.approx(rest_to_rest_time(1.8, 9.0, 4.0), rel=1e-8)
     assert found.durations[1] == 0.0
     assert not found.attained
     assert found.why == "nothing moves in segment 2: its duration goes to 0"
-    held = family_free(posed(q, 9.0, 4.0, duration_lower=0.3))
+    held = estimate_any_curve(posed(q, 9.0, 4.0, duration_lower=0.3))
     assert held.attained
     assert held.durations[1] >= 0.3
 
@@ -417,7 +417,7 @@ def test_repeated_waypoints_are_passed_in_no_time() -> None:
     ],
 )
 def test_not_computed(limits: Limits, why: str) -> None:
-    found = family_free(replace(PUMA_PROBLEM, limits=limits))
+    found = estimate_any_curve(replace(PUMA_PROBLEM, limits=limits))
     assert found.total_time is None
     assert found.durations is None
     assert found.evidence is Evidence.NONE
@@ -427,18 +427,18 @@ def test_not_computed(limits: Limits, why: str) -> None:
 
 
 def test_nothing_moves() -> None:
-    assert family_free(posed([0.4, 0.4, 0.4], 1.0, 2.0)).why == "nothing moves"
+    assert estimate_any_curve(posed([0.4, 0.4, 0.4], 1.0, 2.0)).why == "nothing moves"
 
 
 def test_too_little_time() -> None:
-    found = family_free(posed([0.0, 1.0, 0.5], 2.0, 8.0, duration_upper=0.45))
+    found = estimate_any_curve(posed([0.0, 1.0, 0.5], 2.0, 8.0, duration_upper=0.45))
     assert found.why == "segment 1 cannot be done within its upper bound"
-    found = family_free(posed([0.0, 1.0, 0.5], 2.0, 1.0, duration_upper=0.9))
+    found = estimate_any_curve(posed([0.0, 1.0, 0.5], 2.0, 1.0, duration_upper=0.9))
     assert found.why == "none of 6 starts led to an answer"
 
 
 def test_prescribed_velocity_beyond_its_limit() -> None:
-    found = family_free(posed([0.0, 1.0], 2.0, 8.0, ends=((1, 2.5),)))
+    found = estimate_any_curve(posed([0.0, 1.0], 2.0, 8.0, ends=((1, 2.5),)))
     assert found.why == "the velocity prescribed at the start exceeds the limit of joint 1"
 
 
@@ -447,12 +447,12 @@ def test_position_limits_are_never_dropped_silently() -> None:
     q = np.array([[0.0, 0.0], [1.0, 0.5], [0.2, 1.0]])
     wide = Limits(5.0, 8.0, position_lower=-1.0, position_upper=2.0, joints=2)
     free = Limits(5.0, 8.0, joints=2)
-    one, two = (family_free(Problem(q, limits, cubic_spline(2))) for limits in (wide, free))
+    one, two = (estimate_any_curve(Problem(q, limits, cubic_spline(2))) for limits in (wide, free))
     assert one.total_time == pytest.approx(two.total_time, rel=1e-12)
     # From full speed the joint must overshoot 1.0, where the range ends.
     start = Interpolant((3,), (), (((1, 0.0),), ((1, 4.0),)))
     late = Problem([[0.0], [0.1]], Limits(5.0, 8.0, position_lower=-0.2), start)
-    found = family_free(late)
+    found = estimate_any_curve(late)
     assert found.total_time is None
     assert found.why is not None
     assert found.why.startswith("position is limited, and the curve found leaves the range")
@@ -460,13 +460,13 @@ def test_position_limits_are_never_dropped_silently() -> None:
 
 def test_starts_of_the_wrong_shape() -> None:
     with pytest.raises(TrajgapError, match=r"initial: .* of shape \(starts, 3\)"):
-        family_free(PUMA_PROBLEM, initial=[1.0, 2.0])
+        estimate_any_curve(PUMA_PROBLEM, initial=[1.0, 2.0])
     with pytest.raises(TrajgapError, match="initial: expected positive durations"):
-        family_free(PUMA_PROBLEM, initial=[1.0, -2.0, 1.0])
+        estimate_any_curve(PUMA_PROBLEM, initial=[1.0, -2.0, 1.0])
 
 
 def test_summary_on_one_screen() -> None:
-    text = str(family_free(PUMA_PROBLEM))
+    text = str(estimate_any_curve(PUMA_PROBLEM))
     for part in ("1.535287930 s", "best known, an upper estimate", "6 of 6"):
         assert part in text
     assert "floor" not in text

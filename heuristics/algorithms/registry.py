@@ -6,15 +6,22 @@ from collections.abc import Callable, Mapping
 from dataclasses import fields
 from typing import Any
 
-from ..problem import TrajgapError
-from .algorithm import Algorithm
-from .algorithms import GA, MNAMPSO, PSO, WOA, ConstrainedPSO, ImprovedGA, ImprovedWOA
-from .settings import nearest
+from ...problem import TrajgapError
+from ..algorithm import Algorithm
+from ..settings import nearest
+from .constrained_pso import ConstrainedPSO
+from .ga import GA
+from .improved_ga import ImprovedGA
+from .improved_woa import ImprovedWOA
+from .mnam_pso import MNAMPSO
+from .pso import PSO
+from .woa import WOA
 
 _RECORDS: dict[str, Any] = {
     record.kind: record
     for record in (PSO, MNAMPSO, ConstrainedPSO, WOA, ImprovedWOA, GA, ImprovedGA)
 }
+"""Record of settings by kind, in the order of the papers; a new algorithm adds a line here."""
 
 KINDS: tuple[str, ...] = tuple(_RECORDS)
 """Kinds of algorithm that are implemented."""
