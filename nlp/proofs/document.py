@@ -11,7 +11,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from ...problem import Curve, Interpolant, TrajgapError
+from ...problem import Curve, Interpolant, TrajgapError, replace_file
 from ...problem.curves import StretchedUniformBSpline, TimedUniformBSpline
 from ...verify import CERTIFICATE_FORMAT, CertifiedQuestion, Subject, number, seal
 from .exact import ExactProblem, Real, decimal
@@ -185,7 +185,7 @@ def write_certificate(
         If nothing is proved.
     """
     text = certificate_text(certified, question)
-    Path(path).write_text(text, encoding="utf-8")
+    replace_file(Path(path), text)
     return len(text.encode())
 
 

@@ -7,7 +7,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from ...problem import TrajgapError
+from ...problem import TrajgapError, check_regular
 from ...verify import (
     STATE_FORMAT,
     CertifiedQuestion,
@@ -85,6 +85,7 @@ def read_state(path: str | Path) -> StateFile:
         alone: `certify` proves everything in it again.
     """
     name = str(path)
+    check_regular(Path(path))
     try:
         document = read_document(path)
     except Refused as error:

@@ -18,8 +18,8 @@ from support.command_line import CASE, Run, on_terminal, strict
 from support.documents import SCHEMA, assert_valid
 from support.shipped_problems import POSED
 from trajgap.compare.cli import certifying as cli_certify
-from trajgap.compare.documents.proofs import NOT_COVERED, Worth
-from trajgap.nlp import ExactProblem, Outcome, shipped
+from trajgap.compare.documents import Uncovered
+from trajgap.nlp import ExactProblem, shipped
 from trajgap.nlp.proofs.document import shipped_folder
 from trajgap.nlp.proofs.state import read_state
 from trajgap.nlp.proofs.three_piece import rows as three_piece
@@ -39,9 +39,8 @@ def files_of(out: str) -> list[str]:
 
 
 def test_words_are_those_of_the_library() -> None:
-    assert SCHEMA["$defs"]["outcome"]["enum"] == [*map(str, Outcome), NOT_COVERED]
-    assert SCHEMA["$defs"]["worth"]["enum"] == [*map(str, Worth)]
-    assert SCHEMA["$defs"]["subject"]["enum"] == [*map(str, Subject)]
+    outcome = SCHEMA["$defs"]["certified_result"]["properties"]["outcome"]
+    assert [one["$ref"] for one in outcome["anyOf"]] == ["#/$defs/outcome", "#/$defs/uncovered"]
     for name in ("certify", "verify"):
         assert {"$ref": f"#/$defs/{name}"} in SCHEMA["anyOf"]
 
@@ -107,7 +106,7 @@ def test_a_curve_that_is_not_covered_is_named(run: Run) -> None:
     assert code == cli_certify.NOT_PROVED
     document = strict(out)
     assert_valid(document, "certify")
-    assert document["intervals"][0]["outcome"] == NOT_COVERED
+    assert document["intervals"][0]["outcome"] == Uncovered.NOT_COVERED
     assert "time a B-spline too" in document["intervals"][0]["lower_why"]
 
 

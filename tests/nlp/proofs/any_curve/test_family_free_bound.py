@@ -737,8 +737,8 @@ def test_the_waterfall_ends_at_the_bound() -> None:
     study = Study(load_case("puma560-mnam-pso-353"), reading="durations-positive")
     step = waterfall._free(study, "six-joints", "durations-positive")
     assert step.evidence is Evidence.CERTIFIED
-    assert step.low is not None
-    assert step.high is not None
+    assert isinstance(step.low, float)
+    assert isinstance(step.high, float)
     assert 0 < step.high - step.low <= 1e-8
     number = step.note.split(" s: certified, gap ")[0].rsplit(" ", 1)[1]
     assert step.note.startswith(
