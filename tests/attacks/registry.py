@@ -1,0 +1,13 @@
+"""Every attack, in the order of the table."""
+
+from __future__ import annotations
+
+from . import faults, judging, optima, reading
+from .attack import Attack
+
+ATTACKS: tuple[Attack, ...] = (
+    *reading.ATTACKS,
+    *judging.ATTACKS,
+    *optima.ATTACKS,
+    *faults.ATTACKS,
+)
