@@ -24,15 +24,15 @@ def problems() -> Iterator[tuple[str, ExactProblem]]:
         case = load_case(case_id)
         for problem in case.problems:
             for reading in case.readings:
-                posing = case.posing(problem.id, reading.id)
-                if not posing.posed:
+                statement = case.statement(problem.id, reading.id)
+                if not statement.complete:
                     continue
-                exact = printed_problem(posing)
+                exact = printed_problem(statement)
                 if covered(exact) is not None:
                     continue
                 name = f"{case_id}.{problem.id}.{reading.id}"
                 yield name, exact
-                if len(exact.joints) > 1 and posing.coupling is Coupling.PER_JOINT:
+                if len(exact.joints) > 1 and statement.coupling is Coupling.PER_JOINT:
                     for j, label in enumerate(exact.joints):
                         yield f"{name}.joint-{label}", exact.joint(j)
 

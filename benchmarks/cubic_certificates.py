@@ -55,7 +55,7 @@ def seeded(
 
 def example() -> ExactProblem:
     case = load_case(EXAMPLE)
-    return printed_problem(case.posing(case.problems[0].id, case.readings[0].id))
+    return printed_problem(case.statement(case.problems[0].id, case.readings[0].id))
 
 
 def problems() -> dict[str, ExactProblem]:

@@ -14,7 +14,7 @@ from trajgap.problem import (
     load_robot,
     quintic_spline,
     sample_workspace,
-    waypoint_family,
+    waypoint_sequences,
 )
 
 STEPS = (0.5, 1.0, 2.0, 3.0)
@@ -32,7 +32,7 @@ def instances() -> list[Problem]:
     limits = Limits(VELOCITY, ACCELERATION)
     problems = []
     for k, step in enumerate(STEPS):
-        family = waypoint_family(workspace, step=step, count=EACH, seed=SEED + 1 + k)
+        family = waypoint_sequences(workspace, step=step, count=EACH, seed=SEED + 1 + k)
         for i, waypoints in enumerate(family):
             name = f"step {step} rad, number {i + 1}"
             problems.append(

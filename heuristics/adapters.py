@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from ..problem import TrajgapError
-from .objective import Array, Bounds, Objective
+from ..problem import Array, TrajgapError
+from .objective import Bounds, Objective
 from .settings import clean, number, reject, whole
 
 Searching = Callable[[Objective, Bounds, np.random.Generator], object]

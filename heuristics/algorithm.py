@@ -6,7 +6,8 @@ from typing import ClassVar, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 
-from .objective import Array, Bounds, Objective
+from ..problem import Array
+from .objective import Bounds, Objective
 
 
 class State(Protocol):

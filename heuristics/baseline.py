@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..problem import Problem, TrajgapError, Verdict, check, evaluate
-from .objective import Array
+from ..problem import Array, Problem, TrajgapError, Verdict, check, evaluate
 
 
 def uniform_rescaling(problem: Problem) -> Array:
@@ -30,7 +29,7 @@ def uniform_rescaling(problem: Problem) -> Array:
         If no equal durations are shortest (nothing is limited, a joint with limit 0 moves, a
         prescribed derivative is not 0), or they leave the bounds and set to them fail the checker.
     """
-    if not problem.interpolant.homogeneous:
+    if not problem.curve.homogeneous:
         raise TrajgapError(
             "uniform rescaling: a prescribed derivative is not 0, stretching would change it"
         )

@@ -6,9 +6,9 @@ from contextlib import suppress
 
 import numpy as np
 
-from ..problem import TrajgapError
+from ..problem import Array, TrajgapError
 from .algorithm import Search
-from .objective import Array, Bounds, Counted, Objective
+from .objective import Bounds, Counted, Objective
 
 
 class BudgetSpent(BaseException):

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..problem import Problem, TrajgapError, evaluate
+from ..problem import Array, Problem, TrajgapError, evaluate
 from .algorithm import Algorithm
 from .algorithms import (
     THIRD,
@@ -20,7 +20,7 @@ from .algorithms import (
     orbit,
 )
 from .loop import states
-from .objective import Array, Bounds, DeathPenalty
+from .objective import Bounds, DeathPenalty
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,11 +13,11 @@ from typing import Any, TypeVar, cast
 
 import numpy as np
 
-from ..problem import Problem, TrajgapError
+from ..problem import Array, Problem, TrajgapError
 from .algorithm import Algorithm, S, Search, State
 from .budget import searched
-from .objective import Array, Bounds, Counted, Objective
-from .repair import Handling, pose
+from .objective import Bounds, Counted, Objective
+from .repair import Handling, judge_of
 from .result import JointRuns, Run
 from .settings import whole
 
@@ -80,7 +80,7 @@ def _stepped(
 def _run(
     method: Method, problem: Problem, seed: int, stream: tuple[int, ...], handling: str
 ) -> Run:
-    judge = pose(problem, method.penalty, handling)
+    judge = judge_of(problem, method.penalty, handling)
     bounds = Bounds.of(problem)
     # Named, not numpy's default, which may change: the same seed must give the same bits.
     rng = np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed, spawn_key=stream)))

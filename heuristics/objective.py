@@ -6,11 +6,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..problem import TOLERANCE, Problem, TrajgapError, evaluate
+from ..problem import TOLERANCE, Array, Problem, TrajgapError, evaluate
 
-Array = NDArray[np.float64]
 Objective = Callable[[Array], Array]
 """Maps a batch of positions, shape (batch, dimensions), to their fitness, shape (batch,)."""
 
@@ -55,7 +53,7 @@ class DeathPenalty:
     ------
     TrajgapError
         If the penalty is not positive or some admissible total reaches it, if a position limit is
-        set, or if the interpolant leaves derivatives free: the batch evaluation sees neither.
+        set, or if the curve leaves derivatives free: the batch evaluation sees neither.
 
     Notes
     -----
@@ -84,9 +82,9 @@ class DeathPenalty:
                 "limits.position: the heuristics' objective judges velocity, acceleration and "
                 "jerk only; drop the position limits"
             )
-        if problem.interpolant.free:
+        if problem.curve.free:
             raise TrajgapError(
-                f"interpolant {problem.interpolant.name}: leaves {problem.interpolant.free} "
+                f"interpolant {problem.curve.name}: leaves {problem.curve.free} "
                 "derivatives per joint free, heuristics search durations only; prescribe them"
             )
 

@@ -15,6 +15,7 @@ _RECORDS: dict[str, Any] = {
     record.kind: record
     for record in (PSO, MNAMPSO, ConstrainedPSO, WOA, ImprovedWOA, GA, ImprovedGA)
 }
+"""Record of settings by kind, in the order of the papers; a new algorithm adds a line here."""
 
 KINDS: tuple[str, ...] = tuple(_RECORDS)
 """Kinds of algorithm that are implemented."""

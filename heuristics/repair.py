@@ -9,8 +9,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ..problem import Problem, TrajgapError, evaluate
-from .objective import Array, DeathPenalty
+from ..problem import Array, Problem, TrajgapError, evaluate
+from .objective import DeathPenalty
 from .settings import choice
 
 
@@ -72,7 +72,7 @@ class Stretch:
 
     def __post_init__(self) -> None:
         DeathPenalty(self.problem, self.penalty)
-        if not self.problem.interpolant.homogeneous:
+        if not self.problem.curve.homogeneous:
             raise TrajgapError(
                 "stretch: a prescribed derivative is not 0, stretching would change it; "
                 "use the death penalty"
@@ -126,7 +126,7 @@ class Stretch:
         return fitness
 
 
-def pose(problem: Problem, penalty: float, handling: str = Handling.DEATH_PENALTY) -> Judge:
+def judge_of(problem: Problem, penalty: float, handling: str = Handling.DEATH_PENALTY) -> Judge:
     """Objective of a problem under one handling of infeasible durations.
 
     Parameters

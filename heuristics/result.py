@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from ..problem import Array
 from .algorithm import Algorithm, Search
-from .objective import Array
 from .repair import Handling
 
 

@@ -34,18 +34,16 @@ from .proofs import (
     with_certificates,
     write_certificate,
 )
-from .proofs.any_curve import FamilyFree, certify_family_free, family_free
+from .proofs.any_curve import AnyCurveEstimate, estimate_any_curve
 from .retiming import Retiming, retime, retime_joints
-from .verify import FORMAT, Subject, Verdict, verify
 
 __all__ = [
-    "FORMAT",
     "KKT",
     "Active",
+    "AnyCurveEstimate",
     "Certified",
     "Evidence",
     "ExactProblem",
-    "FamilyFree",
     "Form",
     "Formulation",
     "Interval",
@@ -57,14 +55,11 @@ __all__ = [
     "Solution",
     "Status",
     "Structure",
-    "Subject",
-    "Verdict",
     "build",
     "certificate",
     "certify",
-    "certify_family_free",
+    "estimate_any_curve",
     "exact_problem",
-    "family_free",
     "kkt",
     "printed_problem",
     "proved",
@@ -76,7 +71,6 @@ __all__ = [
     "solve_per_joint",
     "stated_exactly",
     "structure_of",
-    "verify",
     "weakest",
     "with_certificate",
     "with_certificates",

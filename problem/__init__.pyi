@@ -1,3 +1,4 @@
+from .arrays import Array
 from .cases import (
     Case,
     CaseFile,
@@ -71,7 +72,7 @@ from .robots import (
     link_frames,
     proximity,
     sample_workspace,
-    waypoint_family,
+    waypoint_sequences,
 )
 from .units import CHOICES, Measured, Scale, scale, to_si
 
@@ -79,6 +80,7 @@ __all__ = [
     "CHOICES",
     "QUANTITIES",
     "TOLERANCE",
+    "Array",
     "CartesianLine",
     "Case",
     "CaseError",
@@ -154,5 +156,5 @@ __all__ = [
     "to_si",
     "uniform_cubic_b_spline",
     "up",
-    "waypoint_family",
+    "waypoint_sequences",
 ]

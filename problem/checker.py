@@ -9,14 +9,11 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .arrays import Array
 from .curves import (
     Trajectory,
     as_durations,
-    batch_peaks,
-    enclosed,
     extrema,
-    motion_values,
-    segment_of,
 )
 from .errors import CurveError, TrajgapError
 from .limits import QUANTITIES, Limits
@@ -102,6 +99,7 @@ class Jump:
 
 
 _DERIVATIVES = ("position", *QUANTITIES)
+"""Words for derivative orders 0 to 3."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,9 +185,9 @@ def _ratio(value: float, limit: float, error: float) -> float:
 
 def _derivative_peaks(
     problem: Problem,
-    h: NDArray[np.float64],
+    h: Array,
     trajectory: Trajectory,
-    error: NDArray[np.float64],
+    error: Array,
 ) -> list[Peak]:
     limits = problem.limits.derivatives
     peaks = []
@@ -204,7 +202,7 @@ def _derivative_peaks(
             bound = max(bounds)
             limit = float(limits[j, r - 1])
             ratio = _ratio(top.value, limit, bound)
-            at = segment_of(problem.interpolant, h, top)
+            at = problem.curve.segment_of(h, top)
             peaks.append(Peak(label, quantity, at, top.time, top.value, limit, ratio, bound))
     return peaks
 
@@ -216,9 +214,9 @@ def _half_range(low: float, high: float, limit: float) -> float:
 
 def _position_peaks(
     problem: Problem,
-    h: NDArray[np.float64],
+    h: Array,
     trajectory: Trajectory,
-    error: NDArray[np.float64],
+    error: Array,
 ) -> list[Peak]:
     peaks = []
     for j, label in enumerate(problem.joints):
@@ -234,7 +232,7 @@ def _position_peaks(
             half = _half_range(low, high, limit)
             bound = float(error[:, 0, j].max())
             ratio = 1.0 + excess / half if half > 0 else _ratio(excess, 0.0, bound)
-            at = segment_of(problem.interpolant, h, top)
+            at = problem.curve.segment_of(h, top)
             peaks.append(
                 Peak(label, "position", at, top.time, top.value, float(limit), ratio, bound)
             )
@@ -250,7 +248,7 @@ def _slack(problem: Problem, peak: Peak) -> float:
     return peak.error / scale if scale else 0.0
 
 
-def _duration_peaks(problem: Problem, h: NDArray[np.float64]) -> list[Peak]:
+def _duration_peaks(problem: Problem, h: Array) -> list[Peak]:
     peaks = []
     for k, d in enumerate(h):
         low, high = problem.duration_lower[k], problem.duration_upper[k]
@@ -263,7 +261,7 @@ def _duration_peaks(problem: Problem, h: NDArray[np.float64]) -> list[Peak]:
     return peaks
 
 
-def _jumps(problem: Problem, trajectory: Trajectory, error: NDArray[np.float64]) -> list[Jump]:
+def _jumps(problem: Problem, trajectory: Trajectory, error: Array) -> list[Jump]:
     jumps = []
     for b in range(1, len(trajectory.durations)):
         for j, label in enumerate(problem.joints):
@@ -276,7 +274,7 @@ def _jumps(problem: Problem, trajectory: Trajectory, error: NDArray[np.float64])
     return jumps
 
 
-def _no_curve(problem: Problem, h: NDArray[np.float64], why: CurveError, tolerance: float) -> Check:
+def _no_curve(problem: Problem, h: Array, why: CurveError, tolerance: float) -> Check:
     """Durations that define no curve keep no limit."""
     peak = Peak(None, "curve", why.segment, None, why.value, 0.0, np.inf, 0.0)
     return Check(
@@ -296,13 +294,13 @@ def _no_curve(problem: Problem, h: NDArray[np.float64], why: CurveError, toleran
 
 
 def _rescaled(
-    problem: Problem, h: NDArray[np.float64], factor: float, peaks: list[Peak]
+    problem: Problem, h: Array, factor: float, peaks: list[Peak]
 ) -> tuple[float | None, str | None]:
     stretched = h * factor
     slack = 1 + TOLERANCE
     if not np.isfinite(factor):
         return None, "a joint with limit 0 moves; no stretch repairs that"
-    if factor != 1.0 and not problem.interpolant.homogeneous:
+    if factor != 1.0 and not problem.curve.homogeneous:
         return None, "a prescribed end derivative is not 0; stretching would change it"
     if any(p.quantity == "position" and p.ratio > 1 + TOLERANCE for p in peaks):
         return None, "a position limit is exceeded; stretching does not move the path"
@@ -329,7 +327,7 @@ def check(
     durations : array_like, shape (segments,)
         Segment durations shared by all joints, s.
     nodal : array_like, shape (free, joints), optional
-        Values of the free derivatives of an under-determined interpolant.
+        Values of the free derivatives of an under-determined curve.
     tolerance : float
         Relative excess over a limit that still counts as keeping it.
 
@@ -345,7 +343,7 @@ def check(
     h = as_durations(durations, problem.segments)
     extra = None if nodal is None else np.asarray(nodal, dtype=np.float64)
     try:
-        found = enclosed(problem.interpolant, problem.waypoints, h, extra)
+        found = problem.curve.enclosed(problem.waypoints, h, extra)
     except CurveError as why:
         return _no_curve(problem, h, why, tolerance)
     trajectory, error = found.trajectory, found.error
@@ -410,7 +408,7 @@ def reachable_total(
     Parameters
     ----------
     problem : Problem
-        With a determined, homogeneous interpolant.
+        With a determined, homogeneous curve.
     durations : array_like, shape (segments,)
         s.
     lower, upper : array_like, shape (way-points, joints)
@@ -424,7 +422,7 @@ def reachable_total(
     """
     h = as_durations(durations, problem.segments)
     q, points = problem.waypoints, len(problem.waypoints)
-    plain = not problem.interpolant.free and problem.interpolant.homogeneous
+    plain = not problem.curve.free and problem.curve.homogeneous
     if not plain or problem.limits.limits_position:
         return None
     away = np.maximum(np.asarray(upper) - q, q - np.asarray(lower))
@@ -466,8 +464,8 @@ class Evaluation:
         c* of each vector.
     """
 
-    ratios: NDArray[np.float64]
-    stretch: NDArray[np.float64]
+    ratios: Array
+    stretch: Array
 
 
 def evaluate(problem: Problem, durations: ArrayLike, nodal: ArrayLike | None = None) -> Evaluation:
@@ -498,7 +496,7 @@ def evaluate(problem: Problem, durations: ArrayLike, nodal: ArrayLike | None = N
         values, limits, wanted = _fixed_question(problem)
     else:
         values, limits, wanted = _question(problem, np.asarray(nodal, dtype=np.float64))
-    peaks = batch_peaks(problem.interpolant, values, h, wanted)
+    peaks = problem.curve.batch_peaks(values, h, wanted)
     with np.errstate(invalid="ignore", divide="ignore"):
         ratios = peaks / limits
     undefined = np.isnan(ratios)  # 0/0 is kept, inf/inf is not
@@ -511,12 +509,12 @@ def evaluate(problem: Problem, durations: ArrayLike, nodal: ArrayLike | None = N
     return Evaluation(ratios, stretch)
 
 
-Question = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]
+Question = tuple[Array, Array, NDArray[np.bool_]]
 
 
-def _question(problem: Problem, nodal: NDArray[np.float64] | None) -> Question:
+def _question(problem: Problem, nodal: Array | None) -> Question:
     limits = problem.limits.derivatives
-    values = motion_values(problem.interpolant, problem.waypoints, nodal)
+    values = problem.curve.motion_values(problem.waypoints, nodal)
     return values, limits, np.isfinite(limits)
 
 

@@ -128,7 +128,9 @@ def _plain(number: Printed | None) -> str | int | float | None:
 
 
 _DIGITS = r"^\s*[+\-−]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?\s*$"
+"""Digits as `printed.Printed` reads them, for the JSON Schema alone."""
 _NUMBER_SCHEMA = {"anyOf": [{"type": "number"}, {"type": "string", "pattern": _DIGITS}]}
+"""A bare number is exact, a string is printed digits."""
 _LIMIT_SCHEMA = {
     "anyOf": [
         {"type": "number"},
@@ -137,6 +139,7 @@ _LIMIT_SCHEMA = {
         {"enum": ["inf", "-inf"]},
     ]
 }
+"""As a number, and the words for no limit."""
 
 Number = Annotated[
     Printed, PlainValidator(read_number), PlainSerializer(_plain), WithJsonSchema(_NUMBER_SCHEMA)
@@ -210,8 +213,10 @@ OneOrEachUpperPosition = Annotated[
     Discriminator(_form),
 ]
 
-Row = Annotated[tuple[Number, ...], Field(min_length=1)]
-Rows = Annotated[tuple[Row, ...], Field(min_length=1)]
+PrintedRows = Annotated[
+    tuple[Annotated[tuple[Number, ...], Field(min_length=1)], ...], Field(min_length=1)
+]
+"""A table of numbers, no row empty."""
 
 Id = Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9.-]*$")]
 """Lower-case letters, digits, dots and dashes."""

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
-from .curves import Extremum, PeakGradients, value_gradients
+from .arrays import Array
+from .curves import Extremum, PeakGradients
 from .problem import Problem
 
 
 def peak_gradients(
     problem: Problem,
-    durations: NDArray[np.float64],
+    durations: Array,
     points: list[Extremum],
-    nodal: NDArray[np.float64] | None = None,
+    nodal: Array | None = None,
 ) -> PeakGradients:
     """Gradients of the values at ``points``, extrema of the trajectory of these durations.
 
@@ -30,4 +28,4 @@ def peak_gradients(
     PeakGradients
         By the way-points with everything else held, also parameters that are taken from chords.
     """
-    return value_gradients(problem.interpolant, problem.waypoints, durations, points, nodal)
+    return problem.curve.value_gradients(problem.waypoints, durations, points, nodal)

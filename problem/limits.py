@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from .arrays import Array
 from .errors import TrajgapError
 
 QUANTITIES = ("velocity", "acceleration", "jerk")
@@ -33,11 +34,11 @@ class Limits:
         If a limit is not a number, NaN or negative, the range is empty, or the lengths differ.
     """
 
-    velocity: NDArray[np.float64] = field(default_factory=lambda: np.array(np.inf))
-    acceleration: NDArray[np.float64] = field(default_factory=lambda: np.array(np.inf))
-    jerk: NDArray[np.float64] = field(default_factory=lambda: np.array(np.inf))
-    position_lower: NDArray[np.float64] = field(default_factory=lambda: np.array(-np.inf))
-    position_upper: NDArray[np.float64] = field(default_factory=lambda: np.array(np.inf))
+    velocity: Array = field(default_factory=lambda: np.array(np.inf))
+    acceleration: Array = field(default_factory=lambda: np.array(np.inf))
+    jerk: Array = field(default_factory=lambda: np.array(np.inf))
+    position_lower: Array = field(default_factory=lambda: np.array(-np.inf))
+    position_upper: Array = field(default_factory=lambda: np.array(np.inf))
     joints: int | None = None
 
     def __post_init__(self) -> None:
@@ -74,7 +75,7 @@ class Limits:
             raise TrajgapError("limits.position_lower: lies above limits.position_upper")
 
     @property
-    def derivatives(self) -> NDArray[np.float64]:
+    def derivatives(self) -> Array:
         """Velocity, acceleration and jerk limits stacked, shape (joints, 3)."""
         return np.stack([self.velocity, self.acceleration, self.jerk], axis=1)
 

@@ -13,9 +13,13 @@ from typing import NamedTuple
 from .errors import TrajgapError
 
 _NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
+"""One decimal number; group 2 is the exponent."""
 _MINUS_SIGNS = str.maketrans({"\u2212": "-", "\u2013": "-", "\ufe63": "-", "\uff0d": "-"})
+"""Minus signs that are printed or extracted, to the ASCII one."""
 _LONGEST = 64
+"""Characters of one number: printed digits are fewer, and arithmetic on more could run away."""
 _LARGEST_EXPONENT = 300
+"""Powers of ten that a float64 holds, with room for units and outward rounding."""
 
 
 class Interval(NamedTuple):

@@ -1,4 +1,4 @@
-"""The question: way-points, limits, interpolant, duration bounds and coupling of the joints."""
+"""The question: way-points, limits, curve, duration bounds and coupling of the joints."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .curves import Curve, Interpolant, for_joint
+from .arrays import Array
+from .curves import Curve, Interpolant, as_curve
 from .errors import TrajgapError
 from .limits import Limits
 
@@ -32,7 +32,7 @@ class Problem:
         Joint angles, rad.
     limits : Limits
         Limits of every joint.
-    interpolant : Curve
+    curve : Curve
         Declaration of the curve: an `Interpolant` or any other kind.
     duration_lower, duration_upper : array_like, shape (segments,) or scalar
         Bounds on the segment durations, s; a lower bound of 0 means "positive".
@@ -47,11 +47,11 @@ class Problem:
         If shapes disagree, a value is not finite, or a bound is negative or crosses its partner.
     """
 
-    waypoints: NDArray[np.float64]
+    waypoints: Array
     limits: Limits
-    interpolant: Curve
-    duration_lower: NDArray[np.float64] = field(default_factory=lambda: np.array(0.0))
-    duration_upper: NDArray[np.float64] = field(default_factory=lambda: np.array(np.inf))
+    curve: Curve
+    duration_lower: Array = field(default_factory=lambda: np.array(0.0))
+    duration_upper: Array = field(default_factory=lambda: np.array(np.inf))
     coupling: Coupling = Coupling.SHARED
     joints: tuple[str, ...] = ()
     name: str = "problem"
@@ -69,10 +69,10 @@ class Problem:
             raise TrajgapError(f"waypoints: expected shape (way-points, joints), got {q.shape}")
         if not np.isfinite(q).all():
             raise TrajgapError("waypoints: every angle must be finite")
-        wanted = len(self.interpolant.waypoint_breaks)
+        wanted = len(as_curve(self.curve).waypoint_breaks)
         if q.shape[0] != wanted:
             raise TrajgapError(
-                f"waypoints: {self.interpolant.name} with {self.interpolant.segments} segments "
+                f"waypoints: {self.curve.name} with {self.curve.segments} segments "
                 f"needs {wanted}, got {q.shape[0]}"
             )
         q.setflags(write=False)
@@ -95,7 +95,7 @@ class Problem:
                     joints=q.shape[1],
                 ),
             )
-        n = self.interpolant.segments
+        n = self.curve.segments
         for name in ("duration_lower", "duration_upper"):
             try:
                 bound = np.asarray(getattr(self, name), dtype=np.float64)
@@ -127,7 +127,7 @@ class Problem:
     @property
     def segments(self) -> int:
         """Number of segments, the length of a duration vector."""
-        return self.interpolant.segments
+        return self.curve.segments
 
     @property
     def piecewise(self) -> Interpolant:
@@ -138,18 +138,19 @@ class Problem:
         TrajgapError
             If it is of another kind.
         """
-        if not isinstance(self.interpolant, Interpolant):
+        polynomials = self.curve.piecewise
+        if polynomials is None:
             raise TrajgapError(
-                f"interpolant: {self.interpolant.name} is no piecewise polynomial with breaks at "
+                f"curve: {self.curve.name} is no piecewise polynomial with breaks at "
                 "the way-points, which is needed here"
             )
-        return self.interpolant
+        return polynomials
 
     def joint(self, index: int) -> Problem:
         """The same question for one joint alone, with shared coupling."""
         return replace(
             self,
-            interpolant=for_joint(self.interpolant, self.waypoints, index),
+            curve=self.curve.for_joint(self.waypoints, index),
             waypoints=self.waypoints[:, index : index + 1],
             limits=self.limits.joint(index),
             joints=(self.joints[index],),

@@ -10,6 +10,7 @@ from typing import Any
 from .errors import CaseError
 
 LARGEST_BYTES = 5_000_000
+"""Two hundred times the longest case file shipped: what is larger is no case file."""
 
 
 def read_text(path: Path) -> str:

@@ -32,7 +32,9 @@ CHOICES = MappingProxyType(
 """The units known for each quantity."""
 
 _PI_DIGITS = "3.14159265358979323846264338327950288419716939937510"
+"""π cut after 50 decimals."""
 _PI = (Fraction(_PI_DIGITS), Fraction(_PI_DIGITS) + Fraction(1, 10**50))
+"""Rational bounds of π, 1e-50 apart."""
 
 
 @dataclass(frozen=True)
@@ -51,6 +53,7 @@ class Scale:
 
 
 _ONE, _DEGREE = Scale(Fraction(1)), Scale(Fraction(1, 180), 1)
+"""Factors of what is in radians already, and of degrees."""
 _SCALES = MappingProxyType(
     {
         "rad": _ONE,
@@ -68,6 +71,7 @@ _SCALES = MappingProxyType(
         "mm": Scale(Fraction(1, 1000)),
     }
 )
+"""Factor of every unit to radians, seconds and metres."""
 
 
 def scale(unit: str) -> Scale:

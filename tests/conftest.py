@@ -1,6 +1,10 @@
 """Hypothesis without a deadline: the first example may compile. The same examples in every run."""
 
+import pytest
 from hypothesis import settings
+
+# An assertion that fails in a shared part shows its numbers too.
+pytest.register_assert_rewrite("support")
 
 settings.register_profile("trajgap", deadline=None, derandomize=True)
 settings.load_profile("trajgap")

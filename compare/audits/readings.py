@@ -13,7 +13,6 @@ import numpy as np
 from ...nlp import Evidence
 from ...problem import QUANTITIES, Verdict, extrema, fit
 from ...problem.cases import AnyClaim
-from ...problem.curves import segment_of
 from ..gaps import Gap, gap
 from .finding import ClaimVerdict, Judgement, Scope
 from .rounding import Rounding
@@ -164,7 +163,7 @@ def readings_summary(
     outcomes = tuple(_outcome(study, fall) for fall in falls)
     why = None
     if not outcomes:
-        missing = study.case.posing().waypoints.not_printed
+        missing = study.case.statement().waypoints.not_printed
         why = f"no way-points are printed: {missing}" if missing else "no problem is posed"
     tallies = tuple(
         Tally(j.claim, j.verdict, j.scope, tuple(Counter(v for _, v in j.readings).items()))
@@ -220,10 +219,10 @@ def _excesses(study: Study, claim: AnyClaim, pid: str, rid: str) -> tuple[Excess
     over = [Excess(p.segment, p.joint, p.quantity, float(p.ratio)) for p in checked.peaks]
     if not any(p.quantity == "curve" for p in checked.peaks):
         durations = study.case.claim_durations(claim, rid).value
-        trajectory = fit(problem.interpolant, problem.waypoints, durations)
+        trajectory = fit(problem.curve, problem.waypoints, durations)
         over += [
             Excess(
-                segment_of(problem.interpolant, durations, e),
+                problem.curve.segment_of(durations, e),
                 problem.joints[j],
                 name,
                 float(abs(e.value) / limit),

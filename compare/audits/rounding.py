@@ -9,7 +9,6 @@ import numpy as np
 
 from ...nlp.enclosure import (
     EPS,
-    Array,
     Ball,
     Place,
     bound_by_bisection,
@@ -17,7 +16,16 @@ from ...nlp.enclosure import (
     linear_program,
     rows_at,
 )
-from ...problem import TOLERANCE, Check, Problem, TrajgapError, Verdict, check, peak_gradients
+from ...problem import (
+    TOLERANCE,
+    Array,
+    Check,
+    Problem,
+    TrajgapError,
+    Verdict,
+    check,
+    peak_gradients,
+)
 
 _MOST_STEPS = 12
 _MOST_ROWS = 300

@@ -39,7 +39,7 @@ from ...problem import (
     check,
     reachable_total,
 )
-from ...problem.cases import Claim, DurationsClaim, FamilyBlock, MaximumClaim, TotalTimeClaim
+from ...problem.cases import Claim, DurationsClaim, InstancesBlock, MaximumClaim, TotalTimeClaim
 from .instances import FamilyResult, examined, readings_of
 from .rounding import Box, RoundingVerdict, judge_rounding
 
@@ -86,7 +86,7 @@ class Study:
         selected = case.selections(problem, reading)
         self.selected: tuple[Pair, ...] = tuple(selected)
         self.readings: tuple[str, ...] = tuple(dict.fromkeys(rid for _, rid in selected))
-        self.pairs: tuple[Pair, ...] = tuple(p for p in selected if case.posing(*p).posed)
+        self.pairs: tuple[Pair, ...] = tuple(p for p in selected if case.statement(*p).complete)
         self._progress = progress or (lambda _: None)
         self._kept: dict[tuple[Any, ...], Any] = {}
 
@@ -124,7 +124,7 @@ class Study:
             self._progress(f"{self.case.id}: optimum of {which}, {pid}, {rid}")
             index = None if joint is None else problem.joints.index(joint)
             found = solve(problem if index is None else problem.joint(index))
-            return with_certificate(found, stated_exactly(self.case.posing(pid, rid), index))
+            return with_certificate(found, stated_exactly(self.case.statement(pid, rid), index))
 
         if joint is not None and len(self.problem(pid, rid).joints) == 1:
             joint = None
@@ -137,7 +137,7 @@ class Study:
             self._progress(f"{self.case.id}: each joint by itself, {pid}, {rid}")
             slacks = dict.fromkeys((*self.half_digits(pid, rid), OPTIMUM_SLACK))
             found = solve_per_joint(self.problem(pid, rid), slacks=tuple(slacks))
-            return with_certificates(found, self.case.posing(pid, rid))
+            return with_certificates(found, self.case.statement(pid, rid))
 
         return self._once(("per joint", pid, rid), compute)
 
@@ -157,8 +157,8 @@ class Study:
 
         def compute() -> Solution:
             problem = self.problem(pid, rid)
-            given = problem.interpolant
-            if not isinstance(given, Interpolant):
+            given = problem.curve.piecewise
+            if given is None:
                 why = "only a declared piecewise polynomial is a member of its relaxed family"
                 return Solution(problem, Status.FAILED, why)
             self._progress(f"{self.case.id}: relaxed family, {pid}, {rid}")
@@ -170,7 +170,7 @@ class Study:
                 virtual=given.virtual,
                 name="relaxed family",
             )
-            return solve(replace(problem, interpolant=family, coupling=Coupling.SHARED))
+            return solve(replace(problem, curve=family, coupling=Coupling.SHARED))
 
         return self._once(("relaxed", pid, rid), compute)
 
@@ -315,11 +315,11 @@ class Study:
         return self._once(("variants", algorithm_id, pid, rid), compute)
 
     @property
-    def families(self) -> tuple[FamilyBlock, ...]:
+    def families(self) -> tuple[InstancesBlock, ...]:
         """Families of which both problems and some reading are selected, all of it implemented."""
-        return tuple(block for block in self.case.families if readings_of(self, block))
+        return tuple(block for block in self.case.instances if readings_of(self, block))
 
-    def family(self, block: FamilyBlock) -> FamilyResult:
+    def family(self, block: InstancesBlock) -> FamilyResult:
         """What the two procedures of an improvement do on the instances of a family."""
 
         def compute() -> FamilyResult:

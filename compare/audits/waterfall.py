@@ -6,11 +6,12 @@ from dataclasses import dataclass
 from decimal import ROUND_FLOOR, Context, Decimal, localcontext
 from fractions import Fraction
 
-from ...nlp import Evidence, Solution, Subject, proved, stated_exactly
-from ...nlp.proofs.any_curve import family_free
+from ...nlp import Evidence, Solution, proved, stated_exactly
+from ...nlp.proofs.any_curve import estimate_any_curve
 from ...nlp.retiming import retime
 from ...problem import Coupling, down, fit, up
 from ...problem.cases import AnyClaim, DurationsClaim, MaximumClaim
+from ...verify import Subject
 from .study import Study
 
 _ROUNDING = 1e-12
@@ -142,7 +143,7 @@ def _retimed(relaxed: Solution) -> Step:
     if relaxed.durations is None:
         return Step(name, None, None, None, Evidence.NONE, "no path")
     problem = relaxed.problem
-    trajectory = fit(problem.interpolant, problem.waypoints, relaxed.durations, relaxed.nodal)
+    trajectory = fit(problem.curve, problem.waypoints, relaxed.durations, relaxed.nodal)
     answer = retime(trajectory, problem.limits)
     if not answer.applicable or answer.extrapolated is None:
         return Step(name, None, None, None, Evidence.NONE, answer.why or "")
@@ -160,11 +161,11 @@ def _retimed(relaxed: Solution) -> Step:
 
 def _free(study: Study, pid: str, rid: str) -> Step:
     name = "any curve through the way-points"
-    answer = family_free(study.problem(pid, rid))
+    answer = estimate_any_curve(study.problem(pid, rid))
     if answer.total_time is None:
         return Step(name, None, None, None, Evidence.NONE, answer.why or "")
     note = "upper estimate" + (f"; {answer.why}" if answer.why else "")
-    exact = stated_exactly(study.case.posing(pid, rid))
+    exact = stated_exactly(study.case.statement(pid, rid))
     bound = None if exact is None else proved(exact, Subject.ANY)
     # An infimum that is met to the last digit may round to either side of its bound.
     if bound is None or not 0 < bound.lower <= answer.total_time * (1 + _ROUNDING):

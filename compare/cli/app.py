@@ -208,14 +208,28 @@ def solve(
 
 @app.command(epilog=_ENDS)
 def verify(
-    files: Annotated[list[Path], typer.Argument(metavar="FILE...", help="Certificates.")],
+    files: Annotated[
+        list[Path], typer.Argument(metavar="FILE...", help="Certificates, or states.")
+    ],
+    case: Annotated[
+        str | None,
+        typer.Option(
+            "--case",
+            metavar="CASE",
+            help="Id of a published case, or case file: compare the problems, number by number.",
+        ),
+    ] = None,
+    seconds: Annotated[
+        float,
+        typer.Option("--time", metavar="SECONDS", min=0.0, help="For each file."),
+    ] = 60.0,
     as_json: AsJson = False,
     out: Out = None,
 ) -> int:
     """Prove certificates again, with code that shares nothing with the solver."""
     from . import certifying as cli_certify
 
-    return cli_certify.verify_files(files, as_json, out)
+    return cli_certify.verify_files(files, case, seconds, as_json, out)
 
 
 @app.command(epilog=_ENDS)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import signal
@@ -9,34 +10,33 @@ import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from pathlib import Path
 from types import FrameType
 from typing import Any
+from urllib.parse import quote
 
-from ...nlp import (
-    FORMAT,
-    Certified,
-    ExactProblem,
-    Outcome,
-    Progress,
-    Verdict,
-    certify,
-    printed_problem,
-    verify,
-)
+from ...nlp import Certified, ExactProblem, Outcome, Progress, certify, printed_problem
 from ...nlp.proofs import (
-    STATE_FORMAT,
     StateFile,
-    certificate,
     certificate_text,
     covered,
-    question,
+    fits,
     read_state,
     state_document,
+    unlike,
 )
 from ...problem import Case, CaseError, Coupling, TrajgapError
-from ..documents import certify_document, certify_result, verify_document
+from ...verify import (
+    CERTIFICATE_FORMAT,
+    OLD_FORMATS,
+    STATE_FORMAT,
+    CertificateVerdict,
+    CertifiedQuestion,
+    Refused,
+    read_document,
+    verify_certificate,
+)
+from ..documents import Judged, certify_document, certify_result, verify_document, worth
 from . import proof_tables as cli_proofs
 from .input import Posed, naming, read_case, select
 from .output import (
@@ -49,6 +49,8 @@ from .output import (
     say,
 )
 
+_LONGEST = 150
+"""Characters of a file's name, its ending apart: most file systems take 255 bytes."""
 CERTIFICATE_FOLDER = Path("trajgap-certificates")
 NOT_PROVED = 3
 """Exit code where an interval is wider than asked for, or nothing is proved."""
@@ -61,9 +63,24 @@ class Question:
 
     name: str
     posed: Posed
-    joint: str | None
+    asked: CertifiedQuestion
     problem: ExactProblem | str
     """Or why it is not covered."""
+
+    @property
+    def file(self) -> str:
+        """Name of its files, which no other question has.
+
+        The parts are quoted, so that the dots between them are the only ones; a long name ends
+        with a hash instead.
+        """
+        asked = self.asked
+        parts = [str(x) for x in (asked.case, asked.problem, asked.reading)]
+        parts += [] if asked.joint is None else [f"joint-{asked.joint}"]
+        plain = ".".join(quote(part, safe="").replace(".", "%2E") for part in parts)
+        if len(plain) <= _LONGEST:
+            return plain
+        return f"{plain[:_LONGEST]}~{hashlib.sha256(plain.encode()).hexdigest()[:16]}"
 
 
 def certify_case(
@@ -106,18 +123,14 @@ def certify_case(
                         gap=gap,
                         seconds=seconds,
                         seed=seed,
-                        resume=states[one.name].state if one.name in states else None,
+                        resume=states[one.name].document if one.name in states else None,
                         report=stop.reporting(one.name, step),
                     )
                 )
-                why = None
-                if not isinstance(found, str):
-                    step.tell(f"{one.name}: the proof is checked")
-                    found, why = _checked(found)
                 unsettled |= isinstance(found, str) or found.outcome not in _SETTLED
-                files = _written(folder, one.name, found)
-                ids = (case.id, one.posed.problem_id, one.posed.reading_id, one.joint)
-                results.append(certify_result(*ids, found, *files, why))
+                files = _written(folder, one, found)
+                ids = (case.id, one.posed.problem_id, one.posed.reading_id, one.asked.joint)
+                results.append(certify_result(*ids, found, *files, _why(found)))
         document = certify_document(results)
         write(json_text(document))
     emit(document, cli_proofs.certified, as_json)
@@ -129,22 +142,40 @@ def certify_case(
 
 
 def _questions(case: Case, one: Posed) -> Iterator[Question]:
-    posing = case.posing(one.problem_id, one.reading_id)
+    """What is asked under one reading, of all joints or of each, with why it is not covered."""
+    for question in _stated(case, one, one.problem.coupling):
+        exact = question.problem
+        why = exact if isinstance(exact, str) else covered(exact)
+        yield question if why is None else replace(question, problem=why)
+
+
+def _stated(case: Case, one: Posed, coupling: Coupling) -> Iterator[Question]:
+    """What is asked under one reading, covered or not."""
+    statement = case.statement(one.problem_id, one.reading_id)
     name = f"{case.id}.{one.problem_id}.{one.reading_id}"
+    ids, content = (case.id, one.problem_id, one.reading_id), _hash(case)
     labels: list[str | None] = [None]
-    if one.problem.coupling is Coupling.PER_JOINT:
+    if coupling is Coupling.PER_JOINT:
         labels = list(one.problem.joints)
     for j, label in enumerate(labels):
         own = name if label is None else f"{name}.joint-{label}"
+        exact: ExactProblem | str
         try:
-            exact = printed_problem(posing)
+            exact = printed_problem(statement)
             exact = exact if label is None else exact.joint(j)
-            why = covered(exact)
         except CaseError:
             raise
         except TrajgapError as error:
-            why = str(error)
-        yield Question(own, one, label, exact if why is None else why)
+            exact = str(error)
+        yield Question(own, one, CertifiedQuestion(*ids, label, content), exact)
+
+
+def _hash(case: Case) -> str | None:
+    """SHA-256 of a case file; None for one that is no file of its own."""
+    try:
+        return hashlib.sha256(Path(case.file).read_bytes()).hexdigest()
+    except OSError:
+        return None
 
 
 def _states(resume: Sequence[Path], asked: Sequence[Question]) -> dict[str, StateFile]:
@@ -161,20 +192,15 @@ def _states(resume: Sequence[Path], asked: Sequence[Question]) -> dict[str, Stat
     return found
 
 
-def _checked(found: Certified) -> tuple[Certified, str | None]:
-    """Nothing is called certified that the verifier does not prove again."""
-    if found.proof is None:
-        return found, None
-    verdict = verify(certificate(found))
-    if verdict.proves:
-        return found, None
-    nothing = replace(found, outcome=Outcome.OPEN, lower=Fraction(0), proof=None)
-    return nothing, f"the proof found is refused: {verdict.reason}"
+def _why(found: Certified | str) -> str | None:
+    """Why a proof that was found does not count."""
+    if isinstance(found, str) or found.verdict is None or found.verdict.proves:
+        return None
+    return f"the proof found is refused: {found.verdict.reason}"
 
 
-def _file(folder: Path, name: str, kind: str = "") -> Path:
-    plain = "".join(c if c.isalnum() or c in "-_." else "_" for c in name)
-    return folder / f"{plain}{kind}.json"
+def _file(folder: Path, one: Question, kind: str = "") -> Path:
+    return folder / f"{one.file}{kind}.json"
 
 
 def _check_folder(folder: Path) -> None:
@@ -189,51 +215,48 @@ def _check_folder(folder: Path) -> None:
 def _check_files(folder: Path, asked: Sequence[Question]) -> None:
     """Find out before computing whether what is in the way may be replaced."""
     for one in asked:
-        for kind, wanted in (("", FORMAT), (".state", STATE_FORMAT)):
-            path = _file(folder, one.name, kind)
-            if path.exists() and _read(path).get("format") != wanted:
+        for kind, wanted in (("", CERTIFICATE_FORMAT), (".state", STATE_FORMAT)):
+            path = _file(folder, one, kind)
+            if path.exists() and _read(path).get("format") not in (wanted, *OLD_FORMATS):
                 raise CaseError(str(path), "--certificates", f"is no {wanted}; name another folder")
 
 
 def _read(path: Path) -> dict[str, Any]:
     try:
-        document = json.loads(path.read_text("utf-8"))
-    except (OSError, ValueError, RecursionError):
+        document = read_document(path)
+    except Refused:
         return {}
     return document if isinstance(document, dict) else {}
 
 
 def _written(
-    folder: Path | None, name: str, found: Certified | str
+    folder: Path | None, one: Question, found: Certified | str
 ) -> tuple[str | None, str | None]:
     """Write certificate and state; a narrower certificate of the same problem is kept."""
     if folder is None or isinstance(found, str):
         return None, None
-    certificate, state = _file(folder, name), _file(folder, name, ".state")
-    document = state_document(found)
+    certificate, state = _file(folder, one), _file(folder, one, ".state")
+    document = state_document(found, one.asked)
     if document is not None:
         replace_file(state, json.dumps(document, separators=(",", ":")) + "\n")
-    if found.proof is not None:
-        text = certificate_text(found)
-        if not _narrower(certificate, json.loads(text), found):
-            replace_file(certificate, text)
+    if found.proof is not None and not _narrower(certificate, found):
+        replace_file(certificate, certificate_text(found, one.asked))
+    if document is None:
+        # What a state of an earlier run would lead to is there.
+        state.unlink(missing_ok=True)
     return (
         str(certificate) if found.proof is not None else None,
         str(state) if document is not None else None,
     )
 
 
-def _narrower(path: Path, new: dict[str, Any], found: Certified) -> bool:
+def _narrower(path: Path, found: Certified) -> bool:
     """Whether the file there proves a narrower interval of the same problem."""
     old = _read(path)
-    if not isinstance(old.get("problem"), dict) or question(old["problem"]) != question(
-        new["problem"]
-    ):
+    if not fits(old, found.problem, found.subject):
         return False
-    verdict = verify(old)
+    verdict = verify_certificate(old)
     if not verdict.proves or verdict.lower is None or verdict.upper is None:
-        return False
-    if verdict.subject != found.subject:
         return False
     return found.upper is None or verdict.upper - verdict.lower < found.upper - found.lower
 
@@ -276,18 +299,63 @@ class _Stop:
         return report
 
 
-def verify_files(files: Sequence[Path], as_json: bool, out: Path | None) -> int:
-    """Prove certificates again; 1 if any is refused."""
+def verify_files(
+    files: Sequence[Path],
+    case: str | None,
+    seconds: float,
+    as_json: bool,
+    out: Path | None,
+) -> int:
+    """Prove certificates again; 1 if any is refused, or is about no problem of the case."""
+    asked = None
+    if case is not None:
+        stated = read_case(case)
+        asked = [
+            question
+            for one in select(stated, None, None)
+            for coupling in Coupling
+            for question in _stated(stated, one, coupling)
+        ]
     with new_file(out) as write:
-        verdicts: list[tuple[str, Verdict]] = []
+        verdicts: list[Judged] = []
         with progress("verify", len(files)) as step:
             for path in files:
                 step(path.name)
-                verdicts.append((str(path), verify(path)))
+                verdicts.append((str(path), *_verdict(path, seconds, asked)))
         document = verify_document(verdicts)
         write(json_text(document))
     if as_json:
         emit(document, lambda _: (), as_json)
     else:
         say(cli_proofs.verified(document))
-    return 0 if all(verdict.proves for _, verdict in verdicts) else 1
+    good = all(verdict.proves and not isinstance(about, str) for _, verdict, about in verdicts)
+    return 0 if good else 1
+
+
+def _verdict(
+    path: Path, seconds: float, asked: Sequence[Question] | None
+) -> tuple[CertificateVerdict, CertifiedQuestion | str | None]:
+    """What a file is worth, and which question of a case it is about."""
+    try:
+        document = read_document(path)
+    except Refused:
+        return verify_certificate(path), None if asked is None else "refused"
+    verdict = verify_certificate(document, seconds=seconds)
+    if asked is None:
+        return verdict, None
+    return verdict, _about(document, verdict, asked) if verdict.proves else str(worth(verdict))
+
+
+def _about(
+    document: dict[str, Any], verdict: CertificateVerdict, asked: Sequence[Question]
+) -> CertifiedQuestion | str:
+    """The question of a case that a certificate is about, or why there is none."""
+    differs = {}
+    for one in asked:
+        if isinstance(one.problem, ExactProblem):
+            differs[one.asked] = unlike(document, one.problem, verdict.subject)
+            if differs[one.asked] is None:
+                return one.asked
+    own = replace(verdict.question, case_sha256=None)
+    named = [why for q, why in differs.items() if replace(q, case_sha256=None) == own]
+    return f"its problem differs in {named[0]}" if named else "no problem of the case is this one"

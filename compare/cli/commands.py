@@ -18,7 +18,6 @@ from ...nlp.retiming import Retiming, retime
 from ...problem import (
     Case,
     Check,
-    ClockedTrajectory,
     Coupling,
     check,
     fit,
@@ -149,10 +148,12 @@ def _solved(case: Case, one: Posed, starts: int, seed: int) -> Document:
         halves = Study(case).half_digits(one.problem_id, one.reading_id)
         slacks = tuple(dict.fromkeys((*halves, OPTIMUM_SLACK)))
         apart = solve_per_joint(one.problem, starts=starts, seed=seed, slacks=slacks)
-        apart = with_certificates(apart, case.posing(one.problem_id, one.reading_id))
+        apart = with_certificates(apart, case.statement(one.problem_id, one.reading_id))
         return solve_result(*ids, apart, [_retimed(s) for s in apart.joints])
     answer = solve(one.problem, starts=starts, seed=seed)
-    answer = with_certificate(answer, stated_exactly(case.posing(one.problem_id, one.reading_id)))
+    answer = with_certificate(
+        answer, stated_exactly(case.statement(one.problem_id, one.reading_id))
+    )
     return solve_result(*ids, answer, [_retimed(answer)])
 
 
@@ -160,8 +161,8 @@ def _retimed(answer: Solution) -> Retiming | str:
     problem = answer.problem
     if answer.durations is None:
         return "no durations, so no path"
-    trajectory = fit(problem.interpolant, problem.waypoints, answer.durations, answer.nodal)
-    if isinstance(trajectory, ClockedTrajectory):
+    trajectory = fit(problem.curve, problem.waypoints, answer.durations, answer.nodal)
+    if not trajectory.polynomial_in_time:
         return "time is not linear in the curve's parameter: its path is no polynomial in time"
     return retime(trajectory, problem.limits)
 

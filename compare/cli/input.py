@@ -151,7 +151,7 @@ def duration_box(case: Case, posed: Posed, printed: Sequence[Printed]) -> Box:
             f"{len(printed)} numbers for {wanted} segments of problem {posed.problem_id!r}; "
             "give one each, with decimal points, separated by commas",
         )
-    unit = case.posing(posed.problem_id, posed.reading_id).units.time or "s"
+    unit = case.statement(posed.problem_id, posed.reading_id).units.time or "s"
     with naming(case.file, "--durations"):
         measured = [to_si(number, unit) for number in printed]
     return Box(

@@ -9,6 +9,7 @@ from typing import Any
 
 from rich.console import RenderableType
 
+from ..documents import UNNAMED
 from .table import Columns, line, plain
 
 Document = dict[str, Any]
@@ -53,6 +54,20 @@ def _bound(exact: str | None, side: int) -> str:
 
 
 def verified(document: Document) -> str:
-    """Text of the `verify` document: one line a file, whatever the window."""
-    lines = (f"{one['file']}: {one['worth']}: {one['reason']}" for one in document["verified"])
-    return "".join(f"{plain(one)}\n" for one in lines)
+    """Text of the `verify` document: a line a file, whatever the window, and what was asked."""
+    lines = []
+    for one in document["verified"]:
+        lines.append(f"{one['file']}: {one['worth']}: {one['reason']}")
+        if one["problem_hash"] is not None:
+            lines.append(f"    {_asked(one['question'])}; problem sha256 {one['problem_hash']}")
+        if one["in_case"] is not None:
+            lines.append(f"    the same problem as in the case: {_asked(one['in_case'])}")
+        elif one["in_case_why"] not in (UNNAMED, one["worth"]):
+            lines.append(f"    not in the case: {one['in_case_why']}")
+    return "".join(f"{plain(line)}\n" for line in lines)
+
+
+def _asked(question: Document) -> str:
+    keys = ("case", "problem", "reading", "joint")
+    named = (f"{key} {question[key]}" for key in keys if question[key] is not None)
+    return ", ".join(named) or "a problem without a case"

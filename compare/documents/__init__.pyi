@@ -1,4 +1,12 @@
-from .proofs import Worth, certify_document, certify_result, verify_document, worth
+from .proofs import (
+    UNNAMED,
+    Judged,
+    Worth,
+    certify_document,
+    certify_result,
+    verify_document,
+    worth,
+)
 from .results import (
     SCHEMA,
     Document,
@@ -12,7 +20,9 @@ from .results import (
 
 __all__ = [
     "SCHEMA",
+    "UNNAMED",
     "Document",
+    "Judged",
     "Worth",
     "audit_document",
     "cases_document",

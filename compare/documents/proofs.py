@@ -4,14 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from dataclasses import asdict
 from enum import StrEnum
 from fractions import Fraction
 
-from ...nlp import Certified, Verdict
+from ...nlp import Certified
 from ...nlp.proofs import decimal
+from ...verify import CertificateVerdict, CertifiedQuestion
 from .results import SCHEMA, Document
 
 NOT_COVERED = "not covered"
+"""Outcome of a question for which there is no kind of proof."""
+UNNAMED = "no case was named"
+"""Why a certificate is compared with no case."""
 
 
 class Worth(StrEnum):
@@ -23,6 +28,13 @@ class Worth(StrEnum):
     """Its claim is proved, but a seal does not match: this is not what was written."""
     REFUSED = "refused"
     """Its claim is not proved."""
+    OUT_OF_TIME = "out of time"
+    """The time was over before anything was decided."""
+
+
+Judged = tuple[str, CertificateVerdict, CertifiedQuestion | str | None]
+"""A file, its verdict, and the question of a case that it is about, or why there is none; None
+where no case was named."""
 
 
 def certify_document(results: Iterable[Document]) -> Document:
@@ -119,13 +131,12 @@ def _number(key: str, value: Fraction | None, why: str, side: int) -> Document:
     return {key: rounded}
 
 
-def verify_document(verdicts: Iterable[tuple[str, Verdict]]) -> Document:
+def verify_document(verdicts: Iterable[Judged]) -> Document:
     """Document of `verify`: one verdict per file.
 
     Parameters
     ----------
-    verdicts : iterable of (str, Verdict)
-        By file.
+    verdicts : iterable of Judged
 
     Returns
     -------
@@ -134,15 +145,22 @@ def verify_document(verdicts: Iterable[tuple[str, Verdict]]) -> Document:
     return {"schema": SCHEMA, "verified": [_verdict(*one) for one in verdicts]}
 
 
-def worth(verdict: Verdict) -> Worth:
+def worth(verdict: CertificateVerdict) -> Worth:
     """The words for a verdict."""
+    if verdict.out_of_time:
+        return Worth.OUT_OF_TIME
     if not verdict.proves:
         return Worth.REFUSED
     return Worth.ALTERED if verdict.altered else Worth.PROVES
 
 
-def _verdict(file: str, verdict: Verdict) -> Document:
-    why = "refused" if not verdict.proves else "none is claimed"
+def _verdict(
+    file: str, verdict: CertificateVerdict, about: CertifiedQuestion | str | None
+) -> Document:
+    why = str(worth(verdict)) if not verdict.proves else "none is claimed"
+    in_case: Document = {"in_case": None, "in_case_why": about or UNNAMED}
+    if isinstance(about, CertifiedQuestion):
+        in_case = {"in_case": _asked(about)}
     return {
         "file": file,
         "worth": str(worth(verdict)),
@@ -151,4 +169,12 @@ def _verdict(file: str, verdict: Verdict) -> Document:
         "infeasible": verdict.infeasible,
         **_number("lower", verdict.lower, why, -1),
         **_number("upper", verdict.upper, why, 1),
+        "question": _asked(verdict.question),
+        "problem_hash": verdict.problem_hash,
+        **in_case,
     }
+
+
+def _asked(question: CertifiedQuestion) -> Document:
+    """The question that a file names."""
+    return asdict(question)

@@ -345,7 +345,7 @@ def show_document(case: Case, problem: str | None = None, reading: str | None = 
         "claims": [_plain(c) for c in claims],
         "assumptions": [_plain(a) for a in case.assumptions],
         "algorithms": [_plain(a) for a in case.algorithms],
-        "families": [_plain(f) for f in case.families],
+        "families": [_plain(f) for f in case.instances],
         "tables": [_plain(t) for t in case.tables],
         "not_checkable": [_plain(n) for n in case.not_checkable],
     }

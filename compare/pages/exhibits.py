@@ -119,20 +119,21 @@ def _polygons(study: Study) -> Iterator[Block]:
     for claim in study.case.claims:
         if not isinstance(claim, ControlVerticesClaim):
             continue
-        posing = study.case.posing(claim.problem)
-        if not posing.posed:
+        statement = study.case.statement(claim.problem)
+        if not statement.complete:
             continue
-        joints = range(len(posing.labels))
-        waypoints = [[row[j].value for j in joints] for row in posing.waypoints.points]
+        joints = range(len(statement.labels))
+        waypoints = [[row[j].value for j in joints] for row in statement.waypoints.points]
         picture = polygon_picture(
             waypoints,
-            vertices(claim, posing),
+            vertices(claim, statement),
             title=f"Control polygon of every joint: {claim.where}",
         )
         caption = (
             f"{claim.where} beside the vertices computed from the printed way-points "
-            f"({posing.waypoints.where}). A grey bar holds every difference that rounding of both "
-            "explains. No reading enters: both are printed in one unit, and time plays no part."
+            f"({statement.waypoints.where}). A grey bar holds every difference that rounding of "
+            "both explains. No reading enters: both are printed in one unit, and time plays no "
+            "part."
         )
         yield _drawn(f"polygon-{claim.id}", picture, caption)
 
@@ -225,7 +226,7 @@ def _joint_path(study: Study, chain: Chain) -> _Path | None:
         return None
     order = [problem.joints.index(label) for label in chain.labels]
     q = problem.waypoints[:, order]
-    labels = study.case.posing(study.problems[0], study.main_reading).waypoints.labels
+    labels = study.case.statement(study.problems[0], study.main_reading).waypoints.labels
     # Whole turns do not move the end.
     base = np.where(np.isfinite(chain.lower), chain.lower, q)
     outside = np.argwhere(base + np.mod(q - base, 2 * np.pi) > chain.upper)
@@ -248,7 +249,7 @@ def _joint_path(study: Study, chain: Chain) -> _Path | None:
 
 def _tents(study: Study) -> Iterator[Block]:
     segments = [
-        study.case.posing(pid, rid).waypoints.number - 1
+        study.case.statement(pid, rid).waypoints.number - 1
         for pid in dict.fromkeys(p for p, _ in study.case.selections())
         for rid in study.readings[:1]
     ]

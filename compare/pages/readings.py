@@ -80,7 +80,7 @@ def _unposed(one: CaseAudit) -> Grid:
     for pid, rid in one.case.selections():
         if rid not in one.study.readings:
             continue
-        curve, limits, _, _ = one.case.posing(pid, rid).data()
+        curve, limits, _, _ = one.case.statement(pid, rid).data()
         rows.append(
             (
                 text(rid),
@@ -101,7 +101,7 @@ def _listed(limits: Iterable[float]) -> str:
 
 def _determined(case: Case) -> list[Block]:
     """Which degrees and knots the end conditions of a clamped B-spline determine."""
-    curves = [case.posing(pid, rid).interpolant() for pid, rid in case.selections()]
+    curves = [case.statement(pid, rid).curve() for pid, rid in case.selections()]
     curve = next((c for c in curves if isinstance(c, ClampedBSpline)), None)
     if curve is None:
         return []

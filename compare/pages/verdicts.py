@@ -148,7 +148,7 @@ def _problems(study: Study) -> Grid:
                 text(pid),
                 text(rid),
                 text(f"{len(p.joints)} × {p.waypoints.shape[0]}"),
-                text(p.interpolant.name),
+                text(p.curve.name),
                 text(_limits(p)),
                 text(_bounds(p)),
                 text(how),

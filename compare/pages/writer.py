@@ -207,7 +207,7 @@ def _not_computed(one: CaseAudit) -> Section:
     """Why there are no optima; nothing where there are some."""
     if one.study.posed:
         return Section("not-computed", "Not computed", ())
-    why = one.case.posing().waypoints.not_printed or "none of its readings poses a problem"
+    why = one.case.statement().waypoints.not_printed or "none of its readings poses a problem"
     said = Prose(
         f"No problem is posed: way-points are not printed ({why}). Optima, motions, replays and "
         "landscapes appear here as soon as the case file has way-points."

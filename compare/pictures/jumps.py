@@ -66,7 +66,7 @@ def jump_picture(problem: Problem, durations: ArrayLike, *, title: str) -> Pictu
         raise TrajgapError(
             f"jump_picture: expected durations of shape ({problem.segments},), got {h.shape}"
         )
-    motion = fit(problem.interpolant, problem.waypoints, h)
+    motion = fit(problem.curve, problem.waypoints, h)
     jumps = velocity_jumps(problem, h)
     joints = problem.joints
     columns = min(3, len(joints))

@@ -8,7 +8,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..objective import Array, Bounds, Objective
+from ...problem import Array
+from ..objective import Bounds, Objective
 from ..settings import choice, clean, interval, number, reject, whole
 from .swarm import Draws, Swarm, attracted, draw_pair, held, spread
 

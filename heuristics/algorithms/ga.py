@@ -9,7 +9,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..objective import Array, Bounds, Objective
+from ...problem import Array
+from ..objective import Bounds, Objective
 from ..settings import choice, clean, reject, share, whole
 from .genes import (
     READERS,
@@ -17,8 +18,8 @@ from .genes import (
     Encoding,
     FitnessRule,
     Genetics,
-    Mutated,
     Mutation,
+    MutationUnit,
     elite_kept,
     fitness_values,
     roulette,
@@ -43,6 +44,7 @@ SHARED_OPEN = (
     "budget: N iterations are N generations after the initial one, N + 1 evaluations of the "
     "population",
 )
+"""What the paper leaves open for both of its genetic algorithms, and what was chosen."""
 
 OPEN_CHOICES = (
     "selection: 'roulette in proportion to the fitness' is said of the traditional algorithm; "
@@ -89,7 +91,7 @@ class GA:
         acts on what they stand for.
     mutation : Mutation
         "redraw" or "creep"; not printed. Bits are flipped.
-    mutated : Mutated
+    mutated : MutationUnit
         "gene" or "individual"; not printed.
     mutation_reach : float
         Half-width of "creep" as a share of the range; not printed.
@@ -125,7 +127,7 @@ class GA:
     position_range: tuple[float, float] = (0.1, 2.0)
     crossover: Crossover = Crossover.ARITHMETIC
     mutation: Mutation = Mutation.REDRAW
-    mutated: Mutated = Mutated.GENE
+    mutated: MutationUnit = MutationUnit.GENE
     mutation_reach: float = 0.1
     elite: int = 0
     penalty: float = np.inf

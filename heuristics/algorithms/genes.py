@@ -9,8 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ...problem import TrajgapError
-from ..objective import Array
+from ...problem import Array, TrajgapError
 from ..settings import Reader, choice, interval, number, share, whole
 from .swarm import held
 
@@ -44,7 +43,7 @@ class Mutation(StrEnum):
     """It moves uniformly within ± a share of the range, and is held in the range."""
 
 
-class Mutated(StrEnum):
+class MutationUnit(StrEnum):
     """What the mutation probability is the probability of."""
 
     GENE = "gene"
@@ -92,7 +91,7 @@ class Genetics:
     encoding: Encoding
     crossover: Crossover
     mutation: Mutation
-    mutated: Mutated
+    mutated: MutationUnit
     mutation_reach: float
     position_range: tuple[float, float]
     resolution: float
@@ -182,11 +181,11 @@ def crossed(pool: Array, rule: Crossover, rate: float, rng: np.random.Generator)
 
 
 def chosen(
-    unit: Mutated, rate: float, shape: tuple[int, ...], rng: np.random.Generator
+    unit: MutationUnit, rate: float, shape: tuple[int, ...], rng: np.random.Generator
 ) -> NDArray[np.bool_]:
     """Draw which genes mutate."""
     members, genes = shape
-    if unit is Mutated.GENE:
+    if unit is MutationUnit.GENE:
         each: NDArray[np.bool_] = rng.random(shape) < rate
         return each
     which, place = rng.random((2, members, 1))
@@ -229,7 +228,7 @@ READERS: dict[str, Reader] = {
     "fitness_rule": choice(FitnessRule),
     "crossover": choice(Crossover),
     "mutation": choice(Mutation),
-    "mutated": choice(Mutated),
+    "mutated": choice(MutationUnit),
     "mutation_reach": share(),
     "penalty": number(positive=True, infinite=True),
 }

@@ -10,7 +10,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..objective import Array, Bounds, Objective
+from ...problem import Array
+from ..objective import Bounds, Objective
 from ..settings import choice, clean, number, reject, share
 from .ga import (
     SHARED_OPEN,
@@ -25,8 +26,8 @@ from .genes import (
     Encoding,
     FitnessRule,
     Genetics,
-    Mutated,
     Mutation,
+    MutationUnit,
     fitness_values,
     roulette,
     shuffled,
@@ -160,7 +161,7 @@ class ImprovedGA:
     position_range: tuple[float, float] = (0.1, 2.0)
     crossover: Crossover = Crossover.ARITHMETIC
     mutation: Mutation = Mutation.REDRAW
-    mutated: Mutated = Mutated.GENE
+    mutated: MutationUnit = MutationUnit.GENE
     mutation_reach: float = 0.1
     penalty: float = np.inf
 

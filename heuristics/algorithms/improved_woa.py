@@ -8,7 +8,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..objective import Array, Bounds, Objective
+from ...problem import Array
+from ..objective import Bounds, Objective
 from ..settings import above, choice, clean, share
 from .population import Population, first_population
 from .swarm import PositionRule, kept_in, spread

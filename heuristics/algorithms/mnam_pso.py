@@ -8,7 +8,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..objective import Array, Bounds, Objective
+from ...problem import Array
+from ..objective import Bounds, Objective
 from ..settings import choice, clean, interval, number, reject, whole
 from .swarm import (
     Draws,
@@ -66,7 +67,7 @@ class NichesRule(StrEnum):
     """Niche k starts in a box of width range/m around a random centre, held in the range."""
 
 
-class Mutated(StrEnum):
+class MutatedCoordinates(StrEnum):
     """Which coordinates of the global best a mutation moves."""
 
     ALL = "all"
@@ -95,7 +96,7 @@ class MNAMPSO:
         "falls" or "rises": (12) and the text disagree.
     niches_rule : NichesRule
         "stratified", "diagonal" or "clusters"; not in the text.
-    mutated : Mutated
+    mutated : MutatedCoordinates
         "all" or "one"; not in the text.
     mutation_scale : float
         Mutation bound as a multiple of the smallest coordinate of the global best; not in the
@@ -138,7 +139,7 @@ class MNAMPSO:
     inertia_min: float = 0.4
     inertia_reading: InertiaReading = InertiaReading.FALLS
     niches_rule: NichesRule = NichesRule.STRATIFIED
-    mutated: Mutated = Mutated.ALL
+    mutated: MutatedCoordinates = MutatedCoordinates.ALL
     mutation_scale: float = 1.0
     position_initial: tuple[float, float] = (0.3, 3.0)
     velocity_initial: tuple[float, float] = (-2.0, 2.0)
@@ -161,7 +162,7 @@ class MNAMPSO:
                 "inertia_min": number(),
                 "inertia_reading": choice(InertiaReading),
                 "niches_rule": choice(NichesRule),
-                "mutated": choice(Mutated),
+                "mutated": choice(MutatedCoordinates),
                 "mutation_scale": number(),
                 "position_initial": interval(),
                 "velocity_initial": interval(),
@@ -204,7 +205,7 @@ class MNAMPSO:
     def mutant(self, best: Array, rng: np.random.Generator) -> Array:
         """Draw a mutant of the global best, within bounds tied to its smallest coordinate."""
         reach = self.mutation_scale * float(best.min())
-        if self.mutated is Mutated.ONE:
+        if self.mutated is MutatedCoordinates.ONE:
             where, size = rng.random(2)
             moved = best.copy()
             moved[int(where * best.size)] += reach * (2.0 * size - 1.0)

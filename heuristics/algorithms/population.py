@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..objective import Array, Objective
+from ...problem import Array
+from ..objective import Objective
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -7,7 +7,8 @@ from enum import StrEnum
 
 import numpy as np
 
-from ..objective import Array, Bounds, Objective
+from ...problem import Array
+from ..objective import Bounds, Objective
 
 
 class Draws(StrEnum):

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from ..objective import Array
+from ...problem import Array
 
 
 class TentRule(StrEnum):

@@ -9,7 +9,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..objective import Array, Bounds, Objective
+from ...problem import Array
+from ..objective import Bounds, Objective
 from ..settings import choice, clean, interval, number, whole
 from .population import Population, first_population, followed
 from .swarm import PositionRule, kept_in, spread

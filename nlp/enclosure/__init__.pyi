@@ -1,10 +1,9 @@
-from .balls import EPS, Array, Ball, raised
+from .balls import EPS, Ball, raised
 from .box_bound import Place, bound_by_bisection, bound_ratio
 from .places import linear_program, rows_at
 
 __all__ = [
     "EPS",
-    "Array",
     "Ball",
     "Place",
     "bound_by_bisection",

@@ -19,13 +19,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...problem import Interpolant
-from ...problem.curves import PERM, RowKind, layout, right_hand_sides
-
-Array = NDArray[np.float64]
+from ...problem import Array, Interpolant
+from ...problem.curves import PERM, ConditionKind, layout, right_hand_sides
 
 EPS = float(np.finfo(np.float64).eps)
+"""Spacing of float64 at 1, 2u: see the error argument above."""
 TINY = 1e-300
+"""Above all that underflow can lose in one expression: see the error argument above."""
 
 
 def raised(value: Array, roundings: int) -> Array:
@@ -214,12 +214,12 @@ def enclose_spline(
     entries = Ball.exact(np.zeros((size, size)))
     for i in range(size):
         b, r = plan.breaks[i], plan.orders[i]
-        if plan.kinds[i] == RowKind.RIGHT_VALUE:
+        if plan.kinds[i] == ConditionKind.RIGHT_VALUE:
             entries.mid[i, first[b] + r] = PERM[r, r]
         else:
             powers = np.arange(r, plan.degrees[b - 1] + 1)
             entries.mid[i, first[b - 1] + powers] = PERM[powers, r]
-    match = np.flatnonzero(plan.kinds == RowKind.MATCH)
+    match = np.flatnonzero(plan.kinds == ConditionKind.MATCH)
     match = match[plan.orders[match] <= plan.degrees[plan.breaks[match]]]
     after, order = plan.breaks[match], plan.orders[match]
     column = first[after] + order
@@ -230,8 +230,8 @@ def enclose_spline(
     if system is None:
         return None
 
-    rows = np.flatnonzero(plan.kinds != RowKind.MATCH)
-    own = plan.breaks[rows] - (plan.kinds[rows] == RowKind.LEFT_VALUE)
+    rows = np.flatnonzero(plan.kinds != ConditionKind.MATCH)
+    own = plan.breaks[rows] - (plan.kinds[rows] == ConditionKind.LEFT_VALUE)
     values = Ball.exact(right_hand_sides(interpolant, waypoints.mid, None))
     at = plan.waypoint >= 0
     values.rad[at] = waypoints.rad[plan.waypoint[at]]
@@ -264,7 +264,7 @@ def enclose_spline(
 def place_basis(
     interpolant: Interpolant, segment: NDArray[np.int64], order: NDArray[np.int64], s: Array
 ) -> Ball:
-    """Rows φ with φ·c = the derivative by s, of the given order, at fixed places.
+    """LimitRows φ with φ·c = the derivative by s, of the given order, at fixed places.
 
     Parameters
     ----------

@@ -3,27 +3,23 @@
 from __future__ import annotations
 
 import heapq
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...problem import QUANTITIES, Interpolant, Problem
+from ...problem import QUANTITIES, Array, Curve, Interpolant, Problem
 from ...problem.curves import StretchedUniformBSpline, TimedUniformBSpline
-from .balls import (
-    EPS,
-    Array,
-    Ball,
-    enclose_spline,
-    place_basis,
-    quotient_power,
-    raised,
-)
-from .places import Rows, linear_program, rows_at
-from .uniform import centred, covered
+from .balls import EPS, Ball, enclose_spline, place_basis, quotient_power, raised
+from .places import LimitRows, linear_program, rows_at
+from .uniform import Centred, centred_stretched, centred_timed
 
 MOST_BOXES = 100
+"""Boxes after which a bisection gives up: the bound so far holds, and may not decide."""
 _NAMES = ("position", *QUANTITIES)
+"""Words for derivative orders 0 to 3."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +55,7 @@ class Place:
 class _MeanValue:
     """The rows' derivatives f over a box: f(centre) + by_duration·Δh + by_waypoint·Δq, in balls."""
 
-    rows: Rows
+    rows: LimitRows
     joint: NDArray[np.int64]
     value: Ball
     by_duration: Ball
@@ -89,7 +85,7 @@ class _MeanValue:
         return np.where(low > 0.0, np.nextafter(low / width, -np.inf), -np.inf)
 
     def moves_where_it_must_not(self) -> NDArray[np.bool_]:
-        """Rows with limit 0 whose derivative is not 0 anywhere in the box, beyond rounding.
+        """LimitRows with limit 0 whose derivative is not 0 anywhere in the box, beyond rounding.
 
         The relative slack of 1e-9 exceeds the few roundings of this sum by far.
         """
@@ -102,16 +98,20 @@ class _MeanValue:
         return found
 
 
-def _mean_value(problem: Problem, h: Ball, q: Ball, more: Rows | None) -> _MeanValue | None:
+def _mean_value(problem: Problem, h: Ball, q: Ball, more: LimitRows | None) -> _MeanValue | None:
     """Enclose f and its gradient.
 
     By the durations the gradient holds over all of the box; by the way-points, in which f is
     linear for fixed durations, it is needed at the central durations only.
     """
-    curve = problem.interpolant
-    if not isinstance(curve, Interpolant):
-        uniform = isinstance(curve, StretchedUniformBSpline | TimedUniformBSpline)
-        return _uniform_mean_value(problem, h, q, more) if uniform else None
+    enclose = _ENCLOSURES.get(type(problem.curve))
+    return None if enclose is None else enclose(problem, h, q, more)
+
+
+def _polynomial_mean_value(
+    problem: Problem, h: Ball, q: Ball, more: LimitRows | None
+) -> _MeanValue | None:
+    curve = problem.piecewise
     still = Ball.exact(h.mid)
     at_centre = enclose_spline(curve, still, Ball.exact(q.mid))
     over_box = enclose_spline(curve, h, q)
@@ -152,20 +152,25 @@ def _mean_value(problem: Problem, h: Ball, q: Ball, more: Rows | None) -> _MeanV
     )
 
 
-def _uniform_mean_value(problem: Problem, h: Ball, q: Ball, more: Rows | None) -> _MeanValue | None:
-    curve = problem.interpolant
-    assert isinstance(curve, StretchedUniformBSpline | TimedUniformBSpline)
+def _uniform_mean_value(
+    centred: Callable[..., Centred],
+    highest: int,
+    problem: Problem,
+    h: Ball,
+    q: Ball,
+    more: LimitRows | None,
+) -> _MeanValue | None:
     rows = rows_at(replace(problem, waypoints=q.mid), h.mid)
     rows = rows if more is None else rows + more
     order = np.array([e.order for e in rows.points], dtype=np.int64)
-    rows = rows.pick(np.flatnonzero(covered(curve, order)))
+    rows = rows.pick(np.flatnonzero((order >= 1) & (order <= highest)))
     if not rows.points:
         return None
     joint = np.array([e.joint for e in rows.points])
     segment = np.array([e.segment for e in rows.points])
     order = np.array([e.order for e in rows.points])
     place = np.array([e.s for e in rows.points])
-    form = centred(curve, joint, segment, order, place, h, q)
+    form = centred(len(q.mid), joint, segment, order, place, h, q)
     return _MeanValue(
         rows,
         joint,
@@ -176,6 +181,17 @@ def _uniform_mean_value(problem: Problem, h: Ball, q: Ball, more: Rows | None) -
         h.rad,
         q.rad,
     )
+
+
+_ENCLOSURES: dict[
+    type[Curve], Callable[[Problem, Ball, Ball, LimitRows | None], _MeanValue | None]
+] = {
+    Interpolant: _polynomial_mean_value,
+    StretchedUniformBSpline: partial(_uniform_mean_value, centred_stretched, 3),
+    TimedUniformBSpline: partial(_uniform_mean_value, centred_timed, 2),
+}
+"""Kinds of curve whose derivatives are enclosed over a box, with the highest order that is; of any
+other kind only the mean speed is known."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -202,7 +218,7 @@ class Bound:
 
 
 def bound_ratio(
-    problem: Problem, lower: Array, upper: Array, waypoints: Ball, more: Rows | None = None
+    problem: Problem, lower: Array, upper: Array, waypoints: Ball, more: LimitRows | None = None
 ) -> Bound:
     """Bound the worst ratio from below over a box of durations and a ball of way-points.
 
@@ -218,7 +234,7 @@ def bound_ratio(
         Durations, s.
     waypoints : Ball, shape (way-points, joints)
         rad.
-    more : Rows, optional
+    more : LimitRows, optional
         Further places, beside the extrema at the centre.
 
     Returns
@@ -237,7 +253,7 @@ def bound_ratio(
 
 def _mean_speed(problem: Problem, lower: Array, upper: Array, waypoints: Ball) -> Bound:
     """Bound from the mean speed between way-points, which some instant attains; any box will do."""
-    breaks = problem.interpolant.waypoint_breaks
+    breaks = problem.curve.waypoint_breaks
     speed = np.where(problem.limits.velocity > 0.0, problem.limits.velocity, np.inf)
     value, place = -np.inf, None
     for w in range(len(breaks) - 1):
@@ -306,7 +322,7 @@ def _weights(form: _MeanValue, some: NDArray[np.int64], remainder: Array) -> Arr
 
 
 def bound_by_bisection(
-    problem: Problem, root: Bound, waypoints: Ball, target: float, more: Rows | None = None
+    problem: Problem, root: Bound, waypoints: Ball, target: float, more: LimitRows | None = None
 ) -> Bound:
     """Bisect the durations, the weakest box first, until the bound exceeds ``target``.
 

@@ -8,14 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linprog
 
-from ...problem import Extremum, Problem, extrema, fit
-from .balls import Array
+from ...problem import Array, Extremum, Problem, extrema, fit
 
 _MOST_PLACES = 100
+"""Rows of one linear program: the largest ratios come first, and few are active."""
 
 
 @dataclass(frozen=True, eq=False)
-class Rows:
+class LimitRows:
     """Limits at fixed places: sign·f ≤ offset + t·width, where t is the ratio that they force."""
 
     points: list[Extremum]
@@ -30,13 +30,13 @@ class Rows:
         ratio = (self.sign * value - self.offset) / np.where(some, self.width, 1.0)
         return np.where(some, ratio, -np.inf)
 
-    def pick(self, index: NDArray[np.int64]) -> Rows:
+    def pick(self, index: NDArray[np.int64]) -> LimitRows:
         """Some of the rows."""
         points = [self.points[i] for i in index]
-        return Rows(points, self.sign[index], self.offset[index], self.width[index])
+        return LimitRows(points, self.sign[index], self.offset[index], self.width[index])
 
-    def __add__(self, other: Rows) -> Rows:
-        return Rows(
+    def __add__(self, other: LimitRows) -> LimitRows:
+        return LimitRows(
             self.points + other.points,
             np.concatenate([self.sign, other.sign]),
             np.concatenate([self.offset, other.offset]),
@@ -44,9 +44,9 @@ class Rows:
         )
 
 
-def rows_at(problem: Problem, durations: Array, most: int = _MOST_PLACES) -> Rows:
+def rows_at(problem: Problem, durations: Array, most: int = _MOST_PLACES) -> LimitRows:
     """Rows at the local extrema of one trajectory, limits of 0 first, then the largest ratios."""
-    trajectory = fit(problem.interpolant, problem.waypoints, durations)
+    trajectory = fit(problem.curve, problem.waypoints, durations)
     limits = problem.limits
     points: list[Extremum] = []
     numbers: list[tuple[float, float, float]] = []
@@ -65,7 +65,7 @@ def rows_at(problem: Problem, durations: Array, most: int = _MOST_PLACES) -> Row
                 points += found
                 numbers += [(sign, sign * limit - half, half)] * len(found)
     columns = np.array(numbers, dtype=np.float64).reshape(-1, 3)
-    rows = Rows(points, columns[:, 0], columns[:, 1], columns[:, 2])
+    rows = LimitRows(points, columns[:, 0], columns[:, 1], columns[:, 2])
     order = np.lexsort((-rows.ratios(), rows.width > 0.0))
     return rows.pick(order[:most])
 

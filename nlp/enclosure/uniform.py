@@ -7,17 +7,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...problem import Curve
+from ...problem import Array
 from ...problem.curves import (
     PERM,
-    StretchedUniformBSpline,
-    TimedUniformBSpline,
     clock_matrix,
     shape_matrix,
 )
-from .balls import EPS, Array, Ball, quotient_power
+from .balls import EPS, Ball, quotient_power
 
 _POWERS = 4
+"""Coefficients of a cubic."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,14 +41,8 @@ class Centred:
     amplitude: Array
 
 
-def covered(curve: Curve, order: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """Which derivatives `centred` encloses: no jerk where time is a B-spline."""
-    most = 3 if isinstance(curve, StretchedUniformBSpline) else 2
-    return np.asarray((order >= 1) & (order <= most))
-
-
-def centred(
-    curve: StretchedUniformBSpline | TimedUniformBSpline,
+def centred_stretched(
+    waypoints: int,
     joint: NDArray[np.int64],
     segment: NDArray[np.int64],
     order: NDArray[np.int64],
@@ -61,7 +54,8 @@ def centred(
 
     Parameters
     ----------
-    curve : StretchedUniformBSpline or TimedUniformBSpline
+    waypoints : int
+        Number of way-points.
     joint, segment, order : ndarray of int, shape (rows,)
     s : ndarray, shape (rows,)
     h : Ball, shape (segments,)
@@ -75,27 +69,38 @@ def centred(
     """
     middle = Ball.exact(q.mid)
     still = Ball.exact(h.mid)
-    if isinstance(curve, StretchedUniformBSpline):
-        shape = _at(shape_matrix(curve.waypoints), segment, order, s)
-        one = Ball.exact(np.ones(s.size))
-        scale = quotient_power(one, still[segment], order)
-        value = _own(shape @ middle, joint) * scale
-        # f = D/hʳ: only the segment's own duration enters.
-        over = _own(shape @ q, joint) * quotient_power(one, h[segment], order + 1)
-        own = (segment[:, None] == np.arange(curve.segments)) * -order[:, None].astype(float)
-        amplitude = np.abs(_own(Ball.exact(np.abs(shape.mid) @ np.abs(q.mid)), joint).mid)
-        return Centred(
-            value,
-            Ball.exact(own) * over.reshape(-1, 1),
-            shape * scale.reshape(-1, 1),
-            amplitude * scale.mid,
-        )
+    shape = _at(shape_matrix(waypoints), segment, order, s)
+    one = Ball.exact(np.ones(s.size))
+    scale = quotient_power(one, still[segment], order)
+    value = _own(shape @ middle, joint) * scale
+    # f = D/hʳ: only the segment's own duration enters.
+    over = _own(shape @ q, joint) * quotient_power(one, h[segment], order + 1)
+    own = (segment[:, None] == np.arange(waypoints - 1)) * -order[:, None].astype(float)
+    amplitude = np.abs(_own(Ball.exact(np.abs(shape.mid) @ np.abs(q.mid)), joint).mid)
+    return Centred(
+        value,
+        Ball.exact(own) * over.reshape(-1, 1),
+        shape * scale.reshape(-1, 1),
+        amplitude * scale.mid,
+    )
+
+
+def centred_timed(
+    waypoints: int,
+    joint: NDArray[np.int64],
+    segment: NDArray[np.int64],
+    order: NDArray[np.int64],
+    s: Array,
+    h: Ball,
+    q: Ball,
+) -> Centred:
+    """`centred_stretched` for time that is a B-spline too; velocity and acceleration only."""
+    middle = Ball.exact(q.mid)
+    still = Ball.exact(h.mid)
     first, second = (
-        _at(shape_matrix(curve.waypoints), segment, np.full_like(order, r), s) for r in (1, 2)
+        _at(shape_matrix(waypoints), segment, np.full_like(order, r), s) for r in (1, 2)
     )
-    rate, bend = (
-        _at(clock_matrix(curve.waypoints), segment, np.full_like(order, r), s) for r in (1, 2)
-    )
+    rate, bend = (_at(clock_matrix(waypoints), segment, np.full_like(order, r), s) for r in (1, 2))
     twice = order == 2
     value = _in_time(first @ middle, second @ middle, rate @ still, bend @ still, joint, twice)
     by_waypoint = _by_waypoint(first, second, rate @ still, bend @ still, twice)

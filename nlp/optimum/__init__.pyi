@@ -1,8 +1,9 @@
 from .formulation import Form, Formulation, Structure, build
+from .judgement import KKT_TOLERANCE, SAME
 from .optimality import KKT, Active, kkt
 from .per_joint import OPTIMUM_SLACK, PerJointSolution, Range, solve_per_joint
 from .solution import Evidence, Solution, Status, weakest
-from .solver import KKT_TOLERANCE, SAME, STARTS, solve
+from .solver import STARTS, solve
 from .starts import random_starts
 from .tracking import structure_of
 

@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
 
-from ...problem import ClampedBSpline, Curve, Problem
+from ...problem import Array, Curve, Problem
 from ...problem.curves import (
     MAX_COEFFICIENTS,
-    end_conditions,
-    fractions_of,
     roots_in_unit,
-    smooth_order,
 )
 from .curve_symbols import Symbols, derived, evaluated, numbers, shape_key, symbols
 from .tracking import ipopt_options
@@ -26,7 +22,6 @@ SLOWEST = 1e-4
 """Least dt/de where time is not linear, relative to the mean duration."""
 SPEED = 4
 """Stands for the order of a row that keeps time increasing."""
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -40,7 +35,7 @@ class CurveStructure:
     orders : tuple of int
         Limited derivative orders (0 position).
     key : tuple of int
-        Segment of each piece of a stretched curve, whose number depends on the way-points.
+        What else it depends on, see `shape_key`.
     """
 
     curve: Curve
@@ -50,7 +45,7 @@ class CurveStructure:
 
 
 @dataclass(frozen=True)
-class Place:
+class LimitPlace:
     """Where one derivative of one joint is limited: an end of a piece, or a slot that moves."""
 
     order: int
@@ -70,7 +65,7 @@ class CurveFormulation:
 
     structure: CurveStructure
     symbols: Symbols
-    places: tuple[Place, ...]
+    places: tuple[LimitPlace, ...]
     parameters: Any
     inequalities: Any
     build_seconds: float
@@ -101,29 +96,29 @@ def curve_structure(problem: Problem) -> CurveStructure:
     if problem.limits.limits_position:
         orders = (0, *orders)
     joints = problem.waypoints.shape[1]
-    return CurveStructure(problem.interpolant, joints, orders, shape_key(problem))
+    return CurveStructure(problem.curve, joints, orders, shape_key(problem))
 
 
-def _places(structure: CurveStructure, known: Symbols) -> tuple[Place, ...]:
-    start, end = ({order for order, _ in side} for side in end_conditions(structure.curve))
+def _places(structure: CurveStructure, known: Symbols) -> tuple[LimitPlace, ...]:
+    start, end = ({order for order, _ in side} for side in structure.curve.ends)
     found = []
     for r in structure.orders:
         for j, pieces in enumerate(known.pieces):
             last = len(pieces) - 1
             for k, piece in enumerate(pieces):
-                joined = k > 0 and smooth_order(structure.curve, k) >= r
+                joined = k > 0 and structure.curve.smooth_order(k) >= r
                 if r and not joined and not (k == 0 and r in start):
-                    found.append(Place(r, j, k, 0.0, -1))
+                    found.append(LimitPlace(r, j, k, 0.0, -1))
                 if r and len(piece.numerators[r]) > 1 and not (k == last and r in end):
-                    found.append(Place(r, j, k, 1.0, -1))
+                    found.append(LimitPlace(r, j, k, 1.0, -1))
                 # One for each zero that the next numerator can have.
                 slots = len(piece.numerators[r + 1]) - 1
-                found += [Place(r, j, k, None, m) for m in range(slots)]
+                found += [LimitPlace(r, j, k, None, m) for m in range(slots)]
     for k in range(len(known.speeds)):
-        found.append(Place(SPEED, 0, k, 0.0, -1))
-        found.append(Place(SPEED, 0, k, None, 0))
+        found.append(LimitPlace(SPEED, 0, k, 0.0, -1))
+        found.append(LimitPlace(SPEED, 0, k, None, 0))
     if known.speeds:
-        found.append(Place(SPEED, 0, len(known.speeds) - 1, 1.0, -1))
+        found.append(LimitPlace(SPEED, 0, len(known.speeds) - 1, 1.0, -1))
     return tuple(found)
 
 
@@ -256,10 +251,8 @@ def scaled_curve(problem: Problem, time_unit: float) -> ScaledCurve:
             np.isfinite(high).astype(float),
         ]
     )
-    curve = problem.interpolant
-    if isinstance(curve, ClampedBSpline):
-        # Chords are lengths of the joint vector as it is, not in these units.
-        curve = replace(curve, fractions=fractions_of(curve, problem.waypoints))
+    # Chords are lengths of the joint vector as it is, not in these units.
+    curve = problem.curve.fixed_by(problem.waypoints)
     own = numbers(curve, (problem.waypoints - first) / angle)
     return ScaledCurve(time_unit, own, np.concatenate([inverse.T.ravel("F"), position.ravel("F")]))
 

@@ -4,31 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import singledispatch
 from math import perm
 from typing import Any
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
 
-from ...problem import ClampedBSpline, Curve, Problem, Timing
+from ...problem import Array, ClampedBSpline, Curve, Problem, TrajgapError
 from ...problem.curves import (
-    StretchedUniformBSpline,
     TimedUniformBSpline,
     average_matrix,
     clock_matrix,
     fractions_of,
-    shape,
     shape_matrix,
 )
 
-Array = NDArray[np.float64]
 Polynomial = list[Any]
 
 
 @dataclass(frozen=True, eq=False)
-class Piece:
+class SymbolicPiece:
     """One polynomial piece of one joint.
 
     Attributes
@@ -50,14 +45,14 @@ class Symbols:
     Attributes
     ----------
     durations, parameters : casadi.SX
-    pieces : list, one entry per joint, of lists of Piece
+    pieces : list, one entry per joint, of lists of SymbolicPiece
     speeds : list of polynomials
         t′ on each piece where time is not linear: must stay positive.
     """
 
     durations: Any
     parameters: Any
-    pieces: list[list[Piece]]
+    pieces: list[list[SymbolicPiece]]
     speeds: list[Polynomial]
 
 
@@ -82,34 +77,40 @@ def _product(a: Polynomial, b: Polynomial) -> Polynomial:
     return out
 
 
-def _in_time(a: Polynomial, width: Any, highest: int) -> Piece:
+def _in_time(a: Polynomial, width: Any, highest: int) -> SymbolicPiece:
     """Piece whose time is linear: derivative r is N_r over the r-th power of its duration."""
     found = [a]
     for _ in range(highest):
         found.append(derived(found[-1]))
-    return Piece(found, lambda r, e: width**r)
+    return SymbolicPiece(found, lambda r, e: width**r)
 
 
 def shape_key(problem: Problem) -> tuple[int, ...]:
-    """Segment of each piece of a stretched curve; empty for other kinds."""
-    curve = problem.interpolant
-    if isinstance(curve, StretchedUniformBSpline) or (
-        isinstance(curve, ClampedBSpline) and curve.time is Timing.STRETCHED
-    ):
-        return tuple(int(k) for k in shape(curve, problem.waypoints).segment)
-    return ()
+    """Degree, then the segment of each piece of a stretched curve; empty for other kinds."""
+    form = problem.curve.shape(problem.waypoints)
+    return () if form is None else (form.degree, *map(int, form.segment))
 
 
-@singledispatch
 def symbols(curve: Curve, joints: int, highest: int, key: tuple[int, ...]) -> Symbols:
-    """Expressions of a curve for ``joints`` joints, numerators up to order ``highest``."""
-    raise TypeError(type(curve).__name__)
+    """Expressions of a curve for ``joints`` joints, numerators up to order ``highest``.
+
+    Raises
+    ------
+    TrajgapError
+        If the kind is neither stretched nor one of `EXPRESSIONS`.
+    """
+    if key:
+        return _stretched_symbols(key[0], curve.segments, joints, highest, key[1:])
+    return _expression(curve).symbols(curve, joints, highest)
 
 
-@singledispatch
 def numbers(curve: Curve, waypoints: Array) -> Array:
     """Values of the parameters of `symbols` for way-points."""
-    raise TypeError(type(curve).__name__)
+    form = curve.shape(waypoints)
+    if form is None:
+        return _expression(curve).numbers(curve, waypoints)
+    c = form.scaled[:, : form.degree + 1].reshape(-1, waypoints.shape[1])
+    return np.concatenate([form.share, c.ravel("F")])
 
 
 def _stretched_symbols(
@@ -130,24 +131,7 @@ def _stretched_symbols(
     return Symbols(h, ca.vertcat(share, ca.vec(c)), pieces, [])
 
 
-def _stretched_numbers(curve: Curve, waypoints: Array) -> Array:
-    form = shape(curve, waypoints)
-    c = form.scaled[:, : form.degree + 1].reshape(-1, waypoints.shape[1])
-    return np.concatenate([form.share, c.ravel("F")])
-
-
-@symbols.register
-def _(curve: StretchedUniformBSpline, joints: int, highest: int, key: tuple[int, ...]) -> Symbols:
-    return _stretched_symbols(3, curve.segments, joints, highest, key)
-
-
-@numbers.register
-def _(curve: StretchedUniformBSpline, waypoints: Array) -> Array:
-    return _stretched_numbers(curve, waypoints)
-
-
-@symbols.register
-def _(curve: TimedUniformBSpline, joints: int, highest: int, key: tuple[int, ...]) -> Symbols:
+def _timed_symbols(curve: TimedUniformBSpline, joints: int, highest: int) -> Symbols:
     n = curve.segments
     h, c = ca.SX.sym("h", n), ca.SX.sym("c", 4 * n, joints)
     nodes = clock_matrix(curve.waypoints).astype(np.float64)
@@ -160,7 +144,7 @@ def _(curve: TimedUniformBSpline, joints: int, highest: int, key: tuple[int, ...
     return Symbols(h, ca.vec(c), pieces, speeds)
 
 
-def _clocked(q: Polynomial, speed: Polynomial, highest: int) -> Piece:
+def _clocked(q: Polynomial, speed: Polynomial, highest: int) -> SymbolicPiece:
     bend = derived(speed)
     found = [q, derived(q)]
     for r in range(1, highest):
@@ -168,26 +152,22 @@ def _clocked(q: Polynomial, speed: Polynomial, highest: int) -> Piece:
         first, second = _product(derived(a), speed), _product(a, bend)
         following = [x - (2 * r - 1) * y for x, y in zip(first, second, strict=True)]
         found.append(following[:3] if r == 1 else following)
-    return Piece(found, lambda r, e: evaluated(speed, e) ** (2 * r - 1) if r else 1)
+    return SymbolicPiece(found, lambda r, e: evaluated(speed, e) ** (2 * r - 1) if r else 1)
 
 
-@numbers.register
-def _(curve: TimedUniformBSpline, waypoints: Array) -> Array:
+def _timed_numbers(curve: TimedUniformBSpline, waypoints: Array) -> Array:
     c = shape_matrix(curve.waypoints).astype(np.float64) @ waypoints
     return np.asarray(c.reshape(-1, waypoints.shape[1]).ravel("F"))
 
 
-@symbols.register
-def _(curve: ClampedBSpline, joints: int, highest: int, key: tuple[int, ...]) -> Symbols:
-    if curve.time is Timing.STRETCHED:
-        return _stretched_symbols(curve.degree, curve.segments, joints, highest, key)
+def _clamped_symbols(curve: ClampedBSpline, joints: int, highest: int) -> Symbols:
     w, p = curve.waypoints, curve.degree
     h, q = ca.SX.sym("h", w - 1), ca.SX.sym("q", w, joints)
     times = [ca.SX(0), *(ca.sum1(h[: k + 1]) for k in range(w - 1))]
     average = average_matrix(curve)
     groups = _groups(curve, joints)
     fractions = ca.SX.sym("u", groups, w)
-    pieces: list[list[Piece]] = []
+    pieces: list[list[SymbolicPiece]] = []
     for g in range(max(1, groups)):
         sites = [fractions[g, k] * times[-1] for k in range(w)] if groups else times
         inner = [sum(a * u for a, u in zip(row, sites, strict=True) if a) for row in average]
@@ -202,10 +182,7 @@ def _groups(curve: ClampedBSpline, joints: int) -> int:
     return {"times": 0, "chord": 1, "joint-chord": joints}[curve.parameters]
 
 
-@numbers.register
-def _(curve: ClampedBSpline, waypoints: Array) -> Array:
-    if curve.time is Timing.STRETCHED:
-        return _stretched_numbers(curve, waypoints)
+def _clamped_numbers(curve: ClampedBSpline, waypoints: Array) -> Array:
     rows = fractions_of(curve, waypoints)
     fractions = np.empty((0, curve.waypoints)) if rows is None else np.array(rows)
     return np.concatenate([(waypoints - waypoints[0]).ravel("F"), fractions.ravel("F")])
@@ -239,7 +216,7 @@ def _spline_pieces(
     columns: list[Any],
     p: int,
     highest: int,
-) -> list[list[Piece]]:
+) -> list[list[SymbolicPiece]]:
     knots = [ca.SX(0)] * (p + 1) + inner + [times[-1]] * (p + 1)
     bases = _span_bases(knots, p)
     size, last = len(inner) + p + 1, len(bases) - 1
@@ -319,3 +296,25 @@ def _eliminated(rows: list[list[Any]], right: list[list[Any]]) -> list[list[Any]
                     column[c] = column[c] - rows[c][k] * column[k]
             column[c] = column[c] / rows[c][c]
     return right
+
+
+@dataclass(frozen=True)
+class Expression:
+    """How a kind of curve enters the NLP: its symbols, and the values of their parameters."""
+
+    symbols: Callable[[Any, int, int], Symbols]
+    numbers: Callable[[Any, Array], Array]
+
+
+EXPRESSIONS: dict[type[Curve], Expression] = {
+    TimedUniformBSpline: Expression(_timed_symbols, _timed_numbers),
+    ClampedBSpline: Expression(_clamped_symbols, _clamped_numbers),
+}
+"""Kinds of curve that neither are declared polynomials nor have a `Curve.shape`; the one place of
+the optimum that asks for a curve's type, since CasADi must not be known to `problem`."""
+
+
+def _expression(curve: Curve) -> Expression:
+    if type(curve) not in EXPRESSIONS:
+        raise TrajgapError(f"curve: no NLP is known for {curve.name}; use another curve")
+    return EXPRESSIONS[type(curve)]

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...problem import Problem, Verdict, check, evaluate
+from ...problem import Array, Problem, Verdict, check, evaluate
 from .curve_formulation import CompiledCurve, ScaledCurve, follow, packed, scaled_curve
 from .tracking import Local, run
 
 _PASSES = 40
-Array = NDArray[np.float64]
+"""Solves from one start: a bound against endless shrinking of the trust region."""
 
 
 def curve_merit(problem: Problem, h: Array) -> tuple[float, Array]:

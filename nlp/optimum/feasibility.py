@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...problem import QUANTITIES, Interpolant, Problem
-from ...problem.curves import end_conditions
+from ...problem import QUANTITIES, Problem
 
 
 def impossible(problem: Problem) -> str | None:
@@ -23,14 +22,13 @@ def impossible(problem: Problem) -> str | None:
 
 def _limit_zero(problem: Problem) -> str | None:
     moves = np.ptp(problem.waypoints, axis=0) > 0
-    orders = {order for end in end_conditions(problem.interpolant) for order, _ in end}
-    if isinstance(problem.interpolant, Interpolant):
-        orders |= {order for entries in problem.interpolant.prescribed for order, _ in entries}
+    curve = problem.curve
+    orders = {r for b in range(curve.segments + 1) for r, _ in curve.prescribed_at(b)}
     for r, quantity in enumerate(QUANTITIES, start=1):
         # A joint that must not accelerate may still glide, unless it is at rest somewhere.
         pinned = all(lower in orders for lower in range(1, r))
         for j in np.flatnonzero(moves & (problem.limits.derivatives[:, r - 1] == 0)):
-            if pinned and problem.interpolant.homogeneous:
+            if pinned and curve.homogeneous:
                 return f"joint {problem.joints[j]} moves, but its {quantity} limit is 0"
     return None
 
@@ -45,10 +43,8 @@ def _outside_range(problem: Problem) -> str | None:
 
 
 def _prescribed_beyond_limit(problem: Problem) -> str | None:
-    if not isinstance(problem.interpolant, Interpolant):
-        return None
-    for b, entries in enumerate(problem.interpolant.prescribed):
-        for order, value in entries:
+    for b in range(problem.segments + 1):
+        for order, value in problem.curve.prescribed_at(b):
             if order > 3:
                 continue
             over = abs(value) > problem.limits.derivatives[:, order - 1]
@@ -60,7 +56,7 @@ def _prescribed_beyond_limit(problem: Problem) -> str | None:
 
 
 def _too_little_time(problem: Problem) -> str | None:
-    breaks = problem.interpolant.waypoint_breaks
+    breaks = problem.curve.waypoint_breaks
     for w in range(len(breaks) - 1):
         room = float(problem.duration_upper[breaks[w] : breaks[w + 1]].sum())
         distance = np.abs(problem.waypoints[w + 1] - problem.waypoints[w])

@@ -9,9 +9,9 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
 
-from ...problem.curves import PERM, Interpolant, Row, RowKind, layout
+from ...problem import Array
+from ...problem.curves import PERM, Condition, ConditionKind, Interpolant, layout
 
 GRID = {1: 0, 2: 2, 3: 4, 4: 5}
 """Interior slots of a segment for a limited derivative of this polynomial degree."""
@@ -156,8 +156,8 @@ def _derivative(coefficients: list[Any], order: int, s: Any, rows: tuple[int, ..
     return value
 
 
-def _row_groups(rows: tuple[Row, ...]) -> dict[tuple[RowKind, int], list[int]]:
-    groups: dict[tuple[RowKind, int], list[int]] = {}
+def _row_groups(rows: tuple[Condition, ...]) -> dict[tuple[ConditionKind, int], list[int]]:
+    groups: dict[tuple[ConditionKind, int], list[int]] = {}
     for i, row in enumerate(rows):
         groups.setdefault((row.kind, row.order), []).append(i)
     return groups
@@ -171,7 +171,7 @@ def _lifted_rows(
     ones = np.ones((1, joints))
     for (kind, r), members in _row_groups(rows).items():
         at = [rows[i].at for i in members]
-        if kind == RowKind.RIGHT_VALUE:
+        if kind == ConditionKind.RIGHT_VALUE:
             scale = ca.mtimes(_take(h, at) ** r, ones)
             equation = (
                 float(PERM[r, r]) * _take(coefficients[r], at) - _take(values, members) * scale
@@ -179,7 +179,7 @@ def _lifted_rows(
         else:
             before = tuple(b - 1 for b in at)
             equation = _derivative(coefficients, r, 1.0, before)
-            if kind == RowKind.LEFT_VALUE:
+            if kind == ConditionKind.LEFT_VALUE:
                 scale = ca.mtimes(_take(h, before) ** r, ones)
                 equation = equation - _take(values, members) * scale
             else:
@@ -197,14 +197,14 @@ def _eliminated(interpolant: Interpolant, h: Any, values: Any, joints: int) -> l
     known: dict[tuple[int, int], Any] = {}
     rows = range(plan.kinds.size)
     for i in rows:
-        if plan.kinds[i] == RowKind.RIGHT_VALUE:
+        if plan.kinds[i] == ConditionKind.RIGHT_VALUE:
             k, r = int(plan.breaks[i]), int(plan.orders[i])
             known[k, r] = values[i, :] * h[k] ** r / float(PERM[r, r])
     matrix = ca.SX(plan.unknowns, plan.unknowns)
     right = ca.SX.zeros(plan.unknowns, joints)
     e = 0
     for i in rows:
-        if plan.kinds[i] == RowKind.RIGHT_VALUE:
+        if plan.kinds[i] == ConditionKind.RIGHT_VALUE:
             continue
         b, r = int(plan.breaks[i]), int(plan.orders[i])
         k = b - 1
@@ -214,7 +214,7 @@ def _eliminated(interpolant: Interpolant, h: Any, values: Any, joints: int) -> l
                 matrix[e, c] = float(PERM[p, r])
             else:
                 right[e, :] -= float(PERM[p, r]) * known[k, p]
-        if plan.kinds[i] == RowKind.LEFT_VALUE:
+        if plan.kinds[i] == ConditionKind.LEFT_VALUE:
             right[e, :] += values[i, :] * h[k] ** r
         elif r <= plan.degrees[b]:
             own = (h[k] / h[b]) ** r * float(PERM[r, r])
@@ -312,12 +312,12 @@ def build(structure: Structure) -> Formulation:
 
 def pack_parameters(
     formulation: Formulation,
-    values: NDArray[np.float64],
-    inverse_limits: NDArray[np.float64],
-    position: NDArray[np.float64],
-    places: list[NDArray[np.float64]],
-    weights: list[NDArray[np.float64]],
-) -> NDArray[np.float64]:
+    values: Array,
+    inverse_limits: Array,
+    position: Array,
+    places: list[Array],
+    weights: list[Array],
+) -> Array:
     """Parameter vector of a formulation, in the order that `build` documents."""
     parts = [values.ravel("F"), inverse_limits.ravel("F"), position.ravel("F")]
     for place, weight in zip(places, weights, strict=True):

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
 
-from ...problem import Problem, check, fit
+from ...problem import Array, Problem, check, fit
 from .formulation import Formulation, Structure, pack_parameters
 from .tracking import (
     Scaled,
@@ -24,6 +24,7 @@ from .tracking import (
 )
 
 _PASSES = 12
+"""Solves from one optimum: a bound against endless shrinking of the region."""
 _OPTIONS = {
     "print_time": False,
     "ipopt.print_level": 0,
@@ -34,6 +35,7 @@ _OPTIONS = {
     "ipopt.mu_init": 1e-4,
     "ipopt.max_iter": 200,
 }
+"""Options of IPOPT as `tracking.ipopt_options`, begun near a solution (small barrier)."""
 
 
 @lru_cache(maxsize=32)
@@ -73,10 +75,10 @@ def _nlp(structures: tuple[Structure, ...], longest: bool) -> Any:
 
 def _improve(
     problems: list[Problem],
-    starts: list[NDArray[np.float64]],
+    starts: list[Array],
     caps: list[float],
-    weights: NDArray[np.float64] | None,
-) -> list[NDArray[np.float64]]:
+    weights: Array | None,
+) -> list[Array]:
     """Durations of each joint that optimise the objective near ``starts``, slots on extrema."""
     structures = tuple(structure_of(p) for p in problems)
     formulations: list[Formulation] = [compiled(s).formulation for s in structures]
@@ -98,13 +100,8 @@ def _improve(
             wide = variable_bounds(problem, f, unit, 0.0)
             wide[0][:n] = np.maximum(wide[0][:n], x[:n] * (1 - radius))
             wide[1][:n] = np.minimum(wide[1][:n], x[:n] * (1 + radius))
-            trajectory = fit(problem.interpolant, problem.waypoints, own)
-            trajectory = type(trajectory)(
-                trajectory.polynomial,
-                trajectory.durations,
-                trajectory.scaled / s.angle_unit,
-                trajectory.degrees,
-            )
+            trajectory = fit(problem.curve, problem.waypoints, own)
+            trajectory = replace(trajectory, scaled=trajectory.scaled / s.angle_unit)
             places, newton = place_slots(f, trajectory)
             p.append(pack_parameters(f, s.values, s.inverse_limits, s.position, places, newton))
             x0.append(x)
@@ -137,14 +134,14 @@ def _improve(
     return h
 
 
-def _kept(problem: Problem, h: NDArray[np.float64]) -> NDArray[np.float64]:
+def _kept(problem: Problem, h: Array) -> Array:
     """Durations made feasible by the (tiny) uniform stretch that they may need."""
     stretch = max(1.0, check(problem, h).stretch)
     return np.asarray(np.clip(h * stretch, problem.duration_lower, problem.duration_upper))
 
 
 def longest_per_segment_range(
-    problems: list[Problem], optima: list[NDArray[np.float64]], slack: float
+    problems: list[Problem], optima: list[Array], slack: float
 ) -> tuple[float, float]:
     """Range of Σ_k max_j h_jk while each joint keeps its limits and its total within ``slack``.
 

@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import nnls
 
-from ...problem import QUANTITIES, Extremum, Problem, extrema, fit, peak_gradients
-from ...problem.curves import segment_of, smooth_order
+from ...problem import QUANTITIES, Array, Extremum, Problem, extrema, fit, peak_gradients
 
 ACTIVE = 1e-7
 """Relative distance to a limit within which a peak counts as active."""
@@ -67,11 +65,11 @@ class _Constraint:
 
 
 def _peaks_near_limit(
-    problem: Problem, durations: NDArray[np.float64], nodal: NDArray[np.float64] | None, near: float
+    problem: Problem, durations: Array, nodal: Array | None, near: float
 ) -> list[_Constraint]:
-    trajectory = fit(problem.interpolant, problem.waypoints, durations, nodal)
+    trajectory = fit(problem.curve, problem.waypoints, durations, nodal)
     limits = problem.limits
-    curve = problem.interpolant
+    curve = problem.curve
     every_break = len(curve.waypoint_breaks) == curve.segments + 1
     found: list[_Constraint] = []
     for j, name in enumerate(problem.joints):
@@ -80,11 +78,11 @@ def _peaks_near_limit(
             if not np.isfinite(limit) or limit == 0:
                 continue
             for e in extrema(trajectory, j, r):
-                repeated = e.s == 0.0 and e.segment > 0 and smooth_order(curve, e.segment) >= r
+                repeated = e.s == 0.0 and e.segment > 0 and curve.smooth_order(e.segment) >= r
                 excess = abs(e.value) / limit - 1
                 if excess >= -near and not repeated:
                     sign = float(np.sign(e.value))
-                    label = (name, quantity, segment_of(curve, durations, e), e.time)
+                    label = (name, quantity, curve.segment_of(durations, e), e.time)
                     found.append(_Constraint(e, label, excess, sign, limit))
         low, high = float(limits.position_lower[j]), float(limits.position_upper[j])
         if np.isfinite(low) or np.isfinite(high):
@@ -94,15 +92,15 @@ def _peaks_near_limit(
                     excess = sign * (e.value - limit) / size
                     given = e.s in (0.0, 1.0) and every_break
                     if np.isfinite(limit) and excess >= -near and not given:
-                        label = (name, "position", segment_of(curve, durations, e), e.time)
+                        label = (name, "position", curve.segment_of(durations, e), e.time)
                         found.append(_Constraint(e, label, excess, sign, size))
     return found
 
 
 def kkt(
     problem: Problem,
-    durations: NDArray[np.float64],
-    nodal: NDArray[np.float64] | None = None,
+    durations: Array,
+    nodal: Array | None = None,
     active: float = ACTIVE,
 ) -> KKT:
     """Optimality conditions of min Σh over durations (and free nodal derivatives).
@@ -122,7 +120,7 @@ def kkt(
     """
     n, total = problem.segments, float(durations.sum())
     joints = problem.waypoints.shape[1]
-    free = problem.interpolant.free
+    free = problem.curve.free
     rows = _peaks_near_limit(problem, durations, nodal, active)
     points = [c.extremum for c in rows if c.extremum is not None]
     gradients = peak_gradients(problem, durations, points, nodal)

@@ -6,9 +6,8 @@ import time
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...problem import Check, Interpolant, Problem, check
+from ...problem import Array, Check, Problem, check
 from .near_optimal import longest_per_segment_range
 from .solution import Evidence, Solution, Status, weakest
 from .solver import STARTS, solve
@@ -16,6 +15,7 @@ from .solver import STARTS, solve
 OPTIMUM_SLACK = 1e-6
 """Excess over each joint's own optimum (s) within which the procedure's output is reported."""
 _MOST_SEGMENTS = 4
+"""Ranges go through every assignment of segments to joints, 2ⁿ subsets: up to here."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class PerJointSolution:
 
     problem: Problem
     joints: tuple[Solution, ...]
-    durations: NDArray[np.float64] | None
+    durations: Array | None
     check: Check | None
     ranges: tuple[Range, ...]
     why: str | None
@@ -65,6 +65,7 @@ class PerJointSolution:
             Status.NOT_ATTAINED,
             Status.LIMIT,
             Status.FAILED,
+            Status.NONE_FOUND,
             Status.INFEASIBLE,
         ]
         return max((s.status for s in self.joints), key=order.index)
@@ -135,18 +136,18 @@ def solve_per_joint(
             for label, s in zip(problem.joints, solutions, strict=True)
             if s.durations is None
         )
-    elif problem.interpolant.free:
+    elif problem.curve.free:
         durations, verdict = None, None
         why = (
-            f"the longest durations do not determine the motion: {problem.interpolant.name} "
-            f"leaves {problem.interpolant.free} derivatives of each joint free"
+            f"the longest durations do not determine the motion: {problem.curve.name} "
+            f"leaves {problem.curve.free} derivatives of each joint free"
         )
     else:
         durations = np.max(answers, axis=0)
         verdict = check(problem, durations)
         why = None
         settled = all(s.status is Status.OPTIMAL for s in solutions)
-        if not isinstance(problem.interpolant, Interpolant):
+        if problem.curve.piecewise is None:
             why = "ranges are computed for declared piecewise polynomials only"
         elif problem.segments > _MOST_SEGMENTS:
             why = f"ranges are computed for at most {_MOST_SEGMENTS} segments"

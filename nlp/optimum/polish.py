@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...problem import Extremum, Problem, check, extrema, fit, peak_gradients
-from ...problem.curves import segment_of
+from ...problem import Array, Extremum, Problem, check, extrema, fit, peak_gradients
 from .optimality import KKT, Active, kkt
 
 _STEPS = 4
+"""Newton steps: few are needed, since interior-point answers are near and it is quadratic."""
 _DIFFERENCE = 1e-6
+"""Step of the central differences in log durations: their truncation is 1e-12, rounding 1e-10."""
 
 
-def polish(
-    problem: Problem, durations: NDArray[np.float64], report: KKT
-) -> tuple[NDArray[np.float64], KKT]:
+def polish(problem: Problem, durations: Array, report: KKT) -> tuple[Array, KKT]:
     """Sharpen a converged answer whose active limits are known.
 
     Interior-point answers keep a slack of the order of the last barrier parameter; Newton's method
@@ -25,7 +23,7 @@ def polish(
     Parameters
     ----------
     problem : Problem
-        With a determined interpolant.
+        With a determined curve.
     durations : ndarray, shape (segments,)
     report : KKT
         Of these durations.
@@ -37,7 +35,7 @@ def polish(
     """
     limited = [a for a in report.active if a.quantity in _ORDERS]
     pinned = [a.segment for a in report.active if a.quantity == "duration"]
-    if problem.interpolant.free or len(limited) < len(report.active) - len(pinned):
+    if problem.curve.free or len(limited) < len(report.active) - len(pinned):
         return durations, report
     moving = np.setdiff1d(np.arange(problem.segments), pinned)
     active = [_nearest(problem, durations, a) for a in limited]
@@ -72,30 +70,31 @@ def polish(
 
 
 _ORDERS = {"velocity": 1, "acceleration": 2, "jerk": 3}
+"""Quantities whose active limit is a peak of this derivative."""
 
 
-def _nearest(problem: Problem, h: NDArray[np.float64], active: Active) -> Extremum:
+def _nearest(problem: Problem, h: Array, active: Active) -> Extremum:
     assert active.joint is not None
     assert active.time is not None
-    time, curve = active.time, problem.interpolant
+    time, curve = active.time, problem.curve
     points = extrema(
         fit(curve, problem.waypoints, h),
         problem.joints.index(active.joint),
         _ORDERS[active.quantity],
     )
     # Where a derivative jumps, two extrema share a time.
-    own = [e for e in points if segment_of(curve, h, e) == active.segment]
+    own = [e for e in points if curve.segment_of(h, e) == active.segment]
     return min(own, key=lambda e: abs(e.time - time))
 
 
 def _conditions(
     problem: Problem,
-    h: NDArray[np.float64],
+    h: Array,
     active: list[Extremum],
-    weights: NDArray[np.float64],
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    weights: Array,
+) -> tuple[Array, Array, Array]:
     """Lagrangian gradient in log durations, excess of the active limits, and their gradients."""
-    trajectory = fit(problem.interpolant, problem.waypoints, h)
+    trajectory = fit(problem.curve, problem.waypoints, h)
     points = []
     for a in active:
         same = [

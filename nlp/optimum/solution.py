@@ -6,10 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from enum import StrEnum
 
-import numpy as np
-from numpy.typing import NDArray
-
-from ...problem import Check, Problem
+from ...problem import Array, Check, Problem
 from .optimality import Active
 
 
@@ -21,7 +18,9 @@ class Status(StrEnum):
     FEASIBLE = "feasible"
     """Feasible for all t; the optimality conditions were not reached."""
     INFEASIBLE = "infeasible"
-    """No duration vector within the bounds keeps the limits; `why` says how that is known."""
+    """No duration vector within the bounds keeps the limits: `why` is the proof."""
+    NONE_FOUND = "none found"
+    """No feasible duration vector found, and no proof that there is none; `why` says how near."""
     NOT_ATTAINED = "not_attained"
     """The total only approaches its infimum as a duration goes to 0."""
     LIMIT = "limit"
@@ -59,7 +58,7 @@ class Solution:
         The reason, where the status needs one.
     durations : ndarray, shape (segments,), or None
     nodal : ndarray, shape (free, joints), or None
-        Free derivatives of an under-determined interpolant.
+        Free derivatives of an under-determined curve.
     check : Check or None
         The checker's verdict on the durations.
     infimum : float or None
@@ -80,8 +79,8 @@ class Solution:
     problem: Problem
     status: Status
     why: str | None = None
-    durations: NDArray[np.float64] | None = None
-    nodal: NDArray[np.float64] | None = None
+    durations: Array | None = None
+    nodal: Array | None = None
     check: Check | None = None
     infimum: float | None = None
     lower_bound: float | None = None

@@ -4,21 +4,29 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ...problem import Interpolant, Problem, TrajgapError, Verdict, check, fit
+from ...problem import Array, Problem, TrajgapError, check, fit
 from ...problem.curves import coefficient_gradient, segment_peaks
 from .curve_formulation import compiled_curve, curve_structure
-from .curve_symbols import shape_key
 from .curve_tracking import curve_multistart
+from .exact_multistart import (
+    UNEQUAL,
+    exact_search,
+    exact_starts,
+    kept,
+    made_up,
+    ordinary,
+    searchable,
+)
 from .feasibility import impossible
 from .formulation import Form
+from .judgement import judged, stretchable
 from .optimality import kkt
-from .polish import polish
 from .solution import Solution, Status
 from .starts import equal_start, first_nodal, screened_starts, settled
 from .tracking import (
@@ -32,15 +40,16 @@ from .tracking import (
     track,
     unpack,
 )
+from .wide_search import Basin
 
 STARTS = 4
-SAME = 1e-6
-"""Relative difference below which two totals count as the same."""
+"""Equal durations first, then three screened random ones: a second opinion at small cost."""
 FLOORS = (1e-3, 1e-4)
 """Smallest durations tried, relative to the mean, where the case sets no lower bound."""
-KKT_TOLERANCE = 1e-8
-POLISHED = 1e-11
-"""KKT residual above which an answer is sharpened by Newton steps on its active set."""
+DEEPER = (1e-6, 1e-8)
+"""Further floors where way-points nearly coincide: the total may rise again below the others."""
+BETTER = 1e-7
+"""Relative gain from which a basin or a known motion is worth a further descent."""
 
 
 def solve(
@@ -49,6 +58,7 @@ def solve(
     starts: int = STARTS,
     seed: int = 0,
     initial: ArrayLike | None = None,
+    known: ArrayLike | None = None,
     form: Form | None = None,
 ) -> Solution:
     """Best known total time of a problem with shared durations, from an exact NLP.
@@ -64,6 +74,9 @@ def solve(
         Seed of the random starts.
     initial : array_like, shape (starts, segments), optional
         Starts to use instead, s.
+    known : array_like, shape (motions, segments), optional
+        Durations, s, that somebody already has: printed ones, replays, a certificate's. Each that
+        `check` passes is an incumbent: the answer is never worse. The others do no harm.
     form : Form, optional
         Reduced or lifted; by default the faster one for the size.
 
@@ -75,66 +88,194 @@ def solve(
     Raises
     ------
     TrajgapError
-        If ``initial`` has the wrong shape.
+        If ``initial`` or ``known`` has the wrong shape.
     """
     reason = impossible(problem)
     if reason is not None:
         return Solution(problem, Status.INFEASIBLE, reason)
+    ask = _Ask(
+        starts,
+        seed,
+        None if initial is None else _vectors(problem, "initial", initial),
+        np.empty((0, problem.segments)) if known is None else _vectors(problem, "known", known),
+        form,
+    )
     idle = idle_segments(problem)
     if idle:
-        return _with_idle(problem, idle, starts, seed, initial, form)
-    return _solve_moving(problem, starts, seed, initial, form)
+        return _with_idle(problem, idle, ask)
+    return _solve_moving(problem, ask)
 
 
-def _solve_moving(
-    problem: Problem, starts: int, seed: int, initial: ArrayLike | None, form: Form | None
-) -> Solution:
+@dataclass(frozen=True, eq=False)
+class _Ask:
+    """The arguments of `solve`."""
+
+    starts: int
+    seed: int
+    initial: Array | None
+    known: Array
+    form: Form | None
+
+
+def _vectors(problem: Problem, name: str, given: ArrayLike) -> Array:
+    points = np.atleast_2d(np.asarray(given, dtype=np.float64))
+    if points.size == 0:
+        return np.empty((0, problem.segments))
+    if points.shape[1:] != (problem.segments,) or not (np.isfinite(points) & (points > 0)).all():
+        raise TrajgapError(
+            f"{name}: expected shape (starts, {problem.segments}) of positive durations, "
+            f"got {np.asarray(given).shape}"
+        )
+    return points
+
+
+def _solve_moving(problem: Problem, ask: _Ask) -> Solution:
     """`solve` for a problem without idle segments."""
-    search, build_seconds = _search(problem, form)
     began = time.perf_counter()
-    if initial is None:
-        points = screened_starts(problem, starts, np.random.default_rng(seed))
+    if not searchable(problem):
+        solution = _tracked(problem, ask)
+    elif ask.initial is not None:
+        mean = ask.initial.mean(axis=1, keepdims=True)
+        alike = stretchable(problem) and (ask.initial >= UNEQUAL * mean).all()
+        solution = _tracked(problem, ask) if alike else _searched(problem, ask)
     else:
-        points = np.atleast_2d(np.asarray(initial, dtype=np.float64))
-        if (
-            points.shape[1:] != (problem.segments,)
-            or not (np.isfinite(points) & (points > 0)).all()
-        ):
-            raise TrajgapError(
-                f"initial: expected shape (starts, {problem.segments}) of positive durations, "
-                f"got {np.asarray(initial).shape}"
-            )
+        wide = exact_starts(problem, ask.starts, ask.seed, _floor(problem, FLOORS[-1]))
+        if ordinary(problem, wide[0]):
+            solution = _challenged(problem, _tracked(problem, ask), wide, ask)
+        else:
+            solution = _searched(problem, ask)
+    solution = _with_known(problem, solution, ask)
+    return replace(solution, solve_seconds=time.perf_counter() - began - solution.build_seconds)
+
+
+def _floor(problem: Problem, share: float) -> Array:
+    return made_up(problem, share * float(equal_start(problem).mean()))
+
+
+def _tracked(problem: Problem, ask: _Ask) -> Solution:
+    """The tracked NLP from each start."""
+    search, build_seconds = _search(problem, ask.form)
+    points = ask.initial
+    if points is None:
+        points = screened_starts(problem, ask.starts, np.random.default_rng(ask.seed))
     mean = float(equal_start(problem).mean())
     solution, coarser = None, None
     for share in FLOORS:
         floor = share * mean
+        made = np.where(problem.duration_lower == 0, floor, 0.0)
         found = search(points, floor)
-        solution = _judged(problem, found, floor, len(points))
-        if solution.status is Status.FEASIBLE and _reduced(problem, form):
+        solution = judged(problem, found, made, len(points))
+        if solution.status is Status.FEASIBLE and _reduced(problem, ask.form):
             # Eliminating across very unequal durations loses digits; the lifted form does not.
             lifted = compiled(structure_of(problem, Form.LIFTED))
             found += _multistart(problem, lifted, points, floor)
-            solution = _judged(problem, found, floor, len(points))
+            solution = judged(problem, found, made, len(points))
         if solution.status is not Status.NOT_ATTAINED:
             break
         if coarser is not None:
-            solution = _approached(coarser, solution)
+            solution = _approached(problem, coarser, solution, *FLOORS)
         coarser = solution
         assert solution.durations is not None
         points = solution.durations[None]
     assert solution is not None
-    return replace(
-        solution,
-        build_seconds=build_seconds,
-        solve_seconds=time.perf_counter() - began,
+    return replace(solution, build_seconds=build_seconds)
+
+
+def _searched(problem: Problem, ask: _Ask, durations: Array | None = None) -> Solution:
+    """Exact descents from the basins of a wide search, or from the given starts.
+
+    Where an answer ends at a floor, the floor is lowered, with a search of its own; where it still
+    does, the total only approaches its infimum.
+    """
+    shares = (*FLOORS, *DEEPER)
+    carried = np.empty((0, problem.segments)) if durations is None else durations[None]
+    coarse: Solution | None = None
+    for k, share in enumerate(shares):
+        floor = _floor(problem, share)
+        if ask.initial is None:
+            wide = exact_starts(problem, ask.starts, ask.seed, floor)
+            points = np.array([basin.durations for basin in wide])
+        else:
+            points = ask.initial
+        points = np.vstack([points, carried])
+        solution = judged(problem, exact_search(problem, points, floor), floor, len(points))
+        if solution.durations is None or solution.status is not Status.NOT_ATTAINED:
+            return solution
+        if coarse is not None:
+            solution = _approached(problem, coarse, solution, shares[k - 1], share)
+            if share == FLOORS[-1] and not _nearly_coincident(problem, solution, floor):
+                return solution
+        assert solution.durations is not None
+        coarse, carried = solution, solution.durations[None]
+    assert coarse is not None
+    return coarse
+
+
+def _nearly_coincident(problem: Problem, solution: Solution, floor: Array) -> bool:
+    """Whether a joint moves in a segment at its floor: the total rises again further down."""
+    assert solution.durations is not None
+    at = (floor > 0) & (solution.durations <= 1.01 * floor)
+    breaks = problem.curve.waypoint_breaks
+    return any(
+        at[b] and (problem.waypoints[w] != problem.waypoints[w + 1]).any()
+        for w, b in enumerate(breaks[:-1])
     )
+
+
+def _challenged(problem: Problem, solution: Solution, wide: list[Basin], ask: _Ask) -> Solution:
+    """The answer, or a better one from a basin that the tracked NLP did not reach."""
+    if solution.status not in (Status.OPTIMAL, Status.FEASIBLE):
+        return _better_of(solution, _searched(problem, ask, solution.durations))
+    bar = solution.best * (1 - BETTER) if _settled(solution) else np.inf
+    points = np.array([basin.durations for basin in wide if basin.total < bar])
+    if points.size == 0:
+        return solution
+    floor = _floor(problem, FLOORS[-1])
+    found = judged(problem, exact_search(problem, points, floor), floor, solution.starts)
+    return _better_of(solution, found)
+
+
+def _better_of(one: Solution, other: Solution) -> Solution:
+    """The first of two answers, unless the second is shorter, or as short and better founded."""
+    if other.durations is None:
+        return one
+    shorter = other.best < one.best * (1 - BETTER)
+    founded = other.best <= one.best * (1 + BETTER) and _settled(other) and not _settled(one)
+    if one.durations is not None and not shorter and not founded:
+        return one
+    iterations = one.iterations + other.iterations
+    return replace(other, build_seconds=one.build_seconds, iterations=iterations)
+
+
+def _settled(solution: Solution) -> bool:
+    return solution.status in (Status.OPTIMAL, Status.NOT_ATTAINED)
+
+
+def _with_known(problem: Problem, solution: Solution, ask: _Ask) -> Solution:
+    """The answer, or the shortest known motion that `check` passes, made shorter if possible."""
+    if problem.curve.free:
+        return solution  # durations alone determine no motion
+    passed = [h for h in ask.known if h.sum() < solution.best and kept(problem, check(problem, h))]
+    if not passed:
+        return solution
+    best = min(passed, key=lambda h: float(h.sum()))
+    incumbent = Local(best, None, float(best.sum()), False, True, 0)
+    floor = np.minimum(_floor(problem, FLOORS[-1]), best / 2.0)
+    found = [incumbent]
+    if searchable(problem):
+        found += exact_search(problem, best[None], floor)
+    else:
+        search, _ = _search(problem, ask.form)
+        found += search(best[None], FLOORS[-1] * float(best.mean()))
+    shorter = judged(problem, found, floor, solution.starts)
+    return shorter if shorter.best < solution.best else solution
 
 
 def _search(
     problem: Problem, form: Form | None
-) -> tuple[Callable[[NDArray[np.float64], float], list[Local]], float]:
+) -> tuple[Callable[[Array, float], list[Local]], float]:
     """Local search from starts above a floor, and the time its build took, s."""
-    if isinstance(problem.interpolant, Interpolant):
+    if problem.curve.piecewise is not None:
         build_ = compiled(structure_of(problem, form))
         return partial(_multistart, problem, build_), build_.build_seconds
     built = compiled_curve(curve_structure(problem))
@@ -142,15 +283,14 @@ def _search(
 
 
 def _reduced(problem: Problem, form: Form | None) -> bool:
-    declared = isinstance(problem.interpolant, Interpolant)
-    return declared and structure_of(problem, form).form is Form.REDUCED
+    if problem.curve.piecewise is None:
+        return False
+    return structure_of(problem, form).form is Form.REDUCED
 
 
-def _multistart(
-    problem: Problem, build_: Compiled, points: NDArray[np.float64], floor: float
-) -> list[Local]:
+def _multistart(problem: Problem, build_: Compiled, points: Array, floor: float) -> list[Local]:
     """Local optima of all starts; the same coarse solution is tracked only once."""
-    tracked: list[tuple[NDArray[np.float64], Local]] = []
+    tracked: list[tuple[Array, Local]] = []
     found: list[Local] = []
     for start in points:
         near = settled(problem, start)
@@ -174,79 +314,26 @@ def _multistart(
     return found
 
 
-def _judged(problem: Problem, found: list[Local], floor: float, starts: int) -> Solution:
-    """The best answer that the checker passes, with its optimality conditions."""
-    iterations = sum(local.iterations for local in found)
-    feasible = [local for local in found if local.feasible]
-    if not feasible:
-        return Solution(
-            problem,
-            *_nothing_found(problem, found),
-            starts=starts,
-            iterations=iterations,
-        )
-    best = min(feasible, key=lambda local: local.total)
-    durations, report = best.durations, kkt(problem, best.durations, best.nodal)
-    if report.residual > POLISHED:
-        durations, report = polish(problem, durations, report)
-    status = Status.OPTIMAL if report.residual <= KKT_TOLERANCE else Status.FEASIBLE
-    why = None if status is Status.OPTIMAL else f"KKT residual {report.residual:.1e}"
-    verdict = check(problem, durations, best.nodal)
-    if verdict.verdict is Verdict.DISCONTINUOUS:
-        jumps = sum(jump.order < 2 for jump in verdict.jumps)
-        note = f"limits kept inside the segments; {jumps} jumps of velocity between them"
-        why = note if why is None else f"{why}; {note}"
-    shrinking = _at_floor(problem, durations, floor)
-    if shrinking:
-        status = Status.NOT_ATTAINED
-        names = ", ".join(str(k + 1) for k in shrinking)
-        why = f"the total falls as the duration of segment {names} goes to 0"
-    return Solution(
-        problem,
-        status,
-        why,
-        durations=durations,
-        nodal=best.nodal,
-        check=verdict,
-        kkt_residual=report.residual,
-        active=report.active,
-        starts=starts,
-        starts_at_best=sum(local.total <= best.total * (1 + SAME) for local in feasible),
-        iterations=iterations,
-        totals=tuple(local.total if local.feasible else float("inf") for local in found),
-    )
-
-
-def _at_floor(problem: Problem, durations: NDArray[np.float64], floor: float) -> list[int]:
-    return np.flatnonzero((problem.duration_lower == 0) & (durations <= 1.01 * floor)).tolist()
-
-
 def idle_segments(problem: Problem) -> list[int]:
     """Segments in which nothing moves and whose duration nothing else depends on."""
-    if problem.interpolant.free:
+    if problem.curve.free:
         return []
-    if not isinstance(problem.interpolant, Interpolant):
-        if not shape_key(problem):
-            return []
-        still = segment_peaks(problem.interpolant, problem.waypoints).max(axis=(1, 2)) == 0.0
+    if problem.curve.shape(problem.waypoints) is not None:
+        still = segment_peaks(problem.curve, problem.waypoints).max(axis=(1, 2)) == 0.0
         return np.flatnonzero(still).tolist()
+    polynomials = problem.curve.piecewise
+    if polynomials is None:
+        return []
     h = equal_start(problem)
-    trajectory = fit(problem.interpolant, problem.waypoints, h)
-    gradient = coefficient_gradient(problem.piecewise, problem.waypoints, h).durations
+    trajectory = fit(problem.curve, problem.waypoints, h)
+    gradient = coefficient_gradient(polynomials, problem.waypoints, h).durations
     size = 1e-12 * max(1.0, float(np.abs(trajectory.scaled).max()))
     still = np.abs(trajectory.scaled[:, 1:]).max(axis=(1, 2)) <= size
     apart = np.abs(gradient * h[:, None, None, None]).max(axis=(1, 2, 3)) <= size
     return np.flatnonzero(still & apart).tolist()
 
 
-def _with_idle(
-    problem: Problem,
-    idle: list[int],
-    starts: int,
-    seed: int,
-    initial: ArrayLike | None,
-    form: Form | None,
-) -> Solution:
+def _with_idle(problem: Problem, idle: list[int], ask: _Ask) -> Solution:
     """Solve with idle segments held at an ordinary duration, then give them their least one."""
     held = equal_start(problem)
     low, high = problem.duration_lower.copy(), problem.duration_upper.copy()
@@ -255,7 +342,9 @@ def _with_idle(
         h, solution = low.copy(), Solution(problem, Status.OPTIMAL)
     else:
         core = replace(problem, duration_lower=low, duration_upper=high)
-        solution = _solve_moving(core, starts, seed, initial, form)
+        known = ask.known.copy()
+        known[:, idle] = held[idle]
+        solution = _solve_moving(core, replace(ask, known=known))
         if solution.durations is None:
             return replace(solution, problem=problem)
         h = solution.durations.copy()
@@ -285,30 +374,15 @@ def _with_idle(
     )
 
 
-def _nothing_found(problem: Problem, found: list[Local]) -> tuple[Status, str]:
-    worst = min(
-        (check(problem, local.durations, local.nodal).max_violation for local in found),
-        default=float("inf"),
-    )
-    limits = problem.limits
-    stretchable = (
-        np.isinf(problem.duration_upper).all()
-        and problem.interpolant.homogeneous
-        and not limits.limits_position
-        and (limits.derivatives > 0).all()
-    )
-    if stretchable:
-        return Status.FAILED, "the solver reached no feasible point, though stretching gives one"
-    return (
-        Status.INFEASIBLE,
-        f"no feasible durations found from {len(found)} starts; the least excess over a limit was "
-        f"{worst:.3g} (relative). This is local evidence, not a proof",
-    )
-
-
-def _approached(coarser: Solution, finer: Solution) -> Solution:
-    """The infimum by extrapolating the totals at two floors to 0."""
-    ratio = FLOORS[1] / FLOORS[0]
-    slope = (coarser.total_time - finer.total_time) / (1.0 - ratio)
-    infimum = max(0.0, finer.total_time - slope * ratio)
-    return replace(finer, infimum=infimum)
+def _approached(
+    problem: Problem, coarser: Solution, finer: Solution, wide: float, narrow: float
+) -> Solution:
+    """The infimum by extrapolating the totals at two floors to 0, along one basin."""
+    assert finer.durations is not None
+    totals = [coarser.total_time]
+    if searchable(problem):
+        again = exact_search(problem, finer.durations[None], _floor(problem, wide))
+        totals += [local.total for local in again if local.feasible]
+    ratio = narrow / wide
+    slope = max(0.0, min(totals) - finer.total_time) / (1.0 - ratio)
+    return replace(finer, infimum=max(0.0, finer.total_time - slope * ratio))

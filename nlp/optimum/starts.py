@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...problem import Problem, evaluate
+from ...problem import Array, Problem, evaluate
 
 CHAINS, CHAIN_STEPS = 384, 40
 """Short random descents (shared by the joints' cost) and their number of steps."""
@@ -19,9 +18,9 @@ SETTLED_SEGMENTS = 24
 """Random trials gain little in more dimensions than these."""
 
 
-def first_nodal(problem: Problem) -> NDArray[np.float64] | None:
+def first_nodal(problem: Problem) -> Array | None:
     """Free derivatives to start from: at rest, virtual breaks on the chord of their neighbours."""
-    if not problem.interpolant.free:
+    if not problem.curve.free:
         return None
     interpolant = problem.piecewise
     nodal = np.zeros((interpolant.free, problem.waypoints.shape[1]))
@@ -32,7 +31,7 @@ def first_nodal(problem: Problem) -> NDArray[np.float64] | None:
     return nodal
 
 
-def equal_start(problem: Problem) -> NDArray[np.float64]:
+def equal_start(problem: Problem) -> Array:
     """Equal durations, rescaled uniformly to be tight and put within the bounds, s."""
     h = np.ones((1, problem.segments))
     limits = problem.limits.derivatives
@@ -45,9 +44,7 @@ def equal_start(problem: Problem) -> NDArray[np.float64]:
     return np.asarray(np.clip(h[0] * stretch, problem.duration_lower, problem.duration_upper))
 
 
-def random_starts(
-    problem: Problem, count: int, generator: np.random.Generator
-) -> NDArray[np.float64]:
+def random_starts(problem: Problem, count: int, generator: np.random.Generator) -> Array:
     """Starts log-uniform in [0.1, 10] times the uniformly rescaled equal durations.
 
     Parameters
@@ -65,9 +62,7 @@ def random_starts(
     return np.asarray(equal_start(problem) * factors)
 
 
-def screened_starts(
-    problem: Problem, count: int, generator: np.random.Generator
-) -> NDArray[np.float64]:
+def screened_starts(problem: Problem, count: int, generator: np.random.Generator) -> Array:
     """The equal start, then the best mutually distant basins found on the exact repaired total.
 
     Local optima with a small basin are found here, by many cheap batched evaluations, and not by
@@ -75,7 +70,7 @@ def screened_starts(
     their ratios, otherwise by short random descents.
     """
     base = equal_start(problem)
-    if count <= 1 or problem.interpolant.free or problem.segments == 1:
+    if count <= 1 or problem.curve.free or problem.segments == 1:
         return np.vstack([base, random_starts(problem, max(count - 1, 0), generator)])
     if problem.segments in GRID_POINTS:
         pool = _grid_minima(problem, base)
@@ -93,13 +88,13 @@ def screened_starts(
     return np.array(chosen)
 
 
-def settled(problem: Problem, start: NDArray[np.float64]) -> NDArray[np.float64]:
+def settled(problem: Problem, start: Array) -> Array:
     """A start, brought near its basin's floor by random steps on the exact repaired total.
 
     A few hundred batched evaluations cost less than one step of the solver from a start far from
     its optimum. The steps' widths follow their success; the same start settles in the same place.
     """
-    if problem.interpolant.free or not 1 < problem.segments <= SETTLED_SEGMENTS:
+    if problem.curve.free or not 1 < problem.segments <= SETTLED_SEGMENTS:
         return start
     generator = np.random.default_rng(0)
     pool, totals = _repaired_total(problem, start[None])
@@ -115,9 +110,7 @@ def settled(problem: Problem, start: NDArray[np.float64]) -> NDArray[np.float64]
     return np.asarray(point if np.isfinite(total) else start)
 
 
-def _repaired_total(
-    problem: Problem, h: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _repaired_total(problem: Problem, h: Array) -> tuple[Array, Array]:
     """Duration vectors made tight and put within the bounds, and their exact repaired totals."""
     stretch = evaluate(problem, h).stretch
     usable = np.isfinite(stretch) & (stretch > 0)
@@ -130,7 +123,7 @@ def _repaired_total(
     return inside, np.where(usable, total, np.inf)
 
 
-def _grid_minima(problem: Problem, base: NDArray[np.float64]) -> NDArray[np.float64]:
+def _grid_minima(problem: Problem, base: Array) -> Array:
     """Local minima of the repaired total over a grid of log duration ratios."""
     n = problem.segments
     side = round(GRID_POINTS[n] ** (1.0 / (n - 1)))
@@ -151,9 +144,7 @@ def _grid_minima(problem: Problem, base: NDArray[np.float64]) -> NDArray[np.floa
     return np.repeat(base.mean() * np.exp(logs[keep]), 2, axis=0)
 
 
-def _descents(
-    problem: Problem, pool: NDArray[np.float64], generator: np.random.Generator
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _descents(problem: Problem, pool: Array, generator: np.random.Generator) -> tuple[Array, Array]:
     """Greedy random steps of shrinking width, every member of the pool by itself."""
     chains, total = _repaired_total(problem, pool)
     for width in np.geomspace(0.3, 0.02, CHAIN_STEPS):

@@ -9,9 +9,8 @@ from typing import Any, Protocol
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
 
-from ...problem import Interpolant, Problem, Verdict, check, fit
+from ...problem import Array, Interpolant, Problem, Verdict, check, fit
 from ...problem.curves import Trajectory, critical_points, layout, right_hand_sides
 from .formulation import (
     Form,
@@ -24,6 +23,7 @@ from .formulation import (
 from .starts import first_nodal
 
 _PASSES = 40
+"""Solves from one start: a bound against endless shrinking of the trust region."""
 _PATIENCE = 8
 """Passes without a gain after which a start is given up."""
 ADAPTIVE_VARIABLES = 1000
@@ -116,10 +116,10 @@ class Scaled:
 
     problem: Problem
     time_unit: float
-    angle_unit: NDArray[np.float64]
-    values: NDArray[np.float64]
-    inverse_limits: NDArray[np.float64]
-    position: NDArray[np.float64]
+    angle_unit: Array
+    values: Array
+    inverse_limits: Array
+    position: Array
 
 
 def scaled_problem(problem: Problem, formulation: Formulation, time_unit: float) -> Scaled:
@@ -162,11 +162,11 @@ def scaled_problem(problem: Problem, formulation: Formulation, time_unit: float)
 
 def place_slots(
     formulation: Formulation, trajectory: Trajectory | None
-) -> tuple[list[NDArray[np.float64]], list[NDArray[np.float64]]]:
+) -> tuple[list[Array], list[Array]]:
     """Places and Newton weights of the moving slots; on a grid without a trajectory."""
     interpolant = formulation.structure.interpolant
     joints = formulation.structure.joints
-    assigned: dict[tuple[int, int, int], tuple[NDArray[np.float64], NDArray[np.float64]]] = {}
+    assigned: dict[tuple[int, int, int], tuple[Array, Array]] = {}
     for r in formulation.structure.orders:
         for k, degree in enumerate(interpolant.degrees):
             count = interior_slots(degree - r)
@@ -196,9 +196,7 @@ def place_slots(
     return place_list, weight_list
 
 
-def _follow(
-    a: NDArray[np.float64], places: NDArray[np.float64], weights: NDArray[np.float64]
-) -> None:
+def _follow(a: Array, places: Array, weights: Array) -> None:
     """Move the nearest free slot onto each turning point of the polynomial ``a``."""
     polynomial = np.polynomial.polynomial
     turning = critical_points(a)
@@ -218,7 +216,7 @@ def _follow(
 
 def variable_bounds(
     problem: Problem, formulation: Formulation, time_unit: float, floor: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+) -> tuple[Array, Array]:
     """Bounds on the variables; durations stay above ``floor`` (s), padded powers are held at 0."""
     size = formulation.sizes["variables"]
     n, joints = problem.segments, problem.waypoints.shape[1]
@@ -235,8 +233,8 @@ def variable_bounds(
 
 
 def unpack(
-    problem: Problem, formulation: Formulation, scaled: Scaled, x: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
+    problem: Problem, formulation: Formulation, scaled: Scaled, x: Array
+) -> tuple[Array, Array | None]:
     """Durations (s) and free nodal derivatives (rad, s) of a vector of variables."""
     interpolant, n = problem.piecewise, problem.segments
     joints = problem.waypoints.shape[1]
@@ -262,8 +260,8 @@ def unpack(
 class Local:
     """Where one start ended."""
 
-    durations: NDArray[np.float64]
-    nodal: NDArray[np.float64] | None
+    durations: Array
+    nodal: Array | None
     total: float
     converged: bool
     feasible: bool
@@ -281,11 +279,11 @@ class Sized(Protocol):
 def run(
     solver: Any,
     formulation: Sized,
-    x: NDArray[np.float64],
-    p: NDArray[np.float64],
-    bounds: tuple[NDArray[np.float64], NDArray[np.float64]],
+    x: Array,
+    p: Array,
+    bounds: tuple[Array, Array],
     duals: tuple[Any, Any] | None = None,
-) -> tuple[NDArray[np.float64], tuple[Any, Any], bool, int]:
+) -> tuple[Array, tuple[Any, Any], bool, int]:
     """Call a solver once: variables, multipliers, success, iterations."""
     sizes = formulation.sizes
     low = np.concatenate([np.zeros(sizes["equalities"]), np.full(sizes["inequalities"], -np.inf)])
@@ -306,8 +304,8 @@ def run(
 
 
 def solve_coarse(
-    problem: Problem, build_: Compiled, start: NDArray[np.float64], floor: float
-) -> tuple[NDArray[np.float64], Scaled, bool, int]:
+    problem: Problem, build_: Compiled, start: Array, floor: float
+) -> tuple[Array, Scaled, bool, int]:
     """Solve on the coarse grid of slots from one start."""
     f = build_.formulation
     unit = float(start.mean())
@@ -321,9 +319,7 @@ def solve_coarse(
     return x, scaled, success, iterations
 
 
-def merit(
-    problem: Problem, h: NDArray[np.float64], nodal: NDArray[np.float64] | None
-) -> tuple[float, NDArray[np.float64], NDArray[np.float64] | None]:
+def merit(problem: Problem, h: Array, nodal: Array | None) -> tuple[float, Array, Array | None]:
     """Exact total after repair by stretching, or a penalty where stretching does not repair."""
     verdict = check(problem, h, nodal)
     total = float(h.sum())
@@ -332,15 +328,13 @@ def merit(
     if verdict.feasible_time is None:
         return total * (1.0 + 10.0 * verdict.max_violation), h, nodal
     factor = max(1.0, verdict.stretch)
-    if problem.interpolant.free and nodal is not None:
+    if problem.curve.free and nodal is not None:
         orders = np.array([r for _, r in problem.piecewise.free_derivatives])[:, None]
         nodal = nodal / factor**orders
     return verdict.feasible_time, h * factor, nodal
 
 
-def track(
-    problem: Problem, build_: Compiled, x: NDArray[np.float64], scaled: Scaled, floor: float
-) -> Local:
+def track(problem: Problem, build_: Compiled, x: Array, scaled: Scaled, floor: float) -> Local:
     """Put the slots on the true extrema and solve again, inside a trust region, until they stay.
 
     Every step is judged by the exact repaired total, so that a slot that lost its extremum costs
@@ -355,7 +349,7 @@ def track(
     radius, step, iterations, converged, duals = 0.5, np.inf, 0, False, None
     stale = 0
     for _ in range(_PASSES):
-        trajectory = fit(problem.interpolant, problem.waypoints, h, nodal)
+        trajectory = fit(problem.curve, problem.waypoints, h, nodal)
         c = trajectory.scaled / scaled.angle_unit
         places, weights = place_slots(f, replace(trajectory, scaled=c))
         p = pack_parameters(
@@ -363,7 +357,7 @@ def track(
         )
         low, high = wide[0].copy(), wide[1].copy()
         room = radius * np.maximum(np.abs(x), np.where(np.arange(x.size) < n, 0.0, 1.0))
-        held = slice(None) if problem.interpolant.free else slice(n)
+        held = slice(None) if problem.curve.free else slice(n)
         low[held] = np.clip((x - room)[held], low[held], high[held])
         high[held] = np.clip((x + 2.0 * room)[held], low[held], high[held])
         near = duals is not None and step < 1e-2
@@ -401,9 +395,9 @@ def pack(
     problem: Problem,
     formulation: Formulation,
     scaled: Scaled,
-    h: NDArray[np.float64],
-    nodal: NDArray[np.float64] | None,
-) -> NDArray[np.float64]:
+    h: Array,
+    nodal: Array | None,
+) -> Array:
     """Variables of a formulation at given durations and free nodal derivatives."""
     interpolant = problem.piecewise
     free = np.zeros((0, problem.waypoints.shape[1])) if nodal is None else nodal

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...problem import Interpolant, Limits, Problem
-from ...problem.curves import RowKind, StretchedUniformBSpline, vertex_matrix
+from ...problem.curves import ConditionKind, StretchedUniformBSpline, vertex_matrix
 from .exact import ExactProblem
 
 _STRETCHES = tuple(Fraction(1, 10**k) for k in (13, 12, 11, 10, 9, 8, 7))
@@ -71,15 +71,15 @@ def exact_coefficients(
     matrix, right = [], []
     for row in interpolant.rows:
         line, values = [Fraction(0)] * first[-1], [Fraction(0)] * joints
-        if row.kind != RowKind.RIGHT_VALUE:
+        if row.kind != ConditionKind.RIGHT_VALUE:
             k = row.at - 1
             for p in range(row.order, interpolant.degrees[k] + 1):
                 line[first[k] + p] = math.perm(p, row.order) / durations[k] ** row.order
-        if row.kind != RowKind.LEFT_VALUE and row.order <= interpolant.degrees[row.at]:
-            sign = 1 if row.kind == RowKind.RIGHT_VALUE else -1
+        if row.kind != ConditionKind.LEFT_VALUE and row.order <= interpolant.degrees[row.at]:
+            sign = 1 if row.kind == ConditionKind.RIGHT_VALUE else -1
             value = sign * math.factorial(row.order) / durations[row.at] ** row.order
             line[first[row.at] + row.order] = value
-        if row.kind != RowKind.MATCH:
+        if row.kind != ConditionKind.MATCH:
             given = dict(interpolant.prescribed[row.at])
             values = [Fraction(given[row.order])] * joints if row.order else list(at[row.at])
         matrix.append(line)
@@ -160,7 +160,7 @@ def keeps_limits(problem: ExactProblem, durations: Sequence[Fraction]) -> bool:
     if stretched:
         curve: list[list[list[Fraction]]] | None = uniform_coefficients(problem.waypoints)
     else:
-        curve = exact_coefficients(problem.interpolant, problem.waypoints, durations)
+        curve = exact_coefficients(problem.piecewise, problem.waypoints, durations)
     if curve is None:
         return False
     for j, pieces in enumerate(curve):

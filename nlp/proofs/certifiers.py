@@ -6,11 +6,16 @@ from collections.abc import Callable
 from typing import Any
 
 from ...problem import Problem, TrajgapError
+from ...verify import Subject
+from .any_curve import ANY_CURVE
 from .closed_form import REST_TO_REST, STRETCHED
 from .cubic import CUBIC
 from .exact import ExactProblem, exact_problem
-from .outcome import GAP, Argument, Certified, Certifier, Progress, Request
+from .judged import judged, unstated
+from .outcome import GAP, Certified, Progress, Request
 from .quintic import QUINTIC
+from .session import Certifier
+from .state import resumed
 from .three_piece import THREE_PIECE
 
 CERTIFIERS: tuple[Certifier, ...] = (
@@ -19,39 +24,50 @@ CERTIFIERS: tuple[Certifier, ...] = (
     STRETCHED,
     CUBIC,
     QUINTIC,
+    ANY_CURVE,
 )
+"""Every kind of proof; no curve is declared by two of them that speak about the same subject."""
 
 
-def covered(problem: ExactProblem) -> str | None:
+def _certifier(problem: ExactProblem, subject: Subject) -> Certifier | None:
+    fitting = (c for c in CERTIFIERS if c.subject is subject and c.declares(problem))
+    return next(fitting, None)
+
+
+def covered(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> str | None:
     """Why a problem is not covered, or None.
 
     Parameters
     ----------
     problem : ExactProblem
+    subject : Subject
+        What an interval is to speak about.
 
     Returns
     -------
     str or None
     """
-    for certifier in CERTIFIERS:
-        if certifier.declares(problem):
-            return certifier.missing(problem)
-    families = ", ".join(certifier.family for certifier in CERTIFIERS)
+    certifier = _certifier(problem, subject)
+    if certifier is not None:
+        return unstated(problem) or certifier.missing(problem)
+    families = ", ".join(c.family for c in CERTIFIERS if c.subject is subject)
     return f"{problem.curve.name}: not covered; covered are {families}"
 
 
 def instant(problem: ExactProblem) -> bool:
     """Whether a covered problem is solved in closed form."""
-    return any(c.instant and c.declares(problem) for c in CERTIFIERS)
+    certifier = _certifier(problem, Subject.DECLARED)
+    return certifier is not None and certifier.instant
 
 
 def certify(
     problem: Problem | ExactProblem,
     *,
+    subject: Subject = Subject.DECLARED,
     gap: float = GAP,
     seconds: float = 60.0,
     seed: int = 0,
-    resume: Argument | dict[str, Any] | None = None,
+    resume: Certified | dict[str, Any] | None = None,
     report: Callable[[Progress], None] | None = None,
 ) -> Certified:
     """Prove an interval of the least total of a problem with shared durations.
@@ -61,20 +77,26 @@ def certify(
     problem : Problem or ExactProblem
         The floats of a `Problem` are taken as exact; `printed_problem` gives the printed one. Its
         coupling is not looked at.
+    subject : Subject
+        Curves of the declared kind, or any curve: all C1 motions through the way-points with
+        |v| ≤ V and |a| ≤ A and the declared end velocities. Limits of jerk and position only make
+        motions slower: the lower bound over any curve holds with them, and no upper bound is
+        claimed.
     gap : float
         Relative width of the interval to reach.
     seconds : float
         Time limit. At the limit, or at Ctrl-C, the best interval proved so far is returned.
     seed : int
         Of the starts of the local solver that finds the answer.
-    resume : Argument or dict, optional
-        ``resume`` of a stopped run, or its document; everything in it is proved again.
+    resume : Certified or dict, optional
+        A stopped run, or its `state_document`: `trajgap.verify` proves it again.
     report : callable, optional
         Called with a `Progress` after every batch of boxes.
 
     Returns
     -------
     Certified
+        Certified or infeasible only if `trajgap.verify` proves its certificate.
 
     Raises
     ------
@@ -83,12 +105,12 @@ def certify(
         it says.
     """
     exact = exact_problem(problem) if isinstance(problem, Problem) else problem
-    why = covered(exact)
+    why = covered(exact, subject)
     if why is not None:
         raise TrajgapError(f"certify: {why}")
     if not 0 <= gap < 1 or not seconds >= 0:
         raise TrajgapError("certify: the gap must lie in [0, 1), the seconds must be 0 or more")
-    if resume is not None and not isinstance(resume, dict):
-        resume = resume.document()
-    method = next(c for c in CERTIFIERS if c.declares(exact))
-    return method.certify(exact, Request(gap, seconds, seed, resume, report))
+    taken_up = None if resume is None else resumed(exact, resume, subject)
+    certifier = _certifier(exact, subject)
+    assert certifier is not None
+    return judged(certifier.run(exact, Request(gap, seconds, seed, taken_up, report)))

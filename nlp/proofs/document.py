@@ -5,16 +5,20 @@ from __future__ import annotations
 import copy
 import importlib.metadata
 import json
+from dataclasses import asdict
 from fractions import Fraction
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 from ...problem import Curve, Interpolant, TrajgapError
-from ...problem.curves import StretchedUniformBSpline, TimedUniformBSpline, end_conditions
-from ..verify import FORMAT, Subject, seal
+from ...problem.curves import StretchedUniformBSpline, TimedUniformBSpline
+from ...verify import CERTIFICATE_FORMAT, CertifiedQuestion, Subject, number, seal
 from .exact import ExactProblem, Real, decimal
 from .outcome import Certified, Outcome
+
+_WORDS = ("unit", "joints", "curve")
+"""Keys of a problem whose texts are no numbers."""
 
 
 def _real(value: Real | None) -> str | dict[str, Any] | None:
@@ -38,7 +42,6 @@ def problem_document(problem: ExactProblem) -> dict[str, Any]:
     """
     curve = problem.curve
     return {
-        "name": problem.name,
         "unit": problem.unit,
         "joints": list(problem.joints),
         **(_declaration(curve) if isinstance(curve, Interpolant) else _other(curve)),
@@ -53,7 +56,7 @@ def problem_document(problem: ExactProblem) -> dict[str, Any]:
 
 def _other(curve: Curve) -> dict[str, Any]:
     """A curve of another kind: its name, and the velocities prescribed at its ends, if any."""
-    ends = [dict(side).get(1) for side in end_conditions(curve)]
+    ends = [dict(side).get(1) for side in curve.ends]
     if ends == [None, None]:
         return {"curve": _named(curve)}
     return {
@@ -80,13 +83,15 @@ def _declaration(interpolant: Interpolant) -> dict[str, Any]:
     }
 
 
-def certificate(certified: Certified) -> dict[str, Any]:
+def certificate(certified: Certified, question: CertifiedQuestion | None = None) -> dict[str, Any]:
     """Certificate of a proved interval, ready for JSON.
 
     Parameters
     ----------
     certified : Certified
         With a proof.
+    question : CertifiedQuestion, optional
+        Where the problem comes from.
 
     Returns
     -------
@@ -99,11 +104,17 @@ def certificate(certified: Certified) -> dict[str, Any]:
     """
     if certified.proof is None:
         raise TrajgapError("certificate: nothing is proved; give more time")
+    return sealed(document_of(CERTIFICATE_FORMAT, certified, question or CertifiedQuestion()))
+
+
+def document_of(format_: str, certified: Certified, question: CertifiedQuestion) -> dict[str, Any]:
+    """What certificates and states have in common, not sealed yet."""
     problem = problem_document(certified.problem)
-    durations, upper = certified.durations, certified.upper
-    document: dict[str, Any] = {
-        "format": FORMAT,
+    durations, upper, speeds = certified.durations, certified.upper, certified.speeds
+    return {
+        "format": format_,
         "made_by": f"trajgap {importlib.metadata.version('trajgap')}",
+        "question": asdict(question),
         "problem": problem,
         "problem_hash": seal(problem),
         "claim": {
@@ -112,18 +123,24 @@ def certificate(certified: Certified) -> dict[str, Any]:
             "lower": decimal(certified.lower),
             "upper": None if upper is None else decimal(upper),
             "durations": None if durations is None else [decimal(h) for h in durations],
+            "speeds": None if speeds is None else [[decimal(v) for v in row] for row in speeds],
         },
-        "proof": certified.proof.document(),
+        "proof": None if certified.proof is None else certified.proof.document(),
     }
+
+
+def sealed(document: dict[str, Any]) -> dict[str, Any]:
+    """A document with its seal."""
     return {**document, "seal": seal(document)}
 
 
-def certificate_text(certified: Certified) -> str:
+def certificate_text(certified: Certified, question: CertifiedQuestion | None = None) -> str:
     """`certificate` as the text of a file.
 
     Parameters
     ----------
     certified : Certified
+    question : CertifiedQuestion, optional
 
     Returns
     -------
@@ -134,20 +151,28 @@ def certificate_text(certified: Certified) -> str:
     TrajgapError
         If nothing is proved.
     """
-    text = json.dumps(certificate(certified), separators=(",", ":"), ensure_ascii=False)
+    document = certificate(certified, question)
+    parts = [f"{json.dumps(key)}:{_compact(value)}" for key, value in document.items()]
     # One key a line keeps a diff readable.
-    text = text.replace(',"problem', ',\n"problem').replace(',"claim"', ',\n"claim"')
-    text = text.replace(',"proof"', ',\n"proof"').replace(',"tree"', ',\n"tree"')
-    return text.replace(',"leaves"', ',\n"leaves"').replace(',"seal"', ',\n"seal"') + "\n"
+    text = ",\n".join(parts)
+    return "{" + text.replace(',"tree":', ',\n"tree":', 1) + "}\n"
 
 
-def write_certificate(certified: Certified, path: str | Path) -> int:
+def _compact(value: Any) -> str:
+    return json.dumps(value, separators=(",", ":"), ensure_ascii=False)
+
+
+def write_certificate(
+    certified: Certified, path: str | Path, question: CertifiedQuestion | None = None
+) -> int:
     """Write a certificate.
 
     Parameters
     ----------
     certified : Certified
     path : str or Path
+    question : CertifiedQuestion, optional
+        Where the problem comes from.
 
     Returns
     -------
@@ -159,7 +184,7 @@ def write_certificate(certified: Certified, path: str | Path) -> int:
     TrajgapError
         If nothing is proved.
     """
-    text = certificate_text(certified)
+    text = certificate_text(certified, question)
     Path(path).write_text(text, encoding="utf-8")
     return len(text.encode())
 
@@ -184,22 +209,38 @@ def shipped(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> dict[
     dict or None
     """
     wanted = question(problem_document(problem), subject)
-    for document in _all_shipped():
-        same = document["claim"]["subject"] == subject
-        if same and question(document["problem"], subject) == wanted:
+    for document, asked in _all_shipped():
+        if document["claim"]["subject"] == subject and asked == wanted:
             return copy.deepcopy(document)
     return None
 
 
 @lru_cache(maxsize=1)
-def _all_shipped() -> tuple[dict[str, Any], ...]:
-    paths = sorted(shipped_folder().glob("*.json"))
-    return tuple(json.loads(path.read_text("utf-8")) for path in paths)
+def _all_shipped() -> tuple[tuple[dict[str, Any], dict[str, Any]], ...]:
+    """Each with what it asks."""
+    found = []
+    for path in sorted(shipped_folder().glob("*.json")):
+        document = json.loads(path.read_text("utf-8"))
+        subject = Subject(document["claim"]["subject"])
+        found.append((document, question(document["problem"], subject)))
+    return tuple(found)
 
 
 def question(problem: dict[str, Any], subject: Subject = Subject.DECLARED) -> dict[str, Any]:
-    """What a problem asks, whatever it is called."""
-    same = {key: value for key, value in problem.items() if key != "name"}
+    """What the problem of a document asks, for what a certificate speaks about.
+
+    Parameters
+    ----------
+    problem : dict
+        ``problem`` of a document.
+    subject : Subject
+
+    Returns
+    -------
+    dict
+        With rational numbers, so that 0.5 and 0.50 are the same.
+    """
+    same = {key: x if key in _WORDS else _numbers(x) for key, x in problem.items()}
     if subject is Subject.DECLARED:
         return same
     # Of the curve itself only the velocities prescribed at its ends count, read where the verifier
@@ -214,3 +255,43 @@ def question(problem: dict[str, Any], subject: Subject = Subject.DECLARED) -> di
     for key in own:
         same.pop(key, None)
     return {"virtual": [], **same, "ends": ends}
+
+
+def _numbers(value: Any) -> Any:
+    """A part of a problem, its texts read as numbers."""
+    if isinstance(value, list):
+        return [_numbers(x) for x in value]
+    if isinstance(value, dict):
+        return number(value["value"]), value["pi"]
+    return number(value) if isinstance(value, str) else value
+
+
+def unlike(document: dict[str, Any], problem: ExactProblem, subject: Subject) -> str | None:
+    """In what a document of unknown origin differs from a question; None if it is the same.
+
+    Parameters
+    ----------
+    document : dict
+        A certificate or a state.
+    problem : ExactProblem
+    subject : Subject
+
+    Returns
+    -------
+    str or None
+        Names of the keys under which the numbers differ.
+    """
+    wanted = question(problem_document(problem), subject)
+    try:
+        if document["claim"]["subject"] != subject:
+            return "subject"
+        stated = question(document["problem"], subject)
+    except (KeyError, IndexError, TypeError, ValueError, AttributeError):
+        return "form"
+    keys = sorted({*wanted, *stated})
+    return ", ".join(key for key in keys if stated.get(key) != wanted.get(key)) or None
+
+
+def fits(document: dict[str, Any], problem: ExactProblem, subject: Subject) -> bool:
+    """Whether a document is about exactly this question; what it is called does not matter."""
+    return unlike(document, problem, subject) is None

@@ -10,9 +10,9 @@ from functools import lru_cache
 import numpy as np
 
 from ...problem import TrajgapError
-from ...problem.cases import Posing
+from ...problem.cases import Statement
+from ...verify import Subject, verify_certificate
 from ..optimum import PerJointSolution, Solution, solve
-from ..verify import Subject, verify
 from .certifiers import certify, covered, instant
 from .document import certificate, shipped
 from .exact import ExactProblem, printed_problem
@@ -65,10 +65,10 @@ def proved(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> Interv
             return None
         found = certify(problem)
         document = None if found.proof is None else certificate(found)
-    if document is None:
-        return None
-    verdict = verify(document)
-    if not verdict.proves or verdict.lower is None:
+        verdict = found.verdict
+    else:
+        verdict = None if document is None else verify_certificate(document)
+    if document is None or verdict is None or not verdict.proves or verdict.lower is None:
         return None
     if verdict.upper is not None and verdict.upper - verdict.lower > WIDEST * verdict.lower:
         return None
@@ -77,10 +77,10 @@ def proved(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> Interv
     return Interval(verdict.lower, verdict.upper, durations, verdict.infeasible)
 
 
-def stated_exactly(posing: Posing, joint: int | None = None) -> ExactProblem | None:
+def stated_exactly(statement: Statement, joint: int | None = None) -> ExactProblem | None:
     """`printed_problem` of all joints or of one; None where it cannot be stated exactly."""
     try:
-        exact = printed_problem(posing)
+        exact = printed_problem(statement)
     except TrajgapError:
         return None
     return exact if joint is None or len(exact.joints) == 1 else exact.joint(joint)
@@ -114,20 +114,22 @@ def with_certificate(solution: Solution, problem: ExactProblem | None) -> Soluti
     return replace(solution, lower_bound=lower) if lower <= solution.best < math.inf else solution
 
 
-def with_certificates(answer: PerJointSolution, posing: Posing) -> PerJointSolution:
+def with_certificates(answer: PerJointSolution, statement: Statement) -> PerJointSolution:
     """`with_certificate` for each joint's own optimum; the procedure's output stays what it is.
 
     Parameters
     ----------
     answer : PerJointSolution
-    posing : Posing
+    statement : Statement
         Of the same problem.
 
     Returns
     -------
     PerJointSolution
     """
-    joints = [with_certificate(s, stated_exactly(posing, j)) for j, s in enumerate(answer.joints)]
+    joints = [
+        with_certificate(s, stated_exactly(statement, j)) for j, s in enumerate(answer.joints)
+    ]
     same = all(new.best == old.best for new, old in zip(joints, answer.joints, strict=True))
     # Durations of another answer would not be the ones behind the procedure's output.
     return replace(answer, joints=tuple(joints)) if same else answer

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
@@ -10,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...problem import Curve, Interpolant, Printed, Problem, Scale, TrajgapError, scale
-from ...problem.cases import Posing
+from ...problem.cases import Statement
 
 _PI = Scale(Fraction(1), 1).bounds
 
@@ -100,7 +101,7 @@ class ExactProblem:
         return self.curve.segments
 
     @property
-    def interpolant(self) -> Interpolant:
+    def piecewise(self) -> Interpolant:
         """The curve as a declared piecewise polynomial.
 
         Raises
@@ -128,6 +129,28 @@ class ExactProblem:
             self.unit,
         )
 
+    def in_units(self, powers: Sequence[int], second: int) -> ExactProblem:
+        """The same problem in units of 2**powers[j] of its angle for joint j, and 2**second s."""
+        angle, time = [Fraction(2) ** p for p in powers], Fraction(2) ** second
+
+        def over(x: Real | None, unit: Fraction) -> Real | None:
+            return None if x is None else Real(x.rational / unit, x.pi)
+
+        return replace(
+            self,
+            waypoints=tuple(
+                tuple(q / a for q, a in zip(row, angle, strict=True)) for row in self.waypoints
+            ),
+            limits=tuple(
+                tuple(over(x, a / time**r) for r, x in enumerate(row, 1))
+                for row, a in zip(self.limits, angle, strict=True)
+            ),
+            position_lower=tuple(map(over, self.position_lower, angle)),
+            position_upper=tuple(map(over, self.position_upper, angle)),
+            duration_lower=tuple(x / time for x in self.duration_lower),
+            duration_upper=tuple(None if x is None else x / time for x in self.duration_upper),
+        )
+
     def derivative_limits(self) -> NDArray[np.float64]:
         """Looser ends of the limits as floats, shape (joints, 3); inf where there is none."""
         values = [[np.inf if x is None else float(x.high) for x in row] for row in self.limits]
@@ -153,7 +176,7 @@ def exact_problem(problem: Problem) -> ExactProblem:
 
     return ExactProblem(
         problem.name,
-        problem.interpolant,
+        problem.curve,
         problem.joints,
         tuple(tuple(Fraction(float(q)) for q in row) for row in problem.waypoints),
         tuple(tuple(point(float(x)) for x in row) for row in limits.derivatives),
@@ -164,13 +187,13 @@ def exact_problem(problem: Problem) -> ExactProblem:
     )
 
 
-def printed_problem(posing: Posing) -> ExactProblem:
+def printed_problem(statement: Statement) -> ExactProblem:
     """Take the printed digits of one problem under one reading as exact numbers.
 
     Parameters
     ----------
-    posing : Posing
-        From `Case.posing`.
+    statement : Statement
+        From `Case.statement`.
 
     Returns
     -------
@@ -184,11 +207,11 @@ def printed_problem(posing: Posing) -> ExactProblem:
     CaseError
         If a unit is missing.
     """
-    posing.points()
-    problem = posing.problem()
-    if not problem.interpolant.homogeneous:
+    statement.points()
+    problem = statement.problem()
+    if not problem.curve.homogeneous:
         raise TrajgapError("certify: end derivatives other than 0 are not covered")
-    base = scale(str(posing.units.position))
+    base = scale(str(statement.units.position))
 
     def angle(number: Printed | None, unit: str | None) -> Real | None:
         if number is None or unit is None:
@@ -200,24 +223,24 @@ def printed_problem(posing: Posing) -> ExactProblem:
     def each(given: Any, count: int) -> list[Any]:
         return list(given) if isinstance(given, tuple | list) else [given] * count
 
-    units, limits, total = posing.units, posing.limits, len(posing.labels)
+    units, limits, total = statement.units, statement.limits, len(statement.labels)
     columns = []
     for name in ("velocity", "acceleration", "jerk"):
         column = each(getattr(limits, name), total)
-        columns.append([angle(column[j], getattr(units, name)) for j in posing.joints])
+        columns.append([angle(column[j], getattr(units, name)) for j in statement.joints])
     low, high = (
-        [angle(each(getattr(limits, name), total)[j], units.position) for j in posing.joints]
+        [angle(each(getattr(limits, name), total)[j], units.position) for j in statement.joints]
         for name in ("position_lower", "position_upper")
     )
     second = scale(str(units.time)).rational if units.time is not None else Fraction(1)
     n = problem.segments
-    rows = posing.waypoints.points
-    shortest, longest = each(posing.durations.lower, n), each(posing.durations.upper, n)
+    rows = statement.waypoints.points
+    shortest, longest = each(statement.durations.lower, n), each(statement.durations.upper, n)
     return ExactProblem(
         problem.name,
-        problem.interpolant,
+        problem.curve,
         problem.joints,
-        tuple(tuple(row[j].fraction for j in posing.joints) for row in rows),
+        tuple(tuple(row[j].fraction for j in statement.joints) for row in rows),
         tuple(zip(*columns, strict=True)),
         tuple(low),
         tuple(high),

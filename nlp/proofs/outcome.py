@@ -8,7 +8,7 @@ from enum import StrEnum
 from fractions import Fraction
 from typing import Any, Protocol
 
-from ..verify import Subject
+from ...verify import CertificateVerdict, Subject
 from .exact import ExactProblem
 
 GAP = 1e-6
@@ -48,6 +48,41 @@ class Argument(Protocol):
 
 
 @dataclass(frozen=True)
+class Given:
+    """A proof from a state, as it was read there, and proved again by `trajgap.verify`."""
+
+    proof: dict[str, Any]
+
+    def document(self) -> dict[str, Any]:
+        """As it was read."""
+        return self.proof
+
+
+@dataclass(frozen=True, eq=False)
+class Resumed:
+    """What a stopped run left.
+
+    Attributes
+    ----------
+    lower : Fraction
+        Proved by ``proof``, s; 0 without it.
+    proof : Given or None
+    durations : tuple of Fraction or None
+        Proved to keep the limits.
+    speeds : tuple or None
+        At the way-points, for an answer of any curve.
+    proposals : dict or None
+        What the run had not finished: nothing in it is trusted.
+    """
+
+    lower: Fraction
+    proof: Given | None
+    durations: tuple[Fraction, ...] | None
+    speeds: tuple[tuple[Fraction, ...], ...] | None
+    proposals: dict[str, Any] | None
+
+
+@dataclass(frozen=True)
 class Request:
     """What is asked of a certifier.
 
@@ -59,8 +94,8 @@ class Request:
         Time limit.
     seed : int
         Of the starts of a local solver.
-    resume : dict or None
-        ``resume.document()`` of a stopped run, as read from a file: nothing in it is trusted.
+    resume : Resumed or None
+        Where a stopped run is to go on.
     report : callable or None
         Called with a `Progress` now and then.
     """
@@ -68,7 +103,7 @@ class Request:
     gap: float = GAP
     seconds: float = 60.0
     seed: int = 0
-    resume: dict[str, Any] | None = None
+    resume: Resumed | None = None
     report: Callable[[Progress], None] | None = None
 
 
@@ -90,10 +125,16 @@ class Certified:
     seconds : float
     proof : Argument or None
         What proves ``lower``; None if nothing is proved.
-    resume : Argument or None
-        Where a stopped run can go on.
+    stopped : bool
+        Whether a state of it is worth going on from.
+    proposals : Argument or None
+        What a stopped run had not finished.
     subject : Subject
         What the interval speaks about.
+    speeds : tuple or None
+        Of the answer at the way-points, if it is one of any curve.
+    verdict : CertificateVerdict or None
+        What `trajgap.verify` says of the certificate; None if nothing is proved.
     """
 
     problem: ExactProblem
@@ -105,8 +146,11 @@ class Certified:
     open_boxes: int
     seconds: float
     proof: Argument | None = None
-    resume: Argument | None = None
+    stopped: bool = False
+    proposals: Argument | None = None
     subject: Subject = Subject.DECLARED
+    speeds: tuple[tuple[Fraction, ...], ...] | None = None
+    verdict: CertificateVerdict | None = None
 
     @property
     def gap(self) -> float:
@@ -128,28 +172,3 @@ class Certified:
                 f"gap {self.gap:.1e}, {self.outcome}"
             )
         return f"{self.problem.name}: {head}; {self.nodes} boxes, {self.seconds:.1f} s"
-
-
-@dataclass(frozen=True)
-class Certifier:
-    """One method, for one kind of curve.
-
-    Attributes
-    ----------
-    family : str
-        Words for the curves that it covers.
-    declares : callable
-        Whether a problem's curve is of its kind.
-    missing : callable
-        Why such a problem is not covered all the same, or None.
-    certify : callable
-        Keyboard interrupts and the time limit end it with what is proved so far.
-    instant : bool
-        Whether it is a closed form.
-    """
-
-    family: str
-    declares: Callable[[ExactProblem], bool]
-    missing: Callable[[ExactProblem], str | None]
-    certify: Callable[[ExactProblem, Request], Certified]
-    instant: bool = False

@@ -1,20 +1,28 @@
-"""State files of stopped certifications: sealed JSON, of which nothing is taken on trust."""
+"""States of stopped certifications: what is proved so far, and what was to come next."""
 
 from __future__ import annotations
 
-import importlib.metadata
-import json
 from dataclasses import dataclass
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
 from ...problem import TrajgapError
-from ..verify import seal
-from .document import problem_document, question
+from ...verify import (
+    STATE_FORMAT,
+    CertifiedQuestion,
+    Refused,
+    Subject,
+    number,
+    read_document,
+    verify_certificate,
+)
+from .document import document_of, fits, sealed
 from .exact import ExactProblem
-from .outcome import Certified
+from .outcome import Certified, Given, Resumed
 
-STATE_FORMAT = "trajgap-state-1"
+SECONDS = 600.0
+"""For a proof in a state, or at the end of a run: what took hours is proved again in minutes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,41 +33,38 @@ class StateFile:
     ----------
     name : str
         Of the file, for messages.
-    problem : dict
-        As in a certificate.
-    state : dict
+    document : dict
         For ``resume`` of `certify`, which proves it again.
     """
 
     name: str
-    problem: dict[str, Any]
-    state: dict[str, Any]
+    document: dict[str, Any]
 
     def fits(self, problem: ExactProblem) -> bool:
-        """Whether it is about exactly this question; its name does not matter."""
-        return question(self.problem) == question(problem_document(problem))
+        """Whether it is about exactly this question."""
+        return fits(self.document, problem, Subject.DECLARED)
 
 
-def state_document(certified: Certified) -> dict[str, Any] | None:
+def state_document(
+    certified: Certified, question: CertifiedQuestion | None = None
+) -> dict[str, Any] | None:
     """State of a stopped run, ready for JSON; None if there is nothing to go on from.
 
     Parameters
     ----------
     certified : Certified
+    question : CertifiedQuestion, optional
+        Where the problem comes from.
 
     Returns
     -------
     dict or None
     """
-    if certified.resume is None:
+    if not certified.stopped:
         return None
-    document = {
-        "format": STATE_FORMAT,
-        "made_by": f"trajgap {importlib.metadata.version('trajgap')}",
-        "problem": problem_document(certified.problem),
-        "state": certified.resume.document(),
-    }
-    return {**document, "seal": seal(document)}
+    document = document_of(STATE_FORMAT, certified, question or CertifiedQuestion())
+    proposals = certified.proposals
+    return sealed({**document, "proposals": None if proposals is None else proposals.document()})
 
 
 def read_state(path: str | Path) -> StateFile:
@@ -81,16 +86,52 @@ def read_state(path: str | Path) -> StateFile:
     """
     name = str(path)
     try:
-        document = json.loads(Path(path).read_text("utf-8"))
-    except OSError as error:
-        raise TrajgapError(f"{name}: cannot be read ({error.strerror}); check the path") from None
-    except (ValueError, RecursionError):
-        raise TrajgapError(f"{name}: is no JSON; name a state file") from None
+        document = read_document(path)
+    except Refused as error:
+        raise TrajgapError(f"{name}: {error}".replace("a certificate", "a state file")) from None
     if not isinstance(document, dict) or document.get("format") != STATE_FORMAT:
         raise TrajgapError(f"{name}: is no {STATE_FORMAT}; name a state file")
     rest = {key: value for key, value in document.items() if key != "seal"}
-    if seal(rest) != document.get("seal"):
+    if sealed(rest)["seal"] != document.get("seal"):
         raise TrajgapError(f"{name}: differs from what was written; start without it")
-    if not isinstance(document.get("problem"), dict) or not isinstance(document.get("state"), dict):
-        raise TrajgapError(f"{name}: has no problem or no state; start without it")
-    return StateFile(name, document["problem"], document["state"])
+    return StateFile(name, document)
+
+
+def resumed(
+    problem: ExactProblem, state: Certified | dict[str, Any], subject: Subject = Subject.DECLARED
+) -> Resumed:
+    """What a stopped run left, its proof and its answer proved again by `trajgap.verify`.
+
+    Parameters
+    ----------
+    problem : ExactProblem
+    state : Certified or dict
+        The run, or its `state_document`.
+    subject : Subject
+
+    Returns
+    -------
+    Resumed
+
+    Raises
+    ------
+    TrajgapError
+        If it does not prove what it says, or is about something else.
+    """
+    document = state_document(state) if isinstance(state, Certified) else state
+    if not isinstance(document, dict) or document.get("format") != STATE_FORMAT:
+        raise TrajgapError(f"resume: no {STATE_FORMAT}; give a run that was stopped, or its state")
+    verdict = verify_certificate(document, seconds=SECONDS)
+    if not verdict.proves:
+        raise TrajgapError(f"resume: the state is not proved ({verdict.reason})")
+    if not fits(document, problem, subject):
+        raise TrajgapError("resume: the state is about another problem; start without it")
+    claim, proof = document["claim"], document["proof"]
+    durations, speeds = claim["durations"], claim["speeds"]
+    return Resumed(
+        Fraction(0) if proof is None else number(claim["lower"]),
+        None if proof is None else Given(proof),
+        None if durations is None else tuple(map(number, durations)),
+        None if speeds is None else tuple(tuple(map(number, row)) for row in speeds),
+        document["proposals"],
+    )

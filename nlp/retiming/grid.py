@@ -7,11 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .path import Piece, Stretch
+from ...problem import Array
+from .path import PathPiece, SegmentPart
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
+"""Gauss–Legendre of 6 nodes: exact for degree 11, so that a cell's arc length is, to rounding."""
 _TABLE, _REFINEMENTS = 256, 4
+"""Points of a stretch's first table, and rounds in which points move to where the path turns."""
 _SEGMENTS = 5
+"""Segments that a piece may have before its number of cells grows in proportion."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,11 +36,11 @@ class SampledPath:
         How long the trajectory takes, s.
     """
 
-    s: NDArray[np.float64]
-    tangent: NDArray[np.float64]
-    before: NDArray[np.float64]
-    after: NDArray[np.float64]
-    speed: NDArray[np.float64]
+    s: Array
+    tangent: Array
+    before: Array
+    after: Array
+    speed: Array
     duration: float
 
     @property
@@ -59,11 +63,11 @@ class SampledPath:
 class Measure:
     """For each stretch of a piece a table of u, and of the measure in which grids are uniform."""
 
-    u: tuple[NDArray[np.float64], ...]
-    tau: tuple[NDArray[np.float64], ...]
+    u: tuple[Array, ...]
+    tau: tuple[Array, ...]
 
 
-def measure(piece: Piece) -> Measure:
+def measure(piece: PathPiece) -> Measure:
     """The measure τ of a piece in which every grid is uniform.
 
     It is the mean of three: graded arc length (s ~ τ³ at a rest end, where q″ grows like
@@ -93,12 +97,12 @@ def measure(piece: Piece) -> Measure:
     return Measure(tuple(tables), tuple(tau))
 
 
-def sample(piece: Piece, graded: Measure, cells: int) -> SampledPath:
+def sample(piece: PathPiece, graded: Measure, cells: int) -> SampledPath:
     """Arc length, tangent and curvature of a piece on a grid.
 
     Parameters
     ----------
-    piece : Piece
+    piece : PathPiece
     graded : Measure
         Of that piece.
     cells : int
@@ -127,7 +131,7 @@ def sample(piece: Piece, graded: Measure, cells: int) -> SampledPath:
         parts.append((s, one.tangent(u), speed, one.curvature(u)))
     last = parts[-1]
 
-    def joined(i: int) -> NDArray[np.float64]:
+    def joined(i: int) -> Array:
         return np.concatenate([*[part[i][:-1] for part in parts], last[i][-1:]])
 
     return SampledPath(
@@ -140,7 +144,7 @@ def sample(piece: Piece, graded: Measure, cells: int) -> SampledPath:
     )
 
 
-def _lengths(stretch: Stretch, u: NDArray[np.float64]) -> NDArray[np.float64]:
+def _lengths(stretch: SegmentPart, u: Array) -> Array:
     """Arc length of each cell of ``u``, rad, by Gauss quadrature."""
     half = np.diff(u) / 2
     nodes = (u[:-1] + half)[:, None] + half[:, None] * _NODES
@@ -148,7 +152,7 @@ def _lengths(stretch: Stretch, u: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(stretch.duration * half * (speed @ _WEIGHTS), dtype=np.float64)
 
 
-def _ungraded(share: NDArray[np.float64], rest: tuple[bool, bool]) -> NDArray[np.float64]:
+def _ungraded(share: Array, rest: tuple[bool, bool]) -> Array:
     """The τ in [0, 1] at which a graded grid reaches a share of the arc length."""
     tau = np.linspace(0.0, 1.0, 4001)
     if rest == (True, True):

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...problem import Trajectory, extrema
+from ...problem import Array, Trajectory, extrema
 
 STANDSTILL = 1e-5
 """Joint speeds below this share of the segment's highest count as standing still.
@@ -17,11 +16,13 @@ STANDSTILL = 1e-5
 Exact standstills lie at 1e-12; a turn taken at a speed in between is sharper than TOPPRA's linear
 programs resolve, and stopping there costs less than this share of the time."""
 _VANISHING = 1e-9
+"""Coefficients below this share of the largest are rounding where all joints stand still."""
 _IDLE = 1e-11
+"""A segment that moves by less than this share of what the fastest speed covers stands still."""
 
 
 @dataclass(frozen=True, eq=False)
-class Stretch:
+class SegmentPart:
     """The part of one segment that lies in one piece, over u in [0, 1].
 
     Attributes
@@ -35,23 +36,23 @@ class Stretch:
         Whether all joints stand still at its two ends.
     """
 
-    left: NDArray[np.float64]
-    right: NDArray[np.float64]
+    left: Array
+    right: Array
     start: float
     duration: float
     rest: tuple[bool, bool]
 
-    def derivative(self, u: NDArray[np.float64], order: int) -> NDArray[np.float64]:
+    def derivative(self, u: Array, order: int) -> Array:
         """Time derivative at ``u``, shape (points, joints)."""
         early = _value(self.left, u, order)
         late = (-1.0) ** order * _value(self.right, 1.0 - u, order)
         return np.asarray(np.where((u <= 0.5)[:, None], early, late) / self.duration**order)
 
-    def speed(self, u: NDArray[np.float64]) -> NDArray[np.float64]:
+    def speed(self, u: Array) -> Array:
         """Path speed |dq/dt| at ``u``, rad/s, shape (points,)."""
         return np.asarray(np.linalg.norm(self.derivative(u, 1), axis=1))
 
-    def tangent(self, u: NDArray[np.float64]) -> NDArray[np.float64]:
+    def tangent(self, u: Array) -> Array:
         """Unit tangent q′ at ``u``, shape (points, joints); at a standstill its limit."""
         v = self.derivative(u, 1)
         for at, coefficients, rest, sign in (
@@ -63,7 +64,7 @@ class Stretch:
                 v[u == at] = sign * coefficients[first]
         return np.asarray(v / np.linalg.norm(v, axis=1)[:, None])
 
-    def curvature(self, u: NDArray[np.float64]) -> NDArray[np.float64]:
+    def curvature(self, u: Array) -> Array:
         """Second derivative q″ by arc length at ``u``, 1/rad, shape (points, joints).
 
         At a standstill, where it may be infinite, it is given as 0: it only ever stands in the
@@ -77,10 +78,10 @@ class Stretch:
 
 
 @dataclass(frozen=True, eq=False)
-class Piece:
+class PathPiece:
     """The motion from one standstill, or end of the trajectory, to the next."""
 
-    stretches: tuple[Stretch, ...]
+    stretches: tuple[SegmentPart, ...]
 
     @property
     def start(self) -> float:
@@ -112,7 +113,7 @@ def jump(trajectory: Trajectory) -> str | None:
     return None
 
 
-def segment_speeds(trajectory: Trajectory) -> NDArray[np.float64]:
+def segment_speeds(trajectory: Trajectory) -> Array:
     """Largest |velocity| of any joint in each segment, rad/s."""
     speeds = np.zeros(trajectory.durations.size)
     for j in range(trajectory.joints):
@@ -121,7 +122,7 @@ def segment_speeds(trajectory: Trajectory) -> NDArray[np.float64]:
     return speeds
 
 
-def pieces(trajectory: Trajectory) -> tuple[tuple[Piece, ...], tuple[float, ...]]:
+def pieces(trajectory: Trajectory) -> tuple[tuple[PathPiece, ...], tuple[float, ...]]:
     """Cut a trajectory wherever all joints stand still.
 
     Standstills are the common roots of the joints' velocities. A root at which a velocity changes
@@ -130,14 +131,14 @@ def pieces(trajectory: Trajectory) -> tuple[tuple[Piece, ...], tuple[float, ...]
 
     Returns
     -------
-    pieces : tuple of Piece
+    pieces : tuple of PathPiece
         In order. Segments in which nothing moves are left out.
     cuts : tuple of float
         Times of the standstills, s, those at the ends included.
     """
     tops = segment_speeds(trajectory)
     places = _standstills(trajectory, STANDSTILL * tops)
-    groups: list[list[Stretch]] = [[]]
+    groups: list[list[SegmentPart]] = [[]]
     cuts: list[float] = []
     for k, begin in enumerate(trajectory.breaks[:-1]):
         h = float(trajectory.durations[k])
@@ -155,24 +156,24 @@ def pieces(trajectory: Trajectory) -> tuple[tuple[Piece, ...], tuple[float, ...]
             right = _expanded(a, two, one - two, rest[1])
             if rest[0]:
                 groups.append([])
-            groups[-1].append(Stretch(left, right, float(begin + one * h), (two - one) * h, rest))
+            groups[-1].append(
+                SegmentPart(left, right, float(begin + one * h), (two - one) * h, rest)
+            )
             if rest[1]:
                 groups.append([])
     apart = 1e-6 * trajectory.total_time
     cuts = [t for i, t in enumerate(cuts) if i == 0 or t - cuts[i - 1] > apart]
-    return tuple(Piece(tuple(group)) for group in groups if group), tuple(cuts)
+    return tuple(PathPiece(tuple(group)) for group in groups if group), tuple(cuts)
 
 
-def _value(c: NDArray[np.float64], u: NDArray[np.float64], order: int) -> NDArray[np.float64]:
+def _value(c: Array, u: Array, order: int) -> Array:
     value = np.zeros((u.size, c.shape[1]))
     for p in range(len(c) - 1, order - 1, -1):
         value = value * u[:, None] + math.perm(p, order) * c[p]
     return value
 
 
-def _expanded(
-    a: NDArray[np.float64], about: float, width: float, rest: bool
-) -> NDArray[np.float64]:
+def _expanded(a: Array, about: float, width: float, rest: bool) -> Array:
     """Coefficients in w of q(about + width·w); at a standstill the vanishing ones exactly 0."""
     size = len(a)
     b = np.empty_like(a)
@@ -189,7 +190,7 @@ def _expanded(
     return b
 
 
-def _standstills(trajectory: Trajectory, slow: NDArray[np.float64]) -> list[list[float]]:
+def _standstills(trajectory: Trajectory, slow: Array) -> list[list[float]]:
     """Places in each segment, ends included, where no joint is faster than ``slow``."""
     segments = range(trajectory.durations.size)
     candidates = [{0.0, 1.0} for _ in segments]

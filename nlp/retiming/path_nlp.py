@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
 
-from ...problem import Limits, Trajectory, TrajgapError
+from ...problem import Array, Limits, Trajectory, TrajgapError
 from .grid import SampledPath, measure, sample
 from .path import pieces
 from .toppra_check import excess, not_applicable, prescribed_ends
@@ -97,7 +96,7 @@ def _piece_duration(
     return float(found["f"]) * time_unit
 
 
-def _squared_speed_limits(path: SampledPath, limits: Limits, unit: float) -> NDArray[np.float64]:
+def _squared_speed_limits(path: SampledPath, limits: Limits, unit: float) -> Array:
     moving = path.moving
     with np.errstate(divide="ignore"):
         speed = (limits.velocity[moving] * unit / np.abs(path.tangent[:, moving])).min(axis=1)

@@ -9,12 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from ...problem import Limits, Trajectory, TrajgapError, extrema
+from ...problem import Array, Limits, Trajectory, TrajgapError, extrema
 from ...problem.curves import trajectory_from_scaled
 from .grid import measure, sample
 from .path import jump, pieces
 
 GRIDPOINTS = (500, 1000, 2000)
+"""Three sizes, each twice the last, to fit the order of the grid's error."""
 KEPT = 1e-9
 """Relative excess over a limit that still counts as keeping it."""
 _RESOLUTION = 1e-5
@@ -236,9 +237,7 @@ def excess(trajectory: Trajectory, limits: Limits) -> tuple[float, float]:
     return float(ratios.max()), float(max(ratios[:, 0].max(), np.sqrt(ratios[:, 1].max())))
 
 
-def extrapolate(
-    cells: Sequence[int], durations: NDArray[np.float64]
-) -> tuple[float | None, float, float]:
+def extrapolate(cells: Sequence[int], durations: Array) -> tuple[float | None, float, float]:
     """Order p, limit and error estimate of T(n) = T + C n⁻ᵖ through three durations.
 
     Where the three do not show one order between 1/4 and 4, the order is None, the limit is

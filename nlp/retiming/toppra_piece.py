@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 import numpy as np
-from numpy.typing import NDArray
 from toppra.algorithm import TOPPRA
 from toppra.constraint import (
     DiscretizationType,
@@ -15,6 +14,7 @@ from toppra.constraint import (
     JointVelocityConstraint,
 )
 
+from ...problem import Array
 from .grid import SampledPath
 
 _UNITS = ((1e4, 10.0), (1e4, 1.0), (1e2, 10.0), (1e4, 3.0), (1e4, 30.0), (1e2, 1.0))
@@ -31,13 +31,13 @@ _UNLIMITED = 1e3
 class _Path:
     """What toppra asks of a path, answered from the samples on its own grid."""
 
-    def __init__(self, grid: NDArray[np.float64], tangent: NDArray[np.float64]) -> None:
+    def __init__(self, grid: Array, tangent: Array) -> None:
         self.grid, self.tangent = grid, tangent
         self.dof = tangent.shape[1]
         self.path_interval = grid[[0, -1]]
         self.duration = float(grid[-1] - grid[0])
 
-    def __call__(self, grid: NDArray[np.float64], order: int = 0) -> NDArray[np.float64]:
+    def __call__(self, grid: Array, order: int = 0) -> Array:
         if order != 1 or grid.shape != self.grid.shape:
             raise NotImplementedError("sampled: only the tangent, only on the grid")
         return self.tangent
@@ -52,17 +52,17 @@ class _Acceleration(JointAccelerationConstraint):  # type: ignore[misc]
 
     def __init__(
         self,
-        limit: NDArray[np.float64],
-        tangent: NDArray[np.float64],
-        before: NDArray[np.float64],
-        after: NDArray[np.float64],
+        limit: Array,
+        tangent: Array,
+        before: Array,
+        after: Array,
     ) -> None:
         super().__init__(limit, DiscretizationType.Interpolation)
         self.tangent, self.before, self.after = tangent, before, after
 
     def compute_constraint_params(
-        self, path: _Path, gridpoints: NDArray[np.float64], *_: object
-    ) -> tuple[NDArray[np.float64] | None, ...]:
+        self, path: _Path, gridpoints: Array, *_: object
+    ) -> tuple[Array | None, ...]:
         step = np.diff(gridpoints)[:, None]
         d = self.tangent.shape[1]
         u = np.hstack([self.tangent, self.tangent])
@@ -81,7 +81,7 @@ class _Solver(TOPPRA):  # type: ignore[misc]
     that is stricter than the continuous limits cannot where the trajectory runs on its limits.
     """
 
-    def compute_controllable_sets(self, sdmin: float, sdmax: float) -> NDArray[np.float64]:
+    def compute_controllable_sets(self, sdmin: float, sdmax: float) -> Array:
         return np.asarray(super().compute_controllable_sets(0.0, sdmax))
 
 
@@ -99,8 +99,8 @@ def _quiet() -> Iterator[None]:
 
 def optimal_duration(
     path: SampledPath,
-    velocity: NDArray[np.float64],
-    acceleration: NDArray[np.float64],
+    velocity: Array,
+    acceleration: Array,
     end_speeds: tuple[float, float],
     expected: float,
 ) -> float | None:
@@ -136,8 +136,8 @@ def optimal_duration(
 
 def _attempt(
     path: SampledPath,
-    velocity: NDArray[np.float64],
-    acceleration: NDArray[np.float64],
+    velocity: Array,
+    acceleration: Array,
     end_speeds: tuple[float, float],
     length: float,
     time_unit: float,

@@ -12,12 +12,12 @@ from .claim import (
     StatementClaim,
     TotalTimeClaim,
 )
-from .instances import FamilyBlock, family_waypoints
+from .instances import InstancesBlock, instance_waypoints
 from .load import load_case, parse_case, published_ids
 from .robot_file import load_robot, robot_ids
 from .scaffolding import scaffold
 from .schema import Cartesian, CaseFile, case_schema
-from .statement import Posing
+from .statement import Statement
 
 __all__ = [
     "AnyClaim",
@@ -30,15 +30,15 @@ __all__ = [
     "ConvergenceClaim",
     "DurationBox",
     "DurationsClaim",
-    "FamilyBlock",
     "ImprovementClaim",
+    "InstancesBlock",
     "MaximumClaim",
     "PeakClaim",
-    "Posing",
+    "Statement",
     "StatementClaim",
     "TotalTimeClaim",
     "case_schema",
-    "family_waypoints",
+    "instance_waypoints",
     "load_case",
     "load_robot",
     "parse_case",

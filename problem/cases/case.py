@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import CaseError
 from ..fields import nearest
 from ..printed import Printed
@@ -15,10 +15,10 @@ from ..problem import Coupling, Problem
 from ..robots import Chain, Convention, DhTable
 from ..units import Measured, Quantity
 from .claim import AnyClaim, Claim, DurationsClaim, MaximumClaim
-from .instances import FamilyBlock
+from .instances import InstancesBlock
 from .robot_file import robot_file, robot_ids
 from .schema import (
-    Algorithm,
+    AlgorithmBlock,
     Assumption,
     Cartesian,
     CaseFile,
@@ -30,10 +30,12 @@ from .schema import (
     Source,
     Table,
 )
-from .statement import Posing, pose
+from .statement import Statement, overlaid
 
 _ONLY_PROBLEM = ProblemBlock(id="main")
+"""Stands for the one problem of a file that lists none; its id is what `--problem` then takes."""
 _ONLY_READING = Reading(id="as-printed", why="the numbers and units as printed", default=True)
+"""Stands for the one reading of a file that lists none."""
 
 
 @dataclass(frozen=True)
@@ -43,9 +45,9 @@ class DurationBox:
     Each array has shape (segments,).
     """
 
-    value: NDArray[np.float64]
-    lower: NDArray[np.float64]
-    upper: NDArray[np.float64]
+    value: Array
+    lower: Array
+    upper: Array
 
 
 @dataclass(frozen=True)
@@ -85,7 +87,7 @@ class Case:
 
     @property
     def problems(self) -> tuple[ProblemBlock, ...]:
-        """The problems posed; one called "main" if the file names none."""
+        """The problems stated; one called "main" if the file names none."""
         return self.document.problems or (_ONLY_PROBLEM,)
 
     @property
@@ -104,13 +106,13 @@ class Case:
         return self.document.tables
 
     @property
-    def algorithms(self) -> tuple[Algorithm, ...]:
+    def algorithms(self) -> tuple[AlgorithmBlock, ...]:
         """The paper's algorithms and their settings."""
         return self.document.algorithms
 
     @property
-    def families(self) -> tuple[FamilyBlock, ...]:
-        """Families of instances on which relative claims are examined."""
+    def instances(self) -> tuple[InstancesBlock, ...]:
+        """Blocks of instances on which relative claims are examined."""
         return self.document.families
 
     @property
@@ -139,9 +141,9 @@ class Case:
         return next((r for r in self.readings if r.default), self.readings[0])
 
     @property
-    def posed(self) -> bool:
+    def complete(self) -> bool:
         """Whether every problem has way-points under every reading, so that it can be solved."""
-        return all(self.posing(*pair).posed for pair in self.selections())
+        return all(self.statement(*pair).complete for pair in self.selections())
 
     @cached_property
     def dh(self) -> DhTable | None:
@@ -267,8 +269,8 @@ class Case:
             If an id or the coupling is unknown, the numbers don't fit together, or the paper
             prints no way-points.
         """
-        posing = self.posing(problem_id, reading_id)
-        problem = posing.problem()
+        statement = self.statement(problem_id, reading_id)
+        problem = statement.problem()
         if coupling is None:
             return problem
         if coupling not in tuple(Coupling):
@@ -278,7 +280,7 @@ class Case:
 
     def waypoint_box(
         self, problem_id: str | None = None, reading_id: str | None = None
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    ) -> tuple[Array, Array]:
         """Bounds on the way-points that print alike.
 
         Parameters
@@ -291,7 +293,7 @@ class Case:
         lower, upper : ndarray, shape (way-points, joints)
             Joint angles in rad, rounded outwards.
         """
-        points = self.posing(problem_id, reading_id).points()
+        points = self.statement(problem_id, reading_id).points()
         lower = np.array([[angle.lower for angle in row] for row in points])
         upper = np.array([[angle.upper for angle in row] for row in points])
         return lower, upper
@@ -324,8 +326,8 @@ class Case:
             raise CaseError(
                 self.file, f"claim {claim.id!r}", "states no durations; choose one that does"
             )
-        posing = self.posing(claim.problem, reading_id)
-        measured = [posing.si(number, "time") for number in printed]
+        statement = self.statement(claim.problem, reading_id)
+        measured = [statement.si(number, "time") for number in printed]
         return DurationBox(
             np.array([m.value for m in measured]),
             np.array([m.lower for m in measured]),
@@ -359,13 +361,13 @@ class Case:
         CaseError
             If the file states no unit for the quantity.
         """
-        return self.posing(problem_id, reading_id).si(number, quantity)
+        return self.statement(problem_id, reading_id).si(number, quantity)
 
-    def posing(self, problem_id: str | None = None, reading_id: str | None = None) -> Posing:
+    def statement(self, problem_id: str | None = None, reading_id: str | None = None) -> Statement:
         """One problem under one reading, still in printed digits."""
         problem = self.problems[0] if problem_id is None else self._problem(problem_id)
         reading = self.default_reading if reading_id is None else self._reading(reading_id)
-        return pose(self.document, self.file, problem, reading)
+        return overlaid(self.document, self.file, problem, reading)
 
     def _problem(self, problem_id: str) -> ProblemBlock:
         for problem in self.problems:

@@ -6,7 +6,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Discriminator, Field, StrictInt, model_validator
 
-from ..fields import Id, Length, Number, Rows, Strict, Text, fault
+from ..fields import Id, Length, Number, PrintedRows, Strict, Text, fault
 from ..problem import Coupling
 
 
@@ -124,7 +124,7 @@ class ControlVerticesClaim(Claim):
     """
 
     quantity: Literal["control_vertices"]
-    joint_rows: Rows
+    joint_rows: PrintedRows
     """One row per joint: two more numbers than way-points."""
 
 

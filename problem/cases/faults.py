@@ -19,6 +19,7 @@ _ONE_OR_EACH = (
     "lower",
     "upper",
 )
+"""Fields that take one number or a list: pydantic puts the union's tag into their path."""
 _EXPECTED = {
     "string_type": ("a string", "put it in quotes"),
     "tuple_type": ("a list", "write it in [ ]"),
@@ -26,6 +27,7 @@ _EXPECTED = {
     "bool_type": ("true or false", "write one of them"),
     "dict_type": ("a table of keys", "write it as a table"),
 }
+"""Pydantic's error type to what was wanted, and how to give it in TOML."""
 
 
 def first_fault(error: ValidationError) -> tuple[str, str]:

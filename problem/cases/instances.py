@@ -1,4 +1,4 @@
-"""Families of instances: way-points drawn from a robot's workspace where a paper prints none."""
+"""Instances: way-points drawn from a robot's workspace where a paper prints none."""
 
 from __future__ import annotations
 
@@ -7,14 +7,15 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, StrictInt, field_validator
 
+from ..arrays import Array
 from ..fields import Id, Length, Strict, Text, fault
 from ..printed import Printed
-from ..robots import Array, Chain, StepKind, sample_workspace, waypoint_family
+from ..robots import Chain, StepKind, sample_workspace, waypoint_sequences
 
 Count = Annotated[StrictInt, Field(ge=1, le=10_000)]
 
 
-class FamilyBlock(Strict):
+class InstancesBlock(Strict):
     """Instances on which a relative claim is examined, drawn from the workspace of the robot."""
 
     id: Id
@@ -39,7 +40,7 @@ class FamilyBlock(Strict):
     ] = ("death-penalty", "stretch")
     """What happens to durations that break a limit; the first is the paper's."""
     readings: tuple[Id, ...] = ()
-    """Readings under which the instances are posed; all of them if empty."""
+    """Readings under which the instances are examined; all of them if empty."""
 
     @field_validator("steps")
     @classmethod
@@ -62,17 +63,17 @@ class FamilyBlock(Strict):
         return tuple(step.value for step in self.steps)
 
 
-def family_waypoints(
-    block: FamilyBlock, chain: Chain, labels: tuple[str, ...], waypoints: int
+def instance_waypoints(
+    block: InstancesBlock, chain: Chain, labels: tuple[str, ...], waypoints: int
 ) -> Array:
-    """Draw the way-points of every instance of a family.
+    """Draw the way-points of every instance of a block.
 
     Every step length has a stream of its own: its instances depend neither on the other steps nor,
     save for their number, on how many there are.
 
     Parameters
     ----------
-    block : FamilyBlock
+    block : InstancesBlock
     chain : Chain
     labels : tuple of str
         Joints of the chain to keep, in order.
@@ -97,7 +98,7 @@ def family_waypoints(
         named = int(np.float64(step).view(np.uint64))
         stream = np.random.SeedSequence([block.seed, named])
         drawn.append(
-            waypoint_family(
+            waypoint_sequences(
                 workspace,
                 step=step,
                 count=block.instances,

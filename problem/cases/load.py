@@ -114,10 +114,10 @@ def check_case(raw: dict[str, Any], file: str) -> Case:
     case = Case(document, file)
     check_kinematics(document, file, case.chain())
     for problem_id, reading_id in case.selections():
-        posing = case.posing(problem_id, reading_id)
-        if posing.posed:
-            posing.problem()
+        statement = case.statement(problem_id, reading_id)
+        if statement.complete:
+            statement.problem()
         else:
-            posing.data()
-    check_claims(document, file, lambda claim: case.posing(claim.problem))
+            statement.data()
+    check_claims(document, file, lambda claim: case.statement(claim.problem))
     return case

@@ -18,9 +18,9 @@ from .claim import (
     StatementClaim,
     TotalTimeClaim,
 )
-from .instances import FamilyBlock
+from .instances import InstancesBlock
 from .schema import CaseFile
-from .statement import Posing
+from .statement import Statement
 
 _LISTS = (
     "problems",
@@ -34,8 +34,11 @@ _LISTS = (
     "cartesian",
     "not_checkable",
 )
+"""Lists of blocks with ids, in the order in which their faults are told."""
 _BLOCKS = ("units", "waypoints", "limits", "interpolant", "durations", "coupling", "robot")
-_POSED = (DurationsClaim, MaximumClaim, TotalTimeClaim, PeakClaim, ControlVerticesClaim)
+"""Single blocks that an assumption may say it affects; they have no ids."""
+_OF_ONE_PROBLEM = (DurationsClaim, MaximumClaim, TotalTimeClaim, PeakClaim, ControlVerticesClaim)
+"""Claims whose numbers belong to one problem, which a file with several must name."""
 
 
 def check_references(document: CaseFile, file: str) -> None:
@@ -87,7 +90,11 @@ def check_references(document: CaseFile, file: str) -> None:
             )
         for field, name in _claim_references(claim):
             known("claims", f"{at}.{field}", name)
-        if claim.problem is None and len(document.problems) > 1 and isinstance(claim, _POSED):
+        if (
+            claim.problem is None
+            and len(document.problems) > 1
+            and isinstance(claim, _OF_ONE_PROBLEM)
+        ):
             raise CaseError(
                 file,
                 f"{at}.problem",
@@ -95,12 +102,12 @@ def check_references(document: CaseFile, file: str) -> None:
                 f"add one of {', '.join(ids['problems'])}",
             )
     _check_kinds(document, file)
-    for index, family in enumerate(document.families):
+    for index, block in enumerate(document.families):
         at = f"families[{index}]"
-        known("claims", f"{at}.claim", family.claim)
-        for position, reading_id in enumerate(family.readings):
+        known("claims", f"{at}.claim", block.claim)
+        for position, reading_id in enumerate(block.readings):
             known("readings", f"{at}.readings[{position}]", reading_id)
-        _check_family(document, file, family, at)
+        _check_instances(document, file, block, at)
     everything = {name for names in ids.values() for name in names} | set(_BLOCKS)
     for index, assumption in enumerate(document.assumptions):
         for position, name in enumerate(assumption.affects):
@@ -150,9 +157,9 @@ def _check_kinds(document: CaseFile, file: str) -> None:
                 )
 
 
-def _check_family(document: CaseFile, file: str, family: FamilyBlock, at: str) -> None:
+def _check_instances(document: CaseFile, file: str, block: InstancesBlock, at: str) -> None:
     by_id = {claim.id: claim for claim in document.claims}
-    claim = by_id[family.claim]
+    claim = by_id[block.claim]
     if not isinstance(claim, ImprovementClaim):
         raise CaseError(
             file,
@@ -172,7 +179,9 @@ def _check_family(document: CaseFile, file: str, family: FamilyBlock, at: str) -
         )
 
 
-def check_claims(document: CaseFile, file: str, posing_of: Callable[[AnyClaim], Posing]) -> None:
+def check_claims(
+    document: CaseFile, file: str, statement_of: Callable[[AnyClaim], Statement]
+) -> None:
     """Check that each claim fits the problem that it speaks about.
 
     Parameters
@@ -180,7 +189,7 @@ def check_claims(document: CaseFile, file: str, posing_of: Callable[[AnyClaim], 
     document : CaseFile
     file : str
         Name for error messages.
-    posing_of : callable
+    statement_of : callable
         The problem of a claim under the default reading.
 
     Raises
@@ -190,45 +199,45 @@ def check_claims(document: CaseFile, file: str, posing_of: Callable[[AnyClaim], 
         that takes no part, or a number lies outside the magnitudes that are computed with.
     """
     for index, claim in enumerate(document.claims):
-        posing = posing_of(claim)
+        statement = statement_of(claim)
         if claim.joint is not None:
-            labels = [posing.labels[j] for j in posing.joints]
+            labels = [statement.labels[j] for j in statement.joints]
             if claim.joint not in labels:
-                raise posing.fail(
+                raise statement.fail(
                     f"claims[{index}].joint",
                     f"joint {claim.joint!r} takes no part; the problem has {', '.join(labels)}",
                 )
         if isinstance(claim, DurationsClaim | MaximumClaim):
-            segments = posing.interpolant().segments
+            segments = statement.curve().segments
             if len(claim.durations) != segments:
-                raise posing.fail(
+                raise statement.fail(
                     f"claims[{index}].durations",
                     f"{len(claim.durations)} values for {segments} segments; give one each",
                 )
             for segment, duration in enumerate(claim.durations):
                 field = f"claims[{index}].durations[{segment}]"
                 if duration.fraction == 0:
-                    raise posing.fail(field, "is 0; a duration is positive, give its digits")
-                posing.si(duration, "time", field)
+                    raise statement.fail(field, "is 0; a duration is positive, give its digits")
+                statement.si(duration, "time", field)
             if claim.total is not None:
-                posing.si(claim.total, "time", f"claims[{index}].total")
+                statement.si(claim.total, "time", f"claims[{index}].total")
         if isinstance(claim, TotalTimeClaim):
-            posing.si(claim.value, "time", f"claims[{index}].value")
+            statement.si(claim.value, "time", f"claims[{index}].value")
         if isinstance(claim, PeakClaim):
-            posing.si(claim.value, claim.derivative, f"claims[{index}].value")
+            statement.si(claim.value, claim.derivative, f"claims[{index}].value")
         if isinstance(claim, ControlVerticesClaim):
-            _check_vertices(claim, posing, f"claims[{index}].joint_rows")
+            _check_vertices(claim, statement, f"claims[{index}].joint_rows")
 
 
-def _check_vertices(claim: ControlVerticesClaim, posing: Posing, field: str) -> None:
-    joints, count = len(posing.labels), posing.waypoints.number
+def _check_vertices(claim: ControlVerticesClaim, statement: Statement, field: str) -> None:
+    joints, count = len(statement.labels), statement.waypoints.number
     if len(claim.joint_rows) != joints:
-        raise posing.fail(
+        raise statement.fail(
             field, f"gives {len(claim.joint_rows)} joints, but robot.joints lists {joints}"
         )
     for position, row in enumerate(claim.joint_rows):
         if len(row) != count + 2:
-            raise posing.fail(
+            raise statement.fail(
                 f"{field}[{position}]",
                 f"{len(row)} control vertices for {count} way-points; give {count + 2}",
             )

@@ -16,6 +16,7 @@ from ..units import CHOICES, Quantity, check_unit
 from .load import parse_case
 
 _LABEL_HEADERS = ("", "waypoint", "way-point", "point", "label", "name")
+"""Headers, in lower case, of a first column that holds names and not angles."""
 
 
 def scaffold(

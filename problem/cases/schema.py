@@ -18,7 +18,7 @@ from ..fields import (
     OneOrEachUpper,
     OneOrEachUpperPosition,
     PositionUnit,
-    Rows,
+    PrintedRows,
     Strict,
     Text,
     TimeUnit,
@@ -32,7 +32,7 @@ from ..robots import DhTable
 from ..units import LengthUnit
 from .claim import AnyClaim
 from .declaration import InterpolantBlock
-from .instances import FamilyBlock
+from .instances import InstancesBlock
 
 
 class Source(Strict):
@@ -92,9 +92,9 @@ class Waypoints(Strict):
     where: str = ""
     labels: tuple[str, ...] = ()
     """Names of the way-points."""
-    joint_rows: Rows | None = None
+    joint_rows: PrintedRows | None = None
     """One row per joint, one number per way-point."""
-    waypoint_rows: Rows | None = None
+    waypoint_rows: PrintedRows | None = None
     """One row per way-point, one number per joint."""
     not_printed: Text | None = None
     """Why there are no rows, where the paper prints none; with `count`."""
@@ -173,7 +173,7 @@ class Durations(Strict):
     """Longest duration; none by default."""
 
 
-class Pose(Strict):
+class ProblemData(Strict):
     """What can be said for the whole file and changed by a problem or a reading."""
 
     units: Units = Units()
@@ -184,15 +184,15 @@ class Pose(Strict):
     coupling: Coupling | None = None
 
 
-class Override(Pose):
-    """A `Pose` that changes another one; units, limits and durations key by key."""
+class Override(ProblemData):
+    """A `ProblemData` that changes another one; units, limits and durations key by key."""
 
     joints: Annotated[tuple[Text, ...], Field(min_length=1)] | None = None
     """The joints that take part; all if absent. Per-joint lists keep listing every joint."""
 
 
 class ProblemBlock(Override):
-    """One of the problems that the paper poses."""
+    """One of the problems that the paper states."""
 
     id: Id
     title: str = ""
@@ -235,7 +235,7 @@ Setting = Annotated[
 ]
 
 
-class Algorithm(Strict):
+class AlgorithmBlock(Strict):
     """An algorithm of the paper and its settings."""
 
     id: Id
@@ -322,7 +322,7 @@ class NotCheckable(Strict):
     why: Text
 
 
-class CaseFile(Pose):
+class CaseFile(ProblemData):
     """A case file: what one paper prints, and how it can be read."""
 
     format: Literal[1]
@@ -332,8 +332,8 @@ class CaseFile(Pose):
     robot: Robot
     problems: tuple[ProblemBlock, ...] = ()
     readings: tuple[Reading, ...] = ()
-    algorithms: tuple[Algorithm, ...] = ()
-    families: tuple[FamilyBlock, ...] = ()
+    algorithms: tuple[AlgorithmBlock, ...] = ()
+    families: tuple[InstancesBlock, ...] = ()
     tables: tuple[Table, ...] = ()
     claims: tuple[AnyClaim, ...] = ()
     assumptions: tuple[Assumption, ...] = ()

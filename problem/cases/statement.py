@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..curves import Curve, Interpolant
+from ..arrays import Array
+from ..curves import Curve
 from ..errors import CaseError, TrajgapError
 from ..fields import Strict
 from ..limits import Limits
@@ -29,16 +29,18 @@ from .schema import (
 )
 
 Block = TypeVar("Block", bound=Strict)
-Data = tuple[Curve, Limits, NDArray[np.float64], NDArray[np.float64]]
+Data = tuple[Curve, Limits, Array, Array]
 """Curve, limits, and bounds on the durations."""
 _DERIVATIVES: tuple[Quantity, ...] = ("velocity", "acceleration", "jerk")
+"""What orders 1 to 3 measure; higher ones have no unit in a case file."""
 _LARGEST = 1e12
 """Largest number of a case file, rad and s: squares and quotients stay far from overflow."""
 _LOWER = "durations.lower"
+"""The field whose value may be as near 0 as it likes: a lower bound of 0 says "positive"."""
 
 
 @dataclass(frozen=True)
-class Posing:
+class Statement:
     """One problem under one reading, still in printed digits.
 
     ``joints`` are the positions, in the robot's list, of the joints that take part.
@@ -128,11 +130,11 @@ class Posing:
         ]
 
     @property
-    def posed(self) -> bool:
+    def complete(self) -> bool:
         """Whether the way-points are printed, so that there is a problem to solve."""
         return bool(self.waypoints.points)
 
-    def interpolant(self) -> Curve:
+    def curve(self) -> Curve:
         """Declare the curve for the number of way-points.
 
         Raises
@@ -143,25 +145,26 @@ class Posing:
         block, count = self.declaration, self.waypoints.number
         ends = tuple((order, self._end_value(order)) for order in block.orders)
         try:
-            interpolant = declare(block, count, ends)
+            curve = declare(block, count, ends)
         except TrajgapError as error:
             raise self.fail("interpolant", _unprefixed(error)) from None
-        if len(interpolant.waypoint_breaks) != count:
+        if len(curve.waypoint_breaks) != count:
             raise self.fail(
                 "interpolant",
-                f"{interpolant.name} of {interpolant.segments} segments passes "
-                f"{len(interpolant.waypoint_breaks)} way-points, but {count} are given; "
+                f"{curve.name} of {curve.segments} segments passes "
+                f"{len(curve.waypoint_breaks)} way-points, but {count} are given; "
                 "change the family, the degrees or the way-points",
             )
-        if isinstance(interpolant, Interpolant) and interpolant.free != block.free:
+        polynomials = curve.piecewise
+        if polynomials is not None and polynomials.free != block.free:
             raise self.fail(
                 "interpolant",
-                f"under-determined, {interpolant.conditions} conditions on "
-                f"{interpolant.coefficients} coefficients leave {interpolant.free} free, "
+                f"under-determined, {polynomials.conditions} conditions on "
+                f"{polynomials.coefficients} coefficients leave {polynomials.free} free, "
                 f"not {block.free}; add conditions, lower a degree, or state "
-                f"free = {interpolant.free}",
+                f"free = {polynomials.free}",
             )
-        return interpolant
+        return curve
 
     def _end_value(self, order: int) -> float:
         values = self.declaration.end_derivatives
@@ -181,7 +184,7 @@ class Posing:
         data = self.data()
         return self._at(data, np.array([[angle.value for angle in row] for row in self.points()]))
 
-    def problem_at(self, waypoints: NDArray[np.float64]) -> Problem:
+    def problem_at(self, waypoints: Array) -> Problem:
         """The same question through other way-points.
 
         Parameters
@@ -200,13 +203,13 @@ class Posing:
         """
         return self._at(self.data(), waypoints[:, list(self.joints)])
 
-    def _at(self, data: Data, waypoints: NDArray[np.float64]) -> Problem:
-        interpolant, limits, lower, upper = data
+    def _at(self, data: Data, waypoints: Array) -> Problem:
+        curve, limits, lower, upper = data
         try:
             return Problem(
                 waypoints=waypoints,
                 limits=limits,
-                interpolant=interpolant,
+                curve=curve,
                 duration_lower=lower,
                 duration_upper=upper,
                 coupling=self.coupling,
@@ -224,8 +227,8 @@ class Posing:
         CaseError
             If the numbers don't fit together.
         """
-        interpolant = self.interpolant()
-        segments = interpolant.segments
+        curve = self.curve()
+        segments = curve.segments
         lower = self._each("durations", "lower", "time", segments, "segment", 0.0)
         upper = self._each("durations", "upper", "time", segments, "segment", np.inf)
         if (lower > upper).any():
@@ -249,15 +252,15 @@ class Posing:
             position_lower=position_lower,
             position_upper=position_upper,
         )
-        return interpolant, limits, lower, upper
+        return curve, limits, lower, upper
 
-    def _limit(self, name: str, quantity: Quantity, default: float = np.inf) -> NDArray[np.float64]:
+    def _limit(self, name: str, quantity: Quantity, default: float = np.inf) -> Array:
         every = self._each("limits", name, quantity, len(self.labels), "joint", default)
         return every[list(self.joints)]
 
     def _each(
         self, block: str, name: str, quantity: Quantity, count: int, item: str, default: float
-    ) -> NDArray[np.float64]:
+    ) -> Array:
         given: Sequence[Printed | None] | Printed | None = getattr(getattr(self, block), name)
         if given is None:
             return np.full(count, default)
@@ -276,7 +279,7 @@ class Posing:
         )
 
 
-def pose(document: CaseFile, file: str, problem: ProblemBlock, reading: Reading) -> Posing:
+def overlaid(document: CaseFile, file: str, problem: ProblemBlock, reading: Reading) -> Statement:
     """Lay a problem over the file's own statements, and a reading over both.
 
     Parameters
@@ -289,7 +292,7 @@ def pose(document: CaseFile, file: str, problem: ProblemBlock, reading: Reading)
 
     Returns
     -------
-    Posing
+    Statement
 
     Raises
     ------
@@ -323,7 +326,7 @@ def pose(document: CaseFile, file: str, problem: ProblemBlock, reading: Reading)
                 f"joint {label!r} is unknown; robot.joints lists {', '.join(labels)}{selected}",
             )
     taken = labels if chosen is None else chosen
-    return Posing(
+    return Statement(
         file=file,
         name=f"{document.id}, {problem.id}, {reading.id}",
         selected=selected,

@@ -1,18 +1,11 @@
-from .clamped import (
-    ClampedBSpline,
-    Knots,
-    Parameters,
-    average_matrix,
-    fractions_of,
-    polynomial_form,
-)
+from .clamped import ClampedBSpline
 from .clamped_counts import ClampedReading, Count, clamped_readings
 from .clamped_fit import clamped_control_points
+from .clamped_knots import Knots, Parameters, average_matrix, fractions_of
 from .compilation import compiler
+from .condition import Condition, ConditionKind
 from .interpolant import (
     Interpolant,
-    Row,
-    RowKind,
     cubic_spline,
     cubic_spline_virtual,
     jtraj,
@@ -22,41 +15,22 @@ from .interpolant import (
     three_five_three,
 )
 from .kernel import MAX_COEFFICIENTS, roots_in_unit
-from .kind import (
-    Curve,
-    PeakGradients,
-    batch_peaks,
-    enclosed,
-    end_conditions,
-    fit,
-    for_joint,
-    motion_values,
-    segment_of,
-    smooth_order,
-    value_gradients,
-)
+from .kind import Curve, PeakGradients, as_curve, fit
 from .peak import Extremum, critical_points, extrema
+from .refined import coefficient_gradient
 from .spline import (
     PERM,
     as_durations,
-    coefficient_gradient,
+    batch_coefficients,
     layout,
     right_hand_sides,
     trajectory_from_scaled,
 )
-from .stretched import segment_peaks, shape, solve_in_closed_form
+from .stretched import Timing, segment_peaks, shape_of, solve_in_closed_form
 from .timed import ClockedTrajectory, numerators
 from .trajectory import Trajectory
-from .uniform import (
-    StretchedUniformBSpline,
-    TimedUniformBSpline,
-    Timing,
-    clock_matrix,
-    control_vertices,
-    shape_matrix,
-    uniform_cubic_b_spline,
-    vertex_matrix,
-)
+from .uniform import StretchedUniformBSpline, TimedUniformBSpline, uniform_cubic_b_spline
+from .uniform_matrices import clock_matrix, control_vertices, shape_matrix, vertex_matrix
 
 __all__ = [
     "MAX_COEFFICIENTS",
@@ -64,6 +38,8 @@ __all__ = [
     "ClampedBSpline",
     "ClampedReading",
     "ClockedTrajectory",
+    "Condition",
+    "ConditionKind",
     "Count",
     "Curve",
     "Extremum",
@@ -71,15 +47,14 @@ __all__ = [
     "Knots",
     "Parameters",
     "PeakGradients",
-    "Row",
-    "RowKind",
     "StretchedUniformBSpline",
     "TimedUniformBSpline",
     "Timing",
     "Trajectory",
+    "as_curve",
     "as_durations",
     "average_matrix",
-    "batch_peaks",
+    "batch_coefficients",
     "clamped_control_points",
     "clamped_readings",
     "clock_matrix",
@@ -89,31 +64,23 @@ __all__ = [
     "critical_points",
     "cubic_spline",
     "cubic_spline_virtual",
-    "enclosed",
-    "end_conditions",
     "extrema",
     "fit",
-    "for_joint",
     "fractions_of",
     "jtraj",
     "layout",
-    "motion_values",
     "numerators",
     "piecewise",
-    "polynomial_form",
     "quintic_spline",
     "rest_to_rest",
     "right_hand_sides",
     "roots_in_unit",
-    "segment_of",
     "segment_peaks",
-    "shape",
     "shape_matrix",
-    "smooth_order",
+    "shape_of",
     "solve_in_closed_form",
     "three_five_three",
     "trajectory_from_scaled",
     "uniform_cubic_b_spline",
-    "value_gradients",
     "vertex_matrix",
 ]

@@ -3,45 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from enum import StrEnum
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import TrajgapError
+from . import clamped_kernel
+from .clamped_fit import clamped_enclosed, clamped_gradients, clamped_shape
+from .clamped_knots import Fractions, Knots, Parameters, average_matrix, fractions_of
 from .interpolant import piecewise, quintic_spline
-from .kind import Array, Curve, Ends, end_conditions, for_joint, smooth_order
-from .uniform import Timing
-
-
-class Knots(StrEnum):
-    """Where the inner knots lie."""
-
-    WAYPOINTS = "waypoints"
-    """At the parameters of the inner way-points."""
-    AVERAGED = "averaged"
-    """u_{j+p} = (ū_j + … + ū_{j+p−1})/p, j = 1..n − p: (6) of z1 with its index as in the sum."""
-    CONTINUED = "averaged-continued"
-    """The same with the first and last parameter repeated for each end condition, so that every
-    condition brings a knot (The NURBS Book, 9.2.2, does so for first derivatives)."""
-
-
-class Parameters(StrEnum):
-    """What the parameters ū_k of the way-points are taken from."""
-
-    TIMES = "times"
-    """The times at which they are passed."""
-    CHORD = "chord"
-    """Chord lengths of the joint vector, (4) and (5) of z1."""
-    JOINT_CHORD = "joint-chord"
-    """Chord lengths of each joint by itself."""
-
-
-Fractions = tuple[tuple[float, ...], ...]
+from .kind import Curve, Derivatives, Enclosed, PeakGradients, Shape, as_batch
+from .peak import Extremum
+from .stretched import StretchedCurve, Timing
 
 
 @dataclass(frozen=True)
-class ClampedBSpline:
+class ClampedBSpline(StretchedCurve):
     """Clamped B-spline through the way-points at rest at both ends.
 
     Source: `z1-woa-bspline`, (1) to (12); (3) puts the way-points at the times.
@@ -120,7 +99,7 @@ class ClampedBSpline:
             word = "over" if self.free < 0 else "under"
             raise TrajgapError(
                 f"interpolant {self.name}: {word}-determined, {self.conditions} conditions on "
-                f"{self.control_points} control points; {nearest(self)}"
+                f"{self.control_points} control points; {self.nearest}"
             )
         for row in self.fractions or ():
             if len(row) != self.waypoints or row[0] != 0.0 or row[-1] != 1.0:
@@ -150,14 +129,26 @@ class ClampedBSpline:
         return self.waypoints - 1
 
     @property
-    def waypoint_breaks(self) -> tuple[int, ...]:
-        """Every break carries a way-point."""
-        return tuple(range(self.waypoints))
+    def nearest(self) -> str:
+        """The nearest declaration that is determined, in words."""
+        rest = 2 * len(self.end_orders)
+        if self.knots is Knots.WAYPOINTS:
+            return (
+                f"with knots at the way-points degree {rest + 1} is determined, with the index "
+                f"continued degree {self.degree} is"
+            )
+        return (
+            f"continue the averaging index at both ends, one knot for each of the {rest} conditions"
+        )
 
-    @property
-    def homogeneous(self) -> bool:
-        """Always: the end derivatives are 0."""
-        return True
+    def prescribed_at(self, break_index: int) -> Derivatives:
+        """Rest at both ends."""
+        ends = break_index in (0, self.segments)
+        return tuple((r, 0.0) for r in self.end_orders) if ends else ()
+
+    def smooth_order(self, break_index: int) -> int:
+        """The spline's own, unless every segment is stretched by itself."""
+        return 0 if self.time is Timing.STRETCHED else self.degree - 1
 
     @property
     def inner_knots(self) -> int:
@@ -184,103 +175,77 @@ class ClampedBSpline:
         """Control points less conditions: 0 for every declaration that can be made."""
         return self.control_points - self.conditions
 
+    @property
+    def _stretched(self) -> bool:
+        return self.time is Timing.STRETCHED
 
-def polynomial_form(curve: Curve) -> Curve:
-    """The same curve declared as polynomials with breaks at the way-points, where it is one.
+    def fixed_by(self, waypoints: Array) -> ClampedBSpline:
+        """The curve with the chord parameters of these way-points as its `fractions`."""
+        return replace(self, fractions=fractions_of(self, waypoints))
 
-    A clamped B-spline of degree p with its inner knots at the times of the inner way-points is
-    the C(p−1) spline of degree p; in that form it is evaluated several times faster.
+    def for_joint(self, waypoints: Array, index: int) -> ClampedBSpline:
+        """The curve of one joint: chords of the joint vector stay those of all joints."""
+        fixed = self.fixed_by(waypoints)
+        if fixed.fractions is None or len(fixed.fractions) == 1:
+            return fixed
+        return replace(fixed, fractions=(fixed.fractions[index],))
 
-    Parameters
-    ----------
-    curve : Curve
+    def polynomial_form(self) -> Curve:
+        """The C(p−1) spline of degree p, which inner knots at the way-points' times make it."""
+        if self.knots is not Knots.WAYPOINTS or self.parameters is not Parameters.TIMES:
+            return self
+        if (self.degree, self.end_orders) == (5, (1, 2)):
+            return quintic_spline(self.segments)
+        ends = tuple((order, 0.0) for order in self.end_orders)
+        return piecewise((self.degree,) * self.segments, self.degree - 1, ends)
 
-    Returns
-    -------
-    Curve
-        The given one where it is anything else.
-    """
-    if not isinstance(curve, ClampedBSpline) or curve.knots is not Knots.WAYPOINTS:
-        return curve
-    if curve.parameters is not Parameters.TIMES:
-        return curve
-    if (curve.degree, curve.end_orders) == (5, (1, 2)):
-        return quintic_spline(curve.segments)
-    ends = tuple((order, 0.0) for order in curve.end_orders)
-    return piecewise((curve.degree,) * curve.segments, curve.degree - 1, ends)
+    def shape(self, waypoints: Array) -> Shape | None:
+        """The curve in its parameter where it is stretched."""
+        return clamped_shape(self, waypoints) if self._stretched else None
 
+    def segment_of(self, durations: Array, point: Extremum) -> int:
+        """Segment by time: pieces end at knots."""
+        inner = np.cumsum(durations)[:-1]
+        return int(np.searchsorted(inner, point.time, side="left"))
 
-def nearest(curve: ClampedBSpline) -> str:
-    """The nearest declaration that is determined, in words."""
-    rest = 2 * len(curve.end_orders)
-    if curve.knots is Knots.WAYPOINTS:
-        return (
-            f"with knots at the way-points degree {rest + 1} is determined, with the index "
-            f"continued degree {curve.degree} is"
+    def enclosed(self, waypoints: Array, durations: Array, nodal: Array | None = None) -> Enclosed:
+        """Solved in extended precision, as `clamped_system.interpolated` bounds it."""
+        if self._stretched:
+            return super().enclosed(waypoints, durations)
+        return clamped_enclosed(self, waypoints, durations)
+
+    def motion_values(self, waypoints: Array, nodal: Array | None = None) -> Array:
+        """The way-points themselves, unless stretched."""
+        return super().motion_values(waypoints) if self._stretched else waypoints
+
+    def batch_peaks(self, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
+        """True peaks by the compiled kernel."""
+        if self._stretched:
+            return super().batch_peaks(values, durations, wanted)
+        h = as_batch(self, durations)
+        average, orders = _plan(self)
+        rows = fractions_of(self, values)
+        fractions = np.empty((0, self.waypoints)) if rows is None else np.array(rows)
+        peaks = np.empty((h.shape[0], values.shape[1], 3))
+        clamped_kernel.batch_peaks(
+            h, np.ascontiguousarray(values), average, fractions, self.degree, orders, wanted, peaks
         )
-    return f"continue the averaging index at both ends, one knot for each of the {rest} conditions"
+        return peaks
+
+    def value_gradients(
+        self,
+        waypoints: Array,
+        durations: Array,
+        points: list[Extremum],
+        nodal: Array | None = None,
+    ) -> PeakGradients:
+        """By complex steps in the durations; by the way-points with knots and parameters held."""
+        if self._stretched:
+            return super().value_gradients(waypoints, durations, points)
+        return clamped_gradients(self, waypoints, durations, points)
 
 
-def chord_fractions(waypoints: NDArray[np.generic]) -> Fractions:
-    """Chord parameters (5) of way-points, from 0 to 1.
-
-    Parameters
-    ----------
-    waypoints : ndarray, shape (way-points, joints)
-
-    Raises
-    ------
-    TrajgapError
-        If two neighbours coincide.
-    """
-    chords = np.sqrt((np.abs(np.diff(waypoints, axis=0)) ** 2).sum(axis=1))
-    if not (chords > 0).all():
-        k = int(np.argmin(chords))
-        raise TrajgapError(
-            f"waypoints: {k} and {k + 1} coincide, chord parameters do not tell them apart; "
-            "take the parameters from the times"
-        )
-    along = np.concatenate([[0.0], np.cumsum(chords)])
-    along /= along[-1]
-    return (tuple(map(float, along)),)
-
-
-def fractions_of(curve: ClampedBSpline, waypoints: Array) -> Fractions | None:
-    """Chord parameters that place the knots; None where the times do."""
-    if curve.fractions is not None or curve.parameters is Parameters.TIMES:
-        return curve.fractions
-    if curve.parameters is Parameters.CHORD:
-        return chord_fractions(waypoints)
-    return tuple(chord_fractions(q[:, None])[0] for q in waypoints.T)
-
-
-def average_matrix(curve: ClampedBSpline) -> Array:
-    """Inner knots as combinations of the way-points' parameters, shape (inner knots, W)."""
-    w, p = curve.waypoints, curve.degree
-    if curve.knots is Knots.WAYPOINTS:
-        return np.eye(w)[1:-1]
-    repeats = len(curve.end_orders) if curve.knots is Knots.CONTINUED else 0
-    sites = np.concatenate([np.zeros(repeats, int), np.arange(w), np.full(repeats, w - 1)])
-    matrix = np.zeros((curve.inner_knots, w))
-    for row, j in enumerate(range(1, curve.inner_knots + 1)):
-        np.add.at(matrix[row], sites[j : j + p], 1.0 / p)
-    return matrix
-
-
-@for_joint.register
-def _(curve: ClampedBSpline, waypoints: Array, index: int) -> Curve:
-    fractions = fractions_of(curve, waypoints)
-    if fractions is None or len(fractions) == 1:
-        return curve if fractions is None else replace(curve, fractions=fractions)
-    return replace(curve, fractions=(fractions[index],))
-
-
-@end_conditions.register
-def _(curve: ClampedBSpline) -> Ends:
-    rest = tuple((r, 0.0) for r in curve.end_orders)
-    return rest, rest
-
-
-@smooth_order.register
-def _(curve: ClampedBSpline, break_index: int) -> int:
-    return 0 if curve.time is Timing.STRETCHED else curve.degree - 1
+@lru_cache(maxsize=64)
+def _plan(curve: ClampedBSpline) -> tuple[Array, NDArray[np.int64]]:
+    """What the kernel needs of a declaration; a swarm asks for the same one thousands of times."""
+    return average_matrix(curve), np.array(curve.end_orders, dtype=np.int64)

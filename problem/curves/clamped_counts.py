@@ -7,10 +7,12 @@ from enum import StrEnum
 from itertools import product
 
 from ..errors import TrajgapError
-from .clamped import ClampedBSpline, Knots, Parameters
-from .uniform import Timing
+from .clamped import ClampedBSpline
+from .clamped_knots import Knots, Parameters
+from .stretched import Timing
 
 DEGREES = (3, 4, 5, 6, 7)
+"""Degrees that `ClampedBSpline` takes: from C2 in time up to the highest compared anywhere."""
 
 
 class Count(StrEnum):
@@ -161,3 +163,4 @@ _CHORDS = {
         "chords' proportions. With one u = t/T for all, only the total is left of the durations"
     ),
 }
+"""What is added to the words of a determined reading with chord parameters."""

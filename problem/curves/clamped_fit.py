@@ -3,25 +3,27 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 from math import comb
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ..errors import TrajgapError
-from . import clamped_kernel, kernel, stretched
-from . import kind as kinds
-from .clamped import ClampedBSpline, average_matrix, fractions_of
+from ..arrays import Array
+from . import kernel
+from .clamped_knots import average_matrix, fractions_of
 from .clamped_system import EPS, Numbers, Spline, interpolated
-from .kind import Array, Enclosed, PeakGradients, derivative_row, value_errors
+from .kind import Enclosed, PeakGradients, Shape, as_waypoints, derivative_row, value_errors
 from .peak import Extremum
 from .spline import as_durations, trajectory_from_scaled
-from .stretched import Shape, as_waypoints
-from .trajectory import Trajectory
-from .uniform import Timing
+
+if TYPE_CHECKING:
+    from .clamped import ClampedBSpline
 
 _SLIVER = 1e-12
+"""Breaks nearer than this share of the whole differ by rounding alone."""
+_STEP = 1e-30
+"""Complex step of the gradients, s: its square is lost in any double, so nothing is truncated."""
 
 
 def _times(durations: Numbers) -> Numbers:
@@ -161,8 +163,8 @@ def _pieces(curve: ClampedBSpline, waypoints: Array, durations: Numbers) -> Piec
     return _joined(_splines(curve, waypoints, durations), waypoints.shape[1])
 
 
-@stretched.shape.register
-def _(curve: ClampedBSpline, waypoints: Array) -> Shape:
+def clamped_shape(curve: ClampedBSpline, waypoints: Array) -> Shape:
+    """The curve in its parameter, every segment on an axis of its own."""
     fractions = fractions_of(curve, waypoints)
     assert fractions is not None
     average, joints = average_matrix(curve), waypoints.shape[1]
@@ -196,23 +198,8 @@ def _on_axis(spline: Spline, sites: Array) -> Spline:
     return Spline(mapped, scaled, error, by_waypoint, spline.control)
 
 
-@kinds.fit.register
-def _(
-    curve: ClampedBSpline,
-    waypoints: ArrayLike,
-    durations: ArrayLike,
-    nodal: ArrayLike | None = None,
-) -> Trajectory:
-    q = as_waypoints(curve, waypoints)
-    return _enclosed(curve, q, as_durations(durations, curve.segments)).trajectory
-
-
-@kinds.enclosed.register
-def _enclosed(
-    curve: ClampedBSpline, waypoints: Array, durations: Array, nodal: Array | None = None
-) -> Enclosed:
-    if curve.time is Timing.STRETCHED:
-        return stretched.stretched_enclosed(curve, waypoints, durations)
+def clamped_enclosed(curve: ClampedBSpline, waypoints: Array, durations: Array) -> Enclosed:
+    """Trajectory with pieces between knots, and a bound on the error of every extremum."""
     wide = waypoints.astype(np.longdouble)
     found = _joined(_splines(curve, wide, durations.astype(np.longdouble)), waypoints.shape[1])
     lengths = np.diff(np.asarray(found.breaks, dtype=np.float64))
@@ -221,48 +208,10 @@ def _enclosed(
     return Enclosed(trajectory, value_errors(trajectory, found.error))
 
 
-@kinds.motion_values.register
-def _(curve: ClampedBSpline, waypoints: Array, nodal: Array | None = None) -> Array:
-    if curve.time is Timing.STRETCHED:
-        return stretched.stretched_values(curve, waypoints)
-    return waypoints
-
-
-@lru_cache(maxsize=64)
-def _plan(curve: ClampedBSpline) -> tuple[Array, NDArray[np.int64]]:
-    return average_matrix(curve), np.array(curve.end_orders, dtype=np.int64)
-
-
-@kinds.batch_peaks.register
-def _(curve: ClampedBSpline, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
-    if curve.time is Timing.STRETCHED:
-        return stretched.stretched_peaks(curve, values, durations, wanted)
-    h = np.ascontiguousarray(durations, dtype=np.float64)
-    if h.ndim != 2 or h.shape[1] != curve.segments:
-        raise TrajgapError(
-            f"durations: a batch has shape (vectors, {curve.segments}), got {h.shape}"
-        )
-    average, orders = _plan(curve)
-    rows = fractions_of(curve, values)
-    fractions = np.empty((0, curve.waypoints)) if rows is None else np.array(rows)
-    peaks = np.empty((h.shape[0], values.shape[1], 3))
-    clamped_kernel.batch_peaks(
-        h, np.ascontiguousarray(values), average, fractions, curve.degree, orders, wanted, peaks
-    )
-    return peaks
-
-
-@kinds.value_gradients.register
-def _(
-    curve: ClampedBSpline,
-    waypoints: Array,
-    durations: Array,
-    points: list[Extremum],
-    nodal: Array | None = None,
+def clamped_gradients(
+    curve: ClampedBSpline, waypoints: Array, durations: Array, points: list[Extremum]
 ) -> PeakGradients:
-    """By complex steps in the durations; by the way-points with knots and parameters held."""
-    if curve.time is Timing.STRETCHED:
-        return stretched.stretched_gradients(curve, waypoints, durations, points)
+    """Gradients of the values at fixed places: by complex steps in the durations."""
     found = _pieces(curve, waypoints, durations)
     lengths = np.diff(found.breaks)
     n = curve.segments
@@ -271,9 +220,9 @@ def _(
     rows = [derivative_row(e.s, e.order) for e in points]
     for k in range(n):
         step = durations.astype(np.complex128)
-        step[k] += 1e-30j
+        step[k] += 1j * _STEP
         moved = _pieces(curve, waypoints, step)
-        scaled, widths = moved.scaled.imag / 1e-30, np.diff(moved.breaks).imag / 1e-30
+        scaled, widths = moved.scaled.imag / _STEP, np.diff(moved.breaks).imag / _STEP
         for i, (e, row) in enumerate(zip(points, rows, strict=True)):
             change = row @ scaled[e.segment, :, e.joint] / lengths[e.segment] ** e.order
             fade = e.order * e.value * widths[e.segment] / lengths[e.segment]
@@ -281,9 +230,3 @@ def _(
     for i, (e, row) in enumerate(zip(points, rows, strict=True)):
         by_waypoint[i] = row @ found.by_waypoint[e.joint, e.segment] / lengths[e.segment] ** e.order
     return PeakGradients(by_duration, by_waypoint, np.empty((len(points), 0)))
-
-
-@kinds.segment_of.register
-def _(curve: ClampedBSpline, durations: Array, point: Extremum) -> int:
-    inner = np.cumsum(durations)[:-1]
-    return int(np.searchsorted(inner, point.time, side="left"))

@@ -7,6 +7,7 @@ import numpy as np
 from .kernel import compiled, roots_in_unit
 
 ROOM = 10
+"""Length of work arrays: the largest number of coefficients that `roots_in_unit` takes."""
 
 
 @compiled

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import perm
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import CurveError
-from .clamped import ClampedBSpline
-from .kind import Array
+
+if TYPE_CHECKING:
+    from .clamped import ClampedBSpline
 
 Numbers = NDArray[Any]
 EPS = np.finfo(np.float64).eps
+"""Spacing of float64 at 1: twice the unit roundoff, so that bounds have room."""
 
 
 def span_bases(knots: Numbers, degree: int, sign: int = -1) -> Numbers:

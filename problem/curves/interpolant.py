@@ -6,41 +6,34 @@ import itertools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from enum import IntEnum
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import TrajgapError
+from . import refined, spline
+from .condition import Condition, ConditionKind
+from .kind import (
+    Curve,
+    Derivatives,
+    Enclosed,
+    PeakGradients,
+    as_batch,
+    derivative_row,
+    value_errors,
+)
+from .peak import Extremum
+from .spline import trajectory_from_scaled
+from .trajectory import Trajectory
 
 _DENSE = 300
-
-Prescribed = tuple[tuple[tuple[int, float], ...], ...]
-
-
-class RowKind(IntEnum):
-    """What one linear condition on the coefficients states."""
-
-    LEFT_VALUE = 0
-    """A derivative of the segment that ends at the break takes a given value."""
-    RIGHT_VALUE = 1
-    """A derivative of the segment that starts at the break takes a given value."""
-    MATCH = 2
-    """A derivative is the same on both sides of the break."""
+"""Coefficients above which the rank is judged by a sparse factorisation: a dense one is cubic."""
 
 
 @dataclass(frozen=True)
-class Row:
-    """One condition: at break ``at``, derivative ``order``, of the kind ``kind``."""
-
-    kind: RowKind
-    at: int
-    order: int
-
-
-@dataclass(frozen=True)
-class Interpolant:
+class Interpolant(Curve):
     """A piecewise polynomial with breaks at the way-points, declared once.
 
     Everything else is derived from this declaration: the numeric evaluator, the exact NLP and the
@@ -73,7 +66,7 @@ class Interpolant:
 
     degrees: tuple[int, ...]
     continuity: tuple[int, ...]
-    prescribed: Prescribed
+    prescribed: tuple[Derivatives, ...]
     virtual: tuple[int, ...] = ()
     name: str = "piecewise polynomial"
 
@@ -142,24 +135,75 @@ class Interpolant:
         return self.coefficients - self.conditions
 
     @property
-    def homogeneous(self) -> bool:
-        """Whether stretching time maps admissible curves to admissible curves."""
-        return all(value == 0.0 for entries in self.prescribed for _, value in entries)
+    def piecewise(self) -> Interpolant:
+        """The declaration itself."""
+        return self
+
+    def prescribed_at(self, break_index: int) -> Derivatives:
+        """Derivatives that both sides take at a break."""
+        return self.prescribed[break_index]
+
+    def smooth_order(self, break_index: int) -> int:
+        """Order of continuity that is declared."""
+        return self.continuity[break_index - 1]
+
+    def fitted(self, waypoints: Array, durations: Array, nodal: Array | None = None) -> Trajectory:
+        """`fit` by one banded elimination."""
+        scaled = spline.coefficients(self, waypoints, durations, nodal)
+        return trajectory_from_scaled(scaled, self.degrees, durations)
+
+    def enclosed(self, waypoints: Array, durations: Array, nodal: Array | None = None) -> Enclosed:
+        """`fit` refined in extended precision, with the bound of `refined_coefficients`."""
+        scaled, error = refined.refined_coefficients(self, waypoints, durations, nodal)
+        trajectory = trajectory_from_scaled(scaled, self.degrees, durations)
+        return Enclosed(trajectory, value_errors(trajectory, error))
+
+    def motion_values(self, waypoints: Array, nodal: Array | None = None) -> Array:
+        """Right-hand sides of the conditions, positions counted from the first way-point."""
+        return spline.motion_values(self, waypoints, nodal)
+
+    def batch_peaks(self, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
+        """True peaks by the compiled kernel, on several threads where that pays."""
+        return spline.batch_peaks(self, values, as_batch(self, durations), wanted)
+
+    def value_gradients(
+        self,
+        waypoints: Array,
+        durations: Array,
+        points: list[Extremum],
+        nodal: Array | None = None,
+    ) -> PeakGradients:
+        """Gradients by implicit differentiation of the linear system."""
+        g = refined.coefficient_gradient(self, waypoints, durations, nodal)
+        by_duration = np.empty((len(points), self.segments))
+        by_waypoint = np.empty((len(points), waypoints.shape[0]))
+        by_nodal = np.empty((len(points), self.free))
+        for i, e in enumerate(points):
+            basis = derivative_row(e.s, e.order) / durations[e.segment] ** e.order
+            by_duration[i] = g.durations[:, e.segment, :, e.joint] @ basis
+            by_duration[i, e.segment] -= e.order * e.value / durations[e.segment]
+            by_waypoint[i] = g.waypoints[:, e.segment] @ basis
+            by_nodal[i] = g.nodal[:, e.segment] @ basis
+        return PeakGradients(by_duration, by_waypoint, by_nodal)
 
     @cached_property
-    def rows(self) -> tuple[Row, ...]:
+    def rows(self) -> tuple[Condition, ...]:
         """The conditions, ordered by break, so that the linear system is banded."""
-        rows: list[Row] = []
+        rows: list[Condition] = []
         n = self.segments
         for b in range(n + 1):
             given = {order for order, _ in self.prescribed[b]}
             if b not in self.virtual:
                 given.add(0)
             kinds = [kind for kind, there in _SIDES if there(b, n)]
-            rows += [Row(kind, b, order) for kind in kinds for order in sorted(given)]
+            rows += [Condition(kind, b, order) for kind in kinds for order in sorted(given)]
             if 0 < b < n:
                 orders = range(self.continuity[b - 1] + 1)
-                rows += [Row(RowKind.MATCH, b, order) for order in orders if order not in given]
+                rows += [
+                    Condition(ConditionKind.MATCH, b, order)
+                    for order in orders
+                    if order not in given
+                ]
         return tuple(rows)
 
     @cached_property
@@ -181,7 +225,7 @@ class Interpolant:
         for order in range(max(self.degrees) + 1):
             for b in range(self.segments + 1):
                 for kind, there in _SIDES:
-                    row = Row(kind, b, order)
+                    row = Condition(kind, b, order)
                     if rank == self.coefficients or row in rows or not there(b, self.segments):
                         continue
                     shared = b in (0, self.segments) or order <= self.continuity[b - 1]
@@ -234,15 +278,15 @@ class Interpolant:
             return False
         return bool(pivots.min() > 1e-13 * pivots.max())
 
-    def _entries(self, row: Row) -> list[tuple[int, float]]:
+    def _entries(self, row: Condition) -> list[tuple[int, float]]:
         """Columns and values of one row for equal durations."""
         entries: list[tuple[int, float]] = []
-        if row.kind != RowKind.RIGHT_VALUE:
+        if row.kind != ConditionKind.RIGHT_VALUE:
             k = row.at - 1
             powers = range(row.order, self.degrees[k] + 1)
             entries += [(self._first[k] + p, float(math.perm(p, row.order))) for p in powers]
-        if row.kind != RowKind.LEFT_VALUE and row.order <= self.degrees[row.at]:
-            sign = 1.0 if row.kind == RowKind.RIGHT_VALUE else -1.0
+        if row.kind != ConditionKind.LEFT_VALUE and row.order <= self.degrees[row.at]:
+            sign = 1.0 if row.kind == ConditionKind.RIGHT_VALUE else -1.0
             entries.append((self._first[row.at] + row.order, sign * math.factorial(row.order)))
         return entries
 
@@ -251,7 +295,7 @@ class Interpolant:
         """Column of each segment's constant coefficient."""
         return tuple(itertools.accumulate((d + 1 for d in self.degrees), initial=0))
 
-    def _unit_matrix(self, rows: tuple[Row, ...] | list[Row]) -> NDArray[np.float64]:
+    def _unit_matrix(self, rows: tuple[Condition, ...] | list[Condition]) -> Array:
         matrix = np.zeros((len(rows), self.coefficients))
         for i, row in enumerate(rows):
             for column, value in self._entries(row):
@@ -259,10 +303,11 @@ class Interpolant:
         return matrix
 
 
-_SIDES: tuple[tuple[RowKind, Callable[[int, int], bool]], ...] = (
-    (RowKind.LEFT_VALUE, lambda b, n: b > 0),
-    (RowKind.RIGHT_VALUE, lambda b, n: b < n),
+_SIDES: tuple[tuple[ConditionKind, Callable[[int, int], bool]], ...] = (
+    (ConditionKind.LEFT_VALUE, lambda b, n: b > 0),
+    (ConditionKind.RIGHT_VALUE, lambda b, n: b < n),
 )
+"""Kinds of condition on a value, and at which of the breaks 0..n their side exists."""
 
 
 def piecewise(
@@ -287,7 +332,7 @@ def piecewise(
     Interpolant
     """
     n = len(degrees)
-    inner: Prescribed = ((),) * max(n - 1, 0)
+    inner: tuple[Derivatives, ...] = ((),) * max(n - 1, 0)
     return Interpolant(
         tuple(degrees),
         (continuity,) * max(n - 1, 0),
@@ -320,7 +365,7 @@ def cubic_spline_virtual(waypoints: int) -> Interpolant:
         raise TrajgapError("interpolant: at least two way-points are needed")
     n = waypoints + 1
     ends = ((1, 0.0), (2, 0.0))
-    inner: Prescribed = ((),) * (n - 1)
+    inner: tuple[Derivatives, ...] = ((),) * (n - 1)
     return Interpolant(
         (3,) * n,
         (2,) * (n - 1),

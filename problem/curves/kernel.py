@@ -14,8 +14,12 @@ import numpy as np
 from .compilation import compiler
 
 MAX_COEFFICIENTS = 10
+"""Coefficients of degree 9, the highest that a declaration may have."""
 _LANES = 192
+"""Polynomials handled side by side: loops of that length vectorise, and a block fits a cache."""
 _SETTLED = 1e-6
+"""Newton step below which a lane rests: the next error is its square, 1e-12, and a peak's error
+the square of that of its place."""
 KERNELS = ("kernel.py", "clamped_kernel.py", "timed_kernel.py")
 """Every file of compiled functions here: they call each other, so they share a stamp."""
 compiled = compiler(*(Path(__file__).with_name(name) for name in KERNELS))

@@ -1,51 +1,25 @@
-"""Any kind of joint curve: what it declares, and the functions that each kind registers."""
+"""What every kind of joint curve provides: its declaration, and its exact numbers."""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from functools import singledispatch
-from typing import Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
+from ..arrays import Array
 from ..errors import TrajgapError
-from . import spline
-from .interpolant import Interpolant
 from .peak import Extremum
-from .spline import PERM
+from .spline import PERM, as_durations
 from .trajectory import Trajectory
 
-Array = NDArray[np.float64]
+if TYPE_CHECKING:
+    from .interpolant import Interpolant
 
-
-class Curve(Protocol):
-    """What every declaration of a curve through way-points says about itself.
-
-    `Interpolant` is one; the B-splines of `uniform` and `clamped` are others. A kind takes part in
-    `check`, `evaluate`, `solve` and the heuristics by registering with the functions of this
-    module; nothing else asks for its type.
-    """
-
-    @property
-    def name(self) -> str:
-        """Words for messages."""
-
-    @property
-    def segments(self) -> int:
-        """Number of durations."""
-
-    @property
-    def waypoint_breaks(self) -> tuple[int, ...]:
-        """Ends of segments that carry a way-point, in order, from 0 to ``segments``."""
-
-    @property
-    def homogeneous(self) -> bool:
-        """Whether stretching time maps admissible curves to admissible curves."""
-
-    @property
-    def free(self) -> int:
-        """Coefficients of one joint that are left to the optimiser."""
+Derivatives = tuple[tuple[int, float], ...]
+"""Derivatives ``(order, value)`` prescribed at one break, rad/sᵒʳᵈᵉʳ."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,12 +37,169 @@ class Enclosed:
     error: Array
 
 
-def _unknown(curve: object) -> TrajgapError:
-    return TrajgapError(f"interpolant: {type(curve).__name__} is no kind of curve known here")
+@dataclass(frozen=True, eq=False)
+class PeakGradients:
+    """Gradients of the values of some extrema.
+
+    Attributes
+    ----------
+    durations : ndarray, shape (extrema, segments)
+        d value / d duration.
+    waypoints : ndarray, shape (extrema, way-points)
+        d value / d way-point of the extremum's own joint.
+    nodal : ndarray, shape (extrema, free)
+        d value / d free derivative of the extremum's own joint.
+    """
+
+    durations: Array
+    waypoints: Array
+    nodal: Array
 
 
-@singledispatch
-def fit(curve: Curve, waypoints: Array, durations: Array, nodal: Array | None = None) -> Trajectory:
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """A curve in its parameter, cut into polynomial pieces, before time enters.
+
+    Attributes
+    ----------
+    segment : ndarray of int, shape (pieces,)
+        Segment that a piece belongs to.
+    share : ndarray, shape (pieces,)
+        Part of the segment's duration that it takes.
+    degree : int
+    scaled, error : ndarray, shape (pieces, 10, joints)
+        Ascending coefficients in the piece's own 0..1, and a bound on their error.
+    by_waypoint : ndarray, shape (joints, pieces, 10, way-points)
+        Their derivatives by the joint's way-points.
+    """
+
+    segment: NDArray[np.int64]
+    share: Array
+    degree: int
+    scaled: Array
+    error: Array
+    by_waypoint: Array
+
+
+class Curve(ABC):
+    """The declaration of a curve through way-points, with all that follows from it.
+
+    `Interpolant` is one kind; the B-splines of `uniform` and `clamped` are others. The checker, the
+    batch evaluator and the heuristics know a curve by these methods alone.
+    """
+
+    @property
+    @abstractmethod
+    def name(self) -> str:
+        """Words for messages."""
+
+    @property
+    @abstractmethod
+    def segments(self) -> int:
+        """Number of durations."""
+
+    @property
+    def waypoint_breaks(self) -> tuple[int, ...]:
+        """Ends of segments that carry a way-point, in order: all of them unless one is virtual."""
+        return tuple(range(self.segments + 1))
+
+    def prescribed_at(self, break_index: int) -> Derivatives:
+        """Derivatives prescribed at an end of a segment, from 0; none unless a kind says so."""
+        return ()
+
+    @property
+    def ends(self) -> tuple[Derivatives, Derivatives]:
+        """Derivatives prescribed at the start, and at the end."""
+        return self.prescribed_at(0), self.prescribed_at(self.segments)
+
+    @property
+    def homogeneous(self) -> bool:
+        """Whether stretching time maps admissible curves to admissible curves."""
+        breaks = range(self.segments + 1)
+        return all(value == 0.0 for b in breaks for _, value in self.prescribed_at(b))
+
+    @property
+    def free(self) -> int:
+        """Coefficients of one joint that are left to the optimiser."""
+        return 0
+
+    @property
+    def piecewise(self) -> Interpolant | None:
+        """The declaration as polynomials with breaks at the ends of segments, where it is one."""
+        return None
+
+    def smooth_order(self, break_index: int) -> int:
+        """Order up to which derivatives in time agree at an inner break, whatever the durations."""
+        return 0
+
+    @abstractmethod
+    def enclosed(self, waypoints: Array, durations: Array, nodal: Array | None = None) -> Enclosed:
+        """`fit` in extended precision, with a bound on the error of every extremum."""
+
+    def fitted(self, waypoints: Array, durations: Array, nodal: Array | None = None) -> Trajectory:
+        """`fit` of arrays that are checked already."""
+        return self.enclosed(waypoints, durations, nodal).trajectory
+
+    @abstractmethod
+    def motion_values(self, waypoints: Array, nodal: Array | None = None) -> Array:
+        """What `batch_peaks` needs to know of the way-points; its last axis is the joint."""
+
+    @abstractmethod
+    def batch_peaks(self, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
+        """True peaks of |v|, |a|, |j| for a batch of duration vectors.
+
+        Parameters
+        ----------
+        values : ndarray
+            From `motion_values`.
+        durations : ndarray, shape (batch, segments)
+            s; vectors that define no curve give infinite peaks.
+        wanted : ndarray of bool, shape (joints, 3)
+            Which peaks are needed; the others are returned as 0.
+
+        Returns
+        -------
+        ndarray, shape (batch, joints, 3)
+            rad/s, rad/s², rad/s³.
+        """
+
+    @abstractmethod
+    def value_gradients(
+        self,
+        waypoints: Array,
+        durations: Array,
+        points: list[Extremum],
+        nodal: Array | None = None,
+    ) -> PeakGradients:
+        """Gradients of the values at fixed places ``s`` of pieces; their own motion is left out.
+
+        At an extremum it does not contribute (envelope theorem).
+        """
+
+    def segment_of(self, durations: Array, point: Extremum) -> int:
+        """Segment in which an extremum of a piece lies, from 0: the piece, unless knots differ."""
+        return point.segment
+
+    def fixed_by(self, waypoints: Array) -> Curve:
+        """The same curve with all that it takes from the way-points' lengths held as it is here."""
+        return self
+
+    def for_joint(self, waypoints: Array, index: int) -> Curve:
+        """The curve of one joint alone, the same as it is among all joints."""
+        return self
+
+    def shape(self, waypoints: Array) -> Shape | None:
+        """The curve in its parameter, where each segment is stretched in time by itself."""
+        return None
+
+    def polynomial_form(self) -> Curve:
+        """The same curve in the form that is evaluated fastest: itself, unless a kind has two."""
+        return self
+
+
+def fit(
+    curve: Curve, waypoints: ArrayLike, durations: ArrayLike, nodal: ArrayLike | None = None
+) -> Trajectory:
     """The trajectory that the declaration, the way-points and the durations determine.
 
     Parameters
@@ -92,104 +223,38 @@ def fit(curve: Curve, waypoints: Array, durations: Array, nodal: Array | None = 
     TrajgapError
         If shapes disagree, a duration is not positive, or the durations define no curve.
     """
-    raise _unknown(curve)
+    q = as_waypoints(as_curve(curve), waypoints)
+    extra = None if nodal is None else np.asarray(nodal, dtype=np.float64)
+    return curve.fitted(q, as_durations(durations, curve.segments), extra)
 
 
-@singledispatch
-def enclosed(
-    curve: Curve, waypoints: Array, durations: Array, nodal: Array | None = None
-) -> Enclosed:
-    """`fit` in extended precision, with a bound on the error of every extremum."""
-    raise _unknown(curve)
+def as_curve(given: object) -> Curve:
+    """A curve of any kind, or a clear refusal."""
+    if not isinstance(given, Curve):
+        raise TrajgapError(f"curve: {type(given).__name__} is no kind of curve known here")
+    return given
 
 
-@singledispatch
-def motion_values(curve: Curve, waypoints: Array, nodal: Array | None = None) -> Array:
-    """What `batch_peaks` needs to know of the way-points; its last axis is the joint."""
-    raise _unknown(curve)
+def as_waypoints(curve: Curve, waypoints: ArrayLike) -> Array:
+    """Way-points as a float64 array of the right number of rows, or a clear refusal."""
+    q = np.asarray(waypoints, dtype=np.float64)
+    wanted = len(curve.waypoint_breaks)
+    if q.ndim != 2 or q.shape[0] != wanted:
+        raise TrajgapError(
+            f"waypoints: {curve.name} with {curve.segments} segments needs {wanted} rows, "
+            f"got shape {q.shape}"
+        )
+    return q
 
 
-@singledispatch
-def batch_peaks(curve: Curve, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
-    """True peaks of |v|, |a|, |j| for a batch of duration vectors.
-
-    Parameters
-    ----------
-    curve : Curve
-    values : ndarray
-        From `motion_values`.
-    durations : ndarray, shape (batch, segments)
-        s; vectors that define no curve give infinite peaks.
-    wanted : ndarray of bool, shape (joints, 3)
-        Which peaks are needed; the others are returned as 0.
-
-    Returns
-    -------
-    ndarray, shape (batch, joints, 3)
-        rad/s, rad/s², rad/s³.
-    """
-    raise _unknown(curve)
-
-
-@dataclass(frozen=True, eq=False)
-class PeakGradients:
-    """Gradients of the values of some extrema.
-
-    Attributes
-    ----------
-    durations : ndarray, shape (extrema, segments)
-        d value / d duration.
-    waypoints : ndarray, shape (extrema, way-points)
-        d value / d way-point of the extremum's own joint.
-    nodal : ndarray, shape (extrema, free)
-        d value / d free derivative of the extremum's own joint.
-    """
-
-    durations: Array
-    waypoints: Array
-    nodal: Array
-
-
-@singledispatch
-def value_gradients(
-    curve: Curve,
-    waypoints: Array,
-    durations: Array,
-    points: list[Extremum],
-    nodal: Array | None = None,
-) -> PeakGradients:
-    """Gradients of the values at fixed places ``s`` of pieces; the place's own motion is left out.
-
-    At an extremum it does not contribute (envelope theorem).
-    """
-    raise _unknown(curve)
-
-
-@singledispatch
-def for_joint(curve: Curve, waypoints: Array, index: int) -> Curve:
-    """The curve of one joint alone, the same as it is among all joints."""
-    return curve
-
-
-@singledispatch
-def segment_of(curve: Curve, durations: Array, point: Extremum) -> int:
-    """Segment between way-points in which an extremum of a piece lies, from 0."""
-    return point.segment
-
-
-Ends = tuple[tuple[tuple[int, float], ...], tuple[tuple[int, float], ...]]
-
-
-@singledispatch
-def end_conditions(curve: Curve) -> Ends:
-    """Derivatives ``(order, value)`` prescribed at the start, and at the end."""
-    return (), ()
-
-
-@singledispatch
-def smooth_order(curve: Curve, break_index: int) -> int:
-    """Order up to which derivatives in time agree at an inner break, whatever the durations."""
-    return 0
+def as_batch(curve: Curve, durations: ArrayLike) -> Array:
+    """Duration vectors of a batch as a float64 array, or a clear refusal."""
+    h = np.ascontiguousarray(durations, dtype=np.float64)
+    if h.ndim != 2 or h.shape[1] != curve.segments:
+        raise TrajgapError(
+            f"durations: a batch has shape (vectors, {curve.segments}), got {h.shape}"
+        )
+    return h
 
 
 def value_errors(trajectory: Trajectory, coefficient_error: Array) -> Array:
@@ -212,48 +277,3 @@ def derivative_row(s: float, order: int) -> Array:
     powers = np.arange(PERM.shape[0])
     row = np.where(powers >= order, s ** np.maximum(powers - order, 0), 0.0)
     return np.asarray(PERM[:, order] * row)
-
-
-fit.register(Interpolant, spline.fit)
-motion_values.register(Interpolant, spline.motion_values)
-batch_peaks.register(Interpolant, spline.batch_peaks)
-
-
-@enclosed.register
-def _(
-    curve: Interpolant, waypoints: Array, durations: Array, nodal: Array | None = None
-) -> Enclosed:
-    scaled, error = spline.refined_coefficients(curve, waypoints, durations, nodal)
-    trajectory = spline.trajectory_from_scaled(scaled, curve.degrees, durations)
-    return Enclosed(trajectory, value_errors(trajectory, error))
-
-
-@end_conditions.register
-def _(curve: Interpolant) -> Ends:
-    return curve.prescribed[0], curve.prescribed[-1]
-
-
-@smooth_order.register
-def _(curve: Interpolant, break_index: int) -> int:
-    return curve.continuity[break_index - 1]
-
-
-@value_gradients.register
-def _(
-    curve: Interpolant,
-    waypoints: Array,
-    durations: Array,
-    points: list[Extremum],
-    nodal: Array | None = None,
-) -> PeakGradients:
-    g = spline.coefficient_gradient(curve, waypoints, durations, nodal)
-    by_duration = np.empty((len(points), curve.segments))
-    by_waypoint = np.empty((len(points), waypoints.shape[0]))
-    by_nodal = np.empty((len(points), curve.free))
-    for i, e in enumerate(points):
-        basis = derivative_row(e.s, e.order) / durations[e.segment] ** e.order
-        by_duration[i] = g.durations[:, e.segment, :, e.joint] @ basis
-        by_duration[i, e.segment] -= e.order * e.value / durations[e.segment]
-        by_waypoint[i] = g.waypoints[:, e.segment] @ basis
-        by_nodal[i] = g.nodal[:, e.segment] @ basis
-    return PeakGradients(by_duration, by_waypoint, by_nodal)

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import singledispatch
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from . import kernel
-from .trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from .trajectory import Trajectory
 
 
 @dataclass(frozen=True)
@@ -39,7 +41,7 @@ class Extremum:
     value: float
 
 
-def critical_points(a: NDArray[np.float64]) -> NDArray[np.float64]:
+def critical_points(a: Array) -> Array:
     """Places in (0, 1) where the polynomial with ascending coefficients ``a`` turns.
 
     The derivative's sign changes are found on monotone pieces (roots of the next derivative cut
@@ -55,7 +57,6 @@ def critical_points(a: NDArray[np.float64]) -> NDArray[np.float64]:
     return roots[:count].copy()
 
 
-@singledispatch
 def extrema(trajectory: Trajectory, joint: int, order: int) -> list[Extremum]:
     """Ends and interior turning points of one derivative of one joint, in order of time.
 
@@ -73,11 +74,11 @@ def extrema(trajectory: Trajectory, joint: int, order: int) -> list[Extremum]:
         The largest absolute value over all t is among them.
     """
     found: list[Extremum] = []
-    for k, start in enumerate(trajectory.breaks[:-1]):
-        a = trajectory.derivative(k, joint, order)
-        places = np.concatenate([[0.0], critical_points(a), [1.0]])
-        for s in places:
-            value = float(np.polynomial.polynomial.polyval(s, a))
-            time = float(start + s * trajectory.durations[k])
-            found.append(Extremum(joint, k, order, float(s), time, value))
+    for k in range(len(trajectory.durations)):
+        places = np.concatenate([[0.0], trajectory.turning(k, joint, order), [1.0]])
+        times, values = trajectory.times(k, places), trajectory.values(k, joint, order, places)
+        found += [
+            Extremum(joint, k, order, s, time, value)
+            for s, time, value in zip(places.tolist(), times.tolist(), values.tolist(), strict=True)
+        ]
     return found

@@ -1,4 +1,4 @@
-"""From a declaration, way-points and durations to coefficients, and their derivatives."""
+"""From a declaration, way-points and durations to coefficients and batches of peaks."""
 
 from __future__ import annotations
 
@@ -7,21 +7,29 @@ import os
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import PPoly
 
+from ..arrays import Array
 from ..errors import TrajgapError
 from . import kernel
-from .interpolant import Interpolant, RowKind
+from .condition import ConditionKind
 from .trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from .interpolant import Interpolant
 
 PERM = np.array(
     [[float(math.perm(p, r)) for r in range(kernel.MAX_COEFFICIENTS)] for p in range(10)]
 )
+"""PERM[p, r] = p!/(p − r)!: the factor of sᵖ⁻ʳ in the r-th derivative of sᵖ."""
 _THREAD_WORK = 4000
+"""Polynomials (vectors times joints) below which starting threads costs more than it saves."""
 _LONGEST = 1e30
+"""Durations, s, beyond which, or below whose reciprocal, ninth powers leave float64's range."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +44,7 @@ class Layout:
     unknowns: int
     lower: int
     upper: int
-    prescribed: NDArray[np.float64]
+    prescribed: Array
     waypoint: NDArray[np.int64]
     nodal: NDArray[np.int64]
 
@@ -48,7 +56,7 @@ def layout(interpolant: Interpolant) -> Layout:
     rows = full.rows
     n = full.segments
     column = np.full((n, kernel.MAX_COEFFICIENTS), -1, dtype=np.int64)
-    given = {(r.at, r.order) for r in rows if r.kind == RowKind.RIGHT_VALUE}
+    given = {(r.at, r.order) for r in rows if r.kind == ConditionKind.RIGHT_VALUE}
     count = 0
     for k, d in enumerate(full.degrees):
         for p in range(d + 1):
@@ -56,11 +64,11 @@ def layout(interpolant: Interpolant) -> Layout:
                 column[k, p] = count
                 count += 1
     lower = upper = 0
-    equations = [r for r in rows if r.kind != RowKind.RIGHT_VALUE]
+    equations = [r for r in rows if r.kind != ConditionKind.RIGHT_VALUE]
     for e, row in enumerate(equations):
         k = row.at - 1
         touched = [column[k, p] for p in range(row.order, full.degrees[k] + 1)]
-        if row.kind == RowKind.MATCH and row.order <= full.degrees[row.at]:
+        if row.kind == ConditionKind.MATCH and row.order <= full.degrees[row.at]:
             touched.append(column[row.at, row.order])
         used = [c for c in touched if c >= 0]
         lower = max([lower, *(e - c for c in used)])
@@ -78,25 +86,23 @@ def layout(interpolant: Interpolant) -> Layout:
         lower=lower,
         upper=upper,
         prescribed=np.array(
-            [0.0 if r.kind == RowKind.MATCH else values[r.at].get(r.order, 0.0) for r in rows]
+            [0.0 if r.kind == ConditionKind.MATCH else values[r.at].get(r.order, 0.0) for r in rows]
         ),
         waypoint=np.array(
             [
-                waypoint.get(r.at, -1) if r.order == 0 and r.kind != RowKind.MATCH else -1
+                waypoint.get(r.at, -1) if r.order == 0 and r.kind != ConditionKind.MATCH else -1
                 for r in rows
             ],
             dtype=np.int64,
         ),
         nodal=np.array(
-            [free.get((r.at, r.order), -1) if r.kind != RowKind.MATCH else -1 for r in rows],
+            [free.get((r.at, r.order), -1) if r.kind != ConditionKind.MATCH else -1 for r in rows],
             dtype=np.int64,
         ),
     )
 
 
-def right_hand_sides(
-    interpolant: Interpolant, waypoints: NDArray[np.float64], nodal: NDArray[np.float64] | None
-) -> NDArray[np.float64]:
+def right_hand_sides(interpolant: Interpolant, waypoints: Array, nodal: Array | None) -> Array:
     """Values of the rows, shape (rows, joints): way-points, prescribed and free derivatives."""
     plan = layout(interpolant)
     joints = waypoints.shape[1]
@@ -120,20 +126,23 @@ def right_hand_sides(
     return values
 
 
-def coefficients(
+def batch_coefficients(
     interpolant: Interpolant,
-    waypoints: NDArray[np.float64],
-    durations: NDArray[np.float64],
-    nodal: NDArray[np.float64] | None = None,
-) -> NDArray[np.float64]:
-    """Coefficients in the segments' own parameter s in [0, 1], shape (segments, 10, joints)."""
+    waypoints: Array,
+    durations: Array,
+    nodal: Array | None = None,
+) -> Array:
+    """`coefficients` of many duration vectors, shape (vectors, segments, 10, joints).
+
+    Not finite where the system is singular.
+    """
     plan = layout(interpolant)
     values = right_hand_sides(interpolant, waypoints, nodal)
-    joints = waypoints.shape[1]
-    out = np.zeros((interpolant.segments, kernel.MAX_COEFFICIENTS, joints))
+    vectors, joints = len(durations), waypoints.shape[1]
+    out = np.zeros((interpolant.segments, kernel.MAX_COEFFICIENTS, joints * vectors))
     kernel.fit_coefficients(
-        np.ascontiguousarray(durations).reshape(-1, 1),
-        1,
+        np.ascontiguousarray(durations.T),
+        vectors,
         values,
         plan.kinds,
         plan.breaks,
@@ -143,20 +152,32 @@ def coefficients(
         plan.lower,
         plan.upper,
         PERM,
-        np.empty((plan.unknowns, 2 * plan.lower + plan.upper + 1, 1)),
-        np.empty((plan.unknowns, joints)),
+        np.empty((plan.unknowns, 2 * plan.lower + plan.upper + 1, vectors)),
+        np.empty((plan.unknowns, joints * vectors)),
         out,
     )
+    return out.reshape(*out.shape[:2], joints, vectors).transpose(3, 0, 1, 2)
+
+
+def coefficients(
+    interpolant: Interpolant,
+    waypoints: Array,
+    durations: Array,
+    nodal: Array | None = None,
+) -> Array:
+    """Coefficients in the segments' own parameter s in [0, 1], shape (segments, 10, joints)."""
+    out: Array = batch_coefficients(interpolant, waypoints, durations[None], nodal)[0]
     if not np.isfinite(out).all():
-        raise _singular(interpolant, durations)
+        raise singular(interpolant, durations)
     return out
 
 
-def _singular(interpolant: Interpolant, durations: NDArray[np.float64]) -> TrajgapError:
+def singular(interpolant: Interpolant, durations: Array) -> TrajgapError:
+    """The error of a system that these durations make singular."""
     return TrajgapError(f"interpolant {interpolant.name}: singular for durations {durations} s")
 
 
-def as_durations(durations: ArrayLike, segments: int) -> NDArray[np.float64]:
+def as_durations(durations: ArrayLike, segments: int) -> Array:
     """Duration vector as a clean float64 array, or a clear refusal.
 
     Raises
@@ -182,44 +203,7 @@ def as_durations(durations: ArrayLike, segments: int) -> NDArray[np.float64]:
     return h
 
 
-def fit(
-    interpolant: Interpolant,
-    waypoints: ArrayLike,
-    durations: ArrayLike,
-    nodal: ArrayLike | None = None,
-) -> Trajectory:
-    """The trajectory that the declaration, the way-points and the durations determine.
-
-    Parameters
-    ----------
-    interpolant : Interpolant
-        Declaration.
-    waypoints : array_like, shape (way-points, joints)
-        Joint angles, rad.
-    durations : array_like, shape (segments,)
-        Segment durations, s.
-    nodal : array_like, shape (free, joints), optional
-        Values of ``interpolant.free_derivatives`` where the declaration leaves some open.
-
-    Returns
-    -------
-    Trajectory
-
-    Raises
-    ------
-    TrajgapError
-        If shapes disagree, a duration is not positive, or the system is singular.
-    """
-    q = np.asarray(waypoints, dtype=np.float64)
-    h = as_durations(durations, interpolant.segments)
-    extra = None if nodal is None else np.asarray(nodal, dtype=np.float64)
-    scaled = coefficients(interpolant, q, h, extra)
-    return trajectory_from_scaled(scaled, interpolant.degrees, h)
-
-
-def trajectory_from_scaled(
-    scaled: NDArray[np.float64], degrees: tuple[int, ...], durations: NDArray[np.float64]
-) -> Trajectory:
+def trajectory_from_scaled(scaled: Array, degrees: tuple[int, ...], durations: Array) -> Trajectory:
     """Trajectory over scipy's ``PPoly`` from coefficients in s, shape (segments, power, joints)."""
     top = max(degrees)
     powers = np.arange(top + 1)
@@ -231,25 +215,25 @@ def trajectory_from_scaled(
 
 def motion_values(
     interpolant: Interpolant,
-    waypoints: NDArray[np.float64],
-    nodal: NDArray[np.float64] | None = None,
-) -> NDArray[np.float64]:
+    waypoints: Array,
+    nodal: Array | None = None,
+) -> Array:
     """`right_hand_sides` with positions counted from the first way-point, for `batch_peaks`.
 
     Derivatives do not depend on that shift; a joint that stands still gets exact zeros by it.
     """
     plan = layout(interpolant)
     values = right_hand_sides(interpolant, waypoints, nodal)
-    values[(plan.orders == 0) & (plan.kinds != RowKind.MATCH)] -= waypoints[0]
+    values[(plan.orders == 0) & (plan.kinds != ConditionKind.MATCH)] -= waypoints[0]
     return values
 
 
 def batch_peaks(
     interpolant: Interpolant,
-    values: NDArray[np.float64],
-    durations: NDArray[np.float64],
+    values: Array,
+    durations: Array,
     wanted: NDArray[np.bool_],
-) -> NDArray[np.float64]:
+) -> Array:
     """True peaks of |v|, |a|, |j| for a batch of duration vectors.
 
     Parameters
@@ -267,12 +251,7 @@ def batch_peaks(
     ndarray, shape (batch, joints, 3)
         rad/s, rad/s², rad/s³; the same bits whatever the order, the size or the threads.
     """
-    plan = layout(interpolant)
-    h = np.ascontiguousarray(durations, dtype=np.float64)
-    if h.ndim != 2 or h.shape[1] != interpolant.segments:
-        raise TrajgapError(
-            f"durations: a batch has shape (vectors, {interpolant.segments}), got {h.shape}"
-        )
+    plan, h = layout(interpolant), durations
     peaks = np.empty((h.shape[0], values.shape[1], 3))
 
     def run(part: slice) -> None:
@@ -300,157 +279,3 @@ def batch_peaks(
     with ThreadPoolExecutor(workers) as pool:
         list(pool.map(run, map(slice, cuts[:-1], cuts[1:])))
     return peaks
-
-
-def dense_system(
-    interpolant: Interpolant, durations: NDArray[np.floating]
-) -> tuple[NDArray[np.floating], NDArray[np.floating], NDArray[np.int64]]:
-    """Matrix over all coefficients, the factor hʳ of each right-hand side, and first columns.
-
-    Computed in the precision of ``durations``.
-    """
-    plan = layout(interpolant)
-    first = np.concatenate([[0], np.cumsum(plan.degrees + 1)])
-    size = plan.kinds.size
-    matrix = np.zeros((size, first[-1]), dtype=durations.dtype)
-    factor = np.ones(size, dtype=durations.dtype)
-    for i in range(size):
-        kind, b, r = plan.kinds[i], plan.breaks[i], plan.orders[i]
-        if kind == RowKind.RIGHT_VALUE:
-            matrix[i, first[b] + r] = PERM[r, r]
-            factor[i] = durations[b] ** r
-            continue
-        k = b - 1
-        powers = np.arange(r, plan.degrees[k] + 1)
-        matrix[i, first[k] + powers] = PERM[powers, r]
-        if kind == RowKind.LEFT_VALUE:
-            factor[i] = durations[k] ** r
-        elif r <= plan.degrees[b]:
-            matrix[i, first[b] + r] = -PERM[r, r] * (durations[k] / durations[b]) ** r
-    scale = np.abs(matrix).max(axis=1)
-    return matrix / scale[:, None], factor / scale, first
-
-
-def _flat(interpolant: Interpolant, scaled: NDArray[np.float64]) -> NDArray[np.float64]:
-    plan = layout(interpolant)
-    return np.concatenate([scaled[k, : d + 1] for k, d in enumerate(plan.degrees)])
-
-
-def _unflat(interpolant: Interpolant, flat: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Coefficients of axis 0 put back into (segments, powers)."""
-    plan = layout(interpolant)
-    first = np.concatenate([[0], np.cumsum(plan.degrees + 1)])
-    out = np.zeros((interpolant.segments, kernel.MAX_COEFFICIENTS, *flat.shape[1:]))
-    for k, d in enumerate(plan.degrees):
-        out[k, : d + 1] = flat[first[k] : first[k + 1]]
-    return out
-
-
-def refined_coefficients(
-    interpolant: Interpolant,
-    waypoints: NDArray[np.float64],
-    durations: NDArray[np.float64],
-    nodal: NDArray[np.float64] | None = None,
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Coefficients after iterative refinement in extended precision, with an error bound.
-
-    The residual is taken in ``longdouble``; its rounding is bounded by that type's own epsilon,
-    so the bound holds (only wider) where ``longdouble`` is float64. The approximate inverse B of
-    the matrix A bounds the error by (I − |BA − I|)⁻¹ |B| |residual|, entry by entry; an ``error``
-    that contains its own image is above that.
-
-    Returns
-    -------
-    coefficients, error : ndarray, shape (segments, 10, joints)
-        Scaled coefficients and a bound on their absolute error.
-    """
-    wide = np.longdouble
-    values = right_hand_sides(interpolant, waypoints, nodal).astype(wide)
-    flat = _flat(interpolant, coefficients(interpolant, waypoints, durations, nodal)).astype(wide)
-    matrix, factor, _ = dense_system(interpolant, durations.astype(wide))
-    right = factor[:, None] * values
-    narrow = matrix.astype(np.float64)
-    inverse = _inverse(interpolant, narrow, durations)
-    for _ in range(2):
-        residual = (right - matrix @ flat).astype(np.float64)
-        flat = flat + inverse @ residual
-    residual = np.abs(right - matrix @ flat)
-    rounding = np.finfo(wide).eps * (matrix.shape[0] + 24)
-    rounding = rounding * (np.abs(matrix) @ np.abs(flat) + np.abs(right))
-    first = np.abs(inverse) @ (residual + rounding).astype(np.float64)
-    epsilon = np.finfo(np.float64).eps
-    defect = np.abs(inverse @ narrow - np.eye(len(narrow)))
-    defect += epsilon * (len(narrow) + 2) * (np.abs(inverse) @ np.abs(narrow))
-    error = first
-    for _ in range(3):
-        error = first + 1.1 * (defect @ error)
-    if not (first + defect @ error <= error).all():
-        raise _singular(interpolant, durations)
-    rounded = flat.astype(np.float64)
-    error = error + epsilon * np.abs(rounded)
-    return _unflat(interpolant, rounded), _unflat(interpolant, error)
-
-
-def _inverse(
-    interpolant: Interpolant, matrix: NDArray[np.floating], durations: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    try:
-        return np.asarray(np.linalg.inv(matrix), dtype=np.float64)
-    except np.linalg.LinAlgError:
-        raise _singular(interpolant, durations) from None
-
-
-@dataclass(frozen=True, eq=False)
-class CoefficientGradient:
-    """Derivatives of the scaled coefficients, one joint-independent matrix per variable.
-
-    Attributes
-    ----------
-    durations : ndarray, shape (segments, segments, 10, joints)
-        d coefficients / d durations; first axis the duration.
-    waypoints : ndarray, shape (way-points, segments, 10)
-        d coefficients of a joint / d that joint's way-point.
-    nodal : ndarray, shape (free, segments, 10)
-        d coefficients of a joint / d that joint's free derivative.
-    """
-
-    durations: NDArray[np.float64]
-    waypoints: NDArray[np.float64]
-    nodal: NDArray[np.float64]
-
-
-def coefficient_gradient(
-    interpolant: Interpolant,
-    waypoints: NDArray[np.float64],
-    durations: NDArray[np.float64],
-    nodal: NDArray[np.float64] | None = None,
-) -> CoefficientGradient:
-    """Derivatives of the coefficients by implicit differentiation of the linear system."""
-    plan = layout(interpolant)
-    values = right_hand_sides(interpolant, waypoints, nodal)
-    matrix, factor, first = dense_system(interpolant, durations)
-    n, joints = interpolant.segments, waypoints.shape[1]
-    flat = _flat(interpolant, coefficients(interpolant, waypoints, durations, nodal))
-    inverse = _inverse(interpolant, matrix, durations)
-    by_duration = np.zeros((n, matrix.shape[0], joints))
-    for i in range(matrix.shape[0]):
-        kind, b, r = plan.kinds[i], plan.breaks[i], plan.orders[i]
-        if r == 0:
-            continue
-        if kind == RowKind.MATCH:
-            if r <= plan.degrees[b]:
-                entry = matrix[i, first[b] + r] * flat[first[b] + r]
-                by_duration[b - 1, i] -= r * entry / durations[b - 1]
-                by_duration[b, i] += r * entry / durations[b]
-        else:
-            k = b if kind == RowKind.RIGHT_VALUE else b - 1
-            by_duration[k, i] += r * factor[i] / durations[k] * values[i]
-    one_hot_w = (plan.waypoint[None, :] == np.arange(waypoints.shape[0])[:, None]) * factor
-    one_hot_n = (plan.nodal[None, :] == np.arange(interpolant.free)[:, None]) * factor
-    return CoefficientGradient(
-        durations=np.stack([_unflat(interpolant, inverse @ row) for row in by_duration]),
-        waypoints=np.array([_unflat(interpolant, inverse @ row) for row in one_hot_w]),
-        nodal=np.array([_unflat(interpolant, inverse @ row) for row in one_hot_n]).reshape(
-            interpolant.free, n, kernel.MAX_COEFFICIENTS
-        ),
-    )

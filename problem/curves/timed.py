@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -10,17 +9,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import PPoly
 
+from ..arrays import Array
 from ..errors import CurveError, TrajgapError
 from . import kernel, timed_kernel
-from . import kind as kinds
-from .kind import Array, Enclosed, PeakGradients
-from .peak import Extremum, critical_points, extrema
-from .spline import as_durations
-from .stretched import as_waypoints
+from .kind import Enclosed
+from .peak import Extremum, critical_points
 from .trajectory import Trajectory
-from .uniform import TimedUniformBSpline, clock_matrix, shape_matrix
 
 Numbers = NDArray[np.inexact]
+"""Real or complex, of any precision: gradients are taken by complex steps."""
 
 
 def _derived(a: Numbers) -> Numbers:
@@ -166,6 +163,27 @@ class ClockedTrajectory(Trajectory):
             return self.scaled[segment, :4, joint].copy()
         raise TrajgapError("trajectory: time is not linear here, derivatives are no polynomials")
 
+    @property
+    def polynomial_in_time(self) -> bool:
+        """Never: time is not linear in the parameter."""
+        return False
+
+    def values(self, piece: int, joint: int, order: int, places: Array) -> Array:
+        """Derivative in time at places of a piece."""
+        return np.array([self.value(piece, joint, order, float(e)) for e in places])
+
+    def times(self, piece: int, places: Array) -> Array:
+        """Times of places of a piece, s."""
+        return np.asarray(_valued(self.clock[piece], places))
+
+    def level(self, piece: int, joint: int, order: int, value: float) -> Array:
+        """N_r − value·t′²ʳ⁻¹, as t′ > 0."""
+        if order == 0:
+            return super().level(piece, joint, order, value)
+        speed = np.polynomial.polynomial.polypow(_derived(self.clock[piece]), 2 * order - 1)
+        found = self._numerators[order - 1][piece, joint]
+        return np.asarray(np.polynomial.polynomial.polysub(found, value * speed))
+
     def sides(self, break_index: int, joint: int, order: int) -> tuple[float, float, float]:
         """Derivative, up to order 2, at both sides of an inner break, and the size of its terms."""
         before, after = (break_index - 1, 1.0), (break_index, 0.0)
@@ -175,16 +193,6 @@ class ClockedTrajectory(Trajectory):
             speed = float(_valued(_derived(self.clock[k]), e)) if order else 1.0
             scale += float(self._terms[order][int(e), k, joint]) / speed ** max(0, 2 * order - 1)
         return left, right, scale
-
-
-@extrema.register
-def _(trajectory: ClockedTrajectory, joint: int, order: int) -> list[Extremum]:
-    found: list[Extremum] = []
-    for k, t in enumerate(trajectory.clock):
-        for e in (0.0, *trajectory.turning(k, joint, order), 1.0):
-            value = trajectory.value(k, joint, order, float(e))
-            found.append(Extremum(joint, k, order, float(e), float(_valued(t, e)), value))
-    return found
 
 
 def _checked_clock(clock: Array) -> None:
@@ -214,32 +222,29 @@ def _trajectory(scaled: Array, clock: Array) -> ClockedTrajectory:
     return ClockedTrajectory(polynomial, np.diff(breaks), scaled, (3,) * len(clock), clock)
 
 
-@kinds.fit.register
-def _(
-    curve: TimedUniformBSpline,
-    waypoints: ArrayLike,
-    durations: ArrayLike,
-    nodal: ArrayLike | None = None,
-) -> Trajectory:
-    q = as_waypoints(curve, waypoints)
-    h = as_durations(durations, curve.segments)
-    return _enclosed(curve, q, h).trajectory
+def enclosed_with_clock(q: Numbers, t: Numbers, waypoints: Array, durations: Array) -> Enclosed:
+    """Trajectory of q(e) and t(e), with a bound on the error of every extremum.
 
+    Parameters
+    ----------
+    q, t : ndarray of longdouble, shape (pieces, 4, way-points), (pieces, 4, segments)
+        Coefficients in e as combinations of the way-points, and of the durations.
+    waypoints, durations : ndarray
 
-@kinds.enclosed.register
-def _enclosed(
-    curve: TimedUniformBSpline, waypoints: Array, durations: Array, nodal: Array | None = None
-) -> Enclosed:
-    matrix, nodes = shape_matrix(curve.waypoints), clock_matrix(curve.waypoints)
-    wide = waypoints.astype(np.longdouble)
-    long = durations.astype(np.longdouble)
-    tiny, epsilon = np.finfo(np.longdouble).eps * (curve.waypoints + 4), np.finfo(np.float64).eps
-    n, joints = curve.segments, waypoints.shape[1]
+    Raises
+    ------
+    CurveError
+        If the clock does not run forwards everywhere.
+    """
+    wide, long = waypoints.astype(np.longdouble), durations.astype(np.longdouble)
+    epsilon = np.finfo(np.float64).eps
+    tiny = np.finfo(np.longdouble).eps * (waypoints.shape[0] + 4)
+    n, joints = durations.size, waypoints.shape[1]
     scaled, error = np.zeros((2, n, kernel.MAX_COEFFICIENTS, joints))
-    scaled[:, :4] = matrix @ wide
-    error[:, :4] = tiny * (np.abs(matrix) @ np.abs(wide)) + epsilon * np.abs(scaled[:, :4])
-    clock = np.asarray(nodes @ long, dtype=np.float64)
-    clock_error = np.asarray(tiny * (np.abs(nodes) @ long) + epsilon * np.abs(clock))
+    scaled[:, :4] = q @ wide
+    error[:, :4] = tiny * (np.abs(q) @ np.abs(wide)) + epsilon * np.abs(scaled[:, :4])
+    clock = np.asarray(t @ long, dtype=np.float64)
+    clock_error = np.asarray(tiny * (np.abs(t) @ long) + epsilon * np.abs(clock))
     _checked_clock(clock)
     found = _trajectory(scaled, clock)
     return Enclosed(found, _errors(found, error, clock_error))
@@ -272,58 +277,9 @@ def _errors(found: ClockedTrajectory, error: Array, clock_error: Array) -> Array
     return bounds
 
 
-@kinds.motion_values.register
-def _(curve: TimedUniformBSpline, waypoints: Array, nodal: Array | None = None) -> Array:
-    matrix = shape_matrix(curve.waypoints)
-    return np.asarray(matrix @ (waypoints - waypoints[0]), dtype=np.float64)
-
-
-@kinds.batch_peaks.register
-def _(
-    curve: TimedUniformBSpline, values: Array, durations: Array, wanted: NDArray[np.bool_]
-) -> Array:
-    h = np.ascontiguousarray(durations, dtype=np.float64)
-    if h.ndim != 2 or h.shape[1] != curve.segments:
-        raise TrajgapError(
-            f"durations: a batch has shape (vectors, {curve.segments}), got {h.shape}"
-        )
-    peaks = np.empty((h.shape[0], values.shape[2], 3))
-    nodes = np.ascontiguousarray(clock_matrix(curve.waypoints), dtype=np.float64)
-    timed_kernel.batch_peaks(h, values, nodes, wanted, peaks)
-    return peaks
-
-
-@kinds.value_gradients.register
-def _(
-    curve: TimedUniformBSpline,
-    waypoints: Array,
-    durations: Array,
-    points: Sequence[Extremum],
-    nodal: Array | None = None,
-) -> PeakGradients:
-    """By complex steps: every number is a rational function of durations and way-points."""
-    matrix = shape_matrix(curve.waypoints).astype(np.float64)
-    nodes = clock_matrix(curve.waypoints).astype(np.float64)
-    scaled, clock = matrix @ waypoints, nodes @ durations
-    by_duration = np.empty((len(points), curve.segments))
-    by_waypoint = np.empty((len(points), curve.waypoints))
-    for i, e in enumerate(points):
-        q, t = scaled[e.segment, :, e.joint], clock[e.segment]
-        steps = t + 1e-30j * nodes[e.segment].T
-        by_duration[i] = _value(q, steps, e).imag / 1e-30
-        # The numerators are linear in q.
-        by_waypoint[i] = _value(matrix[e.segment].T, t, e)
-    return PeakGradients(by_duration, by_waypoint, np.empty((len(points), 0)))
-
-
-def _value(q: Numbers, t: Numbers, e: Extremum) -> Numbers:
+def value_at(q: Numbers, t: Numbers, e: Extremum) -> Numbers:
     """Derivatives at the place of an extremum, for coefficients along the last axis."""
     if e.order == 0:
         return _valued(q, e.s)
     n = numerators(q, t, e.order)[-1]
     return np.asarray(_valued(n, e.s) / _valued(_derived(t), e.s) ** (2 * e.order - 1))
-
-
-@kinds.smooth_order.register
-def _(curve: TimedUniformBSpline, break_index: int) -> int:
-    return 2

@@ -7,6 +7,7 @@ import numpy as np
 from .kernel import compiled, roots_in_unit
 
 ROOM = 10
+"""Length of work arrays: N_4 of two cubics has fewer than 10 coefficients."""
 
 
 @compiled

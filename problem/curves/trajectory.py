@@ -5,8 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.interpolate import PPoly
+
+from ..arrays import Array
+from .peak import critical_points
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,16 +29,16 @@ class Trajectory:
     """
 
     polynomial: PPoly
-    durations: NDArray[np.float64]
-    scaled: NDArray[np.float64]
+    durations: Array
+    scaled: Array
     degrees: tuple[int, ...]
 
-    def __call__(self, time: ArrayLike, order: int = 0) -> NDArray[np.float64]:
+    def __call__(self, time: ArrayLike, order: int = 0) -> Array:
         """Derivative ``order`` at ``time`` (s); shape of ``time`` plus (joints,)."""
         return np.asarray(self.polynomial(time, nu=order), dtype=np.float64)
 
     @property
-    def breaks(self) -> NDArray[np.float64]:
+    def breaks(self) -> Array:
         """Times at which the pieces meet, s."""
         return np.asarray(self.polynomial.x, dtype=np.float64)
 
@@ -45,17 +48,41 @@ class Trajectory:
         return float(self.durations.sum())
 
     @property
+    def polynomial_in_time(self) -> bool:
+        """Whether each piece is a polynomial in time, so that `derivative` answers."""
+        return True
+
+    @property
     def joints(self) -> int:
         """Number of joints."""
         return int(self.scaled.shape[2])
 
-    def derivative(self, segment: int, joint: int, order: int) -> NDArray[np.float64]:
+    def derivative(self, segment: int, joint: int, order: int) -> Array:
         """Ascending coefficients in s of a time derivative on one piece."""
         d = self.degrees[segment]
         a = self.scaled[segment, : d + 1, joint].copy()
         for _ in range(order):
             a = a[1:] * np.arange(1, a.size) if a.size > 1 else np.zeros(1)
         return np.asarray(a / self.durations[segment] ** order, dtype=np.float64)
+
+    def turning(self, piece: int, joint: int, order: int) -> Array:
+        """Places in (0, 1) of a piece where a derivative in time turns."""
+        return critical_points(self.derivative(piece, joint, order))
+
+    def values(self, piece: int, joint: int, order: int, places: Array) -> Array:
+        """Derivative in time at places, 0..1, of a piece."""
+        found = np.polynomial.polynomial.polyval(places, self.derivative(piece, joint, order))
+        return np.asarray(found, dtype=np.float64)
+
+    def times(self, piece: int, places: Array) -> Array:
+        """Times of places of a piece, s."""
+        return np.asarray(self.breaks[piece] + places * self.durations[piece])
+
+    def level(self, piece: int, joint: int, order: int, value: float) -> Array:
+        """Ascending polynomial on a piece that vanishes where a derivative has the value."""
+        found = self.derivative(piece, joint, order)
+        found[0] -= value
+        return found
 
     def sides(self, break_index: int, joint: int, order: int) -> tuple[float, float, float]:
         """Derivative just before and just after an inner break, and the size of their terms."""

@@ -1,6 +1,5 @@
 from .cartesian_line import CartesianLine, ctraj
 from .chain import (
-    Array,
     Chain,
     Convention,
     JointKind,
@@ -11,10 +10,9 @@ from .chain import (
 from .dh import DhTable
 from .inverse import IkSolution, IkStatus, inverse_kinematics
 from .nearness import Proximity, proximity
-from .workspace import StepKind, Workspace, sample_workspace, waypoint_family
+from .workspace import StepKind, Workspace, sample_workspace, waypoint_sequences
 
 __all__ = [
-    "Array",
     "CartesianLine",
     "Chain",
     "Convention",
@@ -32,5 +30,5 @@ __all__ = [
     "link_frames",
     "proximity",
     "sample_workspace",
-    "waypoint_family",
+    "waypoint_sequences",
 ]

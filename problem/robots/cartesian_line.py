@@ -8,12 +8,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation, Slerp
 
+from ..arrays import Array
 from ..curves import Trajectory
 from ..errors import TrajgapError
-from .chain import Array, Chain, forward_kinematics
+from .chain import Chain, forward_kinematics
 from .inverse import inverse_kinematics
 
 POINTS = 9
+"""Poses of a line by default: eight steps, so that a joint curve stays near the line."""
 LARGEST_STEP = np.pi / 2
 """Joint motion between neighbouring poses that counts as another branch of the inverse, rad."""
 

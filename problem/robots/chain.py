@@ -9,9 +9,8 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..arrays import Array
 from ..errors import TrajgapError
-
-Array = NDArray[np.float64]
 
 
 class Convention(StrEnum):

@@ -11,6 +11,7 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from pydantic import Field, PlainSerializer, PlainValidator, WithJsonSchema, model_validator
 
+from ..arrays import Array
 from ..fields import (
     LowerPosition,
     Number,
@@ -22,11 +23,14 @@ from ..fields import (
 )
 from ..printed import Printed
 from ..units import LengthUnit, Measured, PositionUnit, to_si
-from .chain import Array, Chain, Convention, JointKind
+from .chain import Chain, Convention, JointKind
 
 _PI_MULTIPLE = re.compile(r"([+-]?)\s*([0-9]*)\s*(?:π|pi)\s*(?:/\s*([1-9][0-9]*))?")
+"""A multiple of π: sign, numerator, denominator."""
 _MINUS_SIGNS = str.maketrans({"\u2212": "-", "\u2013": "-"})
+"""Minus signs that are printed, to the ASCII one."""
 _PI = Fraction(math.pi)
+"""π as every toolbox takes it: exactly the double."""
 
 
 @dataclass(frozen=True)
@@ -75,6 +79,7 @@ Angle = Annotated[
 """A `Number`, or a multiple of π such as "-π/2"."""
 
 _EACH = ("d", "a", "alpha", "theta_offset", "kinds", "lower", "upper")
+"""Columns of the table that must be equally long."""
 
 
 class DhTable(Strict):

@@ -8,12 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..arrays import Array
 from ..errors import TrajgapError
-from .chain import Array, Chain, forward_kinematics
+from .chain import Chain, forward_kinematics
 from .inverse import inverse_kinematics
 
 _MOST_BOXES = 400_000
+"""Boxes held at once, to bound the memory: the bound so far is returned then, and holds."""
 _POLISH_STARTS = 4
+"""Starts of the inverse kinematics that tells a near miss from a hit, the best centre first."""
 
 
 @dataclass(frozen=True, eq=False)

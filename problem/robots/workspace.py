@@ -1,4 +1,4 @@
-"""The Monte-Carlo workspace of a chain, and families of way-points drawn from it."""
+"""The Monte-Carlo workspace of a chain, and sequences of way-points drawn from it."""
 
 from __future__ import annotations
 
@@ -7,18 +7,23 @@ from enum import StrEnum
 
 import numpy as np
 
+from ..arrays import Array
 from ..errors import TrajgapError
-from .chain import Array, Chain, forward_kinematics
+from .chain import Chain, forward_kinematics
 from .inverse import POSE, POSITION, inverse_kinematics
 
 _SHELL = 0.1
+"""Half-width of the shell that the next position is drawn from, as a share of the step."""
 _DRAWS = 20
+"""Positions tried before a step is given up as out of reach."""
 _STARTS = 8
+"""Starts of the inverse kinematics for each of them."""
 _BATCH = 50_000
+"""Configurations evaluated at once, to bound the memory."""
 
 
 class StepKind(StrEnum):
-    """What the step length of a family measures."""
+    """What the step length of a sequence measures."""
 
     JOINT = "joint"
     """Largest change of any joint, rad; every joint is drawn uniformly within it."""
@@ -105,7 +110,7 @@ def sample_workspace(chain: Chain, count: int, seed: int) -> Workspace:
     return Workspace(chain, seed, joints, points)
 
 
-def waypoint_family(
+def waypoint_sequences(
     workspace: Workspace,
     *,
     step: float,
@@ -150,15 +155,15 @@ def waypoint_family(
     """
     if not (count >= 1 and waypoints >= 2 and 0 < step < np.inf):
         raise TrajgapError(
-            f"family: {count} sequences of {waypoints} way-points, step {step}; "
+            f"{count} sequences of {waypoints} way-points, step {step}; "
             "give at least 1, at least 2, and a positive length"
         )
     try:
         kind = StepKind(kind)
     except ValueError:
         raise TrajgapError(f"kind: {kind!r} is unknown; use {', '.join(StepKind)}") from None
-    family = np.empty((count, waypoints, workspace.chain.joints))
-    for sequence, child in zip(family, np.random.SeedSequence(seed).spawn(count), strict=True):
+    sequences = np.empty((count, waypoints, workspace.chain.joints))
+    for sequence, child in zip(sequences, np.random.SeedSequence(seed).spawn(count), strict=True):
         rng = np.random.default_rng(child)
         sequence[0] = workspace.joints[rng.integers(len(workspace.joints))]
         for k in range(1, waypoints):
@@ -168,7 +173,7 @@ def waypoint_family(
                 sequence[k] = rng.uniform(low, high)
             else:
                 sequence[k] = _stepped(workspace, sequence[k - 1], step, rng, orientation)
-    return family
+    return sequences
 
 
 def _stepped(

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from ....heuristics import Algorithm
 from ....problem import TrajgapError
-from ....problem.cases import Claim, FamilyBlock, ImprovementClaim, family_waypoints
+from ....problem.cases import Claim, ImprovementClaim, InstancesBlock, instance_waypoints
 from .result import FamilyResult, Procedure
 from .study import Task, examine
 
@@ -15,11 +15,11 @@ if TYPE_CHECKING:
     from ..study import Study
 
 
-def _claimed(study: Study, block: FamilyBlock) -> ImprovementClaim:
+def _claimed(study: Study, block: InstancesBlock) -> ImprovementClaim:
     return cast(ImprovementClaim, study.case.claim(block.claim))
 
 
-def _sides(study: Study, block: FamilyBlock) -> tuple[Claim, Claim]:
+def _sides(study: Study, block: InstancesBlock) -> tuple[Claim, Claim]:
     claim = _claimed(study, block)
     return study.case.claim(claim.slower), study.case.claim(claim.faster)
 
@@ -29,7 +29,7 @@ def _procedure(study: Study, side: Claim) -> Procedure:
     return Procedure(side.problem or study.case.problems[0].id, cast(str, side.algorithm))
 
 
-def readings_of(study: Study, block: FamilyBlock) -> tuple[str, ...]:
+def readings_of(study: Study, block: InstancesBlock) -> tuple[str, ...]:
     """Selected readings of a family; none if an algorithm is not implemented."""
     sides = [_procedure(study, side) for side in _sides(study, block)]
     if any(study.algorithm(side.algorithm) is None for side in sides):
@@ -38,13 +38,13 @@ def readings_of(study: Study, block: FamilyBlock) -> tuple[str, ...]:
     return tuple(r for r in wanted if all((side.problem, r) in study.selected for side in sides))
 
 
-def printed_reduction(study: Study, block: FamilyBlock) -> tuple[float, float] | None:
+def printed_reduction(study: Study, block: InstancesBlock) -> tuple[float, float] | None:
     """Smallest and largest reduction that the printed digits allow, as shares of the slower total.
 
     Parameters
     ----------
     study : Study
-    block : FamilyBlock
+    block : InstancesBlock
 
     Returns
     -------
@@ -63,14 +63,14 @@ def printed_reduction(study: Study, block: FamilyBlock) -> tuple[float, float] |
 
 
 def examined(
-    study: Study, block: FamilyBlock, progress: Callable[[str], None] | None = None
+    study: Study, block: InstancesBlock, progress: Callable[[str], None] | None = None
 ) -> FamilyResult:
     """Draw a family, pose it under its readings, and examine it.
 
     Parameters
     ----------
     study : Study
-    block : FamilyBlock
+    block : InstancesBlock
         For which `readings_of` names some reading.
     progress : callable, optional
         Called with a few words after each instance.
@@ -92,9 +92,9 @@ def examined(
     readings = readings_of(study, block)
     chain = case.chain()
     assert chain is not None
-    count = case.posing(faster.problem, readings[0]).waypoints.number
+    count = case.statement(faster.problem, readings[0]).waypoints.number
     try:
-        drawn = family_waypoints(block, chain, case.robot.joints, count)
+        drawn = instance_waypoints(block, chain, case.robot.joints, count)
     except TrajgapError as error:
         raise TrajgapError(f"{case.file}: families.{block.id}: {error}") from None
     tasks = [
@@ -103,8 +103,8 @@ def examined(
             index=index,
             waypoints=points,
             readings=readings,
-            slower=tuple(case.posing(slower.problem, r).problem_at(points) for r in readings),
-            faster=tuple(case.posing(faster.problem, r).problem_at(points) for r in readings),
+            slower=tuple(case.statement(slower.problem, r).problem_at(points) for r in readings),
+            faster=tuple(case.statement(faster.problem, r).problem_at(points) for r in readings),
             algorithms=(first, last),
             runs=block.runs,
             objectives=block.objectives,

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....nlp import Evidence
-from ....problem.cases import FamilyBlock
+from ....problem.cases import InstancesBlock
 
 Array = NDArray[np.float64]
 
@@ -152,7 +152,7 @@ class FamilyResult:
 
     Attributes
     ----------
-    block : FamilyBlock
+    block : InstancesBlock
     slower, faster : Procedure
         The one that is said to be slower, and the paper's.
     printed : tuple of float or None
@@ -164,7 +164,7 @@ class FamilyResult:
         By step, instance and reading, in this order; failures included.
     """
 
-    block: FamilyBlock
+    block: InstancesBlock
     slower: Procedure
     faster: Procedure
     printed: tuple[float, float] | None

@@ -13,8 +13,7 @@ import numpy as np
 
 from ....heuristics import Algorithm, run
 from ....nlp import Solution, solve
-from ....problem import TOLERANCE, Coupling, Interpolant, Problem, check
-from ....problem.curves import polynomial_form
+from ....problem import TOLERANCE, Coupling, Problem, check
 from ...gaps import SETTLED, settled_at
 from .result import Array, Optimum, Sample
 
@@ -113,8 +112,8 @@ def _examined(task: Task) -> tuple[Sample, ...]:
 
 def _fast_form(problem: Problem) -> Problem:
     """The problem with shared durations, its curve in the form that is evaluated fastest."""
-    curve = polynomial_form(problem.interpolant)
-    return replace(problem, interpolant=curve, coupling=Coupling.SHARED)
+    curve = problem.curve.polynomial_form()
+    return replace(problem, curve=curve, coupling=Coupling.SHARED)
 
 
 def _key(problem: Problem) -> tuple[object, ...]:
@@ -128,7 +127,7 @@ def _key(problem: Problem) -> tuple[object, ...]:
         problem.duration_upper,
         problem.waypoints,
     )
-    return (problem.interpolant, *(array.tobytes() for array in arrays))
+    return (problem.curve, *(array.tobytes() for array in arrays))
 
 
 def _ran(
@@ -149,9 +148,8 @@ def _ran(
 def _optimum(kept: Kept, problem: Problem) -> Optimum:
     key = _key(problem)
     if key not in kept:
-        alone = isinstance(problem.interpolant, Interpolant) and set(
-            problem.interpolant.continuity
-        ) <= {0}
+        polynomials = problem.curve.piecewise
+        alone = polynomials is not None and set(polynomials.continuity) <= {0}
         kept[key] = _told(solve(problem, starts=1 if alone else STARTS))
     known: Optimum = kept[key]
     return known

@@ -324,7 +324,7 @@ def _largest(study: Study, claim: AnyClaim, pid: str, rid: str, order: int) -> l
     """Largest extremum of each joint of the claim's problem, at the printed point."""
     problem = study.claim_problem(claim, pid, rid)
     durations = study.case.claim_durations(claim, rid).value
-    trajectory = fit(problem.interpolant, problem.waypoints, durations)
+    trajectory = fit(problem.curve, problem.waypoints, durations)
     return [
         max(extrema(trajectory, j, order), key=lambda e: abs(e.value))
         for j in range(len(problem.joints))

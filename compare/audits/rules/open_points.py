@@ -26,7 +26,7 @@ def _without_waypoints(study: Study) -> Iterator[Finding]:
     for claim in study.case.claims:
         if isinstance(claim, StatementClaim | ImprovementClaim):
             continue
-        why = study.case.posing(claim.problem).waypoints.not_printed
+        why = study.case.statement(claim.problem).waypoints.not_printed
         what = "An absolute time" if isinstance(claim, TotalTimeClaim) else "This"
         yield _listed(
             claim.id,

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ....nlp import Evidence
 from ....problem import Measured, to_si
-from ....problem.cases import Cartesian, Posing
+from ....problem.cases import Cartesian, Statement
 from ....problem.robots import Chain, Convention, DhTable, JointKind, Proximity, proximity
 from ..finding import Basis, ClaimVerdict, Finding, Scope, Severity
 from ..study import Study
@@ -61,22 +61,26 @@ def judge_kinematics(study: Study) -> Iterator[Finding]:
         yield _not_checkable(None, "Positions of the end are printed, but no table of the robot.")
         return
     for reading in study.readings:
-        posed: dict[object, tuple[str, Posing]] = {}
+        posed: dict[object, tuple[str, Statement]] = {}
         for pid, rid in study.pairs:
-            posing = case.posing(pid, rid)
+            statement = case.statement(pid, rid)
             if rid == reading:
-                posed.setdefault((posing.waypoints.points, posing.units.position), (pid, posing))
-        for pid, posing in posed.values():
-            yield _compared(study, dh, posing, reading, pid if len(posed) > 1 else None)
+                posed.setdefault(
+                    (statement.waypoints.points, statement.units.position), (pid, statement)
+                )
+        for pid, statement in posed.values():
+            yield _compared(study, dh, statement, reading, pid if len(posed) > 1 else None)
 
 
-def _compared(study: Study, dh: DhTable, posing: Posing, rid: str, pid: str | None) -> Finding:
+def _compared(
+    study: Study, dh: DhTable, statement: Statement, rid: str, pid: str | None
+) -> Finding:
     printed = study.case.chain()
     assert printed is not None
-    joints = _joints(study, posing)
+    joints = _joints(study, statement)
     named = [(i, label) for i, label in enumerate(printed.labels) if label in joints]
     sliding = [label for i, label in named if printed.kinds[i] is JointKind.PRISMATIC]
-    places = _places(study, posing)
+    places = _places(study, statement)
     if sliding or any(k is None for k, _ in places):
         why = (
             f"joint {sliding[0]} slides, and way-points are printed as angles"
@@ -92,25 +96,25 @@ def _compared(study: Study, dh: DhTable, posing: Posing, rid: str, pid: str | No
                 tuple(c) for n in range(len(dh.twisted)) for c in combinations(dh.twisted, n + 1)
             ]
         matches.append(_match(study, dh, convention, joints, places, flips))
-    return _finding(study, posing, rid, pid, [label for _, label in named], places, matches)
+    return _finding(study, statement, rid, pid, [label for _, label in named], places, matches)
 
 
-def _joints(study: Study, posing: Posing) -> Joints:
+def _joints(study: Study, statement: Statement) -> Joints:
     """Angles of every printed joint: those of the problems, and those in columns of their own."""
-    rows = posing.waypoints.points
+    rows = statement.waypoints.points
     found = {
-        label: tuple(posing.si(row[j], "position") for row in rows)
-        for j, label in enumerate(posing.labels)
+        label: tuple(statement.si(row[j], "position") for row in rows)
+        for j, label in enumerate(statement.labels)
     }
     for column in study.case.columns:
         if column.joint is not None and len(column.values) == len(rows):
-            found[column.joint] = tuple(posing.si(v, "position") for v in column.values)
+            found[column.joint] = tuple(statement.si(v, "position") for v in column.values)
     return found
 
 
-def _places(study: Study, posing: Posing) -> list[tuple[int | None, Cartesian]]:
+def _places(study: Study, statement: Statement) -> list[tuple[int | None, Cartesian]]:
     """Printed positions with the index of their way-point; None where there is none."""
-    labels, count = posing.waypoints.labels, len(posing.waypoints.points)
+    labels, count = statement.waypoints.labels, len(statement.waypoints.points)
     places = study.case.cartesian
     found: list[tuple[int | None, Cartesian]] = []
     for k, place in enumerate(places):
@@ -175,7 +179,7 @@ def _misses(near: tuple[Proximity, ...], slack: tuple[float, ...]) -> bool:
 
 def _finding(
     study: Study,
-    posing: Posing,
+    statement: Statement,
     rid: str,
     pid: str | None,
     printed: list[str],
@@ -186,7 +190,7 @@ def _finding(
     assert chain is not None
     free = [label for label in chain.labels if label not in printed]
     names = [place.label or place.id for _, place in places]
-    given = f"{chain.name}: joints {', '.join(printed)} in {posing.units.position}"
+    given = f"{chain.name}: joints {', '.join(printed)} in {statement.units.position}"
     given += f", joints {', '.join(free)} free" if free else ""
     fitting = next((m for m in matches if m.fits), None)
     if fitting is not None:

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from ....nlp import Evidence
 from ....problem import Interval, Printed
-from ....problem.cases import ControlVerticesClaim, Posing
+from ....problem.cases import ControlVerticesClaim, Statement
 from ....problem.curves import vertex_matrix
 from ..finding import Basis, ClaimVerdict, Finding, Scope, Severity
 from ..study import Study
@@ -57,20 +57,20 @@ def judge_vertices(study: Study) -> Iterator[Finding]:
     """Set every printed control vertex beside the way-points of its problem."""
     for claim in study.case.claims:
         if isinstance(claim, ControlVerticesClaim):
-            posing = study.case.posing(claim.problem)
-            if posing.posed:
-                yield _judged(claim, vertices(claim, posing))
+            statement = study.case.statement(claim.problem)
+            if statement.complete:
+                yield _judged(claim, vertices(claim, statement))
 
 
-def vertices(claim: ControlVerticesClaim, posing: Posing) -> tuple[Vertex, ...]:
+def vertices(claim: ControlVerticesClaim, statement: Statement) -> tuple[Vertex, ...]:
     """Every printed control vertex with the interval that its way-points allow.
 
     The unit does not matter: way-points and vertices are printed in the same one.
     """
-    points = posing.waypoints.points
+    points = statement.waypoints.points
     matrix = vertex_matrix(len(points))
     found = []
-    for j, label in enumerate(posing.labels):
+    for j, label in enumerate(statement.labels):
         intervals = [row[j].interval for row in points]
         hulls = [hull(row[j]) for row in points]
         for index, (weights, printed) in enumerate(zip(matrix, claim.joint_rows[j], strict=True)):

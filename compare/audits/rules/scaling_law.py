@@ -35,8 +35,8 @@ def velocity_factor(one: Problem, other: Problem) -> float | None:
     c = V_one/V_other divides every velocity by c: optimum times limit is a constant.
     """
     same = (
-        one.interpolant == other.interpolant
-        and one.interpolant.homogeneous
+        one.curve == other.curve
+        and one.curve.homogeneous
         and np.array_equal(one.waypoints, other.waypoints)
         and not (one.duration_lower > 0).any()
         and not np.isfinite(one.duration_upper).any()

@@ -1,4 +1,4 @@
-from .certifier import certify_family_free
-from .estimate import FamilyFree, family_free
+from .certifier import ANY_CURVE
+from .estimate import AnyCurveEstimate, estimate_any_curve
 
-__all__ = ["FamilyFree", "certify_family_free", "family_free"]
+__all__ = ["ANY_CURVE", "AnyCurveEstimate", "estimate_any_curve"]

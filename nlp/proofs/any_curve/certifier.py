@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
-from typing import Any
 
 import numpy as np
 
-from ....problem import Problem, TrajgapError
-from ...verify import Subject
+from ....verify import Subject
 from ..answer import float_problem
-from ..exact import ExactProblem, exact_problem
-from ..outcome import GAP, Certified, Outcome, Progress
-from .estimate import family_free
+from ..exact import ExactProblem
+from ..rounding import down
+from ..session import Certifier, Session
+from .estimate import estimate_any_curve
 from .exact import FreeQuestion, missing, prove_motion, question, unanswered
 from .local import Question, local_optimum
 from .proof import DIGITS, free_bound, restored
@@ -25,136 +22,89 @@ from .tangents import Array
 _SHARE = 0.9
 """Of the gap asked for, so that rounding has room."""
 _ABOVE = Fraction(1, 2**20)
+"""Share by which the cap exceeds the sum of all longest durations: a proof must get above it."""
+_DIGITS = 15
+"""Of a total after its first: what a double holds, about."""
 
 Motion = tuple[tuple[Fraction, ...], tuple[tuple[Fraction, ...], ...]]
 
 
-def certify_family_free(
-    problem: Problem | ExactProblem,
-    *,
-    gap: float = GAP,
-    seconds: float = 60.0,
-    seed: int = 0,
-    resume: dict[str, Any] | None = None,
-    report: Callable[[Progress], None] | None = None,
-) -> Certified:
-    """Prove an interval of the least total over all C1 motions with |v| ≤ V and |a| ≤ A.
+def _prove(session: Session) -> bool:
+    """Raise the least bound of all boxes until it is near the best motion.
 
-    Parameters
-    ----------
-    problem : Problem or ExactProblem
-        Of the curve only the velocities prescribed at its two ends count, and the durations are
-        shared. Limits of jerk and position only make motions slower: the lower bound holds with
-        them, and no upper bound is claimed.
-    gap : float
-        Relative width of the interval to reach.
-    seconds : float
-        Time limit. At the limit, or at Ctrl-C, the interval proved so far is returned.
-    seed : int
-        Of the starts of the local solver that finds the answer.
-    resume : dict, optional
-        Document of a stopped run's ``resume``; its boxes are bounded anew.
-    report : callable, optional
-        Called with a `Progress` for every box; its lower bound is not yet proved in rationals.
-
-    Returns
-    -------
-    Certified
-        Its subject is `Subject.ANY`.
-
-    Raises
-    ------
-    TrajgapError
-        If the problem is not covered, or ``resume`` is malformed.
+    Of the curve only the velocities prescribed at its two ends count. Limits of jerk and position
+    only make motions slower: the lower bound holds with them, and no upper bound is claimed.
     """
-    exact = exact_problem(problem) if isinstance(problem, Problem) else problem
-    why = missing(exact)
-    if why is not None:
-        raise TrajgapError(f"certify: {why}")
-    began = time.perf_counter()
+    exact, gap = session.exact, session.request.gap
     asked = question(exact)
-    motion = _first_motion(exact, asked, seed)
+    motion = _first_motion(exact, asked, session.request.seed)
     longest = [x for x in asked.longest if x is not None]
+    bounded = len(longest) == len(asked.longest)
     if motion is not None:
         cap = sum(motion[0], Fraction(0))
-    elif len(longest) == len(asked.longest):
+    elif bounded:
         cap = sum(longest, Fraction(0)) * (1 + _ABOVE)
     else:
-        seconds = time.perf_counter() - began
-        nothing = (Fraction(0), None, None, 0, 0, seconds)
-        return Certified(exact, Outcome.OPEN, *nothing, subject=Subject.ANY)
+        return True
     search = Search(asked, cap)
-    found: list[Motion] = [] if motion is None else [motion]
+    found: list[Motion] = []
+
+    def take(better: Motion) -> None:
+        found.append(better)
+        if unanswered(exact) is None:
+            session.durations = better[0]
 
     def target() -> float:
         total = sum(found[-1][0]) if found else cap
         return float(total) * (1 - _SHARE * gap if found else 1.0)
 
-    def told(lower: float, left: int) -> None:
-        if report is not None:
-            upper = float(sum(found[-1][0])) if found else float("inf")
-            relative = (upper - lower) / upper if found else float("inf")
-            rate = search.nodes / (time.perf_counter() - began)
-            report(Progress(lower, upper, relative, left, search.nodes, rate))
+    def watch(lower: float, left: int) -> None:
+        session.report(left, search.nodes, lower)
+        session.check_clock()
 
     def improve(durations: Array) -> bool:
         better = _local_motion(asked, durations)
         if better is None or (found and sum(better[0]) >= sum(found[-1][0])):
             return False
-        found.append(better)
+        take(better)
         return True
 
-    if resume is not None:
-        root = restored(search, resume, target())
+    if motion is not None:
+        take(motion)
+    resumed = session.request.resume
+    if resumed is not None and resumed.proof is not None:
+        root = restored(search, resumed.proof.document(), target())
     else:
         root = search.root(*_floats(asked, motion), target())
-    complete = False
-    while not complete:
-        known = len(found)
-        complete = search.grow(root, target(), began + seconds, told, improve)
-        if len(found) == known:
-            break
-    return _result(exact, search, root, found[-1] if found else None, gap, began)
+    try:
+        complete = False
+        while not complete:
+            known = len(found)
+            complete = search.grow(root, target(), watch, improve)
+            if len(found) == known:
+                break
+    finally:
+        _close(session, search, root, found[-1] if found else None)
+    session.infeasible = not found and bounded and session.lower > sum(longest)
+    return complete
 
 
-def _result(
-    exact: ExactProblem,
-    search: Search,
-    root: Node,
-    motion: Motion | None,
-    gap: float,
-    began: float,
-) -> Certified:
-    answer = motion if unanswered(exact) is None else None
-    upper = None if answer is None else sum(answer[0], Fraction(0))
-    leaves = root.leaves
-    least = min(search.exact(leaf, DIGITS[-1])[0] for leaf in leaves)
-    total = _down(min(least, search.cap if motion is None else sum(motion[0], Fraction(0))))
-    durations = None if answer is None else answer[0]
-    longest = [x for x in search.asked.longest if x is not None]
-    if motion is None:
-        late = len(longest) == len(search.asked.longest) and total > sum(longest)
-        outcome = Outcome.INFEASIBLE if late else Outcome.OPEN
-    else:
-        reached = sum(motion[0])
-        enough = reached - total <= Fraction(gap) * reached
-        outcome = Outcome.CERTIFIED if enough and upper is not None else Outcome.INTERVAL
-    speeds = _all_speeds(exact, search, answer)
-    proof = None if total <= 0 else free_bound(search, root, total, speeds)
-    wanted = float(sum(motion[0])) * (1 - gap) if motion is not None else float(search.cap)
-    return Certified(
-        exact,
-        outcome,
-        max(total, Fraction(0)),
-        upper,
-        durations,
-        search.nodes,
-        sum(leaf.lower < wanted for leaf in leaves),
-        time.perf_counter() - began,
-        proof,
-        proof if outcome in (Outcome.INTERVAL, Outcome.OPEN) else None,
-        Subject.ANY,
-    )
+def _close(session: Session, search: Search, root: Node, motion: Motion | None) -> None:
+    """Leave the bound of all boxes, proved in rational numbers, and the motion as the answer."""
+    exact = session.exact
+    answer = motion if session.durations is not None else None
+    session.one_sided = motion is not None and answer is None
+    top = search.cap if motion is None else sum(motion[0], Fraction(0))
+    least = min(search.exact(leaf, DIGITS[-1])[0] for leaf in root.leaves)
+    total = down(min(least, top), _DIGITS)
+    if total > 0:
+        session.keep(total, free_bound(search, root, total))
+    session.speeds = _all_speeds(exact, search, answer)
+    wanted = float(top) * (1 - session.request.gap if motion is not None else 1.0)
+    session.report(sum(leaf.lower < wanted for leaf in root.leaves), search.nodes)
+
+
+ANY_CURVE = Certifier("every C1 motion", lambda _: True, missing, _prove, subject=Subject.ANY)
 
 
 def _first_motion(exact: ExactProblem, asked: FreeQuestion, seed: int) -> Motion | None:
@@ -165,7 +115,7 @@ def _first_motion(exact: ExactProblem, asked: FreeQuestion, seed: int) -> Motion
         position_lower=(None,) * len(exact.joints),
         position_upper=(None,) * len(exact.joints),
     )
-    known = family_free(float_problem(alone), seed=seed)
+    known = estimate_any_curve(float_problem(alone), seed=seed)
     if known.durations is None or known.nodal_velocities is None:
         return None
     return prove_motion(asked, known.durations, known.nodal_velocities[:, list(asked.joints)])
@@ -214,16 +164,3 @@ def _all_speeds(
     return tuple(
         tuple(row[place[j]] if j in place else Fraction(0) for j in every) for row in answer[1]
     )
-
-
-def _down(total: Fraction) -> Fraction:
-    """A little less, in 15 digits after the first."""
-    if total <= 0:
-        return Fraction(0)
-    unit = Fraction(1)
-    while total < unit:
-        unit /= 10
-    while total >= 10 * unit:
-        unit *= 10
-    unit /= 10**15
-    return (total // unit) * unit

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ....problem import Problem, TrajgapError
-from ....problem.curves import end_conditions
 from ...optimum import Evidence
 from .local import KEPT, Question, local_optimum, starting_points
 from .reach import profile
@@ -19,7 +18,7 @@ SAME = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class FamilyFree:
+class AnyCurveEstimate:
     """Best known total over all C1 curves through the way-points within v and a limits.
 
     Attributes
@@ -68,13 +67,13 @@ class FamilyFree:
         return "\n".join(lines)
 
 
-def family_free(
+def estimate_any_curve(
     problem: Problem,
     *,
     starts: int = STARTS,
     seed: int = 0,
     initial: ArrayLike | None = None,
-) -> FamilyFree:
+) -> AnyCurveEstimate:
     """Least total time through the way-points over all C1 curves with |v| ≤ V and |a| ≤ A.
 
     The joints share their segment durations and nothing else; acceleration may jump. Of the
@@ -94,7 +93,7 @@ def family_free(
 
     Returns
     -------
-    FamilyFree
+    AnyCurveEstimate
         Never raises for a problem without answer: `why` says the reason.
 
     Raises
@@ -112,12 +111,14 @@ def family_free(
     given = _initial(problem, initial)
     reason = _not_covered(problem)
     if reason is not None:
-        return FamilyFree(None, why=reason)
+        return AnyCurveEstimate(None, why=reason)
     matter = _matter(problem)
     question = _pose(problem, matter)
     short = np.flatnonzero(question.lower > question.upper * (1 + KEPT))
     if short.size:
-        return FamilyFree(None, why=f"segment {short[0] + 1} cannot be done within its upper bound")
+        return AnyCurveEstimate(
+            None, why=f"segment {short[0] + 1} cannot be done within its upper bound"
+        )
     bounded = np.isfinite(question.acceleration)
     durations = question.lower.copy()
     totals: tuple[float, ...] = ()
@@ -137,7 +138,9 @@ def family_free(
         answers = [answer for h in points if (answer := local_optimum(core, h)) is not None]
         count = len(points)
         if not answers:
-            return FamilyFree(None, why=f"none of {count} starts led to an answer", starts=count)
+            return AnyCurveEstimate(
+                None, why=f"none of {count} starts led to an answer", starts=count
+            )
         totals = tuple(float(h.sum()) for h, _ in answers)
         h, v = answers[int(np.argmin(totals))]
         durations[moving] = h
@@ -145,17 +148,17 @@ def family_free(
         velocities[:, np.flatnonzero(matter)[bounded]] = v[nodes]
     outside = _outside_range(problem, durations, velocities)
     if outside is not None:
-        return FamilyFree(None, why=outside, starts=count)
+        return AnyCurveEstimate(None, why=outside, starts=count)
     velocities[:, ~_restless(problem)] = 0.0
     total = float(durations.sum())
     why = _not_attained(question, durations)
     best = sum(t <= total * (1 + SAME) for t in totals)
-    return FamilyFree(total, durations, velocities, why is None, why, count, best, totals)
+    return AnyCurveEstimate(total, durations, velocities, why is None, why, count, best, totals)
 
 
 def _merge(problem: Problem, values: NDArray[np.float64]) -> NDArray[np.float64]:
     """Values per segment of the interpolant added up between way-points, along the last axis."""
-    breaks = problem.interpolant.waypoint_breaks
+    breaks = problem.curve.waypoint_breaks
     return np.add.reduceat(values, breaks[:-1], axis=-1)
 
 
@@ -172,7 +175,7 @@ def _initial(problem: Problem, initial: ArrayLike | None) -> NDArray[np.float64]
 
 
 def _ends(problem: Problem) -> tuple[float | None, float | None]:
-    start, end = end_conditions(problem.interpolant)
+    start, end = problem.curve.ends
     return dict(start).get(1), dict(end).get(1)
 
 

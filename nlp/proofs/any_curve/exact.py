@@ -11,7 +11,6 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from ....problem.curves import end_conditions
 from ..exact import ExactProblem, Real
 
 _STRETCHES = (Fraction(0), *(Fraction(1, 10**k) for k in range(13, 6, -1)))
@@ -68,7 +67,7 @@ class FreeQuestion:
 
 def ends_of(problem: ExactProblem) -> tuple[Number, Number]:
     """Velocities that the curve prescribes at its ends; None if free."""
-    start, end = (dict(side).get(1) for side in end_conditions(problem.curve))
+    start, end = (dict(side).get(1) for side in problem.curve.ends)
     return None if start is None else Fraction(start), None if end is None else Fraction(end)
 
 

@@ -90,7 +90,7 @@ def _solver(segments: int, joints: int) -> Any:
         "ipopt.acceptable_iter": 0,
         "ipopt.max_iter": 300,
     }
-    return ca.nlpsol("family_free", "ipopt", nlp, options)
+    return ca.nlpsol("estimate_any_curve", "ipopt", nlp, options)
 
 
 def local_optimum(

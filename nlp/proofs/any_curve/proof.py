@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 
 from ....problem import TrajgapError
-from ...verify_problem import number
+from ....verify import CUT, LEAF, number
 from ..exact import decimal
 from .rows import KINDS, Row
 from .search import Node, Search
 
-KIND = "family-free"
+KIND = "any-curve"
 DIGITS = (4, 6, 8, 12)
 """Of the weights: as few as prove the bound."""
 
@@ -28,38 +28,27 @@ class FreeBound:
     total, cap : Fraction
         The bound; all boxes lie below the cap, s.
     rows : tuple of list
-    tree, leaves : tuple of list
-    speeds : tuple of tuple of Fraction, or None
-        Of the answer, [way-point][joint].
+    tree : tuple of list
+        Nodes in preorder.
     """
 
     total: Fraction
     cap: Fraction
     rows: tuple[list[int | str], ...]
-    tree: tuple[list[int | str] | int, ...]
-    leaves: tuple[list[int | str], ...]
-    speeds: tuple[tuple[Fraction, ...], ...] | None
+    tree: tuple[list[int | str], ...]
 
     def document(self) -> dict[str, Any]:
-        """Kind "family-free" of docs/certificates-family-free.md."""
-        shown = self.speeds
+        """Kind "any-curve" of docs/certificates-any-curve.md."""
         return {
             "kind": KIND,
             "total": decimal(self.total),
             "cap": decimal(self.cap),
             "rows": [list(row) for row in self.rows],
-            "tree": [entry if isinstance(entry, int) else list(entry) for entry in self.tree],
-            "leaves": [list(leaf) for leaf in self.leaves],
-            "speeds": None if shown is None else [[decimal(v) for v in row] for row in shown],
+            "tree": [list(node) for node in self.tree],
         }
 
 
-def free_bound(
-    search: Search,
-    root: Node,
-    total: Fraction,
-    speeds: tuple[tuple[Fraction, ...], ...] | None,
-) -> FreeBound:
+def free_bound(search: Search, root: Node, total: Fraction) -> FreeBound:
     """Write down what the boxes of a search prove.
 
     Parameters
@@ -68,27 +57,27 @@ def free_bound(
     root : Node
     total : Fraction
         At most what every leaf proves with all digits, s.
-    speeds : tuple of tuple of Fraction, or None
-        Of the answer.
     """
     known: dict[Row, int] = {}
-    leaves: list[list[int | str]] = []
-    for node in root.leaves:
+    tree: list[list[int | str]] = []
+    stack = [root]
+    while stack:
+        node = stack.pop()
+        stack += reversed(node.parts)
+        if node.parts:
+            tree.append([CUT, node.segment, decimal(node.at)])
+            continue
         found = (search.exact(node, digits) for digits in DIGITS)
         weighted = next(texts for proved, texts in found if proved >= total)
-        pairs = [(known.setdefault(row, len(known)), weight) for row, weight in weighted]
-        leaves.append([entry for pair in pairs for entry in pair])
+        leaf: list[int | str] = [LEAF]
+        for row, weight in weighted:
+            leaf += [known.setdefault(row, len(known)), weight]
+        tree.append(leaf)
     joints = search.asked.joints
     rows: tuple[list[int | str], ...] = tuple(
         [KINDS[r.kind], r.segment, joints[r.joint], *r[3:]] for r in known
     )
-    tree: list[list[int | str] | int] = []
-    stack = [root]
-    while stack:
-        node = stack.pop()
-        tree.append([node.segment, decimal(node.at)] if node.parts else 0)
-        stack += reversed(node.parts)
-    return FreeBound(total, search.cap, rows, tuple(tree), tuple(leaves), speeds)
+    return FreeBound(total, search.cap, rows, tuple(tree))
 
 
 def restored(search: Search, document: dict[str, Any], target: float) -> Node:
@@ -104,16 +93,16 @@ def restored(search: Search, document: dict[str, Any], target: float) -> Node:
     try:
         rows = np.array([_row(search, row) for row in document["rows"]], dtype=np.int64)
         root = search.root(durations, speeds, -np.inf)
-        stack = [root]
-        for entry in document["tree"]:
+        stack, leaves = [root], []
+        for tag, *data in document["tree"]:
             node = stack.pop()
-            if entry != 0:
-                cut = (int(entry[0]), number(entry[1]))
+            if tag == CUT:
+                cut = (int(data[0]), number(data[1]))
                 stack += reversed(search.halves(node, *cut, -np.inf))
-        leaves = root.leaves
-        for leaf, own in zip(leaves, document["leaves"], strict=True):
-            used = rows.reshape(-1, 7)[[int(n) for n in own[::2]]]
-            leaf.carried = np.unique(np.concatenate([leaf.carried, used]), axis=0)
+                continue
+            used = rows.reshape(-1, 7)[[int(n) for n in data[::2]]]
+            node.carried = np.unique(np.concatenate([node.carried, used]), axis=0)
+            leaves.append(node)
         if stack:
             raise ValueError("the tree leaves a part open")
     except (KeyError, IndexError, TypeError, ValueError, OverflowError, ZeroDivisionError) as error:

@@ -58,7 +58,7 @@ def exact_row(asked: FreeQuestion, row: Row, box: Box, speed: Fraction) -> Exact
     Returns
     -------
     Exact
-        Why it holds is in docs/certificates-family-free.md.
+        Why it holds is in docs/certificates-any-curve.md.
     """
     acceleration = asked.loose[row.joint][1]
     assert acceleration is not None

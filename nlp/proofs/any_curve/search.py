@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import heapq
 import itertools
-import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -251,8 +250,7 @@ class Search:
         self,
         root: Node,
         target: float,
-        deadline: float,
-        told: Callable[[float, int], None],
+        watch: Callable[[float, int], None],
         improve: Callable[[Array], bool],
     ) -> bool:
         """Cut boxes, the one with the least bound first, until every bound is enough.
@@ -263,44 +261,36 @@ class Search:
             Changed in place.
         target : float
             s.
-        deadline : float
-            Of `time.perf_counter`.
-        told : callable
-            Called with the least bound and the number of open boxes.
+        watch : callable
+            Called with the least bound and the number of open boxes; stops the search by raising.
         improve : callable
             Called with durations that look feasible and too short, s; true ends the search.
 
         Returns
         -------
         bool
-            Whether it was completed; otherwise time was up, Ctrl-C came, a better motion turned up
-            or nothing can be cut.
+            Whether it was completed; otherwise a better motion turned up or nothing can be cut.
         """
         count = itertools.count()
         heap = [(leaf.lower, next(count), leaf) for leaf in root.leaves if leaf.lower < target]
         heapq.heapify(heap)
         stuck = False
-        try:
-            while heap:
-                told(heap[0][0], len(heap))
-                if time.perf_counter() > deadline:
+        while heap:
+            watch(heap[0][0], len(heap))
+            node = heap[0][2]
+            if node.durations is not None and node.excess < _DOUBTFUL and self.looks > 0:
+                self.looks -= 1
+                if improve(node.durations * self.scaled.time):
                     return False
-                node = heap[0][2]
-                if node.durations is not None and node.excess < _DOUBTFUL and self.looks > 0:
-                    self.looks -= 1
-                    if improve(node.durations * self.scaled.time):
-                        return False
-                if not node.cuts:
-                    heapq.heappop(heap)
-                    stuck = True
-                    continue
-                parts = self._best_cut(node, target)
+            if not node.cuts:
                 heapq.heappop(heap)
-                for part in parts:
-                    if part.lower < target:
-                        heapq.heappush(heap, (part.lower, next(count), part))
-        except KeyboardInterrupt:
-            return False
+                stuck = True
+                continue
+            parts = self._best_cut(node, target)
+            heapq.heappop(heap)
+            for part in parts:
+                if part.lower < target:
+                    heapq.heappush(heap, (part.lower, next(count), part))
         return not stuck
 
     def root(self, durations: Array, speeds: Array, target: float) -> Node:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
@@ -12,9 +11,11 @@ from typing import Any
 import numpy as np
 
 from ....problem import Interpolant
-from ..answer import prove_feasible, solve_exactly
+from ....verify import LEAF
+from ..answer import solve_exactly
 from ..exact import ExactProblem, decimal
-from ..outcome import Certified, Certifier, Outcome, Request
+from ..rounding import root_below
+from ..session import Certifier, Session
 from ..three_piece import PLACES
 
 STILL = 1e-9
@@ -43,8 +44,9 @@ class ClosedForm:
 
     def document(self) -> dict[str, Any]:
         """Kinds "rest-to-rest" and "stretched" of docs/certificates.md."""
-        rows = [[b.joint, b.order, b.place, decimal(b.least)] for b in self.bounds]
-        return {"kind": self.kind, "segments": rows}
+        leaf = [LEAF, *([b.joint, b.order, b.place, decimal(b.least)] for b in self.bounds)]
+        total = sum((b.least for b in self.bounds), Fraction(0))
+        return {"kind": self.kind, "total": decimal(total), "tree": [leaf]}
 
 
 def is_rest_to_rest(problem: ExactProblem) -> bool:
@@ -96,16 +98,6 @@ def _at(poly: list[Fraction], s: Fraction) -> Fraction:
     return sum((c * s**p for p, c in enumerate(poly)), Fraction(0))
 
 
-def root_below(value: Fraction, order: int) -> Fraction:
-    """A rational at most the root of a positive number, in 15 digits."""
-    guess = float(value) ** (1 / order)
-    digits = 15 - math.ceil(math.log10(guess))
-    whole = math.floor(guess * 10.0**digits) + 8
-    while Fraction(whole, 1) ** order > value * Fraction(10) ** (digits * order):
-        whole -= 1
-    return Fraction(whole / Fraction(10) ** digits)
-
-
 def closed_form(problem: ExactProblem) -> tuple[list[SegmentBound], list[float]]:
     """Least duration of every segment, proved, and durations to try as the answer.
 
@@ -120,7 +112,7 @@ def closed_form(problem: ExactProblem) -> tuple[list[SegmentBound], list[float]]
     durations : list of float
         s.
     """
-    tops = peaks(problem.interpolant.degrees[0])
+    tops = peaks(problem.piecewise.degrees[0])
     bounds, durations = [], []
     for k in range(problem.segments):
         best = SegmentBound(problem.duration_lower[k])
@@ -140,35 +132,28 @@ def closed_form(problem: ExactProblem) -> tuple[list[SegmentBound], list[float]]
     return bounds, [max(h, still) for h in durations]
 
 
-def answered(
-    exact: ExactProblem,
-    request: Request,
-    kind: str,
-    closed: Callable[[ExactProblem], tuple[list[SegmentBound], list[float]]],
-) -> Certified:
-    """A proved interval from bounds of the segments and durations to try as the answer."""
-    began = time.perf_counter()
-    bounds, durations = closed(exact)
-    lower = sum((b.least for b in bounds), Fraction(0))
-    answer = prove_feasible(exact, np.array(durations))
-    upper = sum(answer, Fraction(0)) if answer is not None else None
-    late = any(
-        u is not None and b.least > u for b, u in zip(bounds, exact.duration_upper, strict=True)
-    )
-    if upper is None:
-        outcome = Outcome.INFEASIBLE if late else Outcome.OPEN
-    else:
-        within = upper - lower <= upper * Fraction(request.gap)
-        outcome = Outcome.CERTIFIED if within else Outcome.INTERVAL
-    seconds = time.perf_counter() - began
-    proof = ClosedForm(kind, tuple(bounds))
-    return Certified(exact, outcome, lower, upper, answer, 0, 0, seconds, proof)
+def proving(
+    kind: str, closed: Callable[[ExactProblem], tuple[list[SegmentBound], list[float]]]
+) -> Callable[[Session], bool]:
+    """A proof from bounds of the segments, and durations to try as the answer."""
 
+    def prove(session: Session) -> bool:
+        bounds, durations = closed(session.exact)
+        session.keep(sum((b.least for b in bounds), Fraction(0)), ClosedForm(kind, tuple(bounds)))
+        longest = session.exact.duration_upper
+        if not session.offer(np.array(durations)):
+            session.infeasible = any(
+                u is not None and b.least > u for b, u in zip(bounds, longest, strict=True)
+            )
+        return True
 
-def _certify(exact: ExactProblem, request: Request) -> Certified:
-    return answered(exact, request, "rest-to-rest", closed_form)
+    return prove
 
 
 REST_TO_REST = Certifier(
-    "rest-to-rest polynomials", is_rest_to_rest, lambda _: None, _certify, instant=True
+    "rest-to-rest polynomials",
+    is_rest_to_rest,
+    lambda _: None,
+    proving("rest-to-rest", closed_form),
+    instant=True,
 )

@@ -8,9 +8,10 @@ from fractions import Fraction
 from ....problem.curves import StretchedUniformBSpline
 from ..answer import uniform_coefficients
 from ..exact import ExactProblem
-from ..outcome import Certified, Certifier, Request
+from ..rounding import root_below
+from ..session import Certifier
 from ..three_piece import PLACES
-from .rest_polynomials import STILL, SegmentBound, answered, root_below
+from .rest_polynomials import STILL, SegmentBound, proving
 
 
 def _declares(problem: ExactProblem) -> bool:
@@ -72,14 +73,10 @@ def closed_form(problem: ExactProblem) -> tuple[list[SegmentBound], list[float]]
     return bounds, [max(h, still) for h in durations]
 
 
-def _certify(exact: ExactProblem, request: Request) -> Certified:
-    return answered(exact, request, "stretched", closed_form)
-
-
 STRETCHED = Certifier(
     "uniform cubic B-splines stretched in time",
     _declares,
     lambda _: None,
-    _certify,
+    proving("stretched", closed_form),
     instant=True,
 )

@@ -7,10 +7,11 @@ from typing import Any
 import numpy as np
 
 from ....problem import TrajgapError
+from ....verify import CUT, LEAF, MIX_DIGITS, MOST_INTEGER, MOST_POWER, OPEN
 from ..exact import ExactProblem
 from .proof import MIX, TOTAL, Target, Weights, multiplied
 from .system import CubicSystem, Row, kind_of_ends, scaled
-from .tree import ALPHABET, Box, Prover, Step
+from .tree import Box, Prover, Step
 
 _LARGEST = 2**26
 
@@ -38,41 +39,46 @@ def replayed(exact: ExactProblem, document: dict[str, Any]) -> tuple[Prover, Box
     ends = kind_of_ends(exact)
     _need(document["kind"] == "cubic" and ends is not None, "another kind of curve")
     assert ends is not None
-    powers = [_whole(p, 60) for p in document["powers"]]
+    powers = [_whole(p, MOST_POWER) for p in document["powers"]]
     _need(len(powers) == len(exact.joints), "powers")
-    system = scaled(exact, ends, powers, _whole(document["second"], 60))
-    cap = _whole(document["cap"], 2**28)
+    system = scaled(exact, ends, powers, _whole(document["second"], MOST_POWER))
+    cap = _whole(document["cap"], MOST_INTEGER)
     _need(cap > 0, "cap")
     prover = Prover(system, cap)
     known = [_row(system, entry) for entry in document["rows"]]
     root = prover.root()
-    stack = [(root, document["tree"])]
-    while stack:
-        box, steps = stack.pop()
-        for step in steps:
-            _need(not box.children, "a step after a split")
-            if box.closed:
-                break
-            if step == "r":
-                prover.narrow(box)
-            elif step[0] == "s":
-                k, at = _whole(step[1], system.free - 1), _whole(step[2], 2**28)
-                _need(k >= 0, "a split of a side that is not there")
-                stack += zip(prover.split(box, k, at), step[3:], strict=True)
-            else:
-                _again(prover, box, step, known)
+    stack = [root]
+    for node in document["tree"]:
+        _need(bool(stack) and isinstance(node, list) and bool(node), "the tree")
+        box, tag = stack.pop(), node[0]
+        if box.closed:
+            # Whatever was done to it once is not needed.
+            stack += [box] * (2 if tag == CUT else 0 if tag in (LEAF, OPEN) else 1)
+        elif tag == CUT:
+            k, at = _whole(node[1], system.free - 1), _whole(node[2], MOST_INTEGER)
+            _need(k >= 0, "a split of a side that is not there")
+            stack += reversed(prover.split(box, k, at))
+        elif tag == "r":
+            prover.narrow(box)
+            stack.append(box)
+        elif tag == LEAF and len(node) > 1:
+            _again(prover, box, node, known)
+        elif tag not in (LEAF, OPEN):
+            _again(prover, box, node, known)
+            stack.append(box)
+    _need(not stack, "the tree leaves a part open")
     return prover, root, min((box.floor for box in root.leaves()), default=cap)
 
 
 def _again(prover: Prover, box: Box, step: list[Any], known: list[Row]) -> None:
     kind, (held, equations, mix) = step[0], step[-3:]
-    scale = 0 if kind == "e" else _whole(step[-4], _LARGEST)
-    _need(scale > 0 or kind == "e", "weight of the target")
+    scale = 0 if kind == LEAF else _whole(step[-4], _LARGEST)
+    _need(scale > 0 or kind == LEAF, "weight of the target")
     weights = _weights(prover.system, scale, held, equations, mix, known)
-    if kind == "e":
+    if kind == LEAF:
         _need(prover.clear(box, weights), "a box is not empty")
     elif kind == "f":
-        value = _whole(step[1], 2**28)
+        value = _whole(step[1], MOST_INTEGER)
         bound = prover.bound(box, TOTAL, weights)
         _need(bound is not None and bound >= value, "a floor is not proved")
         box.steps.append(Step("f", value=value, weights=weights))
@@ -80,7 +86,11 @@ def _again(prover: Prover, box: Box, step: list[Any], known: list[Row]) -> None:
         prover.trim(box)
     else:
         _need(kind == "t", "an unknown step")
-        k, sign, value = _whole(step[1], prover.system.free - 1), step[2], _whole(step[3], 2**28)
+        k, sign, value = (
+            _whole(step[1], prover.system.free - 1),
+            step[2],
+            _whole(step[3], MOST_INTEGER),
+        )
         _need(k >= 0 and sign in (1, -1), "a side that is not there")
         bound = prover.bound(box, Target(k, sign), weights)
         _need(bound is not None and bound >= sign * value, "a side is not proved")
@@ -134,7 +144,7 @@ def _weights(
     weights = Weights(scale, rows, found, np.full(shape, MIX // 2))
     which = multiplied(system, weights)
     _need(len(mix) == int(which.sum()), "shares of the products")
-    weights.mix[which] = [ALPHABET.index(letter) for letter in mix]
+    weights.mix[which] = [MIX_DIGITS.index(letter) for letter in mix]
     return weights
 
 

@@ -11,11 +11,12 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from ....verify import TICKS
 from .guide import errors, peaks
 from .proof import TOTAL, Target
 from .relaxation import Laid, Proposal, Relaxation
 from .system import CubicSystem
-from .tree import TICKS, Box, Prover
+from .tree import Box, Prover
 
 _ROUNDS = 4
 _WORTH = 0.05

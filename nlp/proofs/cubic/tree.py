@@ -10,14 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from .proof import MIX, NOTHING, TOTAL, Target, Weights, least, multiplied
+from ....verify import CUT, LEAF, MIX_DIGITS, OPEN, TICKS
+from ..exact import decimal
+from .proof import NOTHING, TOTAL, Target, Weights, least, multiplied
 from .ranges import Side, a_priori, implied, narrowed, with_rho
 from .system import Array, CubicSystem, Row
-
-TICKS = 2**24
-"""Ticks in a unit of time."""
-ALPHABET = "0123456789abcdefghijklmnopqrstuvw"
-assert len(ALPHABET) == MIX + 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,12 +96,13 @@ class Prover:
             for step, v in zip(steps, fastest, strict=True):
                 if math.isfinite(v) and v > 0:
                     shortest = max(shortest, abs(step) / Fraction(v))
-            low[t] = math.floor(shortest * TICKS)
+            # No feasible total is below the cap where a side begins there.
+            low[t] = min(math.floor(shortest * TICKS), self.cap)
             longest = [x for x in (system.longest[k] for k in held) if x is not None]
             if len(longest) == len(held):
                 high[t] = min(high[t], math.ceil(sum(longest) * TICKS))
         for (h, _, _), k in zip(system.curved, (0, system.pieces - 1), strict=False):
-            low[h] = math.floor(system.shortest[k] * TICKS)
+            low[h] = min(math.floor(system.shortest[k] * TICKS), self.cap)
             longest_piece = system.longest[k]
             if longest_piece is not None:
                 high[h] = min(high[h], math.ceil(longest_piece * TICKS))
@@ -164,6 +162,11 @@ class Prover:
         old = box.low[coordinate] if sign > 0 else box.high[coordinate]
         if (value - old) * sign < least_:
             return False
+        # One tick beyond the other side says that the box is empty, which is all there is to say.
+        if sign > 0:
+            value = min(value, box.high[coordinate] + 1)
+        else:
+            value = max(value, box.low[coordinate] - 1)
         self.set(box, Step("t", coordinate, sign, value, weights))
         return True
 
@@ -212,27 +215,29 @@ class Prover:
         return lower, upper
 
 
-def proof_document(prover: Prover, root: Box, lower: int) -> dict[str, Any]:
-    """The proof that the total is at least ``lower`` ticks, as in docs/certificates-cubic.md."""
+def proof_document(prover: Prover, root: Box, lower: int, unfinished: bool) -> dict[str, Any]:
+    """The proof that the total is at least ``lower`` ticks, as in docs/certificates-cubic.md.
+
+    With ``unfinished``, boxes that are not closed are open leaves: a proposal to go on from.
+    """
     system = prover.system
     rows: dict[Row, int] = {}
     tree: list[Any] = []
-    stack = [(root, tree)]
+    stack = [root]
     while stack:
-        box, out = stack.pop()
-        for step in box.steps:
-            if step.kind != "f" or _serves(box, step):
-                out.append(_step(system, step, rows))
+        box = stack.pop()
+        steps = [s for s in box.steps if s.kind != "f" or _serves(box, s)]
+        tree += [_step(system, step, rows) for step in steps]
         if box.children:
-            halves: list[list[Any]] = [[], []]
-            out[-1] += halves
-            stack += zip(box.children, halves, strict=True)
+            stack += reversed(box.children)
+        elif not (steps and steps[-1].kind == "e"):
+            tree.append([OPEN if unfinished and not box.closed else LEAF])
     return {
         "kind": "cubic",
+        "total": decimal(Fraction(lower, TICKS) * Fraction(2) ** system.second),
         "powers": list(system.powers),
         "second": system.second,
         "cap": prover.cap,
-        "total": lower,
         "root": prover.root().low,
         "rows": [[r.kind, r.joint, r.index, r.sign, r.place] for r in rows],
         "tree": tree,
@@ -249,17 +254,17 @@ def _serves(box: Box, step: Step) -> bool:
 
 def _step(system: CubicSystem, step: Step, rows: dict[Row, int]) -> Any:
     if step.kind == "r":
-        return "r"
+        return ["r"]
     if step.kind == "s":
-        return ["s", step.coordinate, step.value]
+        return [CUT, step.coordinate, step.value]
     weights = step.weights
     assert weights is not None
     held = [x for row, w in weights.rows.items() for x in (rows.setdefault(row, len(rows)), w)]
     equations = [x for (j, i), w in weights.equations.items() for x in (j * system.unknowns + i, w)]
-    alphabet = "".join(ALPHABET[x] for x in weights.mix[multiplied(system, weights)])
+    alphabet = "".join(MIX_DIGITS[x] for x in weights.mix[multiplied(system, weights)])
     tail = [held, equations, alphabet]
     if step.kind == "e":
-        return ["e", *tail]
+        return [LEAF, *tail]
     if step.kind == "f":
         return ["f", step.value, weights.scale, *tail]
     return ["t", step.coordinate, step.sign, step.value, weights.scale, *tail]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import time
+import math
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -10,33 +10,50 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ....problem import Interpolant, Problem, TrajgapError, Verdict, check, evaluate
-from ...optimum import solve
-from ...verify_problem import Declaration, Refused, Stated, number
-from ...verify_quintic import MOST_JOINTS, MOST_SEGMENTS, SMALLEST, prove_total
-from ..answer import float_problem, keeps_limits, prove_feasible
+from ....problem import Interpolant, Verdict, check
+from ....verify import MOST_POWER, MOST_QUINTIC_JOINTS, MOST_QUINTIC_SEGMENTS, SMALLEST
 from ..exact import ExactProblem, decimal
-from ..outcome import Certified, Certifier, Outcome, Progress, Request
+from ..rounding import below
+from ..session import Certifier, Ladder, OutOfTime, Session, Shorter
 from .leaves import Leaves
 from .search import DONE, FULL, PAUSED, SHORTER, search
 from .windows import Windows, windows
 
 Array = NDArray[np.float64]
 
-_STAGES = (0.3, 0.2, 0.1, 0.05, *(x * 10.0**-k for k in range(2, 7) for x in (2.0, 1.0, 0.5)))
-_SAFE = 0.9
-_UNIT = 2**30
+_LADDER = Ladder(
+    (0.3, 0.2, 0.1, 0.05, *(x * 10.0**-k for k in range(2, 7) for x in (2.0, 1.0, 0.5))), 0.9, 1.5
+)
+"""Boxes grow with a power of 1/gap: small steps keep a stopped run near its goal."""
 _CHUNK = 500
+"""Boxes between two looks at the clock: some milliseconds."""
 _STACK = 600
+"""Boxes that wait: depth first, more than the deepest tree that the verifier takes."""
 _SLIGHT = 1e-7
-_WORTH = 1.5
+"""Share by which durations must be shorter to be worth a new start of the ladder."""
+_NEAR = 8
+"""Powers of two by which a size may differ from 1 before the units are changed."""
 _REST = ((1, 0.0), (2, 0.0))
+
+
+@dataclass(frozen=True)
+class Units:
+    """Joint j is measured in 2**powers[j] of the problem's unit of angle, time in 2**second s."""
+
+    powers: tuple[int, ...]
+    second: int
+
+    @property
+    def time(self) -> Fraction:
+        """In s."""
+        return Fraction(2) ** self.second
 
 
 @dataclass(frozen=True, eq=False)
 class Tree:
-    """Bisections of the simplex of durations that prove a total."""
+    """Bisections of the simplex of durations that prove a total; both in the units of the proof."""
 
+    units: Units
     total: Fraction
     low: tuple[Fraction, ...]
     windows: Windows
@@ -46,50 +63,12 @@ class Tree:
         """Kind "quintic-spline" of docs/certificates-quintic.md."""
         return {
             "kind": "quintic-spline",
-            "total": decimal(self.total),
-            "low": [decimal(x) for x in self.low],
+            "total": decimal(self.total * self.units.time),
+            "powers": list(self.units.powers),
+            "second": self.units.second,
+            "low": [decimal(x * self.units.time) for x in self.low],
             **self.leaves.document(self.windows),
         }
-
-
-@dataclass(frozen=True, eq=False)
-class Stopped:
-    """Where a stopped run can go on: the last proof and the answer."""
-
-    proved: dict[str, Any] | None
-    durations: tuple[Fraction, ...] | None
-
-    def document(self) -> dict[str, Any]:
-        """The state of docs/certificates-quintic.md."""
-        answer = self.durations
-        return {
-            "kind": "quintic-spline",
-            "proved": self.proved,
-            "durations": None if answer is None else [decimal(h) for h in answer],
-        }
-
-
-@dataclass(frozen=True)
-class Given:
-    """A proof from a state file, proved again."""
-
-    total: Fraction
-    proof: dict[str, Any]
-
-    def document(self) -> dict[str, Any]:
-        """As it was read."""
-        return self.proof
-
-
-class _Shorter(Exception):
-    """Durations whose total is below the target."""
-
-    def __init__(self, durations: Array) -> None:
-        self.durations = durations
-
-
-class _Stop(Exception):
-    """Time is up, or boxes are as small as they may get."""
 
 
 def _declares(problem: ExactProblem) -> bool:
@@ -105,13 +84,15 @@ def _declares(problem: ExactProblem) -> bool:
 
 def _missing(problem: ExactProblem) -> str | None:
     inner = ((),) * (problem.segments - 1)
-    if problem.interpolant.prescribed != (_REST, *inner, _REST):
+    if problem.piecewise.prescribed != (_REST, *inner, _REST):
         return f"{problem.curve.name}: only rest with zero acceleration at both ends is covered"
-    if problem.segments > MOST_SEGMENTS or len(problem.joints) > MOST_JOINTS:
-        return f"more than {MOST_SEGMENTS} segments or {MOST_JOINTS} joints"
-    q = problem.waypoints
+    if problem.segments > MOST_QUINTIC_SEGMENTS or len(problem.joints) > MOST_QUINTIC_JOINTS:
+        return f"more than {MOST_QUINTIC_SEGMENTS} segments or {MOST_QUINTIC_JOINTS} joints"
+    units = _units(problem)
+    own = problem.in_units(units.powers, units.second)
+    q = own.waypoints
     sizes = [abs(b - a) for k in range(len(q) - 1) for a, b in zip(q[k], q[k + 1], strict=True)]
-    sizes += [x.high for row in problem.limits for x in row if x is not None]
+    sizes += [x.high for row in own.limits for x in row if x is not None]
     if not all(x == 0 or SMALLEST < x < 1 / SMALLEST for x in sizes):
         return "a step or a limit is of unusual size"
     if all(problem.duration_lower):
@@ -137,12 +118,6 @@ def _steps(problem: ExactProblem) -> Array:
     )
 
 
-def _below(value: Fraction) -> Fraction:
-    """A float not above, few digits behind the point."""
-    whole = value * _UNIT
-    return Fraction(whole.numerator // whole.denominator, _UNIT)
-
-
 def shortest(problem: ExactProblem) -> tuple[Fraction, ...]:
     """Least durations by their bounds and by the mean velocities, as floats."""
     q, out = problem.waypoints, []
@@ -150,203 +125,102 @@ def shortest(problem: ExactProblem) -> tuple[Fraction, ...]:
         for j, (velocity, *_) in enumerate(problem.limits):
             if velocity is not None and velocity.high > 0:
                 low = max(low, abs(q[k + 1][j] - q[k][j]) / velocity.high)
-        out.append(_below(low))
+        out.append(below(low))
     return tuple(out)
 
 
-@dataclass(eq=False)
-class _Run:
-    problem: ExactProblem
-    request: Request
-    began: float
-    answer: tuple[Fraction, ...] | None = None
-    lower: Fraction = Fraction(0)
-    proof: Tree | Given | None = None
-    nodes: int = 0
-    open_boxes: int = 0
+class _Search:
+    """What the stages share: numbers in the units of the proof, and windows that exclude boxes."""
 
-    def __post_init__(self) -> None:
-        self.floats = float_problem(self.problem)
-        self.deadline = self.began + self.request.seconds
-        self.low = shortest(self.problem)
-        self.steps, self.limits = _steps(self.problem), _limits(self.problem)
+    def __init__(self, session: Session) -> None:
+        self.session, self.units = session, _units(session.exact)
+        own = session.exact.in_units(self.units.powers, self.units.second)
+        self.low = shortest(own)
+        self.steps, self.limits = _steps(own), _limits(own)
+        assert session.durations is not None
+        near = np.array([float(h / self.units.time) for h in session.durations])
+        self.library = windows(self.steps, self.limits, near)
 
-    @property
-    def upper(self) -> Fraction | None:
-        """Total of the answer."""
-        return None if self.answer is None else sum(self.answer, Fraction(0))
+    def rounded(self, total: Fraction) -> Fraction:
+        """A total that is exact in floating point in the units of the proof, s."""
+        return below(total / self.units.time) * self.units.time
 
-    def stage(self, target: Fraction, library: Windows) -> Tree:
-        """Prove that no total is below ``target``."""
-        if time.perf_counter() > self.deadline:
-            raise _Stop
+    def stage(self, target: Fraction) -> Tree:
+        """Prove that no total is below ``target``, s."""
+        session = self.session
+        session.check_clock()
         n, joints = self.steps.shape
-        total = float(target)
+        own = target / self.units.time
+        total = float(own)
         low, high = np.zeros((_STACK, n)), np.zeros((_STACK, n))
         low[0], high[0] = [float(x) for x in self.low], total
         depth, counts = np.array([1]), np.zeros(3, np.int64)
         leaves, wary, patience = Leaves.empty(), True, _CHUNK
-        upper = 0.0 if self.upper is None else float(self.upper) * (1.0 - _SLIGHT)
+        upper = session.upper
+        look = 0.0 if upper is None else float(upper / self.units.time) * (1.0 - _SLIGHT)
         while True:
             code = search(
-                n, joints, self.steps, self.limits, total, library.terms, low, high, depth,
-                patience, upper if wary and patience > 1 else 0.0, *leaves.arrays, counts,
+                n, joints, self.steps, self.limits, total, self.library.terms, low, high, depth,
+                patience, look if wary and patience > 1 else 0.0, *leaves.arrays, counts,
             )  # fmt: skip
-            self.nodes += int(counts[0])
+            session.report(int(depth[0]), session.nodes + int(counts[0]))
             counts[:] = 0
-            self.open_boxes = int(depth[0])
-            self._tell()
             if code == DONE:
-                return Tree(target, self.low, library, leaves)
+                return Tree(self.units, own, self.low, self.library, leaves)
             if code == FULL:
                 leaves = leaves.larger()
             patience = 1 if code == SHORTER else _CHUNK
             if code == SHORTER:
                 at = depth[0] - 1
-                wary = self._improve(2.0 / (1.0 / low[at] + 1.0 / high[at]), upper)
-            elif code not in (DONE, FULL, PAUSED) or time.perf_counter() > self.deadline:
-                raise _Stop
+                wary = self._look(2.0 / (1.0 / low[at] + 1.0 / high[at]), look)
+            elif code not in (DONE, FULL, PAUSED):
+                raise OutOfTime
+            else:
+                session.check_clock()
 
-    def _improve(self, durations: Array, upper: float) -> bool:
-        """Raise `_Shorter` if the direction of ``durations`` holds a total below ``upper``.
+    def _look(self, durations: Array, below_it: float) -> bool:
+        """Raise `Shorter` if the direction of ``durations`` holds a total below the one given.
 
         False if it does but for bounds that stretching cannot mend: more would follow.
         """
-        stretch = float(evaluate(self.floats, durations[None]).stretch[0])
-        stretch = max(stretch, float((self.floats.duration_lower / durations).max()))
-        found = durations * stretch
-        if not found.sum() < upper:
+        time = float(self.units.time)
+        found = self.session.stretched(durations[None] * time)[0]
+        if not found.sum() < below_it * time:
             return True
-        if check(self.floats, found).verdict is Verdict.PASS:
-            raise _Shorter(found)
+        if check(self.session.floats, found).verdict is Verdict.PASS:
+            raise Shorter(found)
         return False
 
-    def _tell(self) -> None:
-        if self.request.report is None:
-            return
-        seconds = time.perf_counter() - self.began
-        upper = float("inf") if self.upper is None else float(self.upper)
-        gap = 1.0 - float(self.lower) / upper if np.isfinite(upper) else float("inf")
-        rate = self.nodes / max(seconds, 1e-9)
-        self.request.report(
-            Progress(float(self.lower), upper, gap, self.open_boxes, self.nodes, rate)
-        )
+
+def _units(exact: ExactProblem) -> Units:
+    """Units in which steps and total are not far from 1; those of the problem where they are not.
+
+    Weights, multipliers and totals of a proof have ranges, which these units keep to.
+    """
+    steps, limits = np.abs(_steps(exact)), _limits(exact)
+    powers = [_power(float(column.max())) for column in steps.T]
+    least = np.array([float(x) for x in exact.duration_lower])
+    with np.errstate(divide="ignore"):
+        for order in (1, 2, 3):
+            needs = (steps / limits[:, order - 1]) ** (1.0 / order)
+            least = np.maximum(least, needs.max(axis=1))
+    return Units(tuple(powers), _power(float(least.sum())))
 
 
-def _certify(exact: ExactProblem, request: Request) -> Certified:
-    run = _Run(exact, request, time.perf_counter())
-    if request.resume is not None:
-        run.answer, run.proof = _resumed(exact, request.resume)
-        run.lower = Fraction(0) if run.proof is None else run.proof.total
-    stopped = True
-    try:
-        run.answer = _shorter_of(run.answer, _answer(run.floats, exact, request.seed, None))
-        stopped = run.answer is None or not _raise_lower(run)
-    except (KeyboardInterrupt, _Stop):
-        pass
-    upper = run.upper
-    if upper is not None and upper < run.lower:
-        raise TrajgapError("certify: the proof contradicts the answer, one of them is wrong")
-    if upper is None:
-        outcome = Outcome.OPEN
-    elif not stopped and upper - run.lower <= upper * Fraction(request.gap):
-        outcome = Outcome.CERTIFIED
-    else:
-        outcome = Outcome.INTERVAL
-    state = None
-    if outcome is not Outcome.CERTIFIED:
-        state = Stopped(None if run.proof is None else run.proof.document(), run.answer)
-    return Certified(
-        exact,
-        outcome,
-        run.lower,
-        upper,
-        run.answer,
-        run.nodes,
-        run.open_boxes if stopped else 0,
-        time.perf_counter() - run.began,
-        run.proof,
-        state,
-    )
+def _power(size: float) -> int:
+    """Of two, for a size far from 1; else 0."""
+    power = math.frexp(size)[1] if size > 0.0 else 0
+    return 0 if abs(power) <= _NEAR else max(-MOST_POWER, min(MOST_POWER, power))
 
 
-def _raise_lower(run: _Run) -> bool:
-    """Prove one target after the other; False if an improvement is too slight to prove."""
-    assert run.answer is not None
-    library = windows(run.steps, run.limits, np.array([float(h) for h in run.answer]))
-    while True:
-        assert run.upper is not None
-        upper, last = run.upper, _SAFE * run.request.gap
-        gaps = [*(g for g in _STAGES if g > _WORTH * last), last]
-        targets = [_below(upper * (1 - Fraction(g))) for g in gaps]
-        try:
-            for target in targets:
-                if target > run.lower:
-                    run.proof = run.stage(target, library)
-                    run.lower = target
-            return True
-        except _Shorter as found:
-            better = _answer(run.floats, run.problem, run.request.seed, found.durations)
-            if better is None or sum(better) >= upper:
-                return False
-            run.answer = better
+def _prove(session: Session) -> bool:
+    # A stage that was interrupted begins anew: of a stopped run only the proof counts.
+    session.seek()
+    if session.upper is None:
+        return False
+    stages = _Search(session)
+    session.climb(_LADDER, stages.rounded, stages.stage)
+    return True
 
 
-def _answer(
-    floats: Problem, exact: ExactProblem, seed: int, initial: Array | None
-) -> tuple[Fraction, ...] | None:
-    """Feasible durations of the local solver, or else the ones it started from."""
-    solution = solve(floats, seed=seed, initial=initial)
-    tries = [h for h in (solution.durations, initial) if h is not None]
-    found = [h for h in (prove_feasible(exact, h) for h in tries) if h is not None]
-    return min(found, key=sum, default=None)
-
-
-def _shorter_of(
-    one: tuple[Fraction, ...] | None, other: tuple[Fraction, ...] | None
-) -> tuple[Fraction, ...] | None:
-    return min([h for h in (one, other) if h is not None], key=sum, default=None)
-
-
-def _resumed(
-    exact: ExactProblem, document: dict[str, Any]
-) -> tuple[tuple[Fraction, ...] | None, Given | None]:
-    """Read a state; its proof and its answer are proved again."""
-    try:
-        if document["kind"] != "quintic-spline":
-            raise TrajgapError(f"resume: a state of kind {document['kind']!r}")
-        answer, proof = document["durations"], document["proved"]
-        durations = None if answer is None else tuple(number(h) for h in answer)
-        given = None
-        if proof is not None:
-            given = Given(prove_total(_stated(exact), proof), proof)
-    except Refused as error:
-        raise TrajgapError(f"resume: the state is not proved ({error})") from None
-    except (KeyError, IndexError, TypeError, ValueError, AttributeError, ArithmeticError) as error:
-        raise TrajgapError(f"resume: malformed state ({type(error).__name__}: {error})") from None
-    if durations is not None and not keeps_limits(exact, durations):
-        raise TrajgapError("resume: the durations of the state do not keep the limits")
-    return durations, given
-
-
-def _stated(exact: ExactProblem) -> Stated:
-    """The question as a verifier reads it; positions take no part."""
-    nothing: list[tuple[Fraction, Fraction] | None] = [None] * len(exact.joints)
-    curve = exact.interpolant
-    return Stated(
-        [list(row) for row in exact.waypoints],
-        [[None if x is None else x.ends for x in row] for row in exact.limits],
-        [nothing, nothing],
-        list(exact.duration_lower),
-        list(exact.duration_upper),
-        Declaration(
-            list(curve.degrees),
-            list(curve.continuity),
-            [{order: Fraction(value) for order, value in row} for row in curve.prescribed],
-            list(curve.virtual),
-        ),
-        None,
-    )
-
-
-QUINTIC = Certifier("C4 quintic splines at rest at the ends", _declares, _missing, _certify)
+QUINTIC = Certifier("C4 quintic splines at rest at the ends", _declares, _missing, _prove)

@@ -9,17 +9,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ....verify import LEAF
 from .search import EMPTY, WINDOW
 from .windows import UNIT, Windows
 
 _ROOM = (1 << 12, 1 << 12, 1 << 13)
-LETTERS = ".abcdefghijklmnopqrstuvwxyz"
-"""A leaf, and the duration that is cut."""
 
 
 @dataclass(frozen=True, eq=False)
 class Leaves:
-    """Letters in preorder and, leaf by leaf, what excludes it; the last array counts all three."""
+    """Letters in preorder and, leaf by leaf, what excludes it; the last array counts all three.
+
+    Letter 0 is a leaf, k + 1 a cut of duration k.
+    """
 
     tree: NDArray[np.int8]
     kinds: NDArray[np.int8]
@@ -59,22 +61,26 @@ class Leaves:
         return Leaves(tree, kinds, starts, ids, share, tau, sizes)
 
     def document(self, windows: Windows) -> dict[str, Any]:
-        """Tables of windows and rows that are used, the tree, and one list per leaf."""
+        """Tables of windows and rows that are used, and the tree."""
         letters, leaves = int(self.sizes[0]), int(self.sizes[1])
         tables: tuple[dict[Any, int], dict[Any, int]] = ({}, {})
         found: list[list[int | str]] = []
+        nodes: list[Any] = []
         ids, share = self.ids.tolist(), self.share.tolist()
         for i, (a, b) in enumerate(pairwise(self.starts[: leaves + 1].tolist())):
             if self.kinds[i] == EMPTY:
-                found.append([])
+                found.append([LEAF])
             elif self.kinds[i] == WINDOW:
                 number = tables[0].setdefault(ids[a][0], len(tables[0]))
-                found.append([number, repr(float(self.tau[i]))])
+                found.append([LEAF, number, repr(float(self.tau[i]))])
             else:
-                leaf: list[int | str] = [int(self.tau[i])]
+                leaf: list[int | str] = [LEAF, int(self.tau[i])]
                 for row, weight in zip(ids[a:b], share[a:b], strict=True):
                     leaf += [tables[1].setdefault(tuple(row), len(tables[1])), int(weight)]
                 found.append(leaf)
+        leaf_by_leaf = iter(found)
+        for letter in self.tree[:letters].tolist():
+            nodes.append(letter - 1 if letter else next(leaf_by_leaf))
         return {
             "windows": [
                 [
@@ -85,6 +91,5 @@ class Leaves:
                 for w in tables[0]
             ],
             "rows": [list(row) for row in tables[1]],
-            "tree": "".join(LETTERS[x] for x in self.tree[:letters]),
-            "leaves": found,
+            "tree": nodes,
         }

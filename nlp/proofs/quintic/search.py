@@ -14,6 +14,8 @@ DONE, PAUSED, FULL, SHORTER, DEEP = 0, 1, 2, 3, 4
 """Why the search returned."""
 SHARES = 2.0**20
 """Largest weight of a row."""
+MOST_TAU = 2.0**52
+"""Largest multiplier of the total, as in `trajgap.verify`: floats hold it exactly."""
 SPARE = 1e-9
 """Part of the limits by which a leaf must exceed them, so that another evaluation agrees."""
 _SLACK = 1e-12
@@ -65,9 +67,10 @@ def _share_out(count, norms, weight, tau, share):  # type: ignore[no-untyped-def
     for c in range(count):
         if weight[c] > _KEPT:
             top = max(top, weight[c] / norms[c])
+    scale = min(SHARES / top, MOST_TAU / max(abs(tau), 1e-300))
     for c in range(count):
-        share[c] = np.rint(weight[c] / norms[c] / top * SHARES) if weight[c] > _KEPT else 0.0
-    return np.rint(tau / top * SHARES)
+        share[c] = np.rint(weight[c] / norms[c] * scale) if weight[c] > _KEPT else 0.0
+    return np.rint(tau * scale)
 
 
 @compiled

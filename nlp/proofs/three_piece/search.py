@@ -2,69 +2,47 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ....problem import Problem, TrajgapError, Verdict, check, evaluate
-from ...optimum import solve
-from ...verify_problem import number
-from ..answer import float_problem, keeps_limits, prove_feasible
-from ..exact import ExactProblem, decimal
-from ..outcome import Certified, Certifier, Outcome, Progress, Request
+from ....problem import TrajgapError, Verdict, check
+from ..exact import ExactProblem
+from ..rounding import down
+from ..session import Certifier, Ladder, OutOfTime, Session, Shorter
 from .boxes import Boxes, Proof, Proposer
 from .ratios import shape_of
 from .rows import STRICT, shape_for
-from .tree import State, tree_document, tree_state
+from .tree import State, proposed, tree_document
 
 _BATCH = 256
 _LOOKS = 3
 _ENDLESS = Fraction(10**12)
 """A total that stands for "whatever the total": only rows without it may be used."""
-_STAGES = tuple(x * 10.0**-k for k in range(1, 9) for x in (3.0, 1.0))
-_SAFE = Fraction(9, 10)
+_LADDER = Ladder(tuple(x * 10.0**-k for k in range(1, 9) for x in (3.0, 1.0)), 0.9, 1.0)
+"""A stage costs about as much as all before it, so that steps of a factor 3 lose little."""
+_DIGITS = 11
+"""Of a total after its first: short in a certificate, and 1e-11 of a gap is no loss."""
+_SLIGHT = 1e-9
+"""Share by which durations must be shorter to be worth a new start of the ladder."""
 _DEEPEST = 44
 
 
 @dataclass(frozen=True, eq=False)
 class Tree:
-    """Boxes that prove a total, as the proof of a certificate."""
+    """Boxes that prove a total, or are to prove it: kind of proof, and what is known."""
 
     kind: str
     state: State
 
     def document(self) -> dict[str, Any]:
         """Kind "three-piece" or "four-three-four" of docs/certificates.md."""
-        return {"kind": self.kind, **tree_document(self.state)}
-
-
-@dataclass(frozen=True, eq=False)
-class Stopped:
-    """Where a stopped run can go on: the proof so far, open boxes, and the answer."""
-
-    kind: str
-    proved: State | None
-    pending: State
-    durations: tuple[Fraction, ...] | None
-
-    def document(self) -> dict[str, Any]:
-        """The state of docs/certificates.md."""
-        answer = self.durations
-        return {
-            "kind": self.kind,
-            "proved": None if self.proved is None else tree_document(self.proved),
-            "open": tree_document(self.pending),
-            "durations": None if answer is None else [decimal(h) for h in answer],
-        }
-
-
-class _Stop(Exception):
-    """Time is up, or boxes are as small as they may get."""
+        return tree_document(self.kind, self.state)
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,89 +71,63 @@ class _Work:
 
 
 @dataclass(eq=False)
-class _Run:
-    problem: ExactProblem
-    deadline: float
-    began: float
-    upper: Fraction | None
-    report: Callable[[Progress], None] | None
-    lower: Fraction = Fraction(0)
-    nodes: int = 0
-    state: State | None = None
-    pending: State | None = None
-    stopped: bool = False
-    better: NDArray[np.float64] | None = None
+class _Search:
+    """What one stage hands on to the next: the boxes so far, with what proves them."""
 
-    def __post_init__(self) -> None:
-        self.floats = float_problem(self.problem)
+    session: Session
+    boxes: Boxes
+    proofs: Sequence[Proof | None]
 
-    def stage(self, target: Fraction, boxes: Boxes, proofs: Sequence[Proof | None]) -> State | None:
-        """Prove that no total is below ``target``.
-
-        None if stopped, with `pending` set, or if durations with a smaller total turned up, with
-        `better` set as well.
-        """
-        rows = self.problem if target < _ENDLESS else _positions_alone(self.problem)
-        work = _Work((), (boxes,))
+    def stage(self, target: Fraction) -> Tree:
+        """Prove that no total is below ``target``."""
+        session = self.session
+        endless = target >= _ENDLESS
+        rows = _positions_alone(session.exact) if endless else session.exact
+        kind = shape_for(session.exact).proof
+        proposer, work = Proposer(rows, target), _Work((), (self.boxes,))
         try:
-            proposer = Proposer(rows, target)
-            kept = np.array(
-                [
-                    proof is not None and proposer.prover.proves(*proof, *boxes.sides(n))
-                    for n, proof in enumerate(proofs)
-                ]
-            )
-            again = tuple(p for p, k in zip(proofs, kept, strict=True) if k and p is not None)
-            left = (boxes.pick(~kept),) if not kept.all() else ()
-            work = _Work(((boxes.pick(kept), again),), left)
+            work = self._again(proposer)
             while work.queue:
                 head = work.queue[-1].pick(np.arange(min(_BATCH, len(work.queue[-1]))))
                 self._look(head, target)
                 # One assignment: wherever an interrupt strikes, the boxes cover the square.
                 work = work.after(head, *proposer.propose(head))
-                self.nodes += len(head)
-                self._tell(sum(map(len, work.queue)))
-        except (KeyboardInterrupt, _Stop):
-            self.stopped = self.better is None
-            self.pending = work.state(target)
-            return None
-        return work.state(target)
+                session.report(sum(map(len, work.queue)), session.nodes + len(head))
+        finally:
+            state = work.state(target)
+            self.boxes, self.proofs = state.boxes, state.proofs
+            session.proposals = Tree(kind, state)
+        return Tree(kind, state)
+
+    def _again(self, proposer: Proposer) -> _Work:
+        """The boxes of the stage before, and what of their proofs holds for this total."""
+        kept = np.array(
+            [
+                proof is not None and proposer.prover.proves(*proof, *self.boxes.sides(n))
+                for n, proof in enumerate(self.proofs)
+            ]
+        )
+        again = tuple(p for p, k in zip(self.proofs, kept, strict=True) if k and p is not None)
+        left = (self.boxes.pick(~kept),) if not kept.all() else ()
+        return _Work(((self.boxes.pick(kept), again),), left)
 
     def _look(self, boxes: Boxes, target: Fraction) -> None:
         """Stop where there is reason to."""
-        if time.perf_counter() > self.deadline or (boxes.level >= _DEEPEST).any():
-            raise _Stop
-        better = self.improve(boxes, target)
-        if better is not None:
-            self.better = better
-            raise _Stop
-
-    def improve(self, boxes: Boxes, target: Fraction) -> NDArray[np.float64] | None:
-        """Durations in the direction of a box's centre that are shorter than ``target``, if any."""
+        self.session.check_clock()
+        if (boxes.level >= _DEEPEST).any():
+            raise OutOfTime
         a, b = ((boxes.index + 0.5) * 0.5**boxes.level).T
         shares = np.stack([a * (1 - b), (1 - a) * (1 - b), b * (1 - a)], axis=1)
-        shares /= (1 - a * b)[:, None]
-        stretch = evaluate(self.floats, shares).stretch
-        stretch = np.maximum(stretch, (self.floats.duration_lower / shares).max(axis=1))
-        outside = (shares * stretch[:, None] > self.floats.duration_upper).any(axis=1)
-        stretch = np.where(outside, np.inf, stretch)
-        for best in np.argsort(stretch)[:_LOOKS]:
-            if not stretch[best] < float(target) * (1 - 1e-9):
+        tried = self.session.stretched(shares / (1 - a * b)[:, None])
+        floats = self.session.floats
+        totals = tried.sum(axis=1)
+        totals[(tried > floats.duration_upper).any(axis=1)] = np.inf
+        for best in np.argsort(totals)[:_LOOKS]:
+            if not totals[best] < float(target) * (1 - _SLIGHT):
                 break
-            durations = np.asarray(shares[best] * stretch[best], dtype=np.float64)
             # The stretch knows nothing of positions.
-            if check(self.floats, durations).verdict is Verdict.PASS:
-                return durations
-        return None
-
-    def _tell(self, open_boxes: int) -> None:
-        if self.report is None:
-            return
-        seconds = time.perf_counter() - self.began
-        upper = float("inf") if self.upper is None else float(self.upper)
-        lower = float(self.lower)
-        gap = (upper - lower) / upper if self.upper is not None else float("inf")
-        self.report(Progress(lower, upper, gap, open_boxes, self.nodes, self.nodes / seconds))
+            if check(floats, tried[best]).verdict is Verdict.PASS:
+                raise Shorter(tried[best])
 
 
 def _declares(problem: ExactProblem) -> bool:
@@ -189,116 +141,44 @@ def _missing(problem: ExactProblem) -> str | None:
     return None
 
 
-def _certify(exact: ExactProblem, request: Request) -> Certified:
-    began = time.perf_counter()
-    run = _Run(exact, began + request.seconds, began, None, request.report)
-    start = np.zeros((1, 2), np.int64)
-    proofs: tuple[Proof | None, ...] = (None,)
-    boxes = Boxes(start, start)
-    given = None if request.resume is None else _resumed(exact, request.resume)
-    if given is not None:
-        boxes, proofs = given.pending.boxes, given.pending.proofs
-        if given.proved is not None:
-            run.state, run.lower = given.proved, given.proved.target
-    run.pending = State(run.lower, boxes, proofs)
-    answer: tuple[Fraction, ...] | None = given.durations if given is not None else None
-    try:
-        found = _answer(run.floats, exact, request.seed, None)
-        answer = min([h for h in (answer, found) if h is not None], key=sum, default=None)
-    except KeyboardInterrupt:
-        run.stopped = True
-    searching = not run.stopped
-    while searching:
-        run.upper = upper = sum(answer, Fraction(0)) if answer is not None else None
-        run.better = None
-        for target in _targets(exact, upper, request.gap, run.lower):
-            state = run.stage(target, boxes, proofs)
-            if state is None:
-                break
-            run.state, run.lower, run.pending = state, target, None
-            boxes, proofs = state.boxes, state.proofs
-        searching = run.better is not None
-        if run.better is not None:
-            assert run.pending is not None
-            boxes, proofs = run.pending.boxes, run.pending.proofs
-            found = _answer(run.floats, exact, request.seed, run.better)
-            if found is None or (upper is not None and sum(found) >= upper):
-                run.stopped, searching = True, False  # the improvement is too slight to prove
-            else:
-                answer = found
-    return _result(run, answer, began, request.gap)
+def _prove(session: Session) -> bool:
+    start, kind = np.zeros((1, 2), np.int64), shape_for(session.exact).proof
+    given = session.taken_up(partial(_proposed, session.exact, kind))
+    if given is None:
+        given = State(Fraction(0), Boxes(start, start), (None,))
+    session.proposals = Tree(kind, given)
+    search = _Search(session, given.boxes, given.proofs)
+    session.seek()
+    while session.upper is None:
+        target = _above_all(session.exact)
+        if target is None:
+            return False
+        try:
+            session.keep(target, search.stage(target))
+        except Shorter as found:
+            if not session.seek(found.durations):
+                raise OutOfTime from None  # the improvement is too slight to prove
+        else:
+            session.infeasible = True
+            return True
+    session.climb(_LADDER, partial(down, digits=_DIGITS), search.stage)
+    return True
 
 
-def _result(run: _Run, answer: tuple[Fraction, ...] | None, began: float, gap: float) -> Certified:
-    kind = shape_for(run.problem).proof
-    upper = sum(answer, Fraction(0)) if answer is not None else None
-    pending = run.pending if run.stopped else None
-    if upper is not None:
-        enough = run.state is not None and upper - run.lower <= upper * Fraction(gap)
-        outcome = Outcome.CERTIFIED if enough else Outcome.INTERVAL
-    else:
-        # A resumed proof may be of any total, and nothing may be left to prove.
-        wanted = _targets(run.problem, None, 0.0, Fraction(0))
-        above = run.state is not None and not run.stopped and run.lower in wanted
-        outcome = Outcome.INFEASIBLE if above else Outcome.OPEN
-    return Certified(
-        run.problem,
-        outcome,
-        run.lower,
-        upper,
-        answer,
-        run.nodes,
-        0 if pending is None else sum(p is None for p in pending.proofs),
-        time.perf_counter() - began,
-        None if run.state is None else Tree(kind, run.state),
-        None if pending is None else Stopped(kind, run.state, pending, answer),
-    )
+def _proposed(exact: ExactProblem, kind: str, document: dict[str, Any]) -> State:
+    """Boxes of a stopped run: what they say of themselves only proposes."""
+    if document["kind"] != kind:
+        raise TrajgapError(f"resume: a state of kind {document['kind']!r}")
+    return proposed(exact, document)
 
 
-def _resumed(exact: ExactProblem, document: dict[str, Any]) -> Stopped:
-    """Read a state; its proof and its answer are proved again, its open boxes only propose."""
-    try:
-        kind = shape_for(exact).proof
-        if document["kind"] != kind:
-            raise TrajgapError(f"resume: a state of kind {document['kind']!r}")
-        proved = document["proved"]
-        state = None if proved is None else tree_state(exact, proved, proof=True)
-        pending = tree_state(exact, document["open"], proof=False)
-        answer = document["durations"]
-        durations = None if answer is None else tuple(number(h) for h in answer)
-        kept = durations is None or keeps_limits(exact, durations)
-    except TrajgapError:
-        raise
-    except (KeyError, IndexError, TypeError, ValueError, AttributeError, ArithmeticError) as error:
-        raise TrajgapError(f"resume: malformed state ({type(error).__name__}: {error})") from None
-    if not kept:
-        raise TrajgapError("resume: the durations of the state do not keep the limits")
-    return Stopped(kind, state, pending, durations)
-
-
-def _answer(
-    floats: Problem, exact: ExactProblem, seed: int, initial: NDArray[np.float64] | None
-) -> tuple[Fraction, ...] | None:
-    """Feasible durations of the local solver, or else the ones it started from."""
-    solution = solve(floats, seed=seed, initial=initial)
-    tries = [h for h in (solution.durations, initial) if h is not None]
-    found = [h for h in (prove_feasible(exact, h) for h in tries) if h is not None]
-    return min(found, key=sum, default=None)
-
-
-def _targets(
-    exact: ExactProblem, upper: Fraction | None, gap: float, lower: Fraction
-) -> list[Fraction]:
-    """Totals to prove one after the other; above every admissible total if there is no answer."""
-    if upper is None:
-        longest = [u for u in exact.duration_upper if u is not None]
-        if len(longest) < exact.segments:
-            anywhere = (*exact.position_lower, *exact.position_upper)
-            return [_ENDLESS] if any(x is not None for x in anywhere) else []
-        return [sum(longest, Fraction(0)) * (1 + STRICT)]
-    last = float(_SAFE) * gap
-    found = [_down(upper * (1 - Fraction(g))) for g in (*(g for g in _STAGES if g > last), last)]
-    return [t for t in found if t > lower]
+def _above_all(exact: ExactProblem) -> Fraction | None:
+    """A total above every admissible one; None where none can be refuted as a whole."""
+    longest = [u for u in exact.duration_upper if u is not None]
+    if len(longest) == exact.segments:
+        return sum(longest, Fraction(0)) * (1 + STRICT)
+    anywhere = (*exact.position_lower, *exact.position_upper)
+    return _ENDLESS if any(x is not None for x in anywhere) else None
 
 
 def _positions_alone(exact: ExactProblem) -> ExactProblem:
@@ -307,14 +187,6 @@ def _positions_alone(exact: ExactProblem) -> ExactProblem:
     return replace(exact, limits=nothing, duration_lower=(Fraction(0),) * exact.segments)
 
 
-def _down(total: Fraction) -> Fraction:
-    """A little less, in 12 decimals after the first digit."""
-    digits = 12 - len(str(int(total))) if total >= 1 else 12
-    while total * 10**digits < 10**11:
-        digits += 1
-    return Fraction(int(total * 10**digits), 10**digits)
-
-
 THREE_PIECE = Certifier(
-    "C2 3-5-3 and 4-3-4 polynomials at rest at the ends", _declares, _missing, _certify
+    "C2 3-5-3 and 4-3-4 polynomials at rest at the ends", _declares, _missing, _prove
 )

@@ -1,4 +1,4 @@
-"""The bisection tree of a proof as JSON, and back again with every box proved anew."""
+"""The bisection tree of a proof as JSON, and back again as proposals."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from ....problem import TrajgapError
-from ...verify_problem import number
+from ....verify import LEAF, OPEN, number
 from ..exact import ExactProblem, decimal
 from .boxes import Boxes, Proof
-from .rows import PLACES, TOTAL, Prover, Row, shape_for
+from .rows import PLACES, TOTAL, Row, shape_for
 
 _DEEPEST = 60
 
@@ -29,38 +29,38 @@ class State:
     proofs: tuple[Proof | None, ...]
 
 
-def tree_document(state: State) -> dict[str, Any]:
-    """Total, rows, tree and leaves as docs/certificates.md describes them; null: an open leaf."""
-    tree, order = _tree(state)
+def tree_document(kind: str, state: State) -> dict[str, Any]:
+    """Total, rows and tree as docs/certificates.md describes them."""
     rows: dict[Row, int] = {}
-    leaves: list[list[int | str] | None] = []
-    for n in order:
+    nodes: list[Any] = []
+    for n in _preorder(state):
+        if isinstance(n, str):
+            nodes.append("ab".index(n))
+            continue
         proof = state.proofs[n]
         if proof is None:
-            leaves.append(None)
+            nodes.append([OPEN])
             continue
-        leaf: list[int | str] = []
+        leaf: list[int | str] = [LEAF]
         for row, weight in zip(*proof, strict=True):
             leaf += [rows.setdefault(row, len(rows)), _weight(weight)]
-        leaves.append(leaf)
+        nodes.append(leaf)
     return {
+        "kind": kind,
         "total": decimal(state.target),
         "rows": [[r.kind, r.joint, r.order, r.sign, r.place, r.cap] for r in rows],
-        "tree": tree,
-        "leaves": leaves,
+        "tree": nodes,
     }
 
 
-def tree_state(problem: ExactProblem, document: dict[str, Any], proof: bool) -> State:
-    """Read a tree of unknown origin.
+def proposed(problem: ExactProblem, document: dict[str, Any]) -> State:
+    """Read a tree of unknown origin, whose proofs are proposals.
 
     Parameters
     ----------
     problem : ExactProblem
     document : dict
-        From `tree_document`.
-    proof : bool
-        Whether every box must be proved, which is checked; otherwise its proofs are proposals.
+        From `tree_document`; leaves may be open.
 
     Returns
     -------
@@ -69,14 +69,13 @@ def tree_state(problem: ExactProblem, document: dict[str, Any], proof: bool) -> 
     Raises
     ------
     TrajgapError
-        If it is malformed or does not prove its total.
+        If it is malformed.
     """
     target = number(document["total"])
     rows = [_row(problem, entry) for entry in document["rows"]]
-    boxes = _boxes(str(document["tree"]))
-    leaves = document["leaves"]
-    if len(leaves) != len(boxes) or not target >= 0:
-        raise TrajgapError("resume: leaves and tree differ in number, or the total is negative")
+    boxes, leaves = _boxes(document["tree"])
+    if not target >= 0:
+        raise TrajgapError("resume: the total is negative")
     proofs: list[Proof | None] = []
     for leaf in leaves:
         if leaf is None:
@@ -87,11 +86,6 @@ def tree_state(problem: ExactProblem, document: dict[str, Any], proof: bool) -> 
         if len(which) != len(weights) or not which:
             raise TrajgapError("resume: a leaf without weights")
         proofs.append((which, weights))
-    if proof:
-        prover = Prover(problem, target)
-        for n, found in enumerate(proofs):
-            if found is None or not prover.proves(*found, *boxes.sides(n)):
-                raise TrajgapError(f"resume: the state does not prove its lower bound (box {n})")
     return State(target, boxes, tuple(proofs))
 
 
@@ -129,16 +123,20 @@ def _row(problem: ExactProblem, entry: Any) -> Row:
     return row
 
 
-def _boxes(tree: str) -> Boxes:
-    stack, found = [((0, 0), (0, 0))], []
-    for letter in tree:
+def _boxes(tree: list[Any]) -> tuple[Boxes, list[list[Any] | None]]:
+    """Leaves of a tree in preorder; None stands for an open one."""
+    stack, found, leaves = [((0, 0), (0, 0))], [], []
+    for node in tree:
         if not stack:
-            raise TrajgapError("resume: the tree has too many letters")
+            raise TrajgapError("resume: the tree has too many nodes")
         level, index = stack.pop()
-        if letter == ".":
+        if isinstance(node, list):
+            if node[:1] not in ([LEAF], [OPEN]):
+                raise TrajgapError("resume: the tree has an unknown tag")
             found.append((level, index))
+            leaves.append(node[1:] if node[0] == LEAF else None)
             continue
-        axis = "ab".index(letter)
+        axis = _whole(node, 0, 1)
         if level[axis] >= _DEEPEST:
             raise TrajgapError("resume: the tree is too deep")
         for side in (1, 0):
@@ -149,7 +147,8 @@ def _boxes(tree: str) -> Boxes:
     if stack:
         raise TrajgapError("resume: the tree leaves a part of the square open")
     level_array = np.array([level for level, _ in found], np.int64).reshape(-1, 2)
-    return Boxes(level_array, np.array([index for _, index in found], np.int64).reshape(-1, 2))
+    index_array = np.array([index for _, index in found], np.int64).reshape(-1, 2)
+    return Boxes(level_array, index_array), leaves
 
 
 def _weight(weight: Fraction) -> str:
@@ -158,17 +157,15 @@ def _weight(weight: Fraction) -> str:
     return short if len(short) < len(text) and Fraction(short) == weight else text
 
 
-def _tree(state: State) -> tuple[str, list[int]]:
-    """Bisection tree in preorder, and the leaves in its order."""
-    letters: list[str] = []
-    order: list[int] = []
+def _preorder(state: State) -> list[str | int]:
+    """Bisection tree in preorder: the letter of a cut, or the number of a box."""
+    nodes: list[str | int] = []
     boxes = [(*state.boxes.level[n], *state.boxes.index[n]) for n in range(len(state.boxes))]
     stack = [((0, 0), (0, 0), list(range(len(boxes))))]
     while stack:
         level, index, members = stack.pop()
         if len(members) == 1:
-            letters.append(".")
-            order.append(members[0])
+            nodes.append(members[0])
             continue
         axis = next(x for x in (0, 1) if all(boxes[n][x] > level[x] for n in members))
         halves: tuple[list[int], list[int]] = ([], [])
@@ -180,5 +177,5 @@ def _tree(state: State) -> tuple[str, list[int]]:
             where[axis] = 2 * index[axis] + side
             depth = (deeper, level[1]) if axis == 0 else (level[0], deeper)
             stack.append((depth, (where[0], where[1]), halves[side]))
-        letters.append("ab"[axis])
-    return "".join(letters), order
+        nodes.append("ab"[axis])
+    return nodes

@@ -1,0 +1,239 @@
+"""How often `solve` says a wrong word, or an optimum that brute force improves.
+
+    python benchmarks/solver_errors.py --count 1000 --seed 0
+
+Random problems are hard on purpose: bounds on the durations, position limits, way-points that
+coincide or nearly do, joints that stand still, angles and limits over many powers of ten. Brute
+force is differential evolution over the logarithms of the durations, then the simplex method. It
+shares no code with `solve`; every motion counts only once `check` has passed it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from collections import Counter
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import differential_evolution, minimize
+from trajgap.nlp import Solution, solve
+from trajgap.problem import (
+    Interpolant,
+    Limits,
+    Problem,
+    Verdict,
+    check,
+    cubic_spline,
+    evaluate,
+    quintic_spline,
+    rest_to_rest,
+    three_five_three,
+)
+from trajgap.problem.curves import batch_coefficients
+
+IMPROVABLE = 1e-4
+"""Relative gain of brute force from which an answer counts as improvable."""
+WIDEST_LOG = (-14.0, 4.0)
+"""Natural logarithms of the durations that brute force tries, over the usual one of the problem."""
+SAMPLES, FINE, MARGIN = 17, 129, 0.3
+"""Places of a segment at which brute force looks at positions, first and in the end, and by how
+much a parabola of usual bend rises above n places, times n²; `check` judges what it finds."""
+MEMBERS, GENERATIONS = 15, 100
+"""Of differential evolution: members a segment, generations."""
+TRIES, EVALUATIONS = 2, 150
+"""Members of the last generation from which the simplex method starts; its evaluations for each
+segment."""
+SCALES = (-4.0, 4.0)
+"""Powers of ten over which angles and limits are spread."""
+
+
+def random_curve(generator: np.random.Generator) -> Interpolant:
+    """One of the curves that papers use, with 2 to 4 segments."""
+    n = int(generator.integers(2, 5))
+    kinds = (
+        lambda: three_five_three(),
+        lambda: cubic_spline(n),
+        lambda: cubic_spline(n, ends=((2, 0.0),)),
+        lambda: quintic_spline(n),
+        lambda: rest_to_rest(n, int(generator.choice([3, 5]))),
+    )
+    return kinds[int(generator.integers(len(kinds)))]()
+
+
+def random_problem(generator: np.random.Generator) -> Problem:
+    """A problem that may have every trait that made solvers fail."""
+    curve = random_curve(generator)
+    jumps = max(curve.degrees) == 3 and curve.continuity[0] == 0
+    joints, points = int(generator.integers(1, 4)), len(curve.waypoint_breaks)
+    q = generator.normal(size=(points, joints)) + generator.normal(size=joints)
+    if generator.random() < 0.3:
+        w = int(generator.integers(1, points))
+        q[w] = q[w - 1]
+        if generator.random() < 0.5:
+            q[w] += 10.0 ** generator.uniform(-7, -2) * generator.normal(size=joints)
+    if joints > 1 and generator.random() < 0.2:
+        q[:, int(generator.integers(joints))] = generator.normal()
+    unit = 10.0 ** generator.uniform(*SCALES)
+    pace = 10.0 ** generator.uniform(*SCALES)
+    rates = generator.uniform(0.3, 3.0, (3, joints)) * unit * pace ** np.arange(1, 4)[:, None]
+    kept = generator.random(3) < 0.6
+    kept[int(generator.integers(3))] = True
+    if jumps:
+        kept[2], kept[0] = False, True  # their acceleration jumps: no jerk limit is ever kept
+    rates[~kept] = np.inf
+    low, high = -np.inf, np.inf
+    if generator.random() < 0.3:
+        span = np.ptp(q, axis=0)
+        low = (q.min(axis=0) - generator.uniform(0, 0.4) * span) * unit
+        high = (q.max(axis=0) + generator.uniform(0, 0.4) * span) * unit
+    problem = Problem(q * unit, Limits(*rates, low, high, joints=joints), curve)
+    if generator.random() < 0.5:
+        h = np.exp(0.7 * generator.normal(size=curve.segments))
+        stretch = float(evaluate(problem, h[None]).stretch[0])
+        if np.isfinite(stretch) and stretch > 0:
+            h *= stretch * generator.choice([0.9, 1.0, 1.0, 1.2])
+            problem = replace(
+                problem,
+                duration_lower=h * generator.uniform(0.3, 1.0, h.size),
+                duration_upper=h * generator.uniform(1.0, 2.0, h.size),
+            )
+    return problem
+
+
+@dataclass(frozen=True, eq=False)
+class Brute:
+    """The shortest motion that brute force found and `check` passed, if any."""
+
+    total: float
+    durations: NDArray[np.float64] | None
+
+
+def _outside(problem: Problem, h: NDArray[np.float64], places: int) -> NDArray[np.float64]:
+    """Largest excess over the position range of each vector, relative to the way-points' span.
+
+    Way-points are left out: a range that just holds them is met there, whatever the durations.
+    """
+    limits, curve = problem.limits, problem.curve
+    assert isinstance(curve, Interpolant)
+    span = np.ptp(problem.waypoints, axis=0)
+    span = np.where(span > 0, span, 1.0)
+    c = batch_coefficients(curve, problem.waypoints, h)
+    s = np.linspace(0.0, 1.0, places)[1:-1, None] ** np.arange(c.shape[2])
+    q = s @ c
+    over = np.maximum((q - limits.position_upper) / span, (limits.position_lower - q) / span)
+    return np.asarray(over.max(axis=(1, 2, 3)) + MARGIN / places**2)
+
+
+def objective(
+    problem: Problem, h: NDArray[np.float64], places: int = SAMPLES
+) -> NDArray[np.float64]:
+    """Totals of duration vectors once stretched to be tight; more where that keeps no limit."""
+    h = _decoded(problem, h)
+    stretch = evaluate(problem, h).stretch
+    over = np.where(np.isfinite(stretch), np.maximum(stretch - 1.0 - 1e-10, 0.0), 1e3)
+    if problem.limits.limits_position:
+        over += np.maximum(_outside(problem, h, places), 0.0)
+    total = h.sum(axis=1)
+    return np.asarray(np.where(over > 0, total * (10.0 + 100.0 * over), total))
+
+
+def _decoded(problem: Problem, h: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Vectors stretched to be tight, each stretch put back between the bounds."""
+    for _ in range(4):
+        stretch = evaluate(problem, h).stretch
+        factor = np.where(np.isfinite(stretch) & (stretch > 0), stretch, 1.0)
+        h = np.clip(h * factor[:, None], problem.duration_lower, problem.duration_upper)
+    return np.asarray(h)
+
+
+def brute_force(problem: Problem, seed: int) -> Brute:
+    """Shortest motion that differential evolution and the simplex method find."""
+    n = problem.segments
+    usual = np.ones(n)
+    stretch = float(evaluate(problem, usual[None]).stretch[0])
+    if np.isfinite(stretch) and stretch > 0:
+        usual *= stretch
+    low = np.log(np.maximum(problem.duration_lower, usual * np.exp(WIDEST_LOG[0])))
+    high = np.log(np.minimum(problem.duration_upper, usual * np.exp(WIDEST_LOG[1])))
+    low, high = np.minimum(low, high - 1e-9), np.maximum(high, low + 1e-9)
+
+    def many(z: NDArray[np.float64]) -> NDArray[np.float64]:
+        return objective(problem, np.exp(np.clip(z.T, low, high)))
+
+    def one(z: NDArray[np.float64]) -> float:
+        return float(objective(problem, np.exp(np.clip(z, low, high))[None], FINE)[0])
+
+    found = differential_evolution(
+        many,
+        list(zip(low, high, strict=True)),
+        popsize=MEMBERS,
+        maxiter=GENERATIONS,
+        tol=1e-9,
+        polish=False,
+        rng=seed,
+        vectorized=True,
+        updating="deferred",
+    )
+    order = np.argsort(found.population_energies)[:TRIES]
+    best = Brute(np.inf, None)
+    for z in found.population[order]:
+        options = {"xatol": 1e-7, "fatol": 0, "maxfev": EVALUATIONS * n}
+        ended = minimize(one, z, method="Nelder-Mead", options=options).x
+        for w in (ended, z):
+            h = _decoded(problem, np.exp(np.clip(w, low, high))[None])[0]
+            if h.sum() < best.total and check(problem, h).verdict is Verdict.PASS:
+                best = Brute(float(h.sum()), h)
+    return best
+
+
+def judged(solution: Solution, brute: Brute) -> str:
+    """What is wrong with an answer, in a word; empty if nothing is."""
+    if solution.durations is None:
+        return f"wrong {solution.status}" if brute.durations is not None else ""
+    kept = check(solution.problem, solution.durations, solution.nodal).verdict
+    if kept is not Verdict.PASS:
+        return "answer does not pass"
+    return "improvable" if brute.total < solution.best * (1 - IMPROVABLE) else ""
+
+
+def main() -> int:
+    """Print the rates of wrong words and of improvable answers; 1 if a goal is missed."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
+    parser.add_argument("--count", type=int, default=1000)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--verbose", action="store_true", help="print every problem that fails")
+    given = parser.parse_args()
+    words: Counter[str] = Counter()
+    faults: Counter[str] = Counter()
+    spent = [0.0, 0.0]
+    for k in range(given.seed, given.seed + given.count):
+        problem = random_problem(np.random.default_rng(k))
+        began = time.perf_counter()
+        solution = solve(problem)
+        spent[0] += time.perf_counter() - began
+        began = time.perf_counter()
+        brute = brute_force(problem, k)
+        spent[1] += time.perf_counter() - began
+        words[str(solution.status)] += 1
+        fault = judged(solution, brute)
+        if fault:
+            faults[fault] += 1
+            if given.verbose:
+                gain = 1 - brute.total / solution.best if brute.total < np.inf else np.nan
+                print(
+                    f"{k}: {fault}, {solution.status}, {problem.curve.name}, gain {gain:.3g}",
+                    flush=True,
+                )
+    print(f"{given.count} problems, seeds {given.seed} to {given.seed + given.count - 1}")
+    print(f"solve {spent[0]:.0f} s, brute force {spent[1]:.0f} s")
+    for name, counted in (("status", words), ("fault", faults)):
+        for word, count in counted.most_common():
+            print(f"| {name} | {word} | {count} | {count / given.count:.4%} |")
+    return int(any(f.startswith("wrong infeasible") for f in faults))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,275 @@
+"""Shortest motion near a start: quadratic steps in log durations on the exact extrema.
+
+No barrier, no sampled places: every limit is linearised at its true extrema, the step is the least
+point of a small quadratic program, and each accepted motion keeps every limit. It stays sharp
+where durations differ by many powers of ten, since logarithms do not see the difference.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import LinAlgError, cholesky, solve_triangular
+from scipy.optimize import nnls
+
+from ...problem import Array, Problem
+from .exact_rows import ExactRows, exact_rows
+
+STEPS = 80
+"""Most steps of one descent; with a superlinear end 10 to 30 suffice."""
+RESTORING_STEPS = 30
+"""Most steps towards the limits from a start that exceeds them."""
+KEPT = 1e-12
+"""Excess that counts as kept: a thousandth of the checker's tolerance."""
+WIDEST_STEP = 1.0
+"""Trust region at the start, in log durations: a factor e."""
+SMALLEST_STEP = 1e-10
+"""Trust region at which a descent ends; the total is then settled to its square."""
+GAIN = 1e-13
+"""Relative gain below which a descent ends: rounding of the total."""
+SLOW, PATIENCE = 1e-9, 6
+"""A descent that gains less than this (relative) in so many steps creeps, and ends."""
+GOOD = 0.5
+"""Share of the expected gain from which the trust region grows."""
+PULL = 1e-3
+"""Weight that keeps a step of restoration short; small beside the excess, whose weight is 1."""
+
+
+@dataclass(frozen=True, eq=False)
+class Box:
+    """Bounds on the logarithms of the durations."""
+
+    low: Array
+    high: Array
+
+    def inside(self, z: Array) -> Array:
+        """The nearest point of the box."""
+        return np.asarray(np.clip(z, self.low, self.high))
+
+
+def least_point(
+    hessian: Array, slope: Array, rows: Array, room: Array
+) -> tuple[Array, Array] | None:
+    """Least ½dᵀHd + gᵀd with Ad ≤ b, and the multipliers; None if no d keeps the rows.
+
+    With H = LLᵀ, y = Lᵀd + L⁻¹g makes it the shortest y with Gy ≥ w, G = −AL⁻ᵀ, w = −b − AH⁻¹g,
+    which non-negative least squares solve (Lawson and Hanson, Solving Least Squares Problems,
+    chapter 23): of u ≥ 0 with least |[Gᵀ; wᵀ]u − e|, e the last unit vector, the residual ρ gives
+    y = −ρ_{1..n}/ρ_{n+1}, and −u/ρ_{n+1} are the multipliers.
+    """
+    lower = cholesky(hessian, lower=True)
+    shift = solve_triangular(lower, slope, lower=True)
+    turned = solve_triangular(lower, rows.T, lower=True).T
+    facing, needed = -turned, -room - turned @ shift
+    stacked = np.vstack([facing.T, needed])
+    target = np.zeros(len(stacked))
+    target[-1] = 1.0
+    try:
+        weights, _ = nnls(stacked, target, maxiter=20 * stacked.shape[1] + 100)
+    except RuntimeError:
+        return None
+    residual = stacked @ weights - target
+    if not residual[-1] < -1e-14:
+        return None
+    y = -residual[:-1] / residual[-1]
+    step = solve_triangular(lower.T, y - shift, lower=False)
+    # Rows that all but contradict each other give a point far beyond them.
+    if not (turned @ y - room - turned @ shift <= 1e-6 * (1.0 + np.abs(room))).all():
+        return None
+    return step, -weights / residual[-1]
+
+
+def _walled(rows: ExactRows, box: Box, radius: float) -> tuple[Array, Array]:
+    """Rows and their room, with the walls of the box and of the trust region."""
+    z = np.log(rows.durations)
+    one = np.eye(z.size)
+    up = np.minimum(box.high - z, radius)
+    down = np.minimum(z - box.low, radius)
+    matrix = np.vstack([rows.gradient, one, -one])
+    return matrix, np.concatenate([-rows.excess, np.maximum(up, 0.0), np.maximum(down, 0.0)])
+
+
+def restored(problem: Problem, h: Array, box: Box, steps: int = RESTORING_STEPS) -> ExactRows:
+    """Limits at a vector of the box with the least excess that is found near ``h``.
+
+    Each step minimises ½(t + 1)² + ½ρ|d|² over steps d and excesses t, every linearised limit at
+    most t: far from the limits it lowers the worst one, near them it goes a little further in.
+    """
+    rows = exact_rows(problem, np.exp(box.inside(np.log(h))))
+    radius, n = WIDEST_STEP, h.size
+    for _ in range(steps):
+        if rows.worst <= KEPT or not np.isfinite(rows.worst) or radius < SMALLEST_STEP:
+            break
+        matrix, room = _walled(rows, box, radius)
+        elastic = np.zeros((len(matrix), 1))
+        elastic[: len(rows.excess)] = -1.0
+        weights = np.append(np.full(n, PULL), 1.0)
+        slope = np.append(np.zeros(n), 1.0)
+        found = least_point(np.diag(weights), slope, np.hstack([matrix, elastic]), room)
+        if found is None:
+            break
+        z = box.inside(np.log(rows.durations) + found[0][:n])
+        trial = exact_rows(problem, np.exp(z))
+        expected = rows.worst - max(float(found[0][n]), 0.0)
+        if trial.worst <= KEPT or trial.worst < rows.worst - 0.1 * expected:
+            rows, radius = trial, min(2.0 * radius, 4.0)
+        elif trial.worst < rows.worst:
+            rows, radius = trial, 0.5 * radius
+        else:
+            radius = 0.25 * min(radius, float(np.abs(found[0][:n]).max()) or radius)
+    return rows
+
+
+def _onto_limits(problem: Problem, h: Array, box: Box) -> ExactRows:
+    """The nearest vector at the limits: by a uniform stretch where the box allows it, else Newton.
+
+    A stretch leaves the path and its positions as they are.
+    """
+    rows = exact_rows(problem, np.exp(box.inside(np.log(h))))
+    for _ in range(5):
+        if not np.isfinite(rows.worst):
+            break
+        z = np.log(rows.durations)
+        derivatives = [e.order > 0 for e in rows.points]
+        stretch = float(rows.excess[derivatives].max(initial=-np.inf))
+        outside = rows.excess[np.logical_not(derivatives)].max(initial=-np.inf) > KEPT
+        free = np.isfinite(stretch) and not outside and problem.curve.homogeneous
+        if rows.worst <= KEPT:
+            if not (free and stretch < -KEPT and (z + stretch >= box.low).all()):
+                break
+            return exact_rows(problem, np.exp(z + stretch))
+        if free and (z + stretch <= box.high).all():
+            step = np.full(z.size, stretch)
+        else:
+            matrix, room = _walled(rows, box, WIDEST_STEP)
+            found = least_point(np.eye(z.size), np.zeros(z.size), matrix, room)
+            if found is None:
+                break
+            step = found[0]
+        trial = exact_rows(problem, np.exp(box.inside(z + step)))
+        if not trial.worst < rows.worst:
+            break
+        rows = trial
+    return rows
+
+
+@dataclass(frozen=True, eq=False)
+class Descent:
+    """Where a descent ended.
+
+    Attributes
+    ----------
+    durations : ndarray, shape (segments,)
+        s.
+    excess : float
+        Largest excess over a limit, at most `KEPT` if the limits are kept.
+    converged : bool
+        Whether no step gained any more.
+    steps : int
+    """
+
+    durations: Array
+    excess: float
+    converged: bool
+    steps: int
+
+    @property
+    def feasible(self) -> bool:
+        """Whether every limit is kept."""
+        return self.excess <= KEPT
+
+
+def descend(problem: Problem, start: Array, box: Box) -> Descent:
+    """Shorten a motion within its limits until no step gains.
+
+    Parameters
+    ----------
+    problem : Problem
+        With a determined curve of any kind.
+    start : ndarray, shape (segments,)
+        s; need not keep the limits.
+    box : Box
+        Bounds on the logarithms of the durations.
+
+    Returns
+    -------
+    Descent
+    """
+    rows = _onto_limits(problem, start, box)
+    if rows.worst > KEPT:
+        rows = restored(problem, rows.durations, box)
+    if rows.worst > KEPT:
+        return Descent(rows.durations, rows.worst, False, 0)
+    total = float(rows.durations.sum())
+    hessian = np.diag(rows.durations / total + 1e-4)
+    radius, taken, history = WIDEST_STEP, 0, [total]
+    for taken in range(1, STEPS + 1):
+        slope = rows.durations / total
+        matrix, room = _walled(rows, box, radius)
+        found = least_point(hessian, slope, matrix, np.maximum(room, 0.0))
+        if found is None:
+            break
+        step, weights = found
+        size = float(np.abs(step).max())
+        expected = -float(slope @ step)
+        if not expected > GAIN or size < SMALLEST_STEP:
+            return Descent(rows.durations, rows.worst, True, taken)
+        trial = _onto_limits(problem, np.exp(np.log(rows.durations) + step), box)
+        if not _gain(total, trial) > GOOD * expected:
+            # Limits bend: a second step from beyond them follows the valley, a stretch leaves it.
+            beyond = exact_rows(problem, np.exp(box.inside(np.log(rows.durations) + step)))
+            matrix, room = _walled(beyond, box, size)
+            bent = least_point(hessian, beyond.durations / total, matrix, room)
+            if bent is not None:
+                other = _onto_limits(problem, np.exp(np.log(beyond.durations) + bent[0]), box)
+                trial = max(trial, other, key=lambda one: _gain(total, one))
+        after = float(trial.durations.sum())
+        if trial.worst <= KEPT and after < total * (1.0 - 1e-15):
+            hessian = _curved(hessian, rows, trial, weights[: len(rows.excess)])
+            good = _gain(total, trial) > GOOD * expected
+            radius = min(2.0 * radius, WIDEST_STEP) if good else 0.5 * max(size, 0.5 * radius)
+            rows, total = trial, after
+            history.append(total)
+            if len(history) > PATIENCE and history[-1 - PATIENCE] < total * (1.0 + SLOW):
+                break
+        else:
+            radius = 0.25 * min(radius, size)
+            if radius < SMALLEST_STEP:
+                return Descent(rows.durations, rows.worst, True, taken)
+    return Descent(rows.durations, rows.worst, False, taken)
+
+
+def _gain(total: float, rows: ExactRows) -> float:
+    """Relative gain of a motion over a total; -inf if it exceeds a limit."""
+    return 1.0 - float(rows.durations.sum()) / total if rows.worst <= KEPT else -np.inf
+
+
+def _curved(hessian: Array, before: ExactRows, after: ExactRows, weights: Array) -> Array:
+    """The damped BFGS update (Powell 1978) of the Lagrangian's Hessian; extrema are matched."""
+    step = np.log(after.durations / before.durations)
+    total = float(before.durations.sum())
+    change = (after.durations - before.durations) / total
+    for i in np.flatnonzero(weights > 0):
+        e, best, twin = before.points[i], np.inf, -1
+        for k, other in enumerate(after.points):
+            same = (other.joint, other.order, other.segment) == (e.joint, e.order, e.segment)
+            ends = (other.s in (0.0, 1.0)) == (e.s in (0.0, 1.0))
+            if same and ends and after.signs[k] == before.signs[i] and abs(other.s - e.s) < best:
+                best, twin = abs(other.s - e.s), k
+        if best > 0.3:
+            return hessian
+        change += weights[i] * (after.gradient[twin] - before.gradient[i])
+    image = hessian @ step
+    bend = float(step @ image)
+    if not bend > 0.0:
+        return hessian
+    along = float(step @ change)
+    share = 1.0 if along >= 0.2 * bend else 0.8 * bend / (bend - along)
+    mixed = share * change + (1.0 - share) * image
+    updated = hessian - np.outer(image, image) / bend + np.outer(mixed, mixed) / float(step @ mixed)
+    try:
+        cholesky(updated, lower=True)
+    except LinAlgError:
+        return hessian
+    return np.asarray(updated) if np.linalg.cond(updated) < 1e10 else hessian

@@ -1,0 +1,100 @@
+"""Answers of small problems without IPOPT: a wide search, then a descent from each basin."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...problem import Array, Check, Interpolant, Problem, Verdict, check
+from .descent import Box, Descent, descend
+from .starts import SETTLED_SEGMENTS, equal_start
+from .tracking import Local
+from .wide_search import Basin, basins
+
+ROUND = 1e-9
+"""Relative room below a least duration, which rounding may take: the checker's tolerance."""
+LEAST_SHARE = 1e-12
+"""Of the usual duration: no search goes below, where float64 has lost the curve."""
+UNEQUAL = 0.02
+"""A duration below this share of the mean makes the tracked NLP slow and blunt: it counts in
+durations, not in their logarithms."""
+AT_BOUND = 0.99
+"""Share of an upper bound from which a duration counts as held by it."""
+
+
+def searchable(problem: Problem) -> bool:
+    """Whether the exact descents apply: a determined curve, few enough durations."""
+    return not problem.curve.free and problem.segments <= SETTLED_SEGMENTS
+
+
+def least_durations(problem: Problem) -> Array:
+    """Durations, s, that no motion within the velocity limits undercuts; 0 where nothing says so.
+
+    Between two way-points a joint covers |Δq|, which takes |Δq|/V at least.
+    """
+    least = np.array(problem.duration_lower)
+    breaks = problem.curve.waypoint_breaks
+    distance = np.abs(np.diff(problem.waypoints, axis=0))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        needed = np.where(distance > 0, distance / problem.limits.velocity, 0.0).max(axis=1)
+    for w, time in enumerate(needed):
+        if breaks[w + 1] == breaks[w] + 1 and np.isfinite(time):
+            least[breaks[w]] = max(least[breaks[w]], (1.0 - ROUND) * time)
+    return least
+
+
+def made_up(problem: Problem, floor: float) -> Array:
+    """The floor of each segment, s, where neither a bound nor a velocity limit gives a higher one.
+
+    0 for the other segments.
+    """
+    return np.where(least_durations(problem) < floor, floor, 0.0)
+
+
+def box_above(problem: Problem, floor: Array) -> Box:
+    """Bounds on log durations: the problem's own, the least durations, and the floors."""
+    tiny = LEAST_SHARE * float(equal_start(problem).mean())
+    low = np.maximum(np.maximum(least_durations(problem), floor), tiny)
+    # A least duration above an upper bound leaves no motion; the box stays one for the search.
+    high = np.maximum(problem.duration_upper, low)
+    return Box(np.log(low), np.log(high))
+
+
+def ordinary(problem: Problem, basin: Basin) -> bool:
+    """Whether the tracked NLP is at its best: stretching repairs, durations are alike."""
+    h = basin.durations
+    return bool(
+        basin.excess == 0.0
+        and problem.curve.homogeneous
+        and not problem.limits.limits_position
+        and (h >= UNEQUAL * h.mean()).all()
+        and (h < AT_BOUND * problem.duration_upper).all()
+    )
+
+
+def kept(problem: Problem, verdict: Check) -> bool:
+    """Whether a motion counts as feasible: curves that always jump are judged by their limits."""
+    if isinstance(problem.curve, Interpolant):
+        return verdict.verdict is Verdict.PASS
+    return verdict.limits is Verdict.PASS
+
+
+def as_local(problem: Problem, found: Descent) -> Local:
+    """The end of a descent, judged by the checker."""
+    h = np.clip(found.durations, problem.duration_lower, problem.duration_upper)
+    verdict = check(problem, h)
+    if found.feasible and 1.0 < verdict.stretch < 1.0 + ROUND and problem.curve.homogeneous:
+        h = np.clip(h * verdict.stretch, problem.duration_lower, problem.duration_upper)
+        verdict = check(problem, h)
+    return Local(h, None, float(h.sum()), found.converged, kept(problem, verdict), found.steps)
+
+
+def exact_search(problem: Problem, points: Array, floor: Array) -> list[Local]:
+    """Local optima of all starts, above the floors; starts that end together are kept apart."""
+    box = box_above(problem, floor)
+    return [as_local(problem, descend(problem, start, box)) for start in points]
+
+
+def exact_starts(problem: Problem, count: int, seed: int, floor: Array) -> list[Basin]:
+    """The best basins of a wide search above the floors."""
+    generator = np.random.default_rng(seed)
+    return basins(problem, equal_start(problem), box_above(problem, floor), count, generator)

@@ -1,0 +1,106 @@
+"""From local optima to an answer: the checker's word, the optimality conditions, the status."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...problem import Array, Problem, Verdict, check
+from .optimality import kkt
+from .polish import polish
+from .solution import Solution, Status
+from .tracking import Local
+
+SAME = 1e-6
+"""Relative difference below which two totals count as the same."""
+KKT_TOLERANCE = 1e-8
+"""Scaled KKT residual up to which an answer is called optimal: IPOPT's own usual tolerance."""
+POLISHED = 1e-11
+"""KKT residual above which an answer is sharpened by Newton steps on its active set."""
+TRIED = 3
+"""Ends of descents, best first, of which the sharpest with the best total becomes the answer."""
+
+
+def judged(problem: Problem, found: list[Local], floor: Array, starts: int) -> Solution:
+    """The best answer that the checker passes, with its optimality conditions.
+
+    Parameters
+    ----------
+    problem : Problem
+    found : list of Local
+        Ends of all starts.
+    floor : ndarray, shape (segments,)
+        Least durations, s, that the search made up; 0 where the problem itself sets one.
+    starts : int
+
+    Returns
+    -------
+    Solution
+    """
+    iterations = sum(local.iterations for local in found)
+    feasible = [local for local in found if local.feasible]
+    if not feasible:
+        return Solution(
+            problem,
+            *_nothing_found(problem, found),
+            starts=starts,
+            iterations=iterations,
+        )
+    best = min(feasible, key=lambda local: local.total)
+    durations, report = best.durations, kkt(problem, best.durations, best.nodal)
+    if report.residual > POLISHED:
+        durations, report = polish(problem, durations, report)
+    status = Status.OPTIMAL if report.residual <= KKT_TOLERANCE else Status.FEASIBLE
+    why = None if status is Status.OPTIMAL else f"KKT residual {report.residual:.1e}"
+    verdict = check(problem, durations, best.nodal)
+    if verdict.verdict is Verdict.DISCONTINUOUS:
+        jumps = sum(jump.order < 2 for jump in verdict.jumps)
+        note = f"limits kept inside the segments; {jumps} jumps of velocity between them"
+        why = note if why is None else f"{why}; {note}"
+    shrinking = np.flatnonzero((floor > 0) & (durations <= 1.01 * floor)).tolist()
+    if shrinking:
+        status = Status.NOT_ATTAINED
+        names = ", ".join(str(k + 1) for k in shrinking)
+        why = f"the total falls as the duration of segment {names} goes to 0"
+    return Solution(
+        problem,
+        status,
+        why,
+        durations=durations,
+        nodal=best.nodal,
+        check=verdict,
+        kkt_residual=report.residual,
+        active=report.active,
+        starts=starts,
+        starts_at_best=sum(local.total <= best.total * (1 + SAME) for local in feasible),
+        iterations=iterations,
+        totals=tuple(local.total if local.feasible else float("inf") for local in found),
+    )
+
+
+def stretchable(problem: Problem) -> bool:
+    """Whether a long enough stretch repairs every duration vector."""
+    return bool(
+        np.isinf(problem.duration_upper).all()
+        and problem.curve.homogeneous
+        and not problem.limits.limits_position
+        and (problem.limits.derivatives > 0).all()
+    )
+
+
+def _nothing_found(problem: Problem, found: list[Local]) -> tuple[Status, str]:
+    judgements = [check(problem, local.durations, local.nodal) for local in found]
+    least = min(judgements, key=lambda one: one.max_violation, default=None)
+    if any(one.limits is Verdict.PASS for one in judgements):
+        return (
+            Status.NONE_FOUND,
+            "the limits can be kept inside the segments, but between them the motion jumps; "
+            f"no durations without a jump found from {len(found)} starts",
+        )
+    if stretchable(problem):
+        return Status.FAILED, "the solver reached no feasible point, though stretching gives one"
+    worst = float("inf") if least is None else least.max_violation
+    return (
+        Status.NONE_FOUND,
+        f"no feasible durations found from {len(found)} starts; the least excess over a limit was "
+        f"{worst:.3g} (relative). This is local evidence, not a proof",
+    )

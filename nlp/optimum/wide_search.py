@@ -1,0 +1,162 @@
+"""A search for basins over the whole box: differential evolution on exact totals, in batches."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...problem import Array, CurveError, Interpolant, Problem, evaluate, fit
+from ...problem.curves import batch_coefficients
+from .descent import Box
+
+MEMBERS, MOST_MEMBERS = 16, 128
+"""Members of a population for each segment, and at most."""
+GENERATIONS = 60
+"""Generations: members of a basin then agree to a few per cent, which a descent ends."""
+USUAL, WIDE = 2.3, 7.0
+"""Spread of the first members' log durations: a factor of 10 usually, 1,000 for one in three."""
+SHRUNKEN = 0.25
+"""Chance that a segment of a wide member starts at its least duration."""
+APART = 0.3
+"""Log durations that lie further apart than this are other basins."""
+PLACES = 17
+"""Places of a piece at which positions are looked at; `check` judges what comes of it."""
+REPAIRS = 3
+"""Stretches, each put back into the box, that try to keep the limits."""
+HOPELESS = 10.0
+"""Excess of a vector that defines no curve: worse than any that does."""
+
+
+def _scaled(problem: Problem, h: Array) -> Array:
+    """Coefficients of all vectors, shape (vectors, pieces, powers, joints); NaN without a curve."""
+    curve = problem.curve
+    if isinstance(curve, Interpolant):
+        return batch_coefficients(curve, problem.waypoints, h)
+    found: list[Array | None] = []
+    for one in h:
+        try:
+            found.append(fit(curve, problem.waypoints, one).scaled)
+        except CurveError:
+            found.append(None)
+    shape = next((c.shape for c in found if c is not None), (1, 1, len(problem.joints)))
+    return np.stack([np.full(shape, np.nan) if c is None else c for c in found])
+
+
+def _outside(problem: Problem, h: Array) -> Array:
+    """Excess over the position ranges of each vector, in spans of the joint."""
+    limits, span = problem.limits, np.ptp(problem.waypoints, axis=0)
+    span = np.where(span > 0, span, 1.0)
+    scaled = _scaled(problem, h)
+    powers = np.linspace(0.0, 1.0, PLACES)[:, None] ** np.arange(scaled.shape[2])
+    q = powers @ scaled
+    over = np.maximum((q - limits.position_upper) / span, (limits.position_lower - q) / span)
+    worst = over.max(axis=(1, 2, 3))
+    return np.asarray(np.where(np.isfinite(worst), worst, HOPELESS))
+
+
+def excess_and_total(problem: Problem, h: Array, box: Box) -> tuple[Array, Array, Array]:
+    """Vectors stretched towards the limits within the box: log durations, excess and total."""
+    low, high = np.exp(box.low), np.exp(box.high)
+    h = np.clip(h, low, high)
+    stretch = evaluate(problem, h).stretch
+    excess = np.where(np.isfinite(stretch), 0.0, HOPELESS)
+    left = np.flatnonzero(np.isfinite(stretch) & (stretch > 0))
+    for _ in range(REPAIRS):
+        wanted = h[left] * stretch[left, None]
+        h[left] = np.clip(wanted, low, high)
+        # Where the whole stretch fits and time can be stretched, the limits are met exactly.
+        bent = (h[left] != wanted).any(axis=1) | (not problem.curve.homogeneous)
+        left = left[bent]
+        if left.size == 0:
+            break
+        stretch[left] = evaluate(problem, h[left]).stretch
+        lost = ~(np.isfinite(stretch[left]) & (stretch[left] > 0))
+        excess[left[lost]] = HOPELESS
+        left = left[~lost]
+        excess[left] = np.log(stretch[left])
+    if problem.limits.limits_position:
+        excess = np.maximum(excess, _outside(problem, h))
+    return np.log(h), np.maximum(excess, 0.0), h.sum(axis=1)
+
+
+def _worth(excess: Array, total: Array, scale: float) -> Array:
+    """What is minimised: the total where the limits are kept, else the excess, above any total."""
+    kept = excess <= 1e-9
+    return np.where(kept, total / scale, 1e6 * (1.0 + excess))
+
+
+@dataclass(frozen=True, eq=False)
+class Basin:
+    """One of the mutually distant best members.
+
+    Attributes
+    ----------
+    durations : ndarray, shape (segments,)
+        s.
+    excess : float
+        0 if the limits are kept.
+    total : float
+        s.
+    """
+
+    durations: Array
+    excess: float
+    total: float
+
+
+def basins(
+    problem: Problem, base: Array, box: Box, count: int, generator: np.random.Generator
+) -> list[Basin]:
+    """The best mutually distant members of a differential evolution, best first.
+
+    Parameters
+    ----------
+    problem : Problem
+        With a determined curve of any kind.
+    base : ndarray, shape (segments,)
+        Usual durations, s, in the middle of the first population.
+    box : Box
+    count : int
+        Most basins.
+    generator : numpy.random.Generator
+
+    Returns
+    -------
+    list of Basin
+    """
+    n = problem.segments
+    size = min(MEMBERS * n, MOST_MEMBERS)
+    z = np.log(base) + USUAL * generator.uniform(-1.0, 1.0, (size, n))
+    wide = generator.random(size) < 1 / 3
+    z[wide] = np.log(base) + WIDE * generator.uniform(-1.0, 0.3, (int(wide.sum()), n))
+    shrunken = wide[:, None] & (generator.random((size, n)) < SHRUNKEN)
+    z = np.where(shrunken, box.low, z)
+    narrow = np.isfinite(box.high) & (box.high - box.low < 2.0 * USUAL)
+    spread = generator.uniform(0.0, 1.0, (size, n))
+    z[:, narrow] = box.low[narrow] + spread[:, narrow] * (box.high - box.low)[narrow]
+    z[0] = np.log(base)
+    z, excess, total = excess_and_total(problem, np.exp(z), box)
+    scale = float(base.sum())
+    worth = _worth(excess, total, scale)
+    for _ in range(GENERATIONS):
+        a, b = generator.integers(size, size=(2, size))
+        best = np.argsort(worth, kind="stable")[generator.integers(max(2, size // 4), size=size)]
+        factor = generator.uniform(0.3, 0.9, (size, 1))
+        mutant = z + factor * (z[best] - z) + factor * (z[a] - z[b])
+        mixed = generator.random((size, n)) < 0.7
+        mixed[np.arange(size), generator.integers(n, size=size)] = True
+        trial, trial_excess, trial_total = excess_and_total(
+            problem, np.exp(np.clip(np.where(mixed, mutant, z), box.low, box.high)), box
+        )
+        trial_worth = _worth(trial_excess, trial_total, scale)
+        better = trial_worth <= worth
+        z[better], worth[better] = trial[better], trial_worth[better]
+        excess[better], total[better] = trial_excess[better], trial_total[better]
+    chosen: list[int] = []
+    for i in np.argsort(worth, kind="stable"):
+        if len(chosen) == count:
+            break
+        if all(np.abs(z[i] - z[c]).max() > APART for c in chosen):
+            chosen.append(int(i))
+    return [Basin(np.exp(z[i]), float(excess[i]), float(total[i])) for i in chosen]

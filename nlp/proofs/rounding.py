@@ -1,0 +1,38 @@
+"""Rationals a little below others, with few digits: bounds that stay bounds when written."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+
+UNIT = 2**30
+"""Steps in a unit of what `below` rounds: their count times a total of days fits a double."""
+
+
+def down(value: Fraction, digits: int) -> Fraction:
+    """The largest decimal with so many digits after the first that is not above a number ≥ 0."""
+    if value <= 0:
+        return Fraction(0)
+    first = Fraction(1)
+    while value < first:
+        first /= 10
+    while value >= 10 * first:
+        first *= 10
+    step: Fraction = first / 10**digits
+    steps = math.floor(value / step)
+    return steps * step
+
+
+def below(value: Fraction) -> Fraction:
+    """The largest multiple of 2⁻³⁰ that is not above: exact in floating point."""
+    return Fraction(math.floor(value * UNIT), UNIT)
+
+
+def root_below(value: Fraction, order: int) -> Fraction:
+    """A rational at most the root of a positive number, in 15 digits."""
+    guess = float(value) ** (1 / order)
+    digits = 15 - math.ceil(math.log10(guess))
+    whole = math.floor(guess * 10.0**digits) + 8
+    while Fraction(whole, 1) ** order > value * Fraction(10) ** (digits * order):
+        whole -= 1
+    return Fraction(whole / Fraction(10) ** digits)

@@ -1,0 +1,314 @@
+"""One certification run, whatever the kind of proof: clock, answer, stages, reports, result."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...problem import TrajgapError, evaluate
+from ...verify import Subject
+from ..optimum import solve
+from .answer import float_problem, prove_feasible
+from .exact import ExactProblem
+from .outcome import Argument, Certified, Outcome, Progress, Request
+
+Array = NDArray[np.float64]
+T = TypeVar("T")
+
+OFTEN = 0.2
+"""Seconds between reports: a reader follows them, and they cost nothing beside the boxes."""
+
+
+class OutOfTime(Exception):
+    """Time is up, or boxes are as small as they may get: what is proved so far is the result."""
+
+
+class Shorter(Exception):
+    """Durations turned up whose total is below the one that is to be proved."""
+
+    def __init__(self, durations: Array) -> None:
+        self.durations = durations
+
+
+@dataclass(frozen=True)
+class Ladder:
+    """The stages of a run: gaps to prove one after the other.
+
+    Wide gaps come first since they are quick, and a stopped run has them to show.
+
+    Attributes
+    ----------
+    gaps : tuple of float
+        Descending.
+    share : float
+        Of the gap asked for, so that rounding has room in the last stage.
+    apart : float
+        No stage is nearer to the last one than by this factor.
+    """
+
+    gaps: tuple[float, ...]
+    share: float
+    apart: float
+
+    def stages(self, gap: float) -> list[float]:
+        """Gaps of the stages for the one that is asked for."""
+        last = self.share * gap
+        return [*(g for g in self.gaps if g > self.apart * last), last]
+
+
+class Session:
+    """What a run knows and shares with its kind of proof.
+
+    Attributes
+    ----------
+    exact : ExactProblem
+    request : Request
+    floats : Problem
+        The nearest problem in floats, for the local solver.
+    durations : tuple of Fraction or None
+        The answer: the shortest durations proved feasible so far.
+    lower : Fraction
+        The best bound proved, s.
+    proof : Argument or None
+        What proves it.
+    speeds : tuple or None
+        Of an answer of any curve, at the way-points.
+    proposals : Argument or None
+        What a stopped run had not finished; a kind of proof sets it before it is interrupted.
+    infeasible : bool
+        A kind of proof showed that nothing is feasible.
+    one_sided : bool
+        The kind of proof bounds from below only: no answer of its own is claimed.
+    nodes, open_boxes : int
+        Boxes visited, boxes left.
+    """
+
+    def __init__(self, exact: ExactProblem, request: Request) -> None:
+        self.exact, self.request = exact, request
+        self.floats = float_problem(exact)
+        self.durations: tuple[Fraction, ...] | None = None
+        self.lower = Fraction(0)
+        self.proof: Argument | None = None
+        self.speeds: tuple[tuple[Fraction, ...], ...] | None = None
+        self.proposals: Argument | None = None
+        self.infeasible = self.one_sided = False
+        self.nodes = self.open_boxes = 0
+        self._began = time.perf_counter()
+        self._reported = -math.inf
+        resumed = request.resume
+        if resumed is not None:
+            self.durations, self.speeds = resumed.durations, resumed.speeds
+            self.lower, self.proof = resumed.lower, resumed.proof
+
+    def taken_up(self, read: Callable[[dict[str, Any]], T]) -> T | None:
+        """What a stopped run had not finished, read by its kind of proof; None if there is nothing.
+
+        Parameters
+        ----------
+        read : callable
+            Trusts nothing in what it reads.
+
+        Raises
+        ------
+        TrajgapError
+            If it is malformed, or not proved where that is asked for.
+        """
+        resumed = self.request.resume
+        if resumed is None or resumed.proposals is None:
+            return None
+        try:
+            return read(resumed.proposals)
+        except (KeyError, IndexError, TypeError, ValueError, ArithmeticError) as error:
+            if isinstance(error, TrajgapError):
+                raise
+            name = type(error).__name__
+            raise TrajgapError(f"resume: malformed state ({name}: {error})") from None
+
+    @property
+    def upper(self) -> Fraction | None:
+        """Total of the answer, s."""
+        return None if self.durations is None else sum(self.durations, Fraction(0))
+
+    @property
+    def seconds(self) -> float:
+        """Time since the run began."""
+        return time.perf_counter() - self._began
+
+    def check_clock(self) -> None:
+        """Raise `OutOfTime` when it is."""
+        if self.seconds > self.request.seconds:
+            raise OutOfTime
+
+    # --- the answer -------------------------------------------------------------------------------
+
+    def offer(self, durations: Array) -> bool:
+        """Take durations as the answer if they are proved feasible and shorter than it."""
+        proved = prove_feasible(self.exact, durations)
+        if proved is None or (self.upper is not None and sum(proved) >= self.upper):
+            return False
+        self.durations = proved
+        return True
+
+    def seek(self, initial: Array | None = None) -> bool:
+        """Look for a shorter answer with the local solver, from given durations or its own starts.
+
+        Returns
+        -------
+        bool
+            Whether one was found.
+        """
+        solution = solve(self.floats, seed=self.request.seed, initial=initial)
+        tries = [h for h in (solution.durations, initial) if h is not None]
+        shorter = [self.offer(h) for h in tries]
+        return any(shorter)
+
+    def stretched(self, directions: Array) -> Array:
+        """Rows of durations, each stretched until it keeps the limits and the least durations.
+
+        A stretch knows nothing of positions and of upper bounds.
+        """
+        stretch = evaluate(self.floats, directions).stretch
+        stretch = np.maximum(stretch, (self.floats.duration_lower / directions).max(axis=1))
+        return np.asarray(directions * stretch[:, None], dtype=np.float64)
+
+    # --- the bound --------------------------------------------------------------------------------
+
+    def keep(self, lower: Fraction, proof: Argument) -> None:
+        """Keep a proof if it is the best."""
+        if lower > self.lower:
+            self.lower, self.proof = lower, proof
+
+    def climb(
+        self,
+        ladder: Ladder,
+        rounded: Callable[[Fraction], Fraction],
+        stage: Callable[[Fraction], Argument],
+    ) -> None:
+        """Prove one total after the other; a shorter answer begins the ladder anew.
+
+        Parameters
+        ----------
+        ladder : Ladder
+        rounded : callable
+            Rounds a total down to what the kind of proof can write.
+        stage : callable
+            Proves that no total is below the one given; raises `Shorter` or `OutOfTime`.
+
+        Raises
+        ------
+        OutOfTime
+            If a stage raises it, or a shorter answer cannot be proved feasible.
+        """
+        while True:
+            upper = self.upper
+            assert upper is not None
+            try:
+                for gap in ladder.stages(self.request.gap):
+                    target = rounded(upper * (1 - Fraction(gap)))
+                    if target > self.lower:
+                        self.keep(target, stage(target))
+                return
+            except Shorter as found:
+                if not self.seek(found.durations):
+                    raise OutOfTime from None  # the improvement is too slight to prove
+
+    def report(self, open_boxes: int, nodes: int, lower: Fraction | float | None = None) -> None:
+        """Tell whoever asked how far the run is, now and then."""
+        self.open_boxes, self.nodes = open_boxes, nodes
+        now = self.seconds
+        if self.request.report is None or now - self._reported < OFTEN:
+            return
+        self._reported = now
+        least = max(float(self.lower), 0.0 if lower is None else float(lower))
+        upper = math.inf if self.upper is None else float(self.upper)
+        gap = math.inf if self.upper is None else 1.0 - least / upper
+        self.request.report(Progress(least, upper, gap, open_boxes, nodes, nodes / max(now, 1e-9)))
+
+    # --- the end ----------------------------------------------------------------------------------
+
+    def result(self, complete: bool, subject: Subject) -> Certified:
+        """The interval that is proved.
+
+        Raises
+        ------
+        TrajgapError
+            If the bound lies above the answer: one of the two proofs is wrong.
+        """
+        upper = self.upper
+        if upper is not None and upper < self.lower:
+            raise TrajgapError("certify: the proof contradicts the answer, one of them is wrong")
+        if upper is not None:
+            near = self.proof is not None and upper - self.lower <= upper * Fraction(
+                self.request.gap
+            )
+            outcome = Outcome.CERTIFIED if near else Outcome.INTERVAL
+        elif self.infeasible:
+            outcome = Outcome.INFEASIBLE
+        else:
+            outcome = Outcome.INTERVAL if self.one_sided else Outcome.OPEN
+        return Certified(
+            self.exact,
+            outcome,
+            self.lower,
+            upper,
+            self.durations,
+            self.nodes,
+            0 if complete else self.open_boxes,
+            self.seconds,
+            self.proof,
+            outcome in (Outcome.INTERVAL, Outcome.OPEN) and not (complete and self.proof is None),
+            None if complete else self.proposals,
+            subject,
+            self.speeds,
+        )
+
+
+@dataclass(frozen=True)
+class Certifier:
+    """One kind of proof, as a run needs it.
+
+    Attributes
+    ----------
+    family : str
+        Words for the curves that it covers.
+    declares : callable
+        Whether a problem's curve is of its kind.
+    missing : callable
+        Why such a problem is not covered all the same, or None.
+    prove : callable
+        Raises the bound of a session, and returns whether nothing is left to do. Keyboard
+        interrupts and `OutOfTime` end it.
+    subject : Subject
+        What its interval speaks about.
+    instant : bool
+        Whether it is a closed form.
+    """
+
+    family: str
+    declares: Callable[[ExactProblem], bool]
+    missing: Callable[[ExactProblem], str | None]
+    prove: Callable[[Session], bool]
+    subject: Subject = Subject.DECLARED
+    instant: bool = False
+
+    def run(self, exact: ExactProblem, request: Request) -> Certified:
+        """Prove an interval of the optimum; the time limit and Ctrl-C end it with what is proved.
+
+        Raises
+        ------
+        TrajgapError
+            If the state to go on from does not prove what it says.
+        """
+        session = Session(exact, request)
+        try:
+            complete = self.prove(session)
+        except (KeyboardInterrupt, OutOfTime):
+            complete = False
+        return session.result(complete, self.subject)

@@ -1,0 +1,301 @@
+"""Rules and rounding proofs on the B-spline cases: control vertices, jumps, cases without table."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from support.b_splines import clamped, uniform, vertices_by_solving
+from support.polishing import POLISH, SOURCE, polish, shipped
+from trajgap.compare.audits.finding import Basis, ClaimVerdict, Finding, Severity
+from trajgap.compare.audits.rounding import Box, Rounding, judge_rounding
+from trajgap.compare.audits.rules.continuous_time import judge_motions
+from trajgap.compare.audits.rules.distances import judge_distances
+from trajgap.compare.audits.rules.open_points import list_open_points
+from trajgap.compare.audits.rules.printed_digits import judge_digits
+from trajgap.compare.audits.rules.printed_vertices import judge_vertices, vertices
+from trajgap.compare.audits.study import Study
+from trajgap.nlp.enclosure.balls import Ball
+from trajgap.nlp.enclosure.uniform import centred_stretched, centred_timed
+from trajgap.problem import (
+    CaseError,
+    Verdict,
+    check,
+    evaluate,
+    extrema,
+    fit,
+    load_case,
+    parse_case,
+    peak_gradients,
+)
+
+WHALE = "z1-woa-bspline"
+TIMES = ("stretched", "timed")
+
+
+def of(findings, rule: str, claim: str | None = None) -> list[Finding]:
+    return [f for f in findings if f.rule == rule and (claim is None or f.claim == claim)]
+
+
+# --- TG205 ----------------------------------------------------------------------------------------
+
+
+def test_every_printed_control_vertex_is_inside_what_rounding_allows() -> None:
+    study = polish()
+    (found,) = of(judge_vertices(study), "TG205")
+    assert found.verdict is ClaimVerdict.SUPPORTED
+    assert found.computed == "72 of 72 inside"
+    every = vertices(study.case.claim("control-vertices"), study.case.statement())
+    # Half a digit of W through the inverse, at most 3 times, plus half a digit of V.
+    assert max(v.width for v in every) <= Fraction(2, 10**4)
+    assert max(v.width for v in every) > Fraction(199, 10**6)
+    w = load_case(POLISH).problem().waypoints
+    computed = vertices_by_solving(w).T.ravel()
+    middle = [float(v.allowed.lower + v.allowed.upper) / 2 for v in every]
+    np.testing.assert_allclose(middle, computed, rtol=0, atol=1e-12)
+    off = np.abs(computed - [v.printed.value for v in every])
+    assert off.max() == pytest.approx(1.2434e-4, abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("digits_", "verdict", "severity"),
+    [
+        ("-2.1069", ClaimVerdict.SUPPORTED, Severity.INFO),
+        ("-2.1068", ClaimVerdict.SUPPORTED, Severity.WARNING),
+        ("-2.1072", ClaimVerdict.SUPPORTED, Severity.INFO),
+        ("-2.1065", ClaimVerdict.REFUTED, Severity.ERROR),
+        ("-2.1073", ClaimVerdict.REFUTED, Severity.ERROR),
+    ],
+)
+def test_one_changed_digit_is_seen_where_neither_rounding_nor_cutting_explains_it(
+    digits_: str, verdict: ClaimVerdict, severity: Severity
+) -> None:
+    study = polish(('"-2.1070"', f'"{digits_}"'))
+    (found,) = of(judge_vertices(study), "TG205")
+    assert (found.verdict, found.severity) == (verdict, severity)
+    if severity is Severity.WARNING:
+        assert "(V2 of joint 2) follow from the printed way-points only if digits" in found.message
+    if verdict is ClaimVerdict.REFUTED:
+        assert found.message.startswith("1 of 72 printed control vertices lie outside")
+        assert f"V2 of joint 2 printed {digits_}, allowed -2.107" in found.message
+
+
+def test_vertices_of_waypoints_whose_digits_were_cut_off_accuse_nobody() -> None:
+    """Way-points and vertices of a true curve, every digit cut off at the fourth place."""
+    rng = np.random.default_rng(3)
+    # Signs and last digits in turn: the cuts of neighbours add up in every vertex.
+    w = (rng.integers(1, 90000, (10, 6)) + 0.99) * 1e-4 * (-1.0) ** np.arange(10)[:, None]
+    v = vertices_by_solving(w)
+    cut = [np.trunc(1e4 * x) / 1e4 for x in (w, v)]
+    rows = [
+        "[\n"
+        + "\n".join("  [" + ", ".join(f'"{x:.4f}"' for x in row) + "]," for row in table.T)
+        + "\n]"
+        for table in cut
+    ]
+    source = SOURCE
+    for table in rows:
+        head, _, tail = source.partition("joint_rows = [\n")
+        source = f"{head}joint-rows = {table}{tail[tail.index(chr(10) + ']') + 2 :]}"
+    study = Study(parse_case(source.replace("joint-rows", "joint_rows"), "cut.toml"), seeds=4)
+    (found,) = of(judge_vertices(study), "TG205")
+    assert (found.verdict, found.severity) == (ClaimVerdict.SUPPORTED, Severity.WARNING)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (
+            ', "-1.4265", "-1.4265"]',
+            ', "-1.4265"]',
+            "joint_rows[3]: 11 control vertices for 10 way-points; give 12",
+        ),
+        (
+            '  ["28.2277", "28.2277", "-9.1917", "8.5392", "-6.1155", "-2.9269", "-1.0264", '
+            '"7.0324", "-8.2536", "7.1324", "-1.4265", "-1.4265"],\n',
+            "",
+            "joint_rows: gives 5 joints, but robot.joints lists 6",
+        ),
+    ],
+)
+def test_control_vertices_are_counted(old: str, new: str, message: str) -> None:
+    with pytest.raises(CaseError) as caught:
+        polish((old, new))
+    assert message in str(caught.value)
+
+
+# --- rounding boxes -------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("time", TIMES)
+def test_balls_hold_values_and_gradients_all_over_the_box(time: str) -> None:
+    problem, h = uniform(time, 41, count=5)
+    curve, q = problem.curve, problem.waypoints
+    trajectory = fit(curve, q, h)
+    centred, highest = (centred_timed, 2) if time == "timed" else (centred_stretched, 3)
+    orders = range(1, highest + 1)
+    points = [e for j in range(3) for r in orders for e in extrema(trajectory, j, r)]
+    joint, segment, order = (
+        np.array([getattr(e, name) for e in points]) for name in ("joint", "segment", "order")
+    )
+    place = np.array([e.s for e in points])
+    wide_h, wide_q = Ball(h, 0.01 * h), Ball(q, np.full_like(q, 5e-5))
+    form = centred(len(q), joint, segment, order, place, wide_h, wide_q)
+    exact = np.array([e.value for e in points])
+    np.testing.assert_allclose(form.value.mid, exact, rtol=1e-9, atol=1e-12)
+    assert (np.abs(form.value.mid - exact) <= form.value.rad + 1e-11 * form.amplitude).all()
+    assert (form.amplitude >= np.abs(exact) * (1 - 1e-12)).all()
+    rng = np.random.default_rng(0)
+    for _ in range(20):
+        there = h * (1 + 0.01 * rng.uniform(-1, 1, h.size))
+        moved = q + 5e-5 * rng.uniform(-1, 1, q.shape)
+        at = fit(curve, moved, there)
+        values = [float(at.values(e.segment, e.joint, e.order, np.array([e.s]))[0]) for e in points]
+        fixed = [replace(e, value=v) for e, v in zip(points, values, strict=True)]
+        slope = peak_gradients(replace(problem, waypoints=moved), there, fixed).durations
+        excess = np.abs(slope - form.by_duration.mid) - form.by_duration.rad
+        assert (excess <= 1e-9 * np.abs(slope).max()).all()
+    central = peak_gradients(problem, h, points)
+    np.testing.assert_allclose(form.by_waypoint.mid, central.waypoints, rtol=1e-9, atol=1e-11)
+
+
+@pytest.mark.parametrize("time", TIMES)
+def test_a_proof_lies_below_every_point_of_the_box(time: str) -> None:
+    case = load_case(POLISH)
+    rid = f"angles-rad-v-rad-a-rad-{time}"
+    problem = case.problem(reading_id=rid)
+    box = case.claim_durations(case.claim("after"), rid)
+    lower, upper = case.waypoint_box(reading_id=rid)
+    verdict = judge_rounding(
+        problem,
+        Box(box.value, box.lower, box.upper),
+        Box(problem.waypoints, lower, upper),
+    )
+    assert verdict.verdict is Rounding.BREAKS
+    bound = {"stretched": 1.728, "timed": 1.156}[time]
+    assert verdict.lower_bound_of_worst == pytest.approx(bound, abs=1e-3)
+    rng = np.random.default_rng(1)
+    worst = []
+    for _ in range(20):
+        q = rng.uniform(lower, upper)
+        there = rng.uniform(box.lower, box.upper, (200, 9))
+        there[0] = box.upper
+        found = evaluate(replace(problem, waypoints=q), there).ratios
+        worst.append(found.max(axis=(1, 2)).min())
+    assert min(worst) >= verdict.lower_bound_of_worst
+    assert min(worst) <= 1.02 * verdict.lower_bound_of_worst
+
+
+@pytest.mark.parametrize("time", TIMES)
+def test_durations_printed_short_are_consistent_or_broken(time: str) -> None:
+    problem, _ = uniform(time, 42, count=4)
+    equal = np.ones(3)
+    h = equal * check(problem, equal).stretch
+    loose = Box(h * 0.999, h * 0.99, h * 1.01)
+    tight = Box(h * 0.99, h * 0.985, h * 0.995)
+    assert judge_rounding(problem, loose).verdict is Rounding.CONSISTENT
+    assert judge_rounding(problem, tight).verdict is Rounding.BREAKS
+    assert judge_rounding(problem, Box.exact(h * (1 + 1e-12))).verdict is Rounding.KEEPS
+
+
+def test_clamped_splines_are_kept_consistent_or_undecided() -> None:
+    problem, h = clamped((5, "averaged-continued", "times", "timed"), 43, count=5)
+    tight = h * check(problem, h).stretch
+    assert judge_rounding(problem, Box.exact(tight * (1 + 1e-9))).verdict is Rounding.KEEPS
+    near = Box(tight * 0.999, tight * 0.99, tight * 1.01)
+    assert judge_rounding(problem, near).verdict is Rounding.CONSISTENT
+    short = Box(tight * 0.98, tight * 0.979, tight * 0.981)
+    assert judge_rounding(problem, short).verdict is Rounding.UNDECIDED
+    hasty = Box(tight * 0.1, tight * 0.099, tight * 0.101)
+    assert judge_rounding(problem, hasty).verdict is Rounding.BREAKS
+
+
+# --- jumps ----------------------------------------------------------------------------------------
+
+
+def test_jumps_are_named_apart_from_the_limits() -> None:
+    found = list(judge_motions(polish()))
+    jumping = of(found, "TG202", "after")
+    assert {f.reading.rpartition("-")[2] for f in jumping} == {"stretched"}
+    assert len(jumping) == 8
+    assert not any(f.decides for f in jumping)
+    assert all("the velocity jumps 48 times" in f.message for f in jumping)
+    assert not of(found, "TG202", "before")
+    limits = {f.reading: f for f in of(found, "TG201", "after")}
+    kept = limits["angles-deg-v-rad-a-rad-stretched"]
+    assert kept.verdict is ClaimVerdict.NOT_CHECKABLE
+    assert "keeps every limit inside the segments, and the velocity jumps 48" in kept.message
+    statement = {f.reading: f for f in of(found, "TG201", "limits-kept")}
+    assert "velocity jumps 48" in statement["angles-deg-v-rad-a-rad-stretched"].message
+    assert limits["angles-deg-v-rad-a-rad-timed"].verdict is ClaimVerdict.SUPPORTED
+    refuted = [rid for rid, f in limits.items() if f.verdict is ClaimVerdict.REFUTED]
+    assert len(refuted) == 12
+    # Nothing in the paper says that the equal durations before the optimisation keep them.
+    assert not any(f.decides for f in of(found, "TG201", "before"))
+
+
+def test_the_printed_durations_are_optimal_under_no_reading() -> None:
+    """Under each, a shorter motion is exhibited, or no rounding lets them keep the limits."""
+    found = {f.reading: f for f in of(judge_distances(shipped()), "TG302", "time-optimal")}
+    assert len(found) == 16
+    assert {f.verdict for f in found.values()} == {ClaimVerdict.REFUTED}
+    shorter = {rid for rid, f in found.items() if f.message.startswith("Not the shortest: after")}
+    # Angles in radians under limits in degrees: the printed total lies below the optimum.
+    assert {rid.rpartition("-")[0] for rid in found.keys() - shorter} == {
+        "angles-rad-v-rad-a-deg",
+        "angles-rad-v-deg-a-rad",
+        "angles-rad-v-deg-a-deg",
+    }
+    for rid in found.keys() - shorter:
+        assert found[rid].message.startswith("Not an answer within the limits: after")
+        assert found[rid].basis is Basis.ENCLOSURE
+    for rid in shorter:
+        jumps = "whose velocity may jump at the via-points" in found[rid].message
+        assert jumps == rid.endswith("stretched")
+
+
+def test_acceleration_said_to_jump_does_in_the_reading_that_stretches() -> None:
+    found = {f.reading: f for f in of(judge_motions(polish()), "TG206", "acceleration-jumps")}
+    assert len(found) == 16
+    for reading, finding in found.items():
+        jumps = reading.endswith("stretched")
+        expected = ClaimVerdict.SUPPORTED if jumps else ClaimVerdict.NOT_CHECKABLE
+        assert finding.verdict is expected
+    study = polish()
+    claim = study.case.claim("after")
+    at = study.claim_check(claim, "nine-segments", study.main_reading).jumps
+    largest = max((j for j in at if j.order == 2 and j.joint == "2"), key=lambda j: abs(j.size))
+    assert f"by {largest.size:.6g} rad/s²" in found[study.main_reading].message
+
+
+def test_totals_and_the_saving_follow_from_the_digits() -> None:
+    found = list(judge_digits(polish()))
+    assert {f.claim: f.verdict for f in found if f.rule in ("TG101", "TG103")} == dict.fromkeys(
+        ("before", "after", "improvement"), ClaimVerdict.SUPPORTED
+    )
+
+
+# --- no way-points --------------------------------------------------------------------------------
+
+
+def test_a_case_without_waypoints_says_of_each_time_why_it_is_not_checkable() -> None:
+    study = Study(load_case(WHALE), seeds=2)
+    assert not study.posed
+    found = list(list_open_points(study))
+    for claim in ("b-spline-total", "quintic-total", "convergence"):
+        (finding,) = of(found, "TG501", claim)
+        assert finding.verdict is ClaimVerdict.NOT_CHECKABLE
+        assert "cannot be computed without the way-points: the text gives" in finding.message
+    assert not of(found, "TG501", "improvement")
+    assert not list(judge_vertices(study))
+    (improvement,) = of(judge_digits(study), "TG103", "improvement")
+    assert improvement.verdict is ClaimVerdict.NOT_CHECKABLE
+
+
+def test_a_posed_case_has_no_such_finding() -> None:
+    study = polish()
+    assert study.posed
+    assert not of(list_open_points(study), "TG501", "after")
+    assert check(study.case.problem(), np.full(9, 1.0)).verdict is Verdict.PASS

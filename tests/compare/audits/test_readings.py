@@ -1,0 +1,323 @@
+"""The readings side by side: limits, segments, fit, optimum, and what holds under all or some."""
+
+from __future__ import annotations
+
+import io
+import json
+from functools import cache
+from itertools import pairwise
+from math import exp, log, pi
+from typing import Any
+
+import numpy as np
+import pytest
+from rich.console import Console
+from support.documents import assert_reasons, assert_valid
+from support.one_joint import HEAD, UNITS
+from support.polishing import polish as changed
+from support.polishing import shipped
+from trajgap.compare.audits.case_audit import AuditReport, CaseAudit
+from trajgap.compare.audits.finding import ClaimVerdict, Judgement, Scope
+from trajgap.compare.audits.reading_words import answers, holding, segments
+from trajgap.compare.audits.readings import Excess, Keeping, ReadingsSummary, readings_summary
+from trajgap.compare.audits.rules.continuous_time import judge_motions
+from trajgap.compare.audits.study import Study
+from trajgap.compare.audits.waterfall import Waterfall
+from trajgap.compare.cli.summary import audited
+from trajgap.compare.documents.results import audit_document
+from trajgap.compare.gaps.optimality_gap import GapKind
+from trajgap.compare.pages.blocks import Page
+from trajgap.compare.pages.markdown_text import markdown
+from trajgap.compare.pages.readings import side_by_side
+from trajgap.nlp import Evidence
+from trajgap.problem import Case, evaluate, fit, load_case, parse_case
+
+POLISH, WHALE, PALLET = "irb1600-ga-cubic-bspline", "z1-woa-bspline", "irb460-pso-353"
+
+
+def summed(case: Case, claims: dict[str, str], reading: str | None = None) -> CaseAudit:
+    """Readings of a case, without the slow rest of its audit."""
+    return laid_out(Study(case, seeds=2, reading=reading), claims)
+
+
+def laid_out(study: Study, claims: dict[str, str]) -> CaseAudit:
+    case = study.case
+    falls = tuple(Waterfall(pid, rid, claims.get(pid), ()) for pid, rid in study.pairs)
+    ids = [r.id for r in case.readings]
+    judged = (
+        Judgement("x", ClaimVerdict.SUPPORTED, Scope.ALL, Evidence.NONE, "", tuple(
+            (rid, ClaimVerdict.SUPPORTED) for rid in ids)),
+        Judgement("y", ClaimVerdict.SUPPORTED, Scope.SOME, Evidence.NONE, "", tuple(
+            (rid, ClaimVerdict.REFUTED if k else ClaimVerdict.SUPPORTED)
+            for k, rid in enumerate(ids))),
+        Judgement("z", ClaimVerdict.NOT_CHECKABLE, Scope.NO, Evidence.NONE, "", tuple(
+            (rid, ClaimVerdict.NOT_CHECKABLE) for rid in ids)),
+    )  # fmt: skip
+    return CaseAudit(case, study, (), judged, falls, readings_summary(study, falls, judged))
+
+
+@cache
+def polish() -> CaseAudit:
+    return laid_out(shipped(), {"nine-segments": "after"})
+
+
+@cache
+def pallet() -> CaseAudit:
+    return summed(load_case(PALLET), {"limit-80": "durations-80", "limit-110": "durations-110"})
+
+
+def summary_of(one: CaseAudit) -> ReadingsSummary:
+    assert one.readings is not None
+    return one.readings
+
+
+# --- the polishing paper --------------------------------------------------------------------------
+
+
+def test_every_unit_mix_of_the_polishing_paper_has_its_outcome() -> None:
+    found = {o.reading: o for o in summary_of(polish()).outcomes}
+    assert len(found) == 16
+    under = {k: {r for r, o in found.items() if o.keeping is k} for k in Keeping}
+    literal = {"angles-deg-v-rad-a-rad", "angles-deg-v-deg-a-rad"}
+    assert under[Keeping.KEEPS] == {f"{r}-timed" for r in literal}
+    assert under[Keeping.DISCONTINUOUS] == {f"{r}-stretched" for r in literal}
+    assert len(under[Keeping.BREAKS]) == 12
+    for reading, o in found.items():
+        assert o.jumps == (48 if reading.endswith("stretched") else 0)
+        assert bool(o.excesses) == (o.keeping is Keeping.BREAKS)
+        assert o.gap is not None
+        kept = o.keeping is Keeping.KEEPS
+        assert o.gap.kind is (GapKind.OPTIMALITY if kept else GapKind.REPORTED)
+
+
+def test_segments_over_a_limit_are_those_of_a_dense_sample() -> None:
+    one = polish()
+    for outcome in summary_of(one).outcomes:
+        if outcome.keeping is not Keeping.BREAKS:
+            continue
+        problem = one.case.problem(reading_id=outcome.reading)
+        durations = one.case.claim_durations(one.case.claim("after"), outcome.reading).value
+        trajectory = fit(problem.curve, problem.waypoints, durations)
+        over = set()
+        for k, (low, high) in enumerate(pairwise([0.0, *np.cumsum(durations)])):
+            ends = np.array([low, high]) + np.array([1e-9, -1e-9])
+            inside = np.concatenate([np.linspace(low, high, 82)[1:-1], ends])
+            for order, limit in (
+                (1, problem.limits.velocity),
+                (2, problem.limits.acceleration),
+            ):
+                if (np.abs(trajectory(inside, order)) > limit * (1 + 1e-6)).any():
+                    over.add(k)
+        assert {e.segment for e in outcome.excesses} == over
+
+
+def test_the_fit_is_the_factor_that_makes_the_printed_durations_tight() -> None:
+    one = polish()
+    found = summary_of(one)
+    factors = dict(found.fits)
+    assert len(factors) == 16
+    assert list(factors.values()) == sorted(factors.values())
+    for outcome in found.outcomes:
+        problem = one.case.problem(reading_id=outcome.reading)
+        durations = one.case.claim_durations(one.case.claim("after"), outcome.reading).value
+        assert outcome.stretch is not None
+        ratios = evaluate(problem, (durations * outcome.stretch)[None]).ratios
+        assert ratios.max() == pytest.approx(1.0, rel=1e-9)
+        factor = exp(abs(log(outcome.stretch)))
+        assert factors[outcome.reading] == pytest.approx(factor, rel=1e-12)
+    # One unit throughout poses one question, whatever the unit.
+    alike = ("rad-v-rad-a-rad", "deg-v-rad-a-deg", "deg-v-deg-a-deg")
+    assert set(found.nearest) == {f"angles-{x}-timed" for x in alike}
+    assert factors[found.nearest[0]] == pytest.approx(1.0852, abs=1e-4)
+
+
+def test_the_words_say_how_it_is_measured_and_call_no_reading_the_right_one() -> None:
+    limits, fit = answers(summary_of(polish()))
+    assert limits.startswith("Limits of after (nine-segments), 16 readings: keeps under 2 (")
+    assert "breaks under 12 (angles-rad-v-rad-a-rad-stretched and 11 more)" in limits
+    assert "where they are kept 11.6 to 12.8 times, else" in limits
+    assert (
+        "would just reach the limits, as a shortest time does; the limits are broken there" in fit
+    )
+    assert fit.endswith("This measures fit; it does not say which reading was meant.")
+    assert holding(summary_of(polish())) == (
+        "Under every reading: supported x.",
+        "Under some: y (supported 1, refuted 15).",
+        "Decided under none: z.",
+    )
+
+
+# --- the other papers -----------------------------------------------------------------------------
+
+
+def test_two_problems_of_one_reading_are_measured_by_the_worse() -> None:
+    found = summary_of(pallet())
+    (best, factor), (other, _) = found.fits
+    assert (best, other) == ("waypoints-rad", "waypoints-deg")
+    own = {o.problem: o for o in found.outcomes if o.reading == best}
+    assert own["limit-110"].stretch == pytest.approx(factor)
+    assert own["limit-80"].keeping is Keeping.KEEPS
+    assert [e.segment for e in own["limit-110"].excesses] == [1]
+    assert own["limit-110"].excesses[0].quantity == "velocity"
+    assert dict(found.fits)["waypoints-deg"] == pytest.approx(
+        180 / pi / own["limit-80"].stretch, rel=1e-6
+    )
+
+
+def test_without_waypoints_the_reason_stands_in_place_of_numbers() -> None:
+    one = summed(load_case(WHALE), {})
+    found = summary_of(one)
+    assert found.outcomes == found.fits == found.nearest == ()
+    (sentence,) = answers(found)
+    many = len(one.case.readings)
+    assert sentence.startswith(f"Under none of {many} readings can limits, optimum or gap be comp")
+    assert "no way-points are printed" in sentence
+    section = side_by_side(one)
+    page = markdown(Page("z1", "t", (section,)))
+    for reading in one.case.readings:
+        assert f"| {reading.id} |" in page
+    assert "impossible as printed: over-determined, 12 conditions on 8 control points" in page
+    assert "| 5 | waypoints | determined | determined, 12 conditions on 12 control points |" in page
+
+
+def test_a_single_reading_needs_no_comparison() -> None:
+    text = HEAD.format(points="0, 1", limit="1.9496", time="0.962", checks="within_limits")
+    one = summed(parse_case(text, "fair.toml"), {"main": "d"})
+    assert one.readings is None
+    document = audit_document(AuditReport((one,)))
+    assert_valid(document, "audit")
+    assert document["cases"][0]["readings_why"] == "the case has one reading"
+
+
+@pytest.mark.parametrize(
+    ("time", "keeping"),
+    [
+        ("0.962", Keeping.KEEPS),
+        ("0.9617", Keeping.CONSISTENT),
+        ("0.961", Keeping.CONSISTENT),
+        ("0.960", Keeping.BREAKS),
+    ],
+)
+def test_digits_rounded_or_cut_off_are_given_their_due(time: str, keeping: Keeping) -> None:
+    """The shortest time is 0.961736 s: 0.961 is its digits cut off."""
+    text = HEAD.format(points="0, 1", limit="1.9496", time=time, checks="within_limits") + UNITS
+    found = summary_of(summed(parse_case(text, "fair.toml"), {"main": "d"}))
+    outcome = next(o for o in found.outcomes if o.reading == "header")
+    assert outcome.keeping is keeping
+    assert [e.segment for e in outcome.excesses] == ([0] if keeping is Keeping.BREAKS else [])
+
+
+def test_a_problem_without_printed_durations_has_an_optimum_and_no_verdict() -> None:
+    one = summed(load_case(PALLET), {}, reading="waypoints-rad")
+    found = summary_of(one)
+    assert {o.keeping for o in found.outcomes} == {None}
+    assert all(o.optimum is not None and o.gap is None for o in found.outcomes)
+    assert answers(found) == ()
+    document = audit_document(AuditReport((one,)))
+    assert_valid(document, "audit")
+    assert_reasons(document)
+
+
+def test_a_selected_reading_counts_as_one_of_all() -> None:
+    claims = {"limit-80": "durations-80", "limit-110": "durations-110"}
+    found = summary_of(summed(load_case(PALLET), claims, reading="waypoints-rad"))
+    assert "Limits of durations-80 (limit-80), 1 of 2 readings: keeps under 1" in answers(found)[0]
+    assert all(answer.startswith("Limits of durations-") for answer in answers(found))
+
+
+def test_durations_that_define_no_curve_are_not_decided() -> None:
+    printed = """"0.66", "0.82", "0.70", "0.68", "0.74", "0.78", "0.84", "0.86", "0.73"]
+total = "6.81\""""
+    hasty = '"5", "0.01", "5", "0.01", "5", "0.01", "5", "0.01", "5"]'
+    case = changed((printed, hasty)).case
+    study = Study(case, seeds=2, reading="angles-deg-v-rad-a-rad-timed")
+    (outcome,) = summary_of(laid_out(study, {"nine-segments": "after"})).outcomes
+    assert outcome.keeping is Keeping.UNDECIDED
+    assert (outcome.excesses, outcome.stretch) == ((), None)
+    found = [f for f in judge_motions(study) if f.claim == "after"]
+    assert "the printed durations define no curve" in found[0].message
+
+
+# --- documents and pages --------------------------------------------------------------------------
+
+
+def test_the_document_carries_every_number() -> None:
+    one = polish()
+    document = audit_document(AuditReport((one,)))
+    assert_valid(document, "audit")
+    assert_reasons(document)
+    shown = document["cases"][0]["readings"]
+    assert json.loads(json.dumps(shown, allow_nan=False)) == shown
+    found = summary_of(one)
+    assert shown["answers"] == list(answers(found))
+    assert shown["holding"] == list(holding(found))
+    assert [(f["reading"], f["factor"]) for f in shown["fits"]] == list(found.fits)
+    for own, outcome in zip(shown["outcomes"], found.outcomes, strict=True):
+        assert own["keeping"] == outcome.keeping
+        assert own["optimum"] == outcome.optimum
+        assert [e["segment"] for e in own["excesses"]] == [e.segment for e in outcome.excesses]
+        assert own["gap"]["lowest"] == outcome.gap.lowest
+    y = shown["claims"][1]
+    assert (y["claim"], y["scope"], y["readings"]) == ("y", "some", {"supported": 1, "refuted": 15})
+
+
+def test_the_page_has_a_row_for_each_reading() -> None:
+    one = polish()
+    page = markdown(Page("irb1600", "t", (side_by_side(one),)))
+    for outcome in summary_of(one).outcomes:
+        (line,) = [
+            x for x in page.splitlines() if x.startswith(f"| {outcome.reading}") and "|" in x
+        ]
+        assert f"| {outcome.keeping}" in line
+        assert f"{outcome.optimum:.6f} s<br>{outcome.evidence}" in line
+        assert ("(default)" in line) == (outcome.reading == one.case.default_reading.id)
+    assert "segments 1–4, 6–9<br>joint 6 velocity, ratio 15.25" in page
+
+
+def terminal(document: Any, width: int = 400) -> list[str]:
+    out = io.StringIO()
+    console = Console(file=out, width=width)
+    for part in audited(document):
+        console.print(part)
+    return [line.rstrip() for line in out.getvalue().splitlines()]
+
+
+def test_the_terminal_says_once_what_many_readings_say() -> None:
+    document = audit_document(AuditReport((polish(),)))
+    (case,) = document["cases"]
+    readings = case["readings"]["admissible"]
+    case["findings"] = [
+        {"rule": "TG302", "severity": "error", "claim": "optimal", "reading": reading,
+         "message": f"Not shortest: {k}.5 s"}
+        for k, reading in enumerate(readings[:3])
+    ] + [
+        {"rule": "TG302", "severity": "error", "claim": "optimal", "reading": readings[3],
+         "message": "Not within the limits: a ratio of 3"},
+        {"rule": "TG104", "severity": "error", "claim": None, "reading": None, "message": "Alike."},
+        *({"rule": "TG201", "severity": "warning", "claim": "kept", "reading": reading,
+           "message": "Breaks."} for reading in readings[:2]),
+        {"rule": "TG106", "severity": "warning", "claim": None, "reading": None, "message": "m"},
+        {"rule": "TG101", "severity": "info", "claim": "kept", "reading": None, "message": "fits"},
+    ]  # fmt: skip
+    lines = terminal(document)
+    assert [line for line in lines if line.startswith(("error", "warning"))] == [
+        f"error TG302 optimal (3 readings; as follows under {readings[0]}): Not shortest: 0.5 s",
+        "error TG302 optimal: Not within the limits: a ratio of 3",
+        "error TG104: Alike.",
+        "warnings: TG201 kept (2 readings), TG106",
+    ]
+    found = answers(summary_of(polish()))
+    assert all(sentence in lines for sentence in found)
+    (row,) = [line for line in lines if line.startswith("y ")]
+    assert "1 of 16" in row
+    (row,) = [line for line in lines if line.startswith("x ")]
+    assert " all " in row
+    assert max(map(len, terminal(document, 80))) <= 100
+
+
+@pytest.mark.parametrize(
+    ("numbers", "words"),
+    [((0,), "1"), ((0, 1), "1, 2"), ((0, 1, 2, 4, 6, 7, 8, 9), "1–3, 5, 7–10"), ((), "")],
+)
+def test_runs_of_segments_are_drawn_together(numbers: tuple[int, ...], words: str) -> None:
+    assert segments([Excess(n, "1", "velocity", 2.0) for n in numbers]) == words

@@ -1,0 +1,297 @@
+"""`trajgap solve --certify` and `trajgap verify`: what they print and write, and how they end."""
+
+from __future__ import annotations
+
+import json
+import re
+import signal
+import subprocess
+import sys
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import pytest
+from support.command_line import CASE, Run, on_terminal, strict
+from support.documents import SCHEMA, assert_valid
+from support.shipped_problems import POSED
+from trajgap.compare.cli import certifying as cli_certify
+from trajgap.compare.documents.proofs import NOT_COVERED, Worth
+from trajgap.nlp import ExactProblem, Outcome, Subject, shipped
+from trajgap.nlp.proofs.state import read_state
+from trajgap.nlp.proofs.three_piece import rows as three_piece
+from trajgap.nlp.proofs.three_piece.rows import Row, exact_row
+from trajgap.nlp.verify import seal, verify
+from trajgap.problem import TrajgapError
+
+IRB = "irb460-pso-353"
+ONE = (IRB, "--problem", "limit-80", "--reading", "waypoints-rad")
+NAME = f"{IRB}.limit-80.waypoints-rad"
+
+
+def test_words_are_those_of_the_library() -> None:
+    assert SCHEMA["$defs"]["outcome"]["enum"] == [*map(str, Outcome), NOT_COVERED]
+    assert SCHEMA["$defs"]["worth"]["enum"] == [*map(str, Worth)]
+    assert SCHEMA["$defs"]["subject"]["enum"] == [*map(str, Subject)]
+    for name in ("certify", "verify"):
+        assert {"$ref": f"#/$defs/{name}"} in SCHEMA["anyOf"]
+
+
+def test_each_joint_is_certified_and_its_file_proves(run: Run) -> None:
+    code, out, err = run("solve", "mine.toml", "--certify", "--gap", "1e-3", "--out", "c.json")
+    assert (code, err) == (0, "")
+    assert out.endswith("certificates: trajgap-certificates\n")
+    document = strict(Path("c.json").read_text())
+    assert_valid(document, "certify")
+    assert [r["joint"] for r in document["intervals"]] == ["a", "b"]
+    for result in document["intervals"]:
+        assert result["outcome"] == "certified"
+        assert result["gap"] <= 1e-3
+        assert result["lower"] <= sum(result["segment_durations"]) <= result["upper"] * (1 + 1e-12)
+        assert result["state"] is None
+        verdict = verify(result["certificate"])
+        assert str(verdict).startswith("proves: ")
+        assert str(Fraction(result["lower_exact"])) == str(verdict.lower)
+    files = [r["certificate"] for r in document["intervals"]]
+    code, out, err = run("verify", *files)
+    assert (code, err) == (0, "")
+    assert [line.partition(": proves: ")[0] for line in out.splitlines()] == files
+
+
+def test_shared_durations_are_one_question(run: Run) -> None:
+    arguments = ("--coupling", "shared", "--gap", "0.01", "--json")
+    code, out, _ = run("solve", "mine.toml", "--certify", *arguments)
+    assert code == 0
+    (result,) = strict(out)["intervals"]
+    assert result["joint"] is None
+    assert result["certificate"] is None
+    assert not Path("trajgap-certificates").exists(), "with --json only where told"
+
+
+def test_bounds_are_printed_outwards(run: Run) -> None:
+    _, out, _ = run("solve", *ONE, "--certify", "--gap", "0.1")
+    row = next(line for line in out.splitlines() if line.startswith("limit-80")).split()
+    verdict = verify(f"trajgap-certificates/{NAME}.json")
+    assert verdict.lower is not None
+    assert verdict.upper is not None
+    assert Fraction(row[2]) <= verdict.lower
+    assert Fraction(row[3]) >= verdict.upper
+    assert row[-1] == "certified"
+
+
+def test_infeasible_is_proved(run: Run, folder: Path) -> None:
+    text = CASE.replace("[limits]", "[durations]\nupper = 900\n\n[limits]")
+    (folder / "short.toml").write_text(text)
+    code, out, _ = run("solve", "short.toml", "--certify", "--coupling", "shared")
+    assert code == 0
+    assert "infeasible: proved" in out
+    code, out, _ = run("verify", "trajgap-certificates/mine.main.plain.json")
+    assert code == 0
+    assert "no durations within their bounds keep the limits" in out
+
+
+def test_a_curve_that_is_not_covered_is_named(run: Run) -> None:
+    reading = "angles-rad-v-rad-a-rad-timed"
+    code, out, _ = run(
+        "solve", "irb1600-ga-cubic-bspline", "--certify", "--reading", reading, "--json"
+    )
+    assert code == cli_certify.NOT_PROVED
+    document = strict(out)
+    assert_valid(document, "certify")
+    assert document["intervals"][0]["outcome"] == NOT_COVERED
+    assert "time a B-spline too" in document["intervals"][0]["lower_why"]
+
+
+def test_a_time_limit_leaves_a_state_to_go_on_from(run: Run) -> None:
+    code, out, _ = run("solve", *ONE, "--certify", "--time", "0")
+    state = f"trajgap-certificates/{NAME}.state.json"
+    assert code == cli_certify.NOT_PROVED
+    assert f"go on with --resume {state}" in out
+    assert not Path(f"trajgap-certificates/{NAME}.json").exists(), "nothing is proved"
+    code, out, _ = run("solve", *ONE, "--certify", "--gap", "0.01", "--resume", state)
+    assert code == 0
+    assert "certified" in out
+    assert verify(f"trajgap-certificates/{NAME}.json").proves
+
+
+def test_a_proof_that_the_verifier_refuses_is_not_called_certified(
+    run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(problem: ExactProblem, row: Row, total: Fraction) -> three_piece.Poly:
+        return exact_row(problem, row, total * Fraction(9, 10))
+
+    monkeypatch.setattr(three_piece, "exact_row", broken)
+    code, out, _ = run("solve", *ONE, "--certify", "--gap", "0.1", "--out", "c.json")
+    assert code == cli_certify.NOT_PROVED
+    assert "certified" not in out
+    assert "the proof found is refused" in out
+    document = strict(Path("c.json").read_text())
+    assert_valid(document, "certify")
+    assert document["intervals"][0]["outcome"] == "open"
+    assert document["intervals"][0]["lower"] is None
+
+
+def test_a_narrower_certificate_stays(run: Run) -> None:
+    path = Path(f"trajgap-certificates/{NAME}.json")
+    run("solve", *ONE, "--certify", "--gap", "0.01")
+    narrow = path.read_text()
+    run("solve", *ONE, "--certify", "--gap", "0.2")
+    assert path.read_text() == narrow
+    run("solve", *ONE, "--certify", "--gap", "0.001")
+    assert path.read_text() != narrow
+
+
+def test_a_narrower_certificate_of_all_curves_does_not_stay(run: Run) -> None:
+    other = shipped(POSED[NAME], Subject.ANY)
+    path = Path(f"trajgap-certificates/{NAME}.json")
+    path.parent.mkdir()
+    path.write_text(json.dumps(other))
+    assert run("solve", *ONE, "--certify", "--gap", "0.2")[0] == 0
+    assert json.loads(path.read_text())["claim"]["subject"] == Subject.DECLARED
+
+
+def test_ctrl_c_leaves_the_interval_and_a_state(run: Run) -> None:
+    started = (
+        "import sys, time, trajgap.compare.cli.certifying as c\n"
+        "from importlib import import_module\n"
+        "from trajgap.compare.cli import main\n"
+        "import_module('trajgap.nlp.proofs.three_piece.search')._BATCH = 4\n"
+        "reporting = c._Stop.reporting\n"
+        "def slow(self, name, step):\n"
+        "    report = reporting(self, name, step)\n"
+        "    def told(now):\n"
+        "        if now.lower > 0:\n"
+        "            print('searching', file=sys.stderr, flush=True)\n"
+        "            time.sleep(0.2)\n"
+        "        report(now)\n"
+        "    return told\n"
+        "c._Stop.reporting = slow\n"
+        "sys.exit(main())"
+    )
+    process = subprocess.Popen(
+        [sys.executable, "-c", started, "solve", *ONE, "--certify", "--out", "answer.json"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    assert process.stderr is not None
+    assert process.stderr.readline() == "searching\n"
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert err.endswith("trajgap: interrupted\n")
+    assert "interval" in out
+    (result,) = strict(Path("answer.json").read_text())["intervals"]
+    assert 0 < result["lower"] < result["upper"]
+    assert verify(result["certificate"]).proves
+    code, _, _ = run("solve", *ONE, "--certify", "--gap", "0.01", "--resume", result["state"])
+    assert code == 0
+
+
+def test_the_live_line_on_a_terminal() -> None:
+    code, seen = on_terminal(["solve", *ONE, "--certify"], COLUMNS="160")
+    assert code == 0
+    shown = re.search(
+        r"waypoints-rad: [\d.]+ to [\d.]+ s, gap [\de.-]+, \d+ open, \d+ nodes/s", seen
+    )
+    assert shown, seen
+
+
+def test_verify_says_what_each_file_is_worth(run: Run, tmp_path: Path) -> None:
+    document = shipped(POSED[NAME])
+    assert document is not None
+    harmless = json.loads(json.dumps(document))
+    harmless["claim"]["lower"] = "1"
+    broken = json.loads(json.dumps(document))
+    broken["claim"]["lower"] = "1.9"
+    broken["seal"] = seal({key: x for key, x in broken.items() if key != "seal"})
+    for name, one in (("good", document), ("harmless", harmless), ("broken", broken)):
+        (tmp_path / f"{name}.json").write_text(json.dumps(one))
+    code, out, err = run("verify", "good.json", "harmless.json", "broken.json", "missing.json")
+    assert (code, err) == (1, "")
+    words = [line.split(": ")[1] for line in out.splitlines()]
+    assert words == ["proves", "altered, still proves", "refused", "refused"]
+    code, out, _ = run("verify", "good.json", "harmless.json", "--json")
+    assert code == 0
+    verified = strict(out)
+    assert_valid(verified, "verify")
+    assert [one["worth"] for one in verified["verified"]] == words[:2]
+    code, out, _ = run("verify", "broken.json", "--json")
+    assert code == 1
+    assert_valid(strict(out), "verify")
+
+
+def test_huge_numbers_are_no_fault(run: Run, tmp_path: Path) -> None:
+    document = shipped(POSED[NAME])
+    assert document is not None
+    document["claim"]["lower"] = "-1" + "0" * 350
+    (tmp_path / "huge.json").write_text(json.dumps(document))
+    code, out, _ = run("verify", "huge.json", "--json")
+    assert code == 0
+    assert strict(out)["verified"][0]["lower_why"] == "beyond the range of floating point"
+    assert run("verify", "huge.json")[0] == 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
+    [
+        (("--gap", "0.1"), "--gap needs --certify"),
+        (("--time", "1"), "--time needs --certify"),
+        (("--certificates", "x"), "--certificates needs --certify"),
+        (("--resume", "x"), "--resume needs --certify"),
+        (("--certify", "--resume", "missing.json"), "missing.json: cannot be read"),
+        (("--certify", "--resume", "mine.toml"), "mine.toml: is no JSON"),
+        (("--certify", "--certificates", "taken"), "is no trajgap-certificate-1"),
+        (("--certify", "--gap", "1"), "--gap: 1 is no relative width; give 0 or more, below 1"),
+        (("--certify", "--gap", "inf"), "--gap: inf is no relative width"),
+        (("--certify", "--certificates", "mine.toml"), "mine.toml: --certificates: is no folder"),
+        (("--certify", "--certificates", "mine.toml/x/y"), "mine.toml: --certificates: is no fold"),
+    ],
+)
+def test_bad_options(run: Run, arguments: tuple[str, ...], reason: str) -> None:
+    Path("taken").mkdir()
+    Path("taken/mine.main.plain.joint-a.json").write_text("{}")
+    code, out, err = run("solve", "mine.toml", *arguments)
+    assert (code, out) == (2, "")
+    assert err.count("\n") == 1
+    assert reason in err
+
+
+def test_a_nested_file_in_the_way_is_refused(run: Run) -> None:
+    folder = Path("trajgap-certificates")
+    folder.mkdir()
+    (folder / f"{NAME}.json").write_text("[" * 99_999)
+    code, _, err = run("solve", *ONE, "--certify", "--time", "0")
+    assert code == 2
+    assert "is no trajgap-certificate-1" in err
+
+
+def test_a_state_of_another_problem_is_refused(run: Run) -> None:
+    run("solve", *ONE, "--certify", "--time", "0")
+    state = f"trajgap-certificates/{NAME}.state.json"
+    code, _, err = run("solve", "mine.toml", "--certify", "--resume", state)
+    assert code == 2
+    assert "is none of those selected" in err
+
+
+def test_a_state_file_that_was_edited_is_refused(run: Run) -> None:
+    run("solve", *ONE, "--certify", "--time", "0")
+    path = Path(f"trajgap-certificates/{NAME}.state.json")
+    document: dict[str, Any] = json.loads(path.read_text())
+    document["state"]["durations"][0] = "0.1"
+    path.write_text(json.dumps(document))
+    with pytest.raises(TrajgapError, match="differs from what was written"):
+        read_state(path)
+    # With the seal made right again, the mathematics refuses it.
+    document["seal"] = seal({key: x for key, x in document.items() if key != "seal"})
+    path.write_text(json.dumps(document))
+    code, _, err = run("solve", *ONE, "--certify", "--resume", str(path))
+    assert code == 2
+    assert "do not keep the limits" in err
+
+
+def test_a_width_that_is_not_reached_is_not_called_certified(run: Run) -> None:
+    code, out, _ = run("solve", *ONE, "--certify", "--gap", "0", "--json")
+    (result,) = strict(out)["intervals"]
+    assert 0 < result["gap"] < 1e-9
+    assert (code, result["outcome"]) == (3, "interval")

@@ -1,0 +1,312 @@
+"""The JSON documents: their keys, their enums, and no number that JSON does not know."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import Any
+
+import jsonschema
+import numpy as np
+import pytest
+from support.documents import SCHEMA, assert_reasons, assert_valid, report
+from trajgap.compare.audits.finding import Basis, ClaimVerdict, Scope, Severity
+from trajgap.compare.audits.rounding import Box, Rounding, judge_rounding
+from trajgap.compare.documents import results as documents
+from trajgap.compare.gaps.optimality_gap import GapKind
+from trajgap.nlp import Evidence, Solution, Status, solve, solve_per_joint
+from trajgap.nlp.retiming.toppra_check import Retiming, retime
+from trajgap.problem import (
+    Coupling,
+    Limits,
+    Problem,
+    Verdict,
+    check,
+    cubic_spline,
+    fit,
+    load_case,
+    published_ids,
+    rest_to_rest,
+    three_five_three,
+)
+from trajgap.problem.cases.claim import QUANTITY_KINDS
+
+WAYPOINTS = np.array([[0.3, -1.0], [1.1, 0.4], [0.9, 1.7], [2.0, 1.2]])
+
+
+def posed(limits: Limits | None = None, **changes: Any) -> Problem:
+    limits = limits or Limits(velocity=[2.0, 3.0], acceleration=[5.0, 4.0])
+    return Problem(WAYPOINTS, limits, three_five_three(), **changes)
+
+
+# What stands in a case file is documented with the case file.
+
+
+def test_the_schema_is_one() -> None:
+    jsonschema.Draft202012Validator.check_schema(SCHEMA)
+    assert SCHEMA["$defs"]["solve"]["properties"]["schema"] == {"const": documents.SCHEMA}
+
+
+@pytest.mark.parametrize(
+    ("name", "values"),
+    [
+        ("status", Status),
+        ("coupling", Coupling),
+        ("check_verdict", Verdict),
+        ("rounding_verdict", Rounding),
+        ("evidence", Evidence),
+        ("severity", Severity),
+        ("claim_verdict", ClaimVerdict),
+        ("scope", Scope),
+        ("basis", Basis),
+        ("gap_kind", GapKind),
+    ],
+)
+def test_enums_are_those_of_the_library(name: str, values: type[StrEnum]) -> None:
+    assert SCHEMA["$defs"][name]["enum"] == [str(value) for value in values]
+
+
+def test_quantities_of_claims_are_those_of_case_files() -> None:
+    claims = SCHEMA["$defs"]["show"]["properties"]["claims"]["items"]["properties"]
+    assert tuple(claims["quantity"]["enum"]) == QUANTITY_KINDS
+
+
+# The keys that the first version promised, by hand.
+SOLVE = (
+    "case problem reading coupling status total_time segment_durations lower_bound evidence "
+    "max_violation kkt_residual active starts starts_at_best build_seconds solve_seconds toppra"
+)
+CHECK = "case problem reading verdict rounding_verdict total_time worst feasible_time tight_time"
+FINDING = "rule severity verdict scope evidence claim problem reading printed computed gap message"
+
+
+@pytest.mark.parametrize(
+    ("kind", "keys"),
+    [
+        ("solve", "schema results"),
+        ("solve_result", SOLVE),
+        ("solve_joint", "joint segment_durations total_time lower_bound evidence"),
+        ("active", "joint quantity time multiplier sensitivity"),
+        ("toppra", "duration gridpoints"),
+        ("check", "schema results"),
+        ("check_result", CHECK),
+        ("worst", "joint quantity time value limit ratio"),
+        ("show", "schema id title source problems readings claims assumptions"),
+        ("audit", "schema cases"),
+        ("finding", FINDING),
+        ("verdict", "claim verdict scope evidence"),
+    ],
+)
+def test_promised_keys_are_required(kind: str, keys: str) -> None:
+    schema = SCHEMA["$defs"][kind]
+    assert set(keys.split()) <= set(schema.get("items", schema)["required"])
+
+
+# --- solve ----------------------------------------------------------------------------------------
+
+
+def test_a_shared_solution() -> None:
+    problem = posed(duration_lower=[0.0, 0.0, 2.5])
+    answer = solve(problem)
+    assert answer.durations is not None
+    path = retime(fit(problem.curve, problem.waypoints, answer.durations), problem.limits)
+    result = documents.solve_result("c", "p", "r", answer, [path])
+    document = documents.results_document([result])
+    assert_valid(document, "solve")
+    assert_reasons(document)
+    assert result["coupling"] == "shared"
+    assert result["total_time"] == answer.total_time
+    assert result["segment_durations"] == answer.durations.tolist()
+    assert result["lower_bound"] is None
+    assert result["toppra"] == [
+        {"duration": d, "gridpoints": n}
+        for d, n in zip(path.durations, path.gridpoints, strict=True)
+    ]
+    assert "joints" not in result
+    bound = next(a for a in result["active"] if a["quantity"] == "duration")
+    assert bound["joint"] is None
+    assert bound["segment"] == 2
+    assert bound["time"] is None
+
+
+def test_a_per_joint_solution() -> None:
+    answer = solve_per_joint(posed(coupling=Coupling.PER_JOINT), slacks=(1e-3, 1e-6))
+    result = documents.solve_result("c", "p", "r", answer, ["no time", "none"])
+    assert_valid(documents.results_document([result]), "solve")
+    assert_reasons(result)
+    assert result["segment_durations"] is None
+    assert [one["joint"] for one in result["joints"]] == ["1", "2"]
+    assert [one["toppra_why"] for one in result["joints"]] == ["no time", "none"]
+    for one, single in zip(result["joints"], answer.joints, strict=True):
+        assert one["segment_durations"] == single.durations.tolist()
+        assert one["total_time"] == single.total_time
+    longest = result["longest_per_segment"]
+    durations = np.max([one["segment_durations"] for one in result["joints"]], axis=0)
+    assert longest["segment_durations"] == durations.tolist()
+    assert longest["total_time"] == pytest.approx(result["total_time"], rel=1e-15)
+    assert [span["slack"] for span in longest["ranges"]] == [1e-3, 1e-6]
+    assert longest["verdict"] == str(answer.check.verdict)
+
+
+def test_a_problem_without_answer() -> None:
+    answer = solve(posed(Limits(velocity=[1.0, 0.0])))
+    result = documents.solve_result("c", "p", "r", answer)
+    assert_valid(documents.results_document([result]), "solve")
+    assert_reasons(result)
+    assert result["status"] == "infeasible"
+    assert result["total_time"] is None
+    assert "velocity limit is 0" in result["total_time_why"]
+    assert result["evidence"] == "none"
+    assert result["toppra_why"] == "not asked for"
+
+
+def test_joints_without_answer() -> None:
+    answer = solve_per_joint(posed(Limits(velocity=[1.0, 0.0])))
+    result = documents.solve_result("c", "p", "r", answer)
+    assert_valid(documents.results_document([result]), "solve")
+    assert_reasons(result)
+    assert result["status"] == "infeasible"
+    assert result["status_why"].startswith("joint 2: ")
+    assert result["joints"][0]["total_time"] is not None
+    assert result["joints"][1]["total_time"] is None
+    assert result["longest_per_segment"]["verdict"] is None
+    assert result["longest_per_segment"]["ranges"] == []
+
+
+def test_an_infimum_that_is_not_attained() -> None:
+    problem = Problem(
+        np.array([[0.5], [0.5], [1.5]]), Limits(velocity=[2.0]), rest_to_rest(2, 5), name="x"
+    )
+    result = documents.solve_result("c", "p", "r", solve(problem))
+    assert_valid(documents.results_document([result]), "solve")
+    assert result["status"] == "not_attained"
+    assert result["infimum"] == pytest.approx(15 / 16, rel=1e-9)
+    assert result["total_time"] > result["infimum"]
+
+
+def test_retiming_that_does_not_apply() -> None:
+    problem = posed()
+    answer = solve(problem)
+    path = Retiming(False, "nothing moves", 1.0, (2, 3, 4))
+    result = documents.solve_result("c", "p", "r", answer, [path])
+    assert result["toppra"] is None
+    assert result["toppra_why"] == "nothing moves"
+
+
+def test_no_number_that_json_does_not_know() -> None:
+    answer = Solution(posed(), Status.FEASIBLE, durations=np.ones(3), kkt_residual=np.inf)
+    result = documents.solve_result("c", "p", "r", answer)
+    assert_valid(documents.results_document([result]), "solve")
+    assert result["kkt_residual"] is None
+    assert result["kkt_residual_why"] == "unbounded"
+    answer = Solution(posed(), Status.FEASIBLE, durations=np.ones(3), kkt_residual=np.nan)
+    result = documents.solve_result("c", "p", "r", answer)
+    assert result["kkt_residual_why"] == "beyond the range of floating point"
+
+
+# --- check ----------------------------------------------------------------------------------------
+
+
+def checked(problem: Problem, durations: Any, half: float = 5e-4) -> Any:
+    value = np.array(durations)
+    box = Box(value, value - half, value + half)
+    return documents.check_result(
+        "c", "p", "r", problem.coupling, check(problem, value), judge_rounding(problem, box), value
+    )
+
+
+def test_a_check_that_passes() -> None:
+    result = checked(posed(), [5.0, 6.0, 7.0])
+    assert_valid(documents.results_document([result]), "check")
+    assert_reasons(result)
+    assert result["verdict"] == "pass"
+    assert result["rounding_verdict"] == "keeps"
+    assert result["rounding"]["exhibit"]["segment_durations"] == [5.0, 6.0, 7.0]
+    assert result["feasible_time"] == result["total_time"] == 18.0
+
+
+def test_a_check_that_breaks() -> None:
+    problem = posed()
+    result = checked(problem, [0.5, 0.6, 0.7])
+    assert_valid(documents.results_document([result]), "check")
+    assert_reasons(result)
+    found = check(problem, [0.5, 0.6, 0.7])
+    assert result["verdict"] == "violated"
+    assert result["rounding_verdict"] == "breaks"
+    assert 1 < result["rounding"]["worst_ratio_at_least"] <= result["worst"]["ratio"]
+    assert result["worst"]["ratio"] == found.worst.ratio
+    assert result["worst"]["time"] == found.worst.time
+    assert result["worst"]["segment"] == found.worst.segment
+    assert result["feasible_time"] == found.feasible_time
+
+
+def test_a_duration_bound_is_worst() -> None:
+    result = checked(posed(duration_upper=[1.0, 50.0, 50.0]), [5.0, 6.0, 7.0])
+    assert_valid(documents.results_document([result]), "check")
+    assert_reasons(result)
+    assert result["worst"]["joint"] is None
+    assert result["worst"]["quantity"] == "duration"
+    assert result["feasible_time"] is None
+    assert "upper bound" in result["feasible_time_why"]
+
+
+def test_nothing_is_limited() -> None:
+    result = checked(posed(Limits(joints=2)), [5.0, 6.0, 7.0])
+    assert_valid(documents.results_document([result]), "check")
+    assert result["worst"] is None
+    assert result["worst_why"] == "nothing is limited"
+    assert result["tight_time"] is None
+
+
+def test_an_unbounded_ratio() -> None:
+    problem = Problem(WAYPOINTS, Limits(velocity=[0.0, 1.0]), cubic_spline(3))
+    result = checked(problem, [5.0, 6.0, 7.0])
+    assert_valid(documents.results_document([result]), "check")
+    assert result["worst"]["ratio"] is None
+    assert result["worst"]["ratio_why"] == "unbounded"
+    assert result["feasible_time"] is None
+
+
+# --- cases, show, audit ---------------------------------------------------------------------------
+
+
+def test_cases() -> None:
+    document = documents.cases_document(load_case(name) for name in published_ids())
+    assert_valid(document, "cases")
+    assert [one["id"] for one in document["cases"]] == list(published_ids())
+
+
+@pytest.mark.parametrize("name", published_ids())
+def test_show(name: str) -> None:
+    case = load_case(name)
+    document = documents.show_document(case)
+    assert_valid(document, "show")
+    assert [c["id"] for c in document["claims"]] == [c.id for c in case.claims]
+    assert [r["id"] for r in document["readings"] if r["default"]] == [case.default_reading.id]
+    for claim, shown in zip(case.claims, document["claims"], strict=True):
+        printed = case.printed_durations(claim)
+        assert [p.text for p in printed] == shown.get("durations", [])
+
+
+def test_show_keeps_to_a_selection() -> None:
+    document = documents.show_document(load_case("irb460-pso-353"), "limit-110", "waypoints-deg")
+    assert [p["id"] for p in document["problems"]] == ["limit-110"]
+    assert [r["id"] for r in document["readings"]] == ["waypoints-deg"]
+    ids = [c["id"] for c in document["claims"]]
+    assert "durations-110" in ids
+    assert "durations-80" not in ids
+
+
+def test_audit() -> None:
+    document = documents.audit_document(report())
+    assert_valid(document, "audit")
+    assert_reasons(document)
+    case = document["cases"][0]
+    assert case["errors"] == 1
+    first, second = case["findings"]
+    assert first["gap"]["kind"] == "difference of reported time"
+    assert first["gap"]["lowest"] == pytest.approx(1.8 / 1.85 - 1, rel=1e-12)
+    assert first["gap"]["lowest"] < 0
+    assert first["gap"]["reference"]["lower"] is None
+    assert second["gap"] is None
+    assert case["verdicts"][0]["verdict"] == "refuted"
+    assert case["waterfalls"][0]["steps"][1]["time_why"] == "no acceleration is limited"

@@ -1,0 +1,482 @@
+"""The report: self-contained, safe, complete, the same every time, and never over other files."""
+
+import html.parser
+import json
+import re
+import shutil
+import tomllib
+import xml.etree.ElementTree as ElementTree
+from decimal import Decimal
+from importlib.resources import files
+from pathlib import Path
+
+import pytest
+from support.checkout import ROOT
+from trajgap.compare import AuditReport, audit, write_report
+from trajgap.compare.audits.finding import Basis
+from trajgap.compare.audits.readings import Keeping
+from trajgap.compare.pages.blocks import Cell, Drawn, Grid, Page, Prose, Section, Terms, slug
+from trajgap.compare.pages.markdown_text import markdown, plain
+from trajgap.compare.pages.writer import MARK, case_page
+from trajgap.problem import Case, TrajgapError
+from trajgap.problem.cases.load import check_case
+
+ID = "irb460-pso-353"
+SCRIPT = "<script>alert(1)</script>"
+IMAGE = '"><img src=https://example.org/x.png onerror=alert(2)>'
+LINK = "[a](javascript:alert(3)) | ![b](https://example.org/y) `c` *d* $e$ 轨迹"
+
+
+def hostile_case(case_id: str = ID) -> Case:
+    """A shipped case, made quick and hostile: every free text tries to break out."""
+    text = (files("trajgap.problem") / "published" / f"{ID}.toml").read_text(encoding="utf-8")
+    raw = tomllib.loads(text, parse_float=Decimal)
+    raw["id"] = case_id
+    joint = f"5{SCRIPT}"
+    raw["title"] = f"Title {SCRIPT}{LINK}"
+    raw["source"]["note"] = IMAGE
+    raw["source"]["doi"] = f"10.1/{IMAGE}"
+    raw["robot"] = {"name": f"Arm {LINK}", "joints": [joint]}
+    for claim in raw["claims"]:
+        claim["text"] = f"{claim['text']} {SCRIPT}{IMAGE}{LINK}\n# heading\n- item"
+        claim["where"] = f"{claim['where']} {SCRIPT}|"
+        if "joint" in claim:
+            claim["joint"] = joint
+        if "not_checkable" in claim:
+            claim["not_checkable"] += IMAGE
+    for reading in raw["readings"]:
+        reading["why"] += SCRIPT + LINK
+    for one in (*raw["assumptions"], *raw["not_checkable"]):
+        one["what" if "what" in one else "text"] += IMAGE + LINK
+    raw["algorithms"][0]["open"].append(SCRIPT + LINK)
+    raw["algorithms"][0]["settings"]["iterations"] = 6
+    return check_case(raw, "hostile.toml")
+
+
+@pytest.fixture(scope="module")
+def report() -> AuditReport:
+    return audit(hostile_case(), seeds=3)
+
+
+@pytest.fixture(scope="module")
+def folder(report: AuditReport, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("report") / "deep" / "audit"
+    write_report(report, out)
+    return out
+
+
+class Seen(html.parser.HTMLParser):
+    """Tags and attributes of a page, and its text outside pictures and styles."""
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.text: list[str] = []
+        self.inside: list[str] = []
+        self.feed(page)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+        if tag in ("svg", "style"):
+            self.inside.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        if tag in ("svg", "style"):
+            self.inside.pop()
+
+    def handle_data(self, data: str) -> None:
+        if not self.inside:
+            self.text.append(data)
+
+    @property
+    def words(self) -> str:
+        return " ".join(" ".join(self.text).split())
+
+
+@pytest.fixture(scope="module")
+def page(folder: Path) -> Seen:
+    return Seen((folder / f"{ID}.html").read_text(encoding="utf-8"))
+
+
+def flat(text: str) -> str:
+    return " ".join(text.split())
+
+
+# --- safe and self-contained ----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["index", ID])
+def test_a_page_fetches_nothing(folder: Path, name: str) -> None:
+    text = (folder / f"{name}.html").read_text(encoding="utf-8")
+    for tag, attributes in Seen(text).tags:
+        assert tag not in ("link", "script", "img", "iframe", "object", "embed", "base", "form")
+        assert not any(key.startswith("on") for key in attributes)
+        for key in ("src", "href", "xlink:href", "action", "srcset", "data"):
+            target = attributes.get(key) or ""
+            assert not re.match(r"\s*(?:[a-z]+:|//)", target, re.IGNORECASE), (tag, target)
+    assert "@import" not in text
+    assert not re.search(r"url\((?!#)", text)
+    assert "default-src 'none'; style-src 'unsafe-inline'" in text
+
+
+def test_every_link_leads_somewhere(folder: Path) -> None:
+    for name in ("index", ID):
+        seen = Seen((folder / f"{name}.html").read_text(encoding="utf-8"))
+        names = [a["id"] for _, a in seen.tags if a.get("id")]
+        assert len(names) == len(set(names))
+        for _, attributes in seen.tags:
+            target = attributes.get("href") or attributes.get("xlink:href")
+            if target and target.startswith("#"):
+                assert target[1:] in names, target
+            elif target:
+                assert (folder / target).is_file(), target
+
+
+def test_text_of_the_case_is_shown_as_it_stands(page: Seen, report: AuditReport) -> None:
+    case = report.cases[0].case
+    for text in (case.title, case.source.note, case.robot.name):
+        assert flat(text) in page.words
+    for reading in case.readings:
+        assert flat(reading.why) in page.words
+    for item in case.not_checkable:
+        assert flat(item.what) in page.words
+
+
+def test_every_picture_is_xml_and_stands_in_the_page(folder: Path, page: Seen) -> None:
+    drawn = sorted((folder / "pictures").iterdir())
+    assert len(drawn) >= 12
+    for file in drawn:
+        assert file.name.startswith(f"{ID}-")
+        root = ElementTree.fromstring(file.read_text(encoding="utf-8"))
+        assert root.findtext("{http://www.w3.org/2000/svg}title")
+        assert root.findtext("{http://www.w3.org/2000/svg}desc")
+    assert sum(tag == "svg" for tag, _ in page.tags) == len(drawn)
+    for kind in ("waterfall", "motion", "optimum", "convergence", "totals", "landscape"):
+        assert any(f"{ID}-{kind}-" in file.name for file in drawn)
+
+
+def test_no_text_of_a_case_is_markup_in_markdown(folder: Path) -> None:
+    text = (folder / f"{ID}.md").read_text(encoding="utf-8")
+    assert not re.search(r"(?<!\\)<(?!br>)", text)
+    links = re.findall(r"(?<!\\)\]\(([^)]*)\)", text)
+    assert links
+    assert all(re.fullmatch(rf"pictures/{ID}-[\w.-]+\.svg", link) for link in links)
+    assert not re.search(r"^# heading|^- item", text, re.MULTILINE)
+    assert len(re.findall(r"^# ", text, re.MULTILINE)) == 1
+
+
+def test_tables_in_markdown_have_as_many_cells_as_columns(folder: Path) -> None:
+    text = (folder / f"{ID}.md").read_text(encoding="utf-8")
+    width, rows = 0, 0
+    for line in text.splitlines():
+        cells = len(re.findall(r"(?<!\\)\|", line)) if line.startswith("|") else 0
+        if cells and width:
+            assert cells == width
+            rows += 1
+        width = cells
+    assert rows > 40
+
+
+# --- complete -------------------------------------------------------------------------------------
+
+
+def test_every_claim_stands_with_its_digits_and_verdict(
+    page: Seen, folder: Path, report: AuditReport
+) -> None:
+    one = report.cases[0]
+    anchors = {a.get("id") for _, a in page.tags}
+    written = (folder / f"{ID}.md").read_text(encoding="utf-8")
+    table = next(s for s in case_page(one).sections if s.id == "verdicts").blocks[-1]
+    assert isinstance(table, Grid)
+    assert len(table.rows) == len(one.case.claims) == len(one.judgements)
+    for judgement, row in zip(one.judgements, table.rows, strict=True):
+        claim = one.case.claim(judgement.claim)
+        assert f"claim-{claim.id}" in anchors
+        assert flat(claim.text) in page.words
+        assert claim.where in page.words
+        assert row[3].text == judgement.verdict
+        assert row[4].text.splitlines()[0] == judgement.scope
+        assert row[5].text == judgement.evidence
+        assert plain(claim.id) in written
+    assert "0.7615, 0.3854, 0.4572 s" in page.words
+
+
+def test_the_last_step_is_told_with_its_evidence(page: Seen, report: AuditReport) -> None:
+    one = report.cases[0]
+    falls = [f for f in one.waterfalls if f.reading == one.study.main_reading]
+    for step in (next(s for s in reversed(f.steps) if s.time is not None) for f in falls):
+        assert (
+            f"With {step.name} the {step.evidence} shortest time is {step.time:.4f} s" in page.words
+        )
+
+
+def test_where_readings_differ_each_has_its_verdict(page: Seen) -> None:
+    assert "some refuted under waypoints-rad supported under waypoints-deg" in page.words
+    said = "durations-110, limits-kept supported under waypoints-deg, refuted under waypoints-rad."
+    assert f"Refuted: time-optimal, rest-at-all-points. Of 2 readings: {said}" in page.words
+    proved = (
+        "TG107 on rest-at-all-points, TG301 on time-optimal under 2 readings, "
+        "TG302 on time-optimal under 2 readings."
+    )
+    assert f"A proof speaks against something printed: {proved}" in page.words
+
+
+def test_every_finding_stands_with_rule_basis_and_numbers(page: Seen, report: AuditReport) -> None:
+    for finding in report.cases[0].findings:
+        assert finding.rule in page.words
+        assert flat(finding.message) in page.words
+        assert f"{finding.verdict} basis: {finding.basis}" in page.words
+        for shown in (finding.printed, finding.computed):
+            assert shown is None or flat(shown) in page.words
+        if finding.gap is not None:
+            assert f"{finding.gap.percent} {finding.gap.kind}" in page.words
+
+
+def test_sections_stand_in_their_order(page: Seen) -> None:
+    order = [
+        "audited",
+        "verdicts",
+        "side-by-side",
+        "waterfall",
+        "findings",
+        "optima",
+        "sensitivities",
+        "motions",
+        "searches",
+        "landscapes",
+        "readings",
+        "assumptions",
+        "not-checkable",
+        "how-to-read",
+        "reproducibility",
+    ]
+    assert [a["id"] for tag, a in page.tags if tag == "section"] == order
+
+
+def test_optima_sensitivities_and_steps_are_the_studys_own(page: Seen, report: AuditReport) -> None:
+    one = report.cases[0]
+    for pid, rid in one.study.pairs:
+        solution = one.study.optimum(pid, rid)
+        assert f"{solution.total_time:.6f} s" in page.words
+        assert ", ".join(f"{d:.6f}" for d in solution.durations) in page.words
+        change = sum(a.sensitivity for a in solution.active)
+        assert f"{change:+.6f} s".replace("-", "−") in page.words
+    for fall in one.waterfalls:
+        for step in fall.steps:
+            assert step.name in page.words
+            assert step.note in page.words
+
+
+def test_every_word_of_the_vocabulary_is_explained(page: Seen) -> None:
+    anchors = {a.get("id") for _, a in page.tags}
+    vocabulary = [
+        "certified",
+        "best known",
+        "none",
+        "supported",
+        "refuted",
+        "not checkable",
+        "inconsistent",
+        "keeps",
+        "consistent",
+        "breaks",
+        "undecided",
+        "optimality gap",
+        "difference of reported time",
+        "reading",
+        "relaxed family",
+        "TOPPRA",
+        "any curve through the way-points",
+        "KKT residual",
+        "starts at best",
+        "replay",
+    ]
+    for word in (*vocabulary, *Basis, *Keeping):
+        assert f"word-{slug(word)}" in anchors
+
+
+def test_the_footer_names_versions_seeds_and_tolerances(page: Seen) -> None:
+    for text in ("casadi ", "numpy ", "Python 3.", "0 to 2 for every replay", "1e-09", "1e-08"):
+        assert text in page.words
+
+
+def test_json_stands_beside_the_pages(folder: Path) -> None:
+    whole = json.loads((folder / MARK).read_text(encoding="utf-8"))
+    one = json.loads((folder / f"{ID}.json").read_text(encoding="utf-8"))
+    assert whole["schema"] == one["schema"] == "trajgap/1"
+    assert whole["cases"] == one["cases"]
+    assert whole["cases"][0]["case"] == ID
+
+
+def test_the_index_names_every_case_and_its_counts(folder: Path) -> None:
+    seen = Seen((folder / "index.html").read_text(encoding="utf-8"))
+    assert f"{ID}.html" in [a.get("href") for tag, a in seen.tags if tag == "a"]
+    assert "12 claims" in seen.words
+
+
+def test_a_shipped_case_shows_each_joint_by_itself() -> None:
+    report = audit(_quick("puma560-mnam-pso-353"), seeds=2, reading="durations-at-least-0.3")
+    page = case_page(report.cases[0])
+    names = [p.name for p in page.pictures]
+    assert [n for n in names if "-joint-" in n] == [
+        f"landscape-six-joints-joint-{j}" for j in range(1, 7)
+    ]
+    assert "motion-six-joints-joints-table-2" in names
+    text = markdown(page)
+    study = report.cases[0].study
+    for joint in "123456":
+        total = study.optimum("six-joints", study.main_reading, joint).total_time
+        assert f"{total:.6f} s" in text
+    assert "3.298 s (Table 2, row 1; Table 3, row 1)" in text
+
+
+def _quick(name: str) -> Case:
+    text = (files("trajgap.problem") / "published" / f"{name}.toml").read_text(encoding="utf-8")
+    raw = tomllib.loads(text, parse_float=Decimal)
+    for algorithm in raw["algorithms"]:
+        algorithm["settings"]["iterations"] = 3
+    return check_case(raw, name)
+
+
+# --- the same every time --------------------------------------------------------------------------
+
+
+def content(folder: Path) -> dict[str, bytes]:
+    return {
+        p.relative_to(folder).as_posix(): p.read_bytes() for p in folder.rglob("*") if p.is_file()
+    }
+
+
+def test_a_second_audit_writes_the_same_bytes(folder: Path, tmp_path: Path) -> None:
+    write_report(audit(hostile_case(), seeds=3), tmp_path / "again")
+    first, second = content(folder), content(tmp_path / "again")
+    assert first.keys() == second.keys()
+    assert [name for name in first if first[name] != second[name]] == []
+
+
+NOTHING = AuditReport(())
+
+
+def test_an_earlier_report_is_replaced_as_a_whole(folder: Path, tmp_path: Path) -> None:
+    out = tmp_path / "audit"
+    out.mkdir()
+    write_report(NOTHING, out)
+    fresh = content(out)
+    shutil.rmtree(out)
+    shutil.copytree(folder, out)
+    write_report(NOTHING, out)
+    assert content(out) == fresh
+    assert [p.name for p in tmp_path.iterdir()] == ["audit"]
+
+
+# --- never over other files -----------------------------------------------------------------------
+
+
+def refuses(report: AuditReport, out: Path, message: str) -> None:
+    with pytest.raises(TrajgapError, match=message) as caught:
+        write_report(report, out)
+    assert "\n" not in str(caught.value)
+    assert not list(out.parent.glob(".trajgap*"))
+
+
+@pytest.mark.parametrize(
+    ("mark", "named"),
+    [
+        (None, "notes.txt"),
+        ("{}", "audit.json"),
+        ("not json", "audit.json"),
+        ("[1]", "audit.json"),
+        ('{"schema": "other/1", "cases": []}', "audit.json"),
+        ('{"schema": "trajgap/1", "cases": []}', "notes.txt"),
+    ],
+)
+def test_a_folder_with_other_files_is_left_alone(
+    tmp_path: Path, mark: str | None, named: str
+) -> None:
+    out = tmp_path / "mine"
+    out.mkdir()
+    (out / "notes.txt").write_text("mine", encoding="utf-8")
+    if mark is not None:
+        (out / MARK).write_text(mark, encoding="utf-8")
+    before = content(out)
+    refuses(NOTHING, out, f"{re.escape(named)} is not part of a trajgap report; name a new or an")
+    assert content(out) == before
+
+
+def test_own_files_among_the_pictures_are_noticed(folder: Path, tmp_path: Path) -> None:
+    shutil.copytree(folder, tmp_path / "audit")
+    (tmp_path / "audit" / "pictures" / "mine.png").write_bytes(b"x")
+    refuses(NOTHING, tmp_path / "audit", r"pictures/mine\.png is not part of a trajgap report")
+
+
+def test_a_file_or_link_in_its_place_is_left_alone(report: AuditReport, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("mine", encoding="utf-8")
+    refuses(report, tmp_path / "file", "what is there is not part of a trajgap report")
+    (tmp_path / "target").mkdir()
+    (tmp_path / "link").symlink_to(tmp_path / "target")
+    refuses(report, tmp_path / "link", "what is there is not part of a trajgap report")
+
+
+def test_a_place_that_cannot_be_written_is_said_in_one_line(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("mine", encoding="utf-8")
+    with pytest.raises(TrajgapError, match=r"cannot be written \(.+\); name another place"):
+        write_report(NOTHING, tmp_path / "file" / "audit")
+
+
+def test_cases_that_would_share_a_file_are_refused(report: AuditReport, tmp_path: Path) -> None:
+    twice = AuditReport(report.cases * 2)
+    refuses(twice, tmp_path / "out", f"two cases are called '{ID}'; give each an id of its own")
+
+
+@pytest.mark.parametrize("name", ["index", "audit"])
+def test_a_case_cannot_take_the_name_of_another_page(tmp_path: Path, name: str) -> None:
+    one = audit(hostile_case(name), seeds=2).cases[0]
+    refuses(AuditReport((one,)), tmp_path / "out", f"a case cannot be called '{name}'; rename it")
+
+
+# --- Markdown -------------------------------------------------------------------------------------
+
+
+def test_markdown_of_every_block() -> None:
+    grid = Grid(("a|b", "n"), ((Cell("x\ny"), Cell("−1", number=True)),), "caption")
+    section = Section(
+        "s",
+        "S <1>",
+        (
+            Prose("1. no list"),
+            Prose("head", "heading"),
+            grid,
+            Terms((("word", "meaning"),)),
+            Drawn("p", "<svg/>", "title", "what"),
+        ),
+    )
+    expected = (
+        "# T\n\n## S \\<1\\>\n\n\\1. no list\n\n### head\n\ncaption\n\n"
+        "| a\\|b | n |\n|---|---|\n| x<br>y | −1 |\n\n- **word**: meaning\n\n"
+        "![title](pictures/case-p.svg)\n\nwhat\n"
+    )
+    assert markdown(Page("case", "T", (section,))) == expected
+
+
+def test_columns_without_any_entry_are_left_out() -> None:
+    rows = ((Cell("x"), Cell(""), Cell("z")), (Cell(""), Cell(""), Cell("z")))
+    assert Grid(("a", "b", "c"), rows).filled.columns == ("a", "c")
+
+
+def test_what_is_null_alone_is_named_in_the_documents(folder: Path) -> None:
+    page = (ROOT / "docs/command-line.md").read_text(encoding="utf-8")
+    named = page[page.index("Words that do not apply are null alone.") :].split("\n- ")[0]
+    alone = set()
+
+    def walk(value: object) -> None:
+        if isinstance(value, dict):
+            for key, inner in value.items():
+                if inner is None and not value.get(f"{key}_why"):
+                    alone.add(key)
+                walk(inner)
+        elif isinstance(value, list):
+            for inner in value:
+                walk(inner)
+
+    walk(json.loads((folder / MARK).read_text(encoding="utf-8"))["cases"])
+    assert {"claim", "problem", "printed"} <= alone <= set(re.findall(r"`([a-z]+)`", named))

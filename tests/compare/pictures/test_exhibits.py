@@ -1,0 +1,314 @@
+"""The further pictures of a page: jumps, control polygon, tent map, workspace, and their hooks."""
+
+import re
+import xml.etree.ElementTree as ElementTree
+from fractions import Fraction
+from itertools import combinations
+
+import numpy as np
+import pytest
+from matplotlib.text import Annotation
+from trajgap.compare.audits.rules.printed_vertices import Vertex, vertices
+from trajgap.compare.audits.study import Study
+from trajgap.compare.pages.blocks import Drawn, Folded, Grid
+from trajgap.compare.pages.exhibits import exhibits_of_motion, exhibits_of_search
+from trajgap.compare.pictures.drawing import Picture, drawing, svg
+from trajgap.compare.pictures.jumps import jump_picture, velocity_jumps
+from trajgap.compare.pictures.labels import place_labels
+from trajgap.compare.pictures.polygon import polygon_picture
+from trajgap.compare.pictures.tent import TentScatter, tent_picture, tent_scatter
+from trajgap.heuristics.algorithms.tent import TentRule
+from trajgap.problem import (
+    Limits,
+    Printed,
+    Problem,
+    TrajgapError,
+    load_case,
+    three_five_three,
+)
+from trajgap.problem.curves import control_vertices, uniform_cubic_b_spline
+from trajgap.problem.printed import Interval
+
+WAYPOINTS = np.array([[0.3, 1.9], [1.4, 1.2], [0.9, 2.6], [2.0, 2.1], [1.6, 0.7]])
+DURATIONS = np.array([0.7, 1.1, 0.4, 0.9])
+JOINTS = ("shoulder", "wrist")
+
+
+@pytest.fixture(scope="module")
+def stretched() -> Problem:
+    return Problem(
+        WAYPOINTS,
+        Limits([9.0, 9.0], [90.0, 90.0]),
+        uniform_cubic_b_spline(5, "stretched"),
+        0.0,
+        joints=JOINTS,
+    )
+
+
+@pytest.fixture(scope="module")
+def irb1600() -> Study:
+    return Study(load_case("irb1600-ga-cubic-bspline"), seeds=2)
+
+
+@pytest.fixture(scope="module")
+def scatter() -> TentScatter:
+    return tent_scatter(30, 7, (0.0, 5.0), 0.5)
+
+
+def printed_vertices(shift: str = "0") -> list[Vertex]:
+    """Vertices of the way-points as if printed with two decimals; the first of them shifted."""
+    found = []
+    for j, label in enumerate(JOINTS):
+        for k, exact in enumerate(control_vertices(WAYPOINTS)[:, j]):
+            digits = Printed(f"{exact + float(shift) * (j == k == 0):.2f}")
+            half = Fraction(1, 50)
+            allowed = Interval(Fraction(exact) - half, Fraction(exact) + half)
+            found.append(Vertex(label, k, digits, allowed, allowed))
+    return found
+
+
+# --- jumps ----------------------------------------------------------------------------------------
+
+
+def test_jumps_are_those_of_the_slopes_of_the_control_polygon(stretched: Problem) -> None:
+    # dq/de at way-point k is (V_{k+1} − V_{k−1})/2 on both sides; only the stretch differs.
+    v = control_vertices(WAYPOINTS)
+    slopes = (v[3:-1] - v[1:-3]) / 2
+    expected = slopes * (1 / DURATIONS[1:] - 1 / DURATIONS[:-1])[:, None]
+    found = velocity_jumps(stretched, DURATIONS)
+    assert [(j.joint, j.break_index) for j in found] == [(n, k) for n in JOINTS for k in (1, 2, 3)]
+    np.testing.assert_allclose([j.size for j in found], expected.T.ravel(), rtol=1e-12)
+    np.testing.assert_allclose([j.time for j in found[:3]], np.cumsum(DURATIONS)[:3])
+
+
+def test_every_jump_is_a_bar_and_the_largest_is_named(stretched: Problem) -> None:
+    figure = jump_picture(stretched, DURATIONS, title="Jumps")
+    found = velocity_jumps(stretched, DURATIONS)
+    for joint, label in enumerate(JOINTS):
+        own = [j for j in found if j.joint == label]
+        below = figure.axes[len(JOINTS) + joint]
+        assert f"{max(own, key=size).time:.2f} s" in below.get_title(loc="left")
+        bars = sorted(c.get_segments()[0].tolist() for c in below.collections)
+        assert bars == [[[j.time, 0.0], [j.time, j.size]] for j in own], joint
+    top = max((j for j in found if j.joint == "wrist"), key=size)
+    named = f"{top.size:+#.3g} rad/s at {top.time:.2f} s".replace("-", "−")
+    assert f"joint wrist: largest of 3 jumps: {named}" in figure.description
+
+
+def size(jump: object) -> float:
+    return abs(jump.size)  # type: ignore[attr-defined,no-any-return]
+
+
+def test_the_curve_meets_both_ends_of_a_jump(stretched: Problem) -> None:
+    figure = jump_picture(stretched, DURATIONS, title="Jumps")
+    above = figure.axes[0]
+    curve = above.lines[len(DURATIONS) + 2].get_xydata()
+    rings = np.array([line.get_xydata()[0] for line in above.lines[len(DURATIONS) + 3 :]])
+    assert len(rings) == 2 * 3
+    for ring in rings:
+        assert np.abs(curve - ring).sum(axis=1).min() < 1e-9 or np.isnan(curve).any()
+        assert np.nanmin(np.abs(curve - ring).sum(axis=1)) < 1e-9
+
+
+def test_a_smooth_motion_has_no_jump() -> None:
+    smooth = Problem(WAYPOINTS[:4], Limits([9.0, 9.0], [90.0, 90.0]), three_five_three(), 0.1)
+    assert velocity_jumps(smooth, DURATIONS[:3]) == ()
+    assert "joint 1: no jump" in jump_picture(smooth, DURATIONS[:3], title="T").description
+
+
+def test_jumps_need_shared_durations(stretched: Problem) -> None:
+    with pytest.raises(TrajgapError, match=r"expected durations of shape \(4,\), got \(3,\)"):
+        jump_picture(stretched, DURATIONS[:3], title="T")
+
+
+# --- control polygon ------------------------------------------------------------------------------
+
+
+def test_the_polygon_shows_differences_and_marks_what_rounding_leaves_out() -> None:
+    good = polygon_picture(WAYPOINTS, printed_vertices(), title="Polygon")
+    assert "joint shoulder: 7 of 7 within rounding" in good.description
+    bad = polygon_picture(WAYPOINTS, printed_vertices("0.5"), title="Polygon")
+    assert "joint shoulder: 6 of 7 within rounding, at most 5.0e−1 apart" in bad.description
+    assert "joint wrist: 7 of 7 within rounding" in bad.description
+    strip = bad.axes[2].collections[1]
+    assert len(np.unique(strip.get_facecolors(), axis=0)) == 2
+    apart = strip.get_offsets()[:, 1]
+    assert int(np.abs(apart).argmax()) == 0
+
+
+def test_the_polygon_passes_the_vertices_over_their_parameters() -> None:
+    figure = polygon_picture(WAYPOINTS, printed_vertices(), title="Polygon")
+    for joint, axes in enumerate(figure.axes[:2]):
+        curve, polygon, squares, _, rings = axes.lines
+        np.testing.assert_array_equal(polygon.get_xdata(), np.arange(-1, 6))
+        np.testing.assert_allclose(polygon.get_ydata(), control_vertices(WAYPOINTS)[:, joint])
+        np.testing.assert_allclose(squares.get_ydata(), polygon.get_ydata(), atol=0.005)
+        np.testing.assert_array_equal(rings.get_ydata(), WAYPOINTS[:, joint])
+        np.testing.assert_allclose(
+            np.interp(rings.get_xdata(), *curve.get_xydata().T), WAYPOINTS[:, joint], atol=1e-12
+        )
+
+
+def test_the_polygon_refuses_other_counts() -> None:
+    with pytest.raises(TrajgapError, match="give two vertices more than way-points"):
+        polygon_picture(WAYPOINTS[:4], printed_vertices(), title="T")
+
+
+# --- tent map -------------------------------------------------------------------------------------
+
+
+def test_the_collapse_is_where_the_powers_of_two_end(scatter: TentScatter) -> None:
+    # A double is m/2ᵖ with m odd; every step takes one factor, then 1 maps to 0.
+    p = Fraction(float(scatter.start)).denominator.bit_length() - 1
+    assert scatter.orbit.zero_at == p + 1 <= 54
+    assert scatter.orbit.exact_zero_at is None
+    whole = (p + 1 + 6) // 7
+    assert scatter.at_zero == 30 - whole
+    assert (scatter.doubles[whole:] == 0).all()
+    assert (scatter.exact[whole:] > 0).all()
+
+
+def test_only_one_long_orbit_collapses(scatter: TentScatter) -> None:
+    partly = (scatter.doubles == 0).any(axis=1).sum()
+    assert scatter.collapsed == {
+        TentRule.COORDINATE: 0,
+        TentRule.MEMBER: 0,
+        TentRule.SINGLE: partly,
+    }
+    # 29 doublings of an error of half a unit in the last place of a start below 1.
+    assert 0 < scatter.difference <= 5 * 2.0**29 * 2.0**-54
+    assert scatter.apart_exact.shape == (30, 7)
+
+
+def test_the_tent_picture_counts_what_it_draws(scatter: TentScatter) -> None:
+    figure = tent_picture(scatter, unit="s", title="Tent")
+    apart, exact, doubles, steps = figure.axes
+    np.testing.assert_array_equal(exact.lines[0].get_xydata(), scatter.exact[:, :2])
+    drawn = doubles.lines[0].get_xydata()
+    at_origin = int((drawn == 0).all(axis=1).sum())
+    assert [t.get_text() for t in doubles.texts] == [f"{at_origin} of 30 begin here"]
+    assert len(apart.lines) == 2
+    assert steps.get_title(loc="right") == f"0 at step {scatter.orbit.zero_at}"
+    assert f"exactly 0 from step {scatter.orbit.zero_at} on" in figure.description
+
+
+def test_another_slope_does_not_collapse() -> None:
+    other = tent_scatter(6, 3, (1.0, 2.0), 0.4)
+    assert other.orbit.zero_at is None
+    assert other.at_zero == 0
+    figure = tent_picture(other, unit="s", title="Tent")
+    assert "never exactly 0" in figure.description
+    assert not figure.axes[2].texts
+
+
+# --- labels ---------------------------------------------------------------------------------------
+
+
+def test_labels_overlap_neither_each_other_nor_the_points() -> None:
+    points = np.array([[0.0, 0.0], [0.02, 0.01], [0.05, 0.0], [0.5, 0.9], [0.5, 0.9], [1.0, 1.0]])
+    with drawing():
+        figure = Picture("Labels", "", 4.0, 4.0)
+        axes = figure.subplots()
+        axes.plot(*points.T, "o")
+        figure.draw_without_rendering()
+        figure.set_layout_engine("none")
+        place_labels(axes, points, ["alpha", "beta", "gamma", "delta", "epsilon", "last"])
+        figure.draw_without_rendering()
+    assert [t.get_text() for t in axes.texts] == [
+        "alpha",
+        "beta",
+        "gamma",
+        "delta, epsilon",
+        "last",
+    ]
+    texts = [t for t in axes.texts if isinstance(t, Annotation)]
+    boxes = [super(Annotation, t).get_window_extent() for t in texts]
+    for one, two in combinations(boxes, 2):
+        assert not one.overlaps(two)
+    frame = axes.get_window_extent()
+    for box in boxes:
+        assert frame.x0 <= box.x0
+        assert box.x1 <= frame.x1
+        for place in axes.transData.transform(points):
+            assert not box.contains(*place)
+
+
+# --- on the pages ---------------------------------------------------------------------------------
+
+
+def test_the_polishing_case_shows_jumps_and_polygon(irb1600: Study) -> None:
+    jumps, polygon, workspace = exhibits_of_motion(irb1600)
+    assert (jumps.id, polygon.id, workspace.id) == ("jumps", "control-polygon", "workspace")
+    picture, folded = jumps.blocks
+    assert isinstance(picture, Drawn)
+    assert isinstance(folded, Folded)
+    # Durations of 1 s throughout leave no jump; the times of the other reading are smooth.
+    assert picture.name == "jumps-nine-segments-after"
+    assert "under 8 of 16 readings" in picture.caption
+    assert irb1600.main_reading in picture.caption
+    (grid,) = folded.blocks
+    assert isinstance(grid, Grid)
+    found = irb1600.claim_check(irb1600.case.claim("after"), "nine-segments", irb1600.main_reading)
+    assert len(grid.rows) == sum(j.order == 1 for j in found.jumps)
+    (shown,) = polygon.blocks
+    assert isinstance(shown, Drawn)
+    assert "12 of 12 within rounding" in shown.document
+    (cloud,) = workspace.blocks
+    assert isinstance(cloud, Drawn)
+    assert "The way-points are not drawn: joint" in cloud.caption
+    assert exhibits_of_search(irb1600) == []
+
+
+def test_the_polygon_of_the_case_agrees_with_the_rule(irb1600: Study) -> None:
+    claim = irb1600.case.claim("control-vertices")
+    statement = irb1600.case.statement()
+    rows = [[number.value for number in row] for row in statement.waypoints.points]
+    found = vertices(claim, statement)  # type: ignore[arg-type]
+    figure = polygon_picture(rows, found, title="T")
+    assert figure.description.count("12 of 12 within rounding") == 6
+
+
+def test_a_case_without_waypoints_shows_cloud_and_tent_map() -> None:
+    study = Study(load_case("z1-woa-bspline"), seeds=2)
+    (workspace,) = exhibits_of_motion(study)
+    (cloud,) = workspace.blocks
+    assert isinstance(cloud, Drawn)
+    assert "one turn where none is printed" in cloud.caption
+    assert "may have lost some" in cloud.caption
+    (section,) = exhibits_of_search(study)
+    picture, grid = section.blocks
+    assert isinstance(picture, Drawn)
+    assert isinstance(grid, Grid)
+    assert "left open by the text" in picture.caption
+    assert [row[1].text for row in grid.rows] == ["30", "7", "210"]
+
+
+def test_the_palletiser_names_positions_out_of_reach() -> None:
+    study = Study(load_case("irb460-pso-353"), seeds=2)
+    (workspace,) = exhibits_of_motion(study)
+    flat, full = workspace.blocks
+    assert isinstance(flat, Drawn)
+    assert isinstance(full, Drawn)
+    assert (flat.name, full.name) == ("workspace-modified", "workspace-standard")
+    # In the modified convention every position has y = 0, so the miss is the printed |y|.
+    missed = dict(re.findall(r"(above place|place) by ([0-9.]+) m", flat.caption))
+    assert {k: float(v) for k, v in missed.items()} == pytest.approx(
+        {"above place": 0.7794, "place": 0.9}, abs=2e-3
+    )
+    assert "Some joint values reach each of them within rounding" in full.caption
+
+
+def test_pictures_are_accessible_small_and_the_same_each_time(
+    stretched: Problem, scatter: TentScatter
+) -> None:
+    for make in (
+        lambda: jump_picture(stretched, DURATIONS, title="Jumps"),
+        lambda: polygon_picture(WAYPOINTS, printed_vertices(), title="Polygon"),
+        lambda: tent_picture(scatter, unit="s", title="Tent"),
+    ):
+        document = svg(make())
+        assert document == svg(make())
+        root = ElementTree.fromstring(document)
+        assert root.findtext("{http://www.w3.org/2000/svg}desc")
+        assert "<image" not in document
+        assert len(document) < 250_000

@@ -1,0 +1,240 @@
+"""Repair by uniform stretch: the checker's own times, exact accounting, and its limits."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from trajgap.heuristics import (
+    GA,
+    MNAMPSO,
+    PSO,
+    WOA,
+    Bounds,
+    ConstrainedPSO,
+    DeathPenalty,
+    Handling,
+    ImprovedGA,
+    ImprovedWOA,
+    Stretch,
+    run,
+    run_many,
+    run_per_joint,
+    states,
+)
+from trajgap.heuristics.repair import judge_of
+from trajgap.problem import (
+    Limits,
+    Problem,
+    TrajgapError,
+    Verdict,
+    check,
+    cubic_spline,
+    quintic_spline,
+    three_five_three,
+)
+
+WAYPOINTS = np.array([[0.19, -1.63], [0.82, -2.01], [0.13, -1.07], [-0.88, -1.31]])
+LIMITS = Limits([5.0, 3.0], [8.0, 11.0], [np.inf, 90.0])
+LONG = Problem(
+    np.random.default_rng(31).uniform(-2, 2, (10, 3)),
+    Limits([2.0, 3.0, 2.5], [6.0, 5.0, 9.0]),
+    quintic_spline(9),
+    0.0,
+    6.0,
+    name="nine segments",
+)
+
+
+def posed(**changes: object) -> Problem:
+    given = {
+        "waypoints": WAYPOINTS,
+        "limits": LIMITS,
+        "curve": three_five_three(),
+        "duration_lower": 0.1,
+        "duration_upper": 9.0,
+    }
+    return Problem(**{**given, **changes})
+
+
+def test_fitness_is_what_the_checker_calls_feasible_and_tight_time() -> None:
+    problem = posed(duration_lower=0.0, duration_upper=np.inf)
+    batch = np.exp(np.random.default_rng(5).uniform(np.log(0.4), np.log(3.0), (40, 3)))
+    repaired, rescaled = Stretch(problem)(batch), Stretch(problem, shorten=True)(batch)
+    found = [check(problem, h) for h in batch]
+    np.testing.assert_allclose(repaired, [f.feasible_time for f in found], rtol=1e-12)
+    np.testing.assert_allclose(rescaled, [f.tight_time for f in found], rtol=1e-12)
+    assert 5 < sum(f.verdict is Verdict.PASS for f in found) < 35
+    assert (rescaled <= repaired).all()
+
+
+def test_decoded_durations_keep_every_limit_and_touch_one() -> None:
+    problem = posed()
+    batch = np.random.default_rng(6).uniform(0.15, 0.6, (40, 3))
+    for h in Stretch(problem).decode(batch):
+        found = check(problem, h)
+        assert found.verdict is Verdict.PASS
+        assert found.worst is not None
+        assert found.worst.ratio == pytest.approx(1.0, abs=1e-12)
+
+
+def test_what_keeps_the_limits_is_not_touched() -> None:
+    problem = posed()
+    batch = np.random.default_rng(7).uniform(1.5, 3.0, (20, 3))
+    assert np.isfinite(DeathPenalty(problem)(batch)).all()
+    np.testing.assert_array_equal(Stretch(problem).decode(batch), batch)
+    np.testing.assert_array_equal(Stretch(problem)(batch), DeathPenalty(problem)(batch))
+    np.testing.assert_array_equal(DeathPenalty(problem).decode(batch), batch)
+
+
+def test_proportions_are_kept() -> None:
+    batch = np.random.default_rng(8).uniform(0.15, 0.6, (20, 3))
+    decoded = Stretch(posed()).decode(batch)
+    np.testing.assert_allclose(decoded / decoded[:, :1], batch / batch[:, :1], rtol=1e-14)
+
+
+def test_rescaling_knows_no_scale() -> None:
+    objective = Stretch(posed(), shorten=True)
+    batch = np.random.default_rng(9).uniform(0.5, 1.0, (20, 3))
+    np.testing.assert_allclose(objective(batch), objective(3.7 * batch), rtol=1e-12)
+
+
+@pytest.mark.parametrize("penalty", [np.inf, 1e6])
+@pytest.mark.parametrize(
+    "durations",
+    [
+        [0.0, 1.5, 1.5],
+        [-1.5, 1.5, 1.5],
+        [np.nan, 1.5, 1.5],
+        [1.5, np.inf, 1.5],
+        [1.5, 9.01, 1.5],
+        [0.05, 1.5, 1.5],
+        [1e-3, 1e-3, 0.5],
+    ],
+)
+def test_what_no_stretch_mends(durations: list[float], penalty: float) -> None:
+    """The last one would need more than 9 s in a segment, the one before less than 0.1 s."""
+    objective = Stretch(posed(duration_upper=[9.0, 9.0, 9.0]), penalty)
+    batch = np.array([durations, [1.9, 1.9, 1.9]])
+    np.testing.assert_array_equal(objective(batch), [penalty, 1.9 + 1.9 + 1.9])
+    np.testing.assert_array_equal(objective.decode(batch), batch)
+
+
+def test_a_stretch_may_lift_a_duration_over_its_lower_bound() -> None:
+    problem = posed(duration_lower=0.3)
+    h = np.array([[0.2, 0.25, 0.2]])
+    assert DeathPenalty(problem)(h)[0] == np.inf
+    decoded = Stretch(problem).decode(h)
+    assert (decoded >= 0.3).all()
+    assert Stretch(problem)(h)[0] == decoded.sum()
+
+
+def test_a_joint_with_limit_zero() -> None:
+    objective = Stretch(posed(limits=Limits([5.0, 0.0])))
+    assert objective(np.full((1, 3), 1.5))[0] == np.inf
+
+
+def test_rescaling_where_nothing_is_limited() -> None:
+    objective = Stretch(posed(limits=Limits(joints=2), duration_lower=0.0), shorten=True)
+    assert objective(np.full((1, 3), 1.5))[0] == np.inf
+
+
+def test_a_prescribed_derivative_cannot_be_stretched() -> None:
+    problem = posed(curve=cubic_spline(3, ((1, 0.5),)))
+    DeathPenalty(problem)
+    with pytest.raises(TrajgapError, match=r"^stretch: a prescribed .* use the death penalty"):
+        Stretch(problem)
+
+
+def test_it_refuses_what_the_death_penalty_refuses() -> None:
+    with pytest.raises(TrajgapError, match=r"^penalty: must be positive"):
+        Stretch(posed(), 0.0)
+    with pytest.raises(TrajgapError, match=r"limits.position: .* drop the position limits"):
+        Stretch(posed(limits=Limits(5.0, position_upper=4.0, joints=2)))
+
+
+def test_handlings_by_name() -> None:
+    assert isinstance(judge_of(posed(), np.inf, "death-penalty"), DeathPenalty)
+    stretch, rescale = (judge_of(posed(), np.inf, name) for name in ("stretch", "rescale"))
+    assert isinstance(stretch, Stretch)
+    assert isinstance(rescale, Stretch)
+    assert (stretch.shorten, rescale.shorten) == (False, True)
+    with pytest.raises(TrajgapError, match=r"^objective: 'streched' is unknown; .*'stretch'"):
+        run(PSO(), posed(), 0, 1, objective="streched")
+
+
+ALGORITHMS = (
+    PSO(),
+    MNAMPSO(),
+    ConstrainedPSO(position_rule="bounds", position_max=9.0),
+    WOA(),
+    ImprovedWOA(),
+    GA(position_range=(0.05, 5.0)),
+    ImprovedGA(position_range=(0.05, 5.0)),
+)
+
+
+@pytest.mark.parametrize("algorithm", ALGORITHMS, ids=lambda a: a.kind)
+@pytest.mark.parametrize("handling", ["stretch", "rescale"])
+@pytest.mark.parametrize("problem", [posed(), LONG], ids=["3", "9"])
+def test_the_account_is_that_of_the_decoded_durations(
+    algorithm: PSO, handling: str, problem: Problem
+) -> None:
+    found = run(algorithm, problem, 3, 60, objective=handling)
+    assert found.objective is Handling(handling)
+    judge = judge_of(problem, np.inf, handling)
+    np.testing.assert_array_equal(judge.decode(found.position[None])[0], found.durations)
+    assert found.reported_time == found.trace[-1] == found.durations.sum()
+    assert check(problem, found.durations).verdict is Verdict.PASS
+    assert (found.trace[1:] <= found.trace[:-1]).all()
+    penal = run(algorithm, problem, 3, 60)
+    assert found.evaluations == penal.evaluations
+    assert penal.objective is Handling.DEATH_PENALTY
+    np.testing.assert_array_equal(penal.position, penal.durations)
+
+
+def test_the_trace_is_that_of_decoded_totals() -> None:
+    problem = posed()
+    rng = np.random.Generator(np.random.PCG64(6))
+    judge = Stretch(problem)
+    totals = [
+        DeathPenalty(problem)(judge.decode(s.positions)).min()
+        for s in states(WOA(), judge, Bounds.of(problem), rng)
+    ]
+    trace = run(WOA(), problem, 6, objective="stretch").trace
+    np.testing.assert_array_equal(trace, np.minimum.accumulate(totals))
+
+
+def test_joints_by_themselves() -> None:
+    found = run_per_joint(PSO(), posed(), 12, 30, objective="stretch")
+    for j, one in enumerate(found.runs):
+        assert check(posed().joint(j), one.durations).verdict is Verdict.PASS
+        assert one.reported_time == one.durations.sum()
+    np.testing.assert_array_equal(
+        found.durations, np.maximum(found.runs[0].durations, found.runs[1].durations)
+    )
+
+
+def test_same_bits_for_any_number_of_workers() -> None:
+    one = run_many(WOA(), posed(), range(3), 1, 10, objective="stretch")
+    two = run_many(WOA(), posed(), range(3), 2, 10, objective="stretch")
+    for a, b in zip(one, two, strict=True):
+        assert a.durations.tobytes() == b.durations.tobytes()
+        assert a.position.tobytes() == b.position.tobytes()
+        assert not b.position.flags.writeable
+
+
+@pytest.mark.parametrize(
+    "algorithm", [WOA(), ImprovedWOA(), GA(iterations=300)], ids=lambda a: a.kind
+)
+def test_its_effect_on_the_kind_of_problem_of_the_whale_paper(algorithm: WOA) -> None:
+    """Eight way-points, six joints: every seed ends shorter than any does under the penalty."""
+    way = np.random.default_rng(0).uniform(-2, 2, (8, 6))
+    problem = Problem(way, Limits(2.0, 5.0), quintic_spline(7), 0.0, 5.0)
+    if isinstance(algorithm, GA):
+        algorithm = replace(algorithm, position_range=(0.0, 5.0))
+    penal, stretched = (
+        [r.reported_time for r in run_many(algorithm, problem, range(6), objective=handling)]
+        for handling in ("death-penalty", "stretch")
+    )
+    assert np.median(stretched) < np.median(penal)
+    assert max(stretched) < np.median(penal)

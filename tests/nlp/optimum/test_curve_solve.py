@@ -1,0 +1,269 @@
+"""The NLP of the B-splines beside closed forms, identities, and a search that shares no code."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize
+from support.b_splines import ByScipy, clamped, uniform
+from trajgap.nlp import Status, kkt, random_starts, solve, solve_per_joint
+from trajgap.nlp.optimum.curve_formulation import build_curve, curve_structure
+from trajgap.problem import (
+    ClampedBSpline,
+    Limits,
+    Problem,
+    TrajgapError,
+    Verdict,
+    evaluate,
+    load_case,
+    quintic_spline,
+    solve_in_closed_form,
+    uniform_cubic_b_spline,
+)
+
+POLISH = "irb1600-ga-cubic-bspline"
+BEST = {
+    "angles-rad-v-rad-a-rad": (4.852456649, 4.038082213),
+    "angles-rad-v-rad-a-deg": (36.730173546, 30.565849671),
+    "angles-rad-v-deg-a-rad": (20.323474354, 17.781591382),
+    "angles-rad-v-deg-a-deg": (38.661154288, 33.725471244),
+    "angles-deg-v-rad-a-rad": (0.641062463, 0.533474715),
+    "angles-deg-v-rad-a-deg": (4.852456649, 4.038082213),
+    "angles-deg-v-deg-a-rad": (0.674764435, 0.588620515),
+    "angles-deg-v-deg-a-deg": (4.852456649, 4.038082213),
+}
+"""Best known totals, s: stretched (closed form) and timed (found from 4 starts)."""
+UNITS = tuple(BEST)
+
+
+@pytest.mark.parametrize("units", UNITS)
+def test_stretched_agrees_with_the_closed_form_under_every_unit_reading(units: str) -> None:
+    problem = load_case(POLISH).problem(reading_id=f"{units}-stretched")
+    expected = solve_in_closed_form(problem.curve, problem.waypoints, problem.limits.derivatives)
+    solution = solve(problem, starts=2)
+    assert solution.status is Status.OPTIMAL
+    assert solution.total_time == pytest.approx(expected.sum(), rel=1e-9, abs=0)
+    np.testing.assert_allclose(solution.durations, expected, rtol=1e-8)
+    assert expected.sum() == pytest.approx(BEST[units][0], abs=1e-9)
+    assert solution.check is not None
+    assert solution.check.verdict is Verdict.DISCONTINUOUS
+    assert solution.check.limits is Verdict.PASS
+    assert "jumps of velocity between them" in str(solution.why)
+    assert solution.kkt_residual is not None
+    assert solution.kkt_residual <= 1e-11
+
+
+@pytest.mark.parametrize("units", UNITS)
+def test_the_stretched_optimum_is_found_by_the_solver_from_afar(units: str) -> None:
+    """A stretch of the start as a whole, all that happens beside the NLP, stays far above."""
+    problem = load_case(POLISH).problem(reading_id=f"{units}-stretched")
+    total = solve_in_closed_form(problem.curve, problem.waypoints, problem.limits.derivatives).sum()
+    start = random_starts(problem, 1, np.random.default_rng(11))
+    stretched = float(start.sum() * evaluate(problem, start).stretch[0])
+    assert stretched > 1.5 * total
+    solution = solve(problem, initial=start)
+    assert solution.iterations > 5
+    assert solution.total_time == pytest.approx(total, rel=1e-9, abs=0)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_stretched_agrees_with_the_closed_form_with_jerk_limits(seed: int) -> None:
+    problem, _ = uniform("stretched", seed + 20, count=5)
+    expected = solve_in_closed_form(problem.curve, problem.waypoints, problem.limits.derivatives)
+    solution = solve(problem, starts=2)
+    assert solution.total_time == pytest.approx(expected.sum(), rel=1e-9, abs=0)
+
+
+def test_timed_optimum_of_the_polishing_paper_in_one_unit() -> None:
+    problem = load_case(POLISH).problem(reading_id="angles-rad-v-rad-a-rad-timed")
+    solution = solve(problem, starts=2)
+    assert solution.status is Status.OPTIMAL
+    assert solution.total_time == pytest.approx(BEST["angles-rad-v-rad-a-rad"][1], abs=2e-9)
+    assert solution.check is not None
+    assert solution.check.verdict is Verdict.PASS
+    assert solution.check.max_violation <= 1e-12
+    assert solution.kkt_residual is not None
+    assert solution.kkt_residual <= 1e-8
+    # One unit throughout is one question in two units.
+    degrees = load_case(POLISH).problem(reading_id="angles-deg-v-deg-a-deg-timed")
+    assert evaluate(degrees, solution.durations[None]).stretch[0] == pytest.approx(1, rel=1e-10)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("units", UNITS)
+def test_timed_optimum_under_every_unit_reading_from_random_starts(units: str) -> None:
+    problem = load_case(POLISH).problem(reading_id=f"{units}-timed")
+    starts = random_starts(problem, 6, np.random.default_rng(7))
+    solution = solve(problem, initial=starts)
+    assert min(solve(problem).total_time, solution.total_time) == pytest.approx(
+        BEST[units][1], abs=2e-9
+    )
+
+
+def dense_total(problem: Problem, log_ratios: np.ndarray) -> float:
+    """Total of durations in these ratios, stretched until densely sampled peaks keep the limits."""
+    h = np.exp(np.concatenate([[0.0], log_ratios]))
+    motion = ByScipy(problem.waypoints, h)
+    # The knots are among the samples: acceleration has kinks there.
+    e = np.minimum(np.linspace(0, 3, 6001), np.nextafter(3, 0))
+    q1, q2, t1, t2 = motion.q(e, 1), motion.q(e, 2), motion.t(e, 1), motion.t(e, 2)
+    if t1.min() <= 0:
+        return 1e6
+    velocity = np.abs(q1 / t1) / problem.limits.velocity
+    acceleration = np.abs((q2 * t1 - q1 * t2) / t1**3) / problem.limits.acceleration
+    return float(h.sum() * max(velocity.max(), np.sqrt(acceleration.max())))
+
+
+def test_timed_optimum_agrees_with_a_search_that_shares_no_code() -> None:
+    problem, _ = uniform("timed", 31, count=4, joints=2)
+    problem = replace(problem, limits=replace(problem.limits, jerk=np.full(2, np.inf)))
+    solution = solve(problem)
+    found = [
+        minimize(
+            lambda x: dense_total(problem, x),
+            start,
+            method="Nelder-Mead",
+            options={"xatol": 1e-9, "fatol": 1e-11, "maxiter": 2000},
+        ).fun
+        for start in ([0.0, 0.0], [-0.3, 0.2], [0.3, -0.2])
+    ]
+    assert solution.status is Status.OPTIMAL
+    assert solution.total_time == pytest.approx(min(found), rel=2e-6)
+
+
+def test_totals_scale_with_time_and_not_with_mirrors_or_names() -> None:
+    problem, _ = uniform("timed", 32, count=4)
+    base = solve(problem, starts=2).total_time
+    slower = problem.limits.with_derivatives(problem.limits.derivatives / 1.7 ** np.arange(1, 4))
+    assert solve(replace(problem, limits=slower), starts=2).total_time == pytest.approx(
+        1.7 * base, rel=1e-9
+    )
+    for q in (3.0 - problem.waypoints, problem.waypoints[::-1]):
+        other = replace(problem, waypoints=q)
+        assert solve(other, starts=2).total_time == pytest.approx(base, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    "kind",
+    [
+        (3, "averaged-continued", "times", "timed"),
+        (7, "averaged-continued", "times", "timed"),
+        (5, "averaged-continued", "chord", "timed"),
+        (4, "averaged-continued", "joint-chord", "timed"),
+        (5, "averaged-continued", "chord", "stretched"),
+    ],
+    ids=lambda k: "-".join(map(str, k)),
+)
+def test_clamped_splines_are_solved_to_a_kkt_point(kind) -> None:
+    problem, _ = clamped(kind, 21, count=5, joints=2)
+    solution = solve(problem, starts=2)
+    assert solution.status is Status.OPTIMAL
+    assert solution.check is not None
+    assert solution.check.limits is Verdict.PASS
+    assert solution.kkt_residual is not None
+    assert solution.kkt_residual <= 1e-8
+    if kind[3] == "stretched":
+        expected = solve_in_closed_form(
+            problem.curve, problem.waypoints, problem.limits.derivatives
+        )
+        assert solution.total_time == pytest.approx(expected.sum(), rel=1e-9)
+        return
+    # No nearby durations, stretched until they keep the limits, are shorter.
+    rng = np.random.default_rng(3)
+    near = solution.durations * np.exp(0.02 * rng.standard_normal((4000, 4)))
+    repaired = near.sum(axis=1) * evaluate(problem, near).stretch
+    assert repaired.min() >= solution.total_time * (1 - 1e-9)
+
+
+def test_degree_5_at_the_waypoints_has_the_optimum_of_the_quintic_spline() -> None:
+    problem, _ = clamped((5, "waypoints", "times", "timed"), 22, count=6)
+    other = solve(replace(problem, curve=quintic_spline(5)))
+    found = solve(problem)
+    assert found.status is Status.OPTIMAL
+    assert found.total_time == pytest.approx(other.total_time, rel=1e-9)
+
+
+def test_kkt_gradients_say_what_more_of_a_limit_brings() -> None:
+    problem, _ = uniform("timed", 33, count=5, joints=2)
+    problem = replace(problem, limits=replace(problem.limits, jerk=np.full(2, np.inf)))
+    base = solve(problem)
+    limits = problem.limits.derivatives
+    for a in base.active:
+        at = problem.joints.index(str(a.joint)), ("velocity", "acceleration").index(a.quantity)
+        same = [
+            b.sensitivity for b in base.active if (b.joint, b.quantity) == (a.joint, a.quantity)
+        ]
+        totals = []
+        for sign in (1, -1):
+            moved = limits.copy()
+            moved[at] *= 1 + sign * 1e-5
+            changed = replace(problem, limits=problem.limits.with_derivatives(moved))
+            totals.append(solve(changed, initial=base.durations).total_time)
+        slope = (totals[0] - totals[1]) / 2e-5 * 0.1
+        assert slope == pytest.approx(sum(same), abs=2e-5)
+
+
+def test_segments_in_which_nothing_moves() -> None:
+    curve = uniform_cubic_b_spline(2, "stretched")
+    still = solve(Problem([[0.4], [0.4]], Limits(1.0, 2.0), curve))
+    assert still.status is Status.NOT_ATTAINED
+    assert still.infimum == 0
+    bounded = solve(Problem([[0.4], [0.4]], Limits(1.0, 2.0), curve, 0.3))
+    assert bounded.total_time == pytest.approx(0.3)
+
+
+@pytest.mark.parametrize("time", ["stretched", "timed"])
+def test_bounds_positions_and_impossible_limits(time: str) -> None:
+    problem, _ = uniform(time, 34, count=4, joints=2)
+    free = solve(problem, starts=2)
+    low = 1.2 * float(free.durations[1])
+    held = solve(replace(problem, duration_lower=[0.0, low, 0.0]), starts=2)
+    assert held.durations[1] == pytest.approx(low, rel=1e-9)
+    assert held.status is Status.OPTIMAL
+    zero = solve(replace(problem, limits=Limits([0.0, 1.0])))
+    assert zero.status is Status.INFEASIBLE
+    assert "joint 1 moves, but its velocity limit is 0" in str(zero.why)
+    short = solve(replace(problem, duration_upper=0.02))
+    assert short.status is Status.INFEASIBLE
+    wide = Limits(*problem.limits.derivatives.T, -20.0, 20.0)
+    assert solve(replace(problem, limits=wide), starts=2).total_time == pytest.approx(
+        free.total_time, rel=1e-8
+    )
+    with pytest.raises(TrajgapError, match=r"initial: expected shape \(starts, 3\)"):
+        solve(problem, initial=[[1.0, 1.0]])
+
+
+def test_each_joint_by_itself() -> None:
+    problem, _ = uniform("timed", 35, count=4, joints=2)
+    answer = solve_per_joint(problem, starts=2)
+    assert answer.status is Status.OPTIMAL
+    assert not answer.ranges
+    assert "piecewise polynomials only" in str(answer.why)
+    longest = np.max([s.durations for s in answer.joints], axis=0)
+    np.testing.assert_allclose(answer.durations, longest)
+
+
+def test_a_build_prints_and_is_shared_by_problems_of_one_shape() -> None:
+    one, _ = uniform("timed", 1, count=4)
+    other, _ = uniform("timed", 2, count=4)
+    assert curve_structure(one) == curve_structure(other)
+    text = str(build_curve(curve_structure(one)))
+    assert "3 segment durations" in text
+    assert "time a B-spline too, 3 joint(s)" in text
+
+
+def test_kkt_residual_far_from_an_optimum_is_large() -> None:
+    problem, h = uniform("timed", 36, count=4)
+    assert kkt(problem, 3.0 * h).residual > 0.01
+
+
+def test_the_chord_of_all_joints_enters_the_solver_unscaled() -> None:
+    """Joints of very different size: the chord is that of the joint vector as it is."""
+    rng = np.random.default_rng(5)
+    q = np.cumsum(rng.uniform(0.5, 1.0, (5, 2)) * [1.0, 0.01], axis=0)
+    curve = ClampedBSpline(5, 5, "averaged-continued", "chord")
+    problem = Problem(q, Limits([2.0, 0.03], [5.0, 0.06]), curve)
+    solution = solve(problem, starts=2)
+    assert solution.status is Status.OPTIMAL

@@ -1,0 +1,330 @@
+import numpy as np
+import pytest
+from support import second_route
+from trajgap.nlp import Form, Status, random_starts, solve
+from trajgap.problem import (
+    Limits,
+    Problem,
+    TrajgapError,
+    Verdict,
+    check,
+    cubic_spline,
+    cubic_spline_virtual,
+    load_case,
+    piecewise,
+    quintic_spline,
+    rest_to_rest,
+    three_five_three,
+)
+
+PUMA = "puma560-mnam-pso-353"
+
+
+def puma(reading: str = "durations-at-least-0.3") -> Problem:
+    return load_case(PUMA).problem(reading_id=reading)
+
+
+@pytest.mark.parametrize("form", list(Form))
+def test_every_one_of_20_random_starts_reaches_the_shared_puma_optimum(form: Form) -> None:
+    problem = puma()
+    starts = random_starts(problem, 20, np.random.default_rng(20260101))
+    solution = solve(problem, initial=starts, form=form)
+    best = min(solution.totals)
+    assert solution.status is Status.OPTIMAL
+    assert all(total <= best * (1 + 1e-6) for total in solution.totals)
+    assert solution.starts_at_best == solution.starts == 20
+    assert solution.check is not None
+    assert solution.check.verdict is Verdict.PASS
+    assert solution.check.max_violation <= 1e-9
+    assert solution.kkt_residual is not None
+    assert solution.kkt_residual <= 1e-8
+
+
+@pytest.mark.parametrize("reading", ["durations-at-least-0.3", "durations-positive"])
+def test_the_shared_puma_optimum_agrees_with_a_route_without_our_code(reading: str) -> None:
+    problem = puma(reading)
+    lower = float(problem.duration_lower[0])
+    starts = np.array([[1.0, 1.2, 1.1], [1.3, 1.5, 1.3]])
+    best, _ = second_route.shortest(problem.waypoints, 6.0, 8.0, lower, starts)
+    assert solve(problem).total_time == pytest.approx(best, rel=1e-9, abs=0)
+
+
+@pytest.mark.parametrize("joint", range(6))
+def test_each_puma_joint_agrees_with_a_route_without_our_code(joint: int) -> None:
+    problem = puma().joint(joint)
+    solution = solve(problem)
+    start = np.array([solution.durations * 1.05, np.array([1.0, 1.2, 0.6])])
+    best, _ = second_route.shortest(problem.waypoints, 6.0, 8.0, 0.3, start)
+    assert solution.total_time == pytest.approx(best, rel=1e-9, abs=0)
+
+
+def test_a_thin_second_basin_is_found_with_every_seed() -> None:
+    """Joint 6 with positive durations: random starts fall into the wide basin 96 % of the time."""
+    problem = puma("durations-positive").joint(5)
+    totals = [solve(problem, seed=seed).total_time for seed in range(5)]
+    grid = np.stack(np.meshgrid(*[np.geomspace(0.02, 1.3, 60)] * 3, indexing="ij"), -1)
+    from trajgap.problem import evaluate
+
+    vectors = grid.reshape(-1, 3)
+    brute = float((vectors.sum(axis=1) * evaluate(problem, vectors).stretch).min())
+    assert max(totals) <= brute
+    assert max(totals) - min(totals) <= 1e-9
+
+
+@pytest.mark.parametrize(
+    ("degree", "velocity", "acceleration", "jerk"),
+    [
+        (5, 15 / 8, 10 / np.sqrt(3), 60.0),
+        (7, 35 / 16, 7.5131884043929, 52.5),
+    ],
+)
+def test_one_rest_to_rest_segment_has_the_textbook_time(
+    degree: int, velocity: float, acceleration: float, jerk: float
+) -> None:
+    """Peaks of the normalised quintic and septic (Biagiotti & Melchiorri 2008, tables 5.1)."""
+    q = np.array([[0.3, -1.0], [1.5, 0.7]])
+    span = np.abs(np.diff(q, axis=0))[0]
+    for limits, peak, order in (
+        (Limits([0.9, 2.0]), velocity, 1),
+        (Limits(np.inf, [1.1, 0.8]), acceleration, 2),
+        (Limits(np.inf, np.inf, [3.0, 9.0]), jerk, 3),
+    ):
+        bound = limits.derivatives[:, order - 1]
+        expected = float(((span * peak / bound) ** (1 / order)).max())
+        solution = solve(Problem(q, limits, rest_to_rest(1, degree)))
+        assert solution.status is Status.OPTIMAL
+        assert solution.total_time == pytest.approx(expected, rel=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("degrees", "unit", "waypoints", "velocity", "acceleration", "jerk", "printed"),
+    [
+        (
+            True,
+            "task 1",
+            [[-10, 20, 15, 150, 30, 120], [55, 35, 30, 10, 70, 25]],
+            [100, 95, 100, 150, 130, 110],
+            [60, 60, 75, 70, 90, 80],
+            [60, 66, 85, 70, 75, 70],
+            4.7177,
+        ),
+        (
+            False,
+            "task 2",
+            np.pi
+            * np.array(
+                [
+                    [-1 / 3, 1 / 6, 0, -2 / 5, 1 / 4, 0],
+                    [2 / 5, 1 / 3, -1 / 6, -1 / 15, -1 / 2, 1 / 4],
+                ]
+            ),
+            [1.8, 2, 1.5, 2, 2.5, 2],
+            [4, 5, 3.5, 4, 5, 4],
+            [20, 25, 20, 20, 30, 25],
+            2.7998,
+        ),
+    ],
+)
+def test_the_septic_times_of_fang_2020_are_met_to_their_printed_digits(
+    degrees: bool, unit: str, waypoints, velocity, acceleration, jerk, printed: float
+) -> None:
+    """Y. Fang et al., Mechanism and Machine Theory 153 (2020) 103957, tables 4 and 7."""
+    scale = np.pi / 180 if degrees else 1.0
+    q, v, a, j = (np.asarray(x, float) * scale for x in (waypoints, velocity, acceleration, jerk))
+    solution = solve(Problem(q, Limits(v, a, j), rest_to_rest(1, 7)))
+    assert solution.total_time == pytest.approx(printed, abs=5.1e-5)
+
+
+def test_the_virtual_cubic_of_gasparetto_2008_beats_its_printed_total() -> None:
+    """RCIM 24 (2008) 415-426, tables 2 and 3: 9.1 s with time and jerk weighted."""
+    scale = np.pi / 180
+    q = scale * np.array(
+        [
+            [-10, 20, 15, 150, 30, 120],
+            [60, 50, 100, 100, 110, 60],
+            [20, 120, -10, 40, 90, 100],
+            [55, 35, 30, 10, 70, 25],
+        ]
+    )
+    limits = Limits(
+        scale * np.array([100, 95, 100, 150, 130, 110.0]),
+        scale * np.array([60, 60, 75, 70, 90, 80.0]),
+        scale * np.array([60, 66, 85, 70, 75, 70.0]),
+    )
+    solution = solve(Problem(q, limits, cubic_spline_virtual(4)))
+    assert solution.status is Status.OPTIMAL
+    assert solution.total_time < 9.1
+    assert solution.starts_at_best == solution.starts
+
+
+CURVES = [three_five_three(), cubic_spline(3), quintic_spline(3), rest_to_rest(3, 5)]
+
+
+@pytest.mark.parametrize("interpolant", CURVES, ids=lambda i: i.name)
+def test_the_total_scales_with_time_and_not_with_the_names_of_the_joints(interpolant) -> None:
+    q = np.array([[0.2, -1.0, 0.7], [0.9, 0.3, 0.1], [0.4, 1.1, -0.8], [1.3, 0.6, 0.2]])
+    limits = np.array([[1.5, 4.0, 30.0], [2.0, 6.0, 50.0], [1.0, 5.0, 40.0]])
+    base = solve(Problem(q, Limits(*limits.T), interpolant)).total_time
+    c = 1.7
+    slower = Limits(*(limits / c ** np.arange(1, 4)).T)
+    assert solve(Problem(q, slower, interpolant)).total_time == pytest.approx(c * base, rel=1e-9)
+    order = [2, 0, 1]
+    permuted = Problem(q[:, order], Limits(*limits[order].T), interpolant)
+    assert solve(permuted).total_time == pytest.approx(base, rel=1e-9)
+    mirrored = Problem(3.0 - q, Limits(*limits.T), interpolant)
+    assert solve(mirrored).total_time == pytest.approx(base, rel=1e-9)
+    backwards = Problem(q[::-1], Limits(*limits.T), interpolant)
+    assert solve(backwards).total_time == pytest.approx(base, rel=1e-9)
+
+
+def test_velocity_limits_alone_keep_total_times_limit_constant() -> None:
+    case = load_case("irb460-pso-353")
+    for reading in ("waypoints-rad", "waypoints-deg"):
+        slow = solve(case.problem("limit-80", reading)).total_time
+        fast = solve(case.problem("limit-110", reading)).total_time
+        assert 80 * slow == pytest.approx(110 * fast, rel=1e-9)
+
+
+@pytest.mark.parametrize("interpolant", CURVES, ids=lambda i: i.name)
+def test_both_forms_find_the_same_optimum(interpolant) -> None:
+    q = np.array([[0.2, -1.0], [0.9, 0.3], [0.4, 1.1], [1.3, 0.6]])
+    problem = Problem(q, Limits([1.5, 2.0], [4.0, 6.0]), interpolant, 0.1)
+    totals = [solve(problem, form=form).total_time for form in Form]
+    assert totals[0] == pytest.approx(totals[1], rel=1e-9)
+
+
+def test_sensitivities_are_the_finite_differences_of_the_total() -> None:
+    problem = puma()
+    base = solve(problem)
+    limits = problem.limits.derivatives
+    predicted = np.zeros_like(limits)
+    orders = {"velocity": 0, "acceleration": 1, "jerk": 2}
+    for a in base.active:
+        if a.joint is not None:
+            predicted[problem.joints.index(a.joint), orders[a.quantity]] += a.sensitivity
+    step = 1e-5
+    for j in range(6):
+        for r in range(2):
+            totals = []
+            for sign in (1, -1):
+                changed = limits.copy()
+                changed[j, r] *= 1 + sign * step
+                other = Problem(
+                    problem.waypoints,
+                    problem.limits.with_derivatives(changed),
+                    problem.curve,
+                    problem.duration_lower,
+                )
+                totals.append(solve(other, initial=base.durations).total_time)
+            slope = (totals[0] - totals[1]) / (2 * step) * 0.1
+            assert slope == pytest.approx(predicted[j, r], abs=2e-5)
+
+
+def test_relaxing_the_family_never_costs_time() -> None:
+    problem = puma()
+    free = Problem(
+        problem.waypoints, problem.limits, piecewise((5, 5, 5), 2), problem.duration_lower
+    )
+    solution = solve(free)
+    assert solution.status is Status.OPTIMAL
+    assert solution.total_time < solve(problem).total_time
+    judged = check(free, solution.durations, solution.nodal)
+    assert judged.verdict is Verdict.PASS
+
+
+def test_a_segment_without_motion_is_named_and_its_infimum_is_the_rest() -> None:
+    q = np.array([[0.3, 1.0], [0.9, 0.2], [0.9, 0.2], [1.4, 0.8]])
+    limits = Limits([1.0, 1.5], [3.0, 4.0])
+    solution = solve(Problem(q, limits, rest_to_rest(3, 5)))
+    parts = [solve(Problem(q[i : i + 2], limits, rest_to_rest(1, 5))).total_time for i in (0, 2)]
+    assert solution.status is Status.NOT_ATTAINED
+    assert solution.why is not None
+    assert "segment 2" in solution.why
+    assert solution.infimum == pytest.approx(sum(parts), rel=1e-9)
+    bounded = solve(Problem(q, limits, rest_to_rest(3, 5), [0.0, 0.25, 0.0]))
+    assert bounded.status is Status.OPTIMAL
+    assert bounded.total_time == pytest.approx(sum(parts) + 0.25, rel=1e-9)
+
+
+@pytest.mark.parametrize("joints", [1, 2])
+def test_a_still_first_segment_of_any_angle_is_named(joints: int) -> None:
+    q = np.array([[0.3, 1.0], [0.3, 1.0], [0.9, 0.5], [1.4, 0.8]])[:, :joints]
+    solution = solve(Problem(q, Limits(1.0, 3.0, joints=joints), three_five_three()))
+    assert solution.status is Status.NOT_ATTAINED
+    assert solution.infimum < solution.total_time
+    assert "nothing moves in segment 1" in solution.why
+
+
+def test_nothing_that_moves_or_nothing_that_limits_has_infimum_zero() -> None:
+    q = np.array([[0.3], [0.9], [0.1], [1.4]])
+    assert solve(Problem(q, Limits(), three_five_three())).infimum == pytest.approx(0, abs=1e-9)
+    still = solve(Problem(np.full((4, 2), 0.7), Limits(1.0, 2.0), three_five_three()))
+    assert still.status is Status.NOT_ATTAINED
+    assert still.infimum == 0
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        ({"limits": Limits([0.0, 2.0], 3.0)}, "joint 1 moves, but its velocity limit is 0"),
+        ({"limits": Limits([1.0, 2.0], [3.0, 0.0])}, "joint 2 moves, but its acceleration limit"),
+        ({"duration_upper": 0.2}, "needs at least"),
+        ({"limits": Limits(1.0, 3.0, np.inf, -1.0, 1.0, joints=2)}, "outside its position limits"),
+    ],
+)
+def test_what_is_plainly_impossible_is_infeasible_with_its_reason(change, reason) -> None:
+    q = np.array([[0.3, 1.0], [0.9, 0.2], [0.5, 0.4], [1.4, 0.8]])
+    given = {"waypoints": q, "limits": Limits([1.0, 2.0], 3.0), "curve": three_five_three()}
+    solution = solve(Problem(**(given | change)))
+    assert solution.status is Status.INFEASIBLE
+    assert reason in solution.why
+    assert solution.total_time == float("inf")
+
+
+def test_an_infeasibility_without_proof_says_so() -> None:
+    problem = puma()
+    short = Problem(problem.waypoints, problem.limits, problem.curve, problem.duration_lower, 0.9)
+    solution = solve(short, starts=2)
+    assert solution.status is Status.NONE_FOUND
+    assert "not a proof" in solution.why
+
+
+def test_a_joint_that_must_not_move_and_does_not_is_no_obstacle() -> None:
+    q = np.array([[0.3, 1.0], [0.9, 1.0], [0.5, 1.0], [1.4, 1.0]])
+    alone = solve(Problem(q[:, :1], Limits(1.0, 3.0), three_five_three()))
+    both = solve(Problem(q, Limits([1.0, 0.0], [3.0, 0.0]), three_five_three()))
+    assert both.status is Status.OPTIMAL
+    assert both.total_time == pytest.approx(alone.total_time, rel=1e-9)
+
+
+def test_duration_and_position_limits_are_kept_and_listed() -> None:
+    problem = puma()
+    longer = solve(Problem(problem.waypoints, problem.limits, problem.curve, [0.3, 0.3, 1.4]))
+    assert longer.durations[2] == pytest.approx(1.4, rel=1e-9)
+    assert any(a.joint is None and a.quantity == "duration" for a in longer.active)
+    tight = Limits(6.0, 8.0, np.inf, -3.0, 0.9, joints=6)
+    solution = solve(Problem(problem.waypoints, tight, problem.curve, 0.3))
+    assert solution.status is Status.OPTIMAL
+    assert solution.check.verdict is Verdict.PASS
+    assert solution.total_time > solve(problem).total_time
+
+
+def test_starts_of_the_wrong_length_are_refused() -> None:
+    with pytest.raises(TrajgapError, match=r"initial: expected shape \(starts, 3\)"):
+        solve(puma(), initial=[[1.0, 1.0]])
+
+
+def test_a_result_prints_on_one_screen() -> None:
+    text = str(solve(puma()))
+    assert "optimal" in text
+    assert "best known" in text
+    assert len(text.splitlines()) < 20
+
+
+@pytest.mark.slow
+def test_a_long_spline_is_solved_in_the_lifted_form() -> None:
+    rng = np.random.default_rng(5)
+    q = np.cumsum(rng.normal(size=(31, 6)), axis=0)
+    solution = solve(Problem(q, Limits(2.0, 10.0), cubic_spline(30)), starts=1)
+    assert solution.check.verdict is Verdict.PASS
+    assert solution.kkt_residual <= 1e-8

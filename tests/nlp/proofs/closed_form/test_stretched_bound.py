@@ -1,0 +1,125 @@
+"""Certificates of the stretched uniform cubic B-spline: closed form, own check, and attacks."""
+
+from __future__ import annotations
+
+import copy
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from trajgap.nlp.proofs.answer import keeps_limits, uniform_coefficients
+from trajgap.nlp.proofs.certifiers import certify
+from trajgap.nlp.proofs.document import certificate
+from trajgap.nlp.proofs.exact import exact_problem
+from trajgap.nlp.proofs.outcome import Outcome
+from trajgap.nlp.verify import verify
+from trajgap.nlp.verify_stretched import _pieces
+from trajgap.problem import Limits, Problem, fit, solve_in_closed_form, uniform_cubic_b_spline
+
+
+def random_problem(seed: int) -> Problem:
+    rng = np.random.default_rng(seed)
+    count, joints = int(rng.integers(2, 7)), int(rng.integers(1, 4))
+    q = rng.normal(0.4, 1.3, (count, joints))
+    scale = rng.uniform(0.3, 4.0, (3, joints))
+    some = rng.random(3) < 0.7
+    some[rng.integers(0, 3)] = True
+    v, a, j = (scale[i] if some[i] else np.full(joints, np.inf) for i in range(3))
+    lower = rng.uniform(0.1, 1.5, count - 1) if rng.random() < 0.4 else 0.0
+    return Problem(q, Limits(v, a, j), uniform_cubic_b_spline(count, "stretched"), lower)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_the_interval_holds_the_closed_form(seed: int) -> None:
+    problem = random_problem(seed)
+    found = certify(problem)
+    assert found.outcome is Outcome.CERTIFIED
+    assert found.gap < 1e-11
+    durations = solve_in_closed_form(problem.curve, problem.waypoints, problem.limits.derivatives)
+    best = float(np.maximum(durations, problem.duration_lower).sum())
+    assert float(found.lower) <= best * (1 + 1e-12)
+    assert found.upper is not None
+    assert float(found.upper) >= best * (1 - 1e-12)
+    verdict = verify(certificate(found))
+    assert str(verdict).startswith("proves")
+    assert (verdict.lower, verdict.upper) == (found.lower, found.upper)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_no_segment_can_be_shorter(seed: int) -> None:
+    problem = random_problem(seed)
+    found = certify(problem)
+    assert found.durations is not None
+    for k in range(problem.segments):
+        shorter = list(found.durations)
+        shorter[k] *= 1 - Fraction(1, 10**9)
+        assert not keeps_limits(exact_problem(problem), shorter)
+
+
+def test_the_curve_is_the_same_by_three_routes() -> None:
+    # From the control vertices, from the slopes at the way-points, and from the fit in floats.
+    q = [Fraction(x) for x in ("0.3", "1.25", "-0.75", "2", "1.9")]
+    vertices = uniform_coefficients([[x] for x in q])[0]
+    assert vertices == _pieces(q)
+    curve = fit(
+        uniform_cubic_b_spline(5, "stretched"), np.array([[float(x)] for x in q]), [1.0] * 4
+    )
+    for e in (0.1, 1.5, 2.75, 3.9):
+        piece = vertices[int(e)]
+        value = sum(float(c) * (e - int(e)) ** p for p, c in enumerate(piece))
+        assert value == pytest.approx(float(curve(e)[0]), abs=1e-12)
+
+
+def test_a_segment_that_is_too_short_is_proved_infeasible() -> None:
+    q = np.array([[0.0], [1.0], [0.5]])
+    curve = uniform_cubic_b_spline(3, "stretched")
+    needs = solve_in_closed_form(curve, q, [[1.0, np.inf, np.inf]])
+    problem = Problem(q, Limits(1.0), curve, 0.0, [needs[0] * (1 - 1e-9), 9.0])
+    found = certify(problem)
+    assert found.outcome is Outcome.INFEASIBLE
+    document = certificate(found)
+    assert verify(document).infeasible
+    document["problem"]["duration_upper"][0] = "9"
+    assert not verify(document).proves
+
+
+def test_positions_are_judged() -> None:
+    # It overshoots its highest way-point, whatever the durations.
+    q = np.array([[0.0], [1.0], [0.9], [0.0]])
+    curve = uniform_cubic_b_spline(4, "stretched")
+    tight = Problem(q, Limits(1.0, position_upper=1.0), curve)
+    assert certify(tight).outcome is Outcome.OPEN
+    wide = certificate(certify(Problem(q, Limits(1.0, position_upper=1.2), curve)))
+    assert verify(wide).proves
+    wide["problem"]["position_upper"] = ["1"]
+    assert "derivative 0 exceeds" in verify(wide).reason
+
+
+TAMPERED = [
+    ("least", 1 + Fraction(1, 10**12), "is not proved"),
+    ("lower", 1 + Fraction(1, 10**12), "exceeds the total"),
+    ("duration", 1 - Fraction(1, 10**12), "exceeds its limit"),
+    ("limit up", 1 + Fraction(1, 10**6), "is not proved"),
+    ("limit down", 1 - Fraction(1, 10**6), "exceeds its limit"),
+]
+
+
+@pytest.mark.parametrize(("what", "factor", "reason"), TAMPERED, ids=[t[0] for t in TAMPERED])
+def test_what_favours_the_claim_is_refused(what: str, factor: Fraction, reason: str) -> None:
+    q = np.array([[0.25], [1.0], [-0.375], [0.5]])
+    problem = Problem(q, Limits(1.5, 2.0), uniform_cubic_b_spline(4, "stretched"))
+    document = certificate(certify(problem))
+    wrong = copy.deepcopy(document)
+    segment = wrong["proof"]["segments"][1]
+    if what == "least":
+        segment[3] = str(Fraction(segment[3]) * factor)
+    elif what == "lower":
+        wrong["claim"]["lower"] = str(Fraction(wrong["claim"]["lower"]) * factor)
+    elif what == "duration":
+        wrong["claim"]["durations"][1] = str(Fraction(wrong["claim"]["durations"][1]) * factor)
+    else:
+        row = wrong["problem"]["limits"][segment[0]]
+        row[segment[1] - 1] = str(Fraction(row[segment[1] - 1]) * factor)
+    verdict = verify(wrong)
+    assert not verdict.proves
+    assert reason in verdict.reason

@@ -1,0 +1,376 @@
+"""C4 quintic intervals: bounds against sampled curves, dense search, broken limits, stops."""
+
+from __future__ import annotations
+
+import json
+import runpy
+from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.interpolate import make_interp_spline
+from support.checkout import ROOT
+from support.unjudged import unjudged
+from trajgap.nlp import solve
+from trajgap.nlp.proofs.certifiers import certify, covered
+from trajgap.nlp.proofs.document import certificate
+from trajgap.nlp.proofs.exact import exact_problem
+from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress, Request
+from trajgap.nlp.proofs.quintic.bound import bound, centre
+from trajgap.nlp.proofs.quintic.rows import PLACES, row_shape
+from trajgap.nlp.proofs.quintic.windows import window, window_bound, window_terms
+from trajgap.nlp.proofs.state import state_document
+from trajgap.problem import Limits, Problem, TrajgapError, evaluate, quintic_spline
+from trajgap.verify import seal
+from trajgap.verify import verify_certificate as verify
+from trajgap.verify.quintic import QuinticSpline
+
+module = import_module("trajgap.nlp.proofs.quintic.certifier")
+ENDS = [(1, 0.0), (2, 0.0)]
+
+
+def random_problem(rng: np.random.Generator) -> Problem:
+    """Few segments and joints; some limits absent, some durations bounded from below."""
+    n, joints = int(rng.integers(2, 4)), int(rng.integers(1, 3))
+    v, a, j = np.exp(rng.uniform(-0.7, 0.7, (3, joints))) * np.array([[1.0], [2.0], [12.0]])
+    j = np.where(rng.random(joints) < 0.7, np.inf, j)
+    v = np.where(rng.random(joints) < 0.2, np.inf, v)
+    shortest = np.where(rng.random(n) < 0.2, 0.8, 0.0)
+    waypoints = rng.uniform(-1.5, 1.5, (n + 1, joints))
+    return Problem(waypoints, Limits(v, a, j), quintic_spline(n), shortest)
+
+
+def best_found(problem: Problem, rng: np.random.Generator, count: int = 4000) -> float:
+    """Smallest total over random directions, gathered around the best again and again."""
+    n = problem.segments
+    shares, spread = rng.dirichlet(np.ones(n), count), 1.0
+    for _ in range(5):
+        stretch = evaluate(problem, shares).stretch
+        stretch = np.maximum(stretch, (problem.duration_lower / shares).max(axis=1))
+        totals = stretch * shares.sum(axis=1)
+        best, spread = int(totals.argmin()), 0.3 * spread
+        least, top = float(totals[best]), shares[best]
+        shares = np.vstack([top, top * np.exp(spread * rng.standard_normal((count, n)))])
+    return least
+
+
+def row_value(
+    q: np.ndarray, h: np.ndarray, segment: int, order: int, sign: int, spot: int, limit: float
+) -> float:
+    """Row of `bound` at given durations, by scipy's spline."""
+    t = np.concatenate([[0.0], np.cumsum(h)])
+    curve = make_interp_spline(t, q, k=5, bc_type=(ENDS, ENDS))
+    value = sign * float(curve(t[segment] + spot / PLACES * h[segment], order))
+    return (value - limit) * h[segment] ** (order - 2)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_bound_is_below_every_sampled_curve(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    n, joints, count = int(rng.integers(2, 6)), 3, 5
+    h0, width = np.exp(rng.uniform(-0.5, 0.5, n)), [0.01, 0.04, 0.08, 0.15][seed]
+    q = rng.uniform(-1.0, 1.0, (n + 1, joints))
+    low, high = 1.0 / (h0 * np.exp(width)), 1.0 / (h0 * np.exp(-width))
+    r, e = 0.5 * (low + high), 0.5 * (high - low)
+    size = 2 * (n - 1)
+    matrix, inverse = np.empty((size, size)), np.empty((size, size))
+    x0, slope = np.empty((joints, size)), np.empty((joints, n, size))
+    step = np.diff(q, axis=0)
+    assert centre(n, joints, r, step, matrix, inverse, x0, slope)
+    segment, joint = rng.integers(0, n, count), rng.integers(0, joints, count)
+    order, spot = np.array([1, 2, 3, 1, 2]), rng.integers(0, PLACES + 1, count)
+    sign, limit = rng.choice([-1, 1], count), rng.uniform(0.5, 3.0, count)
+    weight, shape = rng.uniform(0.1, 1.0, count), np.empty((count, 5))
+    for i in range(count):
+        row_shape(order[i], float(sign[i]), spot[i], shape[i])
+    tau, total = float(rng.normal()), float(h0.sum())
+
+    def least(e: np.ndarray) -> float:
+        centred = (n, joints, r, e, step, total, matrix, inverse, x0, slope)
+        rows = (segment, joint, 2 - order, limit, shape, weight)
+        return float(bound(*centred, *rows, tau))
+
+    def value(point: np.ndarray) -> float:
+        found = [
+            row_value(q[:, joint[i]], 1 / point, segment[i], order[i], sign[i], spot[i], limit[i])
+            for i in range(count)
+        ]
+        return float(weight @ found + tau * ((1 / point).sum() - total))
+
+    points = r + e * rng.uniform(-1, 1, (30, n)).round(rng.integers(0, 2))
+    values = [value(np.clip(p, r - e, r + e)) for p in points]
+    assert least(e) <= min(values) + 1e-9
+    # It is worth something: second order in the width, exact at the centre.
+    assert least(1e-9 * e) == pytest.approx(value(r), abs=1e-6)
+    halved = [least(0.1 * e / 2**k) for k in (0, 6)]
+    assert value(r) - halved[1] < (value(r) - halved[0]) / 40
+
+
+@pytest.mark.parametrize("limited", [(1.0, 2.0), (np.inf, 2.0), (1.0, np.inf)])
+def test_a_window_never_excludes_a_feasible_motion(limited: tuple[float, float]) -> None:
+    rng = np.random.default_rng(5)
+    velocity, acceleration = limited
+    for _ in range(6):
+        q = rng.uniform(-1.0, 1.0, (5, 1))
+        problem = Problem(q, Limits(velocity, acceleration), quintic_spline(4))
+        shares = rng.dirichlet(3.0 * np.ones(4), 60)
+        feasible = shares * evaluate(problem, shares).stretch[:, None]
+        step = np.diff(q[:, 0])
+        found = window(step, feasible[0] * 0.6, velocity, acceleration)
+        assert found is not None
+        terms = window_terms(*found, step, velocity, acceleration)
+        excluded = 0
+        for h in feasible:
+            assert window_bound(4, terms, h, h, 0.0, h.sum()) <= 0.0
+            low, high = 0.8 * h, h
+            middle = [window_bound(4, terms, x, x, 0.3, 1.0) for x in (low, high, 0.9 * h)]
+            assert window_bound(4, terms, low, high, 0.3, 1.0) <= min(middle)
+            excluded += window_bound(4, terms, 0.3 * h, 0.3 * h, 0.0, 1.0) > 0.0
+        assert excluded > 0
+
+
+def attacked(seeds: range, gap: float) -> None:
+    narrow = 0
+    for seed in seeds:
+        rng = np.random.default_rng(seed)
+        problem = random_problem(rng)
+        found = certify(problem, gap=gap, seconds=600.0)
+        assert found.upper is not None
+        best = best_found(problem, rng)
+        assert float(found.lower) <= best * (1 + 1e-12), seed
+        assert float(found.upper) <= best * (1 + 2 * gap), seed
+        narrow += found.outcome is Outcome.CERTIFIED
+        verdict = verify(json.loads(json.dumps(certificate(found))))
+        assert verdict.proves, (seed, verdict)
+        assert verdict.lower == found.lower
+    assert narrow == len(seeds)
+
+
+def test_dense_search_stays_within_the_interval() -> None:
+    attacked(range(6), 0.03)
+
+
+@pytest.mark.slow
+def test_dense_search_stays_within_two_hundred_intervals() -> None:
+    attacked(range(100, 300), 0.005)
+
+
+@pytest.mark.slow
+def test_a_row_of_the_docs_is_proved_again() -> None:
+    page = (ROOT / "docs" / "certificates-quintic.md").read_text("utf-8")
+    problems = runpy.run_path(str(ROOT / "benchmarks" / "quintic_instances.py"))["instances"]()
+    assert sum(f"| {problem.name} | [" in page for problem in problems) == 20
+    problem = next(p for p in problems if p.name == "step 3.0 rad, number 2")
+    found = certify(problem, gap=0.1, seconds=600.0)
+    assert found.upper is not None
+    interval = f"[{float(found.lower):.6f}, {float(found.upper):.6f}]"
+    assert f"| {problem.name} | {interval} |" in page
+    assert verify(json.loads(json.dumps(certificate(found)))).proves
+
+
+def small() -> Problem:
+    q = np.array([[0.25, -0.5], [1.0, 0.125], [-0.375, 0.75], [0.5, 0.25]])
+    return Problem(q, Limits([1.0, 0.9], [2.0, 1.5]), quintic_spline(3))
+
+
+def test_limits_falsified_on_purpose_prove_too_much_and_are_refused(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    truth = certify(small(), gap=0.01)
+    assert truth.upper is not None
+    limits: Callable[[Any], np.ndarray] = module._limits
+    monkeypatch.setattr(module, "_limits", lambda problem: 0.9 * limits(problem))
+    false = unjudged(monkeypatch)
+    judged = certify(small(), gap=0.01)
+    assert (judged.outcome, judged.proof) == (Outcome.OPEN, None)
+    units = module._units(exact_problem(small()))
+    assert units == module.Units((0, 0), 0)
+    run = module._Run(exact_problem(small()), units, Request(), 0.0, truth.durations)
+    library = module.windows(run.steps, run.limits, np.array([float(h) for h in truth.durations]))
+    run.deadline = np.inf
+    too_much = run.stage(module._below(truth.upper * Fraction(101, 100)), library)
+    assert too_much.total > truth.upper
+    document = certificate(false[0])
+    document["proof"], document["claim"]["lower"] = too_much.document(), str(truth.upper)
+    document["seal"] = seal({key: x for key, x in document.items() if key != "seal"})
+    verdict = verify(document)
+    assert not verdict.proves
+    assert "not proved" in verdict.reason
+
+
+def test_an_answer_that_is_too_long_is_never_certified(monkeypatch: pytest.MonkeyPatch) -> None:
+    best = solve(small(), seed=0).durations
+    assert best is not None
+    given = module._answer
+
+    def unlucky(floats: Any, exact: Any, seed: int, initial: Any) -> Any:
+        if initial is None:
+            return tuple(Fraction(float(h)) for h in 1.05 * best * np.array([1.2, 0.9, 1.1]))
+        return given(floats, exact, seed, initial)
+
+    monkeypatch.setattr(module, "_answer", unlucky)
+    found = certify(small(), gap=0.01)
+    assert found.outcome is Outcome.CERTIFIED
+    assert float(found.upper or 0) == pytest.approx(best.sum(), rel=1e-6)
+
+
+def stopped(after: int) -> Certified:
+    """A run that is interrupted at a certain report."""
+    count = 0
+
+    def report(progress: Progress) -> None:
+        nonlocal count
+        count += 1
+        if count == after:
+            raise KeyboardInterrupt
+
+    return certify(small(), gap=1e-3, report=report)
+
+
+def test_a_stopped_run_keeps_what_it_proved_and_goes_on() -> None:
+    found = stopped(4)
+    assert found.outcome is Outcome.INTERVAL
+    assert found.upper is not None
+    assert 0 < found.lower < found.upper
+    verdict = verify(json.loads(json.dumps(certificate(found))))
+    assert verdict.proves
+    state = json.loads(json.dumps(state_document(found)))
+    waited = certify(small(), gap=1e-3, seconds=0.0, resume=state)
+    assert waited.lower == found.lower
+    assert verify(certificate(waited)).proves
+    finished = certify(small(), gap=1e-3, resume=state)
+    assert finished.outcome is Outcome.CERTIFIED
+    assert finished.gap <= 1e-3
+
+
+@pytest.mark.parametrize(
+    ("alter", "match"),
+    [
+        (lambda s: s["proof"].update(total=str(Fraction(s["proof"]["total"]) * 2)), "not proved"),
+        (lambda s: s["proof"].update(tree=[["."]]), "not proved"),
+        (lambda s: s["proof"].update(kind="three-piece"), "not proved"),
+        (lambda s: s["claim"].update(durations=["1", "0.1", "1"]), "exceeds its limit"),
+        (lambda s: s.pop("proof"), "missing"),
+    ],
+)
+def test_an_altered_state_is_refused(alter: Callable[[Any], Any], match: str) -> None:
+    state = json.loads(json.dumps(state_document(stopped(4))))
+    alter(state)
+    with pytest.raises(TrajgapError, match=match):
+        certify(small(), resume=state)
+
+
+def forged(total: str, low: list[str], **proof: Any) -> dict[str, Any]:
+    """A certificate of durations of at least 0.55 s, whose least total is 1.1 s, with a proof."""
+    q = np.array([[0.0], [0.1], [0.2]])
+    problem = Problem(q, Limits(100.0, 100.0), quintic_spline(2), [0.55, 0.55])
+    document = dict(json.loads(json.dumps(certificate(certify(problem, gap=0.1)))))
+    document["proof"].update(total=total, low=low, **proof)
+    document["claim"].update(lower=total, upper=None, durations=None)
+    return document
+
+
+def test_a_window_below_the_smallest_floats_proves_nothing() -> None:
+    # tau·0.53125 is rounded up to tau, twice, and tau·1.25 down to it.
+    tau = f"0.{'0' * 323}5"
+    nothing = {"tree": [[".", 0, tau]], "windows": [[0] * 6], "rows": []}
+    verdict = verify(forged("1.25", ["0.53125", "0.53125"], **nothing))
+    assert not verdict.proves
+    assert "no number of at most 120 digits" in verdict.reason
+    nothing["tree"] = [[".", 0, "5e-61"]]
+    verdict = verify(forged("1.25", ["0.53125", "0.53125"], **nothing))
+    assert not verdict.proves
+    assert "unusual size" in verdict.reason
+
+
+def test_a_leaf_with_more_rows_than_were_counted_is_refused() -> None:
+    # Each addition is rounded: the margin is for a number of them.
+    leaf = [".", 1] + [0, 1] * 65
+    rows = {"tree": [leaf], "windows": [], "rows": [[0, 0, 1, 1, 512]]}
+    verdict = verify(forged("1.109375", ["0.546875", "0.546875"], **rows))
+    assert not verdict.proves
+    assert "too many rows" in verdict.reason
+
+
+@pytest.mark.parametrize(
+    ("tree", "reason"),
+    [
+        ([], "tree: not 1 to"),
+        ([0, ["."]], "not empty"),
+        ([["."], ["."]], "not empty"),
+        ([0] * 100_000 + [["."]], "too deep"),
+        ({}, "no list"),
+        ([0, ["."], ["."]], "not empty"),
+        ([2, ["."], ["."]], "no integer in 0..1"),
+        ([["/", 0, "0.55"], ["."], ["."]], "is not stated"),
+        ([0, 1, ["."], ["."], ["."]], "not empty"),
+        ([["r"]], "unknown tag"),
+        ([["?"]], "open"),
+    ],
+)
+def test_trees_that_cover_nothing_are_refused(tree: Any, reason: str) -> None:
+    verdict = verify(forged("1.109375", ["0.546875", "0.546875"], tree=tree))
+    assert not verdict.proves
+    assert reason in verdict.reason
+
+
+def test_a_box_that_is_empty_may_be_cut_but_not_left_open() -> None:
+    low = ["0.546875", "0.546875"]
+    assert verify(forged("1", low, tree=[0, ["."], ["."]])).proves
+    assert "open" in verify(forged("1", low, tree=[0, ["."]])).reason
+    assert "open" in verify(forged("1", low, tree=[0, ["."], ["?"]])).reason
+    assert "too many" in verify(forged("1", low, tree=[["."], ["."]])).reason
+
+
+def test_a_proof_that_contradicts_the_answer_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = certify(small(), gap=0.1)
+    document = certificate(found)
+    monkeypatch.setattr(QuinticSpline, "leaf", lambda *_: None)
+    assert verify(document).proves
+    document["proof"]["total"] = "100"
+    reason = "the proof contradicts the answer: one of them is wrong"
+    assert verify(document).reason == reason
+    # The solver says so, too.
+    state = state_document(certify(small(), gap=0.1, seconds=0.0))
+    assert state is not None
+    state["claim"] |= {"durations": None, "upper": None, "lower": "100"}
+    state["proof"] = document["proof"]
+    with pytest.raises(TrajgapError, match="contradicts"):
+        certify(small(), gap=0.1, resume=state)
+
+
+FAST = np.array([[0.0], [0.01], [0.005], [-0.01]])
+"""Way-points, rad, that take about 1 ms at limits of 200 rad/s and 1.2e6 rad/s²."""
+
+
+def test_motions_of_a_millisecond_are_proved_in_units_of_their_own() -> None:
+    problem = Problem(FAST, Limits(200.0, 1.2e6), quintic_spline(3))
+    found = certify(problem, gap=0.03, seconds=20.0)
+    assert found.outcome is Outcome.CERTIFIED
+    assert found.verdict is not None
+    assert found.verdict.lower == found.lower
+    assert found.proof is not None
+    proof = found.proof.document()
+    assert proof["second"] < -8
+    # The same motion in units of 2⁻¹⁰ s, which are powers of two and so spoil no digit.
+    slow = Problem(FAST, Limits(200.0 / 2**10, 1.2e6 / 2**20), quintic_spline(3))
+    again = certify(slow, gap=0.03, seconds=20.0)
+    assert float(again.lower) == pytest.approx(float(found.lower) * 2**10, rel=1e-6)
+
+
+def test_what_is_not_covered_is_said() -> None:
+    problem = small()
+    assert covered(exact_problem(problem)) is None
+    free = replace(problem, limits=Limits([np.inf] * 2, [np.inf] * 2))
+    assert "nothing limits" in str(covered(exact_problem(free)))
+    jerk = replace(problem, limits=Limits([np.inf] * 2, [np.inf] * 2, [9.0] * 2))
+    assert "no joint that moves" in str(covered(exact_problem(jerk)))
+    assert covered(exact_problem(replace(jerk, duration_lower=np.full(3, 0.1)))) is None
+    huge = replace(problem, waypoints=problem.waypoints * 1e61)
+    assert "unusual size" in str(covered(exact_problem(huge)))
+    many = Problem(np.zeros((30, 1)), Limits(1.0, 1.0), quintic_spline(29))
+    assert "segments" in str(covered(exact_problem(many)))

@@ -1,0 +1,290 @@
+"""The word "certified": said of what was proved again, and of nothing else."""
+
+from __future__ import annotations
+
+import copy
+from dataclasses import replace
+from fractions import Fraction
+from importlib import import_module
+
+import numpy as np
+import pytest
+from support.checkout import ROOT
+from support.documents import assert_valid
+from support.shipped_problems import POSED
+from trajgap.compare.audits.rules.distances import judge_distances
+from trajgap.compare.audits.study import Study
+from trajgap.compare.audits.waterfall import waterfalls
+from trajgap.compare.documents.results import results_document, solve_result
+from trajgap.compare.gaps.optimality_gap import Reference, gap
+from trajgap.nlp import (
+    Evidence,
+    ExactProblem,
+    Interval,
+    Subject,
+    certificate,
+    certify,
+    estimate_any_curve,
+    proved,
+    shipped,
+    solve,
+    solve_per_joint,
+    weakest,
+    with_certificate,
+    with_certificates,
+)
+from trajgap.nlp.proofs.evidence import WIDEST
+from trajgap.nlp.proofs.exact import exact_problem, printed_problem
+from trajgap.problem import (
+    Limits,
+    Problem,
+    cubic_spline,
+    load_case,
+    rest_to_rest,
+    three_five_three,
+)
+
+evidence_module = import_module("trajgap.nlp.proofs.evidence")
+waterfall_module = import_module("trajgap.compare.audits.waterfall")
+certificate_module = import_module("trajgap.nlp.proofs.document")
+IRB, PUMA, GA = "irb460-pso-353", "puma560-mnam-pso-353", "irb1600-ga-cubic-bspline"
+PAIR = ("limit-80", "waypoints-rad")
+VERDICTS = (ROOT / "docs" / "verdicts.md").read_text("utf-8")
+
+
+@pytest.fixture
+def without_certificates(monkeypatch: pytest.MonkeyPatch) -> None:
+    for module in (evidence_module, waterfall_module):
+        monkeypatch.setattr(module, "proved", lambda *_: None)
+
+
+def one_study() -> Study:
+    return Study(load_case(IRB), problem=PAIR[0], reading=PAIR[1])
+
+
+def said(study: Study) -> tuple[list[str], set[Evidence]]:
+    """Every sentence and every evidence word beside an optimum."""
+    findings = list(judge_distances(study))
+    steps = [step for fall in waterfalls(study) for step in fall.steps]
+    texts = [f.message for f in findings] + [f"{s.name} {s.note}" for s in steps]
+    return texts, {f.evidence for f in findings} | {s.evidence for s in steps}
+
+
+def test_what_is_proved_is_called_certified() -> None:
+    study = one_study()
+    texts, words = said(study)
+    assert Evidence.CERTIFIED in words
+    assert any("certified optimum" in text and "proved, gap" in text for text in texts)
+    answer = study.optimum(*PAIR)
+    interval = proved(printed_problem(study.case.statement(*PAIR)))
+    assert interval is not None
+    assert answer.lower_bound is not None
+    assert Fraction(answer.lower_bound) <= interval.lower < answer.total_time
+    (fall,) = waterfalls(study)
+    step = next(s for s in fall.steps if s.name.startswith("optimum"))
+    assert (step.low, step.high) == (answer.lower_bound, answer.total_time)
+    assert "proved" in str(answer)
+
+
+@pytest.mark.parametrize(("width", "word"), [(0.009, "certified"), (0.05, "best known")])
+def test_a_proof_of_a_wide_interval_certifies_nothing(
+    monkeypatch: pytest.MonkeyPatch, width: float, word: str
+) -> None:
+    assert f"at most {float(100 * WIDEST):g} % wide" in VERDICTS
+    problem = replace(POSED[f"{IRB}.{PAIR[0]}.{PAIR[1]}"], name=f"width {width}")
+    document = certificate(certify(problem, gap=width))
+    monkeypatch.setattr(evidence_module, "shipped", lambda *_: document)
+    answer = solve(one_study().problem(*PAIR))
+    evidence_module.proved.cache_clear()
+    assert with_certificate(answer, problem).evidence == word
+    evidence_module.proved.cache_clear()
+
+
+@pytest.mark.usefixtures("without_certificates")
+def test_nothing_is_called_certified_without_a_certificate() -> None:
+    study = one_study()
+    texts, words = said(study)
+    assert Evidence.CERTIFIED not in words
+    assert not any("certified" in text for text in texts)
+    assert any("best known optimum" in text for text in texts)
+    document = results_document([solve_result(IRB, *PAIR, study.optimum(*PAIR))])
+    assert_valid(document, "solve")
+    assert document["results"][0]["lower_bound"] is None
+    assert document["results"][0]["evidence"] == "best known"
+
+
+def test_a_certificate_that_does_not_prove_its_claim_is_not_used(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    exact = POSED[f"{IRB}.limit-80.waypoints-rad"]
+    wrong = copy.deepcopy(shipped(exact))
+    assert wrong is not None
+    wrong["claim"]["lower"] = str(Fraction(wrong["claim"]["lower"]) * 2)
+    monkeypatch.setattr(certificate_module, "_all_shipped", lambda: (wrong,))
+    assert shipped(exact) == wrong
+    assert evidence_module.proved.__wrapped__(exact) is None
+
+
+def test_a_certificate_of_another_problem_is_not_used() -> None:
+    exact = POSED[f"{IRB}.limit-80.waypoints-rad"]
+    other = replace(exact, duration_lower=(Fraction(1, 10**9), *exact.duration_lower[1:]))
+    assert proved(other) is None
+    assert proved(exact, Subject.ANY) is None or shipped(exact, Subject.ANY) is not None
+    assert proved(replace(exact, name="another name")) == proved(exact)
+
+
+@pytest.mark.parametrize(
+    "forged",
+    [
+        {"curve": "x", "ends": ["-1", "-1"]},
+        {"curve": "x", "ends": ["-1", "-1"], "virtual": []},
+        {"prescribed": [[[1, "-1"]], [], [], [[1, "-1"]]], "ends": ["0", "0"]},
+    ],
+)
+def test_a_certificate_for_other_end_velocities_is_not_used(
+    monkeypatch: pytest.MonkeyPatch, forged: dict[str, object]
+) -> None:
+    # The question and the verifier must read the ends in the same place.
+    exact = POSED[f"{PUMA}.six-joints.durations-positive"]
+    document = shipped(exact, Subject.ANY)
+    assert document is not None
+    if "curve" in forged:
+        for key in ("degrees", "continuity"):
+            del document["problem"][key]
+    document["problem"] |= forged
+    monkeypatch.setattr(certificate_module, "_all_shipped", lambda: (document,))
+    assert shipped(exact, Subject.ANY) is None
+    assert evidence_module.proved.__wrapped__(exact, Subject.ANY) is None
+
+
+def test_every_shipped_reading_that_is_covered_is_certified() -> None:
+    case = load_case(GA)
+    words = {}
+    for reading in case.readings:
+        exact = printed_problem(case.statement("nine-segments", reading.id))
+        words[reading.id] = proved(exact) is not None
+    assert {name for name, found in words.items() if found} == {
+        name for name in words if name.endswith("stretched")
+    }
+
+
+def test_a_closed_form_needs_no_file() -> None:
+    problem = Problem([[0.0], [1.0], [0.25]], Limits(1.0, 2.0), rest_to_rest(2, 5))
+    assert shipped(exact_problem(problem)) is None
+    answer = with_certificate(solve(problem), exact_problem(problem))
+    assert answer.evidence is Evidence.CERTIFIED
+    assert answer.lower_bound == pytest.approx(answer.total_time, rel=1e-8)
+    spline = Problem([[0.0], [1.0], [0.25]], Limits(1.0, 2.0), cubic_spline(2))
+    assert with_certificate(solve(spline), exact_problem(spline)).evidence is Evidence.BEST_KNOWN
+
+
+def test_an_answer_below_the_bound_is_not_called_certified() -> None:
+    exact = POSED[f"{IRB}.limit-80.waypoints-rad"]
+    answer = one_study().optimum(*PAIR)
+    assert answer.durations is not None
+    short = replace(answer, durations=answer.durations * 0.99, lower_bound=None)
+    assert with_certificate(short, exact).evidence is Evidence.BEST_KNOWN
+
+
+def test_a_worse_answer_is_replaced_by_that_of_the_certificate() -> None:
+    study = one_study()
+    exact = POSED[f"{IRB}.limit-80.waypoints-rad"]
+    answer = study.optimum(*PAIR)
+    assert answer.durations is not None
+    worse = replace(answer, durations=answer.durations * 1.2, lower_bound=None)
+    mended = with_certificate(worse, exact)
+    assert mended.total_time == pytest.approx(answer.total_time, rel=1e-9)
+    assert mended.evidence is Evidence.CERTIFIED
+
+
+def test_the_output_of_a_procedure_is_not_certified() -> None:
+    case = load_case(PUMA)
+    pair = ("six-joints", "durations-positive")
+    answer = with_certificates(solve_per_joint(case.problem(*pair)), case.statement(*pair))
+    assert {s.evidence for s in answer.joints} == {Evidence.CERTIFIED}
+    assert answer.joint_evidence is Evidence.CERTIFIED
+    assert answer.evidence is Evidence.BEST_KNOWN
+    document = results_document([solve_result(PUMA, *pair, answer)])
+    assert_valid(document, "solve")
+    result = document["results"][0]
+    assert (result["evidence"], result["lower_bound"]) == ("best known", None)
+    assert all(joint["evidence"] == "certified" for joint in result["joints"])
+    assert all(joint["lower_bound"] < joint["total_time"] for joint in result["joints"])
+
+
+def test_the_weakest_word_stands_for_all() -> None:
+    C, B, N = Evidence.CERTIFIED, Evidence.BEST_KNOWN, Evidence.NONE
+    assert weakest([C, B, C]) is B
+    assert weakest([N, C]) is N
+    assert weakest([C]) is C
+    assert weakest([]) is N
+
+
+def test_a_gap_is_measured_against_the_interval() -> None:
+    certified = Reference(2.0, 1.6)
+    found = gap((2.4, 3.2), certified)
+    assert found.lowest == pytest.approx(0.2)
+    assert found.highest == pytest.approx(1.0)
+    inside = gap(1.8, certified)
+    assert inside.lowest < 0 < inside.highest, "between the bounds is not below the optimum"
+    assert gap((1.4, 1.5), certified).highest < 0
+    assert gap(1.8, Reference(2.0)).highest < 0
+
+
+def test_a_total_below_the_proved_bound_is_called_that(monkeypatch: pytest.MonkeyPatch) -> None:
+    study = one_study()
+    monkeypatch.setattr(Study, "claim_total", lambda *_: ("1.5 s", (1.4995, 1.5005)))
+    (message,) = (f.message for f in judge_distances(study) if f.claim == "durations-80" and f.gap)
+    assert "below the proved lower bound of this problem as printed" in message
+    assert "best known" not in message
+
+
+@pytest.mark.parametrize("upper", [None, Fraction(1, 2)])
+def test_a_bound_for_any_curve_stands_on_the_waterfall(
+    monkeypatch: pytest.MonkeyPatch, upper: Fraction | None
+) -> None:
+    bound = Interval(Fraction(2, 5), upper, None, False)
+
+    def only_any(problem: ExactProblem, subject: Subject) -> Interval | None:
+        return bound if subject is Subject.ANY else None
+
+    monkeypatch.setattr(waterfall_module, "proved", only_any)
+    (fall,) = waterfalls(one_study())
+    step = fall.steps[-1]
+    # The nearest double lies above 2/5, and would be no lower bound.
+    assert step.low == np.nextafter(0.4, 0.0)
+    assert step.note.count("no motion within the limits is shorter than 0.4 s: certified") == 1
+    if upper is None:
+        assert step.evidence is Evidence.BEST_KNOWN
+        assert step.time is not None
+        assert step.time > 0.5
+    else:
+        assert (step.time, step.evidence) == (0.5, Evidence.CERTIFIED)
+
+
+@pytest.mark.parametrize(("above", "certified"), [(1e-15, True), (1e-6, False)])
+def test_a_bound_for_any_curve_may_round_above_the_answer_and_no_more(
+    monkeypatch: pytest.MonkeyPatch, above: float, certified: bool
+) -> None:
+    study = one_study()
+    found = estimate_any_curve(study.problem(*study.pairs[0])).total_time
+    assert found is not None
+    lower = Fraction(found) * Fraction(1 + above)
+    bound = Interval(lower, lower + Fraction(1, 10**9), None, False)
+    monkeypatch.setattr(
+        waterfall_module, "proved", lambda _, subject: bound if subject is Subject.ANY else None
+    )
+    step = waterfalls(study)[0].steps[-1]
+    assert (step.evidence is Evidence.CERTIFIED) == certified
+    assert step.time is not None
+    assert step.low is None or step.low <= step.time
+
+
+def test_what_is_proved_of_any_curve_is_called_certified_under_every_reading() -> None:
+    for fall in waterfalls(Study(load_case(IRB))):
+        assert fall.steps[-1].evidence is Evidence.CERTIFIED
+
+
+def test_only_a_proof_sets_a_lower_bound() -> None:
+    problem = Problem(np.array([[0.0], [1.0], [0.5], [1.5]]), Limits(1.0), three_five_three())
+    assert solve(problem).lower_bound is None

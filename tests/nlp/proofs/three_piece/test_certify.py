@@ -1,0 +1,510 @@
+"""Certified intervals: attacked by dense search, broken rows, stops, and an unlucky answer."""
+
+from __future__ import annotations
+
+import copy
+import json
+from fractions import Fraction
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from support.checkout import ROOT
+from support.shipped_problems import POSED
+from support.three_pieces import dense_best, random_problem
+from support.unjudged import unjudged
+from trajgap.nlp import solve
+from trajgap.nlp.proofs.answer import exact_coefficients, keeps_limits, never_above
+from trajgap.nlp.proofs.certifiers import certify
+from trajgap.nlp.proofs.document import certificate, problem_document, shipped, shipped_folder
+from trajgap.nlp.proofs.exact import ExactProblem, decimal, exact_problem
+from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress
+from trajgap.nlp.proofs.state import resumed, state_document
+from trajgap.nlp.proofs.three_piece import rows as three_piece
+from trajgap.nlp.proofs.three_piece.boxes import Boxes
+from trajgap.nlp.proofs.three_piece.rows import PLACES, Prover, Row, exact_row
+from trajgap.problem import (
+    Limits,
+    Problem,
+    TrajgapError,
+    fit,
+    rest_to_rest,
+    three_five_three,
+    uniform_cubic_b_spline,
+)
+from trajgap.verify import Subject
+from trajgap.verify import verify_certificate as verify
+
+module = import_module("trajgap.nlp.proofs.three_piece.search")
+
+
+def attack(seed: int) -> Outcome:
+    problem = random_problem(seed)
+    found = certify(problem, gap=1e-3, seconds=20.0)
+    best = dense_best(problem)
+    if found.outcome is Outcome.INFEASIBLE:
+        assert best == np.inf
+    else:
+        assert float(found.lower) <= best * (1 + 1e-9)
+        if found.upper is not None:
+            assert found.lower <= found.upper
+            assert found.durations is not None
+            assert keeps_limits(exact_problem(problem), found.durations)
+    if found.proof is not None:
+        assert verify(certificate(found)).proves
+    return found.outcome
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_dense_search_never_leaves_the_interval(seed: int) -> None:
+    attack(seed)
+
+
+@pytest.mark.slow
+def test_dense_search_never_leaves_the_interval_of_two_hundred_problems() -> None:
+    outcomes = [attack(seed) for seed in range(8, 208)]
+    decided = outcomes.count(Outcome.CERTIFIED) + outcomes.count(Outcome.INFEASIBLE)
+    assert decided >= 195
+
+
+def test_shipped_certificates_are_fresh_and_prove() -> None:
+    assert POSED
+    for name, exact in POSED.items():
+        document = shipped(exact)
+        assert document is not None, f"{name}: no certificate; run benchmarks/certificates.py"
+        assert document["problem"] == problem_document(exact)
+        verdict = verify(document)
+        assert verdict.proves, f"{name}: {verdict}"
+        assert not verdict.altered
+        assert verdict.lower is not None
+        assert verdict.upper is not None
+        assert verdict.upper - verdict.lower <= verdict.upper / 10**6
+        assert len(json.dumps(document)) < 200_000
+    files = {path.stem: json.loads(path.read_text("utf-8")) for path in all_files()}
+    about = {n for n, d in files.items() if d["claim"]["subject"] == Subject.DECLARED}
+    assert about == set(POSED), "a certificate of a problem that is not shipped"
+    assert all(path.stat().st_size <= 200_000 for path in all_files())
+
+
+def all_files() -> list[Path]:
+    return sorted(shipped_folder().glob("*.json"))
+
+
+def test_the_table_in_the_docs_is_that_of_the_files() -> None:
+    page = (ROOT / "docs" / "certificates.md").read_text("utf-8")
+    rows = {}
+    for line in page.splitlines():
+        cells = [cell.strip() for cell in line.strip("|").split("|")]
+        if len(cells) == 8 and cells[0].startswith("`"):
+            rows[cells[0].strip("`")] = cells
+    files = {path.stem: path for path in shipped_folder().glob("*.json")}
+    about = {name: json.loads(path.read_text("utf-8")) for name, path in files.items()}
+    mine = {n for n, d in about.items() if d["claim"]["subject"] == Subject.DECLARED}
+    assert set(rows) == mine
+    for name, cells in rows.items():
+        lower, upper = (Fraction(about[name]["claim"][key]) for key in ("lower", "upper"))
+        least, most = (Fraction(cell) for cell in cells[1:3])
+        assert 0 <= lower - least < Fraction(1, 10**9), f"{name}: rounded outwards"
+        assert 0 <= most - upper < Fraction(1, 10**9), f"{name}: rounded outwards"
+        assert cells[3] == f"{float(1 - lower / upper):.1e}", name
+        assert int(cells[6]) == files[name].stat().st_size, name
+
+
+def unlucky(monkeypatch: pytest.MonkeyPatch, seconds: float = 2.0) -> tuple[float, Certified]:
+    """Certify with an answer 5 % above the optimum and no search for a better one."""
+    exact = POSED["puma560-mnam-pso-353.six-joints.durations-positive"]
+    true = shipped(exact)
+    assert true is not None
+    upper = Fraction(true["claim"]["upper"])
+    worse = tuple(Fraction(h) * Fraction(21, 20) for h in true["claim"]["durations"])
+    monkeypatch.setattr(module, "_answer", lambda *_: worse)
+    monkeypatch.setattr(module._Run, "improve", lambda *_: None)
+    return float(upper), certify(exact, seconds=seconds)
+
+
+def test_an_answer_that_is_not_optimal_is_never_certified(monkeypatch: pytest.MonkeyPatch) -> None:
+    optimum, found = unlucky(monkeypatch)
+    assert found.outcome is Outcome.INTERVAL
+    assert 0.9 * optimum < found.lower <= optimum
+
+
+def test_a_broken_relaxation_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(problem: ExactProblem, row: Row, total: Fraction) -> three_piece.Poly:
+        return exact_row(problem, row, total * Fraction(9, 10))
+
+    raw = unjudged(monkeypatch)
+    monkeypatch.setattr(three_piece, "exact_row", broken)
+    optimum, found = unlucky(monkeypatch, seconds=20.0)
+    assert raw[0].lower > optimum, "the attack above would not have seen it"
+    assert not verify(certificate(raw[0])).proves
+    assert (found.outcome, found.lower, found.proof) == (Outcome.OPEN, 0, None)
+    assert found.verdict is not None
+    assert "leaf at node" in found.verdict.reason
+
+
+def test_a_local_answer_is_replaced_by_a_better_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    exact = POSED["puma560-mnam-pso-353.six-joints.durations-positive.joint-6"]
+    true = shipped(exact)
+    assert true is not None
+    answer, calls = module._answer, []
+
+    def local(*arguments: object) -> tuple[Fraction, ...] | None:
+        calls.append(arguments)
+        if len(calls) == 1:
+            return tuple(Fraction(h) * 2 for h in true["claim"]["durations"])
+        return answer(*arguments)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(module, "_answer", local)
+    found = certify(exact)
+    assert len(calls) > 1
+    assert found.outcome is Outcome.CERTIFIED
+    assert found.upper is not None
+    assert float(found.upper) == pytest.approx(float(Fraction(true["claim"]["upper"])), rel=1e-6)
+
+
+def test_a_stopped_run_goes_on_where_it_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
+    exact = POSED["puma560-mnam-pso-353.six-joints.durations-positive.joint-1"]
+
+    def interrupt(progress: Progress) -> None:
+        if progress.nodes > 150 and progress.open_boxes > 0:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(module, "_BATCH", 16)
+    first = certify(exact, report=interrupt)
+    assert first.outcome is Outcome.INTERVAL
+    assert first.proposals is not None
+    assert first.open_boxes > 0
+    assert first.lower > 0
+    assert 1e-6 < first.gap < 1
+    assert verify(certificate(first)).proves
+    second = certify(exact, resume=first)
+    assert second.outcome is Outcome.CERTIFIED
+    assert second.nodes < 400
+    assert verify(certificate(second)).proves
+
+
+def stopped_at(name: str, monkeypatch: pytest.MonkeyPatch) -> Certified:
+    """A run that was stopped with a proved lower bound and with open boxes."""
+
+    def interrupt(progress: Progress) -> None:
+        if progress.lower > 0 and progress.open_boxes > 0:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(module, "_BATCH", 8)
+    found = certify(POSED[name], report=interrupt)
+    assert found.outcome is Outcome.INTERVAL
+    return found
+
+
+def state_of(found: Certified) -> dict[str, Any]:
+    """The state of a stopped run, through JSON."""
+    document = state_document(found)
+    assert document is not None
+    return dict(json.loads(json.dumps(document)))
+
+
+def test_an_edited_state_proves_nothing_false(monkeypatch: pytest.MonkeyPatch) -> None:
+    name = "irb460-pso-353.limit-80.waypoints-rad"
+    exact, found = POSED[name], stopped_at(name, monkeypatch)
+    assert found.upper is not None
+    base = state_of(found)
+    assert resumed(exact, base).lower == found.lower
+    rng = np.random.default_rng(3)
+    outcomes = []
+    for part in ("claim", "proof", "proposals"):
+        places = state_places(base[part], (part,))
+        for _ in range(120):
+            path = places[rng.integers(0, len(places))]
+            data = copy.deepcopy(base)
+            node = data
+            for key in path[:-1]:
+                node = node[key]
+            node[path[-1]] = mangled(node[path[-1]], rng)
+            try:
+                state = resumed(exact, data)
+                pending = module._pending(exact, state)
+            except TrajgapError:
+                outcomes.append((part, "refused"))
+                continue
+            outcomes.append((part, "taken"))
+            assert state.lower <= found.upper, path
+            assert (state.proof is None) == (state.lower == 0)
+            if state.durations is not None:
+                assert keeps_limits(exact, state.durations), path
+            assert pending is None or (0.5**pending.boxes.level).prod(axis=1).sum() == 1.0
+    for part in ("claim", "proof", "proposals"):
+        assert outcomes.count((part, "refused")) > 20
+    assert outcomes.count(("proof", "taken")) > 0
+    assert outcomes.count(("proposals", "taken")) > 20
+
+
+def state_places(node: Any, path: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
+    children = node.items() if isinstance(node, dict) else enumerate(node)
+    found = []
+    for key, child in children:
+        found.append((*path, key))
+        if isinstance(child, dict | list):
+            found += state_places(child, (*path, key))
+    return found
+
+
+def mangled(value: Any, rng: np.random.Generator) -> Any:
+    choice = int(rng.integers(0, 5))
+    if choice == 0:
+        return [None, [], "", {}, -1, "1e9", "x", True][int(rng.integers(0, 8))]
+    if isinstance(value, bool) or value is None:
+        return "1"
+    if isinstance(value, int):
+        return value + int(rng.choice([-1, 1, 5]))
+    if value == ".":
+        return ["?", "/", "r", "x"][int(rng.integers(0, 4))]
+    if isinstance(value, str) and value[:1].isdigit():
+        return str(Fraction(value) * (1 + Fraction(int(rng.integers(-9, 9)), 10)))
+    if isinstance(value, list):
+        return value[:-1]
+    return value
+
+
+def test_a_resumed_bound_alone_proves_nothing_infeasible(monkeypatch: pytest.MonkeyPatch) -> None:
+    name = "irb460-pso-353.limit-80.waypoints-rad"
+    exact, found = POSED[name], stopped_at(name, monkeypatch)
+    state = state_of(found)
+    state["claim"] |= {"durations": None, "upper": None}
+    assert state["proof"] is not None
+    assert None in exact.duration_upper
+    monkeypatch.setattr(module, "_answer", lambda *_: None)
+    again = certify(exact, resume=state)
+    assert again.outcome is Outcome.OPEN
+    assert again.lower == found.lower
+    assert verify(certificate(again)).proves
+
+
+def test_edited_open_boxes_only_cost_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    name = "irb460-pso-353.limit-80.waypoints-rad"
+    exact, found = POSED[name], stopped_at(name, monkeypatch)
+    state = state_of(found)
+    # "Everything is proved by any row", and a total that is far too long.
+    state["proposals"] |= {"tree": [[".", 0, "1"]], "total": "100"}
+    again = certify(exact, gap=1e-3, resume=state)
+    assert again.outcome is Outcome.CERTIFIED
+    assert again.lower >= found.lower
+    assert verify(certificate(again)).proves
+
+
+@pytest.mark.parametrize(
+    ("part", "change", "reason"),
+    [
+        ("proposals", {"kind": "stretched"}, "a state of kind"),
+        ("proposals", {"tree": None}, "malformed"),
+        ("claim", {"durations": ["0.1", "0.1", "0.1"]}, "not proved .answer"),
+        ("claim", {"durations": ["0.4", "0.4"]}, "not proved .answer: one duration per segment"),
+        ("claim", {"lower": "1e-9"}, "not proved .the lower bound exceeds the total"),
+        ("problem", {"unit": "deg"}, "about another problem"),
+    ],
+)
+def test_a_bad_state_is_refused(part: str, change: dict[str, Any], reason: str) -> None:
+    exact = POSED["irb460-pso-353.limit-80.waypoints-rad"]
+    state = state_of(certify(exact, seconds=0.0))
+    state[part] |= change
+    with pytest.raises(TrajgapError, match=reason):
+        certify(exact, resume=state)
+
+
+def test_what_is_no_state_is_refused() -> None:
+    exact = POSED["irb460-pso-353.limit-80.waypoints-rad"]
+    finished = certify(exact, gap=0.1)
+    for other in (finished, certificate(finished), {}, {"format": "trajgap-state-1"}):
+        with pytest.raises(TrajgapError, match="resume: no trajgap-state-2"):
+            certify(exact, resume=other)
+
+
+def test_a_proof_that_is_not_one_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    name = "irb460-pso-353.limit-80.waypoints-rad"
+    found = stopped_at(name, monkeypatch)
+    state = state_of(found)
+    total = state["proof"]["total"]
+    state["proof"]["total"] = str(found.upper)
+    with pytest.raises(TrajgapError, match=r"not proved .leaf at node"):
+        certify(POSED[name], resume=state)
+    state["proof"]["total"] = total
+    state["proof"]["tree"][-1] = ["?"]
+    with pytest.raises(TrajgapError, match=r"not proved .the tree leaves a part open"):
+        certify(POSED[name], resume=state)
+
+
+def test_a_state_is_proved_like_a_certificate(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = stopped_at("irb460-pso-353.limit-80.waypoints-rad", monkeypatch)
+    verdict = verify(state_of(found))
+    assert str(verdict).startswith("proves: ")
+    assert (verdict.lower, verdict.upper) == (found.lower, found.upper)
+
+
+def test_no_time_gives_no_lower_bound() -> None:
+    exact = POSED["irb460-pso-353.limit-80.waypoints-rad"]
+    found = certify(exact, seconds=0.0)
+    assert (found.outcome, found.lower) == (Outcome.INTERVAL, 0)
+    with pytest.raises(TrajgapError, match="nothing is proved"):
+        certificate(found)
+
+
+def test_velocity_limits_alone_scale_the_optimum() -> None:
+    # With velocity limits only, T·V is constant: 80 against 110 °/s.
+    slow, fast = (shipped(POSED[f"irb460-pso-353.limit-{v}.waypoints-rad"]) for v in (80, 110))
+    assert slow is not None
+    assert fast is not None
+    product = [Fraction(x["claim"]["upper"]) * v for x, v in ((slow, 80), (fast, 110))]
+    assert float(product[0]) == pytest.approx(float(product[1]), rel=1e-9)
+
+
+def test_limits_that_no_duration_meets_are_proved_infeasible() -> None:
+    q = np.array([[0.2], [1.1], [-0.4], [0.7]])
+    problem = Problem(q, Limits(1.0, 2.0), three_five_three(), 0.1, (4.0, 1.4, 4.0))
+    found = certify(problem)
+    assert found.outcome is Outcome.INFEASIBLE
+    verdict = verify(certificate(found))
+    assert verdict.proves
+    assert verdict.upper is None
+    assert "infeasible" in str(verdict)
+    assert "proved" in str(found)
+
+
+@pytest.mark.parametrize("degree", [3, 5, 7, 9])
+def test_rest_to_rest_is_certified_in_closed_form(degree: int) -> None:
+    q = np.array([[0.3, -0.2], [1.4, 0.1], [1.4, 2.3], [0.9, 2.2]])
+    # A cubic's acceleration jumps at the way-points, which no jerk limit survives.
+    jerk = np.inf if degree == 3 else 9.0
+    limits = Limits([1.1, 0.8], [2.0, np.inf], [np.inf, jerk])
+    problem = Problem(q, limits, rest_to_rest(3, degree), (0.2, 0.2, 0.4))
+    found = certify(problem)
+    assert found.outcome is Outcome.CERTIFIED
+    assert found.gap < 1e-9
+    solved = solve(problem)
+    assert float(found.lower) == pytest.approx(solved.total_time, rel=1e-8)
+    document = certificate(found)
+    verdict = verify(document)
+    assert verdict.proves
+    assert verdict.lower == found.lower
+    for k in range(3):
+        wrong = copy.deepcopy(document)
+        least = Fraction(wrong["proof"]["tree"][0][k + 1][3]) * (1 + Fraction(1, 10**9))
+        wrong["proof"]["tree"][0][k + 1][3] = decimal(least)
+        assert not verify(wrong).proves
+    document["claim"]["lower"] = decimal(found.lower * (1 + Fraction(1, 10**12)))
+    assert "exceeds the total" in verify(document).reason
+
+
+def test_a_jump_of_the_acceleration_keeps_no_jerk_limit() -> None:
+    q = [[0.0], [1.0], [1.5]]
+    jumps = Problem(q, Limits(1.0, jerk=100.0), rest_to_rest(2, 3))
+    assert certify(jumps).upper is None
+    document = certificate(certify(Problem(q, Limits(1.0), rest_to_rest(2, 3))))
+    assert verify(document).proves
+    document["problem"]["limits"][0][2] = "1000000"
+    assert "acceleration jumps" in verify(document).reason
+
+
+def test_a_rest_to_rest_segment_that_is_too_short_is_proved_infeasible() -> None:
+    problem = Problem([[0.0], [1.0]], Limits(1.0), rest_to_rest(1, 5), 0.1, 1.8)
+    found = certify(problem)
+    assert found.outcome is Outcome.INFEASIBLE
+    document = certificate(found)
+    assert verify(document).proves
+    document["problem"]["duration_upper"] = ["1.9"]
+    assert not verify(document).proves
+
+
+def test_positions_that_no_direction_keeps_are_proved_infeasible() -> None:
+    # It enters the middle piece from below at a way-point that is too high already.
+    q = np.array([[0.0], [1.0], [0.75], [0.0]])
+    limits = Limits(1.0, position_upper=0.9375)
+    found = certify(Problem(q, limits, three_five_three()))
+    assert found.outcome is Outcome.INFEASIBLE
+    document = certificate(found)
+    assert verify(document).proves
+    wider = copy.deepcopy(document)
+    wider["problem"]["position_upper"] = ["1.5"]
+    assert not verify(wider).proves
+
+
+def test_what_is_not_covered_is_said() -> None:
+    q = np.array([[0.2], [1.1], [-0.4], [0.7]])
+    with pytest.raises(TrajgapError, match="covered are rest-to-rest"):
+        certify(Problem(q, Limits(1.0), uniform_cubic_b_spline(4, "timed")))
+    with pytest.raises(TrajgapError, match="nothing limits"):
+        certify(Problem(q, Limits(), three_five_three()))
+
+
+def test_rows_are_the_limits_of_the_curve() -> None:
+    # Second route: the row's sign against the curve's derivative over its limit, for many points.
+    exact = POSED["puma560-mnam-pso-353.six-joints.durations-positive"]
+    q = np.array([[float(x) for x in row] for row in exact.waypoints])
+    rng = np.random.default_rng(5)
+    for _ in range(20):
+        h = rng.uniform(0.2, 1.5, 3)
+        curve = fit(exact.curve, q, h)
+        joint, order = int(rng.integers(0, 6)), int(rng.integers(1, 3))
+        place, sign = int(rng.integers(0, PLACES + 1)), int(rng.choice([-1, 1]))
+        total = Fraction(float(h.sum()))
+        poly = exact_row(exact, Row("place", joint, order, sign, place), total)
+        a, b = h[0] / (h[0] + h[1]), h[2] / (h[1] + h[2])
+        powers = np.arange(len(poly))
+        value = float((a**powers) @ poly.astype(float) @ (b**powers))
+        ratio = sign * curve(h[0] + h[1] * place / PLACES, order)[joint] / [6.0, 8.0][order - 1]
+        share = (a * b) ** 2 * ((1 - a) * (1 - b)) ** order
+        assert value == pytest.approx((ratio - 1.0) * share, abs=1e-12)
+
+
+def test_exact_coefficients_agree_with_the_fit() -> None:
+    q = np.array([[0.3, -1.2], [1.1, 0.4], [0.6, 0.9], [-0.7, 0.1]])
+    h = np.array([0.75, 1.25, 0.5])
+    interpolant = three_five_three()
+    curve = exact_coefficients(
+        interpolant,
+        [[Fraction(float(x)) for x in row] for row in q],
+        [Fraction(float(x)) for x in h],
+    )
+    assert curve is not None
+    second = np.array(curve[1][1], dtype=float)
+    expected = fit(interpolant, q, h)(0.75 + 0.5 * 1.25)[1]
+    assert second @ 0.5 ** np.arange(6) == pytest.approx(expected, rel=1e-12)
+
+
+def test_peaks_are_judged_exactly() -> None:
+    # 4s(1 − s) touches 1 in the middle.
+    parabola = [Fraction(0), Fraction(4), Fraction(-4)]
+    assert never_above(parabola, Fraction(1))
+    assert not never_above(parabola, 1 - Fraction(1, 10**15))
+
+
+def test_a_proof_needs_weights() -> None:
+    exact = POSED["irb460-pso-353.limit-80.waypoints-rad"]
+    row, side = Row("first", 0, 1), (3, 0)
+    prover = Prover(exact, Fraction(1))
+    assert prover.proves((row,), (Fraction(1),), side, side)
+    assert not prover.proves((row,), (Fraction(0),), side, side)
+    assert not prover.proves((row,), (Fraction(-1),), side, side)
+    assert not prover.proves((), (), side, side)
+
+
+def test_boxes_halve() -> None:
+    whole = Boxes(np.zeros((1, 2), np.int64), np.zeros((1, 2), np.int64))
+    parts = whole.halves(np.array([1])).halves(np.array([0, 0]))
+    area = (0.5**parts.level).prod(axis=1).sum()
+    assert area == 1.0
+    assert len({parts.sides(n) for n in range(4)}) == 4
+
+
+@pytest.mark.parametrize(
+    ("number", "text"),
+    [
+        (Fraction(-5, 4), "-1.25"),
+        (Fraction(4, 9), "4/9"),
+        (Fraction(12), "12"),
+        (Fraction(1, 1000), "0.001"),
+    ],
+)
+def test_exact_numbers_are_written_exactly(number: Fraction, text: str) -> None:
+    assert decimal(number) == text
+    assert Fraction(text) == number

@@ -1,0 +1,308 @@
+"""Certified intervals of 4-3-4 polynomials: rows against splines, dense search, broken rows."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import math
+from dataclasses import replace
+from fractions import Fraction
+from importlib import import_module
+
+import numpy as np
+import pytest
+from support.checkout import ROOT
+from support.three_pieces import dense_best, random_problem
+from trajgap.nlp.proofs.answer import exact_coefficients, keeps_limits
+from trajgap.nlp.proofs.certifiers import certify, covered
+from trajgap.nlp.proofs.document import certificate
+from trajgap.nlp.proofs.exact import ExactProblem, exact_problem
+from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress
+from trajgap.nlp.proofs.three_piece import rows as three_piece
+from trajgap.nlp.proofs.three_piece.ratios import SHAPES, Shape, shape_of
+from trajgap.nlp.proofs.three_piece.rows import PLACES, STRICT, Row, exact_row
+from trajgap.nlp.proofs.three_piece.square_polynomials import Poly
+from trajgap.nlp.verify import verify
+from trajgap.nlp.verify_problem import read_problem
+from trajgap.problem import (
+    Limits,
+    Problem,
+    TrajgapError,
+    fit,
+    piecewise,
+    three_five_three,
+)
+from trajgap.problem.cases.declaration import InterpolantBlock, declare
+
+search = import_module("trajgap.nlp.proofs.three_piece.search")
+checker = import_module("trajgap.nlp.verify_three_piece")
+
+CURVE = piecewise((4, 3, 4))
+
+
+def random_434(seed: int) -> Problem:
+    """As for 3-5-3: every kind of limit and bound turns up."""
+    return replace(random_problem(seed), curve=CURVE)
+
+
+def fixed(joints: int = 2) -> Problem:
+    q = np.array([[0.25, -0.5], [1.0, 0.125], [-0.375, 0.75], [0.5, -1.0]])[:, :joints]
+    return Problem(q, Limits(1.0, 2.0, 8.0), CURVE)
+
+
+def rational(rng: np.random.Generator) -> Fraction:
+    return Fraction(int(rng.integers(1, 60)), int(rng.integers(1, 60)))
+
+
+def test_rows_are_the_exact_spline() -> None:
+    # Second route: the 14 conditions, solved by elimination for each choice of durations.
+    limits = Limits(2.0, 3.0, 5.0, -9.0, 7.0)
+    exact = exact_problem(replace(fixed(), limits=limits))
+    rng = np.random.default_rng(1)
+    kinds = {"place": 1, "place-first": 0, "place-last": 2}
+    for _ in range(6):
+        h = [rational(rng) for _ in range(3)]
+        curve = exact_coefficients(CURVE, exact.waypoints, h)
+        assert curve is not None
+        a, b = h[0] / (h[0] + h[1]), h[2] / (h[1] + h[2])
+        x, y = h[1] / h[0], h[1] / h[2]
+        shares = (a * (1 - b), (1 - a) * (1 - b), b * (1 - a))
+        for (kind, k), order, sign in itertools.product(kinds.items(), range(4), (1, -1)):
+            place, joint = int(rng.integers(0, PLACES + 1)), int(rng.integers(0, 2))
+            poly = exact_row(exact, Row(kind, joint, order, sign, place), sum(h, Fraction(0)))
+            value = sum(c * a**i * b**j for (i, j), c in np.ndenumerate(poly))
+            derivative = [
+                math.perm(p, order) * c / h[k] ** order for p, c in enumerate(curve[joint][k])
+            ][order:]
+            s = Fraction(place, PLACES)
+            at = sign * sum((c * s**p for p, c in enumerate(derivative)), Fraction(0))
+            below = (a * b) ** 2 * (3 * x * y + 2 * x + 2 * y + 1) * (x, 1, y)[k]
+            if order == 0:
+                limit = (7 if sign > 0 else 9) + STRICT
+                assert value == (at - limit) * below
+            else:
+                ratio = at / Fraction((2, 3, 5)[order - 1])
+                assert value == (ratio - 1) * below * shares[k] ** order
+
+
+@pytest.mark.parametrize("shape", SHAPES, ids=lambda shape: shape.proof)
+def test_solver_and_verifier_have_the_same_rows(shape: Shape) -> None:
+    limits = Limits(2.0, 3.0, 5.0, -9.0, 7.0)
+    problem = replace(fixed(), limits=limits, curve=piecewise(shape.degrees))
+    bounded = replace(problem, duration_lower=np.full(3, 0.5), duration_upper=np.full(3, 9.0))
+    found = certify(bounded, gap=0.5)
+    document = certificate(found)
+    stated = read_problem(document["problem"])
+    form = checker.FORMS[document["proof"]["kind"]]
+    assert form.degrees == list(shape.degrees)
+    assert document["proof"]["kind"] == shape.proof
+    curves, total = checker._curves(stated, form), Fraction(17, 5)
+    rows = [Row("lower", 2, 1), Row("mean", 0, 1, cap=2)]
+    for order, cap in itertools.product((1, 2, 3), (-1, 0)):
+        rows += [Row(end, 1, order, cap=cap) for end in ("first", "last")]
+        rows += [Row(kind, 1, order, -1, 123_456, cap) for kind in form.divisors]
+    rows += [Row(kind, 0, 0, sign, 777_777) for kind in form.divisors for sign in (1, -1)]
+    for row in rows:
+        mine = exact_row(exact_problem(bounded), row, total)
+        entry = [row.kind, row.joint, row.order, row.sign, row.place, row.cap]
+        theirs = checker._row(stated, form, curves, entry, total)
+        assert {k: v for k, v in np.ndenumerate(mine) if v} == {
+            k: v for k, v in theirs.items() if v
+        }
+
+
+def test_what_an_end_piece_must_reach() -> None:
+    # |d| ≤ limit·hʳ/r! from rest, whatever the other pieces do.
+    rng, ends = np.random.default_rng(4), SHAPES[1].ends
+    nearest = np.full(3, np.inf)
+    for _ in range(200):
+        h, q = rng.uniform(0.1, 3.0, 3), rng.normal(size=(4, 1))
+        curve = fit(CURVE, q, h)
+        for t0, k in ((0.0, 0), (h[0] + h[1], 2)):
+            times = t0 + h[k] * np.linspace(1e-9, 1 - 1e-9, 400)
+            for order in (1, 2, 3):
+                top = max(abs(float(curve(t, order)[0])) for t in times[:: 1 if order < 3 else 399])
+                least = ends[order - 1] * abs(float(q[k + 1, 0] - q[k, 0])) / h[k] ** order
+                assert top >= least * (1 - 1e-4)
+                nearest[order - 1] = min(nearest[order - 1], top / least)
+    assert (nearest < 2.5).all(), "the constants are not far from what is reached"
+
+
+def attack(seed: int) -> Outcome:
+    problem = random_434(seed)
+    found = certify(problem, seconds=60.0)
+    best = dense_best(problem, 81)
+    if found.outcome is Outcome.INFEASIBLE:
+        assert best == np.inf
+    else:
+        assert float(found.lower) <= best * (1 + 1e-9)
+        if found.durations is not None:
+            assert found.upper == sum(found.durations) >= found.lower
+            assert keeps_limits(exact_problem(problem), found.durations)
+    if found.outcome is Outcome.CERTIFIED:
+        assert found.gap <= 1e-6
+        assert found.seconds < 60
+    if found.proof is not None:
+        assert verify(certificate(found)).proves
+    return found.outcome
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_dense_search_never_leaves_the_interval(seed: int) -> None:
+    assert attack(seed) in (Outcome.CERTIFIED, Outcome.INFEASIBLE)
+
+
+@pytest.mark.slow
+def test_dense_search_never_leaves_the_interval_of_two_hundred_problems() -> None:
+    outcomes = [attack(seed) for seed in range(6, 206)]
+    decided = outcomes.count(Outcome.CERTIFIED) + outcomes.count(Outcome.INFEASIBLE)
+    assert decided >= 195
+
+
+LIMITS = {
+    "velocity": Limits(1.0),
+    "acceleration": Limits(np.inf, 2.0),
+    "jerk": Limits(np.inf, np.inf, 8.0),
+    "all three": Limits(1.0, 2.0, 8.0),
+}
+
+
+@pytest.mark.parametrize("joints", [1, 2])
+@pytest.mark.parametrize("kind", LIMITS)
+def test_each_kind_of_limit_is_certified(kind: str, joints: int) -> None:
+    problem = replace(fixed(joints), limits=LIMITS[kind])
+    found = certify(problem, seconds=60.0)
+    assert found.outcome is Outcome.CERTIFIED
+    assert found.gap <= 1e-6
+    assert float(found.lower) <= dense_best(problem, 81) <= float(found.lower) * 1.03
+    assert verify(certificate(found)).proves
+    page = (ROOT / "docs" / "certificates.md").read_text("utf-8")
+    cells = next(line.split("|") for line in page.splitlines() if line.startswith(f"| {kind} |"))
+    assert found.upper is not None
+    assert float(cells[1 + joints]) == pytest.approx(float(found.upper), rel=2e-6)
+    assert joints == 1 or int(cells[4]) == pytest.approx(found.nodes, rel=0.25)
+
+
+def overshooting(roof: float) -> Problem:
+    """The first piece arrives at its way-point from above."""
+    q = np.array([[0.0], [0.5], [0.3], [-0.7]])
+    return Problem(q, Limits(1.0, 2.0, 8.0, -np.inf, roof), CURVE)
+
+
+def test_an_end_piece_meets_its_position_limit() -> None:
+    problem = overshooting(np.inf)
+    free = certify(problem)
+    h = np.array([float(x) for x in free.durations or ()])
+    curve = fit(CURVE, problem.waypoints, h)
+    top = max(float(curve(t)[0]) for t in np.linspace(0.0, h[0] + h[1], 999))
+    assert top > 0.5 + 1e-3
+    held = certify(overshooting(0.5 * (0.5 + top)))
+    assert held.outcome is Outcome.CERTIFIED
+    assert free.upper is not None
+    assert held.lower > free.upper
+    assert float(held.lower) <= dense_best(overshooting(0.5 * (0.5 + top)), 41)
+    document = certificate(held)
+    assert verify(document).proves
+    document["problem"]["position_upper"] = ["2"]
+    assert "not proved" in verify(document).reason
+
+
+def test_positions_that_no_direction_keeps_are_proved_infeasible() -> None:
+    found = certify(overshooting(0.4375))
+    assert found.outcome is Outcome.INFEASIBLE
+    document = certificate(found)
+    assert verify(document).proves
+    document["problem"]["position_upper"] = ["0.75"]
+    assert not verify(document).proves
+
+
+def unlucky(
+    problem: Problem, durations: tuple[Fraction, ...] | None, monkeypatch: pytest.MonkeyPatch
+) -> Certified:
+    """Certify with an answer 5 % above the optimum and no search for a better one."""
+    assert durations is not None
+    worse = tuple(h * Fraction(21, 20) for h in durations)
+    monkeypatch.setattr(search, "_answer", lambda *_: worse)
+    monkeypatch.setattr(search._Run, "improve", lambda *_: None)
+    return certify(problem, seconds=1.5)
+
+
+def test_an_answer_that_is_not_optimal_is_never_certified(monkeypatch: pytest.MonkeyPatch) -> None:
+    true = certify(fixed())
+    assert true.upper is not None
+    found = unlucky(fixed(), true.durations, monkeypatch)
+    assert found.outcome is Outcome.INTERVAL
+    assert Fraction(9, 10) * true.upper < found.lower <= true.upper
+
+
+@pytest.mark.parametrize("kinds", [("place",), ("place-first", "place-last")])
+def test_a_broken_row_is_caught(kinds: tuple[str, ...], monkeypatch: pytest.MonkeyPatch) -> None:
+    # Velocity peaks inside the end pieces of the second problem.
+    far = Problem([[0.0], [4.0], [5.0], [9.0]], Limits(1.0), CURVE)
+    problem = fixed(1) if kinds == ("place",) else far
+    true = certify(problem)
+
+    def broken(problem: ExactProblem, row: Row, total: Fraction) -> Poly:
+        return exact_row(problem, row, total * Fraction(9, 10) if row.kind in kinds else total)
+
+    monkeypatch.setattr(three_piece, "exact_row", broken)
+    found = unlucky(problem, true.durations, monkeypatch)
+    assert true.upper is not None
+    assert found.lower > true.upper, "the attack above would not have seen it"
+    assert not verify(certificate(found)).proves
+
+
+def test_a_stopped_run_goes_on_where_it_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupt(progress: Progress) -> None:
+        if progress.lower > 0 and progress.open_boxes > 0:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(search, "_BATCH", 8)
+    first = certify(fixed(), report=interrupt)
+    assert first.outcome is Outcome.INTERVAL
+    assert first.resume is not None
+    assert verify(certificate(first)).proves
+    state = json.loads(json.dumps(first.resume.document()))
+    second = certify(fixed(), resume=state)
+    assert second.outcome is Outcome.CERTIFIED
+    with pytest.raises(TrajgapError, match="a state of kind"):
+        certify(replace(fixed(), curve=three_five_three()), resume=state)
+    state["proved"]["total"] = str(second.upper)
+    with pytest.raises(TrajgapError, match="does not prove its lower bound"):
+        certify(fixed(), resume=state)
+
+
+def test_a_proof_of_one_curve_says_nothing_of_the_other() -> None:
+    other = {"three-piece": "four-three-four", "four-three-four": "three-piece"}
+    for curve in (CURVE, three_five_three()):
+        document = certificate(certify(replace(fixed(), curve=curve), gap=0.1))
+        assert verify(document).proves
+        kind = document["proof"]["kind"]
+        renamed = {**document, "proof": {**document["proof"], "kind": other[kind]}}
+        assert "declaration not covered" in verify(renamed).reason
+        degrees = [3, 5, 3] if kind == "four-three-four" else [4, 3, 4]
+        declared = {**document, "problem": {**document["problem"], "degrees": degrees}}
+        assert "declaration not covered" in verify(declared).reason
+        declared["proof"] = renamed["proof"]
+        assert not verify(declared).proves
+
+
+def test_where_nothing_moves_in_the_middle_the_interval_holds() -> None:
+    # The rows meet in one corner of the square, where the ratio of the end pieces is lost.
+    problem = Problem([[0.0], [1.0], [1.0], [0.0]], Limits(1.0, 2.0, 8.0), CURVE)
+    found = certify(problem, seconds=1.5)
+    assert found.outcome is Outcome.INTERVAL
+    assert 0 < float(found.lower) <= dense_best(problem, 81)
+    assert verify(certificate(found)).proves
+
+
+def test_what_is_covered() -> None:
+    q = fixed().waypoints
+    block = InterpolantBlock(family="polynomials", degrees=(4, 3, 4))
+    declared = declare(block, 4, ((1, 0.0), (2, 0.0)))
+    assert shape_of(declared) is SHAPES[1]
+    assert covered(exact_problem(Problem(q, Limits(1.0), declared))) is None
+    for curve in (piecewise((4, 3, 4), 2, ((1, 0.1), (2, 0.0))), piecewise((3, 4, 4))):
+        assert shape_of(curve) is None
+        with pytest.raises(TrajgapError, match="covered are"):
+            certify(Problem(q, Limits(1.0), curve))

@@ -1,0 +1,327 @@
+"""Case files: what loads, what it means, and one clear line for everything that does not."""
+
+from __future__ import annotations
+
+import json
+import pickle
+import tomllib
+
+import jsonschema
+import numpy as np
+import pytest
+from support.base_case import BASE
+from support.checkout import ROOT
+from trajgap.problem.cases.case import Case
+from trajgap.problem.cases.load import load_case, parse_case, published_ids
+from trajgap.problem.cases.schema import case_schema
+from trajgap.problem.errors import CaseError
+from trajgap.problem.printed import Printed
+
+
+def load(text: str = BASE) -> Case:
+    return parse_case(text, "base.toml")
+
+
+def changed(*pairs: tuple[str, str]) -> str:
+    text = BASE
+    for old, new in pairs:
+        assert old in text, old
+        text = text.replace(old, new, 1)
+    return text
+
+
+# What a case means
+
+
+def test_base_reading_and_override():
+    case = load()
+    one = case.problem("one", "plain")
+    np.testing.assert_allclose(one.waypoints[:, 0], np.deg2rad([0, 10.5, -3.25, 4]), rtol=1e-15)
+    np.testing.assert_allclose(one.limits.velocity, np.deg2rad([100, 95]), rtol=1e-15)
+    np.testing.assert_allclose(one.limits.acceleration, np.deg2rad([60, 60]), rtol=1e-15)
+    assert np.isinf(one.limits.jerk).all()
+    assert one.joints == ("a", "b")
+    np.testing.assert_array_equal(one.duration_lower, [0.1] * 3)
+    np.testing.assert_array_equal(one.duration_upper, [3, 4, np.inf])
+
+    two = case.problem("two", "rad")
+    assert two.joints == ("b",)
+    np.testing.assert_array_equal(two.waypoints[:, 0], [1, 2, 3, 4])
+    np.testing.assert_allclose(two.limits.velocity, np.deg2rad([50]), rtol=1e-15)
+    np.testing.assert_allclose(two.limits.acceleration, np.deg2rad([60]), rtol=1e-15)
+    np.testing.assert_array_equal(two.duration_lower, [0.0] * 3)
+    np.testing.assert_array_equal(two.duration_upper, [3, 4, np.inf])
+
+
+def test_defaults():
+    case = load()
+    assert case.default_reading.id == "rad"
+    np.testing.assert_array_equal(case.problem().waypoints[1], [10.5, 2])
+    assert case.problem().coupling == "shared"
+    assert case.problem(coupling="per-joint").coupling == "per-joint"
+    assert case.selections() == [
+        ("one", "rad"),
+        ("one", "plain"),
+        ("two", "rad"),
+        ("two", "plain"),
+    ]
+    assert case.selections(problem="two") == [("two", "rad"), ("two", "plain")]
+    assert case.selections(reading="plain") == [("one", "plain"), ("two", "plain")]
+
+
+def test_without_problems_and_readings():
+    head, _, tail = BASE.partition("[[problems]]")
+    case = load(head)
+    assert case.selections() == [("main", "as-printed")]
+    assert case.problem("main", "as-printed").segments == 3
+    assert "[[algorithms]]" in tail
+
+
+def test_waypoint_rows_are_the_transpose():
+    rows = "waypoint_rows = [['0.0', '1'], ['10.5', '2'], ['-3.25', '3'], ['4', '4']]"
+    text = changed(('joint_rows = [["0.0", "10.5", "-3.25", "4"], ["1", "2", "3", "4"]]', rows))
+    np.testing.assert_array_equal(load(text).problem().waypoints, load().problem().waypoints)
+
+
+def test_strings_are_rounded_and_bare_numbers_exact():
+    text = changed(('["1", "2", "3", "4"]]', '["1", 2, 3.50, "4.00"]]'))
+    lower, upper = load(text).waypoint_box("one", "rad")
+    np.testing.assert_allclose((upper - lower)[:, 1], [1, 0, 0, 0.01], rtol=1e-12)
+    np.testing.assert_allclose((upper - lower)[:, 0], [0.1, 0.1, 0.01, 1], rtol=1e-12)
+    low_deg, _ = load(text).waypoint_box("one", "plain")
+    np.testing.assert_allclose(low_deg, np.deg2rad(lower), rtol=1e-15)
+
+
+def test_claims():
+    case = load()
+    claim = case.claim("times")
+    assert case.printed_durations(claim)[0] == Printed("0.961")
+    box = case.claim_durations(claim)
+    np.testing.assert_array_equal(box.value, [0.961, 1.258, 1.078])
+    np.testing.assert_allclose(box.upper - box.lower, 0.001, rtol=1e-9)
+    assert case.printed_durations(case.claim("peak")) == ()
+    peak = case.measured(case.claim("peak").value, "velocity", "one")
+    assert peak.value == pytest.approx(np.deg2rad(94.8), rel=1e-15)
+    assert [c.id for c in case.table_claims("table-1")] == ["times"]
+    assert case.algorithms[0].parameters == {
+        "population": 30,
+        "inertia": 0.9,
+        "start": [0.3, 3],
+        "seedless": True,
+    }
+
+
+def test_milliseconds():
+    text = changed(
+        ('time = "s"', 'time = "ms"'), ("lower = 0.1\nupper = [3, 4, inf]", "lower = 100")
+    )
+    case = load(text)
+    np.testing.assert_array_equal(case.problem("one", "plain").duration_lower, [0.1] * 3)
+    np.testing.assert_allclose(
+        case.claim_durations(case.claim("times")).value, [961e-6, 1258e-6, 1078e-6], rtol=1e-15
+    )
+
+
+def test_a_reading_can_lift_a_limit_and_shift_the_range():
+    text = changed(
+        ("durations = { lower = 0 }", "limits = { acceleration = inf, position_upper = '200' }")
+    )
+    limits = load(text).problem("one", "rad").limits
+    assert np.isinf(limits.acceleration).all()
+    np.testing.assert_array_equal(limits.position_upper, [200, 200])
+    assert np.isneginf(limits.position_lower).all()
+
+
+@pytest.mark.parametrize(
+    ("declaration", "degrees", "conditions"),
+    [
+        ('family = "polynomials"\ndegrees = [4, 3, 4]', (4, 3, 4), 14),
+        ('family = "polynomials"\ndegrees = [3, 5, 3]\ncontinuity = 2', (3, 5, 3), 14),
+        ('family = "polynomials"\ndegrees = [3, 3, 3]\nend_orders = [2]', (3, 3, 3), 12),
+        ('family = "polynomials"\ndegrees = [5, 5, 5]\nfree = 4', (5, 5, 5), 14),
+        ('family = "cubic-spline"', (3, 3, 3), 12),
+        ('family = "cubic-spline"\nend_orders = [2]', (3, 3, 3), 12),
+        ('family = "quintic-spline"', (5, 5, 5), 18),
+        ('family = "cubic-spline-virtual"', (3, 3, 3, 3, 3), 20),
+        ('family = "rest-to-rest"\ndegree = 5', (5, 5, 5), 18),
+        ('family = "rest-to-rest"\ndegree = 7', (7, 7, 7), 24),
+    ],
+)
+def test_families(declaration, degrees, conditions):
+    head, _, _ = BASE.partition("[[problems]]")
+    text = head.replace('family = "3-5-3"', declaration).replace(
+        "upper = [3, 4, inf]", "upper = inf"
+    )
+    interpolant = load(text).problem().curve
+    assert interpolant.degrees == degrees
+    assert interpolant.conditions == conditions
+
+
+def test_end_derivatives_are_converted():
+    declaration = (
+        'family = "polynomials"\ndegrees = [3, 5, 3]\n'
+        'end_orders = [2, 1]\nend_derivatives = ["90", 180]'
+    )
+    interpolant = load(changed(('family = "3-5-3"', declaration))).problem().curve
+    assert interpolant.prescribed[0] == interpolant.prescribed[-1]
+    values = dict(interpolant.prescribed[0])
+    assert values == {1: pytest.approx(np.pi), 2: pytest.approx(np.pi / 2)}
+
+
+def test_repeated_waypoints_resting_joints_and_zero_limits_are_valid():
+    text = changed(('["1", "2", "3", "4"]]', '["1", "1", "1", "1"]]'), ("[100,", "[0,"))
+    problem = load(text).problem("one", "plain")
+    assert (np.ptp(problem.waypoints, axis=0) > 0).tolist() == [True, False]
+    assert problem.limits.velocity[0] == 0
+
+
+def test_fang2020_septic_point_to_point_needs_no_code():
+    case = load(
+        """
+format = 1
+id = "fang2020-task1"
+title = "one septic per joint, rest to rest"
+[source]
+year = 2020
+[robot]
+name = "six joints"
+joints = ["1", "2", "3", "4", "5", "6"]
+[units]
+position = "deg"
+velocity = "deg/s"
+acceleration = "deg/s^2"
+jerk = "deg/s^3"
+time = "s"
+[waypoints]
+waypoint_rows = [[-10, 20, 15, 150, 30, 120], [55, 35, 30, 10, 70, 25]]
+[limits]
+velocity = [100, 95, 100, 150, 130, 110]
+acceleration = [60, 60, 75, 70, 90, 80]
+jerk = [60, 66, 85, 70, 75, 70]
+[interpolant]
+family = "rest-to-rest"
+degree = 7
+[[claims]]
+id = "septic"
+quantity = "durations"
+where = "Table 4"
+durations = ["4.7177"]
+total = "4.7177"
+[[claims]]
+id = "jerk-4"
+quantity = "peak"
+where = "Table 7"
+joint = "4"
+derivative = "jerk"
+value = "70.0"
+"""
+    )
+    problem = case.problem()
+    assert problem.segments == 1
+    assert problem.curve.conditions == problem.curve.coefficients == 8
+    np.testing.assert_allclose(problem.limits.jerk[1], np.deg2rad(66), rtol=1e-15)
+    # The printed optimum is the jerk limit of joint 4: |Δq| · 52.5 / T³ for this septic's 7-point.
+    travel = np.abs(np.diff(problem.waypoints[:, 3]))[0]
+    assert 52.5 * travel / 4.7177**3 == pytest.approx(np.deg2rad(70), rel=1e-4)
+
+
+def test_virtual_waypoints_need_no_code():
+    case = load(
+        """
+format = 1
+id = "gasparetto-zanotto-2008"
+title = "cubic spline with two virtual way-points"
+[source]
+year = 2008
+[robot]
+name = "six joints"
+joints = ["1", "2"]
+[units]
+position = "deg"
+velocity = "deg/s"
+jerk = "deg/s^3"
+time = "s"
+[waypoints]
+waypoint_rows = [[-10, 20], [60, 50], [20, 120], [55, 35]]
+[limits]
+velocity = [100, 95]
+jerk = [60, 66]
+[interpolant]
+family = "cubic-spline-virtual"
+[[claims]]
+id = "total"
+quantity = "total_time"
+where = "Table 4"
+value = "9.1"
+[[columns]]
+id = "mean-velocity"
+where = "Table 4"
+unit = "deg/s"
+values = ["16.1", "20.57"]
+"""
+    )
+    assert case.problem().segments == 5
+    assert case.problem().curve.virtual == (1, 4)
+
+
+# The schema
+
+
+def as_json(text: str):
+    """Document as an editor's schema check sees it."""
+    return json.loads(json.dumps(tomllib.loads(text)))
+
+
+def test_the_exported_schema_is_current():
+    exported = json.loads((ROOT / "docs" / "case.schema.json").read_text(encoding="utf-8"))
+    assert exported == json.loads(json.dumps(case_schema()))
+
+
+def test_the_schema_accepts_what_loads_and_refuses_what_is_misspelt():
+    validator = jsonschema.Draft202012Validator(case_schema())
+    validator.check_schema(case_schema())
+    # JSON has no infinity; TOML's inf is written as a string for this check.
+    validator.validate(as_json(BASE.replace("4, inf]", "4, 'inf']")))
+    for case_id in published_ids():
+        path = ROOT / "problem" / "published" / f"{case_id}.toml"
+        validator.validate(as_json(path.read_text(encoding="utf-8")))
+    for old, new in (
+        ("[limits]\nvelocity", "[limits]\nvelocty"),
+        ('quantity = "peak"', 'quantity = "peek"'),
+        ('position = "deg"', 'position = "grad"'),
+        ('"10.5"', '"ten"'),
+    ):
+        with pytest.raises(jsonschema.ValidationError):
+            validator.validate(as_json(BASE.replace(old, new, 1).replace("inf]", "5]")))
+
+
+def test_documents_dump_to_the_digits_that_they_were_read_from():
+    document = load().document
+    dumped = document.model_dump(mode="json", exclude_unset=True)
+    assert dumped["waypoints"]["joint_rows"][0] == ["0.0", "10.5", "-3.25", "4"]
+    assert dumped["limits"] == {"velocity": [100, "95.0"], "acceleration": 60}
+    assert dumped["durations"] == {"lower": 0.1, "upper": [3, 4, None]}
+    assert type(document).model_validate(json.loads(json.dumps(dumped))) == document
+
+
+def test_every_key_is_in_the_documentation():
+    page = (ROOT / "docs" / "case-files.md").read_text(encoding="utf-8")
+    schema = case_schema()
+    blocks = [schema, *schema["$defs"].values()]
+    keys = {key for block in blocks for key in block.get("properties", {})}
+    words = {word for block in blocks for p in block.get("properties", {}).values()
+             for word in p.get("enum", ())}  # fmt: skip
+    missing = {key for key in keys | words if f"`{key}`" not in page}
+    assert not missing
+
+
+def test_published_cases_load_by_path_too(tmp_path):
+    for case_id in published_ids():
+        path = ROOT / "problem" / "published" / f"{case_id}.toml"
+        assert load_case(path).document == load_case(case_id).document
+        assert load_case(str(path)).file == str(path)
+
+
+def test_errors_survive_pickling():
+    error = CaseError("a.toml", "b", "c")
+    assert str(pickle.loads(pickle.dumps(error))) == str(error)

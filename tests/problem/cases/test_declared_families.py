@@ -1,0 +1,159 @@
+"""Every family that a case file can declare goes through the checker, the solver and a search."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import get_args
+
+import numpy as np
+import pytest
+from support.checkout import ROOT
+from trajgap.heuristics import PSO, run
+from trajgap.nlp import Status, solve
+from trajgap.problem import (
+    Problem,
+    Verdict,
+    check,
+    ctraj,
+    cubic_spline,
+    fit,
+    forward_kinematics,
+    jtraj,
+    load_robot,
+    parse_case,
+    scaffold,
+)
+from trajgap.problem.cases.declaration import Family
+
+WAYPOINTS = ((0.3, -1.0), (0.9, -0.55), (0.2, 0.35), (-0.45, 0.1))
+HEAD = """
+format = 1
+id = "family"
+title = "One family"
+[source]
+title = "none"
+[robot]
+name = "arm"
+joints = ["1", "2"]
+[units]
+position = "rad"
+velocity = "rad/s"
+acceleration = "rad/s^2"
+time = "s"
+[limits]
+velocity = [1.1, 1.7]
+acceleration = [3.0, 2.2]
+[durations]
+lower = 0.25
+"""
+FAMILIES = {
+    "3-5-3": "",
+    "polynomials": "degrees = [4, 3, 4]",
+    "cubic-spline": "",
+    "quintic-spline": "",
+    "cubic-spline-virtual": "",
+    "rest-to-rest 5": "degree = 5",
+    "rest-to-rest 7": "degree = 7",
+    "jtraj": "",
+    "uniform-cubic-b-spline stretched": 'time = "stretched"',
+    "uniform-cubic-b-spline timed": 'time = "timed"',
+    "clamped-b-spline 5": 'degree = 5\nknots = "waypoints"\nparameters = "times"',
+    "clamped-b-spline 4": 'degree = 4\nknots = "averaged-continued"\nparameters = "chord"',
+}
+
+
+def declared(name: str) -> Problem:
+    rows = ", ".join(f"[{a}, {b}]" for a, b in WAYPOINTS)
+    text = (
+        f"{HEAD}[waypoints]\nwaypoint_rows = [{rows}]\n"
+        f'[interpolant]\nfamily = "{name.split()[0]}"\n{FAMILIES[name]}\n'
+    )
+    return parse_case(text, "family.toml").problem()
+
+
+def through(problem: Problem, kept: Verdict = Verdict.PASS) -> None:
+    """Check, solve and one seeded search agree about a problem; ``kept`` where limits hold."""
+    h = np.linspace(2.0, 3.0, problem.segments)
+    slow = check(problem, h)
+    assert slow.verdict is kept
+    assert slow.limits is Verdict.PASS
+    hasty = check(problem, 0.02 * h)
+    assert hasty.limits is Verdict.VIOLATED
+    solution = solve(problem, starts=2)
+    assert solution.status is Status.OPTIMAL
+    assert solution.check is not None
+    assert solution.check.verdict is kept
+    assert solution.total_time < h.sum()
+    assert solution.durations is not None
+    span = 0.05, 3.0 * float(solution.durations.max())
+    swarm = PSO(particles=12, iterations=20, position_initial=span)
+    found = run(swarm, problem, 5, None, "stretch")
+    assert check(problem, found.durations).limits is Verdict.PASS
+    # A swarm ends above the optimum, after 252 evaluations within half of it.
+    assert solution.total_time * (1 - 1e-9) <= found.reported_time
+    assert found.reported_time <= 1.5 * solution.total_time
+
+
+def test_the_table_names_every_family() -> None:
+    assert {name.split()[0] for name in FAMILIES} == set(get_args(Family))
+
+
+@pytest.mark.parametrize("name", FAMILIES)
+def test_a_declared_family_is_checked_solved_and_searched(name: str) -> None:
+    # Segments that are stretched by themselves jump in velocity between them.
+    through(declared(name), Verdict.DISCONTINUOUS if "stretched" in name else Verdict.PASS)
+
+
+def test_the_toolboxes_point_to_point_move_is_jtraj() -> None:
+    toolbox = pytest.importorskip("roboticstoolbox")
+    q = np.array(WAYPOINTS)
+    h = np.array([0.8, 1.3, 0.6])
+    mine = fit(jtraj(3), q, h)
+    start = np.concatenate([[0.0], np.cumsum(h)])
+    for k in range(3):
+        # The end of a segment is the start of the next, where jerk jumps.
+        local = np.linspace(0.0, h[k], 41)[:-1]
+        theirs = toolbox.jtraj(q[k], q[k + 1], np.append(local, h[k]))
+        for order, values in enumerate((theirs.s, theirs.sd, theirs.sdd)):
+            np.testing.assert_allclose(mine(start[k] + local, order), values[:-1], atol=1e-12)
+
+
+def test_the_toolboxes_straight_move_has_the_poses_of_ctraj() -> None:
+    toolbox = pytest.importorskip("roboticstoolbox")
+    spatial = pytest.importorskip("spatialmath")
+    line, first, last = straight()
+    theirs = toolbox.ctraj(
+        spatial.SE3(first, check=False), spatial.SE3(last, check=False), s=np.linspace(0, 1, 5)
+    )
+    np.testing.assert_allclose(line.poses, np.array([pose.A for pose in theirs]), atol=1e-12)
+
+
+def test_the_programs_of_the_page_run(capsys: pytest.CaptureFixture[str]) -> None:
+    page = (ROOT / "docs" / "interpolants.md").read_text()
+    programs = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    assert len(programs) == 2
+    for program in programs:
+        exec(program, {})
+    assert "optimal" in capsys.readouterr().out
+
+
+def straight():
+    arm, start = load_robot("puma560"), np.array([0.1, -0.6, 0.4, 0.2, 0.5, 0.1])
+    first = forward_kinematics(arm, start)
+    last = first.copy()
+    last[:3, 3] += [0.02, 0.12, 0.06]
+    return ctraj(arm, first, last, 5, guess=start), first, last
+
+
+def test_a_straight_line_becomes_a_case_file(tmp_path: Path) -> None:
+    line, _, _ = straight()
+    path = tmp_path / "line.csv"
+    path.write_text(line.table)
+    units = {"position": "rad", "velocity": "rad/s", "acceleration": "rad/s^2"}
+    text = scaffold(path, units, family="cubic-spline", velocity="2.0", acceleration="8.0")
+    problem = parse_case(text, "line.toml").problem()
+    np.testing.assert_array_equal(problem.waypoints, line.waypoints)
+    assert problem.curve == cubic_spline(4)
+    assert problem.joints == line.chain.labels
+    through(problem)

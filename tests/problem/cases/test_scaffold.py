@@ -1,0 +1,161 @@
+"""Case files written from a table of way-points."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from trajgap.problem.cases.load import parse_case
+from trajgap.problem.cases.scaffolding import scaffold
+from trajgap.problem.errors import CaseError
+
+RAD = {"position": "rad", "velocity": "rad/s", "acceleration": "rad/s^2"}
+
+
+@pytest.fixture
+def table(tmp_path):
+    def write(text):
+        path = tmp_path / "My table 1.csv"
+        path.write_bytes(text if isinstance(text, bytes) else text.encode("utf-8"))
+        return path
+
+    return write
+
+
+def test_a_labelled_table(table):
+    path = table("point;q1;q2\nA;0.50;−1\n\nB;1;2\nC;1.25;0.3\nD;0;0\n")
+    text = scaffold(path, RAD, velocity="6", acceleration=".5")
+    case = parse_case(text, "x")
+    assert case.id == "my-table-1"
+    assert case.robot.joints == ("q1", "q2")
+    assert case.document.waypoints.labels == ("A", "B", "C", "D")
+    assert [n.text for n in case.document.waypoints.points[0]] == ["0.50", "-1"]
+    problem = case.problem()
+    np.testing.assert_array_equal(problem.waypoints, [[0.5, -1], [1, 2], [1.25, 0.3], [0, 0]])
+    np.testing.assert_array_equal(problem.limits.velocity, [6, 6])
+    np.testing.assert_array_equal(problem.limits.acceleration, [0.5, 0.5])
+    assert problem.curve.degrees == (3, 5, 3)
+    assert "trajgap" not in text
+    assert '# jerk = "rad/s^3"' in text
+
+
+def test_a_plain_table_in_degrees(table):
+    path = table("1\t2\t3\n10\t20\t30\n40\t50\t60\n")
+    case = parse_case(scaffold(path, {"position": "deg", "time": "ms"}, case_id="mine"), "x")
+    assert case.id == "mine"
+    np.testing.assert_allclose(case.problem().waypoints[1], np.deg2rad([40, 50, 60]), rtol=1e-15)
+    assert case.problem().curve.virtual == (1, 2)
+
+
+def test_the_family_can_be_chosen(table):
+    path = table("a\n1\n2\n3\n")
+    case = parse_case(scaffold(path, {"position": "rad"}, family="quintic-spline"), "x")
+    assert case.problem().curve.degrees == (5, 5)
+
+
+def test_a_gap_in_the_last_line_end_does_not_matter(table):
+    assert scaffold(table("a,b\r\n1,2\r\n3,4"), RAD) == scaffold(table("a,b\n1,2\n3,4\n"), RAD)
+
+
+names = st.text(st.characters(codec="utf-8", exclude_characters=",;\t\r\n"), min_size=1)
+numbers = st.decimals(-999, 999, places=3).map(str)
+
+
+@given(st.lists(names, min_size=1, max_size=4), st.data())
+def test_what_is_written_loads_or_the_table_is_refused(tmp_path_factory, joints, data):
+    path = tmp_path_factory.mktemp("t") / "t.csv"
+    rows = [[data.draw(numbers) for _ in joints] for _ in range(3)]
+    lines = ["point," + ",".join(joints), *(f"p{k}," + ",".join(r) for k, r in enumerate(rows))]
+    path.write_text("\n".join(lines), encoding="utf-8", newline="")
+    try:
+        case = parse_case(scaffold(path, RAD), "x")
+    except CaseError as error:
+        assert str(error).startswith(f"{path}: ")  # noqa: PT017
+        return
+    np.testing.assert_array_equal(case.problem().waypoints, np.array(rows, dtype=float))
+    assert [j.strip() for j in joints] == list(case.robot.joints)
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("", "is empty; `trajgap new` writes a file to start from"),
+        (b"a,b\n\x00,1", "is a binary file; a UTF-8 text file is needed"),
+        ("a,b\n1,2\n", "holds 1 way-points; give at least two rows of numbers"),
+        ("a,b\n1,2\n3\n", "line 3: has 1 cells, the header 2; fill or remove cells"),
+        ("a,a\n1,2\n3,4\n", "line 1, column 2: joint 'a' is named twice; rename one"),
+        ("a,\n1,2\n3,4\n", "line 1, column 2: the joint has no name; head every column"),
+        ("point\nA\nB\n", "line 1: names no joint; head one column per joint"),
+        (
+            "0.1,-2\n1,2\n3,4\n",
+            "line 1: holds numbers; the first line names the joints, put a header above it",
+        ),
+        (
+            "a;b\n1;2\n3;0,5\n",
+            "line 3, column 2: '0,5' has a decimal comma; write a decimal point",
+        ),
+        (
+            "a,b\n1,nan\n3,4\n",
+            "line 2, column 2: 'nan' is not a finite decimal number; "
+            'write the printed digits alone, such as "0.660"',
+        ),
+        ('a,b\n1,"2\n3,4\n', "line 3: not valid CSV, unexpected end of data; mend it"),
+    ],
+)
+def test_tables_that_are_refused(table, text, reason):
+    path = table(text)
+    with pytest.raises(CaseError) as caught:
+        scaffold(path, RAD)
+    assert str(caught.value) == f"{path}: {reason}"
+
+
+@pytest.mark.parametrize(
+    ("units", "options", "reason"),
+    [
+        ({}, {}, "units.position: is missing; give one of rad, deg"),
+        (
+            {"position": "rad"},
+            {"jerk": "9"},
+            "units.jerk: is missing; give one of rad/s^3, deg/s^3",
+        ),
+        (
+            {"position": "rad/s"},
+            {},
+            "units.position: 'rad/s' measures velocity, not position; use one of rad, deg",
+        ),
+        (
+            {"angle": "rad"},
+            {},
+            "units.angle: no such quantity; known: position, velocity, acceleration, jerk, time",
+        ),
+        (RAD, {"velocity": "-6"}, "limits.velocity: -6 is negative; give 0 or more"),
+        (
+            RAD,
+            {"velocity": "six"},
+            "velocity: 'six' is not a finite decimal number; "
+            'write the printed digits alone, such as "0.660"',
+        ),
+        (
+            RAD,
+            {"case_id": "My case"},
+            "id: 'My case' is not an id; use lower-case letters, digits, dots and dashes",
+        ),
+        (
+            RAD,
+            {"family": "3-5-3"},
+            "interpolant: 3-5-3 polynomials of 3 segments passes 4 way-points, but 2 are given; "
+            "change the family, the degrees or the way-points",
+        ),
+    ],
+)
+def test_options_that_are_refused(table, units, options, reason):
+    path = table("a,b\n1,2\n3,4\n")
+    with pytest.raises(CaseError) as caught:
+        scaffold(path, units, **options)
+    assert str(caught.value) == f"{path}: {reason}"
+
+
+def test_a_missing_table(tmp_path):
+    with pytest.raises(CaseError, match=r"none\.csv: no such file; check the path"):
+        scaffold(tmp_path / "none.csv", RAD)

@@ -1,0 +1,239 @@
+"""Extrema by other routes: companion matrices, Chebyshev's polynomials, 50 digits, sampling.
+
+The checker and the batched evaluation find peaks by two root finders written apart. Both are asked
+about the same polynomials: one segment with all its start derivatives prescribed can be any one.
+"""
+
+import math
+from decimal import Decimal
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import assume, example, given
+from hypothesis import strategies as st
+from numpy.polynomial import Chebyshev
+from numpy.polynomial import Polynomial as Power
+from support import exact_route
+from support.samples import DECLARATIONS, posed
+from trajgap.problem import (
+    Extremum,
+    Interpolant,
+    Limits,
+    Problem,
+    check,
+    evaluate,
+    extrema,
+    fit,
+    three_five_three,
+)
+from trajgap.problem.curves.peak import critical_points
+
+
+def as_problem(velocity: np.ndarray) -> Problem:
+    """One segment of duration 1 whose velocity has these ascending coefficients."""
+    degree = velocity.size
+    position = np.concatenate([[0.0], velocity / np.arange(1, degree + 1)])
+    start = tuple((r, math.factorial(r) * position[r]) for r in range(1, degree))
+    interpolant = Interpolant((degree,), (), (start, ()))
+    waypoints = np.array([[0.0], [position.sum()]])
+    return Problem(waypoints, Limits(1, 1, 1, joints=1), interpolant)
+
+
+def peaks_by_both(velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Peaks of |v|, |a|, |j| from the checker and from the batched evaluation."""
+    problem = as_problem(velocity)
+    checked = check(problem, [1.0])
+    batched = evaluate(problem, [[1.0]])
+    return np.array([p.ratio for p in checked.peaks]), batched.ratios[0, 0]
+
+
+def companion_peak(p: Power) -> float:
+    """Largest |p| on [0, 1] over the ends and all roots of the derivative that are nearly real."""
+    places = [0.0, 1.0]
+    slope = p.deriv()
+    slope = slope.trim(1e-13 * np.abs(slope.coef).max())
+    if slope.degree() > 0:
+        near = slope.roots()
+        for s in near.real[(np.abs(near.imag) < 1e-3) & (np.abs(near.real - 0.5) < 0.51)]:
+            places.append(s)
+            for _ in range(3):  # a small leading coefficient costs the companion matrix digits
+                bend = slope.deriv()(s)
+                s -= slope(s) / bend if bend else 0.0
+            places.append(s)
+    return max(abs(float(p(s))) for s in places if 0 <= s <= 1)
+
+
+def chebyshev(degree: int) -> Power:
+    unit = [0.0, 1.0]
+    wave = Chebyshev.basis(degree, domain=unit).convert(kind=Power, domain=unit, window=unit)
+    return Power(wave.coef)
+
+
+@pytest.mark.parametrize("degree", range(1, 9))
+def test_chebyshev_reaches_one_at_every_extremum(degree: int) -> None:
+    p = chebyshev(degree)
+    coefficients = np.asarray(p.coef)
+    places = critical_points(coefficients)
+    known = (1 - np.cos(np.pi * np.arange(1, degree) / degree)) / 2
+    np.testing.assert_allclose(places, known, atol=1e-12)
+    np.testing.assert_allclose(np.abs(p(places)), 1.0, rtol=1e-10)
+    # Markov: the derivatives are largest at the ends, d² and d²(d² − 1)/3 (on [−1, 1])
+    d2 = degree**2
+    known_peaks = [1.0, 2 * d2, 4 * d2 * (d2 - 1) / 3]
+    for peaks in peaks_by_both(coefficients):
+        np.testing.assert_allclose(peaks, known_peaks, rtol=1e-9, atol=1e-9)
+
+
+@pytest.mark.parametrize("degree", range(1, 9))
+def test_tilted_chebyshev_has_its_peak_inside(degree: int) -> None:
+    # The ends are drawn in, so that a finder that looks only there is wrong.
+    wave = chebyshev(degree)
+    dome = wave * Power([0.05, 3.8, -3.8]) if degree < 7 else wave
+    expected = [companion_peak(dome.deriv(r) if r else dome) for r in range(3)]
+    for peaks in peaks_by_both(np.asarray(dome.coef)):
+        np.testing.assert_allclose(peaks, expected, rtol=1e-9)
+
+
+@pytest.mark.parametrize("degree", range(9))
+def test_random_waves(degree: int) -> None:
+    rng = np.random.default_rng(degree)
+    for _ in range(12):
+        wave = chebyshev(0) * 0
+        for k in range(degree + 1):
+            wave = wave + rng.normal() * chebyshev(k)
+        for sign in (1, -1):
+            coefficients = sign * np.asarray(wave.coef)
+            orders = [wave, wave.deriv(), wave.deriv(2)]
+            expected = np.array([companion_peak(p) for p in orders])
+            room = 1e-11 * np.array([np.abs(p.coef).sum() for p in orders]) + 1e-12
+            for peaks in peaks_by_both(coefficients):
+                assert (np.abs(peaks - expected) <= room).all()
+
+
+@given(st.lists(st.floats(-10, 10, width=32), min_size=1, max_size=9))
+@example([0.0] * 9)
+@example([1.0, 0.0, 0.0])
+@example([0.0, 1.0, 0.0, 0.0, 0.0])
+@example([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1e-300, 1.0])
+@example([1e-30, 1.0, -1.0])
+@example([0.0, 1.0, -1.0, 1e-18])
+def test_any_polynomial(coefficients: list[float]) -> None:
+    velocity = np.array(coefficients)
+    p = Power(velocity)
+    expected = np.array([companion_peak(p.deriv(r) if r else p) for r in range(3)])
+    sizes = np.array([np.abs(p.deriv(r).coef).sum() for r in range(3)])
+    room = 1e-11 * sizes + 1e-12 * sizes[0]  # the last coefficient comes from the way-point
+    for peaks in peaks_by_both(velocity):
+        assert (np.abs(peaks - expected) <= room).all()
+
+
+ROOTS = st.lists(st.floats(0.0, 1.0), min_size=1, max_size=7)
+
+
+@given(ROOTS, st.integers(1, 3), st.floats(-2, 2))
+@example([0.3, 0.3], 2, 0.4)
+@example([0.5], 3, 0.0)
+@example([0.25, 0.75], 1, -0.1)
+@example([0.0, 1.0], 1, 0.3)
+@example([0.999999, 1.0], 2, 0.0)
+@example([1e-9, 2e-9, 0.5], 1, 0.2)
+def test_clustered_and_multiple_turning_points(
+    roots: list[float], multiplicity: int, shift: float
+) -> None:
+    # velocity = shift + ∫ Π (s − root): its turning points are the roots of odd multiplicity
+    factors = (roots * multiplicity)[:7]
+    p = Power.fromroots(factors).integ(k=shift)
+    expected = float(np.abs(p(np.array([0.0, 1.0, *roots]))).max())
+    room = 1e-12 * np.abs(p.coef).sum()
+    for peaks in peaks_by_both(np.asarray(p.coef)):
+        assert abs(peaks[0] - expected) <= room
+
+
+@given(st.lists(st.floats(0.01, 0.99), min_size=1, max_size=8, unique=True), st.floats(0.01, 100))
+def test_separate_roots_are_found_in_order(roots: list[float], scale: float) -> None:
+    known = np.sort(roots)
+    assume(np.diff(known).min(initial=1.0) > 0.02)
+    primitive = (scale * Power.fromroots(known)).integ()
+    found = critical_points(np.asarray(primitive.coef))
+    assert found.size == known.size
+    np.testing.assert_allclose(found, known, atol=1e-6)
+    assert (np.abs(primitive.deriv()(found)) <= 1e-13 * np.abs(primitive.deriv().coef).sum()).all()
+
+
+def test_no_turning_point_outside_or_without_sign_change() -> None:
+    assert critical_points(np.array([1.0])).size == 0
+    assert critical_points(np.array([1.0, 2.0])).size == 0
+    assert critical_points(np.zeros(6)).size == 0
+    # slope (s − 2)(s + 1): both roots outside
+    assert critical_points(np.array([0.0, -2.0, -0.5, 1 / 3])).size == 0
+    # slope s(1 − s): both roots are ends
+    assert critical_points(np.array([0.0, 0.0, 0.5, -1 / 3])).size == 0
+    # slope 1 + s²: no real root
+    assert critical_points(np.array([0.0, 1.0, 0.0, 1 / 3])).size == 0
+    # slope (s − ½)³: one turning point
+    slope = Power.fromroots([0.5] * 3)
+    np.testing.assert_allclose(critical_points(np.asarray(slope.integ().coef)), [0.5], atol=1e-5)
+    # leading coefficients that are 0
+    np.testing.assert_allclose(critical_points(np.array([0.0, 1.0, -1.0, 0.0, 0.0])), [0.5])
+
+
+@pytest.mark.parametrize("name", DECLARATIONS)
+def test_extrema_against_fifty_digits(name: str) -> None:
+    interpolant = DECLARATIONS[name]
+    problem, h = posed(interpolant, 9, joints=2)
+    curve = fit(interpolant, problem.waypoints, h)
+    for j in range(2):
+        pieces = exact_route.fitted(interpolant, problem.waypoints[:, j], h)
+        for order in range(4):
+            truth = float(exact_route.peak(pieces, h, order))
+            found = extrema(curve, j, order)
+            assert max(abs(e.value) for e in found) == pytest.approx(truth, rel=1e-10, abs=1e-10)
+            assert [e.time for e in found] == sorted(e.time for e in found)
+            assert {(e.joint, e.order) for e in found} == {(j, order)}
+            for e in found:
+                assert 0.0 <= e.s <= 1.0
+                assert e.time == pytest.approx(curve.breaks[e.segment] + e.s * h[e.segment])
+                inner = curve.derivative(e.segment, j, order)
+                size = np.abs(inner).sum()
+                assert abs(e.value - inner @ e.s ** np.arange(inner.size)) <= 1e-14 * size
+
+
+def test_every_sampled_bump_is_an_extremum() -> None:
+    problem, h = posed(DECLARATIONS["quintic"], 4)
+    curve = fit(problem.curve, problem.waypoints, h)
+    t = np.linspace(0.0, h.sum(), 20_001)
+    for j in range(3):
+        for order in range(4):
+            y = curve(t, order)[:, j]
+            bumps = t[1:-1][(y[1:-1] - y[:-2]) * (y[2:] - y[1:-1]) < 0]
+            places = np.array([e.time for e in extrema(curve, j, order)])
+            assert bumps.size == 0 or np.abs(bumps[:, None] - places).min(axis=1).max() < 3e-4
+
+
+def test_batched_evaluation_against_fifty_digits() -> None:
+    problem, _ = posed(three_five_three(), 2, joints=2)
+    rng = np.random.default_rng(8)
+    batch = 10.0 ** rng.uniform(-1.0, 1.0, (12, 3))
+    ratios = evaluate(problem, batch).ratios
+    for i, h in enumerate(batch):
+        for j in range(2):
+            pieces = exact_route.fitted(problem.curve, problem.waypoints[:, j], h)
+            for order in (1, 2, 3):
+                limit = problem.limits.derivatives[j, order - 1]
+                truth = exact_route.peak(pieces, h, order) / Decimal(float(limit))
+                assert ratios[i, j, order - 1] == pytest.approx(float(truth), rel=1e-12)
+
+
+def test_exact_route_knows_a_simple_peak() -> None:
+    # s² − s³ over two seconds: speed (2t/4 − 3t²/8), largest |v| at the end
+    piece = [Fraction(0), Fraction(0), Fraction(1, 4), Fraction(-1, 8)]
+    assert float(exact_route.peak([piece], [2.0], 0)) == pytest.approx(4 / 27, rel=1e-15)
+    assert float(exact_route.peak([piece], [2.0], 1)) == pytest.approx(0.5, rel=1e-15)
+
+
+def test_an_extremum_is_a_record() -> None:
+    one = Extremum(0, 1, 2, 0.5, 1.25, -3.0)
+    assert (one.joint, one.segment, one.order, one.s, one.time, one.value) == (
+        0, 1, 2, 0.5, 1.25, -3.0,
+    )  # fmt: skip

@@ -1,0 +1,352 @@
+"""Published case files against a transcription of the papers made for this test alone."""
+
+from __future__ import annotations
+
+import csv
+import json
+import tomllib
+from decimal import Decimal
+
+import numpy as np
+import pytest
+from support.checkout import ROOT
+from trajgap.heuristics import from_settings
+from trajgap.problem import CaseError, jtraj, quintic_spline, uniform_cubic_b_spline
+from trajgap.problem.cases.claim import ConditionsClaim, DurationsClaim, MaximumClaim
+from trajgap.problem.cases.load import load_case, parse_case, published_ids
+from trajgap.problem.printed import Printed
+
+TABLES = ROOT / "tests" / "support" / "published_tables"
+PUMA, IRB = "puma560-mnam-pso-353", "irb460-pso-353"
+POLISH, WHALE = "irb1600-ga-cubic-bspline", "z1-woa-bspline"
+FOLDER = ROOT / "problem" / "published"
+
+
+def rows(name: str) -> dict[str, list[str]]:
+    """Rows of a transcribed table by their first cell, minus signs in ASCII."""
+    with (TABLES / f"{name}.csv").open(encoding="utf-8", newline="") as file:
+        table = list(csv.reader(file))
+    assert len({len(row) for row in table}) == 1
+    return {row[0]: [cell.replace("−", "-") for cell in row[1:]] for row in table[1:]}
+
+
+def texts(numbers):
+    """Digits of printed numbers; none of them may be exact."""
+    assert not any(number.exact for number in numbers)
+    return [number.text for number in numbers]
+
+
+def test_puma_waypoints():
+    case, table = load_case(PUMA), rows(f"{PUMA}.table-1")
+    assert list(case.robot.joints) == list(table)
+    for row, joint in zip(case.document.waypoints.joint_rows, case.robot.joints, strict=True):
+        assert texts(row) == table[joint]
+    expected = np.array([[float(cell) for cell in row] for row in table.values()]).T
+    np.testing.assert_array_equal(case.problem().waypoints, expected)
+
+
+@pytest.mark.parametrize("table_id", ["table-2", "table-3"])
+def test_puma_durations(table_id):
+    case, table = load_case(PUMA), rows(f"{PUMA}.{table_id}")
+    claims = case.table_claims(table_id)
+    assert [c.joint or "longest" for c in claims] == list(table)
+    for claim in claims:
+        assert isinstance(claim, DurationsClaim | MaximumClaim)
+        cells = table[claim.joint or "longest"]
+        assert texts([*claim.durations, claim.total]) == cells
+        box = case.claim_durations(claim)
+        np.testing.assert_array_equal(box.value, [float(cell) for cell in cells[:3]])
+        np.testing.assert_allclose(box.upper - box.lower, 0.001, rtol=1e-9)
+        algorithms = {t.id: t.algorithm for t in case.tables}
+        assert claim.algorithm == algorithms[table_id]
+    longest = claims[-1]
+    assert longest.of == tuple(c.id for c in claims[:-1])
+
+
+def test_puma_numbers_in_the_text():
+    case, printed = load_case(PUMA), rows(f"{PUMA}.text")
+    numbers = {
+        "total of the standard algorithm": case.claim("pso-total").value,
+        "total of the improved algorithm": case.claim("mnam-total").value,
+        "reduction in percent": case.claim("improvement").percent,
+        "iterations until most joints converge": case.claim("convergence").iterations,
+    }
+    assert {key: [number.text] for key, number in numbers.items()} == printed
+
+
+def test_puma_settings():
+    case, printed = load_case(PUMA), rows(f"{PUMA}.settings")
+    by_id = {algorithm.id: algorithm for algorithm in case.algorithms}
+    settings = {
+        key: [";".join(f"{x:g}" for x in np.atleast_1d(value))]
+        for key, value in by_id["mnam-pso"].settings.items()
+    }
+    assert settings == printed
+    assert by_id["standard-pso"].settings.items() <= by_id["mnam-pso"].settings.items()
+
+
+def test_puma_limits_and_bounds():
+    case = load_case(PUMA)
+    for reading, lower in (("durations-at-least-0.3", 0.3), ("durations-positive", 0.0)):
+        problem = case.problem("six-joints", reading)
+        np.testing.assert_array_equal(problem.limits.velocity, np.full(6, 6.0))
+        np.testing.assert_array_equal(problem.limits.acceleration, np.full(6, 8.0))
+        assert np.isinf(problem.limits.jerk).all()
+        np.testing.assert_array_equal(problem.duration_lower, np.full(3, lower))
+        assert np.isinf(problem.duration_upper).all()
+        assert problem.coupling == "per-joint"
+    assert case.default_reading.id == "durations-at-least-0.3"
+
+
+def test_irb_waypoints_and_columns():
+    case, table = load_case(IRB), rows(f"{IRB}.table-3")
+    columns = {column.id: texts(column.values) for column in case.columns}
+    assert list(table) == ["1", "3", "5"]
+    assert texts(case.document.waypoints.joint_rows[0]) == table["5"]
+    assert columns["joint-1"] == table["1"]
+    assert columns["joint-3"] == table["3"]
+    assert [c.joint for c in case.columns] == ["1", "3"]
+
+
+def test_irb_cartesian_waypoints():
+    case, points = load_case(IRB), rows(f"{IRB}.table-2")
+    printed = {c.label.replace(" ", "-"): [v.text for v in c.values] for c in case.cartesian}
+    assert printed == points
+    assert [c.waypoint for c in case.cartesian] == list(case.document.waypoints.labels)
+    # Zeros without decimals are meant exactly, an assumption of the file; nothing else is.
+    assert all(v.exact == (v.text == "0") for c in case.cartesian for v in c.values)
+
+
+def test_irb_table():
+    dh, table = load_case(IRB).dh, rows(f"{IRB}.table-1")
+    assert list(table) == list(dh.joints)
+    assert dh.convention == "modified"
+    printed = [[entry.text for entry in row] for row in (dh.d, dh.a, dh.alpha)]
+    assert [list(row) for row in zip(*printed, strict=True)] == list(table.values())
+
+
+def test_irb_durations():
+    case, table = load_case(IRB), rows(f"{IRB}.table-4")
+    for position, limit in enumerate(("80", "110")):
+        claim = case.claim(f"durations-{limit}")
+        assert texts(claim.durations) == [row[position] for row in table.values()]
+        assert claim.total is None
+        assert claim.problem == f"limit-{limit}"
+        problem = case.problem(f"limit-{limit}")
+        np.testing.assert_allclose(np.rad2deg(problem.limits.velocity), float(limit), rtol=1e-15)
+        assert np.isinf(problem.limits.acceleration).all()
+
+
+def test_irb_numbers_in_the_text():
+    case, printed = load_case(IRB), rows(f"{IRB}.text")
+    conditions = case.claim("conditions-14")
+    assert isinstance(conditions, ConditionsClaim)
+    assert {
+        "iterations until the particles converge": [case.claim("convergence").iterations.text],
+        "iterations": [str(case.algorithms[0].settings["iterations"])],
+        "conditions": [conditions.count.text],
+    } == printed
+
+
+def test_irb_readings_change_the_unit_of_the_waypoints_only():
+    case = load_case(IRB)
+    for limit in ("limit-80", "limit-110"):
+        radians = case.problem(limit, "waypoints-rad")
+        degrees = case.problem(limit, "waypoints-deg")
+        np.testing.assert_allclose(np.deg2rad(radians.waypoints), degrees.waypoints, rtol=1e-15)
+        np.testing.assert_array_equal(radians.limits.velocity, degrees.limits.velocity)
+
+
+def test_polish_waypoints_and_control_vertices():
+    case = load_case(POLISH)
+    for name, block in (
+        ("table-1", case.document.waypoints.joint_rows),
+        ("table-2", case.claim("control-vertices").joint_rows),
+    ):
+        table = rows(f"{POLISH}.{name}")
+        assert list(table) == list(case.robot.joints)
+        assert [texts(row) for row in block] == list(table.values())
+    header = (TABLES / f"{POLISH}.table-1.csv").read_text(encoding="utf-8").splitlines()[0]
+    assert header == ",".join(["joint", *case.document.waypoints.labels])
+
+
+def test_polish_durations():
+    case, table = load_case(POLISH), rows(f"{POLISH}.table-4")
+    claims = case.table_claims("table-4")
+    assert [c.id for c in claims] == list(table)
+    for claim in claims:
+        assert texts([*claim.durations, claim.total]) == table[claim.id]
+
+
+def test_polish_limits_and_readings():
+    case, table = load_case(POLISH), rows(f"{POLISH}.table-3")
+    printed = np.array([[float(cell) for cell in row] for row in table.values()])
+    angles = np.array([[float(c) for c in row] for row in rows(f"{POLISH}.table-1").values()]).T
+    units = {"rad": 1.0, "deg": np.pi / 180}
+    seen = set()
+    for reading in case.readings:
+        _, q, _, v, _, a, time = reading.id.split("-")
+        problem = case.problem("nine-segments", reading.id)
+        np.testing.assert_allclose(problem.waypoints, angles * units[q], rtol=1e-15)
+        np.testing.assert_allclose(problem.limits.velocity, printed[:, 0] * units[v], rtol=1e-15)
+        np.testing.assert_allclose(
+            problem.limits.acceleration, printed[:, 1] * units[a], rtol=1e-15
+        )
+        assert np.isinf(problem.limits.jerk).all()
+        assert problem.curve == uniform_cubic_b_spline(10, time)
+        seen.add((q, v, a, time))
+    assert len(seen) == len(case.readings) == 16
+    assert case.default_reading.id == "angles-rad-v-rad-a-rad-stretched"
+
+
+def test_polish_numbers_in_the_text():
+    case = load_case(POLISH)
+    columns = {column.id: texts(column.values) for column in case.columns}
+    assert {
+        "time saved": texts([case.claim("improvement").seconds]),
+        "resolution of time": columns["time-resolution"],
+    } == rows(f"{POLISH}.text")
+    printed = {name: float(cell) for name, (cell,) in rows(f"{POLISH}.settings").items()}
+    improved, traditional = case.algorithms
+    assert {k: improved.settings[k] for k in printed} == printed
+    resolution = float(rows(f"{POLISH}.text")["resolution of time"][0])
+    assert improved.settings == {**printed, "resolution": resolution}
+    assert traditional.settings == {"resolution": resolution}
+
+
+def test_whale_limits():
+    case, table = load_case(WHALE), rows(f"{WHALE}.table-2")
+    assert case.dh is not None
+    units = {"rad": 1.0, "deg": np.pi / 180}
+    for velocity in units:
+        for acceleration in units:
+            statement = case.statement("b-spline", f"v-{velocity}-a-{acceleration}")
+            _, limits, lower, upper = statement.data()
+            for name, unit in (("velocity", velocity), ("acceleration", acceleration)):
+                printed = np.array([float(cell) for cell in table[name]])
+                np.testing.assert_allclose(getattr(limits, name), printed * units[unit], rtol=1e-15)
+            np.testing.assert_array_equal(lower, np.zeros(7))
+            np.testing.assert_array_equal(upper, np.full(7, 5.0))
+
+
+def test_whale_numbers_in_the_text():
+    case = load_case(WHALE)
+    columns = {column.id: texts(column.values) for column in case.columns}
+    assert {
+        "total of the B-spline": texts([case.claim("b-spline-total").value]),
+        "total of the quintic": texts([case.claim("quintic-total").value]),
+        "iterations until flat": texts([case.claim("convergence").iterations]),
+        "shortest duration searched": columns["search-bounds"][:1],
+        "longest duration searched": columns["search-bounds"][1:],
+    } == rows(f"{WHALE}.text")
+    improved, plain = case.algorithms
+    printed = rows(f"{WHALE}.settings")
+    for algorithm in (improved, plain):
+        for name in printed.keys() & algorithm.settings.keys():
+            shown = ";".join(f"{x:g}" for x in np.atleast_1d(algorithm.settings[name]))
+            assert [shown] == printed[name]
+    assert improved.settings.keys() == {*printed, "initial"}
+
+
+def test_whale_table():
+    dh, table = load_case(WHALE).dh, rows(f"{WHALE}.table-1")
+    printed = [[entry.text for entry in row] for row in (dh.d, dh.alpha, dh.a)]
+    assert [list(row) for row in zip(*printed, strict=True)] == list(table.values())
+
+
+def test_whale_readings_change_the_b_spline_and_leave_the_quintic():
+    case = load_case(WHALE)
+    curves = {reading: case.statement("b-spline", reading).curve() for _, reading in
+              case.selections("b-spline")}  # fmt: skip
+    assert len(set(curves.values())) == 10
+    assert all(curve.segments == 7 for curve in curves.values())
+    quintics = {case.statement(*pair).curve() for pair in case.selections("quintic")}
+    assert quintics == {jtraj(7), quintic_spline(7)}
+
+
+def test_whale_has_no_waypoints_and_says_so():
+    case = load_case(WHALE)
+    assert not case.complete
+    with pytest.raises(CaseError, match=r"^z1-woa-bspline: waypoints: are not printed \(the text"):
+        case.problem()
+    with pytest.raises(CaseError, match=r"add them as joint_rows or waypoint_rows \(problem 'b-sp"):
+        case.waypoint_box("b-spline", "degree-3-averaged")
+
+
+def test_whale_waypoints_dropped_into_the_file_pose_every_problem():
+    text = (FOLDER / f"{WHALE}.toml").read_text(encoding="utf-8")
+    start, end = text.index("not_printed = "), text.index("[limits]")
+    angles = [[f"{0.37 * j - 0.29 * k:.4f}" for k in range(8)] for j in range(6)]
+    angles[2][3] = "1.2345"
+    table = ",\n".join(f"  {json.dumps(row)}" for row in angles)
+    case = parse_case(text[:start] + f"joint_rows = [\n{table}\n]\n\n" + text[end:], "found.toml")
+    assert case.complete
+    problems = [case.problem(*pair) for pair in case.selections()]
+    assert len(problems) == 28
+    assert all(problem.waypoints[3, 2] == 1.2345 for problem in problems)
+
+
+def quoted_numbers(node: object) -> set[str]:
+    """Every string in a document that is a printed number, from claims, way-points, columns."""
+    if isinstance(node, dict):
+        skip = {"id", "joint", "joints", "labels", "settings", "chosen"}
+        return set().union(*(quoted_numbers(v) for k, v in node.items() if k not in skip), set())
+    if isinstance(node, list):
+        return set().union(*(quoted_numbers(v) for v in node), set())
+    try:
+        return {Printed(node).text} if isinstance(node, str) else set()
+    except ValueError:
+        return set()
+
+
+@pytest.mark.parametrize("case_id", [PUMA, IRB, POLISH, WHALE])
+def test_no_number_is_in_the_file_that_is_not_in_the_transcription(case_id):
+    document = tomllib.loads((FOLDER / f"{case_id}.toml").read_text(encoding="utf-8"))
+    transcribed = {
+        cell
+        for path in TABLES.glob(f"{case_id}.*.csv")
+        for row in rows(path.stem).values()
+        for cell in row
+    }
+    numbers = quoted_numbers(document)
+    assert len(numbers) >= (5 if case_id == WHALE else 16)
+    assert numbers <= transcribed
+
+
+@pytest.mark.parametrize("case_id", published_ids())
+def test_the_id_is_the_file_name_and_every_selection_is_posed(case_id):
+    case = load_case(case_id)
+    assert case.id == case_id
+    assert str(case.title)
+    for problem_id, reading_id in case.selections() if case.complete else ():
+        problem = case.problem(problem_id, reading_id)
+        lower, upper = case.waypoint_box(problem_id, reading_id)
+        assert lower.shape == upper.shape == problem.waypoints.shape
+        assert (lower <= problem.waypoints).all()
+        assert (problem.waypoints <= upper).all()
+        assert (upper > lower).all()
+
+
+@pytest.mark.parametrize("case_id", published_ids())
+def test_settings_build_their_algorithm_and_choices_are_its_defaults(case_id):
+    for algorithm in load_case(case_id).algorithms:
+        built = from_settings(algorithm.kind, algorithm.parameters)
+        assert built == from_settings(algorithm.kind, algorithm.settings)
+
+
+@pytest.mark.parametrize("case_id", published_ids())
+def test_everything_left_open_has_a_choice(case_id):
+    case = load_case(case_id)
+    assumed = {name for assumption in case.assumptions for name in assumption.affects}
+    for algorithm in case.algorithms:
+        if algorithm.chosen or algorithm.open:
+            assert algorithm.id in assumed
+    for reading in case.readings:
+        assert reading.why.endswith(".")
+    if len(case.readings) > 1:
+        assert {reading.id for reading in case.readings} <= assumed
+    # Only limits and settings are exact; a bare number anywhere else would lose its digits.
+    document = tomllib.loads(
+        (FOLDER / f"{case_id}.toml").read_text(encoding="utf-8"), parse_float=Decimal
+    )
+    assert not any(isinstance(v, Decimal) for claim in document["claims"] for v in claim.values())

@@ -1,0 +1,247 @@
+"""Inverse kinematics: round trips, bounds, and honest answers where there is none."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+from support.chains import chains, rotation, translation
+from trajgap.problem.cases.robot_file import load_robot
+from trajgap.problem.errors import TrajgapError
+from trajgap.problem.robots import inverse
+from trajgap.problem.robots.chain import Chain, Convention, forward_kinematics
+from trajgap.problem.robots.inverse import POSE, POSITION, IkStatus, inverse_kinematics
+
+S, M = Convention.STANDARD, Convention.MODIFIED
+PLANAR = Chain(S, a=[0.7, 0.4], alpha=[0, 0], d=[0, 0], lower=[-3, -3], upper=[3, 3])
+
+
+def misses(chain, q, target) -> tuple[float, float]:
+    """Distance and angle to a pose, computed apart from the code under test."""
+    end = forward_kinematics(chain, q)
+    cosine = (np.trace(target[:3, :3].T @ end[:3, :3]) - 1) / 2
+    # arccos loses half the digits near 1; the sine of the half angle does not.
+    half = np.linalg.norm(target[:3, :3] - end[:3, :3]) / (2 * np.sqrt(2))
+    angle = 2 * np.arcsin(min(1.0, half))
+    assert abs(np.cos(angle) - cosine) < 1e-9
+    return float(np.linalg.norm(end[:3, 3] - target[:3, 3])), float(angle)
+
+
+@settings(max_examples=40, deadline=None, derandomize=True)
+@given(chains(fewest=2, bounds=True), st.integers(0, 2**32 - 1))
+def test_round_trip_on_any_chain(chain, seed):
+    rng = np.random.default_rng(seed)
+    lower, upper = chain.span()
+    q = rng.uniform(lower, upper)
+    target = forward_kinematics(chain, q)
+    found = inverse_kinematics(chain, target, seed, guess=q + rng.uniform(-0.3, 0.3, q.size))
+    assert found.status is IkStatus.SOLVED
+    assert found.solved
+    distance, angle = misses(chain, found.joints, target)
+    assert distance <= 1e-9
+    assert angle <= 2e-9
+    assert (chain.lower <= found.joints).all()
+    assert (found.joints <= chain.upper).all()
+
+
+@settings(max_examples=25, deadline=None)
+@given(chains(fewest=1, bounds=True), st.integers(0, 2**32 - 1))
+def test_an_answer_is_never_better_than_it_says(chain, seed):
+    # Targets from another chain: most have no solution at all.
+    rng = np.random.default_rng(seed)
+    other = Chain(S, *rng.uniform(-0.7, 0.7, (3, 4)))
+    target = forward_kinematics(other, rng.uniform(-3, 3, 4))
+    found = inverse_kinematics(chain, target, seed, starts=4, iterations=40)
+    distance, angle = misses(chain, found.joints, target)
+    assert found.position_error == pytest.approx(distance, abs=1e-12)
+    assert found.angle_error == pytest.approx(angle, abs=1e-7)
+    assert found.solved == (found.position_error <= 1e-9 and found.angle_error <= 1e-9)
+    assert found.solved == (found.solved_starts > 0)
+    assert (chain.lower <= found.joints).all()
+    assert (found.joints <= chain.upper).all()
+
+
+@pytest.mark.parametrize("robot", ["puma560", "irb1600", "z1"])
+def test_round_trip_from_random_starts_alone(robot):
+    chain = load_robot(robot)
+    lower, upper = chain.span()
+    rng = np.random.default_rng(4)
+    for seed in range(15):
+        target = forward_kinematics(chain, rng.uniform(lower, upper))
+        found = inverse_kinematics(chain, target, seed)
+        assert found.solved
+        assert max(misses(chain, found.joints, target)) < 2e-9
+        assert (lower <= found.joints).all()
+        assert (found.joints <= upper).all()
+
+
+def test_planar_arm_has_its_two_closed_form_solutions():
+    x, y = 0.5, 0.6
+    elbow = np.arccos((x**2 + y**2 - 0.7**2 - 0.4**2) / (2 * 0.7 * 0.4))
+    for bend in (elbow, -elbow):
+        shoulder = np.arctan2(y, x) - np.arctan2(0.4 * np.sin(bend), 0.7 + 0.4 * np.cos(bend))
+        near = [shoulder + 0.2, bend - 0.1]
+        found = inverse_kinematics(PLANAR, [x, y, 0], 0, guess=near)
+        np.testing.assert_allclose(found.joints, [shoulder, bend], atol=1e-8)
+
+
+def test_chosen_components_leave_the_others_free():
+    chain = load_robot("puma560")
+    q = np.array([0.3, 0.8, -1.2, 0.4, 0.9, -0.2])
+    target = forward_kinematics(chain, q)
+    wrong = target.copy()
+    wrong[:3, :3] = rotation("x", 2.0)[:3, :3] @ wrong[:3, :3]
+    wrong[2, 3] += 5.0
+    found = inverse_kinematics(chain, wrong, 1, components=("x", "y"))
+    assert found.solved
+    assert found.angle_error == 0
+    end = forward_kinematics(chain, found.joints)
+    np.testing.assert_allclose(end[:2, 3], target[:2, 3], atol=1e-9)
+    assert inverse_kinematics(chain, target[:3, 3], 1).solved
+
+
+def test_partial_rotation_is_of_the_rotation_vector_in_the_base():
+    chain = load_robot("puma560")
+    target = forward_kinematics(chain, [0.3, 0.8, -1.2, 0.4, 0.9, -0.2])
+    found = inverse_kinematics(chain, target, 3, components=("x", "y", "z", "rz"))
+    assert found.solved
+    end = forward_kinematics(chain, found.joints)
+    vector = Rotation.from_matrix(target[:3, :3] @ end[:3, :3].T).as_rotvec()
+    assert abs(vector[2]) < 1e-9
+    assert np.abs(vector[:2]).max() > 1e-3
+
+
+def test_order_of_components_does_not_matter():
+    chain, q = load_robot("z1"), [0.3, 0.8, -1.2, 0.4, 0.9, -0.2]
+    target = forward_kinematics(chain, q)
+    one = inverse_kinematics(chain, target, 3, components=("rz", "x", "y"))
+    two = inverse_kinematics(chain, target, 3, components=("x", "y", "rz"))
+    np.testing.assert_array_equal(one.joints, two.joints)
+
+
+def test_same_seed_same_answer():
+    chain = load_robot("puma560")
+    target = forward_kinematics(chain, [0.3, 0.8, -1.2, 0.4, 0.9, -0.2])
+    one, two = (inverse_kinematics(chain, target, 5) for _ in range(2))
+    np.testing.assert_array_equal(one.joints, two.joints)
+    rng = np.random.default_rng(5)
+    np.testing.assert_array_equal(inverse_kinematics(chain, target, rng).joints, one.joints)
+
+
+def test_turns_are_taken_off_towards_the_guess():
+    free = Chain(S, a=[0.7, 0.4], alpha=[0, 0], d=[0, 0])
+    target = forward_kinematics(free, [20.15, -12.98])
+    found = inverse_kinematics(free, target, 0, guess=[20.1, -13.0])
+    np.testing.assert_allclose(found.joints, [20.15, -12.98], atol=1e-8)
+
+
+# Nothing there
+
+
+def test_out_of_reach_is_proved_by_the_lengths():
+    found = inverse_kinematics(PLANAR, [1.2, 0, 0], 0)
+    assert found.status is IkStatus.OUT_OF_REACH
+    assert not found.solved
+    assert found.solved_starts == 0
+    # The nearest it gets is stretched out.
+    assert found.position_error == pytest.approx(0.1, abs=1e-6)
+    assert np.abs(found.joints).max() < 1e-2
+
+
+def test_a_hole_in_the_workspace_is_not_found():
+    found = inverse_kinematics(PLANAR, [0.2, 0, 0], 0)
+    assert found.status is IkStatus.NOT_FOUND
+    # Joint 2 stops at 3 rad, short of folding back.
+    nearest = np.sqrt(0.7**2 + 0.4**2 + 2 * 0.7 * 0.4 * np.cos(3.0)) - 0.2
+    assert found.position_error == pytest.approx(nearest, abs=1e-6)
+    assert abs(found.joints[1]) == 3.0
+
+
+def test_a_solution_beyond_a_bound_is_not_one():
+    chain = PLANAR.with_bounds([-0.2, -3], [0.2, 3])
+    target = [-0.5, -0.6, 0]
+    assert inverse_kinematics(PLANAR, target, 0).solved
+    found = inverse_kinematics(chain, target, 0)
+    assert found.status is IkStatus.NOT_FOUND
+    assert abs(found.joints[0]) == 0.2
+
+
+def test_joints_held_by_equal_bounds_stay():
+    chain = load_robot("puma560")
+    q = np.array([0.3, 0.8, -1.2, 0.4, 0.9, -0.2])
+    held = chain.with_bounds([*q[:2], *chain.lower[2:]], [*q[:2], *chain.upper[2:]])
+    found = inverse_kinematics(held, forward_kinematics(chain, q)[:3, 3], 2)
+    assert found.solved
+    np.testing.assert_array_equal(found.joints[:2], q[:2])
+
+
+def test_a_tolerance_that_arithmetic_cannot_meet_is_not_met():
+    chain = load_robot("puma560")
+    target = forward_kinematics(chain, [0.3, 0.8, -1.2, 0.4, 0.9, -0.2])
+    target[:3, :3] = (rotation("y", 0.1) @ target)[:3, :3]
+    found = inverse_kinematics(chain, target, 1, tolerance=1e-30, starts=4)
+    assert found.solved == (max(found.position_error, found.angle_error) <= 1e-30)
+
+
+def test_a_stretched_arm_is_reached_at_its_singularity():
+    found = inverse_kinematics(PLANAR, [0, 1.1, 0], 0, iterations=1000)
+    assert found.solved
+    np.testing.assert_allclose(found.joints, [np.pi / 2, 0], atol=1e-3)
+
+
+def test_turning_matrix_equals_differences():
+    rng = np.random.default_rng(6)
+    for size in (1e-7, 1e-3, 0.3, 2.0, 3.1):
+        vector = rng.normal(size=3)
+        vector *= size / np.linalg.norm(vector)
+        spin, h = rng.normal(size=3), 1e-6
+        ahead, behind = (
+            (Rotation.from_rotvec(vector) * Rotation.from_rotvec(-s * h * spin)).as_rotvec()
+            for s in (1, -1)
+        )
+        slope = (behind - ahead) / (2 * h)
+        np.testing.assert_allclose(inverse._turning(vector) @ spin, slope, atol=2e-8)
+
+
+# Faults
+
+POSE_AT = translation(0.3, 0.2, 0.1)
+
+
+@pytest.mark.parametrize(
+    ("target", "options", "message"),
+    [
+        ([[1, 2], [3, 4]], {}, "target: shape (2, 2); give a (4, 4) pose or a (3,) point"),
+        (["a", "b", "c"], {}, "target: not numbers; give a (4, 4) pose or a (3,) point"),
+        ([0, np.nan, 1], {}, "target: a number is not finite; correct it"),
+        (2 * np.eye(4), {}, "target: is no pose; give a rotation and the last row 0, 0, 0, 1"),
+        (np.diag([1, 1, -1, 1.0]), {}, "target: is no pose; give a rotation and the last row"),
+        (np.ones((4, 4)), {}, "target: is no pose; give a rotation and the last row 0, 0, 0, 1"),
+        ([0, 0, 1], {"components": ("x", "rx")}, "components: 'rx' is none of x, y, z; use these"),
+        (POSE_AT, {"components": ("q",)}, "components: 'q' is none of x, y, z, rx, ry, rz; use"),
+        (POSE_AT, {"components": ()}, "components: none, or one is named twice; name each once"),
+        (POSE_AT, {"components": ("x", "x")}, "components: none, or one is named twice; name"),
+        (POSE_AT, {"starts": 0}, "inverse kinematics: 0 starts, 300 iterations, tolerance 1e-09"),
+        (POSE_AT, {"iterations": 0}, "inverse kinematics: 32 starts, 0 iterations, tolerance"),
+        (POSE_AT, {"tolerance": 0.0}, "tolerance 0.0; give at least 1, at least 1, and a positive"),
+        (POSE_AT, {"guess": [1.0]}, "joint values: shape (1,); give (..., 2), one per joint"),
+        (POSE_AT, {"guess": [[1.0, 2.0]]}, "guess: shape (1, 2); give one value per joint"),
+    ],
+)
+def test_faults(target, options, message):
+    with pytest.raises(TrajgapError, match=re.escape(message)):
+        inverse_kinematics(PLANAR, target, 0, **options)
+
+
+def test_a_joint_that_slides_freely_is_refused():
+    chain = Chain(S, [0, 0], [0, 0], [0, 0], kinds=("revolute", "prismatic"))
+    with pytest.raises(TrajgapError, match="joint '2' slides without bounds"):
+        inverse_kinematics(chain, [0, 0, 1], 0)
+
+
+def test_names_of_components():
+    assert POSE[:3] == POSITION == ("x", "y", "z")

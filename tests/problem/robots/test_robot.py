@@ -1,0 +1,274 @@
+"""Forward kinematics and the Jacobian by second routes: hand-derived, elementary, a library."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from support.chains import chains, elementary, rotation, translation
+from trajgap.problem.cases.robot_file import load_robot
+from trajgap.problem.errors import TrajgapError
+from trajgap.problem.robots.chain import (
+    Chain,
+    Convention,
+    JointKind,
+    forward_kinematics,
+    geometric_jacobian,
+    link_frames,
+)
+
+S, M = Convention.STANDARD, Convention.MODIFIED
+
+
+def some(chain: Chain, count: int, seed: int = 3) -> np.ndarray:
+    return np.random.default_rng(seed).uniform(-2.7, 2.9, (count, chain.joints))
+
+
+# Hand-derived transforms
+
+
+def test_planar_arm_by_hand():
+    arm = Chain(S, a=[0.7, 0.4], alpha=[0, 0], d=[0, 0.1])
+    q1, q2 = 0.3, -1.1
+    expected = rotation("z", q1 + q2)
+    expected[:3, 3] = (
+        0.7 * np.cos(q1) + 0.4 * np.cos(q1 + q2),
+        0.7 * np.sin(q1) + 0.4 * np.sin(q1 + q2),
+        0.1,
+    )
+    np.testing.assert_allclose(forward_kinematics(arm, [q1, q2]), expected, atol=1e-15)
+
+
+def test_scara_by_hand_with_a_sliding_joint():
+    kinds = (JointKind.REVOLUTE, JointKind.REVOLUTE, JointKind.PRISMATIC, JointKind.REVOLUTE)
+    arm = Chain(S, [0.3, 0.25, 0, 0], [0, np.pi, 0, 0], [0.2, 0, 0.05, 0.01], kinds=kinds)
+    q = np.array([0.4, 0.9, 0.12, -0.3])
+    end = forward_kinematics(arm, q)
+    np.testing.assert_allclose(end[2, 3], 0.2 - (0.05 + 0.12) - 0.01, atol=1e-15)
+    np.testing.assert_allclose(
+        end[:2, 3],
+        [0.3 * np.cos(0.4) + 0.25 * np.cos(1.3), 0.3 * np.sin(0.4) + 0.25 * np.sin(1.3)],
+        atol=1e-15,
+    )
+    np.testing.assert_allclose(end[:3, 2], [0, 0, -1], atol=1e-15)
+
+
+def test_palletiser_as_printed_stays_in_a_plane():
+    # Modified, -π/2 before joint 1: the end is at 0.6 (cos, 0, -sin) of θ1 and of θ1 + θ2.
+    chain = load_robot("irb460")
+    q = some(chain, 20)
+    first, both = q[:, 0], q[:, 0] + q[:, 1]
+    expected = 0.6 * np.stack(
+        [np.cos(first) + np.cos(both), 0 * first, -np.sin(first) - np.sin(both)], axis=1
+    )
+    np.testing.assert_allclose(forward_kinematics(chain, q)[:, :3, 3], expected, atol=1e-15)
+
+
+def test_palletiser_in_the_standard_convention_by_hand():
+    chain = replace(load_robot("irb460"), convention=S)
+    q = some(chain, 20)
+    out = 0.6 * (np.cos(q[:, 1]) + np.cos(q[:, 1] + q[:, 2]))
+    up = -0.6 * (np.sin(q[:, 1]) + np.sin(q[:, 1] + q[:, 2]))
+    expected = np.stack([out * np.cos(q[:, 0]), out * np.sin(q[:, 0]), up], axis=1)
+    np.testing.assert_allclose(forward_kinematics(chain, q)[:, :3, 3], expected, atol=1e-15)
+
+
+def test_irb1600_equals_the_joint_axes_that_it_was_written_from():
+    # Origins and axes of irb1600_6_12_macro.xacro, ROS-Industrial; tool0 turned by 90° about y.
+    joints = [
+        ((0, 0, 0), "z"),
+        ((0.15, 0, 0.4865), "y"),
+        ((0, 0, 0.475), "y"),
+        ((0.3, 0, 0), "x"),
+        ((0.3, 0, 0), "y"),
+        ((0.065, 0, 0), "x"),
+    ]
+    chain = load_robot("irb1600")
+    for q in some(chain, 20):
+        pose = np.eye(4)
+        for (origin, axis), angle in zip(joints, q, strict=True):
+            pose = pose @ translation(*origin) @ rotation(axis, angle)
+        pose = pose @ rotation("y", np.pi / 2)
+        np.testing.assert_allclose(forward_kinematics(chain, q), pose, atol=1e-15)
+
+
+def test_puma_equals_the_toolbox():
+    toolbox = pytest.importorskip("roboticstoolbox")
+    puma, chain = toolbox.models.DH.Puma560(), load_robot("puma560")
+    np.testing.assert_allclose(puma.qlim, [chain.lower, chain.upper], rtol=1e-15)
+    for q in some(chain, 30):
+        np.testing.assert_allclose(forward_kinematics(chain, q), puma.fkine(q).A, atol=1e-14)
+        np.testing.assert_allclose(geometric_jacobian(chain, q), puma.jacob0(q), atol=1e-14)
+
+
+@pytest.mark.parametrize("convention", [S, M])
+def test_random_chains_equal_the_toolbox(convention):
+    toolbox = pytest.importorskip("roboticstoolbox")
+    rng = np.random.default_rng(5)
+    a, alpha, d, offset, q = rng.uniform(-1.2, 1.3, (5, 6))
+    kinds = tuple(JointKind.PRISMATIC if i in (1, 4) else JointKind.REVOLUTE for i in range(6))
+    chain = Chain(convention, a, alpha, d, offset, kinds)
+    turning, sliding = (
+        (toolbox.RevoluteDH, toolbox.PrismaticDH)
+        if convention is S
+        else (toolbox.RevoluteMDH, toolbox.PrismaticMDH)
+    )
+    links = [
+        turning(a=a[i], alpha=alpha[i], d=d[i], offset=offset[i])
+        if kinds[i] is JointKind.REVOLUTE
+        else sliding(a=a[i], alpha=alpha[i], theta=offset[i], offset=d[i])
+        for i in range(6)
+    ]
+    robot = toolbox.DHRobot(links)
+    np.testing.assert_allclose(forward_kinematics(chain, q), robot.fkine(q).A, atol=1e-14)
+    np.testing.assert_allclose(geometric_jacobian(chain, q), robot.jacob0(q), atol=1e-14)
+
+
+# Identities on any chain
+
+
+@settings(max_examples=60, deadline=None)
+@given(chains(), st.randoms(use_true_random=False))
+def test_product_of_elementary_transforms(chain, random):
+    q = [random.uniform(-3, 3) for _ in range(chain.joints)]
+    np.testing.assert_allclose(forward_kinematics(chain, q), elementary(chain, q), atol=1e-13)
+
+
+@settings(max_examples=60, deadline=None)
+@given(chains(fewest=2))
+def test_modified_is_standard_with_rows_moved_on(chain):
+    standard = replace(chain, convention=S)
+    moved = replace(
+        chain,
+        convention=M,
+        a=np.append(0.0, chain.a[:-1]),
+        alpha=np.append(0.0, chain.alpha[:-1]),
+    )
+    q = some(chain, 4)
+    last = translation(x=chain.a[-1]) @ rotation("x", chain.alpha[-1])
+    np.testing.assert_allclose(
+        forward_kinematics(standard, q), forward_kinematics(moved, q) @ last, atol=1e-13
+    )
+
+
+@settings(max_examples=60, deadline=None)
+@given(chains())
+def test_jacobian_equals_differences(chain):
+    q, h = some(chain, 1)[0], 1e-6
+    jacobian = geometric_jacobian(chain, q)
+    pose = forward_kinematics(chain, q)
+    for j in range(chain.joints):
+        step = h * np.eye(chain.joints)[j]
+        slope = (forward_kinematics(chain, q + step) - forward_kinematics(chain, q - step)) / (
+            2 * h
+        )
+        np.testing.assert_allclose(jacobian[:3, j], slope[:3, 3], atol=1e-8)
+        spin = slope[:3, :3] @ pose[:3, :3].T
+        expected = [spin[2, 1], spin[0, 2], spin[1, 0]]
+        np.testing.assert_allclose(jacobian[3:, j], expected, atol=1e-8)
+
+
+@settings(max_examples=60, deadline=None)
+@given(chains())
+def test_arms_and_reach_bound_the_end(chain):
+    lower, upper = chain.span()
+    q = np.random.default_rng(1).uniform(lower, upper, (200, chain.joints))
+    frames = link_frames(chain, q)
+    assert np.linalg.norm(frames[..., :3, 3], axis=-1).max() <= chain.reach + 1e-12
+    speeds = np.linalg.norm(geometric_jacobian(chain, q)[:, :3], axis=1).max(axis=0)
+    assert (speeds <= chain.arms + 1e-12).all()
+
+
+def test_batches_lead():
+    chain = load_robot("z1")
+    q = some(chain, 12).reshape(2, 3, 2, 6)
+    frames, ends = link_frames(chain, q), forward_kinematics(chain, q)
+    assert frames.shape == (2, 3, 2, 6, 4, 4)
+    assert ends.shape == (2, 3, 2, 4, 4)
+    assert geometric_jacobian(chain, q).shape == (2, 3, 2, 6, 6)
+    np.testing.assert_array_equal(frames[..., -1, :, :], ends)
+    for at in np.ndindex(2, 3, 2):
+        np.testing.assert_allclose(forward_kinematics(chain, q[at]), ends[at], atol=1e-15)
+        one = geometric_jacobian(chain, q[at])
+        np.testing.assert_allclose(geometric_jacobian(chain, q)[at], one, atol=1e-15)
+    assert forward_kinematics(chain, np.empty((0, 6))).shape == (0, 4, 4)
+
+
+def test_first_frames_do_not_depend_on_later_joints():
+    chain = load_robot("puma560")
+    q = some(chain, 1)[0]
+    other = q + np.array([0, 0, 0, 0.3, -0.2, 1.0])
+    first, second = link_frames(chain, q), link_frames(chain, other)
+    np.testing.assert_array_equal(first[:3], second[:3])
+    assert np.abs(first[3:] - second[3:]).max() > 0.1
+
+
+# The chain itself
+
+
+def test_span_is_one_turn_where_a_joint_is_free():
+    inf = np.inf
+    chain = Chain(
+        S, [1, 1, 1, 1], [0] * 4, [0] * 4, lower=[-inf, 0.5, -inf, -1], upper=[inf, inf, 2, 9]
+    )
+    lower, upper = chain.span()
+    np.testing.assert_allclose(lower, [-np.pi, 0.5, 2 - 2 * np.pi, -1])
+    np.testing.assert_allclose(upper, [np.pi, 0.5 + 2 * np.pi, 2, 9])
+
+
+def test_defaults_and_read_only_arrays():
+    chain = Chain("modified", [0.1, 0.2], [0, 1], [0, 0])
+    assert chain.convention is M
+    assert chain.labels == ("1", "2")
+    assert chain.kinds == (JointKind.REVOLUTE,) * 2
+    assert np.isinf(chain.lower).all()
+    with pytest.raises(ValueError, match="read-only"):
+        chain.a[0] = 1
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"convention": "craig"}, "chain: 'craig' is not a valid Convention; use one of the words"),
+        ({"kinds": ("screw", "revolute")}, "chain: 'screw' is not a valid JointKind; use one of"),
+        ({"kinds": ("revolute",)}, "chain.kinds: 1 for 2 joints; give one each"),
+        ({"labels": ("1", "2", "3")}, "chain.labels: 3 for 2 joints; give one each"),
+        ({"a": []}, "chain.a: is empty; give one link length per joint"),
+        ({"d": [0.1]}, "chain.d: shape (1,) for 2 joints; give one number each"),
+        ({"alpha": [0, np.nan]}, "chain.alpha: holds a number that is not finite; correct it"),
+        ({"a": [0, np.inf]}, "chain.a: holds a number that is not finite; correct it"),
+        ({"lower": [np.inf, 0]}, "chain.lower: holds a number that is not finite; correct it"),
+        ({"upper": [np.nan, 0]}, "chain.upper: holds a number that is not finite; correct it"),
+        ({"lower": [0, 2], "upper": [1, 1]}, "chain.lower: lies above chain.upper; exchange them"),
+    ],
+)
+def test_faults_of_a_chain(change, message):
+    good = {"convention": S, "a": [0.3, 0.2], "alpha": [0, 0], "d": [0, 0]}
+    with pytest.raises(TrajgapError, match=re.escape(message)):
+        Chain(**{**good, **change})
+
+
+@pytest.mark.parametrize(
+    ("q", "message"),
+    [
+        ([0.1, 0.2], "joint values: shape (2,); give (..., 6), one per joint"),
+        (0.1, "joint values: shape (); give (..., 6), one per joint"),
+        ([[0, 0, 0, 0, 0, np.nan]], "joint values: one is not finite; give rad"),
+        (["a"] * 6, "joint values: not numbers; give rad, (..., joints)"),
+    ],
+)
+@pytest.mark.parametrize("compute", [forward_kinematics, link_frames, geometric_jacobian])
+def test_faults_of_joint_values(compute, q, message):
+    with pytest.raises(TrajgapError, match=re.escape(message)):
+        compute(load_robot("puma560"), q)
+
+
+def test_a_joint_that_slides_freely_has_no_span():
+    chain = Chain(S, [0, 0], [0, 0], [0, 0], kinds=("revolute", "prismatic"))
+    with pytest.raises(TrajgapError, match="joint '2' slides without bounds; give lower and upper"):
+        chain.span()
+    assert chain.reach == np.inf

@@ -1,0 +1,94 @@
+"""A case file for the command line, and ways to run it."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+CASE = """
+format = 1
+id = "mine"
+title = "Mine"
+coupling = "per-joint"
+source = { year = 2020 }
+robot = { name = "arm", joints = ["a", "b"] }
+units = { position = "rad", velocity = "rad/s", acceleration = "rad/s^2", time = "ms" }
+interpolant = { family = "3-5-3" }
+
+[waypoints]
+waypoint_rows = [["0.3", "-1.0"], ["1.1", "0.4"], ["0.9", "1.7"], ["2.0", "1.2"]]
+
+[limits]
+velocity = [2, 3]
+acceleration = 5
+
+[[readings]]
+id = "plain"
+why = "as printed"
+"""
+Run = Callable[..., tuple[int, str, str]]
+
+
+def strict(text: str) -> Any:
+    def refuse(word: str) -> None:
+        raise AssertionError(f"{word} is no JSON")
+
+    return json.loads(text, parse_constant=refuse)
+
+
+def program(*arguments: str, **options: Any) -> subprocess.CompletedProcess[str]:
+    """The command line in a process of its own."""
+    return subprocess.run(
+        [sys.executable, "-c", START, *arguments], capture_output=True, text=True, **options
+    )
+
+
+START = "import sys; from trajgap.compare.cli import main; sys.exit(main())"
+
+
+def assert_refused(ended: tuple[int, str, str], *words: str) -> None:
+    """Exit code 2, nothing on standard output, one line with a mend; nothing half-written."""
+    code, out, err = ended
+    assert (code, out) == (2, "")
+    assert err.startswith("trajgap: ")
+    assert err.count("\n") == 1
+    assert err.endswith("\n")
+    assert "Traceback" not in err
+    for word in words:
+        assert word in err
+    assert [p.name for p in Path().iterdir() if p.name.startswith(".trajgap")] == []
+
+
+def on_terminal(
+    arguments: list[str], answers: list[tuple[str, str]] | None = None, **environment: str
+) -> tuple[int, str]:
+    """Run on a terminal of its own; answer each question as it shows."""
+    own, other = pytest.importorskip("pty").openpty()
+    process = subprocess.Popen(
+        [sys.executable, "-c", START, *arguments],
+        stdin=other,
+        stdout=other,
+        stderr=other,
+        env={**os.environ, "TERM": "xterm", "COLUMNS": "100", **environment},
+    )
+    os.close(other)
+    seen, pending = b"", list(answers or [])
+    while True:
+        try:
+            chunk = os.read(own, 65536)
+        except OSError:
+            break
+        if not chunk:
+            break
+        seen += chunk
+        if pending and pending[0][0].encode() in seen:
+            os.write(own, f"{pending.pop(0)[1]}\n".encode())
+    os.close(own)
+    return process.wait(), seen.decode()

@@ -1,0 +1,44 @@
+"""A case file of one joint that moves from rest to rest, with places to fill in."""
+
+HEAD = """
+format = 1
+id = "fair"
+title = "one joint from rest to rest"
+[source]
+year = 2024
+[robot]
+name = "arm"
+joints = ["1"]
+[units]
+position = "rad"
+velocity = "rad/s"
+time = "s"
+[waypoints]
+where = "Table 1"
+joint_rows = [[{points}]]
+[limits]
+velocity = {limit}
+[interpolant]
+family = "rest-to-rest"
+degree = 5
+[[claims]]
+id = "d"
+quantity = "durations"
+where = "Table 2"
+durations = ["{time}"]
+[[claims]]
+id = "s"
+quantity = "statement"
+where = "abstract"
+checks = "{checks}"
+of = ["d"]
+"""
+UNITS = """
+[[readings]]
+id = "header"
+why = "as printed"
+[[readings]]
+id = "degrees"
+why = "a number usual in degrees"
+units = { velocity = "deg/s" }
+"""

@@ -1,0 +1,74 @@
+"""Studies of shipped cases, as printed or with a few places changed, each computed once.
+
+A study is a cache of what is computed: tests may share one, none may alter it. A test that is about
+computing twice builds its own with `Study`.
+"""
+
+import pickle
+from functools import cache
+from importlib.resources import files
+
+from trajgap.compare.audits.case_audit import CaseAudit, audit_case
+from trajgap.compare.audits.study import Study
+from trajgap.nlp import PerJointSolution, Solution, stated_exactly
+from trajgap.problem import Case, parse_case
+
+# A spread needs two seeds; more show nothing further in a test.
+SEEDS = 2
+
+
+class Reworded(Study):
+    """A case whose claims were changed: what its problems alone decide is that of the original."""
+
+    def __init__(self, case: Case, original: Study) -> None:
+        super().__init__(case, seeds=original.seeds)
+        self.original = original
+
+    def _alike(self, pid: str, rid: str) -> bool:
+        """Whether the changed case poses the very same problem, digit by digit."""
+        if (pid, rid) not in self.original.pairs:
+            return False
+        one, other = (s.case.posing(pid, rid) for s in (self, self.original))
+        exact = stated_exactly(one, None) == stated_exactly(other, None)
+        return exact and pickle.dumps(one.problem()) == pickle.dumps(other.problem())
+
+    def optimum(self, pid: str, rid: str, joint: str | None = None) -> Solution:
+        """The original's, where it is the same question."""
+        study = self.original if self._alike(pid, rid) else super()
+        return study.optimum(pid, rid, joint)
+
+    def per_joint(self, pid: str, rid: str) -> PerJointSolution:
+        """The original's, where it is the same question to the same digits."""
+        same = self._alike(pid, rid) and self.half_digits(pid, rid) == self.original.half_digits(
+            pid, rid
+        )
+        return (self.original if same else super()).per_joint(pid, rid)
+
+
+def source(case_id: str) -> str:
+    """The case file as shipped."""
+    return files("trajgap.problem.published").joinpath(f"{case_id}.toml").read_text("utf-8")
+
+
+@cache
+def shipped(case_id: str) -> Study:
+    """The case as shipped."""
+    return Study(parse_case(source(case_id), f"{case_id}.toml"), seeds=SEEDS)
+
+
+@cache
+def changed(case_id: str, *swaps: tuple[str, str], tail: str = "") -> Study:
+    """The case with a few places of its file changed, and more at its end."""
+    if not swaps and not tail:
+        return shipped(case_id)
+    text = source(case_id)
+    for old, new in swaps:
+        assert old in text, old
+        text = text.replace(old, new)
+    return Reworded(parse_case(text + tail, f"{case_id}.toml"), shipped(case_id))
+
+
+@cache
+def audited(case_id: str) -> CaseAudit:
+    """The audit of a case as shipped."""
+    return audit_case(shipped(case_id))

@@ -1,0 +1,22 @@
+"""What a certifier found before `trajgap.verify` judged it: attacks on certifiers look at that."""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+import pytest
+from trajgap.nlp.proofs.judged import judged
+from trajgap.nlp.proofs.outcome import Certified
+
+
+def unjudged(monkeypatch: pytest.MonkeyPatch) -> list[Certified]:
+    """A list that receives whatever certifiers find from now on."""
+
+    def seen(found: Certified) -> Certified:
+        raw.append(found)
+        return judged(found)
+
+    raw: list[Certified] = []
+    for name in ("certifiers", "any_curve.certifier"):
+        monkeypatch.setattr(import_module(f"trajgap.nlp.proofs.{name}"), "judged", seen)
+    return raw

@@ -1,0 +1,60 @@
+"""The sceptic's room: proves a certificate again, and imports nothing else of trajgap.
+
+``python -m trajgap.verify FILE...`` does so from the command line. Copied out alone, the folder
+does the same as ``python -I FOLDER FILE...``, with the standard library only; proofs about C4
+quintic splines need numpy. Format and mathematics are in docs/certificates.md.
+"""
+
+from .certificate import (
+    CERTIFICATE_FORMAT,
+    OLD_FORMATS,
+    SECONDS,
+    STATE_FORMAT,
+    CertificateVerdict,
+    CertifiedQuestion,
+    seal,
+    verify_certificate,
+)
+from .problem import read_problem
+from .ranges import (
+    MIX_DIGITS,
+    MOST_CUBIC_SEGMENTS,
+    MOST_INTEGER,
+    MOST_POWER,
+    MOST_QUINTIC_JOINTS,
+    MOST_QUINTIC_SEGMENTS,
+    MOST_WEIGHT,
+    SMALLEST,
+    TICKS,
+)
+from .reading import Refused, number, read_document, shown
+from .tree import CUT, LEAF, OPEN, Subject
+
+__all__ = [
+    "CERTIFICATE_FORMAT",
+    "CUT",
+    "LEAF",
+    "MIX_DIGITS",
+    "MOST_CUBIC_SEGMENTS",
+    "MOST_INTEGER",
+    "MOST_POWER",
+    "MOST_QUINTIC_JOINTS",
+    "MOST_QUINTIC_SEGMENTS",
+    "MOST_WEIGHT",
+    "OLD_FORMATS",
+    "OPEN",
+    "SECONDS",
+    "SMALLEST",
+    "STATE_FORMAT",
+    "TICKS",
+    "CertificateVerdict",
+    "CertifiedQuestion",
+    "Refused",
+    "Subject",
+    "number",
+    "read_document",
+    "read_problem",
+    "seal",
+    "shown",
+    "verify_certificate",
+]

@@ -1,0 +1,316 @@
+"""A certificate judged: strict reading, the claim, and the walk through its proof."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+from . import any_curve, closed_form, cubic, three_piece
+from .answer import check_answer
+from .problem import StatedProblem, read_problem
+from .ranges import MOST_SEGMENTS
+from .reading import (
+    Clock,
+    OutOfTime,
+    Refused,
+    fields,
+    given,
+    listed,
+    need,
+    number,
+    read_document,
+    shown,
+    text,
+)
+from .tree import ProofKind, Subject, walk
+
+CERTIFICATE_FORMAT = "trajgap-certificate-2"
+"""Of a finished proof."""
+STATE_FORMAT = "trajgap-state-2"
+"""Of a stopped run: a certificate of what is proved so far, and proposals that prove nothing."""
+SECONDS = 60.0
+"""For one file, unless another time is given: the largest shipped proof takes two."""
+OLD_FORMATS = ("trajgap-certificate-1", "trajgap-state-1")
+"""That were once written; what is in them is not read."""
+_NAME_ONE = "name a certificate"
+_KEYS = ("format", "made_by", "question", "problem", "problem_hash", "claim", "proof", "seal")
+_CLAIM = ("subject", "infeasible", "lower", "upper", "durations", "speeds")
+_QUESTION = ("case", "problem", "reading", "joint", "case_sha256")
+_PROOF = ("kind", "total", "tree")
+
+
+def _quintic() -> type[ProofKind[Any]]:
+    """The one kind that is imported on first use, since it needs numpy."""
+    try:
+        from .quintic import QuinticSpline
+    except ImportError as error:
+        raise Refused(f"this kind of proof needs numpy ({error}); install numpy") from None
+    return QuinticSpline
+
+
+KINDS: dict[str, Callable[[], type[ProofKind[Any]]]] = {
+    "rest-to-rest": lambda: closed_form.RestToRest,
+    "stretched": lambda: closed_form.Stretched,
+    "three-piece": lambda: three_piece.ThreeFiveThree,
+    "four-three-four": lambda: three_piece.FourThreeFour,
+    "any-curve": lambda: any_curve.AnyCurve,
+    "cubic": lambda: cubic.CubicSpline,
+    "quintic-spline": _quintic,
+}
+"""By ``proof.kind``."""
+
+
+@dataclass(frozen=True)
+class CertifiedQuestion:
+    """Where the problem comes from, as the file says; nothing proves it.
+
+    Attributes
+    ----------
+    case, problem, reading : str or None
+        Their ids; None for a problem that was made in Python.
+    joint : str or None
+        Label of the one joint that it is about; None for all.
+    case_sha256 : str or None
+        Of the case file.
+    """
+
+    case: str | None = None
+    problem: str | None = None
+    reading: str | None = None
+    joint: str | None = None
+    case_sha256: str | None = None
+
+    def __str__(self) -> str:
+        named = {"case": self.case, "problem": self.problem, "reading": self.reading}
+        named["joint"] = self.joint
+        parts = [f"{key} {shown(x)}" for key, x in named.items() if x is not None]
+        return ", ".join(parts) or "a problem without a case"
+
+
+@dataclass(frozen=True)
+class CertificateVerdict:
+    """What a certificate is worth.
+
+    Attributes
+    ----------
+    proves : bool
+        Whether its claim about the problem that it states is proved.
+    altered : bool
+        Whether it, or the problem in it, differs from what was written.
+    reason : str
+    out_of_time : bool
+        The time was over before anything was decided.
+    lower, upper : Fraction or None
+        The optimum lies between; ``upper`` is None where none is claimed.
+    infeasible : bool
+        Proved that no durations are feasible.
+    subject : Subject
+    question : CertifiedQuestion
+    problem_hash : str or None
+        SHA-256 of the problem in the file, computed here.
+    """
+
+    proves: bool
+    altered: bool
+    reason: str
+    out_of_time: bool = False
+    lower: Fraction | None = None
+    upper: Fraction | None = None
+    infeasible: bool = False
+    subject: Subject = Subject.DECLARED
+    question: CertifiedQuestion = CertifiedQuestion()
+    problem_hash: str | None = None
+
+    def __str__(self) -> str:
+        if self.out_of_time:
+            return f"out of time: {self.reason}"
+        if not self.proves:
+            return f"refused: {self.reason}"
+        return ("altered, still proves: " if self.altered else "proves: ") + self.reason
+
+    @property
+    def asked(self) -> str:
+        """The question in words, with the hash of the problem."""
+        return f"{self.question}; problem sha256 {self.problem_hash}"
+
+
+def seal(part: Any) -> str:
+    """SHA-256 of the canonical JSON of a document or a part of it.
+
+    Parameters
+    ----------
+    part : Any
+
+    Returns
+    -------
+    str
+    """
+    words = json.dumps(part, sort_keys=True, separators=(",", ":"), ensure_ascii=True)
+    return hashlib.sha256(words.encode()).hexdigest()
+
+
+def verify_certificate(
+    source: str | Path | dict[str, Any], *, seconds: float = SECONDS
+) -> CertificateVerdict:
+    """Prove a certificate, or what a state has proved so far, again.
+
+    Parameters
+    ----------
+    source : str, Path or dict
+        File, or its read_document JSON.
+    seconds : float
+        Time limit.
+
+    Returns
+    -------
+    CertificateVerdict
+        Never raises: what cannot be read is refused, and what takes too long is out of time.
+    """
+    clock = Clock(seconds)
+    altered = False
+    question, problem_hash = CertifiedQuestion(), None
+    try:
+        document = _document(source if isinstance(source, dict) else read_document(source))
+        problem_hash = seal(document["problem"])
+        altered = problem_hash != document["problem_hash"]
+        altered |= document["seal"] != seal({k: x for k, x in document.items() if k != "seal"})
+        question = _question(document["question"])
+        subject, lower, upper, infeasible = _judged(document, clock)
+    except Refused as error:
+        why, late = str(error), False
+    except OutOfTime:
+        why, late = f"nothing was decided in {seconds:g} s; give more time", True
+    except (ValueError, TypeError, LookupError, ArithmeticError, RecursionError) as error:
+        why, late = f"malformed: {type(error).__name__}: {shown(str(error))}", False
+    else:
+        return CertificateVerdict(
+            True,
+            altered,
+            _said(subject, lower, upper, infeasible),
+            False,
+            lower,
+            upper,
+            infeasible,
+            subject,
+            question,
+            problem_hash,
+        )
+    return CertificateVerdict(
+        False, altered, why, late, question=question, problem_hash=problem_hash
+    )
+
+
+def _document(data: Any) -> dict[str, Any]:
+    need(type(data) is dict, f"no JSON object; {_NAME_ONE}")
+    found = data.get("format")
+    if type(found) is str and found in OLD_FORMATS:
+        raise Refused(f"{found}: an old format; `trajgap solve CASE --certify` makes it again")
+    wanted = type(found) is str and found in (CERTIFICATE_FORMAT, STATE_FORMAT)
+    need(wanted, f"no {CERTIFICATE_FORMAT}; {_NAME_ONE}")
+    state = found == STATE_FORMAT
+    document = fields(data, "the file", (*_KEYS, "proposals") if state else _KEYS)
+    text(document["made_by"], "made_by")
+    return document
+
+
+def _question(data: Any) -> CertifiedQuestion:
+    data = fields(data, "question", _QUESTION)
+    return CertifiedQuestion(**{k: None if x is None else text(x, k) for k, x in data.items()})
+
+
+Claimed = tuple[Subject, Fraction, Fraction | None, bool]
+"""Subject, lower, upper, infeasible."""
+
+
+def _judged(document: dict[str, Any], clock: Clock) -> Claimed:
+    """Judge the claim once, whatever the kind of proof."""
+    problem = read_problem(document["problem"])
+    claim = fields(document["claim"], "claim", _CLAIM)
+    subject = next((s for s in Subject if s == claim["subject"]), None)
+    infeasible, lower = claim["infeasible"], number(claim["lower"])
+    need(type(infeasible) is bool, "malformed: infeasible: neither true nor false")
+    subject = given(subject, "malformed: subject: neither the declared curve nor any curve")
+    answer = _read_answer(problem, claim, subject)
+    kind, total = _read_proof(document, problem, clock)
+    if kind is not None:
+        need(subject is kind.subject, f"this kind of proof speaks about {kind.subject}")
+    need(lower <= total, "the lower bound exceeds the total that is proved")
+    upper = None
+    if answer is not None:
+        h, speeds, upper = answer
+        need(not infeasible, "infeasible, but with an answer")
+        need(sum(h) <= upper, "the durations exceed the upper bound")
+        if subject is Subject.ANY:
+            any_curve.check_motion(problem, h, speeds, clock)
+        else:
+            check_answer(problem, h, clock)
+    if kind is not None:
+        walk(kind, document["proof"]["tree"], clock)
+    contradicted = answer is not None and total > sum(answer[0])
+    need(not contradicted, "the proof contradicts the answer: one of them is wrong")
+    if infeasible:
+        longest = [x for x in problem.longest if x is not None]
+        above = len(longest) == problem.segments and lower > sum(longest)
+        need(
+            kind is not None and (above or kind.infeasible),
+            "infeasible only above the sum of all upper bounds, or by a proof of its own",
+        )
+    return subject, lower, upper, infeasible
+
+
+def _read_answer(
+    problem: StatedProblem, claim: dict[str, Any], subject: Subject
+) -> tuple[list[Fraction], list[list[Fraction]] | None, Fraction] | None:
+    """Durations, speeds and upper bound that a claim states; None if it states none."""
+    if claim["durations"] is None:
+        need(claim["upper"] is None, "an upper bound without durations")
+        need(claim["speeds"] is None, "speeds without durations")
+        return None
+    h = [number(x) for x in listed(claim["durations"], "durations", MOST_SEGMENTS, 1)]
+    if claim["speeds"] is None:
+        return h, None, number(claim["upper"])
+    need(subject is Subject.ANY, "speeds belong to an answer of any curve")
+    n, joints = len(problem.waypoints), problem.joints
+    rows = [
+        listed(row, "speeds", joints, joints) for row in listed(claim["speeds"], "speeds", n, n)
+    ]
+    return h, [[number(x) for x in row] for row in rows], number(claim["upper"])
+
+
+def _read_proof(
+    document: dict[str, Any], problem: StatedProblem, clock: Clock
+) -> tuple[ProofKind[Any] | None, Fraction]:
+    """The proof, ready to be walked through, and the total that it is to prove."""
+    proof = document["proof"]
+    if proof is None and document["format"] == STATE_FORMAT:
+        return None, Fraction(0)  # nothing is proved yet
+    need(type(proof) is dict, "malformed: proof is no object")
+    name = proof.get("kind")
+    known = type(name) is str and name in KINDS
+    need(known, f"unknown kind of proof {shown(repr(name))}")
+    make = KINDS[name]()
+    proof = fields(proof, "proof", (*_PROOF, *make.keys))
+    total = number(proof["total"])
+    need(total >= 0, "the total is negative")
+    return make(problem, proof, total, clock), total
+
+
+def _said(subject: Subject, lower: Fraction, upper: Fraction | None, infeasible: bool) -> str:
+    if infeasible:
+        return "no durations within their bounds keep the limits: infeasible"
+    said = f"the least total of {subject} is at least {_rounded(lower, ROUND_FLOOR)} s"
+    if upper is not None:
+        said += f" and at most {_rounded(upper, ROUND_CEILING)} s"
+    return said
+
+
+def _rounded(value: Fraction, side: str) -> str:
+    """Twelve digits on the safe side."""
+    quotient = Context(12, side).divide(Decimal(value.numerator), Decimal(value.denominator))
+    return f"{quotient.normalize():f}"

@@ -1,0 +1,99 @@
+"""Proof of a lower bound for C2 cubic splines: the steps and leaves of its tree.
+
+Why the proof holds is in docs/certificates-cubic.md. A file gives weights; every bound that follows
+from them is computed here anew, in exact arithmetic.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+from ..problem import StatedProblem
+from ..ranges import MOST_INTEGER, MOST_ROWS, TICKS
+from ..reading import Clock, listed, need, sign_of, whole
+from ..tree import ProofKind
+from .box import Box, Range
+from .system import Cubic
+from .weights import least
+
+
+class CubicSpline(ProofKind[Box]):
+    """Boxes of durations, which steps narrow."""
+
+    keys = ("powers", "second", "cap", "root", "rows")
+
+    def __init__(
+        self, problem: StatedProblem, proof: dict[str, Any], total: Fraction, clock: Clock
+    ) -> None:
+        super().__init__(problem, proof, total, clock)
+        self._cubic = Cubic(problem, proof)
+        ticks = total / self._cubic.second * TICKS
+        need(
+            ticks <= self._cubic.cap * TICKS, "the total exceeds the cap below which the boxes lie"
+        )
+        self._ticks = ticks
+        rows = listed(proof["rows"], "rows", MOST_ROWS)
+        self._known = [self._cubic.condition(entry) for entry in rows]
+        self._root = self._cubic.root(proof["root"])
+
+    def root(self) -> Box:
+        """Its lower sides are stated in the file, and proved."""
+        nothing: list[list[Range]] = [[None] * self._cubic.size for _ in range(self._cubic.joints)]
+        return Box(self._cubic, *self._root, nothing, 0)
+
+    def cut(self, box: Box, coordinate: int, place: Any) -> tuple[Box, Box]:
+        """At the stated tick; a place outside leaves one part empty."""
+        k, at = whole(coordinate, 0, self._cubic.free - 1), whole(place, 0, MOST_INTEGER)
+        parts = []
+        for lower in (True, False):
+            low, high = list(box.low), list(box.high)
+            if lower:
+                high[k] = min(at, high[k])
+            else:
+                low[k] = max(at, low[k])
+            part = Box(self._cubic, low, high, [list(x) for x in box.x], box.floor)
+            part.empty |= box.empty
+            parts.append(part)
+        return parts[0], parts[1]
+
+    def step(self, box: Box, tag: str, data: list[Any]) -> Box:
+        """Narrow the ranges ("r"), raise the floor of the total ("f"), or move a side ("t")."""
+        if tag not in ("r", "f", "t"):
+            return super().step(box, tag, data)
+        if box.empty:
+            return box
+        if tag == "r":
+            listed(data, 'a step "r"', 0)
+            box.narrow(self.clock)
+        elif tag == "f":
+            value, scale, *weights = listed(data, 'a step "f"', 5, 5)
+            whole(value, 0, MOST_INTEGER)
+            total = dict.fromkeys(range(self._cubic.m), whole(scale, 1, MOST_INTEGER))
+            proved = least(box, total, weights, self._known) * TICKS >= value * scale
+            need(proved, "a floor is not proved")
+            box.floor = max(box.floor, value)
+            box.trim()
+        else:
+            k, sign, value, scale, *weights = listed(data, 'a step "t"', 7, 7)
+            whole(k, 0, self._cubic.free - 1)
+            sign_of(sign)
+            whole(value, -MOST_INTEGER, MOST_INTEGER)
+            target = {k: sign * whole(scale, 1, MOST_INTEGER)}
+            proved = least(box, target, weights, self._known) * TICKS >= sign * value * scale
+            need(proved, "a side is not proved")
+            if sign > 0:
+                box.low[k] = max(box.low[k], value)
+            else:
+                box.high[k] = min(box.high[k], value)
+            box.trim()
+        return box
+
+    def leaf(self, box: Box, data: list[Any]) -> None:
+        """The box is empty, which weights may have to show, or its floor is high enough."""
+        if box.empty:
+            return
+        if data:
+            need(least(box, {}, data, self._known) > 0, "the box is not proved to be empty")
+        else:
+            need(box.floor >= self._ticks, "the floor of a box is below the total")

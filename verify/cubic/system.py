@@ -1,0 +1,186 @@
+"""C2 cubic splines as a certificate states them: equations, conditions, and what limits imply.
+
+Symbols are those of docs/certificates-cubic.md.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import pairwise
+from math import ceil, isqrt
+from typing import Any
+
+from ..problem import Bounds, Declaration, StatedProblem
+from ..ranges import MOST_CUBIC_SEGMENTS, MOST_INTEGER, MOST_POWER, SPOTS, TICKS
+from ..reading import given, listed, need, sign_of, whole
+
+Vector = dict[Any, Fraction]
+"""Factors by unknown, or by (coordinate, unknown) for a product."""
+ZERO = Fraction(0)
+_FINE = 2**60
+"""A square root is rounded up to its multiples: some digits more than a float has."""
+
+
+class Cubic:
+    """The problem in its own units: equations, conditions, and what the limits imply."""
+
+    def __init__(self, problem: StatedProblem, proof: dict[str, Any]) -> None:
+        self.problem = problem
+        declared = given(problem.declaration, "the curve is no declared piecewise polynomial")
+        self.ends, self.virtual = _kind_of_ends(declared)
+        q = problem.waypoints
+        self.n, self.m, self.joints = problem.segments, len(q) - 1, problem.joints
+        need(self.n <= MOST_CUBIC_SEGMENTS, f"more than {MOST_CUBIC_SEGMENTS} segments")
+        stated = listed(proof["powers"], "powers", self.joints, self.joints)
+        powers = [whole(p, -MOST_POWER, MOST_POWER) for p in stated]
+        self.second = Fraction(2) ** whole(proof["second"], -MOST_POWER, MOST_POWER)
+        angle = [Fraction(2) ** p for p in powers]
+        self.steps = [
+            [(y - x) / a for x, y, a in zip(*rows, angle, strict=True)] for rows in pairwise(q)
+        ]
+
+        def loose(x: Bounds, order: int, a: Fraction) -> Fraction | None:
+            return None if x is None or x[1] <= 0 else x[1] * self.second**order / a
+
+        self.limits = [
+            [loose(x, r, a) for r, x in enumerate(row, 1)]
+            for row, a in zip(problem.limits, angle, strict=True)
+        ]
+        self.shortest = [x / self.second for x in problem.shortest]
+        self.longest = [None if x is None else x / self.second for x in problem.longest]
+        self.cap = Fraction(whole(proof["cap"], 1, MOST_INTEGER), TICKS)
+        self.free = self.m + (2 if self.virtual else 0)
+        self.breaks = list(range(self.n + 1))
+        if self.virtual:
+            self.breaks = [0, *range(2, self.n - 1), self.n]
+        self.size = self.n + 1 + self.m + 1
+        self.lengths = [self._length(k) for k in range(self.n)]
+        self.equations, self.moved = self._equations()
+
+    def rho(self) -> list[tuple[int, int, int]]:
+        """Coordinates (h, T, h²/T) of the two ends with a virtual way-point."""
+        m = self.m
+        return [(m, 0, m + 2), (m + 1, m - 1, m + 3)] if self.virtual else []
+
+    def _length(self, k: int) -> dict[int, int]:
+        m, n = self.m, self.n
+        if not self.virtual:
+            return {k: 1}
+        if k in (0, n - 1):
+            return {m if k == 0 else m + 1: 1}
+        if k in (1, n - 2):
+            return {0: 1, m: -1} if k == 1 else {m - 1: 1, m + 1: -1}
+        return {k - 1: 1}
+
+    def _equations(self) -> tuple[list[Vector], dict[int, tuple[int, int]]]:
+        """Left-hand sides, keyed by unknown or (coordinate, unknown); right: ±6Δq/T of a span."""
+        n, m, v = self.n, self.m, self.n + 1
+        rows: list[dict[Any, int]] = []
+        moved = {}
+        for node, speed, order in ((0, v, self.ends[0]), (n, v + m, self.ends[1])):
+            rows += [{speed: 1}] if order != 2 else []
+            rows += [{node: 1}] if order != 1 else []
+        for t, (i, k) in enumerate(pairwise(self.breaks)):
+            if self.virtual and t in (0, m - 1):
+                sign = 1 if t == 0 else -1
+                a, b = (1, 2) if t == 0 else (n - 1, n - 2)
+                h, _, r = self.rho()[0 if t == 0 else 1]
+                speed = v + 1 if t == 0 else v + m - 1
+                rows.append({speed: 2 * sign, (t, a): -1, (t, b): -1, (h, b): 1})
+                moved[len(rows)] = (t, sign)
+                rows.append({(t, a): 2, (h, a): -1, (t, b): 1, (h, b): -2, (r, b): 1})
+            else:
+                rows.append({v + t + 1: 2, v + t: -2, (t, i): -1, (t, k): -1})
+                moved[len(rows)] = (t, 1)
+                rows.append({v + t: 6, (t, i): 2, (t, k): 1})
+        need(len(rows) == self.size, "the equations do not determine the spline")
+        return [{key: Fraction(x) for key, x in row.items()} for row in rows], moved
+
+    def condition(self, entry: Any) -> tuple[int, Vector, Vector, Fraction]:
+        """Joint, terms in the unknowns, terms in the coordinates, constant: their sum is ≤ 0."""
+        kind, joint, k, sign, place = listed(entry, "a row", 5, 5)
+        sign_of(sign)
+        if kind == "total":
+            return -1, {}, {t: Fraction(1) for t in range(self.m)}, -self.cap
+        if kind in ("lower", "upper"):
+            whole(k, 0, self.n - 1)
+            bound = given(
+                self.shortest[k] if kind == "lower" else self.longest[k],
+                "a bound of a duration that is not there",
+            )
+            side = -1 if kind == "lower" else 1
+            along = {c: Fraction(side * x) for c, x in self.lengths[k].items()}
+            return -1, {}, along, -side * bound
+        limits = self.limits[whole(joint, 0, self.joints - 1)]
+        need(kind in ("jerk", "velocity"), "a row of an unknown kind")
+        limit = given(
+            limits[2 if kind == "jerk" else 0], "a condition leans on a limit that is not there"
+        )
+        if kind == "jerk":
+            whole(k, 0, self.n - 1)
+            along = {c: -limit * x for c, x in self.lengths[k].items()}
+            return joint, {k + 1: Fraction(sign), k: Fraction(-sign)}, along, ZERO
+        whole(k, 0, self.m - 1)
+        s = Fraction(whole(place, 0, SPOTS), SPOTS)
+        # v(s) = v(0) + length·(a(0)(s − s²/2) + a(1)s²/2)
+        one, two = sign * (s - s * s / 2), sign * s * s / 2
+        if self.virtual and k in (0, self.m - 1):
+            a, b, h = (1, 2, self.m) if k == 0 else (self.n - 1, self.n - 2, self.m + 1)
+            # Length T − h, and v(0) = h·a/2 at the virtual way-point.
+            terms = {(k, a): one, (h, a): Fraction(sign, 2) - one, (k, b): two, (h, b): -two}
+        else:
+            i, j = self.breaks[k], self.breaks[k + 1]
+            terms = {self.n + 1 + k: Fraction(sign), (k, i): one, (k, j): two}
+        return joint, terms, {}, -limit
+
+    def fastest(self, joint: int) -> tuple[Fraction | None, Fraction | None]:
+        """Bounds of |v| and |a| that the cap implies."""
+        velocity, acceleration, jerk = self.limits[joint]
+        a = smaller(acceleration, None if jerk is None else jerk * self.cap)
+        if jerk is not None and velocity is not None:
+            a = smaller(a, _root_above(2 * velocity * jerk))
+        still = sum(order != 2 for order in self.ends)
+        other = a * self.cap / still if still and a is not None else None
+        return smaller(velocity, other), a
+
+    def root(self, stated: Any) -> tuple[list[int], list[int]]:
+        """Lower sides, which are proved here, and upper sides of the outermost box."""
+        stated = listed(stated, "root", self.free, self.free)
+        low, high = [whole(x, 0, MOST_INTEGER) for x in stated], []
+        for c in range(self.free):
+            held = [k for k, x in enumerate(self.lengths) if x.get(c, 0) > 0]
+            if self.virtual and c in (0, self.m - 1):
+                held.append(0 if c == 0 else self.n - 1)
+            least = sum((self.shortest[k] for k in held), ZERO)
+            for j in range(self.joints if c < self.m else 0):
+                v, _ = self.fastest(j)
+                least = max(least, abs(self.steps[c][j]) / v) if v else least
+            need(Fraction(low[c], TICKS) <= least, "root: a side is not proved")
+            longest = [x for x in (self.longest[k] for k in held) if x is not None]
+            top = sum(longest, ZERO) if len(longest) == len(held) else self.cap
+            high.append(ceil(min(top, self.cap) * TICKS))
+        return low, high
+
+
+def _kind_of_ends(declared: Declaration) -> tuple[tuple[int, int], bool]:
+    """Order prescribed at each end (0: both), and whether there are virtual way-points."""
+    n = len(declared.degrees)
+    need(set(declared.degrees) == {3} and set(declared.continuity) <= {2}, "no C2 cubic spline")
+    need(declared.at_rest and not any(declared.prescribed[1:-1]), "conditions inside")
+    orders = [sorted(declared.prescribed[b]) for b in (0, n)]
+    if declared.virtual:
+        need(n >= 4 and sorted(declared.virtual) == [1, n - 1], "virtual way-points elsewhere")
+        need(orders == [[1, 2], [1, 2]], "virtual way-points, but not at rest at the ends")
+        return (0, 0), True
+    need(all(x in ([1], [2]) for x in orders), "an end that is neither clamped nor natural")
+    return (orders[0][0], orders[1][0]), False
+
+
+def _root_above(x: Fraction) -> Fraction:
+    """An upper bound of a square root."""
+    return Fraction(isqrt(ceil(x * _FINE**2)) + 1, _FINE)
+
+
+def smaller(a: Fraction | None, b: Fraction | None) -> Fraction | None:
+    """The smaller bound; None is no bound."""
+    return a if b is None or (a is not None and a <= b) else b

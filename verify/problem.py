@@ -1,0 +1,180 @@
+"""The problem as a certificate states it, read strictly."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from .ranges import MOST_DEGREE, MOST_JOINTS, MOST_SEGMENTS
+from .reading import fields, listed, need, number, text, whole
+
+_DIGITS = 314159265358979323846264338327950288419716939937510
+"""Of π, 51 of them: 35 more than a float has."""
+PI = (Fraction(_DIGITS, 10**50), Fraction(_DIGITS + 1, 10**50))
+"""Rational bounds of π."""
+
+Bounds = tuple[Fraction, Fraction] | None
+"""Rational bounds of a number that may carry π; None where there is no limit."""
+
+_POLYNOMIALS = ("degrees", "continuity", "prescribed", "virtual")
+_KEYS = (
+    "unit",
+    "joints",
+    "waypoints",
+    "limits",
+    "position_lower",
+    "position_upper",
+    "duration_lower",
+    "duration_upper",
+)
+
+
+@dataclass(frozen=True)
+class Declaration:
+    """A piecewise polynomial.
+
+    Attributes
+    ----------
+    degrees : list of int
+        Of each piece.
+    continuity : list of int
+        The highest derivative that agrees at each inner break.
+    prescribed : list of dict
+        At each break, the value of some derivatives, by order.
+    virtual : list of int
+        Breaks without a way-point.
+    """
+
+    degrees: list[int]
+    continuity: list[int]
+    prescribed: list[dict[int, Fraction]]
+    virtual: list[int]
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether every prescribed derivative is 0."""
+        return all(value == 0 for entries in self.prescribed for value in entries.values())
+
+
+@dataclass(frozen=True)
+class StatedProblem:
+    """The problem in a certificate, every number rational.
+
+    Attributes
+    ----------
+    waypoints : list, [way-point][joint]
+    limits : list, [joint][order − 1]
+    position : list, [0 lower, 1 upper][joint]
+    shortest, longest : list, one per segment
+    declaration : Declaration or None
+        None for a curve that is no piecewise polynomial with breaks at the way-points.
+    curve : str or None
+        Name of such a curve.
+    ends : tuple
+        Velocity prescribed at the start and at the end; None where it is free.
+    """
+
+    waypoints: list[list[Fraction]]
+    limits: list[list[Bounds]]
+    position: list[list[Bounds]]
+    shortest: list[Fraction]
+    longest: list[Fraction | None]
+    declaration: Declaration | None
+    curve: str | None
+    ends: tuple[Fraction | None, Fraction | None]
+
+    @property
+    def joints(self) -> int:
+        """How many joints."""
+        return len(self.limits)
+
+    @property
+    def segments(self) -> int:
+        """How many segments."""
+        return len(self.shortest)
+
+
+def read_problem(data: Any) -> StatedProblem:
+    """Read the problem of a certificate.
+
+    Parameters
+    ----------
+    data : Any
+        ``problem`` of the file.
+
+    Returns
+    -------
+    StatedProblem
+
+    Raises
+    ------
+    Refused
+        If it is malformed, too large, or a bound makes no sense.
+    """
+    polynomial = type(data) is dict and "degrees" in data
+    own, optional = (_POLYNOMIALS, ()) if polynomial else (("curve",), ("ends",))
+    data = fields(data, "problem", (*_KEYS, *own), optional)
+    text(data["unit"], "unit")
+    labels = [text(x, "joints") for x in listed(data["joints"], "joints", MOST_JOINTS, 1)]
+    need(len(set(labels)) == len(labels), "malformed: joints: a name occurs twice")
+    joints = len(labels)
+    points = listed(data["waypoints"], "waypoints", MOST_SEGMENTS + 1, 2)
+    q = [[number(x) for x in listed(row, "waypoints", joints, joints)] for row in points]
+    rows = listed(data["limits"], "limits", joints, joints)
+    limits = [[_bounds(x) for x in listed(row, "limits", 3, 3)] for row in rows]
+    need(all(x is None or x[0] >= 0 for r in limits for x in r), "a limit is negative")
+    position = [
+        [_bounds(x) for x in listed(data[key], key, joints, joints)]
+        for key in ("position_lower", "position_upper")
+    ]
+    declaration = _declaration(data) if polynomial else None
+    n = len(q) - 1 if declaration is None else len(declaration.degrees)
+    shortest = [number(x) for x in listed(data["duration_lower"], "duration_lower", n, n)]
+    longest = [
+        None if x is None else number(x)
+        for x in listed(data["duration_upper"], "duration_upper", n, n)
+    ]
+    need(min(shortest) >= 0, "a lower bound of a duration is negative")
+    need(all(x is None or x > 0 for x in longest), "an upper bound of a duration is not positive")
+    if declaration is None:
+        stated = listed(data.get("ends", [None, None]), "ends", 2, 2)
+        start, end = (None if x is None else number(x) for x in stated)
+        curve = text(data["curve"], "curve")
+    else:
+        need(len(q) == n + 1 - len(declaration.virtual), "malformed: waypoints: one for each break")
+        start, end = (declaration.prescribed[k].get(1) for k in (0, -1))
+        curve = None
+    return StatedProblem(q, limits, position, shortest, longest, declaration, curve, (start, end))
+
+
+def _bounds(entry: Any) -> Bounds:
+    """Rational bounds of a number, which may carry a factor π or 1/π; None where there is none."""
+    if entry is None:
+        return None
+    if type(entry) is str:
+        exact = number(entry)
+        return exact, exact
+    entry = fields(entry, "a limit with π", ("value", "pi"))
+    value, power = number(entry["value"]), whole(entry["pi"], -1, 1)
+    ends = [value * p if power > 0 else value / p if power < 0 else value for p in PI]
+    return min(ends), max(ends)
+
+
+def _declaration(data: dict[str, Any]) -> Declaration:
+    degrees = [
+        whole(x, 1, MOST_DEGREE) for x in listed(data["degrees"], "degrees", MOST_SEGMENTS, 1)
+    ]
+    n = len(degrees)
+    inner = listed(data["continuity"], "continuity", n - 1, n - 1)
+    prescribed: list[dict[int, Fraction]] = []
+    for entries in listed(data["prescribed"], "prescribed", n + 1, n + 1):
+        pairs = [
+            listed(pair, "prescribed", 2, 2) for pair in listed(entries, "prescribed", MOST_DEGREE)
+        ]
+        values = {whole(order, 1, MOST_DEGREE): number(value) for order, value in pairs}
+        need(len(values) == len(pairs), "malformed: prescribed: a derivative occurs twice")
+        prescribed.append(values)
+    virtual = [whole(b, 1, n - 1) for b in listed(data["virtual"], "virtual", n - 1)]
+    need(len(set(virtual)) == len(virtual), "malformed: virtual: a break occurs twice")
+    return Declaration(degrees, [whole(c, 0, MOST_DEGREE) for c in inner], prescribed, virtual)

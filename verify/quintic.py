@@ -1,0 +1,208 @@
+"""Proof of a lower bound for C4 quintic splines: boxes, windows, and batches of leaves.
+
+The argument is that of docs/certificates-quintic.md.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import sqrt
+from typing import Any
+
+import numpy as np
+
+from .problem import StatedProblem
+from .quintic_bound import ROUND, SLACK, Array, Bound, Task
+from .ranges import (
+    LEAST_TAU,
+    MOST_POWER,
+    MOST_QUINTIC_JOINTS,
+    MOST_QUINTIC_SEGMENTS,
+    MOST_ROWS,
+    MOST_WINDOW,
+    MOST_WINDOWS,
+    SHORTEST_TOTAL,
+    SMALLEST,
+    WINDOW_UNIT,
+)
+from .reading import Clock, listed, need, number, whole
+from .tree import ProofKind
+
+_LEAVES = 256
+"""In a batch: from there on numpy's own work outweighs the calls."""
+_NUMBERS = 4_000_000
+"""In the largest array of a batch: 32 MB; long splines have smaller batches."""
+
+Sides = tuple[list[float], list[float]]
+"""Least and largest durations."""
+
+
+class QuinticSpline(ProofKind[Sides]):
+    """Boxes in the simplex of durations whose sum is the total.
+
+    A feasible answer with a smaller total, stretched to this one, keeps the limits strictly, and
+    lies in one of the boxes: so a box is proved if no such answer is in it.
+    """
+
+    keys = ("powers", "second", "low", "windows", "rows")
+
+    def __init__(
+        self, problem: StatedProblem, proof: dict[str, Any], total: Fraction, clock: Clock
+    ) -> None:
+        super().__init__(problem, proof, total, clock)
+        _covered(problem)
+        n, joints, q = problem.segments, problem.joints, problem.waypoints
+        stated = listed(proof["powers"], "powers", joints, joints)
+        angle = [Fraction(2) ** whole(p, -MOST_POWER, MOST_POWER) for p in stated]
+        second = Fraction(2) ** whole(proof["second"], -MOST_POWER, MOST_POWER)
+        own = total / second
+        need(
+            SHORTEST_TOTAL < own < 1 / SHORTEST_TOTAL and Fraction(float(own)) == own,
+            "a total that is no float of usual size is not proved",
+        )
+        steps = [
+            [(b - a) / unit for a, b, unit in zip(q[k], q[k + 1], angle, strict=True)]
+            for k in range(n)
+        ]
+        limits = [
+            [
+                None if x is None or x[1] <= 0 else x[1] * second**r / unit
+                for r, x in enumerate(row, 1)
+            ]
+            for row, unit in zip(problem.limits, angle, strict=True)
+        ]
+        sizes = [abs(d) for row in steps for d in row if d]
+        sizes += [x for row in limits for x in row if x is not None]
+        need(all(SMALLEST < x < 1 / SMALLEST for x in sizes), "a number is of unusual size")
+        self._windows = [
+            _window(w, n, joints) for w in listed(proof["windows"], "windows", MOST_WINDOWS)
+        ]
+        self._task = Task(
+            np.array([[float(x) for x in row] for row in steps]),
+            np.array([[np.inf if x is None else float(x) for x in row] for row in limits]),
+            float(own),
+            listed(proof["rows"], "rows", MOST_ROWS),
+        )
+        self._low = []
+        for k, stated_low in enumerate(listed(proof["low"], "low", n, n)):
+            x = number(stated_low)
+            mean = any(
+                v[0] is not None and v[0][1] > 0 and x * v[0][1] <= abs(b - a)
+                for v, a, b in zip(problem.limits, q[k], q[k + 1], strict=True)
+            )
+            exact = Fraction(float(x / second)) == x / second >= 0
+            need(
+                exact and (mean or x <= problem.shortest[k]),
+                f"segment {k + 1}: its least duration is not proved",
+            )
+            self._low.append(float(x / second))
+        self._batch = max(1, min(_LEAVES, _NUMBERS // (16 * n**3)))
+        self._waiting: list[tuple[Sides, list[Any]]] = []
+
+    def root(self) -> Sides:
+        """From the least durations, which are proved, to the total."""
+        return self._shrunk(self._low, [self._task.total] * len(self._low))
+
+    def _shrunk(self, low: list[float], high: list[float]) -> Sides:
+        """Part of a box whose durations can add up to the total, with something to spare."""
+        total = self._task.total
+        below, above = sum(low), sum(high)
+        slack = SLACK * (above + total)
+        least = [max(a, total - (above - b) - slack) for a, b in zip(low, high, strict=True)]
+        most = [min(b, total - (below - a) + slack) for a, b in zip(low, high, strict=True)]
+        return least, most
+
+    def cut(self, box: Sides, coordinate: int, place: Any) -> tuple[Sides, Sides]:
+        """At the geometric mean of a side, or nearer to 0 where it may begin there."""
+        need(place is None, "the place of a cut is not stated in this kind of proof")
+        least, most = box
+        k = whole(coordinate, 0, len(least) - 1)
+        a, b = least[k], most[k]
+        middle = sqrt(a * b) if 0.0 < 0.1 * b < a else 0.3 * b
+        # Where the parts overlap or leave the box they still cover it.
+        return (
+            self._shrunk(least, [*most[:k], middle, *most[k + 1 :]]),
+            self._shrunk([*least[:k], middle, *least[k + 1 :]], most),
+        )
+
+    def leaf(self, box: Sides, data: list[Any]) -> None:
+        """Nothing, if the box is empty; [window, τ]; or [τ, row, weight, row, weight, …]."""
+        if not data:
+            low, high = box
+            need(any(a > b for a, b in zip(low, high, strict=True)), "it is not empty")
+        elif len(data) == 2:
+            window = self._windows[whole(data[0], 0, len(self._windows) - 1)]
+            exact = number(data[1])
+            usual = exact == 0 or LEAST_TAU < abs(exact) < 1 / LEAST_TAU
+            need(usual, "a window's tau is of unusual size")
+            with np.errstate(all="ignore"):  # what is not finite fails every comparison
+                least = self._over_window(window, float(exact), *map(np.array, box))
+            need(least > 0.0, "it is not proved by its window")
+        else:
+            self._waiting.append((box, data))
+            if len(self._waiting) == self._batch:
+                self.end()
+
+    def end(self) -> None:
+        """Judge the leaves with limits that wait."""
+        waiting, self._waiting = self._waiting, []
+        if not waiting:
+            return
+        sides = np.array([box for box, _ in waiting])
+        with np.errstate(all="ignore"):  # what is not finite fails every comparison
+            bound = Bound(self._task, sides[:, 0], sides[:, 1], [data for _, data in waiting])
+            need(bool((bound.least() > 0.0).all()), "a leaf with limits is not proved")
+
+    def _over_window(self, window: list[int], tau: float, low: Array, high: Array) -> float:
+        """Least of Σ cΔ/h − A Σ m h − V Σ|c + ψ' h| + tau (Σ h − total) over a box."""
+        n, j = low.size, window[0]
+        psi, c = np.array(window[1 : n + 2]) / WINDOW_UNIT, np.array(window[n + 2 :]) / WINDOW_UNIT
+        a, b = np.abs(psi[:-1]), np.abs(psi[1:])
+        squares = (a * a + b * b) / np.maximum(2.0 * (a + b), 1e-300)
+        mean = np.where(psi[:-1] * psi[1:] < 0.0, squares, 0.5 * (a + b))
+        left = np.abs(c + np.diff(psi))
+        velocity, acceleration = self._task.limits[j, :2]
+        need(
+            bool(np.isfinite(acceleration)) or not mean.any(),
+            "a window leans on a limit that is not there",
+        )
+        need(
+            bool(np.isfinite(velocity)) or not left.any(),
+            "a window leans on a limit that is not there",
+        )
+        pay = acceleration * mean if mean.any() else np.zeros(n)
+        fixed = velocity * left.sum() if left.any() else 0.0
+        p, q = c * self._task.steps[:, j], tau - pay
+        start = np.where(low > 0.0, p / low + q * low, np.where(p > 0.0, np.inf, 0.0))
+        start = np.where((low <= 0.0) & (p < 0.0), -np.inf, start)
+        turn = np.where((p > 0.0) & (q > 0.0), np.sqrt(p / q), -1.0)
+        bottom = 2.0 * np.sqrt(np.maximum(p * q, 0.0)) * (1.0 - 1e-12)
+        least = np.minimum(start, p / high + q * high)
+        inside = (low < turn) & (turn < high)
+        least = np.where(inside, np.minimum(least, bottom), least)
+        size = fixed + 2.0 * abs(tau) * self._task.total + ((abs(tau) + pay) * high).sum()
+        size += np.abs(least).sum()
+        return float(least.sum() - fixed - tau * self._task.total - 10.0 * ROUND * size)
+
+
+def _covered(problem: StatedProblem) -> None:
+    declared = problem.declaration
+    rest = {1: Fraction(0), 2: Fraction(0)}
+    n = problem.segments
+    need(
+        declared is not None
+        and n > 1
+        and declared.degrees == [5] * n
+        and declared.continuity == [4] * (n - 1)
+        and declared.prescribed == [rest, *[{}] * (n - 1), rest]
+        and not declared.virtual,
+        "declaration not covered: no C4 quintic spline at rest at the ends",
+    )
+    need(n <= MOST_QUINTIC_SEGMENTS, f"more than {MOST_QUINTIC_SEGMENTS} segments")
+    need(problem.joints <= MOST_QUINTIC_JOINTS, f"more than {MOST_QUINTIC_JOINTS} joints")
+
+
+def _window(entry: Any, n: int, joints: int) -> list[int]:
+    """Joint, the n + 1 numbers ψ, and the n numbers c."""
+    joint, *rest = listed(entry, "a window", 2 * n + 2, 2 * n + 2)
+    return [whole(joint, 0, joints - 1), *(whole(x, -MOST_WINDOW, MOST_WINDOW) for x in rest)]

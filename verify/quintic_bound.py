@@ -1,0 +1,313 @@
+"""Lower bounds of weighted limits over boxes of a C4 quintic spline, many leaves at once.
+
+The argument is that of docs/certificates-quintic.md. Nothing is shared with the solver: the nodal
+equations come from the jumps of q''' and q'''' (the solver has the energy ∫q'''²), arrays lead with
+the leaf. Every result is a sum of products with fewer than 2000 roundings on any path, 2.3e-13 of
+the same sum over absolute values: `ROUND` of that sum is taken off.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import comb
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .ranges import MOST_LIMITS, MOST_WEIGHT, QUINTIC_PLACES
+from .reading import Refused, listed, need, whole
+
+Array = NDArray[np.float64]
+
+ROUND = 1e-12
+"""Of a sum over absolute values: four times what its roundings can amount to."""
+SLACK = 1e-12
+"""Of the sides of a box: far more than the rounding of the sums that shrink it."""
+BRIEFEST = 1e-40
+"""Durations in a leaf with limits are above it, so that nothing underflows."""
+
+# Quintic with (q0, q1, v0, v1, a0, a1): rows of ascending powers; exact, entries are halves.
+_AT = np.array(
+    [[1, 0, 0, 0, 0, 0], [1] * 6, [0, 1, 0, 0, 0, 0], range(6), [0, 0, 2, 0, 0, 0],
+     [p * (p - 1) for p in range(6)]], dtype=np.float64,
+)  # fmt: skip
+_HERMITE = np.rint(2.0 * np.linalg.inv(_AT).T) / 2.0
+_JUMPS = np.array(
+    [24 * _HERMITE[:, 4], -24 * _HERMITE[:, 4] - 120 * _HERMITE[:, 5], -6 * _HERMITE[:, 3],
+     6 * _HERMITE[:, 3] + 24 * _HERMITE[:, 4] + 60 * _HERMITE[:, 5]]
+)  # fmt: skip
+"""q'''' and q''' that a segment adds to the jumps at its ends, by (q0, q1, v0, v1, a0, a1)."""
+_STIFF, _LOAD = _JUMPS[:, 2:], -_JUMPS[:, 1]
+_LOAD_POWER = np.array([4, 4, 3, 3])
+_POWER = _LOAD_POWER[:, None] - np.array([1, 1, 2, 2])
+
+
+class Task:
+    """What all leaves with limits have in common: steps, limits and the table of rows.
+
+    Parameters
+    ----------
+    steps : ndarray, shape (segments, joints)
+    limits : ndarray, shape (joints, 3)
+        inf where there is none.
+    total : float
+    rows : list
+        ``proof.rows`` of the file.
+    """
+
+    def __init__(self, steps: Array, limits: Array, total: float, rows: list[Any]) -> None:
+        self.steps, self.limits, self.total = steps, limits, total
+        n, joints = steps.shape
+        tops = (n - 1, joints - 1, 3, 1, QUINTIC_PLACES)
+        bottoms = (0, 0, 1, -1, 0)
+        self.rows = np.array(
+            [
+                [
+                    whole(x, a, b)
+                    for x, a, b in zip(listed(row, "a row", 5, 5), bottoms, tops, strict=True)
+                ]
+                for row in rows
+            ],
+            np.int64,
+        ).reshape(-1, 5)
+        need(bool((self.rows[:, 3] != 0).all()), "rows: sign")
+        self.caps = limits[self.rows[:, 1], self.rows[:, 2] - 1]
+        need(bool(np.isfinite(self.caps).all()), "a row leans on a limit that is not there")
+        # Derivative of (step, v0, v1, a0, a1) at the place.
+        s = self.rows[:, 4] / QUINTIC_PLACES
+        self.shapes = np.zeros((len(s), 5))
+        for order in (1, 2, 3):
+            at = self.rows[:, 2] == order
+            for p in range(order, 6):
+                # Few digits: multiples of 2⁻⁵⁰ or so, every sum and product is exact.
+                factor = float(np.prod(np.arange(p - order + 1, p + 1)))
+                power = np.prod(np.repeat(s[at, None], p - order, axis=1), axis=1)
+                self.shapes[at] += factor * power[:, None] * _HERMITE[None, 1:, p]
+        self.shapes *= self.rows[:, 3:4]
+
+
+class Bound:
+    """Weighted limits on a batch of boxes: arrays (leaf, ...) in the symbols of the docs page.
+
+    Parameters
+    ----------
+    task : Task
+    low, high : ndarray, shape (leaf, segments)
+    leaves : sequence of list
+        τ, row, weight, row, weight, …
+    """
+
+    def __init__(self, task: Task, low: Array, high: Array, leaves: Sequence[list[Any]]) -> None:
+        need(
+            bool((low > BRIEFEST).all() and (low <= high).all()),
+            "a leaf that is too wide is not proved",
+        )
+        self.task, self.size = task, len(leaves)
+        self.n, self.joints = task.steps.shape
+        ends = 1.0 / high, 1.0 / low
+        self.r = 0.5 * (ends[0] + ends[1])
+        self.e = 0.5 * (ends[1] - ends[0]) + 4.0 * SLACK * ends[1]
+        need(bool((self.e < 0.6 * self.r).all()), "a leaf that is too wide is not proved")
+        at, row, weight, tau = [], [], [], []
+        for i, leaf in enumerate(leaves):
+            tau.append(whole(leaf[0], -MOST_WEIGHT, MOST_WEIGHT))
+            need(len(leaf) % 2 == 1, "a leaf misses a weight")
+            need(len(leaf) <= 2 * MOST_LIMITS + 1, "a leaf has too many rows")
+            for which, share in zip(leaf[1::2], leaf[2::2], strict=True):
+                at.append(i)
+                row.append(whole(which, 0, len(task.rows) - 1))
+                weight.append(whole(share, 1, MOST_WEIGHT))
+        self.at, self.row = np.array(at), np.array(row)
+        self.weight, self.tau = np.array(weight, float), np.array(tau, float)
+        self._parts()
+
+    def _parts(self) -> None:
+        """Taylor coefficients of M and b, segment by segment, and R with RᵀR ≈ M0⁻¹."""
+        n, size, unknowns = self.n, self.size, 2 * (self.n - 1)
+        top = self.r + self.e
+        self.stiff = np.zeros((4, size, n, unknowns, unknowns))
+        self.load = np.zeros((5, size, n, unknowns))
+        self.stiff_top = np.zeros((size, unknowns, unknowns))
+        self.load_top = np.zeros((size, n, unknowns))
+        self.places = [
+            [(a, 2 * (k + a % 2 - 1) + a // 2) for a in range(4) if 0 < k + a % 2 < n]
+            for k in range(n)
+        ]
+        for k in range(n):
+            for a, i in self.places[k]:
+                power = int(_LOAD_POWER[a])
+                for o in range(power + 1):
+                    term = comb(power, o) * _LOAD[a] * self.r[:, k] ** (power - o)
+                    self.load[o, :, k, i] = term
+                self.load_top[:, k, i] = abs(_LOAD[a]) * top[:, k] ** power
+                for b, j in self.places[k]:
+                    power = int(_POWER[a, b])
+                    for o in range(power + 1):
+                        term = comb(power, o) * _STIFF[a, b] * self.r[:, k] ** (power - o)
+                        self.stiff[o, :, k, i, j] = term
+                    self.stiff_top[:, i, j] += abs(_STIFF[a, b]) * top[:, k] ** power
+        self.m0 = self.stiff[0].sum(axis=1)
+        try:
+            self.root = np.linalg.inv(np.linalg.cholesky(self.m0))
+        except np.linalg.LinAlgError:
+            raise Refused("the matrix of a leaf is not positive definite") from None
+
+    def _framed(self, matrix: Array) -> tuple[Array, Array]:
+        """R A Rᵀ, and the largest row sum of its rounding."""
+        back = np.swapaxes(self.root, 1, 2)
+        rough = np.abs(self.root) @ np.abs(matrix) @ np.abs(back)
+        return self.root @ matrix @ back, ROUND * rough.sum(axis=2).max(axis=1)
+
+    def _coercivity(self) -> Array:
+        """κ with M(r)⁻¹ ≼ RᵀR/κ all over each box."""
+        frame, rounding = self._framed(self.m0)
+        off = np.abs(frame - np.eye(frame.shape[1])).sum(axis=2).max(axis=1) + rounding
+        need(bool((off < 1e-6).all()), "the matrix of a leaf is ill-conditioned")
+        share = self.e / self.r
+        part = np.zeros_like(self.m0)
+        for k in range(self.n):
+            for a, i in self.places[k]:
+                for b, j in self.places[k]:
+                    if a < 2 and b < 2:
+                        part[:, i, j] += _STIFF[a, b] * self.r[:, k] ** 3 * share[:, k] ** 2
+        power, rounding = self._framed(part)
+        power = 0.5 * (power + np.swapaxes(power, 1, 2))
+        largest, exponent = np.ones(self.size), 1.0
+        for _ in range(5):
+            norm = np.sqrt((power * power).sum(axis=(1, 2)))
+            largest *= norm**exponent
+            exponent *= 0.5
+            power = power / norm[:, None, None]
+            power = power @ power
+        largest = (largest * (1.0 + 1e-9) + rounding) / (1.0 - off)
+        need(bool((largest < 1.0).all()), "a leaf that is too wide is not proved")
+        kappa = (1.0 - share.max(axis=1)) * (1.0 - np.sqrt(largest)) ** 2 * (1.0 - off)
+        return np.asarray(kappa * (1.0 - 1e-9))
+
+    def _energy(self, vectors: Array) -> Array:
+        """‖R v‖ of vectors (leaf, ..., unknowns)."""
+        flat = vectors.reshape(self.size, -1, vectors.shape[-1])
+        norms = np.linalg.norm(flat @ np.swapaxes(self.root, 1, 2), axis=2)
+        return np.asarray(norms.reshape(vectors.shape[:-1]))
+
+    def _solve(self, right: Array) -> Array:
+        half = right @ np.swapaxes(self.root, 1, 2)
+        return np.asarray(half @ self.root)
+
+    def least(self) -> Array:
+        """Lower bound of each leaf's weighted sum."""
+        n, r, e, task = self.n, self.r, self.e, self.task
+        k, j, order = task.rows[self.row, 0], task.rows[self.row, 1], task.rows[self.row, 2]
+        shape, cap = task.shapes[self.row] * self.weight[:, None], task.caps[self.row] * self.weight
+        bent = np.zeros((self.size, n))
+        np.add.at(bent, (self.at, k), shape[:, 0] * task.steps[k, j])
+        against = np.zeros((3, self.size, n))  # limits: constant, times r, times 1/r
+        for o, where in ((2, 0), (1, 1), (3, 2)):
+            np.add.at(against[where], (self.at[order == o], k[order == o]), cap[order == o])
+        top, bottom = r + e, r - e
+        moved = np.zeros((self.size, n))
+        np.add.at(moved, (self.at, k), np.abs(shape[:, 0] * task.steps[k, j]))
+        size = (moved * top**2 + against[0] + against[1] * top + against[2] / bottom).sum(axis=1)
+        size += np.abs(self.tau) * (task.total + (1.0 / bottom).sum(axis=1))
+        # Taylor coefficients of what depends on one duration; joints add to them below.
+        alone = np.zeros((5, self.size, n))
+        change = self.tau[:, None] - against[2]
+        alone[0] = bent * r**2 - against[0] - against[1] * r + change / r
+        alone[1] = 2.0 * bent * r - against[1] - change / r**2
+        alone[2] = bent + change / r**3
+        cubic = (np.abs(change) * e**3 / (r**3 * bottom)).sum(axis=1)
+        second = np.zeros((self.size, n, n))
+        first = np.zeros((self.size, n))
+        value = -self.tau * task.total
+        error = np.zeros(self.size)
+        for joint in range(self.joints):
+            mine = j == joint
+            if not mine.any():
+                continue
+            # Of velocities times r and of accelerations, then both in absolute values.
+            phi = np.zeros((4, self.size, n, 2 * n - 2))
+            for segment in range(n):
+                for a, i in self.places[segment]:
+                    on = mine & (k == segment)
+                    np.add.at(phi[a // 2, :, segment, i], self.at[on], shape[on, a + 1])
+                    np.add.at(phi[2 + a // 2, :, segment, i], self.at[on], np.abs(shape[on, a + 1]))
+            found = self._joint(task.steps[:, joint], phi)
+            alone += found["alone"]
+            first += found["first"]
+            second += found["second"]
+            cubic += found["cubic"]
+            size += found["size"]
+            error += found["error"]
+        value += alone[0].sum(axis=1)
+        first += alone[1]
+        cubic += (np.abs(alone[3]) * e**3 + np.abs(alone[4]) * e**4).sum(axis=1)
+        each = np.arange(n)
+        bend = second[:, each, each] + 2.0 * alone[2]
+        second[:, each, each] = 0.0
+        inside = np.abs(first) < bend * e
+        turn = -0.5 * first * first / bend
+        value += np.where(inside, turn, 0.5 * bend * e * e - np.abs(first) * e).sum(axis=1)
+        value -= 0.5 * (np.abs(second) * e[:, :, None] * e[:, None, :]).sum(axis=(1, 2))
+        error = error / self._coercivity() + cubic
+        return np.asarray(value - error * (1.0 + 1e-9) - 10.0 * ROUND * size)
+
+    def _joint(self, step: Array, phi: Array) -> dict[str, Array]:
+        """One joint's part: F = φᵀx̃ + μᵀ(b − M x̃) + (φ − M μ)ᵀ(x − x̃), x̃ = x0 + Σ X_m δ_m."""
+        n, r, e = self.n, self.r, self.e
+        stiff, load = self.stiff, self.load * step[:, None]
+        full = phi[1] + phi[0] * r[:, :, None]
+        x0 = self._solve(load[0].sum(axis=1)[:, None])[:, 0]
+        rise = load[1] - np.einsum("lkij,lj->lki", stiff[1], x0)
+        slope = self._solve(rise)
+        mu = self._solve(full.sum(axis=1)[:, None])[:, 0]
+        wide = np.abs(x0) + np.einsum("lm,lmi->li", e, np.abs(slope))
+        reach = (self.load_top * np.abs(step)[:, None]).sum(axis=1)
+        reach += np.einsum("lij,lj->li", self.stiff_top, wide)
+        # π = φ − M μ: constant, then Taylor parts of each segment.
+        rest = full.sum(axis=1) - np.einsum("lij,lj->li", self.m0, mu)
+        gain = -np.einsum("olkij,lj->olki", stiff[1:], mu)
+        gain[0] += phi[0]
+        high = phi[3] + phi[2] * (r + e)[:, :, None]
+        weak = high.sum(axis=1) + np.einsum("lij,lj->li", self.stiff_top, np.abs(mu))
+        outer = np.abs(self.root)
+        adjoint = np.linalg.norm(
+            np.einsum("lij,lj->li", outer, np.abs(rest) + ROUND * weak), axis=1
+        )
+        for o in range(3):
+            adjoint += (self._energy(gain[o]) * e ** (o + 1)).sum(axis=1)
+        # ρ = b − M x̃.
+        pulled = np.einsum("olkij,lmj->olkmi", stiff[1:], slope)
+        zero = load[0].sum(axis=1) - np.einsum("lij,lj->li", self.m0, x0)
+        linear = rise - np.einsum("lij,lmj->lmi", self.m0, slope)
+        loose = np.abs(zero) + np.einsum("lm,lmi->li", e, np.abs(linear)) + ROUND * reach
+        residual = np.linalg.norm(np.einsum("lij,lj->li", outer, loose), axis=1)
+        each = np.arange(n)
+        for o in range(2, 5):
+            own = load[o] - pulled[o - 2][:, each, each]
+            if o < 4:
+                own = own - np.einsum("lkij,lj->lki", stiff[o], x0)
+            residual += (self._energy(own) * e**o).sum(axis=1)
+        both = pulled[0] + np.swapaxes(pulled[0], 1, 2)
+        pairs = self._energy(both) * e[:, :, None] * e[:, None, :]
+        residual += 0.5 * (pairs.sum(axis=(1, 2)) - pairs[:, each, each].sum(axis=1))
+        for o in (1, 2):
+            crossed = self._energy(pulled[o]) * e[:, :, None] ** (o + 1) * e[:, None, :]
+            residual += crossed.sum(axis=(1, 2)) - crossed[:, each, each].sum(axis=1)
+        alone = np.zeros((5, self.size, n))
+        for o in range(5):
+            part = load[o] if o == 4 else load[o] - np.einsum("lkij,lj->lki", stiff[o], x0)
+            alone[o] = np.einsum("li,lki->lk", mu, part)
+        alone[0] += np.einsum("lki,li->lk", full, x0)
+        alone[1] += np.einsum("lki,li->lk", phi[0], x0)
+        mixed = np.einsum("olki,lmi->olkm", gain, slope)
+        cubic = np.einsum("lkm,lk,lm->l", np.abs(mixed[1]), e**2, e)
+        cubic += np.einsum("lkm,lk,lm->l", np.abs(mixed[2]), e**3, e)
+        return {
+            "alone": alone,
+            "first": np.einsum("li,lmi->lm", rest, slope),
+            "second": mixed[0] + np.swapaxes(mixed[0], 1, 2),
+            "cubic": cubic,
+            "size": (high.sum(axis=1) * wide).sum(axis=1) + (np.abs(mu) * reach).sum(axis=1),
+            "error": adjoint * residual,
+        }

@@ -1,0 +1,327 @@
+"""Proof of a lower bound for 3-5-3 or 4-3-4 polynomials.
+
+Why the proof holds is in docs/certificates.md; the symbols are the same here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import comb, factorial, lcm, perm
+from operator import mul
+from typing import Any, ClassVar
+
+from .curve import derivative, pieces, value_at
+from .problem import StatedProblem
+from .ranges import MOST_ROWS, MOST_WEIGHTS, PLACES
+from .reading import Clock, given, listed, need, number, sign_of, text, whole
+from .tree import ProofKind
+
+STRICT = Fraction(1, 2**40)
+"""δ of the docs: makes rows without the total strict, at a cost below that of rounding."""
+SIZE = 6
+"""Coefficients per variable: no row has a higher degree, and raising it only tightens the test."""
+BINOMIALS = lcm(*(comb(SIZE - 1, p) for p in range(SIZE)))
+"""Makes every weight of a Bernstein coefficient an integer."""
+_FINEST = 2**256
+"""Of a place where the square is cut: each halving adds a digit, and a long tree many."""
+
+Poly = dict[tuple[int, int], Fraction]
+"""Coefficients of aⁱbʲ."""
+Square = tuple[Fraction, Fraction, Fraction, Fraction]
+"""A box: a from, to, b from, to."""
+
+ONE: Poly = {(0, 0): Fraction(1)}
+M: tuple[Poly, ...] = (  # shares of the total, times S
+    {(1, 0): Fraction(1), (1, 1): Fraction(-1)},
+    {(0, 0): Fraction(1), (1, 0): Fraction(-1), (0, 1): Fraction(-1), (1, 1): Fraction(1)},
+    {(0, 1): Fraction(1), (1, 1): Fraction(-1)},
+)
+S: Poly = {(0, 0): Fraction(1), (1, 1): Fraction(-1)}
+
+Ratios = dict[tuple[int, int], list[Fraction]]
+"""Coefficients in s of each xⁱyʲ."""
+Curves = dict[str, list[Ratios]]
+"""By kind of row and joint: a piece times its divisor."""
+
+
+class _ThreePieces(ProofKind[Square]):
+    """Boxes of directions, each excluded by weighted rows."""
+
+    keys = ("rows",)
+
+    degrees: ClassVar[list[int]]
+    divisors: ClassVar[dict[str, tuple[int, dict[tuple[int, int], int]]]]
+    """By kind of row at a place: its segment, and the coefficients of xⁱyʲ that the piece is
+    multiplied by, none negative."""
+    cubic_ends: ClassVar[bool]
+    """Whether the end pieces are d·s³; if not, only their being at rest is used."""
+
+    def __init__(
+        self, problem: StatedProblem, proof: dict[str, Any], total: Fraction, clock: Clock
+    ) -> None:
+        super().__init__(problem, proof, total, clock)
+        self._declared()
+        need(total > 0, "the total is not positive")
+        rows = [_Row.read(row, self) for row in listed(proof["rows"], "rows", MOST_ROWS)]
+        # Without the total in any row, what is excluded is excluded for every total.
+        self._timeless = all(r.cap >= 0 or (r.kind in self.divisors and r.order == 0) for r in rows)
+        curves = self._curves()
+        self._rows = [self._polynomial(curves, row) for row in rows]
+
+    def root(self) -> Square:
+        """All directions."""
+        return Fraction(0), Fraction(1), Fraction(0), Fraction(1)
+
+    def cut(self, box: Square, coordinate: int, place: Any) -> tuple[Square, Square]:
+        """Halves of a side; coordinate 0 is a, 1 is b."""
+        need(place is None, "a square is halved, at no other place")
+        whole(coordinate, 0, 1)
+        a0, a1, b0, b1 = box
+        low, high = (a0, a1) if coordinate == 0 else (b0, b1)
+        half = (low + high) / 2
+        need(half.denominator < _FINEST, "the tree is too deep")
+        if coordinate == 0:
+            return (a0, half, b0, b1), (half, a1, b0, b1)
+        return (a0, a1, b0, half), (a0, a1, half, b1)
+
+    def leaf(self, box: Square, data: list[Any]) -> None:
+        """[row, weight, row, weight, …]: their weighted sum is nowhere negative in the box."""
+        listed(data, "weights", 2 * MOST_WEIGHTS, 2)
+        need(len(data) % 2 == 0, "malformed: weights come in pairs")
+        which = [whole(k, 0, len(self._rows) - 1) for k in data[::2]]
+        weights = [number(x) for x in data[1::2]]
+        need(min(weights) >= 0 and any(weights), "a weight is negative, or all are 0")
+        mixed: Poly = {}
+        for k, w in zip(which, weights, strict=True):
+            self.clock.check()
+            for key, x in self._rows[k].items():
+                mixed[key] = mixed.get(key, Fraction(0)) + w * x
+        need(_covers(mixed, box), "it is not proved")
+
+    @property
+    def infeasible(self) -> bool:
+        """Whether the total occurs in no row."""
+        return self._timeless
+
+    def _declared(self) -> None:
+        declared = self.problem.declaration
+        rest = {1: Fraction(0), 2: Fraction(0)}
+        need(
+            declared is not None
+            and declared.degrees == self.degrees
+            and declared.continuity == [2, 2]
+            and declared.prescribed == [rest, {}, {}, rest]
+            and not declared.virtual,
+            "declaration not covered: not the polynomials of this kind of proof, at rest at the "
+            "ends",
+        )
+
+    def _curves(self) -> Curves:
+        """Each piece times its divisor, as a polynomial of degree 2 in x and in y, for s in [0, 1].
+
+        It is read off from exact splines on nine pairs of ratios, and checked on two more.
+        """
+        nodes = [Fraction(x) for x in (1, 2, 3)]
+        grid = [(x, y) for x in nodes for y in nodes]
+        further = [(Fraction(2), Fraction(5)), (Fraction(7, 2), Fraction(1, 3))]
+        splines = {
+            (x, y): pieces(self.problem, [1 / x, Fraction(1), 1 / y], self.clock)
+            for x, y in grid + further
+        }
+        out: Curves = {}
+        for kind, (segment, divisor) in self.divisors.items():
+            out[kind] = []
+            for joint in range(self.problem.joints):
+                values = {}
+                for (x, y), spline in splines.items():
+                    h = (1 / x, Fraction(1), 1 / y)[segment]
+                    by = sum((c * x**i * y**j for (i, j), c in divisor.items()), Fraction(0))
+                    values[x, y] = [by * c * h**p for p, c in enumerate(spline[joint][segment])]
+                rows = [_parabola([values[x, y] for y in nodes]) for x in nodes]
+                found: Ratios = {}
+                for j in range(3):
+                    for i, coefficients in enumerate(_parabola([row[j] for row in rows])):
+                        found[i, j] = coefficients
+                for x, y in further:
+                    expected = [Fraction(0)] * len(values[x, y])
+                    for (i, j), c in found.items():
+                        expected = [e + x**i * y**j * v for e, v in zip(expected, c, strict=True)]
+                    need(values[x, y] == expected, "a piece is not of this form")
+                out[kind].append(found)
+        return out
+
+    def _polynomial(self, curves: Curves, row: _Row) -> Poly:
+        """Polynomial in a, b that is < 0 wherever a trajectory below the total is feasible."""
+        self.clock.check()
+        problem, cap = self.problem, row.cap
+        longest = given(
+            self.total if cap < 0 else problem.longest[cap],
+            "a row leans on an upper bound that is not there",
+        )
+        c = longest if cap < 0 else longest * (1 + STRICT)
+        hold = S if cap < 0 else M[cap]  # every duration is below c·M[g]/hold
+        if row.kind == "lower":
+            return _plus((problem.shortest[row.joint] / c, hold), (Fraction(-1), M[row.joint]))
+        q, order, sign = [w[row.joint] for w in problem.waypoints], row.order, row.sign
+        if order == 0:
+            ends = given(
+                problem.position[(1 + sign) // 2][row.joint],
+                "a row leans on a position limit that is not there",
+            )
+            limit = max(sign * x for x in ends) + STRICT
+        else:
+            bound = given(
+                problem.limits[row.joint][order - 1], "a row leans on a limit that is not there"
+            )
+            limit = bound[1]
+            need(limit > 0, "a row leans on a limit that is not there")
+        if row.kind in self.divisors:
+            s = Fraction(row.place, PLACES)
+            ratios = curves[row.kind][row.joint]
+            left = _on_square(
+                {key: sign * value_at(derivative(x, order), s) for key, x in ratios.items()}
+            )
+            segment, divisor = self.divisors[row.kind]
+            below = _on_square({key: Fraction(x) for key, x in divisor.items()})
+        else:
+            segment = _WHOLE[row.kind]
+            least = perm(3, order) if self.cubic_ends else factorial(order)
+            way = abs(q[segment + 1] - q[segment]) * (1 if row.kind == "mean" else least)
+            left, below = {(0, 0): way}, ONE
+        if order == 0:
+            return _plus((Fraction(1), left), (-limit, below))
+        left = _times(left, *([hold] * order))
+        right = _times(below, *([M[segment]] * order))
+        return _plus((1 / (limit * c**order), left), (Fraction(-1), right))
+
+
+class ThreeFiveThree(_ThreePieces):
+    """3-5-3 polynomials."""
+
+    degrees = [3, 5, 3]  # noqa: RUF012
+    divisors = {"place": (1, {(0, 0): 1})}  # noqa: RUF012
+    cubic_ends = True
+
+
+class FourThreeFour(_ThreePieces):
+    """4-3-4 polynomials."""
+
+    degrees = [4, 3, 4]  # noqa: RUF012
+    divisors = {  # noqa: RUF012
+        "place": (1, {(0, 0): 1, (1, 0): 2, (0, 1): 2, (1, 1): 3}),
+        "place-first": (0, {(1, 0): 1, (2, 0): 2, (1, 1): 2, (2, 1): 3}),
+        "place-last": (2, {(0, 1): 1, (1, 1): 2, (0, 2): 2, (1, 2): 3}),
+    }
+    cubic_ends = False
+
+
+_WHOLE = {"first": 0, "mean": 1, "last": 2}
+"""Segments of the rows that speak about a segment as a whole."""
+
+
+@dataclass(frozen=True)
+class _Row:
+    """One limit, at one place; ``cap`` −1 stands for the total, else for a segment's bound."""
+
+    kind: str
+    joint: int
+    order: int
+    sign: int
+    place: int
+    cap: int
+
+    @classmethod
+    def read(cls, entry: Any, of: _ThreePieces) -> _Row:
+        """Read [kind, joint, order, sign, place, cap]; "lower" has a segment for the joint."""
+        kind, joint, order, sign, place, cap = listed(entry, "a row", 6, 6)
+        kind = text(kind, "a row")
+        need(kind in (*of.divisors, *_WHOLE, "lower"), "a row of an unknown kind")
+        at_place = kind in of.divisors
+        row = cls(
+            kind,
+            whole(joint, 0, (3 if kind == "lower" else of.problem.joints) - 1),
+            whole(order, 0 if at_place or kind == "lower" else 1, 3),
+            sign_of(sign),
+            whole(place, 0, PLACES),
+            whole(cap, -1, 2),
+        )
+        need(kind != "mean" or order == 1, "a mean speed has order 1")
+        return row
+
+
+def _times(*factors: Poly) -> Poly:
+    out = ONE
+    for p in factors:
+        product: Poly = {}
+        for (i, j), x in out.items():
+            for (k, m), y in p.items():
+                product[i + k, j + m] = product.get((i + k, j + m), Fraction(0)) + x * y
+        out = product
+    return out
+
+
+def _plus(*terms: tuple[Fraction, Poly]) -> Poly:
+    out: Poly = {}
+    for factor, p in terms:
+        for key, x in p.items():
+            out[key] = out.get(key, Fraction(0)) + factor * x
+    return out
+
+
+def _parabola(nodes: list[list[Fraction]]) -> list[list[Fraction]]:
+    """Coefficients of the parabolas with these values at 1, 2, 3: ascending."""
+    out: list[list[Fraction]] = [[], [], []]
+    for v1, v2, v3 in zip(*nodes, strict=True):
+        c = (v3 - 2 * v2 + v1) / 2
+        b = v2 - v1 - 3 * c
+        for values, x in zip(out, (v1 - b - c, b, c), strict=True):
+            values.append(x)
+    return out
+
+
+def _on_square(ratios: dict[tuple[int, int], Fraction]) -> Poly:
+    """a²b²·Σ c·xⁱyʲ in a and b."""
+    a: Poly = {(1, 0): Fraction(1)}
+    a1: Poly = {(0, 0): Fraction(1), (1, 0): Fraction(-1)}
+    b: Poly = {(0, 1): Fraction(1)}
+    b1: Poly = {(0, 0): Fraction(1), (0, 1): Fraction(-1)}
+    return _plus(
+        *(
+            (c, _times(*[a] * (2 - i), *[a1] * i, *[b] * (2 - j), *[b1] * j))
+            for (i, j), c in ratios.items()
+            if c
+        )
+    )
+
+
+def _covers(poly: Poly, box: Square) -> bool:
+    """Whether all Bernstein coefficients on a box are ≥ 0."""
+    need(all(max(key) < SIZE for key in poly), "a row has too high a degree")
+    unit = lcm(*(x.denominator for x in poly.values()))
+    table = [[int(poly.get((i, j), 0) * unit) for j in range(SIZE)] for i in range(SIZE)]
+    for low, high in (box[2:], box[:2]):
+        blossom = _blossom(low, high)
+        table = [[sum(map(mul, line, row)) for row in blossom] for line in table]
+        table = [list(line) for line in zip(*table, strict=True)]
+    return all(x >= 0 for line in table for x in line)
+
+
+def _blossom(low: Fraction, high: Fraction) -> Sequence[list[int]]:
+    """Weights of the powers in each Bernstein coefficient, times a positive number.
+
+    Coefficient i is the blossom of the polynomial at i arguments ``high``, the others ``low``.
+    """
+    n, scale = SIZE - 1, lcm(low.denominator, high.denominator)
+    first, last = int(low * scale), int(high * scale)
+    out = []
+    for i in range(n + 1):
+        # Elementary symmetric sums of the arguments, by the product of (1 + argument·z).
+        sums = [1] + [0] * n
+        for argument in [last] * i + [first] * (n - i):
+            for p in range(n, 0, -1):
+                sums[p] += argument * sums[p - 1]
+        units = (scale ** (n - p) * BINOMIALS // comb(n, p) for p in range(n + 1))
+        out.append([e * unit for e, unit in zip(sums, units, strict=True)])
+    return out
