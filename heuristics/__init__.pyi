@@ -1,11 +1,21 @@
 from .adapters import External, differential_evolution, dual_annealing, one_by_one, shgo
 from .algorithm import Algorithm, Search, State
-from .algorithms import GA, MNAMPSO, PSO, WOA, ConstrainedPSO, ImprovedGA, ImprovedWOA
+from .algorithms import (
+    GA,
+    KINDS,
+    MNAMPSO,
+    PSO,
+    WOA,
+    ConstrainedPSO,
+    ImprovedGA,
+    ImprovedWOA,
+    from_settings,
+    open_choices,
+)
 from .baseline import uniform_rescaling
 from .hazards import TentCollapse, tent_collapse
 from .loop import run, run_many, run_many_per_joint, run_per_joint, states
 from .objective import Bounds, Counted, DeathPenalty, Objective
-from .registry import KINDS, from_settings, open_choices
 from .repair import Handling, Stretch
 from .result import JointRuns, Run
 

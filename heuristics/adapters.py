@@ -6,13 +6,13 @@ import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
 from ..problem import Array, TrajgapError
 from .objective import Bounds, Objective
-from .settings import clean, number, reject, whole
+from .settings import clean, positive, reject, whole
 
 Searching = Callable[[Objective, Bounds, np.random.Generator], object]
 """Called with the objective, the bounds and the generator; what it returns is not looked at."""
@@ -70,21 +70,16 @@ class External:
 
     kind: str
     searching: Searching
-    iterations: int = 200
-    per_iteration: int = 30
-    penalty: float = 1e6
+    iterations: Annotated[int, whole(0)] = 200
+    per_iteration: Annotated[int, whole(1)] = 30
+    penalty: Annotated[float, positive(infinite=True)] = 1e6
     position_range: tuple[float, float] | None = None
     options: Mapping[str, object] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
         if not callable(self.searching):
             raise reject(self.kind, "searching", "expected a callable (objective, bounds, rng)")
-        readers = {
-            "iterations": whole(0),
-            "per_iteration": whole(1),
-            "penalty": number(positive=True, infinite=True),
-        }
-        clean(self, self.kind, readers)
+        clean(self)
         if self.position_range is not None:
             low, high = self.position_range
             if not 0 <= low < high:

@@ -9,17 +9,17 @@ from contextlib import ExitStack
 from dataclasses import replace
 from functools import partial
 from multiprocessing import get_context
-from typing import Any, TypeVar, cast
+from typing import Annotated, Any, TypeVar, cast
 
 import numpy as np
 
-from ..problem import Array, Problem, TrajgapError
+from ..problem import Array, Problem
 from .algorithm import Algorithm, S, Search, State
 from .budget import searched
 from .objective import Bounds, Counted, Objective
 from .repair import Handling, judge_of
 from .result import JointRuns, Run
-from .settings import whole
+from .settings import checked, whole
 
 
 def states(
@@ -46,13 +46,10 @@ def states(
         yield state
 
 
-def _whole(name: str, value: object, least: int) -> int:
-    try:
-        return whole(least)(value)
-    except TrajgapError as error:
-        raise TrajgapError(f"{name}: {error}") from None
-
-
+_SEED = Annotated[int, whole(0)]
+"""What numpy takes as entropy, told in one line."""
+_WORKERS = Annotated[int, whole(1)]
+"""The calling process counts as one."""
 Method = Algorithm[Any] | Search
 """What can be run: an algorithm step by step, or a search that owns its loop."""
 
@@ -149,7 +146,7 @@ def run(
     True
     """
     record = _with_budget(algorithm, iterations)
-    return _run(record, problem, _whole("seed", seed, 0), (), objective)
+    return _run(record, problem, checked(_SEED, "seed", seed), (), objective)
 
 
 def run_per_joint(
@@ -183,7 +180,7 @@ def run_per_joint(
     TrajgapError
         As `run`.
     """
-    root = _whole("seed", seed, 0)
+    root = checked(_SEED, "seed", seed)
     record = _with_budget(algorithm, iterations)
     runs = tuple(
         _run(record, problem.joint(j), root, (j,), objective) for j in range(len(problem.joints))
@@ -210,11 +207,11 @@ def _each(
     workers: int,
     progress: Callable[[R], None] | None,
 ) -> tuple[R, ...]:
-    checked = [_whole("seed", seed, 0) for seed in seeds]
-    workers = min(_whole("workers", workers, 1), max(1, len(checked)))
+    clean = [checked(_SEED, "seed", seed) for seed in seeds]
+    workers = min(checked(_WORKERS, "workers", workers), max(1, len(clean)))
     collected = []
     with ExitStack() as stack:
-        results: Iterable[R] = map(one, checked)
+        results: Iterable[R] = map(one, clean)
         if workers > 1:
             # Threads would be slower than one: half of each iteration holds the interpreter.
             # Spawned, because a fork copies the locks of the compiled libraries.
@@ -228,8 +225,8 @@ def _each(
                     initargs=(signal.SIGINT, signal.SIG_IGN),
                 )
             )
-            share = -(-len(checked) // (4 * workers))
-            results = pool.map(one, checked, chunksize=share)
+            share = -(-len(clean) // (4 * workers))
+            results = pool.map(one, clean, chunksize=share)
         for result in results:
             collected.append(result)
             if progress is not None:

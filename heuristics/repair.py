@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..problem import Array, Problem, TrajgapError, evaluate
 from .objective import DeathPenalty
-from .settings import choice
+from .settings import checked
 
 
 class Handling(StrEnum):
@@ -142,10 +142,7 @@ def judge_of(problem: Problem, penalty: float, handling: str = Handling.DEATH_PE
     TrajgapError
         If the handling is unknown, or the objective cannot judge the problem.
     """
-    try:
-        chosen = choice(Handling)(handling)
-    except TrajgapError as error:
-        raise TrajgapError(f"objective: {error}") from None
+    chosen = checked(Handling, "objective", handling)
     if chosen is Handling.DEATH_PENALTY:
         return DeathPenalty(problem, penalty)
     return Stretch(problem, penalty, shorten=chosen is Handling.RESCALE)

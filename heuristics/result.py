@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
@@ -10,6 +10,11 @@ import numpy as np
 from ..problem import Array
 from .algorithm import Algorithm, Search
 from .repair import Handling
+
+
+def _rebuilt(record: Run | JointRuns) -> tuple[Any, ...]:
+    """How pickle makes a record again: by its constructor, which makes the arrays read-only."""
+    return type(record), tuple(getattr(record, field.name) for field in fields(record))
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,10 +70,8 @@ class Run:
         for array in (self.durations, self.trace, self.position):
             array.setflags(write=False)
 
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        # Arrays come back writable from another process.
-        self.__dict__.update(state)
-        self.__post_init__()
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _rebuilt(self)
 
     def __str__(self) -> str:
         stream = "".join(f".{key}" for key in self.stream)
@@ -110,9 +113,8 @@ class JointRuns:
     def __post_init__(self) -> None:
         self.durations.setflags(write=False)
 
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state)
-        self.__post_init__()
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _rebuilt(self)
 
     def __str__(self) -> str:
         found = f"{self.reported_time:.6f} s" if self.feasible else "some joint found nothing"

@@ -1,130 +1,135 @@
-"""Checks of algorithm settings at the door: types, ranges, nearest names."""
+"""Settings of algorithms as annotated fields: pydantic checks them, one line says what is wrong."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Hashable, Iterable
 from difflib import get_close_matches
 from enum import StrEnum
+from functools import lru_cache
+from typing import Annotated, Any, get_args, get_type_hints
 
 import numpy as np
+from pydantic import AfterValidator, Field, TypeAdapter, ValidationError
 
 from ..problem import TrajgapError
 
-Reader = Callable[[object], object]
-"""Returns the clean value of one setting, or raises with what was expected."""
-
 
 def nearest(word: str, known: Iterable[str]) -> str:
-    """Mend for an unknown word: the known one that is spelt most like it."""
+    """How to fix an unknown word: the known one that is spelt most like it."""
     choices = list(known)
     close = get_close_matches(word, choices, n=1, cutoff=0.0)
     return f"did you mean {close[0]!r}?"
 
 
-def _shown(value: object) -> str:
-    return repr(str(value) if isinstance(value, str) else value)
+# Each returns a pydantic Field; its description is what the message says was expected.
 
 
-def whole(least: int) -> Callable[[object], int]:
-    """Reader of whole numbers from ``least`` on."""
-
-    def read(value: object) -> int:
-        if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
-            raise TrajgapError(f"expected a whole number of {least} or more, got {_shown(value)}")
-        return int(value)
-
-    return read
+def whole(least: int) -> Any:
+    """Whole numbers from ``least`` on."""
+    return Field(strict=True, ge=least, description=f"a whole number of {least} or more")
 
 
-def _as_float(value: object) -> float:
-    """Float of a number; NaN of anything else, and of an integer beyond the range of floats."""
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return math.nan
+def number(*, infinite: bool = False) -> Any:
+    """Numbers of 0 or more; infinite only if allowed."""
+    return Field(strict=True, ge=0, allow_inf_nan=infinite, description="a number of 0 or more")
+
+
+def positive(*, infinite: bool = False) -> Any:
+    """Numbers above 0; infinite only if allowed."""
+    return Field(strict=True, gt=0, allow_inf_nan=infinite, description="a positive number")
+
+
+def above(bound: float) -> Any:
+    """Finite numbers above a bound."""
+    words = f"a number above {bound:g}"
+    return Field(strict=True, gt=bound, allow_inf_nan=False, description=words)
+
+
+def share(*, ends: bool = True) -> Any:
+    """Numbers from 0 to 1, the ends included or not."""
+    if ends:
+        return Field(strict=True, ge=0, le=1, description="a number from 0 to 1")
+    return Field(strict=True, gt=0, lt=1, description="a number between 0 and 1")
+
+
+def _ascending(ends: tuple[float, float]) -> tuple[float, float]:
+    if ends[0] > ends[1]:
+        raise ValueError("the larger one comes first")
+    return ends
+
+
+_Finite = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+
+Span = Annotated[
+    tuple[_Finite, _Finite],
+    AfterValidator(_ascending),
+    Field(description="two numbers, the smaller first"),
+]
+"""A range: two finite numbers in ascending order."""
+
+
+@lru_cache(maxsize=64)
+def _adapter(hint: Any) -> TypeAdapter[Any]:
+    return TypeAdapter(hint)
+
+
+def _expected(hint: Any, value: object) -> str:
+    """What a setting's annotation asks for, beside what came."""
+    shown = repr(str(value) if isinstance(value, str) else value)
+    if isinstance(hint, type) and issubclass(hint, StrEnum):
+        words = [str(option) for option in hint]
+        if isinstance(value, str):
+            return f"{shown} is unknown; {nearest(value, words)}"
+        return f"expected one of {', '.join(words)}, got {shown}"
+    words = [m.description for m in get_args(hint) if getattr(m, "description", None)]
+    return f"expected {words[-1]}, got {shown}"
+
+
+def checked(hint: Any, name: str, value: object) -> Any:
+    """Clean value of one setting.
+
+    Parameters
+    ----------
+    hint : Any
+        Its annotation: an enumeration, or a type with one of the fields of this module.
+    name : str
+        Words for the message.
+    value : object
+
+    Raises
+    ------
+    TrajgapError
+        One line: the name, what was expected and what came.
+    """
+    given = value.item() if isinstance(value, np.generic) else value
     try:
-        return float(value)
-    except OverflowError:
-        return math.nan
+        return _adapter(hint).validate_python(given)
+    except ValidationError:
+        raise TrajgapError(f"{name}: {_expected(hint, value)}") from None
 
 
-def number(*, positive: bool = False, infinite: bool = False) -> Reader:
-    """Reader of numbers of 0 or more, or above 0; infinite only if allowed."""
-    wanted = "a positive number" if positive else "a number of 0 or more"
-
-    def read(value: object) -> float:
-        clean = _as_float(value)
-        if not (clean > 0 if positive else clean >= 0) or (math.isinf(clean) and not infinite):
-            raise TrajgapError(f"expected {wanted}, got {_shown(value)}")
-        return clean
-
-    return read
+@lru_cache(maxsize=64)
+def _hints(record: Hashable) -> dict[str, Any]:
+    """Annotations of the settings of a record: enumerations, and types with a field."""
+    hints = get_type_hints(record, include_extras=True)
+    return {
+        name: hint
+        for name, hint in hints.items()
+        if hasattr(hint, "__metadata__") or (isinstance(hint, type) and issubclass(hint, StrEnum))
+    }
 
 
-def above(bound: float) -> Reader:
-    """Reader of finite numbers above a bound."""
-
-    def read(value: object) -> float:
-        clean = _as_float(value)
-        if not (clean > bound and math.isfinite(clean)):
-            raise TrajgapError(f"expected a number above {bound:g}, got {_shown(value)}")
-        return clean
-
-    return read
-
-
-def share(*, ends: bool = True) -> Reader:
-    """Reader of numbers from 0 to 1, the ends included or not."""
-    wanted = "a number from 0 to 1" if ends else "a number between 0 and 1"
-
-    def read(value: object) -> float:
-        clean = _as_float(value)
-        if not (0 <= clean <= 1 if ends else 0 < clean < 1):
-            raise TrajgapError(f"expected {wanted}, got {_shown(value)}")
-        return clean
-
-    return read
-
-
-def interval() -> Reader:
-    """Reader of two finite numbers in ascending order."""
-
-    def read(value: object) -> tuple[float, float]:
-        if isinstance(value, list | tuple) and len(value) == 2:
-            low, high = map(_as_float, value)
-            if math.isfinite(low) and math.isfinite(high) and low <= high:
-                return low, high
-        raise TrajgapError(f"expected two numbers, the smaller first, got {_shown(value)}")
-
-    return read
-
-
-def choice(options: type[StrEnum]) -> Reader:
-    """Reader of one of the words of an enumeration."""
-
-    def read(value: object) -> StrEnum:
-        words = [str(option) for option in options]
-        if not isinstance(value, str):
-            raise TrajgapError(f"expected one of {', '.join(words)}, got {_shown(value)}")
-        if value not in words:
-            raise TrajgapError(f"{_shown(value)} is unknown; {nearest(value, words)}")
-        return options(value)
-
-    return read
-
-
-def clean(settings: object, kind: str, readers: Mapping[str, Reader]) -> None:
-    """Replace the fields of a frozen record by their clean values.
+def clean(settings: Any) -> None:
+    """Replace the settings of a frozen record by their clean values.
 
     Raises
     ------
     TrajgapError
         One line: the algorithm's kind, the field, what was expected and what came.
     """
-    for name, read in readers.items():
-        try:
-            value = read(getattr(settings, name))
-        except TrajgapError as error:
-            raise TrajgapError(f"{kind}: {name}: {error}") from None
+    record: Any = type(settings)
+    for name, hint in _hints(record).items():
+        value = checked(hint, f"{settings.kind}: {name}", getattr(settings, name))
         object.__setattr__(settings, name, value)
 
 

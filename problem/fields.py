@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from decimal import Decimal
 from difflib import get_close_matches
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import (
     BaseModel,
@@ -26,9 +26,11 @@ from .printed import Printed
 from .units import CHOICES, Quantity, check_unit
 
 
-def fault(path: str, reason: str) -> PydanticCustomError:
+def fault(
+    path: str, reason: str, kind: Literal["fault", "unknown_key"] = "fault"
+) -> PydanticCustomError:
     """Make a validation error at ``path``, relative to the field being validated."""
-    return PydanticCustomError("fault", "{reason}", {"path": path, "reason": reason})
+    return PydanticCustomError(kind, "{reason}", {"path": path, "reason": reason})
 
 
 def nearest(word: str, known: Iterable[str]) -> str:
@@ -54,7 +56,8 @@ class Strict(BaseModel):
             raise fault("", f"expected a table of keys, got {describe(data)}; write it as a table")
         for key in data:
             if key not in cls.model_fields:
-                raise fault(f".{key}", f"unknown key; {nearest(str(key), cls.model_fields)}")
+                near = nearest(str(key), cls.model_fields)
+                raise fault(f".{key}", f"unknown key; {near}", "unknown_key")
         return data
 
 

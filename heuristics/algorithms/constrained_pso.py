@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 
 from ...problem import Array
 from ..objective import Bounds, Objective
-from ..settings import choice, clean, interval, number, reject, whole
+from ..settings import Span, clean, number, positive, reject, whole
 from .swarm import Draws, Swarm, attracted, draw_pair, held, spread
 
 OPEN_CHOICES = (
@@ -112,42 +112,23 @@ class ConstrainedPSO:
     kind: ClassVar[str] = "constrained-pso"
     open_choices: ClassVar[tuple[str, ...]] = OPEN_CHOICES
 
-    particles: int = 30
-    iterations: int = 100
-    c1: float = 2.0
-    c2: float = 2.0
-    inertia_max: float = 0.9
-    inertia_min: float = 0.4
+    particles: Annotated[int, whole(1)] = 30
+    iterations: Annotated[int, whole(0)] = 100
+    c1: Annotated[float, number()] = 2.0
+    c2: Annotated[float, number()] = 2.0
+    inertia_max: Annotated[float, number()] = 0.9
+    inertia_min: Annotated[float, number()] = 0.4
     inertia_rule: InertiaRule = InertiaRule.FITNESS
-    position_max: float = 2.0
+    position_max: Annotated[float, positive()] = 2.0
     position_rule: RangeRule = RangeRule.SYMMETRIC
-    velocity_max: float = 0.4
-    position_initial: tuple[float, float] = (0.1, 2.0)
+    velocity_max: Annotated[float, positive()] = 0.4
+    position_initial: Span = (0.1, 2.0)
     ties: Ties = Ties.RANDOM
     draws: Draws = Draws.COORDINATE
-    penalty: float = 1e6
+    penalty: Annotated[float, positive(infinite=True)] = 1e6
 
     def __post_init__(self) -> None:
-        clean(
-            self,
-            self.kind,
-            {
-                "particles": whole(1),
-                "iterations": whole(0),
-                "c1": number(),
-                "c2": number(),
-                "inertia_max": number(),
-                "inertia_min": number(),
-                "inertia_rule": choice(InertiaRule),
-                "position_max": number(positive=True),
-                "position_rule": choice(RangeRule),
-                "velocity_max": number(positive=True),
-                "position_initial": interval(),
-                "ties": choice(Ties),
-                "draws": choice(Draws),
-                "penalty": number(positive=True, infinite=True),
-            },
-        )
+        clean(self)
         if self.inertia_min > self.inertia_max:
             raise reject(self.kind, "inertia_min", "exceeds inertia_max")
 

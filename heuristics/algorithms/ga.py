@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...problem import Array
 from ..objective import Bounds, Objective
-from ..settings import choice, clean, reject, share, whole
+from ..settings import Span, clean, positive, reject, share, whole
 from .genes import (
-    READERS,
     Crossover,
     Encoding,
     FitnessRule,
@@ -28,6 +27,10 @@ from .genes import (
 from .population import Population, first_population, followed
 from .swarm import spread
 
+ELITE_OPEN = (
+    "elite: whether the best individual survives is not printed; it does not, but is reported"
+)
+"""Of the standard algorithm alone: the improved one prints what becomes of its best."""
 SHARED_OPEN = (
     "population, iterations: not printed; 40 and 200",
     "encoding, resolution: not printed; real numbers (binary: a lattice at least as fine as the "
@@ -39,7 +42,7 @@ SHARED_OPEN = (
     "how limits enter the fitness is not printed; death penalty",
     "crossover, mutation, mutated, mutation_reach: operators are not printed; arithmetic crossover "
     "of random pairs, a mutated gene is drawn anew, the probability is that of a gene",
-    "elite: whether the best individual survives is not printed; it does not, but is reported",
+    ELITE_OPEN,
     "ties: the best is replaced only by a strictly smaller total; the first individual leads",
     "budget: N iterations are N generations after the initial one, N + 1 evaluations of the "
     "population",
@@ -116,30 +119,24 @@ class GA:
     kind: ClassVar[str] = "ga"
     open_choices: ClassVar[tuple[str, ...]] = OPEN_CHOICES
 
-    population: int = 40
-    iterations: int = 200
-    crossover_rate: float = 0.8
-    mutation_rate: float = 0.05
+    population: Annotated[int, whole(2)] = 40
+    iterations: Annotated[int, whole(0)] = 200
+    crossover_rate: Annotated[float, share()] = 0.8
+    mutation_rate: Annotated[float, share()] = 0.05
     selection: Selection = Selection.ROULETTE
     fitness_rule: FitnessRule = FitnessRule.INVERSE
     encoding: Encoding = Encoding.REAL
-    resolution: float = 0.001
-    position_range: tuple[float, float] = (0.1, 2.0)
+    resolution: Annotated[float, positive()] = 0.001
+    position_range: Span = (0.1, 2.0)
     crossover: Crossover = Crossover.ARITHMETIC
     mutation: Mutation = Mutation.REDRAW
     mutated: MutationUnit = MutationUnit.GENE
-    mutation_reach: float = 0.1
-    elite: int = 0
-    penalty: float = np.inf
+    mutation_reach: Annotated[float, share()] = 0.1
+    elite: Annotated[int, whole(0)] = 0
+    penalty: Annotated[float, positive(infinite=True)] = np.inf
 
     def __post_init__(self) -> None:
-        own = {
-            "crossover_rate": share(),
-            "mutation_rate": share(),
-            "selection": choice(Selection),
-            "elite": whole(0),
-        }
-        clean(self, self.kind, {**READERS, **own})
+        clean(self)
         check_population(self.kind, self.population, self.elite, 2)
         check_range(self.kind, self.position_range)
 

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...problem import Array, TrajgapError
-from ..settings import Reader, choice, interval, number, share, whole
 from .swarm import held
 
 
@@ -217,19 +216,3 @@ def elite_kept(
     kept, totals = children.copy(), child_totals.copy()
     kept[worst], totals[worst] = parents[best], parent_totals[best]
     return kept, totals
-
-
-READERS: dict[str, Reader] = {
-    "population": whole(2),
-    "iterations": whole(0),
-    "encoding": choice(Encoding),
-    "resolution": number(positive=True),
-    "position_range": interval(),
-    "fitness_rule": choice(FitnessRule),
-    "crossover": choice(Crossover),
-    "mutation": choice(Mutation),
-    "mutated": choice(MutationUnit),
-    "mutation_reach": share(),
-    "penalty": number(positive=True, infinite=True),
-}
-"""Readers of the settings that standard and improved GA share."""

@@ -5,15 +5,16 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...problem import Array
 from ..objective import Bounds, Objective
-from ..settings import choice, clean, number, reject, share
+from ..settings import Span, clean, number, positive, reject, share, whole
 from .ga import (
+    ELITE_OPEN,
     SHARED_OPEN,
     bred,
     check_population,
@@ -21,7 +22,6 @@ from .ga import (
     genetics_of,
 )
 from .genes import (
-    READERS,
     Crossover,
     Encoding,
     FitnessRule,
@@ -44,7 +44,7 @@ OPEN_CHOICES = (
     "M of (13) is 1 in the first generation that is bred, Z in the last",
     "f_ave/f_max of a population without any feasible individual is 0/0; taken as 1, all alike",
     "(14)(15): the rates hold for the whole population; at arcsin = π/6 the branches with ≥ hold",
-    *(line for line in SHARED_OPEN if not line.startswith("elite:")),
+    *(line for line in SHARED_OPEN if line != ELITE_OPEN),
 )
 """What the paper leaves open, and what was chosen."""
 
@@ -145,35 +145,28 @@ class ImprovedGA:
     kind: ClassVar[str] = "improved-ga"
     open_choices: ClassVar[tuple[str, ...]] = OPEN_CHOICES
 
-    population: int = 40
-    iterations: int = 200
-    q_best: float = 0.2
-    q_worst: float = 0.05
+    population: Annotated[int, whole(2)] = 40
+    iterations: Annotated[int, whole(0)] = 200
+    q_best: Annotated[float, share(ends=False)] = 0.2
+    q_worst: Annotated[float, share(ends=False)] = 0.05
     pool_rule: PoolRule = PoolRule.FILL
     best_quarter: BestQuarter = BestQuarter.PARENTS
-    k1: float = 1.0
-    k2: float = 0.05
-    k3: float = 0.02
-    k4: float = 2.0
+    k1: Annotated[float, number()] = 1.0
+    k2: Annotated[float, number()] = 0.05
+    k3: Annotated[float, number()] = 0.02
+    k4: Annotated[float, number()] = 2.0
     fitness_rule: FitnessRule = FitnessRule.INVERSE
     encoding: Encoding = Encoding.REAL
-    resolution: float = 0.001
-    position_range: tuple[float, float] = (0.1, 2.0)
+    resolution: Annotated[float, positive()] = 0.001
+    position_range: Span = (0.1, 2.0)
     crossover: Crossover = Crossover.ARITHMETIC
     mutation: Mutation = Mutation.REDRAW
     mutated: MutationUnit = MutationUnit.GENE
-    mutation_reach: float = 0.1
-    penalty: float = np.inf
+    mutation_reach: Annotated[float, share()] = 0.1
+    penalty: Annotated[float, positive(infinite=True)] = np.inf
 
     def __post_init__(self) -> None:
-        own = {
-            "q_best": share(ends=False),
-            "q_worst": share(ends=False),
-            "pool_rule": choice(PoolRule),
-            "best_quarter": choice(BestQuarter),
-            **{name: number() for name in ("k1", "k2", "k3", "k4")},
-        }
-        clean(self, self.kind, {**READERS, **own})
+        clean(self)
         check_population(self.kind, self.population, 0, 4)
         check_range(self.kind, self.position_range)
         if self.q_worst > self.q_best:

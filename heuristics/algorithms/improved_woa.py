@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 
 from ...problem import Array
 from ..objective import Bounds, Objective
-from ..settings import above, choice, clean, share
+from ..settings import Span, above, clean, number, positive, share, whole
 from .population import Population, first_population
 from .swarm import PositionRule, kept_in, spread
 from .tent import TentRule, tent_population
-from .woa import OPEN_CHOICES as _SHARED
 from .woa import (
-    READERS,
+    COUNTER_OPEN,
+    INITIAL_OPEN,
     Coefficients,
     Counter,
     Replacement,
@@ -29,6 +29,7 @@ from .woa import (
     replaced,
     spiralled,
 )
+from .woa import OPEN_CHOICES as _SHARED
 
 OPEN_CHOICES = (
     "s: a constant above −1 in (22), not printed; 0, with which w falls linearly",
@@ -39,7 +40,7 @@ OPEN_CHOICES = (
     "initial: printed, the tent map (23) with β = 0.5",
     "tent_rule: how orbits of (23) fill 30 whales of 7 durations is not printed; one orbit for "
     "each duration through all whales; its uniformly random start is the first point",
-    *(line for line in _SHARED if not line.startswith(("counter:", "the initial population"))),
+    *(line for line in _SHARED if line not in (COUNTER_OPEN, INITIAL_OPEN)),
 )
 """What the paper leaves open, and what was chosen."""
 
@@ -113,33 +114,26 @@ class ImprovedWOA:
     kind: ClassVar[str] = "improved-woa"
     open_choices: ClassVar[tuple[str, ...]] = OPEN_CHOICES
 
-    whales: int = 30
-    iterations: int = 500
-    s: float = 0.0
+    whales: Annotated[int, whole(1)] = 30
+    iterations: Annotated[int, whole(0)] = 500
+    s: Annotated[float, above(-1.0)] = 0.0
     exploration: Exploration = Exploration.KEPT
     initial: InitialRule = InitialRule.TENT
     tent_rule: TentRule = TentRule.COORDINATE
-    beta: float = 0.5
-    spiral: float = 1.0
-    threshold: float = 1.0
+    beta: Annotated[float, share(ends=False)] = 0.5
+    spiral: Annotated[float, number()] = 1.0
+    threshold: Annotated[float, number(infinite=True)] = 1.0
     coefficients: Coefficients = Coefficients.WHALE
     threshold_rule: ThresholdRule = ThresholdRule.COORDINATE
     r_rule: RRule = RRule.SEPARATE
     counter: Counter = Counter.ZERO
     replacement: Replacement = Replacement.ALWAYS
-    position_initial: tuple[float, float] = (0.0, 5.0)
+    position_initial: Span = (0.0, 5.0)
     position_rule: PositionRule = PositionRule.BOUNDS
-    penalty: float = np.inf
+    penalty: Annotated[float, positive(infinite=True)] = np.inf
 
     def __post_init__(self) -> None:
-        own = {
-            "s": above(-1.0),
-            "exploration": choice(Exploration),
-            "initial": choice(InitialRule),
-            "tent_rule": choice(TentRule),
-            "beta": share(ends=False),
-        }
-        clean(self, self.kind, {**READERS, **own})
+        clean(self)
 
     def scatter(self, rng: np.random.Generator, dimensions: int) -> Array:
         """Draw initial positions, by the tent map (23), shape (whales, dimensions)."""

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 
 from ...problem import Array
 from ..objective import Bounds, Objective
-from ..settings import choice, clean, interval, number, reject, whole
+from ..settings import Span, clean, number, positive, reject, whole
 from .swarm import (
     Draws,
     PositionRule,
@@ -130,48 +130,26 @@ class MNAMPSO:
     kind: ClassVar[str] = "mnam-pso"
     open_choices: ClassVar[tuple[str, ...]] = OPEN_CHOICES
 
-    particles: int = 30
-    iterations: int = 200
-    niches: int = 3
-    c1: float = 2.0
-    c2: float = 2.0
-    inertia_max: float = 0.9
-    inertia_min: float = 0.4
+    particles: Annotated[int, whole(1)] = 30
+    iterations: Annotated[int, whole(0)] = 200
+    niches: Annotated[int, whole(1)] = 3
+    c1: Annotated[float, number()] = 2.0
+    c2: Annotated[float, number()] = 2.0
+    inertia_max: Annotated[float, number()] = 0.9
+    inertia_min: Annotated[float, number()] = 0.4
     inertia_reading: InertiaReading = InertiaReading.FALLS
     niches_rule: NichesRule = NichesRule.STRATIFIED
     mutated: MutatedCoordinates = MutatedCoordinates.ALL
-    mutation_scale: float = 1.0
-    position_initial: tuple[float, float] = (0.3, 3.0)
-    velocity_initial: tuple[float, float] = (-2.0, 2.0)
+    mutation_scale: Annotated[float, number()] = 1.0
+    position_initial: Span = (0.3, 3.0)
+    velocity_initial: Span = (-2.0, 2.0)
     velocity_rule: VelocityRule = VelocityRule.CLAMP
     position_rule: PositionRule = PositionRule.BOUNDS
     draws: Draws = Draws.COORDINATE
-    penalty: float = np.inf
+    penalty: Annotated[float, positive(infinite=True)] = np.inf
 
     def __post_init__(self) -> None:
-        clean(
-            self,
-            self.kind,
-            {
-                "particles": whole(1),
-                "iterations": whole(0),
-                "niches": whole(1),
-                "c1": number(),
-                "c2": number(),
-                "inertia_max": number(),
-                "inertia_min": number(),
-                "inertia_reading": choice(InertiaReading),
-                "niches_rule": choice(NichesRule),
-                "mutated": choice(MutatedCoordinates),
-                "mutation_scale": number(),
-                "position_initial": interval(),
-                "velocity_initial": interval(),
-                "velocity_rule": choice(VelocityRule),
-                "position_rule": choice(PositionRule),
-                "draws": choice(Draws),
-                "penalty": number(positive=True, infinite=True),
-            },
-        )
+        clean(self)
         if self.niches > self.particles:
             raise reject(
                 self.kind, "niches", f"{self.niches} niches for {self.particles} particles"

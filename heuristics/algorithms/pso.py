@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 
 from ..objective import Bounds, Objective
-from ..settings import choice, clean, interval, number, whole
+from ..settings import Span, clean, number, positive, whole
 from .swarm import (
     Draws,
     PositionRule,
@@ -81,36 +81,20 @@ class PSO:
     kind: ClassVar[str] = "pso"
     open_choices: ClassVar[tuple[str, ...]] = OPEN_CHOICES
 
-    particles: int = 30
-    iterations: int = 200
-    c1: float = 2.0
-    c2: float = 2.0
-    inertia: float = 0.65
-    position_initial: tuple[float, float] = (0.3, 3.0)
-    velocity_initial: tuple[float, float] = (-2.0, 2.0)
+    particles: Annotated[int, whole(1)] = 30
+    iterations: Annotated[int, whole(0)] = 200
+    c1: Annotated[float, number()] = 2.0
+    c2: Annotated[float, number()] = 2.0
+    inertia: Annotated[float, number()] = 0.65
+    position_initial: Span = (0.3, 3.0)
+    velocity_initial: Span = (-2.0, 2.0)
     velocity_rule: VelocityRule = VelocityRule.CLAMP
     position_rule: PositionRule = PositionRule.BOUNDS
     draws: Draws = Draws.COORDINATE
-    penalty: float = np.inf
+    penalty: Annotated[float, positive(infinite=True)] = np.inf
 
     def __post_init__(self) -> None:
-        clean(
-            self,
-            self.kind,
-            {
-                "particles": whole(1),
-                "iterations": whole(0),
-                "c1": number(),
-                "c2": number(),
-                "inertia": number(),
-                "position_initial": interval(),
-                "velocity_initial": interval(),
-                "velocity_rule": choice(VelocityRule),
-                "position_rule": choice(PositionRule),
-                "draws": choice(Draws),
-                "penalty": number(positive=True, infinite=True),
-            },
-        )
+        clean(self)
 
     def init(self, bounds: Bounds, rng: np.random.Generator, objective: Objective) -> Swarm:
         """Draw and judge the initial swarm."""

@@ -4,17 +4,26 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...problem import Array
 from ..objective import Bounds, Objective
-from ..settings import choice, clean, interval, number, whole
+from ..settings import Span, clean, number, positive, whole
 from .population import Population, first_population, followed
 from .swarm import PositionRule, kept_in, spread
 
+COUNTER_OPEN = (
+    "counter: whether the first move has I = 0 or 1; 0, so that δ falls from 2 to 2/N and never "
+    "reaches the 0 that it is said to fall to"
+)
+"""Of the plain algorithm alone: the improved one has a reason of its own."""
+INITIAL_OPEN = (
+    "the initial population of the plain algorithm is not printed; uniform in the printed range"
+)
+"""Of the plain algorithm alone: the improved one prints its initial population."""
 OPEN_CHOICES = (
     "spiral: the constant b of (17) is not printed; 1, as in the published program of the "
     "algorithm's authors",
@@ -24,8 +33,7 @@ OPEN_CHOICES = (
     "and one C for each whale",
     "threshold_rule: |A| of a vector; each coordinate by its own |A| (the same for numbers)",
     "r_rule: (16) prints one r in A and in C; drawn separately, as in the authors' program",
-    "counter: whether the first move has I = 0 or 1; 0, so that δ falls from 2 to 2/N and never "
-    "reaches the 0 that it is said to fall to",
+    COUNTER_OPEN,
     "replacement: 'a search that crosses a limit is cut off' (Step 4) may mean the penalty, or "
     "that the whale stays; every whale moves, an infeasible one has the penalty",
     "position_rule: [0, 5] s is printed, what happens to a whale that leaves it is not; set to the "
@@ -35,7 +43,7 @@ OPEN_CHOICES = (
     "authors' program draws a new one for each coordinate",
     "order within an iteration: the whole population moves from where it was, then it is judged; "
     "the authors' program lets later whales see moved ones",
-    "the initial population of the plain algorithm is not printed; uniform in the printed range",
+    INITIAL_OPEN,
     "ties: X* is replaced only by a strictly smaller fitness; the first whale leads",
     "budget: N iterations are N moves after the initial evaluation, N + 1 evaluations of the "
     "population; the authors' program never judges the last move",
@@ -207,21 +215,21 @@ class WOA:
     kind: ClassVar[str] = "woa"
     open_choices: ClassVar[tuple[str, ...]] = OPEN_CHOICES
 
-    whales: int = 30
-    iterations: int = 500
-    spiral: float = 1.0
-    threshold: float = 1.0
+    whales: Annotated[int, whole(1)] = 30
+    iterations: Annotated[int, whole(0)] = 500
+    spiral: Annotated[float, number()] = 1.0
+    threshold: Annotated[float, number(infinite=True)] = 1.0
     coefficients: Coefficients = Coefficients.WHALE
     threshold_rule: ThresholdRule = ThresholdRule.COORDINATE
     r_rule: RRule = RRule.SEPARATE
     counter: Counter = Counter.ZERO
     replacement: Replacement = Replacement.ALWAYS
-    position_initial: tuple[float, float] = (0.0, 5.0)
+    position_initial: Span = (0.0, 5.0)
     position_rule: PositionRule = PositionRule.BOUNDS
-    penalty: float = np.inf
+    penalty: Annotated[float, positive(infinite=True)] = np.inf
 
     def __post_init__(self) -> None:
-        clean(self, self.kind, READERS)
+        clean(self)
 
     def init(self, bounds: Bounds, rng: np.random.Generator, objective: Objective) -> Population:
         """Draw and judge the initial population."""
@@ -243,20 +251,3 @@ class WOA:
         moved = np.where(drawn.chance < 0.5, circle, spiral)  # (19)
         moved = kept_in(moved, self.position_rule, self.position_initial, bounds)
         return replaced(pod, moved, objective, self.replacement, self.penalty)
-
-
-READERS = {
-    "whales": whole(1),
-    "iterations": whole(0),
-    "spiral": number(),
-    "threshold": number(infinite=True),
-    "coefficients": choice(Coefficients),
-    "threshold_rule": choice(ThresholdRule),
-    "r_rule": choice(RRule),
-    "counter": choice(Counter),
-    "replacement": choice(Replacement),
-    "position_initial": interval(),
-    "position_rule": choice(PositionRule),
-    "penalty": number(positive=True, infinite=True),
-}
-"""Readers of the settings that plain and improved WOA share."""

@@ -237,7 +237,7 @@ class Case:
             If the problem or reading is unknown.
         """
         first = self.default_reading
-        ordered = [first, *(r for r in self.readings if r is not first)]
+        ordered = [first, *(r for r in self.readings if r.id != first.id)]
         problems = self.problems if problem is None else (self._problem(problem),)
         readings = ordered if reading is None else [self._reading(reading)]
         return [(p.id, r.id) for p in problems for r in readings]

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Annotated, Literal, Self
 
-from pydantic import Field, StrictInt, model_validator
+from pydantic import Field, PlainValidator, StrictInt, WithJsonSchema, model_validator
 
 from ..curves import (
     ClampedBSpline,
@@ -24,35 +26,74 @@ from ..curves import (
 )
 from ..fields import Number, Strict, fault
 
-Family = Literal[
-    "3-5-3",
-    "polynomials",
-    "cubic-spline",
-    "quintic-spline",
-    "cubic-spline-virtual",
-    "rest-to-rest",
-    "jtraj",
-    "uniform-cubic-b-spline",
-    "clamped-b-spline",
-]
+Ends = tuple[tuple[int, float], ...]
+"""Derivatives ``(order, value)`` prescribed at both ends, rad/sᵒʳᵈᵉʳ."""
 
-_FAMILY_KEYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
-    "3-5-3": ((), ()),
-    "polynomials": (("degrees",), ("continuity", "end_orders", "end_derivatives", "free")),
-    "cubic-spline": ((), ("end_orders", "end_derivatives", "free")),
-    "quintic-spline": ((), ()),
-    "cubic-spline-virtual": ((), ()),
-    "rest-to-rest": (("degree",), ()),
-    "jtraj": ((), ()),
-    "uniform-cubic-b-spline": (("time",), ()),
-    "clamped-b-spline": (("degree", "knots", "parameters"), ("time", "end_orders")),
+
+@dataclass(frozen=True)
+class Family:
+    """A kind of curve as case files name it.
+
+    Attributes
+    ----------
+    curve : callable
+        From the block, the number of way-points and the prescribed derivatives to the curve.
+    needed, allowed : tuple of str
+        Keys of the block that it asks for, and that it takes beside.
+    """
+
+    curve: Callable[[InterpolantBlock, int, Ends], Curve]
+    needed: tuple[str, ...] = ()
+    allowed: tuple[str, ...] = ()
+
+
+def _polynomials(block: InterpolantBlock, count: int, ends: Ends) -> Curve:
+    return piecewise(block.degrees or (), 2 if block.continuity is None else block.continuity, ends)
+
+
+def _clamped(block: InterpolantBlock, count: int, ends: Ends) -> Curve:
+    knots, parameters = Knots(block.knots or ""), Parameters(block.parameters or "")
+    time = Timing(block.time or "timed")
+    return ClampedBSpline(count, block.degree or 0, knots, parameters, time, block.orders)
+
+
+_ENDS = ("end_orders", "end_derivatives", "free")
+"""Keys of the families whose ends can be chosen."""
+FAMILIES = {
+    "3-5-3": Family(lambda block, count, ends: three_five_three()),
+    "polynomials": Family(_polynomials, ("degrees",), ("continuity", *_ENDS)),
+    "cubic-spline": Family(lambda block, count, ends: cubic_spline(count - 1, ends), (), _ENDS),
+    "quintic-spline": Family(lambda block, count, ends: quintic_spline(count - 1)),
+    "cubic-spline-virtual": Family(lambda block, count, ends: cubic_spline_virtual(count)),
+    "rest-to-rest": Family(
+        lambda block, count, ends: rest_to_rest(count - 1, block.degree or 0), ("degree",)
+    ),
+    "jtraj": Family(lambda block, count, ends: jtraj(count - 1)),
+    "uniform-cubic-b-spline": Family(
+        lambda block, count, ends: uniform_cubic_b_spline(count, block.time or ""), ("time",)
+    ),
+    "clamped-b-spline": Family(_clamped, ("degree", "knots", "parameters"), ("time", "end_orders")),
 }
+"""Families by the name that case files give them; a polynomial interpolant is one entry."""
+
+
+def _known(name: object) -> str:
+    if name not in FAMILIES:
+        *most, last = map(repr, FAMILIES)
+        raise fault("", f"{name!r} is not allowed; use {', '.join(most)} or {last}")
+    return str(name)
+
+
+FamilyName = Annotated[
+    str, PlainValidator(_known), WithJsonSchema({"enum": list(FAMILIES), "type": "string"})
+]
+"""One of the names of `FAMILIES`."""
 
 
 class InterpolantBlock(Strict):
     """The curve through the way-points."""
 
-    family: Family
+    family: FamilyName
     where: str = ""
     degrees: tuple[Annotated[StrictInt, Field(ge=1, le=9)], ...] | None = None
     """Polynomials: the degree of each segment."""
@@ -75,11 +116,11 @@ class InterpolantBlock(Strict):
 
     @model_validator(mode="after")
     def _keys_of_family(self) -> Self:
-        needed, allowed = _FAMILY_KEYS[self.family]
-        for key in needed:
+        family = FAMILIES[self.family]
+        for key in family.needed:
             if getattr(self, key) is None:
                 raise fault(f".{key}", f"is missing; family {self.family!r} needs it")
-        for key in self.model_fields_set - {"family", "where", *needed, *allowed}:
+        for key in self.model_fields_set - {"family", "where", *family.needed, *family.allowed}:
             raise fault(f".{key}", f"does not go with family {self.family!r}; leave it out")
         if self.degree is not None:
             allowed_degrees = (3, 5, 7, 9) if self.family == "rest-to-rest" else range(3, 8)
@@ -116,7 +157,7 @@ class InterpolantBlock(Strict):
 
 
 @lru_cache(maxsize=128)
-def declare(block: InterpolantBlock, count: int, ends: tuple[tuple[int, float], ...]) -> Curve:
+def declare(block: InterpolantBlock, count: int, ends: Ends) -> Curve:
     """Curve that a block means for a number of way-points.
 
     Parameters
@@ -136,30 +177,4 @@ def declare(block: InterpolantBlock, count: int, ends: tuple[tuple[int, float], 
     TrajgapError
         If the declaration is over- or under-determined or contradicts itself.
     """
-    match block.family:
-        case "3-5-3":
-            return three_five_three()
-        case "polynomials":
-            continuity = 2 if block.continuity is None else block.continuity
-            return piecewise(block.degrees or (), continuity, ends)
-        case "cubic-spline":
-            return cubic_spline(count - 1, ends)
-        case "quintic-spline":
-            return quintic_spline(count - 1)
-        case "cubic-spline-virtual":
-            return cubic_spline_virtual(count)
-        case "rest-to-rest":
-            return rest_to_rest(count - 1, block.degree or 0)
-        case "jtraj":
-            return jtraj(count - 1)
-        case "uniform-cubic-b-spline":
-            return uniform_cubic_b_spline(count, block.time or "")
-        case "clamped-b-spline":
-            return ClampedBSpline(
-                count,
-                block.degree or 0,
-                Knots(block.knots or ""),
-                Parameters(block.parameters or ""),
-                Timing(block.time or "timed"),
-                block.orders,
-            )
+    return FAMILIES[block.family].curve(block, count, ends)

@@ -31,7 +31,7 @@ _EXPECTED = {
 
 
 def first_fault(error: ValidationError) -> tuple[str, str]:
-    """Field path and reason of the fault to mend first.
+    """Field path and reason of the fault to fix first.
 
     Parameters
     ----------
@@ -43,13 +43,13 @@ def first_fault(error: ValidationError) -> tuple[str, str]:
     field : str
         Path such as ``claims[3].durations[1]``.
     reason : str
-        What is wrong and how to mend it; one line, with the number of further faults.
+        What is wrong and how to fix it; one line, with the number of further faults.
     """
-    faults = [_read(detail) for detail in error.errors(include_url=False)]
-    # A misspelt key is also a missing one; the spelling is what needs mending.
-    faults.sort(key=lambda fault: not fault[1].startswith("unknown key"))
-    field, reason = faults[0]
-    more = len(faults) - 1
+    details = error.errors(include_url=False)
+    # A misspelt key is also a missing one; the spelling is what to fix.
+    details.sort(key=lambda detail: detail["type"] != "unknown_key")
+    field, reason = _read(details[0])
+    more = len(details) - 1
     return field, reason + (f" (and {more} more)" if more else "")
 
 
@@ -57,7 +57,7 @@ def _read(detail: Mapping[str, Any]) -> tuple[str, str]:
     context = detail.get("ctx", {})
     kind, raw = detail["type"], detail["input"]
     path = _path(detail["loc"])
-    if kind == "fault":
+    if kind in ("fault", "unknown_key"):
         return (path + context["path"]).removeprefix("."), context["reason"]
     if kind in ("union_tag_invalid", "union_tag_not_found"):
         given = raw.get("quantity") if isinstance(raw, dict) else None

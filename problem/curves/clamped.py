@@ -12,7 +12,15 @@ from ..arrays import Array
 from ..errors import TrajgapError
 from . import clamped_kernel
 from .clamped_fit import clamped_enclosed, clamped_gradients, clamped_shape
-from .clamped_knots import Fractions, Knots, Parameters, average_matrix, fractions_of
+from .clamped_knots import (
+    Fractions,
+    Knots,
+    Parameters,
+    average_matrix,
+    count_inner_knots,
+    fractions_of,
+    nearest_reading,
+)
 from .interpolant import piecewise, quintic_spline
 from .kind import Curve, Derivatives, Enclosed, PeakGradients, Shape, as_batch
 from .peak import Extremum
@@ -97,9 +105,10 @@ class ClampedBSpline(StretchedCurve):
             )
         if self.free:
             word = "over" if self.free < 0 else "under"
+            nearest = nearest_reading(self.knots, self.degree, self.end_orders)
             raise TrajgapError(
                 f"interpolant {self.name}: {word}-determined, {self.conditions} conditions on "
-                f"{self.control_points} control points; {self.nearest}"
+                f"{self.control_points} control points; {nearest}"
             )
         for row in self.fractions or ():
             if len(row) != self.waypoints or row[0] != 0.0 or row[-1] != 1.0:
@@ -128,19 +137,6 @@ class ClampedBSpline(StretchedCurve):
         """Number of segments, one less than way-points."""
         return self.waypoints - 1
 
-    @property
-    def nearest(self) -> str:
-        """The nearest declaration that is determined, in words."""
-        rest = 2 * len(self.end_orders)
-        if self.knots is Knots.WAYPOINTS:
-            return (
-                f"with knots at the way-points degree {rest + 1} is determined, with the index "
-                f"continued degree {self.degree} is"
-            )
-        return (
-            f"continue the averaging index at both ends, one knot for each of the {rest} conditions"
-        )
-
     def prescribed_at(self, break_index: int) -> Derivatives:
         """Rest at both ends."""
         ends = break_index in (0, self.segments)
@@ -153,12 +149,7 @@ class ClampedBSpline(StretchedCurve):
     @property
     def inner_knots(self) -> int:
         """Number of inner knots; negative if there are too few way-points."""
-        if self.knots is Knots.WAYPOINTS:
-            return self.waypoints - 2
-        sites = self.waypoints
-        if self.knots is Knots.CONTINUED:
-            sites += 2 * len(self.end_orders)
-        return sites - 1 - self.degree
+        return count_inner_knots(self.knots, self.waypoints, self.degree, self.end_orders)
 
     @property
     def control_points(self) -> int:

@@ -8,7 +8,7 @@ from itertools import product
 
 from ..errors import TrajgapError
 from .clamped import ClampedBSpline
-from .clamped_knots import Knots, Parameters
+from .clamped_knots import Knots, Parameters, count_inner_knots, nearest_reading
 from .stretched import Timing
 
 DEGREES = (3, 4, 5, 6, 7)
@@ -110,24 +110,17 @@ def _read(
     end_orders: tuple[int, ...],
 ) -> ClampedReading:
     conditions = waypoints + 2 * len(end_orders)
-    inner = {
-        Knots.WAYPOINTS: waypoints - 2,
-        Knots.AVERAGED: waypoints - 1 - degree,
-        Knots.CONTINUED: conditions - 1 - degree,
-    }[knots]
+    inner = count_inner_knots(knots, waypoints, degree, end_orders)
     points = inner + degree + 1
     counted = f"{conditions} conditions on {points} control points"
-    curve, why = None, ""
-    try:
+    if inner >= 0 and points == conditions:
         curve = ClampedBSpline(waypoints, degree, knots, parameters, time, end_orders)
-    except TrajgapError as error:
-        why = str(error).rpartition("; ")[2]
-    if curve is not None:
         note = "" if parameters is Parameters.TIMES else _CHORDS[time]
         return ClampedReading(
             degree, knots, parameters, time, conditions, points, Count.DETERMINED, curve,
             f"determined, {counted}{note}",
         )  # fmt: skip
+    why = nearest_reading(knots, degree, end_orders) if inner >= 0 else "lower the degree"
     if inner < 0:
         words = f"impossible as printed: degree {degree} needs more way-points; {why}"
         return ClampedReading(

@@ -42,6 +42,27 @@ Fractions = tuple[tuple[float, ...], ...]
 """Chord parameters of the way-points from 0 to 1: one row for all joints, or one for each."""
 
 
+def count_inner_knots(
+    knots: Knots, waypoints: int, degree: int, end_orders: tuple[int, ...]
+) -> int:
+    """Number of inner knots; negative if there are too few way-points."""
+    if knots is Knots.WAYPOINTS:
+        return waypoints - 2
+    repeated = 2 * len(end_orders) if knots is Knots.CONTINUED else 0
+    return waypoints + repeated - 1 - degree
+
+
+def nearest_reading(knots: Knots, degree: int, end_orders: tuple[int, ...]) -> str:
+    """The nearest declaration that is determined, in words."""
+    rest = 2 * len(end_orders)
+    if knots is Knots.WAYPOINTS:
+        return (
+            f"with knots at the way-points degree {rest + 1} is determined, with the index "
+            f"continued degree {degree} is"
+        )
+    return f"continue the averaging index at both ends, one knot for each of the {rest} conditions"
+
+
 def chord_fractions(waypoints: NDArray[np.generic]) -> Fractions:
     """Chord parameters (5) of way-points, from 0 to 1.
 

@@ -14,8 +14,7 @@ import pytest
 from rich.console import Console
 from support.documents import assert_reasons, assert_valid
 from support.one_joint import HEAD, UNITS
-from support.polishing import polish as changed
-from support.polishing import shipped
+from support.studies import changed, shipped
 from trajgap.compare.audits.case_audit import AuditReport, CaseAudit
 from trajgap.compare.audits.finding import ClaimVerdict, Judgement, Scope
 from trajgap.compare.audits.reading_words import answers, holding, segments
@@ -58,12 +57,12 @@ def laid_out(study: Study, claims: dict[str, str]) -> CaseAudit:
 
 @cache
 def polish() -> CaseAudit:
-    return laid_out(shipped(), {"nine-segments": "after"})
+    return laid_out(shipped(POLISH), {"nine-segments": "after"})
 
 
 @cache
 def pallet() -> CaseAudit:
-    return summed(load_case(PALLET), {"limit-80": "durations-80", "limit-110": "durations-110"})
+    return laid_out(shipped(PALLET), {"limit-80": "durations-80", "limit-110": "durations-110"})
 
 
 def summary_of(one: CaseAudit) -> ReadingsSummary:
@@ -229,7 +228,7 @@ def test_durations_that_define_no_curve_are_not_decided() -> None:
     printed = """"0.66", "0.82", "0.70", "0.68", "0.74", "0.78", "0.84", "0.86", "0.73"]
 total = "6.81\""""
     hasty = '"5", "0.01", "5", "0.01", "5", "0.01", "5", "0.01", "5"]'
-    case = changed((printed, hasty)).case
+    case = changed(POLISH, (printed, hasty)).case
     study = Study(case, seeds=2, reading="angles-deg-v-rad-a-rad-timed")
     (outcome,) = summary_of(laid_out(study, {"nine-segments": "after"})).outcomes
     assert outcome.keeping is Keeping.UNDECIDED

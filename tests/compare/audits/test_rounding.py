@@ -643,7 +643,7 @@ def test_bisection_tightens():
     problem, h = posed(4, three_five_three())
     h = 0.9 * check(problem, h).stretch * h
     ball = Ball.exact(problem.waypoints)
-    root = box_bound.bound(problem, 0.98 * h, 1.02 * h, ball)
+    root = box_bound.bound_ratio(problem, 0.98 * h, 1.02 * h, ball)
     finer = [
         box_bound.bound_by_bisection(problem, root, ball, target)
         for target in (0.0, root.value + 1e-4, np.inf)

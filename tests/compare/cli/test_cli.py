@@ -170,6 +170,10 @@ def test_starts_and_seed_reach_the_solver(run: Run) -> None:
 # --- audit ----------------------------------------------------------------------------------------
 
 
+# The command asks the faces when it runs, and a face keeps what it has handed out.
+AUDITS, PAGES = (import_module(f"trajgap.compare.{name}") for name in ("audits", "pages"))
+
+
 @pytest.fixture
 def stand_in(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     """A finished audit in place of minutes of work."""
@@ -179,7 +183,7 @@ def stand_in(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
         seen.update(options, cases=[case.id for case in cases])
         return report()
 
-    monkeypatch.setattr(import_module("trajgap.compare.audits.case_audit"), "audit", audit)
+    monkeypatch.setattr(AUDITS, "audit", audit)
     return seen
 
 
@@ -189,7 +193,7 @@ def pages(monkeypatch: pytest.MonkeyPatch) -> None:
         out.mkdir(exist_ok=True)
         (out / "index.html").write_text("page", encoding="utf-8")
 
-    monkeypatch.setattr(import_module("trajgap.compare.pages.writer"), "write_report", write)
+    monkeypatch.setattr(PAGES, "write_report", write)
 
 
 @pytest.mark.usefixtures("pages")
@@ -430,7 +434,7 @@ def test_audit_reads_everything_before_it_computes(
     def audit(*_: object, **__: object) -> None:
         raise AssertionError("computed")
 
-    monkeypatch.setattr(import_module("trajgap.compare.audits.case_audit"), "audit", audit)
+    monkeypatch.setattr(AUDITS, "audit", audit)
     Path("bad.toml").write_text(CASE + "\nwrong = 1", encoding="utf-8")
     assert_refused(run("audit", IRB, PUMA, "bad.toml"), "bad.toml: ", "wrong: unknown key")
     assert_refused(run("audit", "mine.toml", "mine.toml"), "'mine' is also the id of mine.toml")

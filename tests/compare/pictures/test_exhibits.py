@@ -8,6 +8,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 from matplotlib.text import Annotation
+from support.studies import shipped
 from trajgap.compare.audits.rules.printed_vertices import Vertex, vertices
 from trajgap.compare.audits.study import Study
 from trajgap.compare.pages.blocks import Drawn, Folded, Grid
@@ -23,7 +24,6 @@ from trajgap.problem import (
     Printed,
     Problem,
     TrajgapError,
-    load_case,
     three_five_three,
 )
 from trajgap.problem.curves import control_vertices, uniform_cubic_b_spline
@@ -47,7 +47,7 @@ def stretched() -> Problem:
 
 @pytest.fixture(scope="module")
 def irb1600() -> Study:
-    return Study(load_case("irb1600-ga-cubic-bspline"), seeds=2)
+    return shipped("irb1600-ga-cubic-bspline")
 
 
 @pytest.fixture(scope="module")
@@ -269,7 +269,7 @@ def test_the_polygon_of_the_case_agrees_with_the_rule(irb1600: Study) -> None:
 
 
 def test_a_case_without_waypoints_shows_cloud_and_tent_map() -> None:
-    study = Study(load_case("z1-woa-bspline"), seeds=2)
+    study = shipped("z1-woa-bspline")
     (workspace,) = exhibits_of_motion(study)
     (cloud,) = workspace.blocks
     assert isinstance(cloud, Drawn)
@@ -284,7 +284,7 @@ def test_a_case_without_waypoints_shows_cloud_and_tent_map() -> None:
 
 
 def test_the_palletiser_names_positions_out_of_reach() -> None:
-    study = Study(load_case("irb460-pso-353"), seeds=2)
+    study = shipped("irb460-pso-353")
     (workspace,) = exhibits_of_motion(study)
     flat, full = workspace.blocks
     assert isinstance(flat, Drawn)

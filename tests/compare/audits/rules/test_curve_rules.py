@@ -8,7 +8,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from support.b_splines import clamped, uniform, vertices_by_solving
-from support.polishing import POLISH, SOURCE, polish, shipped
+from support.studies import changed, shipped, source
 from trajgap.compare.audits.finding import Basis, ClaimVerdict, Finding, Severity
 from trajgap.compare.audits.rounding import Box, Rounding, judge_rounding
 from trajgap.compare.audits.rules.continuous_time import judge_motions
@@ -31,7 +31,7 @@ from trajgap.problem import (
     peak_gradients,
 )
 
-WHALE = "z1-woa-bspline"
+POLISH, WHALE = "irb1600-ga-cubic-bspline", "z1-woa-bspline"
 TIMES = ("stretched", "timed")
 
 
@@ -43,7 +43,7 @@ def of(findings, rule: str, claim: str | None = None) -> list[Finding]:
 
 
 def test_every_printed_control_vertex_is_inside_what_rounding_allows() -> None:
-    study = polish()
+    study = shipped(POLISH)
     (found,) = of(judge_vertices(study), "TG205")
     assert found.verdict is ClaimVerdict.SUPPORTED
     assert found.computed == "72 of 72 inside"
@@ -72,7 +72,7 @@ def test_every_printed_control_vertex_is_inside_what_rounding_allows() -> None:
 def test_one_changed_digit_is_seen_where_neither_rounding_nor_cutting_explains_it(
     digits_: str, verdict: ClaimVerdict, severity: Severity
 ) -> None:
-    study = polish(('"-2.1070"', f'"{digits_}"'))
+    study = changed(POLISH, ('"-2.1070"', f'"{digits_}"'))
     (found,) = of(judge_vertices(study), "TG205")
     assert (found.verdict, found.severity) == (verdict, severity)
     if severity is Severity.WARNING:
@@ -95,11 +95,11 @@ def test_vertices_of_waypoints_whose_digits_were_cut_off_accuse_nobody() -> None
         + "\n]"
         for table in cut
     ]
-    source = SOURCE
+    text = source(POLISH)
     for table in rows:
-        head, _, tail = source.partition("joint_rows = [\n")
-        source = f"{head}joint-rows = {table}{tail[tail.index(chr(10) + ']') + 2 :]}"
-    study = Study(parse_case(source.replace("joint-rows", "joint_rows"), "cut.toml"), seeds=4)
+        head, _, tail = text.partition("joint_rows = [\n")
+        text = f"{head}joint-rows = {table}{tail[tail.index(chr(10) + ']') + 2 :]}"
+    study = Study(parse_case(text.replace("joint-rows", "joint_rows"), "cut.toml"), seeds=2)
     (found,) = of(judge_vertices(study), "TG205")
     assert (found.verdict, found.severity) == (ClaimVerdict.SUPPORTED, Severity.WARNING)
 
@@ -122,7 +122,7 @@ def test_vertices_of_waypoints_whose_digits_were_cut_off_accuse_nobody() -> None
 )
 def test_control_vertices_are_counted(old: str, new: str, message: str) -> None:
     with pytest.raises(CaseError) as caught:
-        polish((old, new))
+        changed(POLISH, (old, new))
     assert message in str(caught.value)
 
 
@@ -216,7 +216,7 @@ def test_clamped_splines_are_kept_consistent_or_undecided() -> None:
 
 
 def test_jumps_are_named_apart_from_the_limits() -> None:
-    found = list(judge_motions(polish()))
+    found = list(judge_motions(shipped(POLISH)))
     jumping = of(found, "TG202", "after")
     assert {f.reading.rpartition("-")[2] for f in jumping} == {"stretched"}
     assert len(jumping) == 8
@@ -238,7 +238,7 @@ def test_jumps_are_named_apart_from_the_limits() -> None:
 
 def test_the_printed_durations_are_optimal_under_no_reading() -> None:
     """Under each, a shorter motion is exhibited, or no rounding lets them keep the limits."""
-    found = {f.reading: f for f in of(judge_distances(shipped()), "TG302", "time-optimal")}
+    found = {f.reading: f for f in of(judge_distances(shipped(POLISH)), "TG302", "time-optimal")}
     assert len(found) == 16
     assert {f.verdict for f in found.values()} == {ClaimVerdict.REFUTED}
     shorter = {rid for rid, f in found.items() if f.message.startswith("Not the shortest: after")}
@@ -257,13 +257,15 @@ def test_the_printed_durations_are_optimal_under_no_reading() -> None:
 
 
 def test_acceleration_said_to_jump_does_in_the_reading_that_stretches() -> None:
-    found = {f.reading: f for f in of(judge_motions(polish()), "TG206", "acceleration-jumps")}
+    found = {
+        f.reading: f for f in of(judge_motions(shipped(POLISH)), "TG206", "acceleration-jumps")
+    }
     assert len(found) == 16
     for reading, finding in found.items():
         jumps = reading.endswith("stretched")
         expected = ClaimVerdict.SUPPORTED if jumps else ClaimVerdict.NOT_CHECKABLE
         assert finding.verdict is expected
-    study = polish()
+    study = shipped(POLISH)
     claim = study.case.claim("after")
     at = study.claim_check(claim, "nine-segments", study.main_reading).jumps
     largest = max((j for j in at if j.order == 2 and j.joint == "2"), key=lambda j: abs(j.size))
@@ -271,7 +273,7 @@ def test_acceleration_said_to_jump_does_in_the_reading_that_stretches() -> None:
 
 
 def test_totals_and_the_saving_follow_from_the_digits() -> None:
-    found = list(judge_digits(polish()))
+    found = list(judge_digits(shipped(POLISH)))
     assert {f.claim: f.verdict for f in found if f.rule in ("TG101", "TG103")} == dict.fromkeys(
         ("before", "after", "improvement"), ClaimVerdict.SUPPORTED
     )
@@ -281,7 +283,7 @@ def test_totals_and_the_saving_follow_from_the_digits() -> None:
 
 
 def test_a_case_without_waypoints_says_of_each_time_why_it_is_not_checkable() -> None:
-    study = Study(load_case(WHALE), seeds=2)
+    study = shipped(WHALE)
     assert not study.posed
     found = list(list_open_points(study))
     for claim in ("b-spline-total", "quintic-total", "convergence"):
@@ -295,7 +297,7 @@ def test_a_case_without_waypoints_says_of_each_time_why_it_is_not_checkable() ->
 
 
 def test_a_posed_case_has_no_such_finding() -> None:
-    study = polish()
+    study = shipped(POLISH)
     assert study.posed
     assert not of(list_open_points(study), "TG501", "after")
     assert check(study.case.problem(), np.full(9, 1.0)).verdict is Verdict.PASS

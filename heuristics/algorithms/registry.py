@@ -6,10 +6,16 @@ from collections.abc import Callable, Mapping
 from dataclasses import fields
 from typing import Any
 
-from ..problem import TrajgapError
-from .algorithm import Algorithm
-from .algorithms import GA, MNAMPSO, PSO, WOA, ConstrainedPSO, ImprovedGA, ImprovedWOA
-from .settings import nearest
+from ...problem import TrajgapError
+from ..algorithm import Algorithm
+from ..settings import nearest
+from .constrained_pso import ConstrainedPSO
+from .ga import GA
+from .improved_ga import ImprovedGA
+from .improved_woa import ImprovedWOA
+from .mnam_pso import MNAMPSO
+from .pso import PSO
+from .woa import WOA
 
 _RECORDS: dict[str, Any] = {
     record.kind: record
