@@ -1,4 +1,4 @@
-"""The long run: ``python -m tests.attacks --seconds 3600 --seed 1 --write docs/attacks.csv``."""
+"""The long run: ``python tests/attacks --seconds 3600 --seed 1 --write docs/attacks.csv``."""
 
 from __future__ import annotations
 
@@ -10,16 +10,19 @@ from pathlib import Path
 # One thread a process: children are forked, and the machine has other work.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("OMP_NUM_THREADS", "1")
+# The folder above this one, as the tests have it; not this one, whose modules have plain names.
+_HERE = Path(__file__).resolve().parent
+sys.path[:] = [str(_HERE.parent), *(x for x in sys.path if Path(x or ".").resolve() != _HERE)]
 
-from .registry import ATTACKS
-from .run import Account, run, tried, warm
-from .sandbox import available
-from .table import PAGE, csv_text, page_with, rows_of, table
+from attacks.registry import ATTACKS  # noqa: E402
+from attacks.run import Account, run, tried, warm  # noqa: E402
+from attacks.sandbox import available  # noqa: E402
+from attacks.table import PAGE, csv_text, page_with, rows_of, table  # noqa: E402
 
 
 def main() -> int:
     """Run, say what broke, write the table; 1 if anything broke."""
-    parser = argparse.ArgumentParser(prog="python -m tests.attacks", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python tests/attacks", description=__doc__)
     parser.add_argument("--seconds", type=float, default=60.0, help="how long, on the clock")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", action="append", metavar="NAME", help="only these attacks")

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from .cases import Rng
+from attacks.cases import Rng
 
 Trial = Callable[[Rng, Path], str | None]
 """One trial in an empty folder: the word for what was seen, or None where nothing can be judged."""

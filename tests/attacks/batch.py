@@ -2,93 +2,31 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from scipy.optimize import differential_evolution
 
-from .curves import Array, Asked, NoCurve, excess
+from attacks.curves import Array, Asked, NoCurve, excess
+from attacks.declared import Declared, coefficients, declared, derivative_row
 
 PLACES = 33
 """Chebyshev points of each segment while searching; the winner is judged by `excess`."""
 _S = (1.0 - np.cos(np.pi * np.arange(PLACES) / (PLACES - 1))) / 2.0
 """Where each segment is sampled, its ends included."""
-_REST = {3: 1, 5: 2, 7: 3, 9: 4}
-"""Derivatives that vanish at every way-point, by degree."""
 
 
-@dataclass(frozen=True)
-class Declared:
-    """A family as piecewise polynomials: what is linear in it is one system for each h."""
-
-    degrees: tuple[int, ...]
-    continuity: int
-    ends: tuple[int, ...]
-    rest: int = 0
-
-
-def declared(asked: Asked) -> Declared | None:
-    """The family as polynomials with breaks at the way-points; None where it is something else."""
-    block, n = asked.block, asked.segments
-    if any(asked.ends.values()):
-        return None
-    match asked.family:
-        case "3-5-3":
-            return Declared((3, 5, 3), 2, (1, 2))
-        case "polynomials":
-            ends = tuple(block.get("end_orders", (1, 2)))
-            return Declared(tuple(block["degrees"]), block.get("continuity", 2), ends)
-        case "cubic-spline":
-            return Declared((3,) * n, 2, tuple(block.get("end_orders", (1,))))
-        case "quintic-spline":
-            return Declared((5,) * n, 4, (1, 2))
-        case "rest-to-rest" | "jtraj":
-            degree = block.get("degree", 5)
-            return Declared((degree,) * n, 0, (), _REST[degree])
-    return None
+def form_of(asked: Asked) -> Declared | None:
+    """The question's curve as piecewise polynomials, where it is one."""
+    return declared(asked.block, asked.segments, asked.ends)
 
 
 def motions(form: Declared, way: Array, h: Array) -> Array:
     """Derivatives 0 to 3 of each segment, shape (batch, joints, segments, places, 4)."""
-    starts = np.concatenate([[0], np.cumsum([d + 1 for d in form.degrees])])
-    batch, n, size = len(h), h.shape[1], int(starts[-1])
-    rows: list[Array] = []
-    right: list[Array] = []
-
-    def derivative(k: int, s: float, r: int) -> Array:
-        """Row of h_k^r times derivative r, the same for every h."""
-        row = np.zeros(size)
-        for p in range(r, form.degrees[k] + 1):
-            falling = float(np.prod(np.arange(p - r + 1, p + 1))) if r else 1.0
-            row[starts[k] + p] = falling * s ** (p - r)
-        return row
-
-    still = np.zeros(way.shape[1])
-    for k in range(n):
-        for s, point in ((0.0, way[k]), (1.0, way[k + 1])):
-            rows.append(np.tile(derivative(k, s, 0), (batch, 1)))
-            right.append(point)
-            for r in range(1, form.rest + 1):
-                rows.append(np.tile(derivative(k, s, r), (batch, 1)))
-                right.append(still)
-    for k in range(n - 1):
-        rate = (h[:, k] / h[:, k + 1])[:, None]
-        for r in range(1, form.continuity + 1):
-            rows.append(derivative(k, 1.0, r) - derivative(k + 1, 0.0, r) * rate**r)
-            right.append(still)
-    for r in form.ends:
-        rows += [np.tile(derivative(k, s, r), (batch, 1)) for k, s in ((0, 0.0), (n - 1, 1.0))]
-        right += [still, still]
-    matrix = np.stack(rows, axis=1)
-    c = np.linalg.solve(matrix, np.broadcast_to(np.array(right), (batch, size, way.shape[1])))
-    found = np.empty((batch, way.shape[1], n, PLACES, 4))
+    c, starts = coefficients(form, way, h)
+    found = np.empty((len(h), way.shape[1], h.shape[1], PLACES, 4))
     for k, degree in enumerate(form.degrees):
-        own = c[:, starts[k] : starts[k] + degree + 1]
+        own = c[:, starts[k] : starts[k + 1]]
         for r in range(4):
-            basis = np.zeros((degree + 1, PLACES))
-            for p in range(r, degree + 1):
-                falling = float(np.prod(np.arange(p - r + 1, p + 1))) if r else 1.0
-                basis[p] = falling * _S ** (p - r)
+            basis = np.stack([derivative_row(degree, float(s), r) for s in _S], axis=1)
             values = np.einsum("bpj,ps->bjs", own, basis)
             found[:, :, k, :, r] = values / (h[:, k] ** r)[:, None, None]
     return found

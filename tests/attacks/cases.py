@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from .curves import Array, Asked, NoCurve, peaks, segments_of
-from .toml_text import Bare, toml_text
+from attacks.curves import Array, Asked, NoCurve, peaks, segments_of
+from attacks.toml_text import Bare, toml_text
 
 Rng = np.random.Generator
 FAMILIES = (

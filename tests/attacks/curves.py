@@ -15,6 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import BPoly, BSpline, CubicSpline, PPoly, make_interp_spline
 
+from attacks.declared import coefficients, declared
+
 Array = NDArray[np.float64]
 Derivatives = Callable[[Array], tuple[Array, Array, Array, Array]]
 """Position, velocity, acceleration and jerk of one piece at places in [0, 1]."""
@@ -208,47 +210,15 @@ def _times(h: Array) -> Array:
     return np.concatenate([[0.0], np.cumsum(h)])
 
 
-def _three_five_three(asked: Asked, j: int, q: Array, h: Array) -> list[Piece]:
-    return _joined((3, 5, 3), 2, {1: 0.0, 2: 0.0}, q, h)
-
-
-def _declared(asked: Asked, j: int, q: Array, h: Array) -> list[Piece]:
-    block = asked.block
-    orders = block.get("end_orders", [1, 2])
-    ends = {r: asked.ends.get(r, 0.0) for r in orders}
-    return _joined(block["degrees"], block.get("continuity", 2), ends, q, h)
-
-
-def _joined(
-    degrees: Any, continuity: int, ends: dict[int, float], q: Array, h: Array
-) -> list[Piece]:
+def _joined(asked: Asked, j: int, q: Array, h: Array) -> list[Piece]:
     """Piecewise polynomials by one dense linear system in powers of s."""
-    starts = np.concatenate([[0], np.cumsum([d + 1 for d in degrees])])
-    size, rows, right = int(starts[-1]), [], []
-
-    def derivative(k: int, s: float, r: int) -> Array:
-        row = np.zeros(size)
-        for p in range(r, degrees[k] + 1):
-            falling = float(np.prod([p - i for i in range(r)])) if r else 1.0
-            row[starts[k] + p] = falling * s ** (p - r) / h[k] ** r
-        return row
-
-    last = len(h) - 1
-    for k in range(len(h)):
-        rows += [derivative(k, 0.0, 0), derivative(k, 1.0, 0)]
-        right += [q[k], q[k + 1]]
-    for k in range(last):
-        for r in range(1, continuity + 1):
-            scale = h[k] ** r
-            rows.append((derivative(k, 1.0, r) - derivative(k + 1, 0.0, r)) * scale)
-            right.append(0.0)
-    for r, value in ends.items():
-        rows += [derivative(0, 0.0, r) * h[0] ** r, derivative(last, 1.0, r) * h[-1] ** r]
-        right += [value * h[0] ** r, value * h[-1] ** r]
-    if len(rows) != size:
-        raise NoCurve
-    c = np.linalg.solve(np.array(rows), np.array(right))
-    return [_polynomial(c[a:b], h[k]) for k, (a, b) in enumerate(pairwise(starts))]
+    form = declared(asked.block, len(h), asked.ends)
+    assert form is not None
+    try:
+        c, starts = coefficients(form, q[:, None], h[None])
+    except np.linalg.LinAlgError:
+        raise NoCurve from None
+    return [_polynomial(c[0, a:b, 0], h[k]) for k, (a, b) in enumerate(pairwise(starts))]
 
 
 def _cubic(asked: Asked, j: int, q: Array, h: Array) -> list[Piece]:
@@ -257,7 +227,7 @@ def _cubic(asked: Asked, j: int, q: Array, h: Array) -> list[Piece]:
     t = _times(h)
     if len(h) == 1:  # scipy's two-point spline, by Hermite's formula or a straight line
         if order == 2:
-            return _joined((3,), 0, {2: end[1]}, q, h)
+            return _joined(asked, j, q, h)
         rows = [[q[0], end[1]], [q[1], end[1]]]
         return _of_spline(BPoly.from_derivatives(t, rows), 3, t)
     return _of_spline(CubicSpline(t, q, bc_type=(end, end)), 3, t)
@@ -380,8 +350,9 @@ def _clamped(asked: Asked, j: int, q: Array, h: Array) -> list[Piece]:
 
 
 _MAKERS: dict[str, Callable[[Asked, int, Array, Array], list[Piece]]] = {
-    "3-5-3": _three_five_three,
-    "polynomials": _declared,
+    "3-5-3": _joined,
+    "polynomials": _joined,
+    "stated": _joined,
     "cubic-spline": _cubic,
     "quintic-spline": _quintic,
     "cubic-spline-virtual": _virtual,

@@ -12,10 +12,10 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from .attack import Attack, demand, keep
-from .cases import Rng
-from .reading import well_ended
-from .sandbox import Ended, Plan, command
+from attacks.attack import Attack, demand, keep
+from attacks.cases import Rng
+from attacks.reading import well_ended
+from attacks.sandbox import Ended, Plan, command
 
 _CASE = """format = 1
 id = "kept"

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from .cases import CLAIMS, DERIVATIVES, UNITS, Drawn, Rng, draw_asked, near_limits, raw_of
-from .curves import Array, Asked, NoCurve, segments_of
-from .toml_text import Bare
+from attacks.cases import CLAIMS, DERIVATIVES, UNITS, Drawn, Rng, draw_asked, near_limits, raw_of
+from attacks.curves import Array, Asked, NoCurve, segments_of
+from attacks.toml_text import Bare
 
 FACTORS = {"rad": 1.0, "deg": math.pi / 180, "s": 1.0, "ms": 1e-3}
 """What a unit is in rad and s; units of derivatives begin with one of these."""

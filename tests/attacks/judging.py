@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from .attack import Attack, demand, keep
-from .cases import FAMILIES, Drawn, Rng, alone, draw_asked, near_limits, raw_of
-from .curves import Array, Asked, NoCurve, excess, peaks
-from .grammar import FACTORS, asked_of, draw_case
-from .toml_text import Bare, toml_text
+from attacks.attack import Attack, demand, keep
+from attacks.cases import FAMILIES, Drawn, Rng, alone, draw_asked, near_limits, raw_of
+from attacks.curves import Array, Asked, NoCurve, excess, peaks
+from attacks.grammar import FACTORS, asked_of, draw_case
+from attacks.toml_text import Bare, toml_text
 
 ROUNDING = 1e-6
 """What the splines of scipy may be off by, relative: durations differ by at most 1:300 here."""

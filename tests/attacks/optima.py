@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from .attack import Attack, demand, keep
-from .batch import declared, searched
-from .cases import Rng, alone, draw_asked, near_limits
-from .curves import Array, Asked, NoCurve, excess
+from attacks.attack import Attack, demand, keep
+from attacks.batch import form_of, searched
+from attacks.cases import Rng, alone, draw_asked, near_limits
+from attacks.curves import Array, Asked, NoCurve, excess
 
 BEATEN = 1e-4
 """By how much, relative, a search must beat the optimum before that counts."""
@@ -61,7 +61,7 @@ def _searched(
     """What a search finds where samples and the judge agree that it keeps every limit."""
     from trajgap.problem import check
 
-    form = declared(asked)
+    form = form_of(asked)
     found = None if form is None else searched(asked, form, seed, decades, rounds)
     if found is None or check(problem, found[1]).verdict != "pass":
         return None
@@ -93,7 +93,7 @@ def _judged(asked: Asked, answer: Any, found: tuple[float, Array] | None) -> str
 def beaten(rng: Rng, folder: Path) -> str | None:
     """Free and bounded problems against differential evolution."""
     asked = _draw(rng, 0.3, 0.2)
-    if declared(asked) is None:
+    if form_of(asked) is None:
         return None
     answer, seed = _solved(asked, folder), int(rng.integers(1 << 30))
     return _judged(asked, answer, _searched(asked, answer.problem, seed, 3.0, 150, folder))
@@ -109,7 +109,7 @@ def degenerate(rng: Rng, folder: Path) -> str | None:
     gap = 10.0 ** -float(rng.integers(3, 9)) * rng.normal(size=way.shape[1])
     way[k + 1] = way[k] + (0.0 if rng.random() < 0.2 else gap * np.abs(way).max())
     asked = replace(asked, waypoints=way)
-    if declared(asked) is None:
+    if form_of(asked) is None:
         return None
     answer, seed = _solved(asked, folder), int(rng.integers(1 << 30))
     found = _searched(asked, answer.problem, seed, 6.0, 200, folder)
@@ -119,7 +119,7 @@ def degenerate(rng: Rng, folder: Path) -> str | None:
 def tight_bounds(rng: Rng, folder: Path) -> str | None:
     """Narrow bounds around durations that keep every limit: never infeasible."""
     drawn = _boxed(rng, _draw(rng, 0.0, 0.1))
-    if drawn is None or declared(drawn[0]) is None:
+    if drawn is None or form_of(drawn[0]) is None:
         return None
     asked, h = drawn
     if not excess(asked, h)[1] <= 1:

@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from .attack import Attack, demand, keep
-from .cases import Drawn, Rng, near_limits
-from .curves import NoCurve
-from .grammar import FACTORS, draw_case
-from .mutations import damaged
-from .sandbox import Ended, Plan, command
+from attacks.attack import Attack, demand, keep
+from attacks.cases import Drawn, Rng, near_limits
+from attacks.curves import NoCurve
+from attacks.grammar import FACTORS, draw_case
+from attacks.mutations import damaged
+from attacks.sandbox import Ended, Plan, command
 
 _LINE = re.compile(r"trajgap: (?P<file>.+?): (?P<rest>.+)")
 """The one line of bad input: the file, then the field or, for the whole file, what is wrong."""

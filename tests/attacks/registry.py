@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from . import faults, judging, optima, reading
-from .attack import Attack
+from attacks import faults, judging, optima, reading
+from attacks.attack import Attack
 
 ATTACKS: tuple[Attack, ...] = (
     *reading.ATTACKS,

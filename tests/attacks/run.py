@@ -15,8 +15,8 @@ from pathlib import Path
 
 import numpy as np
 
-from .attack import Attack, Broken
-from .sandbox import call
+from attacks.attack import Attack, Broken
+from attacks.sandbox import call
 
 TRIAL_SECONDS = 240.0
 """Processor time of one trial inside a child."""

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from dataclasses import astuple, dataclass, fields
 from pathlib import Path
 
-from .attack import Attack
-from .run import Account
+from attacks.attack import Attack
+from attacks.run import Account
 
 ROOT = Path(__file__).parents[2]
 CSV = ROOT / "docs" / "attacks.csv"
@@ -89,7 +89,7 @@ def table(rows: Sequence[Row], attacks: Sequence[Attack]) -> str:
 def command_of(seconds: int, seed: int) -> str:
     """The command of a run, its seconds rounded to whole minutes."""
     minutes = max(1, round(seconds / 60))
-    run = f"python -m tests.attacks --seconds {60 * minutes} --seed {seed}"
+    run = f"python tests/attacks --seconds {60 * minutes} --seed {seed}"
     return f"{run} --write docs/attacks.csv"
 
 

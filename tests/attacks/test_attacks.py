@@ -11,15 +11,15 @@ from trajgap.problem import parse_case
 from trajgap.problem.cases.claim import QUANTITY_KINDS
 from trajgap.problem.cases.declaration import Family
 
-from . import faults
-from .attack import Attack
-from .cases import CLAIMS, FAMILIES
-from .grammar import draw_case
-from .mutations import damaged
-from .registry import ATTACKS
-from .run import Account, tried, warm
-from .sandbox import available
-from .table import CSV, PAGE, page_with, read_rows, table
+from attacks import faults
+from attacks.attack import Attack
+from attacks.cases import CLAIMS, FAMILIES
+from attacks.grammar import draw_case
+from attacks.mutations import damaged
+from attacks.registry import ATTACKS
+from attacks.run import Account, tried, warm
+from attacks.sandbox import available
+from attacks.table import CSV, PAGE, page_with, read_rows, table
 
 pytestmark = pytest.mark.skipif(not available(), reason="children are forked and watched on Linux")
 

@@ -18,12 +18,12 @@ from trajgap.compare.cli import commands, output
 from trajgap.nlp.optimum import Status
 from trajgap.problem import Verdict
 
-from . import faults
-from .attack import Broken
-from .reading import hold_together
-from .registry import ATTACKS
-from .run import Account, tried, warm
-from .sandbox import available
+from attacks import faults
+from attacks.attack import Broken
+from attacks.reading import hold_together
+from attacks.registry import ATTACKS
+from attacks.run import Account, tried, warm
+from attacks.sandbox import available
 
 pytestmark = pytest.mark.skipif(not available(), reason="children are forked and watched on Linux")
 
