@@ -160,6 +160,36 @@ def writing_raises(patch: Patch) -> None:
     patch.setattr(output, "_writing", writing)
 
 
+def trees_are_not_walked(patch: Patch) -> None:
+    patch.setattr("trajgap.verify.certificate.walk", lambda kind, tree, clock: None)
+
+
+def leaves_are_not_proved(patch: Patch) -> None:
+    patch.setattr("trajgap.verify.three_piece._covers", lambda *_: True)
+    patch.setattr("trajgap.verify.closed_form.need", lambda *_: None)
+    patch.setattr("trajgap.verify.any_curve.need", lambda *_: None)
+
+
+def answers_are_not_looked_at(patch: Patch) -> None:
+    patch.setattr("trajgap.verify.certificate.check_answer", lambda *_: None)
+
+
+def the_verifier_raises(patch: Patch) -> None:
+    def fail(*_: Any) -> None:
+        raise AssertionError
+
+    patch.setattr("trajgap.verify.certificate.walk", fail)
+
+
+def the_clock_stands(patch: Patch) -> None:
+    def slowly(kind: Any, tree: Any, clock: Any) -> None:
+        end = time.process_time() + 4
+        while time.process_time() < end:
+            pass
+
+    patch.setattr("trajgap.verify.certificate.walk", slowly)
+
+
 PLANTED: list[tuple[str, Callable[[Patch], None], int]] = [
     ("verdicts", check_passes, 20),
     ("verdicts", check_violates, 20),
@@ -175,6 +205,13 @@ PLANTED: list[tuple[str, Callable[[Patch], None], int]] = [
     ("damaged case files", two_lines, 10),
     ("bytes that are no case file", two_lines, 10),
     ("valid case files", a_fault, 2),
+    ("certificates", trees_are_not_walked, 40),
+    ("certificates", leaves_are_not_proved, 60),
+    ("certificates", answers_are_not_looked_at, 60),
+    ("certificates", the_verifier_raises, 20),
+    ("certificates", the_clock_stands, 10),
+    ("forged proofs", trees_are_not_walked, 20),
+    ("states", trees_are_not_walked, 60),
     ("killed", files_by_and_by, 12),
     ("interrupted", drafts_stay, 8),
     ("full disk", writing_raises, 6),
