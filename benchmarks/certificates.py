@@ -12,13 +12,13 @@ from fractions import Fraction
 from trajgap.nlp.proofs.certifiers import certify, covered
 from trajgap.nlp.proofs.document import shipped_folder, write_certificate
 from trajgap.nlp.proofs.exact import ExactProblem, printed_problem
-from trajgap.nlp.verify import verify
 from trajgap.problem import Coupling, load_case, published_ids
+from trajgap.verify import CertifiedQuestion, verify_certificate
 
 HEAD = "| problem | lower (s) | upper (s) | gap | boxes | seconds | bytes | check (s) |"
 
 
-def problems() -> Iterator[tuple[str, ExactProblem]]:
+def problems() -> Iterator[tuple[str, CertifiedQuestion, ExactProblem]]:
     """Every shipped problem that is covered; each joint too where joints are optimised alone."""
     for case_id in published_ids():
         case = load_case(case_id)
@@ -31,10 +31,12 @@ def problems() -> Iterator[tuple[str, ExactProblem]]:
                 if covered(exact) is not None:
                     continue
                 name = f"{case_id}.{problem.id}.{reading.id}"
-                yield name, exact
+                ids = (case_id, problem.id, reading.id)
+                yield name, CertifiedQuestion(*ids), exact
                 if len(exact.joints) > 1 and statement.coupling is Coupling.PER_JOINT:
                     for j, label in enumerate(exact.joints):
-                        yield f"{name}.joint-{label}", exact.joint(j)
+                        asked = CertifiedQuestion(*ids, label)
+                        yield f"{name}.joint-{label}", asked, exact.joint(j)
 
 
 def main() -> None:
@@ -44,9 +46,9 @@ def main() -> None:
     shipped_folder().mkdir(exist_ok=True)
     print(HEAD)
     print("|---" * (HEAD.count("|") - 1) + "|")
-    for name, exact in problems():
+    for name, asked, exact in problems():
         if not only or name.startswith(only):
-            print(line(name, exact), flush=True)
+            print(line(name, asked, exact), flush=True)
 
 
 def nine(value: Fraction, rounding: Callable[[Fraction], int]) -> str:
@@ -54,12 +56,12 @@ def nine(value: Fraction, rounding: Callable[[Fraction], int]) -> str:
     return f"{Decimal(rounding(value * 10**9)).scaleb(-9):.9f}"
 
 
-def line(name: str, exact: ExactProblem) -> str:
+def line(name: str, asked: CertifiedQuestion, exact: ExactProblem) -> str:
     path = shipped_folder() / f"{name}.json"
     found = certify(exact)
-    size = write_certificate(found, path)
+    size = write_certificate(found, path, asked)
     began = time.perf_counter()
-    verdict = verify(path)
+    verdict = verify_certificate(path)
     seconds = time.perf_counter() - began
     assert verdict.proves, verdict
     assert found.upper is not None

@@ -17,11 +17,10 @@ from trajgap.nlp.proofs.cubic.guide import peaks
 from trajgap.nlp.proofs.cubic.proof import TOTAL
 from trajgap.nlp.proofs.cubic.relaxation import Relaxation
 from trajgap.nlp.proofs.cubic.system import cubic_system
-from trajgap.nlp.proofs.cubic.tree import TICKS, Prover
+from trajgap.nlp.proofs.cubic.tree import Prover
 from trajgap.nlp.proofs.document import certificate, write_certificate
 from trajgap.nlp.proofs.exact import ExactProblem, exact_problem, printed_problem
 from trajgap.nlp.proofs.outcome import Certified
-from trajgap.nlp.verify import verify
 from trajgap.problem import (
     Limits,
     Problem,
@@ -29,6 +28,7 @@ from trajgap.problem import (
     cubic_spline_virtual,
     load_case,
 )
+from trajgap.verify import TICKS, CertifiedQuestion, verify_certificate
 
 EXAMPLE = Path(__file__).parents[1] / "docs" / "examples" / "gasparetto-zanotto2008.toml"
 SECONDS = 300.0
@@ -86,10 +86,12 @@ def line(name: str, exact: ExactProblem) -> str:
         return head + "| | |"
     document = certificate(found)
     if name == "gasparetto-zanotto2008":
-        write_certificate(found, EXAMPLE.with_suffix(".certificate.json"))
+        case = load_case(EXAMPLE)
+        asked = CertifiedQuestion(case.id, case.problems[0].id, case.readings[0].id)
+        write_certificate(found, EXAMPLE.with_suffix(".certificate.json"), asked)
     size = len(json.dumps(document, separators=(",", ":")).encode())
     began = time.perf_counter()
-    verdict = verify(document)
+    verdict = verify_certificate(document)
     assert verdict.proves, verdict
     return head + f"| {size / 1000:.0f} | {time.perf_counter() - began:.1f} |"
 

@@ -25,15 +25,14 @@ from trajgap.nlp.proofs.document import (
 )
 from trajgap.nlp.proofs.exact import ExactProblem, printed_problem
 from trajgap.problem import load_case, published_ids
-from trajgap.verify import Subject
-from trajgap.verify import verify_certificate as verify
+from trajgap.verify import CertifiedQuestion, Subject, verify_certificate
 
 GAPS = {"irb1600-ga-cubic-bspline": 1e-5}
 GAP = 1e-9
 HEAD = "| problem | lower (s) | upper (s) | gap | boxes | seconds | bytes | check (s) |"
 
 
-def problems() -> Iterator[tuple[str, ExactProblem, float]]:
+def problems() -> Iterator[tuple[CertifiedQuestion, ExactProblem, float]]:
     """Every different question of the shipped cases, and the gap to reach."""
     seen = set()
     for case_id in published_ids():
@@ -44,11 +43,12 @@ def problems() -> Iterator[tuple[str, ExactProblem, float]]:
                 if not statement.complete:
                     continue
                 exact = printed_problem(statement)
-                asked = json.dumps(question(problem_document(exact), Subject.ANY), sort_keys=True)
+                stated = question(problem_document(exact), Subject.ANY)
+                asked = json.dumps(stated, sort_keys=True, default=str)
                 if missing(exact) is None and asked not in seen:
                     seen.add(asked)
-                    name = f"{case_id}.{problem.id}.{reading.id}"
-                    yield name, exact, GAPS.get(case_id, GAP)
+                    ids = CertifiedQuestion(case_id, problem.id, reading.id)
+                    yield ids, exact, GAPS.get(case_id, GAP)
 
 
 def nine(value: Fraction, rounding: Callable[[Fraction], int]) -> str:
@@ -56,13 +56,16 @@ def nine(value: Fraction, rounding: Callable[[Fraction], int]) -> str:
     return f"{Decimal(rounding(value * 10**9)).scaleb(-9):.9f}"
 
 
-def line(name: str, exact: ExactProblem, gap: float, seconds: float) -> str:
+def line(
+    name: str, asked: CertifiedQuestion, exact: ExactProblem, gap: float, seconds: float
+) -> str:
     """Certify, write, and prove again."""
+    name = f"{asked.case}.{asked.problem}.{asked.reading}"
     path = shipped_folder() / f"{name}.any-curve.json"
     found = certify(exact, subject=Subject.ANY, gap=gap, seconds=seconds)
-    size = write_certificate(found, path)
+    size = write_certificate(found, path, asked)
     began = time.perf_counter()
-    verdict = verify(path)
+    verdict = verify_certificate(path)
     check = time.perf_counter() - began
     assert verdict.proves, verdict
     assert found.upper is not None
@@ -89,11 +92,12 @@ def main() -> None:
     if not options.convergence:
         print(HEAD)
         print("|---" * (HEAD.count("|") - 1) + "|")
-    for name, exact, gap in problems():
+    for asked, exact, gap in problems():
+        name = f"{asked.case}.{asked.problem}.{asked.reading}"
         if options.only and not name.startswith(tuple(options.only)):
             continue
         if not options.convergence:
-            print(line(name, exact, gap, options.seconds), flush=True)
+            print(line(asked, exact, gap, options.seconds), flush=True)
             continue
         print(f"\n{name}\n\n| asked | outcome | gap | boxes | seconds |\n|---|---|---|---|---|")
         for wanted in (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9):

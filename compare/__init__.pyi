@@ -1,32 +1,36 @@
 from .audits import (
-    RULES,
     AuditReport,
-    Basis,
-    Box,
     CaseAudit,
-    ClaimVerdict,
-    Finding,
-    Judgement,
-    Rounding,
+    RoundingBox,
     RoundingVerdict,
-    Rule,
-    Scope,
-    Severity,
-    Step,
     Study,
-    Waterfall,
     audit,
     judge_rounding,
     waterfalls,
 )
-from .gaps import Gap, GapKind, Reference, gap
+from .documents import (
+    RULES,
+    Basis,
+    ClaimVerdict,
+    Finding,
+    Gap,
+    GapKind,
+    Judgement,
+    Reference,
+    Rounding,
+    Rule,
+    Scope,
+    Severity,
+    Step,
+    Waterfall,
+)
+from .gaps import gap
 from .pages import write_report
 
 __all__ = [
     "RULES",
     "AuditReport",
     "Basis",
-    "Box",
     "CaseAudit",
     "ClaimVerdict",
     "Finding",
@@ -35,6 +39,7 @@ __all__ = [
     "Judgement",
     "Reference",
     "Rounding",
+    "RoundingBox",
     "RoundingVerdict",
     "Rule",
     "Scope",

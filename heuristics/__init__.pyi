@@ -18,6 +18,7 @@ from .loop import run, run_many, run_many_per_joint, run_per_joint, states
 from .objective import Bounds, Counted, DeathPenalty, Objective
 from .repair import Handling, Stretch
 from .result import JointRuns, Run
+from .workers import in_processes
 
 __all__ = [
     "GA",
@@ -44,6 +45,7 @@ __all__ = [
     "differential_evolution",
     "dual_annealing",
     "from_settings",
+    "in_processes",
     "one_by_one",
     "open_choices",
     "run",

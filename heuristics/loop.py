@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import signal
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import ProcessPoolExecutor
-from contextlib import ExitStack
+from contextlib import ExitStack, closing
 from dataclasses import replace
 from functools import partial
-from multiprocessing import get_context
 from typing import Annotated, Any, TypeVar, cast
 
 import numpy as np
@@ -20,6 +17,7 @@ from .objective import Bounds, Counted, Objective
 from .repair import Handling, judge_of
 from .result import JointRuns, Run
 from .settings import checked, whole
+from .workers import in_processes
 
 
 def states(
@@ -214,19 +212,7 @@ def _each(
         results: Iterable[R] = map(one, clean)
         if workers > 1:
             # Threads would be slower than one: half of each iteration holds the interpreter.
-            # Spawned, because a fork copies the locks of the compiled libraries.
-            context = get_context("spawn")
-            # A terminal sends Ctrl-C to the workers too; the parent alone answers it.
-            pool = stack.enter_context(
-                ProcessPoolExecutor(
-                    workers,
-                    mp_context=context,
-                    initializer=signal.signal,
-                    initargs=(signal.SIGINT, signal.SIG_IGN),
-                )
-            )
-            share = -(-len(clean) // (4 * workers))
-            results = pool.map(one, clean, chunksize=share)
+            results = stack.enter_context(closing(in_processes(one, clean, workers)))
         for result in results:
             collected.append(result)
             if progress is not None:
@@ -264,7 +250,8 @@ def run_many(
     seeds : iterable of int
     workers : int
         Processes. More than one costs about a second to start, and a script that asks for them
-        must guard its entry point with ``if __name__ == "__main__":``.
+        must guard its entry point with ``if __name__ == "__main__":``. The work of a process that
+        is killed is done again, once.
     iterations : int, optional
         Replaces the algorithm's own.
     progress : callable, optional
@@ -279,7 +266,8 @@ def run_many(
     Raises
     ------
     TrajgapError
-        As `run`, or if workers is not a whole number of 1 or more.
+        As `run`, if workers is not a whole number of 1 or more, or if processes end twice at the
+        same run.
     """
     one = partial(_run_seed, algorithm, problem, iterations, objective)
     return _each(one, seeds, workers, progress)

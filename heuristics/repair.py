@@ -20,7 +20,7 @@ class Handling(StrEnum):
     DEATH_PENALTY = "death-penalty"
     """It gets the penalty, as the papers print."""
     STRETCH = "stretch"
-    """It stands for its durations times max(1, c*), the shortest uniform stretch that mends it."""
+    """It stands for its durations times max(1, c*), the shortest stretch that repairs it."""
     RESCALE = "rescale"
     """Every vector stands for its durations times c*: one that could be shorter is shortened."""
 
@@ -92,7 +92,7 @@ class Stretch:
         return stretched, kept
 
     def decode(self, durations: Array) -> Array:
-        """Durations that positions stand for; a position that no stretch mends is left as it is.
+        """Durations that positions stand for; a position that no stretch repairs is left as it is.
 
         Parameters
         ----------

@@ -11,6 +11,7 @@ from .cases import (
     robot_ids,
     scaffold,
 )
+from .characters import escaped, visible
 from .checker import (
     TOLERANCE,
     Check,
@@ -51,6 +52,18 @@ from .curves import (
     uniform_cubic_b_spline,
 )
 from .errors import CaseError, CurveError, TrajgapError
+from .file_names import LONGEST_NAME, file_name
+from .files import (
+    check_name,
+    check_regular,
+    new_file,
+    read_regular,
+    recover_folder,
+    remove_drafts,
+    replace_file,
+    replace_folder,
+    try_writing_in,
+)
 from .gradient import peak_gradients
 from .limits import QUANTITIES, Limits
 from .printed import Interval, Printed, down, up
@@ -78,6 +91,7 @@ from .units import CHOICES, Measured, Scale, scale, to_si
 
 __all__ = [
     "CHOICES",
+    "LONGEST_NAME",
     "QUANTITIES",
     "TOLERANCE",
     "Array",
@@ -122,6 +136,8 @@ __all__ = [
     "Workspace",
     "case_schema",
     "check",
+    "check_name",
+    "check_regular",
     "clamped_control_points",
     "clamped_readings",
     "control_vertices",
@@ -129,8 +145,10 @@ __all__ = [
     "cubic_spline",
     "cubic_spline_virtual",
     "down",
+    "escaped",
     "evaluate",
     "extrema",
+    "file_name",
     "fit",
     "forward_kinematics",
     "geometric_jacobian",
@@ -139,6 +157,7 @@ __all__ = [
     "link_frames",
     "load_case",
     "load_robot",
+    "new_file",
     "parse_case",
     "peak_gradients",
     "piecewise",
@@ -146,6 +165,11 @@ __all__ = [
     "published_ids",
     "quintic_spline",
     "reachable_total",
+    "read_regular",
+    "recover_folder",
+    "remove_drafts",
+    "replace_file",
+    "replace_folder",
     "rest_to_rest",
     "robot_ids",
     "sample_workspace",
@@ -154,7 +178,9 @@ __all__ = [
     "solve_in_closed_form",
     "three_five_three",
     "to_si",
+    "try_writing_in",
     "uniform_cubic_b_spline",
     "up",
+    "visible",
     "waypoint_sequences",
 ]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from .characters import visible
+
 
 class TrajgapError(ValueError):
     """Root of every exception that trajgap raises on purpose."""
@@ -40,11 +42,11 @@ class CaseError(TrajgapError):
         Path of the field inside it, such as ``waypoints.joint_rows[2]``; empty if the file as a
         whole is at fault.
     reason : str
-        What is wrong, and after a semicolon how to mend it.
+        What is wrong, and after a semicolon how to fix it.
 
     Notes
     -----
-    The message is always one line, ``FILE: field: what is wrong; mend``.
+    The message is always one line, ``FILE: field: what is wrong; how to fix it``.
     """
 
     def __init__(self, file: str, field: str, reason: str) -> None:
@@ -57,4 +59,4 @@ class CaseError(TrajgapError):
         parts = (part for part in (self.file, self.field, self.reason) if part)
         line = " ".join(": ".join(parts).split())
         # File names and values come from outside; nothing of them may steer a terminal.
-        return "".join(c if c.isprintable() else "?" for c in line)
+        return visible(line)

@@ -25,6 +25,15 @@ from .errors import TrajgapError
 from .printed import Printed
 from .units import CHOICES, Quantity, check_unit
 
+MOST_WAYPOINTS = 10_000
+"""Way-points of one problem: the curve through them takes half a second and 50 MB to declare."""
+MOST_JOINTS = 100
+"""Joints of one robot: no arm and no humanoid has as many."""
+MOST_ENTRIES = 1_000
+"""Entries of one list of a case file, such as its claims: no paper prints as many."""
+LARGEST_SEED = 2**63 - 1
+"""Largest seed: what TOML promises to keep."""
+
 
 def fault(
     path: str, reason: str, kind: Literal["fault", "unknown_key"] = "fault"
@@ -217,14 +226,17 @@ OneOrEachUpperPosition = Annotated[
 ]
 
 PrintedRows = Annotated[
-    tuple[Annotated[tuple[Number, ...], Field(min_length=1)], ...], Field(min_length=1)
+    tuple[Annotated[tuple[Number, ...], Field(min_length=1, max_length=MOST_WAYPOINTS + 2)], ...],
+    Field(min_length=1, max_length=MOST_WAYPOINTS),
 ]
-"""A table of numbers, no row empty."""
+"""A table of numbers, no row empty; control vertices are two more than way-points."""
 
 Id = Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9.-]*$")]
 """Lower-case letters, digits, dots and dashes."""
 
 Text = Annotated[str, Field(min_length=1)]
+
+JointLabels = Annotated[tuple[Text, ...], Field(min_length=1, max_length=MOST_JOINTS)]
 
 
 def _unit(quantity: Quantity) -> tuple[PlainValidator, WithJsonSchema]:

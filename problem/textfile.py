@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from .errors import CaseError
+from .files import read_regular
 
 LARGEST_BYTES = 5_000_000
 """Two hundred times the longest case file shipped: what is larger is no case file."""
@@ -31,25 +32,7 @@ def read_text(path: Path) -> str:
         If the file is missing, not a regular file, larger than 5 MB, empty, or not UTF-8 text.
     """
     name = str(path)
-    try:
-        if path.is_dir():
-            raise CaseError(name, "", "is a directory; name a file in it")
-        if not path.exists():
-            raise CaseError(name, "", "no such file; check the path")
-        if not path.is_file():
-            raise CaseError(name, "", "is not a regular file; name a text file")
-        size = path.stat().st_size
-        if size > LARGEST_BYTES:
-            raise CaseError(
-                name,
-                "",
-                f"has {size / 1e6:.1f} MB, the limit is {LARGEST_BYTES / 1e6:.0f} MB; "
-                "keep only the case itself",
-            )
-        data = path.read_bytes()
-    except OSError as error:
-        reason = error.strerror or type(error).__name__
-        raise CaseError(name, "", f"cannot be read ({reason}); check the path") from None
+    data = read_regular(path, LARGEST_BYTES, "keep only the case itself")
     if b"\0" in data:
         raise CaseError(name, "", "is a binary file; a UTF-8 text file is needed")
     try:

@@ -124,11 +124,11 @@ def check_unit(unit: object, quantity: Quantity) -> str:
     choices = CHOICES[quantity]
     if unit in choices:
         return str(unit)
-    mend = f"use one of {', '.join(choices)}"
+    fix = f"use one of {', '.join(choices)}"
     for other, units in CHOICES.items():
         if unit in units:
-            raise TrajgapError(f"{unit!r} measures {other}, not {quantity}; {mend}")
-    raise TrajgapError(f"unknown unit {unit!r} for {quantity}; {mend}")
+            raise TrajgapError(f"{unit!r} measures {other}, not {quantity}; {fix}")
+    raise TrajgapError(f"unknown unit {unit!r} for {quantity}; {fix}")
 
 
 @dataclass(frozen=True)

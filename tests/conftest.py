@@ -1,5 +1,7 @@
 """Hypothesis without a deadline: the first example may compile. The same examples in every run."""
 
+import signal
+
 import pytest
 from hypothesis import settings
 
@@ -8,3 +10,6 @@ pytest.register_assert_rewrite("support")
 
 settings.register_profile("trajgap", deadline=None, derandomize=True)
 settings.load_profile("trajgap")
+
+# Programs that tests start and interrupt inherit this; a run in the background ignores SIGINT.
+signal.signal(signal.SIGINT, signal.default_int_handler)

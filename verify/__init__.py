@@ -5,16 +5,6 @@ does the same as ``python -I FOLDER FILE...``, with the standard library only; p
 quintic splines need numpy. Format and mathematics are in docs/certificates.md.
 """
 
-from .certificate import (
-    CERTIFICATE_FORMAT,
-    OLD_FORMATS,
-    SECONDS,
-    STATE_FORMAT,
-    CertificateVerdict,
-    CertifiedQuestion,
-    seal,
-    verify_certificate,
-)
 from .problem import read_problem
 from .ranges import (
     MIX_DIGITS,
@@ -29,6 +19,16 @@ from .ranges import (
 )
 from .reading import Refused, number, read_document, shown
 from .tree import CUT, LEAF, OPEN, Subject
+from .verdict import (
+    CERTIFICATE_FORMAT,
+    OLD_FORMATS,
+    SECONDS,
+    STATE_FORMAT,
+    CertificateVerdict,
+    CertifiedQuestion,
+    seal,
+    verify_certificate,
+)
 
 __all__ = [
     "CERTIFICATE_FORMAT",

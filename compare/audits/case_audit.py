@@ -4,20 +4,26 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 from ...problem import Case, load_case, published_ids
-from .finding import (
+from ..documents import (
+    AuditDocument,
+    AuditedCase,
     ClaimVerdict,
     Finding,
     Judgement,
+    ReadingsSummary,
     Scope,
     Severity,
-    judge,
-    weigh,
+    Waterfall,
+    known,
 )
-from .readings import ReadingsSummary, readings_summary
+from .instances import examined_entry
+from .judging import judge, weigh
+from .readings import readings_summary
 from .rules import (
     judge_counts,
     judge_digits,
@@ -31,7 +37,7 @@ from .rules import (
     list_open_points,
 )
 from .study import SEEDS, Study
-from .waterfall import Waterfall, waterfalls
+from .waterfall import waterfalls
 
 _GROUPS = (
     judge_digits,
@@ -45,8 +51,9 @@ _GROUPS = (
     list_open_points,
     judge_kinematics,
 )
+"""The rules, in the order in which their findings of one severity and id stand."""
 _WITHOUT_WAYPOINTS = (judge_digits, judge_instances, list_open_points)
-_ORDER = {Severity.ERROR: 0, Severity.WARNING: 1, Severity.INFO: 2}
+"""Those of them that say something while the way-points are missing."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,6 +72,21 @@ class CaseAudit:
     def errors(self) -> int:
         """Number of findings of severity error."""
         return sum(f.severity is Severity.ERROR for f in self.findings)
+
+    @cached_property
+    def document(self) -> AuditedCase:
+        """What the audit says of the case, as terminal, page, Markdown and JSON print it."""
+        blocks = self.study.instance_blocks
+        return AuditedCase(
+            case=self.case.id,
+            title=self.case.title,
+            errors=self.errors,
+            findings=self.findings,
+            verdicts=self.judgements,
+            waterfalls=self.waterfalls,
+            readings=known(self.readings, "the case has one reading"),
+            families=tuple(examined_entry(self.study.instances(b)) for b in blocks),
+        )
 
     def __str__(self) -> str:
         counts = Counter(j.verdict for j in self.judgements)
@@ -90,6 +112,11 @@ class AuditReport:
     def errors(self) -> int:
         """Number of findings of severity error in all cases."""
         return sum(one.errors for one in self.cases)
+
+    @property
+    def document(self) -> AuditDocument:
+        """What `trajgap audit` answers."""
+        return AuditDocument(cases=tuple(one.document for one in self.cases))
 
     def __str__(self) -> str:
         return "\n".join(str(one) for one in self.cases)
@@ -146,13 +173,18 @@ def audit_case(study: Study) -> CaseAudit:
     groups = _GROUPS if study.posed else _WITHOUT_WAYPOINTS
     found = [finding for group in groups for finding in group(study)]
     scoped = _with_scopes(found, study)
-    by_rule = sorted(scoped, key=lambda f: (_ORDER[f.severity], f.rule))
+    by_rule = sorted(scoped, key=_weight)
     admissible = [reading.id for reading in study.case.readings]
     judgements = tuple(judge(claim.id, by_rule, admissible) for claim in study.case.claims)
-    ordered = sorted(weigh(by_rule, judgements), key=lambda f: (_ORDER[f.severity], f.rule))
+    ordered = sorted(weigh(by_rule, judgements), key=_weight)
     steps = waterfalls(study) if study.posed else ()
     readings = readings_summary(study, steps, judgements)
     return CaseAudit(study.case, study, tuple(ordered), judgements, steps, readings)
+
+
+def _weight(finding: Finding) -> tuple[int, str]:
+    """The most severe first, then by rule."""
+    return list(Severity).index(finding.severity), finding.rule
 
 
 def _with_scopes(findings: list[Finding], study: Study) -> list[Finding]:
@@ -165,11 +197,12 @@ def _with_scopes(findings: list[Finding], study: Study) -> list[Finding]:
     scoped = []
     for f in findings:
         if f.verdict is ClaimVerdict.NOT_CHECKABLE:
-            scoped.append(replace(f, scope=Scope.NO))
+            scope = Scope.NO
         elif f.reading is None:
-            scoped.append(replace(f, scope=Scope.ALL))
+            scope = Scope.ALL
         else:
             there = said[f.rule, f.claim, f.problem]
             everywhere = all(f.verdict in there.get(r.id, set()) for r in study.case.readings)
-            scoped.append(replace(f, scope=Scope.ALL if everywhere else Scope.SOME))
+            scope = Scope.ALL if everywhere else Scope.SOME
+        scoped.append(f.model_copy(update={"scope": scope}))
     return scoped

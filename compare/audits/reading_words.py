@@ -7,8 +7,7 @@ from collections.abc import Iterable, Sequence
 from math import log
 
 from ...nlp import Evidence
-from .finding import Scope
-from .readings import Excess, Keeping, Outcome, ReadingsSummary
+from ..documents import Excess, Gap, Keeping, ReadingOutcome, ReadingsSummary, Scope, Why
 
 
 def answers(summary: ReadingsSummary) -> tuple[str, ...]:
@@ -45,10 +44,10 @@ def _of_answers(summary: ReadingsSummary) -> Iterable[str]:
     if not summary.outcomes:
         yield (
             f"Under none of {len(summary.admissible)} readings can limits, optimum or gap be "
-            f"computed: {summary.why}."
+            f"computed: {summary.outcomes_why}."
         )
         return
-    by_answer: defaultdict[tuple[str, str], list[Outcome]] = defaultdict(list)
+    by_answer: defaultdict[tuple[str, str], list[ReadingOutcome]] = defaultdict(list)
     for outcome in summary.outcomes:
         if outcome.claim is not None:
             by_answer[outcome.claim, outcome.problem].append(outcome)
@@ -62,7 +61,7 @@ def _of_answers(summary: ReadingsSummary) -> Iterable[str]:
         yield f"Limits of {claim} ({problem}), {which} readings: {said}.{_of_gaps(own)}"
 
 
-def _of_gaps(own: Sequence[Outcome]) -> str:
+def _of_gaps(own: Sequence[ReadingOutcome]) -> str:
     """How far the printed total is from the optimum, where the limits are kept and where not."""
     kept = [o for o in own if o.keeping in (Keeping.KEEPS, Keeping.CONSISTENT)]
     parts = []
@@ -70,7 +69,7 @@ def _of_gaps(own: Sequence[Outcome]) -> str:
         (kept, "where they are kept"),
         ([o for o in own if o not in kept], "else"),
     ):
-        gaps = [o.gap for o in group if o.gap is not None]
+        gaps = [o.gap for o in group if isinstance(o.gap, Gap)]
         if gaps:
             low = 1 + min(g.lowest for g in gaps)
             high = 1 + max(g.highest for g in gaps)
@@ -86,8 +85,9 @@ def _of_fit(summary: ReadingsSummary) -> Iterable[str]:
     nearest = summary.nearest
     if len(summary.fits) < 2:
         return
-    own = [o for o in summary.outcomes if o.reading == nearest[0] and o.stretch is not None]
-    worst = max(own, key=lambda o: abs(log(o.stretch or 1.0)))
+    own = [o for o in summary.outcomes if o.reading == nearest[0]]
+    stretches = [(o.stretch, o.claim) for o in own if not isinstance(o.stretch, Why)]
+    worst, claim = max(stretches, key=lambda one: abs(log(one[0])))
     there = [
         *(["the limits are broken there"] if any(o.keeping is Keeping.BREAKS for o in own) else []),
         *(["the velocity jumps there"] if any(o.jumps for o in own) else []),
@@ -97,7 +97,7 @@ def _of_fit(summary: ReadingsSummary) -> Iterable[str]:
     else:
         which = f"The printed durations fit best under {named(nearest, 3)}"
     yield (
-        f"{which}: those of {worst.claim} times {worst.stretch:.4g} would just reach the limits, "
+        f"{which}: those of {claim} times {worst:.4g} would just reach the limits, "
         f"as a shortest time does{''.join(f'; {x}' for x in there)}. This measures fit; it does "
         "not say which reading was meant."
     )
@@ -105,19 +105,19 @@ def _of_fit(summary: ReadingsSummary) -> Iterable[str]:
 
 def _of_claims(summary: ReadingsSummary) -> Iterable[str]:
     every = defaultdict(list)
-    for tally in summary.tallies:
+    for tally in summary.claims:
         if tally.scope is Scope.ALL:
             every[tally.verdict].append(tally.claim)
     if every:
         said = "; ".join(f"{verdict} {', '.join(claims)}" for verdict, claims in every.items())
         yield f"Under every reading: {said}."
     some = [
-        f"{t.claim} ({', '.join(f'{verdict} {n}' for verdict, n in t.counts)})"
-        for t in summary.tallies
+        f"{t.claim} ({', '.join(f'{verdict} {n}' for verdict, n in t.readings.items())})"
+        for t in summary.claims
         if t.scope is Scope.SOME
     ]
     if some:
         yield f"Under some: {', '.join(some)}."
-    no = [t.claim for t in summary.tallies if t.scope is Scope.NO]
+    no = [t.claim for t in summary.claims if t.scope is Scope.NO]
     if no:
         yield f"Decided under none: {', '.join(no)}."

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from enum import StrEnum
 
 import numpy as np
 
@@ -26,26 +25,16 @@ from ...problem import (
     check,
     peak_gradients,
 )
+from ..documents import Rounding
 
 _MOST_STEPS = 12
+"""Linear programs of one descent; those that find a passing point need fewer than 5."""
 _MOST_ROWS = 300
-
-
-class Rounding(StrEnum):
-    """What holds over all inputs that print alike."""
-
-    KEEPS = "keeps"
-    """The printed point itself passes the check."""
-    CONSISTENT = "consistent"
-    """Some point of the box passes the check."""
-    BREAKS = "breaks"
-    """Every point of the box exceeds a limit by more than the tolerance: proved."""
-    UNDECIDED = "undecided"
-    """No passing point was found, and no proof that there is none."""
+"""Peaks that one linear program holds: more of them change its answer no further."""
 
 
 @dataclass(frozen=True, eq=False)
-class Box:
+class RoundingBox:
     """Printed numbers, and the bounds of all that print alike.
 
     Parameters
@@ -76,7 +65,7 @@ class Box:
             raise TrajgapError("box: a value lies outside its bounds; give lower ≤ value ≤ upper")
 
     @classmethod
-    def exact(cls, value: Array) -> Box:
+    def exact(cls, value: Array) -> RoundingBox:
         """Box of width 0."""
         return cls(value, value, value)
 
@@ -119,8 +108,8 @@ class RoundingVerdict:
 
 def judge_rounding(
     problem: Problem,
-    durations: Box,
-    waypoints: Box | None = None,
+    durations: RoundingBox,
+    waypoints: RoundingBox | None = None,
     tolerance: float = TOLERANCE,
 ) -> RoundingVerdict:
     """Judge a printed solution over every input that prints alike.
@@ -130,9 +119,9 @@ def judge_rounding(
     problem : Problem
         All its joints share the durations; take `Problem.joint` for the row of one joint. Its
         limits and duration bounds are taken as exact.
-    durations : Box, shape (segments,)
+    durations : RoundingBox, shape (segments,)
         s.
-    waypoints : Box, shape (way-points, joints), optional
+    waypoints : RoundingBox, shape (way-points, joints), optional
         rad, in place of the problem's own; those, exactly, by default.
     tolerance : float
         Relative excess over a limit that still counts as keeping it, as in `check`.
@@ -153,7 +142,7 @@ def judge_rounding(
     rounding can upset (`bound` and `interval`). A velocity that jumps is no excess over a limit:
     where nothing else is wrong, the answer is `undecided`.
     """
-    q = Box.exact(problem.waypoints) if waypoints is None else waypoints
+    q = RoundingBox.exact(problem.waypoints) if waypoints is None else waypoints
     if q.value.shape != problem.waypoints.shape:
         raise TrajgapError(
             f"waypoints: the box has shape {q.value.shape}, "
@@ -194,7 +183,7 @@ def _positive(value: float) -> float | None:
     return value if value > 0.0 else None
 
 
-def _outside_bounds(problem: Problem, durations: Box, tolerance: float) -> Place | None:
+def _outside_bounds(problem: Problem, durations: RoundingBox, tolerance: float) -> Place | None:
     """The duration that lies farthest outside its bounds wherever in the box it is, if any."""
     short = problem.duration_lower / np.maximum(durations.upper, np.finfo(np.float64).tiny)
     long = durations.lower / problem.duration_upper
@@ -205,7 +194,7 @@ def _outside_bounds(problem: Problem, durations: Box, tolerance: float) -> Place
     return Place(None, "duration", k, None, float(ratio[k]))
 
 
-def _admissible(problem: Problem, durations: Box, tolerance: float) -> tuple[Array, Array]:
+def _admissible(problem: Problem, durations: RoundingBox, tolerance: float) -> tuple[Array, Array]:
     """All of the box that `check` does not refuse for a duration outside its bounds."""
     slack = (1.0 + tolerance) * (1.0 + 4.0 * EPS)
     lower = np.maximum(durations.lower, problem.duration_lower / slack * (1.0 - 4.0 * EPS))
@@ -225,7 +214,7 @@ class _Region:
 
 
 def _search(
-    problem: Problem, durations: Box, waypoints: Box, at_print: Check
+    problem: Problem, durations: RoundingBox, waypoints: RoundingBox, at_print: Check
 ) -> tuple[Point, bool]:
     """Look for a passing point: cheap candidates, then descent from the best of them."""
     low, high = durations.inside()

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...heuristics import (
+    KINDS,
     Algorithm,
     JointRuns,
     Run,
@@ -40,17 +41,21 @@ from ...problem import (
     reachable_total,
 )
 from ...problem.cases import Claim, DurationsClaim, InstancesBlock, MaximumClaim, TotalTimeClaim
-from .instances import FamilyResult, examined, readings_of
-from .rounding import Box, RoundingVerdict, judge_rounding
+from .instances import InstancesResult, examined, readings_of
+from .rounding import RoundingBox, RoundingVerdict, judge_rounding
 
 T = TypeVar("T")
 Pair = tuple[str, str]
 """Problem id and reading id."""
 Replays = tuple[Run, ...] | tuple[JointRuns, ...]
+"""Runs of one algorithm, one for each seed: of all joints, or of each joint by itself."""
+
+Array = NDArray[np.float64]
 
 SEEDS = 30
-Array = NDArray[np.float64]
+"""Seeds of a replay by default: enough for a median and its spread, a minute or so of one core."""
 VARIANT_SEEDS = 6
+"""Seeds under each changed choice, of which there are many: enough to see a median move."""
 
 
 class Study:
@@ -157,20 +162,20 @@ class Study:
 
         def compute() -> Solution:
             problem = self.problem(pid, rid)
-            given = problem.curve.piecewise
-            if given is None:
+            given = problem.curve
+            if not isinstance(given, Interpolant):
                 why = "only a declared piecewise polynomial is a member of its relaxed family"
                 return Solution(problem, Status.FAILED, why)
             self._progress(f"{self.case.id}: relaxed family, {pid}, {rid}")
             inner = problem.segments - 1
-            family = Interpolant(
+            relaxed = Interpolant(
                 tuple(max(5, degree) for degree in given.degrees),
                 (2,) * inner,
                 (given.prescribed[0], *((),) * inner, given.prescribed[-1]),
                 virtual=given.virtual,
                 name="relaxed family",
             )
-            return solve(replace(problem, curve=family, coupling=Coupling.SHARED))
+            return solve(replace(problem, curve=relaxed, coupling=Coupling.SHARED))
 
         return self._once(("relaxed", pid, rid), compute)
 
@@ -228,8 +233,8 @@ class Study:
         self._progress(f"{self.case.id}: rounding box of {claim.id}, {rid}")
         problem = self.claim_problem(claim, pid, rid)
         printed = self.case.claim_durations(claim, rid)
-        durations = Box(printed.value, printed.lower, printed.upper)
-        waypoints = Box(problem.waypoints, *self._box_columns(problem, pid, rid))
+        durations = RoundingBox(printed.value, printed.lower, printed.upper)
+        waypoints = RoundingBox(problem.waypoints, *self._box_columns(problem, pid, rid))
         if cut:
             durations, waypoints = _or_cut_off(durations), _or_cut_off(waypoints)
         return judge_rounding(problem, durations, waypoints)
@@ -252,11 +257,11 @@ class Study:
     def algorithm(self, algorithm_id: str) -> Algorithm[Any] | None:
         """The case's algorithm, or None if its kind is not implemented."""
         block = next(a for a in self.case.algorithms if a.id == algorithm_id)
+        if block.kind not in KINDS:
+            return None
         try:
             return from_settings(block.kind, block.parameters)
         except TrajgapError as error:
-            if "is unknown" in str(error):
-                return None
             raise TrajgapError(f"{self.case.file}: algorithms.{algorithm_id}: {error}") from None
 
     def runs(self, algorithm_id: str, pid: str, rid: str) -> Replays:
@@ -315,25 +320,29 @@ class Study:
         return self._once(("variants", algorithm_id, pid, rid), compute)
 
     @property
-    def families(self) -> tuple[InstancesBlock, ...]:
-        """Families of which both problems and some reading are selected, all of it implemented."""
+    def instance_blocks(self) -> tuple[InstancesBlock, ...]:
+        """Designs of instances of which both problems and some reading are selected.
+
+        All of it is implemented.
+        """
         return tuple(block for block in self.case.instances if readings_of(self, block))
 
-    def family(self, block: InstancesBlock) -> FamilyResult:
-        """What the two procedures of an improvement do on the instances of a family."""
+    def instances(self, block: InstancesBlock) -> InstancesResult:
+        """What the two procedures of an improvement do on instances that are drawn for it."""
 
-        def compute() -> FamilyResult:
+        def compute() -> InstancesResult:
             what = f"{self.case.id}: family {block.id}"
             self._progress(what)
             return examined(self, block, lambda done: self._progress(f"{what}, {done}"))
 
-        return self._once(("family", block.id), compute)
+        return self._once(("instances", block.id), compute)
 
 
-def _or_cut_off(box: Box) -> Box:
+def _or_cut_off(box: RoundingBox) -> RoundingBox:
     """The box widened by the inputs whose further digits were cut off instead of rounded."""
     up, down = 2.0 * (box.upper - box.value), 2.0 * (box.value - box.lower)
+    # A little more than one unit of the last digit, whose own value is rounded.
     wide = 1.0 + 1e-9
     lower = np.where(box.value > 0, box.lower, box.value - down * wide)
     upper = np.where(box.value < 0, box.upper, box.value + up * wide)
-    return Box(box.value, np.minimum(lower, box.lower), np.maximum(upper, box.upper))
+    return RoundingBox(box.value, np.minimum(lower, box.lower), np.maximum(upper, box.upper))

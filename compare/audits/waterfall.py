@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from decimal import ROUND_FLOOR, Context, Decimal, localcontext
 from fractions import Fraction
 
@@ -12,43 +11,11 @@ from ...nlp.retiming import retime
 from ...problem import Coupling, down, fit, up
 from ...problem.cases import AnyClaim, DurationsClaim, MaximumClaim
 from ...verify import Subject
+from ..documents import EXACT, Step, Waterfall, Why
 from .study import Study
 
 _ROUNDING = 1e-12
-
-
-@dataclass(frozen=True)
-class Step:
-    """One value on the way down.
-
-    Attributes
-    ----------
-    name : str
-    time : float or None
-        Total time, s; None if it was not computed, with the reason in ``note``.
-    low, high : float or None
-        Interval of the value, where it is one.
-    evidence : Evidence
-        Of the value: best known or certified; none for printed and derived values.
-    note : str
-    """
-
-    name: str
-    time: float | None
-    low: float | None
-    high: float | None
-    evidence: Evidence
-    note: str
-
-
-@dataclass(frozen=True)
-class Waterfall:
-    """Steps of one problem under one reading, starting from one claim."""
-
-    problem: str
-    reading: str
-    claim: str | None
-    steps: tuple[Step, ...]
+"""Relative difference of an infimum and its bound that float rounding alone explains."""
 
 
 def waterfalls(study: Study) -> tuple[Waterfall, ...]:
@@ -70,15 +37,24 @@ def _starting_claim(study: Study, pid: str) -> AnyClaim | None:
 
 def _known(name: str, solution: Solution, note: str = "") -> Step:
     if solution.durations is None:
-        return Step(name, None, None, None, Evidence.NONE, solution.why or str(solution.status))
+        return Step.missing(name, solution.why or str(solution.status))
     notes = [n for n in (note, solution.why) if n]
     if solution.infimum is not None:
         notes.append("approached, not attained")
     low = solution.lower_bound
     if low is None:
-        return Step(name, solution.best, None, None, solution.evidence, "; ".join(notes))
+        return Step(
+            name=name, time=solution.best, evidence=solution.evidence, note="; ".join(notes)
+        )
     notes.append(f"proved, gap {(solution.best - low) / solution.best:.1e}")
-    return Step(name, solution.best, low, solution.best, solution.evidence, "; ".join(notes))
+    return Step(
+        name=name,
+        time=solution.best,
+        low=low,
+        high=solution.best,
+        evidence=solution.evidence,
+        note="; ".join(notes),
+    )
 
 
 def _waterfall(study: Study, pid: str, rid: str) -> Waterfall:
@@ -97,7 +73,12 @@ def _waterfall(study: Study, pid: str, rid: str) -> Waterfall:
     )
     steps.append(_retimed(relaxed))
     steps.append(_free(study, pid, rid))
-    return Waterfall(pid, rid, claim.id if claim is not None else None, tuple(steps))
+    return Waterfall(
+        problem=pid,
+        reading=rid,
+        claim=claim.id if claim is not None else None,
+        steps=tuple(steps),
+    )
 
 
 def _published(study: Study, claim: AnyClaim, pid: str, rid: str) -> list[Step]:
@@ -109,19 +90,18 @@ def _published(study: Study, claim: AnyClaim, pid: str, rid: str) -> list[Step]:
     verdict = study.claim_check(claim, pid, rid)
     rounding = study.claim_rounding(claim, pid, rid)
     printed = Step(
-        "published",
-        verdict.total_time if value is None else value,
-        low,
-        high,
-        Evidence.NONE,
-        f"printed {shown}; limits over the rounding box: {rounding.verdict}",
+        name="published",
+        time=verdict.total_time if value is None else value,
+        low=low,
+        high=high,
+        note=f"printed {shown}; limits over the rounding box: {rounding.verdict}",
     )
     if verdict.feasible_time is None:
         note = verdict.feasible_why or ""
-        return [printed, Step("feasible after repair", None, None, None, Evidence.NONE, note)]
+        return [printed, Step.missing("feasible after repair", note)]
     stretch = verdict.feasible_time / verdict.total_time
     note = f"stretched by {stretch:.6g}" if stretch > 1 else "no repair needed"
-    repaired = Step("feasible after repair", verdict.feasible_time, None, None, Evidence.NONE, note)
+    repaired = Step(name="feasible after repair", time=verdict.feasible_time, note=note)
     return [printed, repaired]
 
 
@@ -129,33 +109,41 @@ def _procedure(study: Study, pid: str, rid: str) -> Step:
     answer = study.per_joint(pid, rid)
     name = "each joint at its optimum, longest per segment"
     if answer.check is None:
-        return Step(name, None, None, None, Evidence.NONE, answer.why or "")
-    low = answer.ranges[0].lowest if answer.ranges else None
-    high = answer.ranges[0].highest if answer.ranges else None
+        return Step.missing(name, answer.why or "")
     note = f"check: {answer.check.verdict}; each joint's optimum {answer.joint_evidence}"
+    low: float | Why = EXACT
+    high: float | Why = EXACT
     if answer.ranges:
+        low, high = answer.ranges[0].lowest, answer.ranges[0].highest
         note += f"; range while each joint is within {answer.ranges[0].slack:g} s of its optimum"
-    return Step(name, answer.total_time, low, high, answer.evidence, note)
+    return Step(
+        name=name,
+        time=answer.total_time,
+        low=low,
+        high=high,
+        evidence=answer.evidence,
+        note=note,
+    )
 
 
 def _retimed(relaxed: Solution) -> Step:
     name = "TOPPRA on the path of the relaxed family"
     if relaxed.durations is None:
-        return Step(name, None, None, None, Evidence.NONE, "no path")
+        return Step.missing(name, "no path")
     problem = relaxed.problem
     trajectory = fit(problem.curve, problem.waypoints, relaxed.durations, relaxed.nodal)
     answer = retime(trajectory, problem.limits)
     if not answer.applicable or answer.extrapolated is None:
-        return Step(name, None, None, None, Evidence.NONE, answer.why or "")
+        return Step.missing(name, answer.why or "")
     error = answer.error or 0.0
     value = answer.extrapolated
     return Step(
-        name,
-        value,
-        value - error,
-        value + error,
-        Evidence.BEST_KNOWN,
-        f"velocity and acceleration only; extrapolated from {answer.gridpoints} grid points",
+        name=name,
+        time=value,
+        low=value - error,
+        high=value + error,
+        evidence=Evidence.BEST_KNOWN,
+        note=f"velocity and acceleration only; extrapolated from {answer.gridpoints} grid points",
     )
 
 
@@ -163,22 +151,24 @@ def _free(study: Study, pid: str, rid: str) -> Step:
     name = "any curve through the way-points"
     answer = estimate_any_curve(study.problem(pid, rid))
     if answer.total_time is None:
-        return Step(name, None, None, None, Evidence.NONE, answer.why or "")
+        return Step.missing(name, answer.why or "")
     note = "upper estimate" + (f"; {answer.why}" if answer.why else "")
     exact = stated_exactly(study.case.statement(pid, rid))
     bound = None if exact is None else proved(exact, Subject.ANY)
     # An infimum that is met to the last digit may round to either side of its bound.
     if bound is None or not 0 < bound.lower <= answer.total_time * (1 + _ROUNDING):
-        return Step(name, answer.total_time, None, None, answer.evidence, note)
+        return Step(name=name, time=answer.total_time, evidence=answer.evidence, note=note)
     low = down(bound.lower)
     shown = f"no motion within the limits is shorter than {_below(bound.lower)} s: certified"
     if bound.upper is not None:
         high = up(bound.upper)
         note = f"{shown}, gap {(high - low) / high:.1e}" + (f"; {answer.why}" if answer.why else "")
-        return Step(name, high, low, high, Evidence.CERTIFIED, note)
+        known = Evidence.CERTIFIED
+        return Step(name=name, time=high, low=low, high=high, evidence=known, note=note)
     note += f"; {shown}"
     high = max(low, answer.total_time)
-    return Step(name, high, low, high, Evidence.BEST_KNOWN, note)
+    known = Evidence.BEST_KNOWN
+    return Step(name=name, time=high, low=low, high=high, evidence=known, note=note)
 
 
 def _below(value: Fraction) -> str:

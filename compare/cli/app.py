@@ -15,7 +15,7 @@ import typer
 from .interrupt import INTERRUPTED, catch_interrupts
 
 # Whatever computes is imported inside the commands, so that --help answers at once.
-
+# The commands of this program.
 app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
@@ -32,8 +32,14 @@ Exit codes:
   70   a fault of trajgap itself
   130  interrupted
 """
+"""What every command's --help ends with."""
 BAD_INPUT, FAULT, CLOSED_PIPE = 2, 70, 141
+"""Exit codes: that of argument parsers, EX_SOFTWARE, and what a shell says of SIGPIPE."""
 
+MOST = 10_000
+"""Largest number of starts, seeds and workers: what they make is kept in memory."""
+
+# Arguments and options that several commands share.
 Source = Annotated[
     str, typer.Argument(metavar="CASE|FILE", help="Id of a published case, or a case file.")
 ]
@@ -78,9 +84,9 @@ def _trajgap(
 @app.command(epilog=_ENDS)
 def cases(as_json: AsJson = False, out: Out = None) -> int:
     """List the published cases."""
-    from . import commands as cli_commands
+    from .listing import list_cases
 
-    return cli_commands.cases(as_json, out)
+    return list_cases(as_json, out)
 
 
 @app.command(epilog=_ENDS)
@@ -92,9 +98,9 @@ def show(
     out: Out = None,
 ) -> int:
     """Show a case: problems, readings, claims, and what the paper leaves open."""
-    from . import commands as cli_commands
+    from .showing import show_case
 
-    return cli_commands.show(case, problem, reading, as_json, out)
+    return show_case(case, problem, reading, as_json, out)
 
 
 @app.command(epilog=_ENDS)
@@ -118,9 +124,9 @@ def check(
 
     Under per-joint coupling each joint is judged by itself as well.
     """
-    from . import commands as cli_commands
+    from .checking import check_durations
 
-    return cli_commands.check_durations(case, durations, problem, reading, coupling, as_json, out)
+    return check_durations(case, durations, problem, reading, coupling, as_json, out)
 
 
 @app.command(epilog=_ENDS)
@@ -129,7 +135,7 @@ def solve(
     problem: ProblemId = None,
     reading: ReadingId = None,
     coupling: Coupled = None,
-    starts: Annotated[int, typer.Option(min=1, help="Starts of the solver.")] = 4,
+    starts: Annotated[int, typer.Option(min=1, max=MOST, help="Starts of the solver.")] = 4,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the random starts.")] = 0,
     certify: Annotated[
         bool, typer.Option("--certify", help="Prove an interval of each optimum instead.")
@@ -186,12 +192,12 @@ def solve(
         for name, value in options.items():
             if value is not None:
                 raise typer.BadParameter(f"{name} needs --certify")
-        from . import commands as cli_commands
+        from .solving import solve_case
 
-        return cli_commands.solve_case(case, problem, reading, coupling, starts, seed, as_json, out)
-    from . import certifying as cli_certify
+        return solve_case(case, problem, reading, coupling, starts, seed, as_json, out)
+    from .certifying import certify_case
 
-    return cli_certify.certify_case(
+    return certify_case(
         case,
         problem,
         reading,
@@ -227,9 +233,9 @@ def verify(
     out: Out = None,
 ) -> int:
     """Prove certificates again, with code that shares nothing with the solver."""
-    from . import certifying as cli_certify
+    from .certifying import verify_files
 
-    return cli_certify.verify_files(files, case, seconds, as_json, out)
+    return verify_files(files, case, seconds, as_json, out)
 
 
 @app.command(epilog=_ENDS)
@@ -243,11 +249,12 @@ def audit(
     ] = None,
     problem: ProblemId = None,
     reading: ReadingId = None,
-    seeds: Annotated[int, typer.Option(min=2, help="Seeds of each replay.")] = 30,
+    seeds: Annotated[int, typer.Option(min=2, max=MOST, help="Seeds of each replay.")] = 30,
     workers: Annotated[
         int,
         typer.Option(
             min=1,
+            max=MOST,
             help="Processes for the replays; the result does not depend on it. Starting one takes "
             "longer than a few dozen short replays.",
         ),
@@ -268,11 +275,9 @@ def audit(
     ] = None,
 ) -> int:
     """Audit every claim of the cases, and write pages with pictures."""
-    from . import commands as cli_commands
+    from .auditing import audit_cases
 
-    return cli_commands.audit_cases(
-        cases or [], problem, reading, seeds, workers, strict, as_json, out
-    )
+    return audit_cases(cases or [], problem, reading, seeds, workers, strict, as_json, out)
 
 
 @app.command(epilog=_ENDS)
@@ -361,8 +366,13 @@ def _settle() -> None:
 
 
 def _run(arguments: Sequence[str]) -> int:
+    from ...problem import TrajgapError, check_name
+
     command = typer.main.get_command(app)
     try:
+        for argument in arguments:
+            # Nothing that is printed or written could state such a name.
+            check_name(argument)
         with command.make_context("trajgap", list(arguments)) as context:
             result = command.invoke(context)
             return result if isinstance(result, int) else 0
@@ -377,8 +387,6 @@ def _run(arguments: Sequence[str]) -> int:
             return _fail(f"{str(usage()).rstrip('.')}; see `{about} --help`", BAD_INPUT)
         if isinstance(error, OSError) and error.filename is None:
             return _unwritten(error)
-        from ...problem import TrajgapError
-
         if isinstance(error, TrajgapError):
             return _fail(str(error), BAD_INPUT)
         traceback.print_exc()
@@ -390,7 +398,7 @@ def _unwritten(error: OSError) -> int:
 
 
 def _fail(message: str, code: int) -> int:
-    line = " ".join(message.split())
-    printable = "".join(c if c.isprintable() else "?" for c in line)
-    print(f"trajgap: {printable}", file=sys.stderr)
+    from ...problem import visible
+
+    print(f"trajgap: {visible(' '.join(message.split()))}", file=sys.stderr)
     return code

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 import signal
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from importlib.resources import files
 from pathlib import Path
 from types import FrameType
 from typing import Any
@@ -25,7 +25,14 @@ from ...nlp.proofs import (
     state_document,
     unlike,
 )
-from ...problem import Case, CaseError, Coupling, TrajgapError
+from ...problem import (
+    Case,
+    CaseError,
+    Coupling,
+    TrajgapError,
+    check_regular,
+    published_ids,
+)
 from ...verify import (
     CERTIFICATE_FORMAT,
     OLD_FORMATS,
@@ -36,25 +43,37 @@ from ...verify import (
     read_document,
     verify_certificate,
 )
-from ..documents import Judged, certify_document, certify_result, verify_document, worth
+from ..documents import (
+    CertifiedResult,
+    CertifyDocument,
+    JudgedFile,
+    certify_result,
+    json_text,
+    verify_document,
+    worth,
+)
 from . import proof_tables as cli_proofs
 from .input import Posed, naming, read_case, select
 from .output import (
     Steps,
+    check_certificates,
     emit,
-    json_text,
-    new_file,
+    new_output,
     progress,
-    replace_file,
+    replace_output,
     say,
 )
 
+_PUBLISHED = "trajgap.problem.published"
+"""Package that holds the published cases as data."""
 _LONGEST = 150
 """Characters of a file's name, its ending apart: most file systems take 255 bytes."""
 CERTIFICATE_FOLDER = Path("trajgap-certificates")
+"""Where certificates go, unless the command line says otherwise."""
 NOT_PROVED = 3
 """Exit code where an interval is wider than asked for, or nothing is proved."""
 _SETTLED = (Outcome.CERTIFIED, Outcome.INFEASIBLE)
+"""Outcomes that leave nothing to prove."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,11 +124,11 @@ def certify_case(
     if not 0 <= gap < 1:
         raise CaseError(source, "--gap", f"{gap:g} is no relative width; give 0 or more, below 1")
     if folder is not None:
-        _check_folder(folder)
+        check_certificates(folder)
         _check_files(folder, asked)
-    results: list[dict[str, Any]] = []
+    results: list[CertifiedResult] = []
     unsettled, stop = False, _Stop()
-    with new_file(out) as write:
+    with new_output(out) as write:
         with progress("certify", len(asked)) as step, naming(case.file), stop.listening():
             for one in asked:
                 if stop.asked:
@@ -131,10 +150,10 @@ def certify_case(
                 files = _written(folder, one, found)
                 ids = (case.id, one.posed.problem_id, one.posed.reading_id, one.asked.joint)
                 results.append(certify_result(*ids, found, *files, _why(found)))
-        document = certify_document(results)
+        document = CertifyDocument(intervals=tuple(results))
         write(json_text(document))
     emit(document, cli_proofs.certified, as_json)
-    if folder is not None and not as_json and any(r["certificate"] for r in results):
+    if folder is not None and not as_json and any(r.certificate for r in results):
         say(f"certificates: {folder}\n")
     if stop.asked:
         raise KeyboardInterrupt
@@ -171,9 +190,11 @@ def _stated(case: Case, one: Posed, coupling: Coupling) -> Iterator[Question]:
 
 
 def _hash(case: Case) -> str | None:
-    """SHA-256 of a case file; None for one that is no file of its own."""
+    """SHA-256 of a case file; None if it cannot be read any more."""
+    published = case.file in published_ids()
+    path = files(_PUBLISHED) / f"{case.file}.toml" if published else Path(case.file)
     try:
-        return hashlib.sha256(Path(case.file).read_bytes()).hexdigest()
+        return hashlib.sha256(path.read_bytes()).hexdigest()
     except OSError:
         return None
 
@@ -203,15 +224,6 @@ def _file(folder: Path, one: Question, kind: str = "") -> Path:
     return folder / f"{one.file}{kind}.json"
 
 
-def _check_folder(folder: Path) -> None:
-    """Find out before computing whether the folder can be made and written to."""
-    there = next(p for p in (folder, *folder.absolute().parents) if os.path.lexists(p))
-    if not there.is_dir():
-        raise CaseError(str(there), "--certificates", "is no folder; name another")
-    if not os.access(there, os.W_OK | os.X_OK):
-        raise CaseError(str(there), "--certificates", "cannot be written to; name another folder")
-
-
 def _check_files(folder: Path, asked: Sequence[Question]) -> None:
     """Find out before computing whether what is in the way may be replaced."""
     for one in asked:
@@ -238,9 +250,9 @@ def _written(
     certificate, state = _file(folder, one), _file(folder, one, ".state")
     document = state_document(found, one.asked)
     if document is not None:
-        replace_file(state, json.dumps(document, separators=(",", ":")) + "\n")
+        replace_output(state, json.dumps(document, separators=(",", ":")) + "\n")
     if found.proof is not None and not _narrower(certificate, found):
-        replace_file(certificate, certificate_text(found, one.asked))
+        replace_output(certificate, certificate_text(found, one.asked))
     if document is None:
         # What a state of an earlier run would lead to is there.
         state.unlink(missing_ok=True)
@@ -307,6 +319,8 @@ def verify_files(
     out: Path | None,
 ) -> int:
     """Prove certificates again; 1 if any is refused, or is about no problem of the case."""
+    for path in files:
+        check_regular(path)
     asked = None
     if case is not None:
         stated = read_case(case)
@@ -316,8 +330,8 @@ def verify_files(
             for coupling in Coupling
             for question in _stated(stated, one, coupling)
         ]
-    with new_file(out) as write:
-        verdicts: list[Judged] = []
+    with new_output(out) as write:
+        verdicts: list[JudgedFile] = []
         with progress("verify", len(files)) as step:
             for path in files:
                 step(path.name)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...problem import Case, CaseError, Printed, Problem, TrajgapError, load_case, to_si
-from ..audits import Box
+from ..audits import RoundingBox
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,7 +135,7 @@ def read_durations(text: str, file: str) -> tuple[Printed, ...]:
     return tuple(numbers)
 
 
-def duration_box(case: Case, posed: Posed, printed: Sequence[Printed]) -> Box:
+def duration_box(case: Case, posed: Posed, printed: Sequence[Printed]) -> RoundingBox:
     """Durations in seconds with all that print alike, in the case's unit of time.
 
     Raises
@@ -154,23 +154,23 @@ def duration_box(case: Case, posed: Posed, printed: Sequence[Printed]) -> Box:
     unit = case.statement(posed.problem_id, posed.reading_id).units.time or "s"
     with naming(case.file, "--durations"):
         measured = [to_si(number, unit) for number in printed]
-    return Box(
+    return RoundingBox(
         np.array([m.value for m in measured]),
         np.array([m.lower for m in measured]),
         np.array([m.upper for m in measured]),
     )
 
 
-def waypoint_box(case: Case, posed: Posed) -> Box:
+def waypoint_box(case: Case, posed: Posed) -> RoundingBox:
     """The problem's way-points with all that print alike, rad."""
     lower, upper = case.waypoint_box(posed.problem_id, posed.reading_id)
-    return Box(posed.problem.waypoints, lower, upper)
+    return RoundingBox(posed.problem.waypoints, lower, upper)
 
 
-def one_joint(box: Box, joint: int) -> Box:
+def one_joint(box: RoundingBox, joint: int) -> RoundingBox:
     """The column of one joint."""
 
     def column(array: NDArray[np.float64]) -> NDArray[np.float64]:
         return array[:, joint : joint + 1]
 
-    return Box(column(box.value), column(box.lower), column(box.upper))
+    return RoundingBox(column(box.value), column(box.lower), column(box.upper))

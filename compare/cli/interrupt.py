@@ -4,29 +4,17 @@ from __future__ import annotations
 
 import multiprocessing
 import os
-import shutil
 import signal
 import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from pathlib import Path
 from types import FrameType
 
+from ...problem import remove_drafts
+
 INTERRUPTED = 130
-
-_drafts: set[Path] = set()
-
-
-@contextmanager
-def draft(path: Path) -> Iterator[Path]:
-    """Remove a file or folder at the end, or when the program is interrupted."""
-    _drafts.add(path)
-    try:
-        yield path
-    finally:
-        _remove(path)
-        _drafts.discard(path)
+"""Exit code: what a shell says of SIGINT."""
 
 
 def catch_interrupts() -> None:
@@ -57,19 +45,11 @@ def _end(signum: int, frame: FrameType | None) -> None:
     for process in workers:
         process.terminate()
     if workers:
-        # Nothing but the pool runs here, and it must give back its semaphores.
+        # Nothing but the workers' owner runs here, and it waits for them to end.
         raise KeyboardInterrupt
-    for path in _drafts:
-        _remove(path)
+    remove_drafts()
     # A progress bar hides the cursor.
     restored = "\x1b[?25h\r\x1b[K" if sys.stderr.isatty() else ""
     with suppress(OSError):
         os.write(2, f"{restored}trajgap: interrupted\n".encode())
     os._exit(INTERRUPTED)
-
-
-def _remove(path: Path) -> None:
-    if path.is_dir():
-        shutil.rmtree(path, ignore_errors=True)
-    else:
-        path.unlink(missing_ok=True)

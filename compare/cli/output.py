@@ -3,29 +3,33 @@
 from __future__ import annotations
 
 import io
-import json
 import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, TypeVar
 
-from ...problem import Case, CaseError
-from .interrupt import draft
+from ...problem import (
+    Case,
+    CaseError,
+    new_file,
+    recover_folder,
+    replace_file,
+    try_writing_in,
+)
+from ..documents import Document, json_text
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
+
+D = TypeVar("D", bound=Document)
 
 _PIPE_WIDTH = 120
 """Columns where nobody's window limits them."""
 
 
-def emit(
-    document: dict[str, Any],
-    summary: Callable[[dict[str, Any]], Sequence[RenderableType]],
-    as_json: bool,
-) -> None:
+def emit(document: D, summary: Callable[[D], Sequence[RenderableType]], as_json: bool) -> None:
     """Print a document, as JSON or as its summary for reading."""
     if as_json:
         # Standard output may not be able to carry more than ASCII.
@@ -54,11 +58,6 @@ def say(text: str) -> None:
         raise CaseError(
             "standard output", "", f"cannot be written ({reason}); send it elsewhere"
         ) from None
-
-
-def json_text(document: dict[str, Any], ascii_only: bool = False) -> str:
-    """JSON of a document; NaN and infinities are a fault of ours and raise ValueError."""
-    return json.dumps(document, indent=2, ensure_ascii=ascii_only, allow_nan=False) + "\n"
 
 
 def rendered(parts: Sequence[RenderableType]) -> str:
@@ -138,7 +137,7 @@ def progress(label: str, total: int | None = None) -> Iterator[Steps]:
 
 
 @contextmanager
-def new_file(path: Path | None, field: str = "--out") -> Iterator[Callable[[str], None]]:
+def new_output(path: Path | None, field: str = "--out") -> Iterator[Callable[[str], None]]:
     """Reserve a new file; what is written appears under its name at once and complete.
 
     Parameters
@@ -162,24 +161,20 @@ def new_file(path: Path | None, field: str = "--out") -> Iterator[Callable[[str]
         yield lambda _: None
         return
     name = str(path)
-    with _writing(name, field):
-        if path.is_dir():
-            raise CaseError(name, field, "is a directory; name a file in it")
-        if os.path.lexists(path):
-            raise CaseError(name, field, "exists already; name another file or delete this one")
-        file = path.parent / f".trajgap-{os.getpid()}.tmp"
-        file.open("x", encoding="utf-8").close()
+    with ExitStack() as stack:
+        with _writing(name, field), _taken(name, field):
+            if path.is_dir():
+                raise CaseError(name, field, "is a directory; name a file in it")
+            put = stack.enter_context(new_file(path))
 
-    def write(text: str) -> None:
-        with _writing(name, field):
-            file.write_text(text, encoding="utf-8")
-            file.replace(path)
+        def write(text: str) -> None:
+            with _writing(name, field), _taken(name, field):
+                put(text)
 
-    with draft(file):
         yield write
 
 
-def replace_file(path: Path, text: str) -> None:
+def replace_output(path: Path, text: str) -> None:
     """Write a file under its name at once and complete, in the place of an earlier one.
 
     Raises
@@ -188,11 +183,7 @@ def replace_file(path: Path, text: str) -> None:
         If it cannot be written.
     """
     with _writing(str(path), "--certificates"):
-        path.parent.mkdir(parents=True, exist_ok=True)
-        file = path.parent / f".trajgap-{os.getpid()}.tmp"
-        with draft(file):
-            file.write_text(text, encoding="utf-8")
-            file.replace(path)
+        replace_file(path, text)
 
 
 def check_folder(path: Path, cases: Sequence[Case]) -> None:
@@ -211,6 +202,7 @@ def check_folder(path: Path, cases: Sequence[Case]) -> None:
         if case.id in ("index", Path(MARK).stem):
             raise CaseError(case.file, "id", f"{case.id!r} is the name of another page; rename it")
     with _writing(name, "--out"):
+        recover_folder(path)
         if os.path.lexists(path) and not path.is_dir():
             raise CaseError(name, "--out", "is a file; name a folder")
         found = foreign(path)
@@ -218,10 +210,37 @@ def check_folder(path: Path, cases: Sequence[Case]) -> None:
             raise CaseError(
                 name, "--out", f"holds {found}, which is no audit; name a new or an empty folder"
             )
+        if path.name in ("", "..") or path.is_mount():
+            raise CaseError(name, "--out", "cannot be replaced as a whole; name a folder in it")
         path.parent.mkdir(parents=True, exist_ok=True)
-        trial = path.parent / f".trajgap-{os.getpid()}.tmp"
-        trial.mkdir()
-        trial.rmdir()
+        try_writing_in(path.parent)
+
+
+def check_certificates(folder: Path) -> None:
+    """Find out before computing whether certificates can be written into a folder.
+
+    Raises
+    ------
+    CaseError
+        If it cannot be made or written to.
+    """
+    with _writing(str(folder), "--certificates"):
+        try:
+            try_writing_in(folder)
+        except NotADirectoryError as error:
+            raise CaseError(
+                str(error.filename), "--certificates", "is no folder; name another"
+            ) from None
+
+
+@contextmanager
+def _taken(name: str, field: str) -> Iterator[None]:
+    try:
+        yield
+    except FileExistsError:
+        raise CaseError(
+            name, field, "exists already; name another file or delete this one"
+        ) from None
 
 
 @contextmanager

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from ...problem import CHOICES, CaseError, scaffold
-from .output import new_file, say
+from .output import new_output, say
 
 
 def new_case(
@@ -38,7 +38,7 @@ def new_case(
     CaseError
         If the table, a unit or the output cannot be used.
     """
-    with new_file(out, "OUT") as write:
+    with new_output(out, "OUT") as write:
         needed = ["position", *(name for name, limit in limits.items() if limit is not None)]
         given = {name: unit for name, unit in units.items() if unit is not None}
         # A faulty table should be told before anything is asked.

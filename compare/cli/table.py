@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 
 from rich import box
@@ -11,9 +12,12 @@ from rich.measure import Measurement
 from rich.table import Table
 from rich.text import Text
 
+from ...problem import visible
+
 _NARROWEST = 16
 """Columns that prose keeps in the narrowest window."""
 _GAP = 2
+"""Columns between two columns of a table."""
 _STYLES = {
     "pass": "green",
     "keeps": "green",
@@ -33,11 +37,12 @@ _STYLES = {
     "refuted": "red",
     "error": "red",
 }
+"""Colour of a word: green where all is well, yellow where it may be, red where it is not."""
 
 
 def plain(text: object) -> str:
     """Text from a file without anything that could steer a terminal."""
-    return "".join(c if c.isprintable() else " " for c in str(text))
+    return visible(" ".join(re.split(r"[\n\t]", str(text))))
 
 
 def line(text: object, style: str = "") -> Text:

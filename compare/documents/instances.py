@@ -1,113 +1,105 @@
-"""A family of instances as part of the audit's JSON document."""
+"""A relative claim examined on instances that were drawn from the robot's workspace."""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Literal
 
-import numpy as np
-
-from ..audits.instances import Effect, FamilyResult, Optimum, Sample, distribution
-from .undefined import number_or_why
-
-_NONE = "no pair of runs has two answers"
-_UNSOLVED = "the optimum is not known"
+from ...nlp import Evidence
+from .entry import Count, Entry, OrWhy
+from .vocabulary import Effect
 
 
-def family_document(result: FamilyResult) -> dict[str, Any]:
-    """Everything that was computed on a family of instances.
+class Procedure(Entry):
+    """A curve and the algorithm that searches its durations, as the paper names them."""
 
-    Parameters
-    ----------
-    result : FamilyResult
-
-    Returns
-    -------
-    dict
-        Keys as in docs/output.schema.json.
-    """
-    block = result.block
-    low, high = result.printed or (None, None)
-    absent = "no reduction is printed"
-    return {
-        "id": block.id,
-        "claim": block.claim,
-        "why": block.why,
-        "kind": block.kind,
-        "unit": block.unit,
-        "steps": list(block.lengths),
-        "instances_per_step": block.instances,
-        "seed": block.seed,
-        "samples": block.samples,
-        "runs": block.runs,
-        "objectives": list(block.objectives),
-        "readings": list(result.readings),
-        "slower": {"problem": result.slower.problem, "algorithm": result.slower.algorithm},
-        "faster": {"problem": result.faster.problem, "algorithm": result.faster.algorithm},
-        **number_or_why("printed_lowest", low, absent),
-        **number_or_why("printed_highest", high, absent),
-        "reductions": [
-            _distributed(result, reading, effect, at, step)
-            for reading in result.readings
-            for effect in Effect
-            for at in range(1 if effect is Effect.CURVE else len(block.objectives))
-            for step in (None, *block.lengths)
-        ],
-        "instances": [_instance(result, s) for s in result.of(result.readings[0])],
-    }
+    problem: str
+    algorithm: str
 
 
-def _distributed(
-    result: FamilyResult, reading: str, effect: Effect, at: int, step: float | None
-) -> dict[str, Any]:
-    found = distribution(result.reductions(reading, effect, at, step))
-    empty = found.missing == found.pairs
-    quantiles = ("lowest", "lower_quarter", "median", "upper_quarter", "highest", "shorter")
-    document: dict[str, Any] = {
-        "reading": reading,
-        "effect": str(effect),
-        "objective": None if effect is Effect.CURVE else result.block.objectives[at],
-        "step": step,
-        "pairs": found.pairs,
-        "missing": found.missing,
-    }
-    for name in quantiles:
-        document |= number_or_why(name, None if empty else getattr(found, name), _NONE)
-    return document
+class Reduction(Entry):
+    """Quantiles of the reductions of the total over pairs of answers, as shares of the slower."""
+
+    reading: str
+    effect: Effect
+    objective: str | None
+    """Null for the curve alone, at the best known optima."""
+    step: float | None
+    """Step length; null for all of them."""
+    pairs: Count
+    missing: Count
+    """Pairs without two answers."""
+    lowest: OrWhy[float]
+    lower_quarter: OrWhy[float]
+    median: OrWhy[float]
+    upper_quarter: OrWhy[float]
+    highest: OrWhy[float]
+    shorter: OrWhy[float]
+    """Share of the pairs with a reduction above 0."""
 
 
-def _instance(result: FamilyResult, first: Sample) -> dict[str, Any]:
-    own = [s for s in result.samples if (s.step, s.index) == (first.step, first.index)]
-    return {
-        "step": first.step,
-        "instance": first.index,
-        "waypoints": first.waypoints.tolist(),
-        "readings": [_sample(result, s) for s in own],
-    }
+class KnownOptimum(Entry):
+    """The best known total of one curve on one instance."""
+
+    total_time: OrWhy[float]
+    """s"""
+    evidence: Evidence
+    status: str
 
 
-def _sample(result: FamilyResult, sample: Sample) -> dict[str, Any]:
-    names = ("slower", "slower_algorithm_on_faster_curve", "faster")
-    return {
-        "reading": sample.reading,
-        "slower_optimum": _optimum(sample.slower),
-        "faster_optimum": _optimum(sample.faster),
-        "totals": [
-            {
-                "objective": objective,
-                **{
-                    name: [float(t) if np.isfinite(t) else None for t in sample.totals[at, route]]
-                    for route, name in enumerate(names)
-                },
-            }
-            for at, objective in enumerate(result.block.objectives)
-        ],
-    }
+class Totals(Entry):
+    """Reported totals of all runs of each procedure, s; null where a run has no answer."""
+
+    objective: str
+    slower: tuple[float | None, ...]
+    slower_algorithm_on_faster_curve: tuple[float | None, ...]
+    faster: tuple[float | None, ...]
 
 
-def _optimum(optimum: Optimum) -> dict[str, Any]:
-    total = optimum.total if np.isfinite(optimum.total) else None
-    return {
-        **number_or_why("total_time", total, _UNSOLVED),
-        "evidence": str(optimum.evidence),
-        "status": optimum.status,
-    }
+class InstanceUnderReading(Entry):
+    """One instance under one reading."""
+
+    reading: str
+    slower_optimum: KnownOptimum
+    faster_optimum: KnownOptimum
+    totals: tuple[Totals, ...]
+
+
+class Instance(Entry):
+    """Way-points that were drawn, and what the two procedures make of them."""
+
+    step: float
+    instance: Count
+    waypoints: tuple[tuple[float, ...], ...]
+    """One row per way-point, rad."""
+    readings: tuple[InstanceUnderReading, ...]
+
+
+class ExaminedInstances(Entry):
+    """A relative claim examined on instances drawn from the robot's workspace."""
+
+    id: str
+    claim: str
+    why: str
+    """Why such instances say something about the claim."""
+    kind: Literal["joint", "end"]
+    unit: str
+    """Of the steps."""
+    steps: tuple[float, ...]
+    instances_per_step: Count
+    seed: Count
+    samples: Count
+    """Positions of the workspace that way-points are drawn from."""
+    runs: Count
+    """Runs of each algorithm on each instance."""
+    objectives: tuple[str, ...]
+    readings: tuple[str, ...]
+    slower: Procedure
+    """The one that is said to be slower."""
+    faster: Procedure
+    """The paper's."""
+    printed_lowest: OrWhy[float]
+    """Smallest reduction that the printed digits allow."""
+    printed_highest: OrWhy[float]
+    """Largest one."""
+    reductions: tuple[Reduction, ...]
+    instances: tuple[Instance, ...]

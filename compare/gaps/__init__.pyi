@@ -1,13 +1,12 @@
-from .optimality_gap import Gap, GapKind, Reference, gap
-from .statistics import SETTLED, settled_at, share_of_pairs, spread
+from .optimality_gap import gap, reference_of
+from .statistics import SETTLED, settled_at, share_of_luck, share_of_pairs, spread
 
 __all__ = [
     "SETTLED",
-    "Gap",
-    "GapKind",
-    "Reference",
     "gap",
+    "reference_of",
     "settled_at",
+    "share_of_luck",
     "share_of_pairs",
     "spread",
 ]

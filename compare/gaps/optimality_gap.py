@@ -2,73 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from enum import StrEnum
-
-from ...nlp import Evidence, Solution
+from ...nlp import Solution
 from ...problem import TrajgapError
+from ..documents import UNCERTIFIED, Gap, GapKind, Reference, Why, known
 
 
-class GapKind(StrEnum):
-    """What a gap is a gap of."""
-
-    OPTIMALITY = "optimality gap"
-    """Of a time whose trajectory keeps the limits."""
-    REPORTED = "difference of reported time"
-    """Of a printed or reported time whose trajectory is not shown to keep them."""
+def reference_of(solution: Solution) -> Reference | None:
+    """The reference interval of a solution, or None where it has no positive time."""
+    best = solution.best
+    return _reference(solution) if 0 < best < float("inf") else None
 
 
-@dataclass(frozen=True)
-class Reference:
-    """A reference time: the best known value, and a certified lower bound where there is one.
-
-    Attributes
-    ----------
-    upper : float
-        Total of a feasible trajectory, s.
-    lower : float or None
-        Certified lower bound on the optimum, s.
-    """
-
-    upper: float
-    lower: float | None = None
-
-    @property
-    def evidence(self) -> Evidence:
-        """Certified if there is a lower bound, else best known."""
-        return Evidence.BEST_KNOWN if self.lower is None else Evidence.CERTIFIED
-
-
-@dataclass(frozen=True)
-class Gap:
-    """Relative distance of a time from the optimum.
-
-    Attributes
-    ----------
-    lowest : float
-        (T − U)/U at the low end of the time's interval; negative where T lies below the reference.
-    highest : float
-        (T − U)/U at its high end; against the lower bound instead, where one is certified.
-    kind : GapKind
-    reference : Reference
-    """
-
-    lowest: float
-    highest: float
-    kind: GapKind
-    reference: Reference
-
-    @property
-    def percent(self) -> str:
-        """The interval in percent; a factor instead where the time is many times the reference."""
-        if self.lowest > 10:
-            return f"{1 + self.lowest:.4g} times the reference"
-        low, high = 100 * self.lowest, 100 * self.highest
-        narrow = high - low < max(0.005 * abs(low), 5e-4)
-        return f"{low:+.3g} %" if narrow else f"{low:+.3g} to {high:+.3g} %"
-
-    def __str__(self) -> str:
-        return f"{self.percent} ({self.kind}, reference {self.reference.evidence})"
+def _reference(solution: Solution) -> Reference:
+    return Reference(upper=solution.best, lower=known(solution.lower_bound, UNCERTIFIED.reason))
 
 
 def gap(
@@ -100,16 +46,16 @@ def gap(
         If the reference is not a positive finite time.
     """
     if isinstance(reference, Solution):
-        reference = Reference(reference.best, reference.lower_bound)
+        reference = _reference(reference)
     elif not isinstance(reference, Reference):
-        reference = Reference(float(reference))
+        reference = Reference(upper=float(reference))
     if not 0 < reference.upper < float("inf"):
         raise TrajgapError(f"gap: the reference {reference.upper} s is not a positive finite time")
     low, high = time if isinstance(time, tuple) else (float(time), float(time))
-    base = reference.upper if reference.lower is None else reference.lower
+    base = reference.upper if isinstance(reference.lower, Why) else reference.lower
     return Gap(
+        kind=GapKind.OPTIMALITY if feasible else GapKind.REPORTED,
         lowest=(low - reference.upper) / reference.upper,
         highest=(high - base) / base,
-        kind=GapKind.OPTIMALITY if feasible else GapKind.REPORTED,
         reference=reference,
     )

@@ -60,8 +60,7 @@ def share_of_pairs(
     Parameters
     ----------
     slower, faster : ndarray
-        Totals, s. The same array twice asks what two runs of one algorithm show by luck; a run
-        is then never paired with itself.
+        Totals, s.
     reduction : float
         Relative to the slower total, e.g. 0.109.
 
@@ -70,11 +69,23 @@ def share_of_pairs(
     float
         In 0..1; nan if there is no pair of finite totals.
     """
+    return _share(slower, faster, reduction, np.ones((slower.size, faster.size), dtype=bool))
+
+
+def share_of_luck(totals: NDArray[np.float64], reduction: float) -> float:
+    """The same for two different runs of one algorithm: what luck alone shows."""
+    return _share(totals, totals, reduction, ~np.eye(totals.size, dtype=bool))
+
+
+def _share(
+    slower: NDArray[np.float64],
+    faster: NDArray[np.float64],
+    reduction: float,
+    paired: NDArray[np.bool_],
+) -> float:
     with np.errstate(invalid="ignore"):
         reductions = 1.0 - faster[None, :] / slower[:, None]
-    pairs = np.isfinite(slower)[:, None] & np.isfinite(faster)[None, :]
-    if slower is faster:
-        pairs &= ~np.eye(slower.size, dtype=bool)
+    pairs = paired & np.isfinite(slower)[:, None] & np.isfinite(faster)[None, :]
     return float((reductions[pairs] >= reduction).mean()) if pairs.any() else float("nan")
 
 

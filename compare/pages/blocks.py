@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar, TypeAlias
 
+from ...problem import file_name
+
 
 @dataclass(frozen=True)
 class Cell:
@@ -87,7 +89,7 @@ class Drawn:
     Attributes
     ----------
     name : str
-        File name without case and ending, unique in the page.
+        Made by `file_name`; unique in the page.
     document : str
         SVG.
     title, caption : str
@@ -110,7 +112,9 @@ class Folded:
 
 
 Plain: TypeAlias = Prose | Grid | Terms | Drawn
+"""What may stand anywhere."""
 Block: TypeAlias = Plain | Folded
+"""What a section holds."""
 
 
 @dataclass(frozen=True)
@@ -134,6 +138,15 @@ class Page:
     def filled(self) -> Page:
         """The same page without sections that hold nothing."""
         return replace(self, sections=tuple(s for s in self.sections if s.blocks))
+
+    @property
+    def file(self) -> str:
+        """Name of its files, without an ending."""
+        return file_name(self.id)
+
+    def picture(self, drawn: Drawn) -> str:
+        """File of one of its pictures, beside the page; no other page of a report has it."""
+        return f"pictures/{file_name(self.id, drawn.name)}.svg"
 
     @property
     def pictures(self) -> tuple[Drawn, ...]:

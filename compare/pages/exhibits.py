@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...heuristics.algorithms import ImprovedWOA, InitialRule, TentRule
-from ...problem import TrajgapError, forward_kinematics, to_si
+from ...problem import TrajgapError, file_name, forward_kinematics, to_si
 from ...problem.cases import ControlVerticesClaim, DurationsClaim, MaximumClaim
 from ...problem.robots import Chain, DhTable, proximity, sample_workspace
 from ..audits import Study
@@ -28,7 +28,9 @@ from .blocks import Block, Drawn, Folded, Grid, Section, number, text
 from .motions_shown import whole_claims
 
 _SAMPLES = 20_000
+"""Positions of the workspace that its bounding box is taken from, as by default in case files."""
 _SEED = 0
+"""Of the sampled positions, so that every page shows the same."""
 _NEGLIGIBLE = 1e-9
 """Distance that float arithmetic alone could leave, m."""
 Array = NDArray[np.float64]
@@ -98,7 +100,7 @@ def _jumps_of(
         f"{where}. Reading {rid}. The velocity jumps under {len(jumping)} of {len(readings)} "
         "readings. Limits are judged apart from jumps, inside the segments."
     )
-    yield _drawn(f"jumps-{pid}-{first.id}", picture, caption)
+    yield _drawn(file_name("jumps", pid, first.id), picture, caption)
     rows = tuple(
         (
             text(jump.joint),
@@ -135,7 +137,7 @@ def _polygons(study: Study) -> Iterator[Block]:
             "both explains. No reading enters: both are printed in one unit, and time plays no "
             "part."
         )
-        yield _drawn(f"polygon-{claim.id}", picture, caption)
+        yield _drawn(file_name("polygon", claim.id), picture, caption)
 
 
 # --- workspace ------------------------------------------------------------------------------------
@@ -273,7 +275,7 @@ def _tents(study: Study) -> Iterator[Block]:
             f"{high:g} s; first two durations of every member. How orbits fill the population is "
             f"{printed}; the listed choice is “{built.tent_rule}”."
         )
-        yield _drawn(f"tent-{block.id}", picture, caption)
+        yield _drawn(file_name("tent", block.id), picture, caption)
         lengths = {
             TentRule.COORDINATE: built.whales,
             TentRule.MEMBER: dimensions,

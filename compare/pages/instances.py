@@ -1,13 +1,15 @@
-"""The part of a report page on families of instances: design, picture, distributions, samples."""
+"""The part of a report page on other instances: design, picture, distributions, samples."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from ...problem import file_name
 from ..audits import CaseAudit, Study
-from ..audits.instances import STARTS, Effect, FamilyResult, distribution, percent_range
+from ..audits.instances import STARTS, InstancesResult, percent_range
 from ..audits.rules import HANDLED, attributed, placed
-from ..pictures import family_picture, svg
+from ..documents import Effect, ExaminedInstances, Reduction, Why
+from ..pictures import instances_picture, svg
 from .blocks import (
     Block,
     Cell,
@@ -22,20 +24,20 @@ from .blocks import (
 )
 
 
-def families(one: CaseAudit) -> tuple[Section, ...]:
-    """One section if the case declares families of instances, none otherwise."""
+def other_instances(one: CaseAudit) -> tuple[Section, ...]:
+    """One section if the case says which instances to draw, none otherwise."""
     blocks: list[Block] = []
-    for declared in one.study.families:
-        blocks += _family(one.study, one.study.family(declared))
+    for declared, examined in zip(one.study.instance_blocks, one.document.families, strict=True):
+        blocks += _examined(one.study, one.study.instances(declared), examined)
     if not blocks:
         return ()
     return (Section("families", "The comparison on other instances", tuple(blocks)),)
 
 
-def _family(study: Study, result: FamilyResult) -> list[Block]:
+def _examined(study: Study, result: InstancesResult, examined: ExaminedInstances) -> list[Block]:
     block = result.block
     title = f"Reduction of the total, {block.claim}, on {result.instances} instances"
-    picture = family_picture(result, title=title)
+    picture = instances_picture(result, title=title)
     caption = (
         "Every pair of one run of each, and every pair of optima; strokes are medians. Instances "
         "are drawn from the robot's workspace and are not the paper's."
@@ -49,20 +51,20 @@ def _family(study: Study, result: FamilyResult) -> list[Block]:
             "note",
         ),
         Terms(_design(study, result)),
-        Drawn(f"family-{block.id}", svg(picture), title, caption),
-        Grid(_COLUMNS, _rows(result, None), "Reductions of the total, in %"),
+        Drawn(file_name("family", block.id), svg(picture), title, caption),
+        Grid(_COLUMNS, _rows(examined, result, None), "Reductions of the total, in %"),
         Folded(
             "Reductions by step length",
             tuple(
-                Grid(_COLUMNS, _rows(result, step), f"Steps of {step:g} {block.unit}")
+                Grid(_COLUMNS, _rows(examined, result, step), f"Steps of {step:g} {block.unit}")
                 for step in block.lengths
             ),
         ),
-        Folded(f"Totals of every instance, {block.id}", (_instances(result),)),
+        Folded(f"Totals of every instance, {block.id}", (_instances(examined),)),
     ]
 
 
-def _design(study: Study, result: FamilyResult) -> tuple[tuple[str, str], ...]:
+def _design(study: Study, result: InstancesResult) -> tuple[tuple[str, str], ...]:
     block, slow, fast = result.block, result.slower, result.faster
     points = result.samples[0].waypoints
     steps = ", ".join(f"{step:g}" for step in block.lengths)
@@ -98,26 +100,23 @@ _COLUMNS = (
     "shorter",
     "as printed or more",
 )
+"""Columns of the reductions."""
 
 
-def _rows(result: FamilyResult, step: float | None) -> tuple[tuple[Cell, ...], ...]:
-    objectives = result.block.objectives
-    return tuple(
-        _row(result, reading, effect, at, step)
-        for reading in result.readings
-        for effect in Effect
-        for at in range(1 if effect is Effect.CURVE else len(objectives))
-    )
+def _rows(
+    examined: ExaminedInstances, result: InstancesResult, step: float | None
+) -> tuple[tuple[Cell, ...], ...]:
+    return tuple(_row(one, result) for one in examined.reductions if one.step == step)
 
 
-def _row(
-    result: FamilyResult, reading: str, effect: Effect, at: int, step: float | None
-) -> tuple[Cell, ...]:
-    values = result.reductions(reading, effect, at, step)
-    found, good = distribution(values), values[np.isfinite(values)]
+def _row(found: Reduction, result: InstancesResult) -> tuple[Cell, ...]:
     reached = None
-    if result.printed is not None and good.size and effect is Effect.BOTH:
-        reached = f"{100 * float((good >= result.printed[0]).mean()):.3g} %"
+    if result.printed is not None and found.effect is Effect.BOTH and found.objective is not None:
+        at = result.block.objectives.index(found.objective)
+        values = result.reductions(found.reading, found.effect, at, found.step)
+        good = values[np.isfinite(values)]
+        if good.size:
+            reached = f"{100 * float((good >= result.printed[0]).mean()):.3g} %"
     quantiles = (
         found.lowest,
         found.lower_quarter,
@@ -125,40 +124,44 @@ def _row(
         found.upper_quarter,
         found.highest,
     )
+    missing = f"\n{found.missing} without answer" if found.missing else ""
     return (
-        text(reading),
-        text(effect + ("" if effect is Effect.CURVE else f", {result.block.objectives[at]}")),
-        number(f"{found.pairs}" + (f"\n{found.missing} without answer" if found.missing else "")),
-        *(number(f"{100 * x:.1f}" if good.size else None) for x in quantiles),
-        number(f"{100 * found.shorter:.3g} %" if good.size else None),
+        text(found.reading),
+        text(found.effect + (f", {found.objective}" if found.objective else "")),
+        number(f"{found.pairs}{missing}"),
+        *(number(None if isinstance(x, Why) else f"{100 * x:.1f}") for x in quantiles),
+        number(None if isinstance(found.shorter, Why) else f"{100 * found.shorter:.3g} %"),
         number(reached),
     )
 
 
-def _instances(result: FamilyResult) -> Grid:
-    slow, fast, objectives = result.slower, result.faster, result.block.objectives
+def _instances(examined: ExaminedInstances) -> Grid:
+    slow, fast = examined.slower, examined.faster
     routes = (
         f"{slow.algorithm} on {slow.problem}",
         f"{slow.algorithm} on {fast.problem}",
         f"{fast.algorithm} on {fast.problem}",
     )
     rows = []
-    for s in result.samples:
-        cells = [text(s.reading), number(f"{s.step:g}"), number(s.index + 1)]
-        for optimum in (s.slower, s.faster):
-            known = np.isfinite(optimum.total)
-            cells.append(number(f"{optimum.total:.4f}") if known else text(optimum.status))
-        for at in range(len(objectives)):
-            for route in range(len(routes)):
-                totals = (f"{t:.3f}" if np.isfinite(t) else "none" for t in s.totals[at, route])
-                cells.append(number("\n".join(totals)))
-        rows.append(tuple(cells))
+    for one in examined.instances:
+        for own in one.readings:
+            cells = [text(own.reading), number(f"{one.step:g}"), number(one.instance + 1)]
+            for optimum in (own.slower_optimum, own.faster_optimum):
+                total = optimum.total_time
+                cells.append(
+                    text(optimum.status) if isinstance(total, Why) else number(f"{total:.4f}")
+                )
+            for runs in own.totals:
+                for totals in (runs.slower, runs.slower_algorithm_on_faster_curve, runs.faster):
+                    said = ("none" if t is None else f"{t:.3f}" for t in totals)
+                    cells.append(number("\n".join(said)))
+            rows.append(tuple(cells))
     names = (
         "reading",
-        f"step, {result.block.unit}",
+        f"step, {examined.unit}",
         "instance",
         f"optimum of {slow.problem}",
         f"optimum of {fast.problem}",
-        *(f"{route}, {objective}" for objective in objectives for route in routes),
+        *(f"{route}, {objective}" for objective in examined.objectives for route in routes),
     )
     return Grid(names, tuple(rows), "Totals in s, one line for each run")

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import re
 
+from ...problem import visible
 from .blocks import Block, Drawn, Folded, Grid, Page, Prose, Terms
 
 _SPECIAL = re.compile(r"([\\`*_\[\]<>#|~$&])")
+"""Characters that may begin markup anywhere."""
 _LIST = re.compile(r"^(\s*)([-+]|\d+[.)])(\s)", re.MULTILINE)
+"""What begins an item of a list, at the start of a line."""
 
 
 def markdown(page: Page) -> str:
@@ -31,7 +34,7 @@ def markdown(page: Page) -> str:
 
 def plain(text: str) -> str:
     """Text in which nothing is markup."""
-    escaped = _SPECIAL.sub(r"\\\1", text)
+    escaped = _SPECIAL.sub(r"\\\1", visible(text, keep="\n"))
     return _LIST.sub(r"\1\\\2\3", escaped)
 
 
@@ -41,7 +44,7 @@ def _block(page: Page, block: Block) -> str:
     if isinstance(block, Terms):
         return "\n".join(f"- **{plain(name)}**: {_line(meaning)}" for name, meaning in block.pairs)
     if isinstance(block, Drawn):
-        link = f"![{_line(block.title)}](pictures/{page.id}-{block.name}.svg)"
+        link = f"![{_line(block.title)}]({page.picture(block)})"
         return link + (f"\n\n{plain(block.caption)}" if block.caption else "")
     if isinstance(block, Folded):
         inner = [_block(page, one) for one in block.blocks]
@@ -59,4 +62,4 @@ def _grid(grid: Grid) -> str:
 
 
 def _line(text: str) -> str:
-    return "<br>".join(plain(line) for line in text.splitlines())
+    return "<br>".join(plain(line) for line in text.split("\n"))

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ...heuristics import JointRuns
 from ...nlp import Solution, weakest
-from ...problem import Problem, TrajgapError
+from ...problem import Problem, TrajgapError, file_name
 from ...problem.cases import AnyClaim, DurationsClaim, MaximumClaim, TotalTimeClaim
 from ..audits import CaseAudit, Study
 from ..pictures import Picture, Runs, convergence, endings, landscape, motion_picture, svg
@@ -40,7 +40,7 @@ def motions(one: CaseAudit) -> Section:
                 check=solution.check,
                 nodal=solution.nodal,
             )
-            blocks.append(_drawn(f"optimum-{pid}", picture, f"Reading {rid}."))
+            blocks.append(_drawn(file_name("optimum", pid), picture, f"Reading {rid}."))
     return Section("motions", "Motions, with limits and peaks", tuple(blocks) or _nothing(one))
 
 
@@ -81,7 +81,7 @@ def _printed_motions(study: Study, pid: str, rid: str) -> Iterator[Block]:
             note=f"over all that prints alike: {rounding}",
         )
         where = "; ".join(c.where for c in claims)
-        yield _drawn(f"motion-{pid}-{first.id}", picture, f"{where}. Reading {rid}.")
+        yield _drawn(file_name("motion", pid, first.id), picture, f"{where}. Reading {rid}.")
     for tables, singles in _tables_by_joint(study, pid).items():
         yield _joint_by_joint(study, pid, rid, tables, singles)
 
@@ -123,7 +123,7 @@ def _joint_by_joint(
         "Each joint with its own durations, at the printed digits. Over all that prints alike: "
         f"{each}. Reading {rid}."
     )
-    return _drawn(f"motion-{pid}-joints-{claims[0].table}", picture, caption)
+    return _drawn(file_name("motion", pid, "joints", str(claims[0].table)), picture, caption)
 
 
 # --- searches -------------------------------------------------------------------------------------
@@ -142,7 +142,9 @@ def searches(one: CaseAudit) -> Section:
         title = f"Totals of all runs, {pid}"
         caption = "Vertical strokes are medians. A reported total is not clipped at the optimum."
         blocks.append(
-            _drawn(f"totals-{pid}", endings(runs, references, printed, title=title), caption)
+            _drawn(
+                file_name("totals", pid), endings(runs, references, printed, title=title), caption
+            )
         )
         grid = Grid(REPLAY_COLUMNS, tuple(replay_rows(study, pid)))
         blocks.append(Folded(f"Spread over seeds and open choices, {pid}", (grid,)))
@@ -191,7 +193,7 @@ def _convergence(study: Study, pid: str, rid: str, runs: dict[str, Runs]) -> Ite
         title=f"Best total so far, {pid}" + (", each joint by itself" if by_joint else ""),
     )
     yield _drawn(
-        f"convergence-{pid}",
+        file_name("convergence", pid),
         picture,
         "Gap to the optimum, linear up to 0.01 % and logarithmic beyond. The band around a printed "
         "total is its rounding.",
@@ -244,7 +246,7 @@ def landscapes(one: CaseAudit) -> Section:
         ]
         ends = {name: np.array([r.durations for r in many]) for name, many in runs.items()}
         blocks += _landscape(
-            f"landscape-{pid}", problem, study.optimum(pid, rid), printed, ends, pid
+            file_name("landscape", pid), problem, study.optimum(pid, rid), printed, ends, pid
         )
         single: list[Drawn] = []
         for tables, claims in _tables_by_joint(study, pid).items():
@@ -255,7 +257,7 @@ def landscapes(one: CaseAudit) -> Section:
                     if isinstance(many[0], JointRuns)
                 }
                 single += _landscape(
-                    f"landscape-{pid}-joint-{j + 1}",
+                    file_name("landscape", pid, "joint", str(j + 1)),
                     problem.joint(j),
                     study.optimum(pid, rid, problem.joints[j]),
                     [(tables, study.case.claim_durations(claim, rid).value)],

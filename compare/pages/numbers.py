@@ -9,11 +9,11 @@ from decimal import ROUND_FLOOR, Decimal
 import numpy as np
 
 from ...nlp import Evidence, PerJointSolution, Solution
-from ...problem import Coupling
+from ...problem import Coupling, file_name
 from ...problem.cases import DurationsClaim
-from ..audits import CaseAudit, Step, Study, Waterfall
-from ..audits.rules import reference_of
-from ..gaps import Gap, gap, spread
+from ..audits import CaseAudit, Study
+from ..documents import Gap, Step, Waterfall, Why
+from ..gaps import gap, reference_of, spread
 from ..pictures import seconds as interval
 from ..pictures import svg, waterfall_picture
 from .blocks import (
@@ -33,6 +33,7 @@ from .blocks import (
 )
 
 _ON_A_LINE = 2
+"""Durations on each line of a cell: nine on one would push the table off the page."""
 _FEW = 3
 """Other readings of a problem that still get a picture each."""
 
@@ -41,51 +42,52 @@ def where_time_goes(one: CaseAudit) -> Section:
     """Waterfall pictures and tables of the default reading; the others folded, or in a table."""
     main = one.study.main_reading
     blocks: list[Block] = []
-    for pid in dict.fromkeys(fall.problem for fall in one.waterfalls):
-        own = [fall for fall in one.waterfalls if fall.problem == pid]
-        others = [fall for fall in own if fall.reading != main]
-        for fall in own:
-            if fall.reading == main:
-                blocks += _drawn(fall)
+    for pid in dict.fromkeys(w.problem for w in one.waterfalls):
+        own = [w for w in one.waterfalls if w.problem == pid]
+        others = [w for w in own if w.reading != main]
+        for waterfall in own:
+            shown = f"{pid}, {waterfall.reading}"
+            if waterfall.reading == main:
+                blocks += _drawn(waterfall)
             elif len(others) <= _FEW:
-                blocks.append(Folded(f"Other reading: {pid}, {fall.reading}", _drawn(fall)))
+                blocks.append(Folded(f"Other reading: {shown}", _drawn(waterfall)))
         if len(others) > _FEW:
             blocks.append(_side_by_side(pid, others))
     return Section("waterfall", "Where the time goes", tuple(blocks))
 
 
-def _drawn(fall: Waterfall) -> tuple[Plain, ...]:
-    title = f"Where the time goes: {fall.problem}, {fall.reading}"
-    picture = waterfall_picture(fall, title=title)
+def _drawn(waterfall: Waterfall) -> tuple[Plain, ...]:
+    title = f"Where the time goes: {waterfall.problem}, {waterfall.reading}"
+    picture = waterfall_picture(waterfall, title=title)
     caption = "Bars start at 0; best known values are hatched, certified ones solid." + (
-        f" The first bar is claim {fall.claim}." if fall.claim else ""
+        f" The first bar is claim {waterfall.claim}." if waterfall.claim else ""
     )
-    name = f"waterfall-{fall.problem}-{fall.reading}"
-    return Drawn(name, svg(picture), title, caption), _steps(fall)
+    name = file_name("waterfall", waterfall.problem, waterfall.reading)
+    return Drawn(name, svg(picture), title, caption), _steps(waterfall)
 
 
-def _side_by_side(pid: str, falls: Sequence[Waterfall]) -> Grid:
+def _side_by_side(pid: str, waterfalls: Sequence[Waterfall]) -> Grid:
     """Steps of many readings, one row each; steps that no reading has are left out."""
-    names = dict.fromkeys(s.name for fall in falls for s in fall.steps)
+    names = dict.fromkeys(s.name for w in waterfalls for s in w.steps)
     rows = []
-    for fall in falls:
-        steps = {s.name: s for s in fall.steps}
+    for waterfall in waterfalls:
+        steps = {s.name: s for s in waterfall.steps}
         cells = [_step(steps.get(name)) for name in names]
-        rows.append((text(fall.reading), *cells))
+        rows.append((text(waterfall.reading), *cells))
     caption = f"Other readings of {pid}; an empty cell was not computed"
     return Grid(("reading", *names), tuple(rows), caption).filled
 
 
 def _step(step: Step | None) -> Cell:
-    if step is None or step.time is None:
+    if step is None or isinstance(step.time, Why):
         return number(None)
     evidence = "" if step.evidence is Evidence.NONE else f"\n{step.evidence}"
     return number(interval(step) + evidence)
 
 
-def _steps(fall: Waterfall) -> Grid:
+def _steps(waterfall: Waterfall) -> Grid:
     rows = tuple(
-        (text(s.name), number(interval(s)), word(s.evidence), text(s.note)) for s in fall.steps
+        (text(s.name), number(interval(s)), word(s.evidence), text(s.note)) for s in waterfall.steps
     )
     return Grid(("step", "total", "evidence", "note"), rows)
 
@@ -93,12 +95,15 @@ def _steps(fall: Waterfall) -> Grid:
 # --- optima ---------------------------------------------------------------------------------------
 
 _OPTIMA = "Optimum of each formulation"
+"""Title of the section."""
 NINE = Decimal("1e-9")
+"""Nine decimals of a proved bound, as the certificates' tables have them."""
 _ANSWER = ("status", "total", "evidence", "durations, s", "check", "KKT residual", "starts at best")
+"""Columns that say how a solve ended."""
 
 
 def _durations(values: list[float]) -> str:
-    """Durations, a few on each line: nine on one would push the table off the page."""
+    """Durations, a few on each line."""
     lines = [listed(values[i : i + _ON_A_LINE]) for i in range(0, len(values), _ON_A_LINE)]
     return ",\n".join(lines)
 
@@ -285,3 +290,4 @@ REPLAY_COLUMNS = (
     "longest",
     "median beside the optimum",
 )
+"""Columns of `replay_rows`."""

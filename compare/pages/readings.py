@@ -7,7 +7,8 @@ from dataclasses import replace
 
 from ...problem import Case
 from ...problem.curves import ClampedBSpline, Parameters, clamped_readings
-from ..audits import CaseAudit, Outcome, ReadingsSummary, answers, holding, segments
+from ..audits import CaseAudit, segments
+from ..documents import ReadingOutcome, ReadingsSummary, Why
 from .blocks import (
     Block,
     Cell,
@@ -28,7 +29,7 @@ def side_by_side(one: CaseAudit) -> Section:
     if summary is None:
         blocks.append(Prose("The case has one reading."))
     else:
-        blocks += [Prose(sentence) for sentence in (*answers(summary), *holding(summary))]
+        blocks += [Prose(sentence) for sentence in (*summary.answers, *summary.holding)]
         blocks += _outcomes(one, summary) if summary.outcomes else [_unposed(one)]
     blocks += _determined(one.case)
     return Section("side-by-side", "The readings side by side", tuple(blocks))
@@ -37,7 +38,7 @@ def side_by_side(one: CaseAudit) -> Section:
 def _outcomes(one: CaseAudit, summary: ReadingsSummary) -> list[Block]:
     """One table for each printed answer, or for each problem without one."""
     default = one.case.default_reading.id
-    printed: dict[tuple[str | None, str], list[Outcome]] = {}
+    printed: dict[tuple[str | None, str], list[ReadingOutcome]] = {}
     for outcome in summary.outcomes:
         printed.setdefault((outcome.claim, outcome.problem), []).append(outcome)
     names = ("reading", "limits", "over a limit", "× to limits", "optimum", "printed total")
@@ -53,9 +54,15 @@ def _outcomes(one: CaseAudit, summary: ReadingsSummary) -> list[Block]:
     return [*grids, Prose(note, "note")]
 
 
-def _row(outcome: Outcome, default: str) -> tuple[Cell, ...]:
+def _row(outcome: ReadingOutcome, default: str) -> tuple[Cell, ...]:
     mark = "\n(default)" if outcome.reading == default else ""
-    optimum = None if outcome.optimum is None else f"{outcome.optimum:.6f} s\n{outcome.evidence}"
+    optimum = stretch = gap = None
+    if not isinstance(outcome.optimum, Why):
+        optimum = f"{outcome.optimum:.6f} s\n{outcome.evidence}"
+    if not isinstance(outcome.stretch, Why):
+        stretch = f"{outcome.stretch:.4f}"
+    if not isinstance(outcome.gap, Why):
+        gap = f"{outcome.gap.percent}\n{outcome.gap.kind}"
     over = ""
     if outcome.excesses:
         worst = max(outcome.excesses, key=lambda e: e.ratio)
@@ -63,14 +70,14 @@ def _row(outcome: Outcome, default: str) -> tuple[Cell, ...]:
         plural = "s" if len(outcome.excesses) > 1 else ""
         over = f"segment{plural} {segments(outcome.excesses)}\n{whose}, ratio {worst.ratio:.4g}"
     jumps = f"\n{outcome.jumps} velocity jumps" if outcome.jumps else ""
-    limits = text(None) if outcome.keeping is None else word(outcome.keeping)
+    limits = text(None) if isinstance(outcome.keeping, Why) else word(outcome.keeping)
     return (
         text(outcome.reading + mark),
         replace(limits, text=limits.text + jumps),
         text(over),
-        number(None if outcome.stretch is None else f"{outcome.stretch:.4f}"),
+        number(stretch),
         number(optimum),
-        text(None if outcome.gap is None else f"{outcome.gap.percent}\n{outcome.gap.kind}"),
+        text(gap),
     )
 
 

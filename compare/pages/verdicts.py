@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from ...nlp import Evidence
-from ...problem import Case, Coupling, Problem
+from ...problem import QUANTITIES, Case, Coupling, Problem, file_name
 from ...problem.cases import (
     AnyClaim,
     ConditionsClaim,
@@ -18,27 +18,30 @@ from ...problem.cases import (
     PeakClaim,
     TotalTimeClaim,
 )
-from ..audits import (
+from ..audits import CaseAudit, Study, named
+from ..audits.rules import placed
+from ..documents import (
     RULES,
-    CaseAudit,
+    UNITS,
     ClaimVerdict,
     Finding,
+    Gap,
     Judgement,
     Scope,
     Severity,
-    Study,
     Waterfall,
-    gist,
-    named,
+    Why,
 )
-from ..audits.rules import placed
 from ..pictures import seconds as interval
-from .blocks import Block, Cell, Folded, Grid, Prose, Section, Terms, text, word
+from .blocks import Block, Cell, Folded, Grid, Prose, Section, Terms, slug, text, word
+from .glossary import SCOPES
 
 _DECIDED = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT, ClaimVerdict.SUPPORTED)
+"""Verdicts that say something of a claim, those against it first."""
 _FEW = 4
 """Problems and readings that stand in the open."""
 _TITLES = {rule.id: rule.title for rule in RULES}
+"""What each rule looks at, by its id."""
 
 
 def audited(one: CaseAudit) -> Section:
@@ -68,10 +71,10 @@ def summary(one: CaseAudit) -> str:
     sentences = [f"{_count(len(one.judgements), 'claim')}: {said or 'none to judge'}."]
     sentences += _against(one)
     sentences += _errors(one)
-    sentences += [placed(one.study.family(block)) for block in one.study.families]
-    for fall in one.waterfalls:
-        if fall.reading == one.study.main_reading:
-            sentences += _down(one, fall)
+    sentences += [placed(one.study.instances(block)) for block in one.study.instance_blocks]
+    for waterfall in one.waterfalls:
+        if waterfall.reading == one.study.main_reading:
+            sentences += _down(one, waterfall)
     return " ".join(sentences)
 
 
@@ -88,8 +91,8 @@ def _against(one: CaseAudit) -> Iterable[str]:
             yield f"{verdict.capitalize()}: {', '.join(every)}."
     alike: dict[tuple[tuple[str, ClaimVerdict], ...], list[str]] = {}
     for j in one.judgements:
-        if j.scope is not Scope.ALL and any(v in against for _, v in j.readings):
-            alike.setdefault(j.readings, []).append(j.claim)
+        if j.scope is not Scope.ALL and any(v in against for v in j.readings.values()):
+            alike.setdefault(tuple(j.readings.items()), []).append(j.claim)
     for readings, claims in alike.items():
         under: dict[ClaimVerdict, list[str]] = {}
         for reading, verdict in readings:
@@ -117,9 +120,10 @@ def _which(readings: list[str]) -> str:
     return readings[0] if len(readings) == 1 else str(len(readings))
 
 
-def _down(one: CaseAudit, fall: Waterfall) -> Iterable[str]:
-    solution = one.study.optimum(fall.problem, fall.reading)
-    where = f"Under {fall.problem}, {fall.reading}"
+def _down(one: CaseAudit, waterfall: Waterfall) -> Iterable[str]:
+    about = waterfall.problem, waterfall.reading
+    solution = one.study.optimum(*about)
+    where = f"Under {', '.join(about)}"
     if solution.durations is None:
         yield f"{where}: {solution.status}{f', {solution.why}' if solution.why else ''}."
         return
@@ -127,11 +131,11 @@ def _down(one: CaseAudit, fall: Waterfall) -> Iterable[str]:
         f"{solution.total_time:.6f} s."
     )
     for f in one.findings:
-        beside = (f.claim, f.problem, f.reading) == (fall.claim, fall.problem, fall.reading)
-        if beside and f.gap is not None and f.rule in ("TG302", "TG303"):
+        beside = (f.claim, f.problem, f.reading) == (waterfall.claim, *about)
+        if beside and isinstance(f.gap, Gap) and f.rule in ("TG302", "TG303"):
             yield f"The printed {f.printed} has the {f.gap.kind} {f.gap.percent}."
             break
-    known = [s for s in fall.steps if s.time is not None]
+    known = [s for s in waterfall.steps if not isinstance(s.time, Why)]
     if known and known[-1].evidence is not Evidence.NONE:
         last = known[-1]
         shown = f"{interval(last)} ({last.note})"
@@ -167,14 +171,13 @@ def _problems(study: Study) -> Grid:
 
 
 def _limits(problem: Problem) -> str:
-    units = {"velocity": "rad/s", "acceleration": "rad/s²", "jerk": "rad/s³"}
     parts = []
-    for name, unit in units.items():
+    for name in QUANTITIES:
         values = getattr(problem.limits, name)
         shown = dict.fromkeys(f"{v:.6g}" for v in values)
         if list(shown) != ["inf"]:
             every = list(shown) if len(shown) == 1 else [f"{v:.6g}" for v in values]
-            parts.append(f"{name} {', '.join(every)} {unit}")
+            parts.append(f"{name} {', '.join(every)} {UNITS[name]}")
     if problem.limits.limits_position:
         parts.append("position")
     return "\n".join(parts) or "none"
@@ -197,7 +200,7 @@ def claim_table(one: CaseAudit) -> Section:
         claim = one.case.claim(judgement.claim)
         rows.append(
             (
-                Cell(f"{claim_text(claim)}\n[{claim.id}]", anchor=f"claim-{claim.id}"),
+                Cell(f"{claim_text(claim)}\n[{claim.id}]", anchor=file_name("claim", claim.id)),
                 text(claim.where),
                 text(printed(one.case, claim)),
                 word(judgement.verdict),
@@ -250,22 +253,22 @@ def _readings(judgement: Judgement) -> Cell:
     lines = [str(judgement.scope)]
     if judgement.scope is Scope.SOME:
         under: dict[ClaimVerdict, list[str]] = {}
-        for reading, verdict in judgement.readings:
+        for reading, verdict in judgement.readings.items():
             under.setdefault(verdict, []).append(reading)
         lines += [f"{verdict} under {_which(r)}" for verdict, r in under.items()]
-    return Cell("\n".join(lines), target="word-all-some-no-readings")
+    return Cell("\n".join(lines), target=f"word-{slug(SCOPES)}")
 
 
 def _why(one: CaseAudit, judgement: Judgement) -> str:
     """What decides: findings that say the same in other numbers share a line."""
-    lines: dict[tuple[str, str], list[Finding]] = {}
+    lines: dict[tuple[str, ...], list[Finding]] = {}
     for f in one.findings:
         if f.claim == judgement.claim and f.decides and f.verdict in _DECIDED:
-            lines.setdefault((f.rule, gist(f.message)), []).append(f)
+            lines.setdefault((f.rule, f.verdict, f.kind), []).append(f)
     if not lines:
         return judgement.why
     shown = []
-    for (rule, _), own in sorted(
+    for (rule, *_), own in sorted(
         lines.items(), key=lambda line: line[1][0].verdict is not judgement.verdict
     ):
         messages = list(dict.fromkeys(f.message for f in own))
@@ -301,7 +304,7 @@ def findings(one: CaseAudit) -> Section:
 def _finding_grid(found: list[Finding], readings: int) -> Grid:
     groups: dict[tuple[object, ...], list[Finding]] = {}
     for f in found:
-        key = (f.rule, f.claim, f.problem, f.verdict, f.printed, f.computed, f.message, str(f.gap))
+        key = (f.rule, f.claim, f.problem, f.verdict, f.printed, f.computed, f.message, _gap(f))
         groups.setdefault(key, []).append(f)
     rows = []
     for f, *more in groups.values():
@@ -312,7 +315,10 @@ def _finding_grid(found: list[Finding], readings: int) -> Grid:
         rows.append(
             (
                 Cell(f"{f.rule}\n{_TITLES.get(f.rule, '')}", target=f"word-{f.rule}"),
-                Cell("\n".join(x for x in under if x), target=f"claim-{about}" if about else ""),
+                Cell(
+                    "\n".join(x for x in under if x),
+                    target=file_name("claim", about) if about else "",
+                ),
                 text(f.printed),
                 text(f.computed),
                 text(_gap(f)),
@@ -325,7 +331,8 @@ def _finding_grid(found: list[Finding], readings: int) -> Grid:
 
 
 def _gap(finding: Finding) -> str | None:
-    return None if finding.gap is None else f"{finding.gap.percent}\n{finding.gap.kind}"
+    gap = finding.gap
+    return None if isinstance(gap, Why) else f"{gap.percent}\n{gap.kind}"
 
 
 # --- what it rests on -----------------------------------------------------------------------------

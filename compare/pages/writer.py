@@ -2,29 +2,36 @@
 
 from __future__ import annotations
 
-import json
 import os
-import shutil
 import sys
 from collections import Counter
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
-from uuid import uuid4
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
+from pydantic import BaseModel, Field
 
 from ...nlp.optimum import KKT_TOLERANCE, SAME, STARTS
-from ...problem import TOLERANCE, TrajgapError
-from ..audits import AuditReport, CaseAudit, ClaimVerdict
-from ..documents import audit_document
+from ...problem import (
+    LONGEST_NAME,
+    TOLERANCE,
+    TrajgapError,
+    file_name,
+    read_regular,
+    recover_folder,
+    replace_folder,
+    visible,
+)
+from ..audits import AuditReport, CaseAudit
+from ..documents import AuditDocument, ClaimVerdict, json_text
 from ..pictures import embedded
 from . import motions_shown as report_pictures
 from .blocks import Page, Prose, Section, Terms, slug
 from .exhibits import exhibits_of_motion, exhibits_of_search
 from .glossary import glossary
-from .instances import families
+from .instances import other_instances
 from .markdown_text import markdown
 from .numbers import optima, sensitivities, where_time_goes
 from .readings import side_by_side
@@ -32,8 +39,12 @@ from .verdicts import audited, claim_table, findings, foundations, summary
 
 MARK = "audit.json"
 """The file by which the folder of an earlier report is known."""
+_LARGEST_MARK = 1_000_000_000
+"""Bytes that are read to know an earlier report: hundreds of times the largest one shipped."""
 _INDEX = "index.html"
+"""The page that leads to those of the cases."""
 _TEMPLATES = Path(__file__).parent / "templates"
+"""Where the pages' templates and style lie, as package data."""
 _LIBRARIES = (
     "casadi",
     "jinja2",
@@ -44,6 +55,18 @@ _LIBRARIES = (
     "scipy",
     "toppra",
 )
+"""Libraries whose versions can move a digit or a pixel."""
+
+
+class _MarkedCase(BaseModel):
+    case: str
+
+
+class _Mark(BaseModel):
+    """What is read of an earlier report, of whatever version."""
+
+    version: str = Field(alias="schema")
+    cases: tuple[_MarkedCase, ...]
 
 
 def write_report(report: AuditReport, out: Path) -> None:
@@ -55,7 +78,7 @@ def write_report(report: AuditReport, out: Path) -> None:
     out : Path
         A new or an empty folder, or one with an earlier report, which is replaced. It gets
         ``index.html`` and ``audit.json``, and for each case ``CASE.html``, ``CASE.md``,
-        ``CASE.json`` and ``pictures/CASE-*.svg``.
+        ``CASE.json`` and ``pictures/CASE-*.svg``; CASE is its id, or what `file_name` makes of it.
 
     Raises
     ------
@@ -70,12 +93,13 @@ def write_report(report: AuditReport, out: Path) -> None:
         if name in (Path(_INDEX).stem, Path(MARK).stem):
             raise TrajgapError(f"{out}: a case cannot be called {name!r}; rename it")
     try:
+        recover_folder(out)
         other = foreign(out)
         if other is not None:
             raise TrajgapError(
                 f"{out}: {other} is not part of a trajgap report; name a new or an empty folder"
             )
-        _replace(out, _files(report))
+        replace_folder(out, _files(report))
     except OSError as error:
         reason = error.strerror or type(error).__name__
         raise TrajgapError(f"{out}: cannot be written ({reason}); name another place") from None
@@ -91,55 +115,34 @@ def foreign(out: Path) -> str | None:
     if not there:
         return None
     try:
-        document = json.loads((out / MARK).read_text(encoding="utf-8"))
-        cases = [str(one["case"]) for one in document["cases"]]
-        if not str(document["schema"]).startswith("trajgap/"):
-            return MARK
-    except (OSError, ValueError, KeyError, TypeError):
+        mark = _Mark.model_validate_json(read_regular(out / MARK, _LARGEST_MARK, "name another"))
+    except (OSError, ValueError):
         return there[0]
-    known = {_INDEX, MARK, *(f"{c}.{end}" for c in cases for end in ("html", "md", "json"))}
-    drawn = tuple(f"pictures/{c}-" for c in cases)
+    if not mark.version.startswith("trajgap/"):
+        return MARK
+    cases = [one.case for one in mark.cases]
+    pages = [file_name(case) for case in cases]
+    known = {_INDEX, MARK, *(f"{page}.{end}" for page in pages for end in ("html", "md", "json"))}
+    drawn = tuple(f"pictures/{f'{case}-'[:LONGEST_NAME]}" for case in cases)
     for name in there:
         if name not in known and not (name.startswith(drawn) and name.endswith(".svg")):
             return name
     return None
 
 
-def _replace(out: Path, files: dict[str, str]) -> None:
-    out.parent.mkdir(parents=True, exist_ok=True)
-    draft = out.parent / f".trajgap-{uuid4().hex}.tmp"
-    old = draft.with_suffix(".old")
-    try:
-        for name, content in files.items():
-            file = draft / name
-            file.parent.mkdir(parents=True, exist_ok=True)
-            file.write_text(content, encoding="utf-8", newline="\n")
-        if out.exists():
-            out.rename(old)
-        try:
-            draft.rename(out)
-        except OSError:
-            if old.exists():
-                old.rename(out)
-            raise
-    finally:
-        shutil.rmtree(draft, ignore_errors=True)
-        shutil.rmtree(old, ignore_errors=True)
-
-
 def _files(report: AuditReport) -> dict[str, str]:
-    document = audit_document(report)
+    document = report.document
     style = (_TEMPLATES / "style.css").read_text(encoding="utf-8")
     environment = _environment()
     files: dict[str, str] = {}
-    for one, own in zip(report.cases, document["cases"], strict=True):
+    for one in report.cases:
         page = case_page(one)
-        name = page.id
+        name = page.file
         files[f"{name}.html"] = environment.get_template("case.html").render(page=page, style=style)
         files[f"{name}.md"] = markdown(page)
-        files[f"{name}.json"] = _json({"schema": document["schema"], "cases": [own]})
+        files[f"{name}.json"] = json_text(AuditDocument(cases=(one.document,)))
         for picture in page.pictures:
-            files[f"pictures/{name}-{picture.name}.svg"] = picture.document
+            files[page.picture(picture)] = picture.document
     index = environment.get_template(_INDEX)
     files[_INDEX] = index.render(
         rows=[_row(one) for one in report.cases],
@@ -147,18 +150,15 @@ def _files(report: AuditReport) -> dict[str, str]:
         version=_version("trajgap"),
         style=style,
     )
-    files[MARK] = _json(document)
+    files[MARK] = json_text(document)
     return files
-
-
-def _json(document: dict[str, Any]) -> str:
-    return json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def _row(one: CaseAudit) -> dict[str, Any]:
     counts = Counter(str(j.verdict) for j in one.judgements)
     return {
         "id": one.case.id,
+        "file": file_name(one.case.id),
         "title": one.case.title,
         "summary": summary(one),
         "claims": len(one.judgements),
@@ -186,7 +186,7 @@ def case_page(one: CaseAudit) -> Page:
             claim_table(one),
             side_by_side(one),
             where_time_goes(one),
-            *families(one),
+            *other_instances(one),
             findings(one),
             optima(one),
             sensitivities(one),
@@ -244,10 +244,16 @@ def _environment() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
+        finalize=_visible,
     )
     environment.filters["slug"] = slug
-    environment.filters["inline"] = lambda drawn: Markup(
-        embedded(drawn.document, slug(drawn.name).lower())
-    )
+    environment.filters["inline"] = lambda drawn: Markup(embedded(drawn.document, drawn.name))
     environment.filters["unescaped"] = Markup
     return environment
+
+
+def _visible(value: object) -> object:
+    """What a page prints: plain text with every character visible, markup of ours as it is."""
+    if isinstance(value, str) and not isinstance(value, Markup):
+        return visible(value, keep="\n")
+    return value

@@ -1,5 +1,5 @@
 from .drawing import Picture, embedded, svg
-from .instances import family_picture
+from .instances import instances_picture
 from .jumps import jump_picture, velocity_jumps
 from .motion import motion_picture
 from .polygon import polygon_picture
@@ -15,7 +15,7 @@ __all__ = [
     "convergence",
     "embedded",
     "endings",
-    "family_picture",
+    "instances_picture",
     "jump_picture",
     "landscape",
     "motion_picture",

@@ -18,7 +18,9 @@ from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties, findfont
 from matplotlib.ft2font import FT2Font
 
-# Okabe & Ito's colours, told apart with any common colour blindness.
+from ...problem import visible
+
+# Okabe & Ito's colours, told apart with any common colour blindness, on a white page.
 INK = "#1f2933"
 MUTED = "#5b6673"
 GRID = "#d5dae1"
@@ -43,9 +45,12 @@ THEME = {
 }
 """Colours that a page may replace, by the name of their CSS variable."""
 Line = Literal["-", "--", "-.", ":"]
+"""Line styles of matplotlib."""
 SERIES: tuple[tuple[str, Line], ...] = ((BLUE, "-"), (ORANGE, "--"), (GREEN, "-."), (PURPLE, ":"))
 """Colour and line style of the algorithms, in order; told apart without colour too."""
 
+# What every picture shares: small type for a page's column, a font that is always there, and thin
+# lines without a frame.
 _STYLE: dict[str, Any] = {
     "font.family": ["DejaVu Sans"],
     "font.size": 9.0,
@@ -141,8 +146,7 @@ def light_grid(axes: Axes, which: str = "both") -> None:
 
 
 def _xml(text: str) -> str:
-    printable = "".join(c if c.isprintable() else " " for c in text)
-    return escape(printable.encode("utf-8", "replace").decode("utf-8"))
+    return escape(visible(text))
 
 
 def _coarser(match: re.Match[str]) -> str:
@@ -218,7 +222,7 @@ def embedded(document: str, prefix: str) -> str:
     document : str
         What `svg` returned.
     prefix : str
-        Unique in the page; letters, digits and hyphens.
+        Unique in the page; made by `file_name`.
     """
     text = document[document.index("<svg ") :]
     text = re.sub(r'\bid="([^"]+)"', rf'id="{prefix}-\1"', text)

@@ -1,4 +1,4 @@
-"""The picture of a family of instances: what both procedures, algorithm and curve alone save."""
+"""The picture of other instances: what both procedures, algorithm and curve alone save."""
 
 from __future__ import annotations
 
@@ -7,21 +7,24 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from ..audits.instances import Effect, FamilyResult, distribution, percent_range
+from ..audits.instances import InstancesResult, distribution, percent_range
+from ..documents import Effect
 from .drawing import INK, PAPER, RED, SERIES, Picture, drawing, light_grid, shown
 
 _MARKERS = ("o", "s", "^", "D")
+"""Of the step lengths, in their order."""
 _OFFSET = 0.2
 """Distance of the rows of the objectives from the middle of their reading."""
 _SHOWN_OBJECTIVES = 2
+"""Objectives that are drawn: filled and hollow tell two apart."""
 
 
-def family_picture(result: FamilyResult, *, title: str) -> Picture:
+def instances_picture(result: InstancesResult, *, title: str) -> Picture:
     """Reductions of the total on every instance, one row for each reading.
 
     Parameters
     ----------
-    result : FamilyResult
+    result : InstancesResult
         Its first two objectives are drawn.
     title : str
 
@@ -56,13 +59,13 @@ def family_picture(result: FamilyResult, *, title: str) -> Picture:
     return figure
 
 
-def _objectives(result: FamilyResult, effect: Effect) -> tuple[int, ...]:
+def _objectives(result: InstancesResult, effect: Effect) -> tuple[int, ...]:
     """Objectives that a panel tells apart; the optima have none."""
     many = min(_SHOWN_OBJECTIVES, len(result.block.objectives))
     return (0,) if effect is Effect.CURVE else tuple(range(many))
 
 
-def _label(result: FamilyResult, reading: str) -> str:
+def _label(result: InstancesResult, reading: str) -> str:
     missing = sum(
         distribution(result.reductions(reading, effect, at)).missing
         for effect in Effect
@@ -71,7 +74,7 @@ def _label(result: FamilyResult, reading: str) -> str:
     return shown(reading, 24) + (f"\n{missing} pairs without answer" if missing else "")
 
 
-def _panel(axes: Axes, result: FamilyResult, effect: Effect) -> None:
+def _panel(axes: Axes, result: InstancesResult, effect: Effect) -> None:
     if effect is Effect.BOTH and result.printed is not None:
         low, high = (100 * x for x in result.printed)
         axes.axvspan(low, high, facecolor=RED, alpha=0.35, linewidth=0)
@@ -103,7 +106,7 @@ def _panel(axes: Axes, result: FamilyResult, effect: Effect) -> None:
     light_grid(axes, "x")
 
 
-def _legend(result: FamilyResult) -> tuple[list[Line2D | Patch], list[str]]:
+def _legend(result: InstancesResult) -> tuple[list[Line2D | Patch], list[str]]:
     handles: list[Line2D | Patch] = []
     names = []
     for which, step in enumerate(result.block.lengths):

@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from ...problem import Jump, Problem, Trajectory, TrajgapError, check, fit
+from ..documents import UNITS
 from .drawing import (
     BLUE,
     GRID,
@@ -18,9 +19,10 @@ from .drawing import (
     finish,
     shown,
 )
-from .motion import UNITS, sampled
+from .motion import sampled
 
 _VELOCITY = 1
+"""Order of the derivative whose jumps are drawn."""
 
 
 def velocity_jumps(problem: Problem, durations: ArrayLike) -> tuple[Jump, ...]:

@@ -13,9 +13,13 @@ from numpy.typing import NDArray
 from .drawing import INK, PAPER
 
 _SIZE = 8.0
+"""Of the type, points: that of the axes' numbers."""
 _REACH = (8.0, 13.0, 19.0, 26.0, 34.0, 44.0)
+"""Distances of a label from its point that are tried, points: the nearest is clear of the dot."""
 _DIRECTIONS = 12
+"""Directions that are tried at each distance; more of them move no label visibly."""
 _DOT = 9.0
+"""Room of a point that no label may cover, points: a little more than the dot."""
 
 
 def place_labels(axes: Axes, points: NDArray[np.float64], labels: Sequence[str]) -> None:

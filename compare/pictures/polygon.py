@@ -29,6 +29,7 @@ from .motion import sampled
 
 Array = NDArray[np.float64]
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+"""Digits as exponents, for type without formulas."""
 
 
 def polygon_picture(waypoints: ArrayLike, vertices: Sequence[Vertex], *, title: str) -> Picture:

@@ -26,11 +26,15 @@ from .drawing import (
 )
 
 Runs = Sequence[Run] | Sequence[JointRuns]
+"""Runs of one algorithm: of all joints, or of each joint by itself."""
 _DASHES = ((0, (1, 1.5)), (0, (5, 2)), (0, (7, 2, 1, 2)), (0, (3, 1, 1, 1, 1, 1)))
+"""Of the printed totals, in their order; none is a line style of the algorithms."""
 _LINEAR = 0.01
 """Gaps up to this many percent stand on a linear scale, larger ones on a logarithmic one."""
 _INVISIBLE = 0.02
+"""Share of its own height by which a curve may move unseen, so that its point is left out."""
 _TICKS = (0.01, 0.1, 1.0, 10.0, 100.0, 1000.0, 10_000.0, 100_000.0)
+"""Gaps in percent that the axis may name: decades from the end of the linear part."""
 
 
 def convergence(

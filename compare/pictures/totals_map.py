@@ -34,12 +34,16 @@ LEVELS = (0.0, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
 _BELOW = 0.01
 """A tight total this many percent below the optimum is drawn apart: it needs an explanation."""
 _DIVISIONS = 120
+"""Of each side of the triangle: 7,381 totals, a second or so, and contours without corners."""
 _CORNERS: Array = np.array([[0.0, 0.0], [1.0, 0.0], [0.5, np.sqrt(3) / 2]])
+"""Of the triangle of shares, each where one duration is all of the total."""
 # On the map, whose colours do not follow the page's theme, neither may these.
 _DARK = "#101418"
 _LIGHT = "#fefefe"
 _PRINTED = ("D", "s", "P", "X")
+"""Markers of printed durations, in their order."""
 _ENDS = (("o", SKY), ("^", PURPLE), ("v", _LIGHT), ("<", ORANGE))
+"""Markers and colours of where the runs of each algorithm end, in their order."""
 
 
 def landscape(

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Patch
 
 from ...nlp import Evidence
-from ..audits import Step, Waterfall
+from ..documents import Step, Waterfall, Why, given
 from .drawing import (
     BLUE,
     GRID,
@@ -30,11 +30,13 @@ _FILLS = {
     Evidence.BEST_KNOWN: {"facecolor": PAPER, "edgecolor": BLUE, "hatch": "////"},
     Evidence.NONE: {"facecolor": ORANGE, "edgecolor": ORANGE, "hatch": ""},
 }
+"""Fill of a bar by what stands behind its value."""
 _WORDS = {
     Evidence.CERTIFIED: "certified",
     Evidence.BEST_KNOWN: "best known",
     Evidence.NONE: "printed, or derived from it",
 }
+"""The same in words, for the legend and the description."""
 
 
 def waterfall_picture(waterfall: Waterfall, *, title: str) -> Picture:
@@ -52,8 +54,8 @@ def waterfall_picture(waterfall: Waterfall, *, title: str) -> Picture:
         step without a value says why.
     """
     steps = waterfall.steps
-    known = [s.time for s in steps if s.time is not None]
-    top = max([*known, *(s.high for s in steps if s.high is not None)], default=1.0)
+    ends = [x for s in steps for x in (s.time, s.high) if not isinstance(x, Why)]
+    top = max(ends, default=1.0)
     description = "; ".join(f"{s.name}: {seconds(s)}, {_evidence(s)}" for s in steps)
     with drawing():
         figure = Picture(title, description, 9.6, 1.1 + 0.5 * max(1, len(steps)))
@@ -61,8 +63,8 @@ def waterfall_picture(waterfall: Waterfall, *, title: str) -> Picture:
         for row, step in enumerate(steps):
             _bar(axes, row, step, top)
             axes.axhline(row + 0.5, color=GRID, linewidth=0.6, zorder=0)
-            before = [s.time for s in steps[:row] if s.time is not None]
-            if step.time is not None and before:
+            before = [s.time for s in steps[:row] if not isinstance(s.time, Why)]
+            if not isinstance(step.time, Why) and before:
                 for _, which, *places in _COLUMNS:
                     for place, text in zip(places, _change(step.time, before[which]), strict=True):
                         axes.text(place * top, row, text, va="center", ha="right", fontsize=8)
@@ -75,7 +77,7 @@ def waterfall_picture(waterfall: Waterfall, *, title: str) -> Picture:
         axes.plot([0, 0], [-0.5, len(steps) - 0.5], color=MUTED, linewidth=0.8)
         for text, _, _, place in _COLUMNS:
             axes.text(place * top, -0.62, text, color=MUTED, fontsize=8, va="center", ha="right")
-        present = [e for e in Evidence if any(s.evidence is e and s.time for s in steps)]
+        present = [e for e in Evidence if any(s.evidence is e and given(s.time) for s in steps)]
         axes.legend(
             [Patch(linewidth=0.9, **_fill(e)) for e in present],
             [_WORDS[e] for e in present],
@@ -93,7 +95,7 @@ def _fill(evidence: Evidence) -> dict[str, Any]:
 
 
 def _evidence(step: Step) -> str:
-    return step.note if step.time is None else _WORDS[step.evidence]
+    return step.note if isinstance(step.time, Why) else _WORDS[step.evidence]
 
 
 def seconds(step: Step) -> str:
@@ -108,29 +110,30 @@ def seconds(step: Step) -> str:
     str
         Such as "3.3595 s (3.3324 to 3.4128)", or "not computed".
     """
-    if step.time is None:
+    if isinstance(step.time, Why):
         return "not computed"
     digits = 4 if step.time >= 0.1 else 6
     text = f"{step.time:.{digits}f} s"
-    if step.low is not None and step.high is not None:
-        width = step.high - step.low
+    low, high = step.low, step.high
+    if not isinstance(low, Why) and not isinstance(high, Why):
+        width = high - low
         if width > 1e-9:
             digits = min(9, max(digits, math.ceil(1 - math.log10(width))))
-            text += f" ({step.low:.{digits}f} to {step.high:.{digits}f})"
+            text += f" ({low:.{digits}f} to {high:.{digits}f})"
     return text
 
 
 def _bar(axes: Axes, row: int, step: Step, top: float) -> None:
-    if step.time is None:
+    if isinstance(step.time, Why):
         note = shown(step.note or "not computed", 100, 2)
         axes.text(0.015 * top, row, note, color=MUTED, fontsize=8, style="italic", va="center")
         return
     axes.barh(row, step.time, height=0.62, linewidth=0.9, **_fill(step.evidence))
-    end = step.time
-    if step.low is not None and step.high is not None and step.high - step.low > 2e-3 * top:
-        end = max(end, step.high)
-        axes.plot([step.low, step.high], [row, row], color=INK, linewidth=2.2, zorder=4)
-        for x in (step.low, step.high):
+    end, low, high = step.time, given(step.low), given(step.high)
+    if low is not None and high is not None and high - low > 2e-3 * top:
+        end = max(end, high)
+        axes.plot([low, high], [row, row], color=INK, linewidth=2.2, zorder=4)
+        for x in (low, high):
             axes.plot([x, x], [row - 0.2, row + 0.2], color=INK, linewidth=1.4, zorder=4)
     axes.text(
         0.015 * top if step.time > 0.5 * top else end + 0.015 * top,

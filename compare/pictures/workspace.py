@@ -28,9 +28,13 @@ from .drawing import (
 from .labels import place_labels
 
 _VIEWS = ((0, 1, "from above"), (0, 2, "from the side"), (1, 2, "from the front"))
+"""The two axes of each view, and its name."""
 _AXES = "xyz"
+"""Names of the axes of the base."""
 _LARGEST_CLOUD = 2_000
+"""Sampled positions that are drawn: more of them only make the file larger."""
 _ROOM = 1.1
+"""Half the width of a view by half the extent of what it shows: a margin of a tenth."""
 Array = NDArray[np.float64]
 
 

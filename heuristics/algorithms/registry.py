@@ -27,6 +27,13 @@ KINDS: tuple[str, ...] = tuple(_RECORDS)
 """Kinds of algorithm that are implemented."""
 
 
+MOST_COUNT = 100_000
+"""Largest whole number in the settings of an algorithm, such as its population or iterations.
+
+A hundred times what papers print; a population of that size still fits into memory.
+"""
+
+
 def _record(kind: str) -> Callable[..., Algorithm[Any]]:
     if kind not in _RECORDS:
         raise TrajgapError(f"algorithm kind: {kind!r} is unknown; {nearest(str(kind), KINDS)}")
@@ -63,7 +70,13 @@ def from_settings(kind: str, settings: Mapping[str, object]) -> Algorithm[Any]:
     for key in settings:
         if key not in known:
             raise TrajgapError(f"{kind}: {key}: unknown setting; {nearest(str(key), known)}")
-    return record(**settings)
+    made = record(**settings)
+    for key in settings:
+        value = getattr(made, key)
+        # Clean by now: a whole number is a count, whatever else may be large is a float.
+        if isinstance(value, int) and value > MOST_COUNT:
+            raise TrajgapError(f"{kind}: {key}: {value} is more than {MOST_COUNT}; give less")
+    return made
 
 
 def open_choices(kind: str) -> tuple[str, ...]:

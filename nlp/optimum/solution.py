@@ -35,9 +35,11 @@ class Evidence(StrEnum):
     CERTIFIED = "certified"
     """Lower and upper bound within the stated gap, re-checked."""
     BEST_KNOWN = "best known"
-    """The best value found; nothing is proved below it."""
+    """The best value found and checked, with nothing proved below it. A gap against it is a lower
+    estimate of the true one."""
     NONE = "none"
-    """No value."""
+    """No value. A verdict that rests on none rests on the printed digits, a count, a check of what
+    is printed, or a shorter motion that was checked and needs no optimum beside it."""
 
 
 def weakest(evidence: Iterable[Evidence]) -> Evidence:

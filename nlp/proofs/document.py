@@ -11,7 +11,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from ...problem import Curve, Interpolant, TrajgapError
+from ...problem import Curve, Interpolant, TrajgapError, replace_file
 from ...problem.curves import StretchedUniformBSpline, TimedUniformBSpline
 from ...verify import CERTIFICATE_FORMAT, CertifiedQuestion, Subject, number, seal
 from .exact import ExactProblem, Real, decimal
@@ -185,7 +185,7 @@ def write_certificate(
         If nothing is proved.
     """
     text = certificate_text(certified, question)
-    Path(path).write_text(text, encoding="utf-8")
+    replace_file(Path(path), text)
     return len(text.encode())
 
 
@@ -209,21 +209,17 @@ def shipped(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> dict[
     dict or None
     """
     wanted = question(problem_document(problem), subject)
-    for document, asked in _all_shipped():
-        if document["claim"]["subject"] == subject and asked == wanted:
+    for document in _all_shipped():
+        same = document["claim"]["subject"] == subject
+        if same and question(document["problem"], subject) == wanted:
             return copy.deepcopy(document)
     return None
 
 
 @lru_cache(maxsize=1)
-def _all_shipped() -> tuple[tuple[dict[str, Any], dict[str, Any]], ...]:
-    """Each with what it asks."""
-    found = []
-    for path in sorted(shipped_folder().glob("*.json")):
-        document = json.loads(path.read_text("utf-8"))
-        subject = Subject(document["claim"]["subject"])
-        found.append((document, question(document["problem"], subject)))
-    return tuple(found)
+def _all_shipped() -> tuple[dict[str, Any], ...]:
+    paths = sorted(shipped_folder().glob("*.json"))
+    return tuple(json.loads(path.read_text("utf-8")) for path in paths)
 
 
 def question(problem: dict[str, Any], subject: Subject = Subject.DECLARED) -> dict[str, Any]:

@@ -7,7 +7,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from ...problem import TrajgapError
+from ...problem import TrajgapError, check_regular
 from ...verify import (
     STATE_FORMAT,
     CertifiedQuestion,
@@ -85,10 +85,11 @@ def read_state(path: str | Path) -> StateFile:
         alone: `certify` proves everything in it again.
     """
     name = str(path)
+    check_regular(Path(path))
     try:
         document = read_document(path)
     except Refused as error:
-        raise TrajgapError(f"{name}: {error}".replace("a certificate", "a state file")) from None
+        raise TrajgapError(f"{name}: {error}") from None
     if not isinstance(document, dict) or document.get("format") != STATE_FORMAT:
         raise TrajgapError(f"{name}: is no {STATE_FORMAT}; name a state file")
     rest = {key: value for key, value in document.items() if key != "seal"}

@@ -16,11 +16,25 @@ from .instances import InstancesBlock, instance_waypoints
 from .load import load_case, parse_case, published_ids
 from .robot_file import load_robot, robot_ids
 from .scaffolding import scaffold
-from .schema import Cartesian, CaseFile, case_schema
+from .schema import (
+    AlgorithmBlock,
+    Assumption,
+    Cartesian,
+    CaseFile,
+    NotCheckable,
+    ProblemBlock,
+    Reading,
+    Robot,
+    Source,
+    Table,
+    case_schema,
+)
 from .statement import Statement
 
 __all__ = [
+    "AlgorithmBlock",
     "AnyClaim",
+    "Assumption",
     "Cartesian",
     "Case",
     "CaseFile",
@@ -33,9 +47,15 @@ __all__ = [
     "ImprovementClaim",
     "InstancesBlock",
     "MaximumClaim",
+    "NotCheckable",
     "PeakClaim",
+    "ProblemBlock",
+    "Reading",
+    "Robot",
+    "Source",
     "Statement",
     "StatementClaim",
+    "Table",
     "TotalTimeClaim",
     "case_schema",
     "instance_waypoints",

@@ -373,12 +373,12 @@ class Case:
         for problem in self.problems:
             if problem.id == problem_id:
                 return problem
-        mend = nearest(problem_id, (p.id for p in self.problems))
-        raise CaseError(self.file, "problem", f"no problem {problem_id!r}; {mend}")
+        fix = nearest(problem_id, (p.id for p in self.problems))
+        raise CaseError(self.file, "problem", f"no problem {problem_id!r}; {fix}")
 
     def _reading(self, reading_id: str) -> Reading:
         for reading in self.readings:
             if reading.id == reading_id:
                 return reading
-        mend = nearest(reading_id, (r.id for r in self.readings))
-        raise CaseError(self.file, "reading", f"no reading {reading_id!r}; {mend}")
+        fix = nearest(reading_id, (r.id for r in self.readings))
+        raise CaseError(self.file, "reading", f"no reading {reading_id!r}; {fix}")

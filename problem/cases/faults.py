@@ -63,8 +63,8 @@ def _read(detail: Mapping[str, Any]) -> tuple[str, str]:
         given = raw.get("quantity") if isinstance(raw, dict) else None
         if given is None:
             return f"{path}.quantity", f"is missing; add one of {', '.join(QUANTITY_KINDS)}"
-        mend = nearest(str(given), QUANTITY_KINDS)
-        return f"{path}.quantity", f"{_short(given)} is no quantity of a claim; {mend}"
+        fix = nearest(str(given), QUANTITY_KINDS)
+        return f"{path}.quantity", f"{_short(given)} is no quantity of a claim; {fix}"
     return path, _reason(kind, raw, context, detail["msg"])
 
 
@@ -79,12 +79,14 @@ def _reason(kind: str, raw: object, context: Mapping[str, Any], message: str) ->
         return f"{_short(raw)} is not an id; use lower-case letters, digits, dots and dashes"
     if kind in ("string_too_short", "too_short"):
         return "is empty; fill it in or leave the key out"
+    if kind == "too_long":
+        return f"has more than {context['max_length']:,} entries; leave some out"
     if kind in ("greater_than_equal", "less_than_equal"):
         word, bound = ("least", "ge") if kind.startswith("greater") else ("most", "le")
         return f"{_short(raw)} is out of range; give at {word} {context[bound]}"
     if kind in _EXPECTED:
-        wanted, mend = _EXPECTED[kind]
-        return f"expected {wanted}, got {describe(raw)}; {mend}"
+        wanted, fix = _EXPECTED[kind]
+        return f"expected {wanted}, got {describe(raw)}; {fix}"
     return f"{message}, got {_short(raw)}; see the schema of case files"
 
 

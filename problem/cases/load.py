@@ -15,6 +15,7 @@ from .case import Case
 from .faults import first_fault
 from .references import check_claims, check_kinematics, check_references
 from .schema import CaseFile
+from .sizes import check_sizes, check_values
 
 FORMAT = 1
 """The version of the case file format that this module reads."""
@@ -46,7 +47,7 @@ def load_case(source: str | Path) -> Case:
     ------
     CaseError
         If there is no such case or file, or anything in it is wrong: one line naming the file,
-        the field and the mend.
+        the field and how to fix it.
     """
     known = published_ids()
     if isinstance(source, str) and source in known:
@@ -106,10 +107,12 @@ def check_case(raw: dict[str, Any], file: str) -> Case:
         raise CaseError(file, "format", f"is missing; add `format = {FORMAT}`")
     if version != FORMAT or isinstance(version, bool):
         raise CaseError(file, "format", f"is {version!r}; this version reads {FORMAT}")
+    check_values(raw, file)
     try:
         document = CaseFile.model_validate(raw)
     except ValidationError as error:
         raise CaseError(file, *first_fault(error)) from None
+    check_sizes(document, file)
     check_references(document, file)
     case = Case(document, file)
     check_kinematics(document, file, case.chain())

@@ -19,22 +19,9 @@ from .claim import (
     TotalTimeClaim,
 )
 from .instances import InstancesBlock
-from .schema import CaseFile
+from .schema import LISTS, CaseFile
 from .statement import Statement
 
-_LISTS = (
-    "problems",
-    "readings",
-    "algorithms",
-    "families",
-    "tables",
-    "claims",
-    "assumptions",
-    "columns",
-    "cartesian",
-    "not_checkable",
-)
-"""Lists of blocks with ids, in the order in which their faults are told."""
 _BLOCKS = ("units", "waypoints", "limits", "interpolant", "durations", "coupling", "robot")
 """Single blocks that an assumption may say it affects; they have no ids."""
 _OF_ONE_PROBLEM = (DurationsClaim, MaximumClaim, TotalTimeClaim, PeakClaim, ControlVerticesClaim)
@@ -55,7 +42,7 @@ def check_references(document: CaseFile, file: str) -> None:
     CaseError
         If an id is declared twice, or something refers to an undeclared one.
     """
-    ids = {name: _unique(file, name, getattr(document, name)) for name in _LISTS}
+    ids = {name: _unique(file, name, getattr(document, name)) for name in LISTS}
     defaults = [index for index, reading in enumerate(document.readings) if reading.default]
     if len(defaults) > 1:
         raise CaseError(

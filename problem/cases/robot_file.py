@@ -43,7 +43,7 @@ def load_robot(source: str | Path) -> Chain:
     ------
     CaseError
         If there is no such robot or file, or anything in it is wrong: one line naming the file,
-        the field and the mend.
+        the field and how to fix it.
 
     Examples
     --------

@@ -155,10 +155,10 @@ def _digits(name: str, field: str, text: str) -> None:
     try:
         Printed(text)
     except TrajgapError as error:
-        mend = str(error)
+        fix = str(error)
         if re.fullmatch(r"\s*[-+−]?[0-9]+,[0-9]+\s*", text):
-            mend = f"{text!r} has a decimal comma; write a decimal point"
-        raise CaseError(name, field, mend) from None
+            fix = f"{text!r} has a decimal comma; write a decimal point"
+        raise CaseError(name, field, fix) from None
 
 
 def _identity(stem: str) -> str:

@@ -9,9 +9,11 @@ from pydantic import BeforeValidator, Field, StrictBool, StrictInt, WithJsonSche
 
 from ..errors import TrajgapError
 from ..fields import (
+    MOST_WAYPOINTS,
     AccelerationUnit,
     Id,
     JerkUnit,
+    JointLabels,
     Number,
     OneOrEachLength,
     OneOrEachLowerPosition,
@@ -34,6 +36,20 @@ from .claim import AnyClaim
 from .declaration import InterpolantBlock
 from .instances import InstancesBlock
 
+LISTS = (
+    "problems",
+    "readings",
+    "algorithms",
+    "families",
+    "tables",
+    "claims",
+    "assumptions",
+    "columns",
+    "cartesian",
+    "not_checkable",
+)
+"""Lists of blocks with ids, in the order in which their faults are told."""
+
 
 class Source(Strict):
     """Where the numbers were printed."""
@@ -50,7 +66,7 @@ class Robot(Strict):
     """The robot and the labels of the joints, in the order of every per-joint list."""
 
     name: Text
-    joints: Annotated[tuple[Text, ...], Field(min_length=1)]
+    joints: JointLabels
     dh: DhTable | None = None
     """Its Denavit-Hartenberg table as printed."""
     model: Id | None = None
@@ -98,7 +114,7 @@ class Waypoints(Strict):
     """One row per way-point, one number per joint."""
     not_printed: Text | None = None
     """Why there are no rows, where the paper prints none; with `count`."""
-    count: Annotated[StrictInt, Field(ge=2)] | None = None
+    count: Annotated[StrictInt, Field(ge=2, le=MOST_WAYPOINTS)] | None = None
     """How many way-points there are, where none is printed."""
 
     @model_validator(mode="after")
@@ -121,6 +137,11 @@ class Waypoints(Strict):
         count = len(self.points)
         if count < 2:
             raise fault(f".{name}", "holds one way-point only; give at least two")
+        if count > MOST_WAYPOINTS:
+            raise fault(
+                f".{name}",
+                f"holds {count:,} way-points, at most {MOST_WAYPOINTS:,} are read; leave some out",
+            )
         self._check_labels()
         return self
 
@@ -187,7 +208,7 @@ class ProblemData(Strict):
 class Override(ProblemData):
     """A `ProblemData` that changes another one; units, limits and durations key by key."""
 
-    joints: Annotated[tuple[Text, ...], Field(min_length=1)] | None = None
+    joints: JointLabels | None = None
     """The joints that take part; all if absent. Per-joint lists keep listing every joint."""
 
 

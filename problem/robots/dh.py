@@ -13,10 +13,11 @@ from pydantic import Field, PlainSerializer, PlainValidator, WithJsonSchema, mod
 
 from ..arrays import Array
 from ..fields import (
+    MOST_JOINTS,
+    JointLabels,
     LowerPosition,
     Number,
     Strict,
-    Text,
     UpperPosition,
     fault,
     read_number,
@@ -31,6 +32,8 @@ _MINUS_SIGNS = str.maketrans({"\u2212": "-", "\u2013": "-"})
 """Minus signs that are printed, to the ASCII one."""
 _PI = Fraction(math.pi)
 """π as every toolbox takes it: exactly the double."""
+_LONGEST = 64
+"""Characters of a multiple of π that are read, as of any number."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +61,7 @@ def read_angle(raw: object) -> Printed | PiMultiple:
         return raw
     text = raw.strip().translate(_MINUS_SIGNS) if isinstance(raw, str) else ""
     match = _PI_MULTIPLE.fullmatch(text)
-    if match is None:
+    if match is None or len(text) > _LONGEST:
         return read_number(raw)
     factor = Fraction(int(match[2] or 1), int(match[3] or 1))
     return PiMultiple(text, -factor if match[1] == "-" else factor)
@@ -94,11 +97,11 @@ class DhTable(Strict):
     """Why others are admitted, or why signs are uncertain."""
     length_unit: LengthUnit
     angle_unit: PositionUnit
-    joints: Annotated[tuple[Text, ...], Field(min_length=1)] | None = None
+    joints: JointLabels | None = None
     """Joint labels; those of the robot if absent."""
     kinds: tuple[JointKind, ...] | None = None
     """revolute or prismatic; all revolute if absent."""
-    d: Annotated[tuple[Number, ...], Field(min_length=1)]
+    d: Annotated[tuple[Number, ...], Field(min_length=1, max_length=MOST_JOINTS)]
     a: tuple[Number, ...]
     alpha: tuple[Angle, ...]
     theta_offset: tuple[Angle, ...] | None = None

@@ -13,6 +13,7 @@ import sys
 import tomllib
 from collections.abc import Iterator
 from fnmatch import fnmatch
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -57,6 +58,7 @@ def tracked_files() -> list[Path]:
     return sorted(path for path in found if not path.is_symlink())
 
 
+@cache
 def source_modules(folder: str) -> dict[str, Path]:
     """Dotted name and file of every module in a folder."""
     found = {}
@@ -167,6 +169,7 @@ def test_flow_check_raises_no_false_alarm(source: str) -> None:
 # --- faces ----------------------------------------------------------------------------------------
 
 
+@cache
 def packages() -> list[str]:
     return sorted(
         name.removesuffix(".__init__")
@@ -200,11 +203,12 @@ def around_the_face(name: str, package: str, source: str) -> list[str]:
     return faults
 
 
+@cache
 def all_modules() -> set[str]:
-    modules = {name for folder in MAY_IMPORT for name in source_modules(folder)}
-    return modules - {"trajgap.nlp.verify"}  # until the verifiers have a folder of their own
+    return {name for folder in MAY_IMPORT for name in source_modules(folder)}
 
 
+@cache
 def face_names(package: str) -> list[str]:
     return list(getattr(importlib.import_module(package), "__all__", ()))
 
@@ -270,7 +274,16 @@ def test_faces_import_nothing_heavy() -> None:
 
 # --- kinds of curve -------------------------------------------------------------------------------
 
-KINDS = r"Interpolant|\w+BSpline|StretchedCurve|ClockedTrajectory"
+
+def kinds() -> str:
+    """Pattern of the names of every kind of curve and trajectory."""
+    face = importlib.import_module("trajgap.problem.curves")
+    values = {name: getattr(face, name) for name in face_names("trajgap.problem.curves")}
+    bases = face.Curve, face.Trajectory
+    found = [n for n, v in values.items() if isinstance(v, type) and issubclass(v, bases)]
+    return "|".join(sorted({*found, "StretchedCurve"} - {"Curve", "Trajectory"}))
+
+
 ASK_FOR_A_KIND = {
     # Named in docs/interpolants.md, with the reason.
     "nlp/optimum/curve_symbols.py",
@@ -281,15 +294,15 @@ ASK_FOR_A_KIND = {
 
 def asks_for_a_kind(source: str) -> list[str]:
     """Places that decide by the type of a curve or trajectory, whatever the spelling."""
-    found = []
+    found, names = [], kinds()
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Call) and ast.unparse(node.func) in ("isinstance", "issubclass"):
-            tested = re.fullmatch(rf".*\b({KINDS})\b.*", ast.unparse(node.args[1]))
+            tested = re.fullmatch(rf".*\b({names})\b.*", ast.unparse(node.args[1]))
             found += [ast.unparse(node)] if tested else []
         if isinstance(node, ast.Call) and ast.unparse(node) in ("type(curve)", "type(trajectory)"):
             found.append(ast.unparse(node))
         if isinstance(node, ast.Dict) and any(
-            key is not None and re.fullmatch(KINDS, ast.unparse(key)) for key in node.keys
+            key is not None and re.fullmatch(names, ast.unparse(key)) for key in node.keys
         ):
             found.append(ast.unparse(node))
         if isinstance(node, ast.FunctionDef) and any(

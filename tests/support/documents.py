@@ -3,16 +3,27 @@
 from __future__ import annotations
 
 import json
-from copy import deepcopy
 from typing import Any
 
 import jsonschema
 from support.checkout import ROOT
 from trajgap.compare.audits.case_audit import AuditReport, CaseAudit
-from trajgap.compare.audits.finding import Basis, ClaimVerdict, Finding, Judgement, Scope, Severity
 from trajgap.compare.audits.study import Study
-from trajgap.compare.audits.waterfall import Step, Waterfall
-from trajgap.compare.gaps.optimality_gap import Reference, gap
+from trajgap.compare.documents import (
+    Basis,
+    ClaimVerdict,
+    Document,
+    Finding,
+    Judgement,
+    Reference,
+    Scope,
+    Severity,
+    Step,
+    Waterfall,
+    Why,
+    json_text,
+)
+from trajgap.compare.gaps.optimality_gap import gap
 from trajgap.nlp import Evidence
 from trajgap.problem import load_case
 
@@ -31,7 +42,13 @@ def closed(schema: Any) -> Any:
 
 
 CLOSED = closed(SCHEMA)
+# What stands in a case file is documented with the case file.
 CLOSED["$defs"]["show"] = SCHEMA["$defs"]["show"]
+
+
+def plain(document: Document) -> Any:
+    """A document as its reader gets it."""
+    return json.loads(json_text(document))
 
 
 def assert_valid(document: Any, kind: str, whole: bool = True) -> None:
@@ -75,17 +92,24 @@ def report() -> AuditReport:
         reading="waypoints-rad",
         printed="1.869 s",
         computed="1.817 s",
-        gap=gap((1.8, 1.9), Reference(1.85), feasible=False),
+        gap=gap((1.8, 1.9), Reference(upper=1.85), feasible=False),
         message="text",
     )
     steps = (
-        Step("published", 1.9, 1.8, 2.0, Evidence.NONE, "printed"),
-        Step("TOPPRA", None, None, None, Evidence.NONE, "no acceleration is limited"),
+        Step(name="published", time=1.9, low=1.8, high=2.0, note="printed"),
+        Step.missing("TOPPRA", "no acceleration is limited"),
     )
-    plain = deepcopy(finding.__dict__) | {"gap": None, "severity": Severity.ERROR}
+    proof = finding.model_copy(
+        update={"gap": Why("no time is set beside an optimum"), "severity": Severity.ERROR}
+    )
     judgement = Judgement(
-        "durations-80", ClaimVerdict.REFUTED, Scope.ALL, Evidence.NONE, "TG302: text"
+        claim="durations-80",
+        verdict=ClaimVerdict.REFUTED,
+        scope=Scope.ALL,
+        evidence=Evidence.NONE,
+        why="TG302: text",
+        readings={},
     )
-    fall = Waterfall("limit-80", "waypoints-rad", None, steps)
-    one = CaseAudit(case, Study(case, seeds=2), (finding, Finding(**plain)), (judgement,), (fall,))
+    fall = Waterfall(problem="limit-80", reading="waypoints-rad", claim=None, steps=steps)
+    one = CaseAudit(case, Study(case, seeds=2), (finding, proof), (judgement,), (fall,))
     return AuditReport((one,))

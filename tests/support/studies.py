@@ -5,6 +5,8 @@ computing twice builds its own with `Study`.
 """
 
 import pickle
+import tomllib
+from decimal import Decimal
 from functools import cache
 from importlib.resources import files
 
@@ -12,6 +14,7 @@ from trajgap.compare.audits.case_audit import CaseAudit, audit_case
 from trajgap.compare.audits.study import Study
 from trajgap.nlp import PerJointSolution, Solution, stated_exactly
 from trajgap.problem import Case, parse_case
+from trajgap.problem.cases.load import check_case
 
 # A spread needs two seeds; more show nothing further in a test.
 SEEDS = 2
@@ -28,7 +31,7 @@ class Reworded(Study):
         """Whether the changed case poses the very same problem, digit by digit."""
         if (pid, rid) not in self.original.pairs:
             return False
-        one, other = (s.case.posing(pid, rid) for s in (self, self.original))
+        one, other = (s.case.statement(pid, rid) for s in (self, self.original))
         exact = stated_exactly(one, None) == stated_exactly(other, None)
         return exact and pickle.dumps(one.problem()) == pickle.dumps(other.problem())
 
@@ -68,7 +71,15 @@ def changed(case_id: str, *swaps: tuple[str, str], tail: str = "") -> Study:
     return Reworded(parse_case(text + tail, f"{case_id}.toml"), shipped(case_id))
 
 
+def hurried(case_id: str) -> Case:
+    """The case with replays of three iterations, for tests that are not about what they find."""
+    raw = tomllib.loads(source(case_id), parse_float=Decimal)
+    for algorithm in raw["algorithms"]:
+        algorithm["settings"]["iterations"] = 3
+    return check_case(raw, f"{case_id}.toml")
+
+
 @cache
 def audited(case_id: str) -> CaseAudit:
-    """The audit of a case as shipped."""
-    return audit_case(shipped(case_id))
+    """The audit of a case, with hurried replays."""
+    return audit_case(Reworded(hurried(case_id), shipped(case_id)))

@@ -111,3 +111,31 @@ def test_it_imports_the_standard_library_and_itself() -> None:
             else:
                 continue
             assert names <= {*sys.stdlib_module_names, *numpy}, path
+
+
+def test_the_docs_say_how_long_it_is() -> None:
+    page = (ROOT / "docs" / "certificates.md").read_text("utf-8")
+    stated = {}
+    for line in page.splitlines():
+        cells = [cell.strip() for cell in line.strip("|").split("|")]
+        if len(cells) == 3 and cells[1].isdigit():
+            stated[cells[0].replace("`", "")] = int(cells[1])
+    length = {
+        path.relative_to(FOLDER).as_posix().removesuffix(".py"): len(path.read_text().splitlines())
+        for path in FOLDER.rglob("*.py")
+        if not path.name.startswith("__")
+    }
+    parts = {
+        "closed_form": ["closed_form"],
+        "three_piece": ["three_piece"],
+        "any_curve": ["any_curve"],
+        "cubic/": [name for name in length if name.startswith("cubic/")],
+        "quintic, quintic_bound": ["quintic", "quintic_bound"],
+    }
+    kinds = {name for names in parts.values() for name in names}
+    parts["core"] = [name for name in length if name not in kinds]
+    assert set(stated) == set(parts)
+    for part, names in parts.items():
+        true = sum(length[name] for name in names)
+        assert true <= stated[part] * 1.05, part
+        assert true >= stated[part] * 0.8, part

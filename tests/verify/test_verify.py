@@ -21,9 +21,9 @@ from trajgap.nlp.proofs.exact import ExactProblem
 from trajgap.problem import Limits, Problem, three_five_three
 from trajgap.verify import CERTIFICATE_FORMAT, Subject, seal
 from trajgap.verify import verify_certificate as verify
-from trajgap.verify.certificate import KINDS as PROOFS
 from trajgap.verify.curve import nonnegative
 from trajgap.verify.reading import Clock
+from trajgap.verify.verdict import KINDS as PROOFS
 
 
 def document(kind: str = "three-piece") -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Families of instances: way-points drawn where a paper prints none."""
+"""Instances: way-points drawn where a paper prints none."""
 
 import lazy_loader
 

@@ -1,10 +1,9 @@
+from .entries import examined_entry
 from .pose import examined, readings_of
 from .result import (
     MIDDLE,
-    Effect,
-    FamilyResult,
+    InstancesResult,
     Optimum,
-    Procedure,
     Sample,
     distribution,
     percent_range,
@@ -15,13 +14,12 @@ from .study import STARTS
 __all__ = [
     "MIDDLE",
     "STARTS",
-    "Effect",
-    "FamilyResult",
+    "InstancesResult",
     "Optimum",
-    "Procedure",
     "Sample",
     "distribution",
     "examined",
+    "examined_entry",
     "percent_range",
     "readings_of",
     "reproduced",

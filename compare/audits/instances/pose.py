@@ -1,4 +1,4 @@
-"""From a declared family to its instances, posed for the two procedures that a claim compares."""
+"""From a declared design to its instances, posed for the two procedures that a claim compares."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, cast
 from ....heuristics import Algorithm
 from ....problem import TrajgapError
 from ....problem.cases import Claim, ImprovementClaim, InstancesBlock, instance_waypoints
-from .result import FamilyResult, Procedure
+from ...documents import Procedure
+from .result import InstancesResult
 from .study import Task, examine
 
 if TYPE_CHECKING:
@@ -26,11 +27,13 @@ def _sides(study: Study, block: InstancesBlock) -> tuple[Claim, Claim]:
 
 def _procedure(study: Study, side: Claim) -> Procedure:
     # A case file names both; the problem may be its only one.
-    return Procedure(side.problem or study.case.problems[0].id, cast(str, side.algorithm))
+    return Procedure(
+        problem=side.problem or study.case.problems[0].id, algorithm=cast(str, side.algorithm)
+    )
 
 
 def readings_of(study: Study, block: InstancesBlock) -> tuple[str, ...]:
-    """Selected readings of a family; none if an algorithm is not implemented."""
+    """Selected readings of a design; none if an algorithm is not implemented."""
     sides = [_procedure(study, side) for side in _sides(study, block)]
     if any(study.algorithm(side.algorithm) is None for side in sides):
         return ()
@@ -64,8 +67,8 @@ def printed_reduction(study: Study, block: InstancesBlock) -> tuple[float, float
 
 def examined(
     study: Study, block: InstancesBlock, progress: Callable[[str], None] | None = None
-) -> FamilyResult:
-    """Draw a family, pose it under its readings, and examine it.
+) -> InstancesResult:
+    """Draw instances, pose them under their readings, and examine them.
 
     Parameters
     ----------
@@ -77,7 +80,7 @@ def examined(
 
     Returns
     -------
-    FamilyResult
+    InstancesResult
 
     Raises
     ------
@@ -112,7 +115,7 @@ def examined(
         for step, instances in zip(block.lengths, drawn, strict=True)
         for index, points in enumerate(instances)
     ]
-    return FamilyResult(
+    return InstancesResult(
         block=block,
         slower=slower,
         faster=faster,

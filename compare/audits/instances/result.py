@@ -1,39 +1,20 @@
-"""What a family of instances shows: samples, reductions, and their distribution."""
+"""What instances show: samples, reductions, and their distribution."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ....nlp import Evidence
 from ....problem.cases import InstancesBlock
+from ...documents import Effect, Procedure
 
 Array = NDArray[np.float64]
 
 MIDDLE = 0.9
 """Share of a distribution within which a printed reduction counts as reproduced."""
-
-
-class Effect(StrEnum):
-    """What a reduction of the total is due to."""
-
-    BOTH = "both together"
-    """Curve and algorithm: the procedure of the paper against the other one."""
-    ALGORITHM = "algorithm alone"
-    """The two algorithms on the curve of the paper's procedure."""
-    CURVE = "curve alone"
-    """The two curves at their best known totals, without any algorithm."""
-
-
-@dataclass(frozen=True)
-class Procedure:
-    """A curve and the algorithm that searches its durations, as the paper names them."""
-
-    problem: str
-    algorithm: str
 
 
 @dataclass(frozen=True)
@@ -83,7 +64,7 @@ class Sample:
         ----------
         effect : Effect
         objective : int
-            Position among the family's objectives; the optima have none.
+            Position among the design's objectives; the optima have none.
 
         Returns
         -------
@@ -147,8 +128,8 @@ def distribution(reductions: Array) -> Distribution:
 
 
 @dataclass(frozen=True, eq=False)
-class FamilyResult:
-    """What the two procedures of a relative claim do on the instances of a family.
+class InstancesResult:
+    """What the two procedures of a relative claim do on instances drawn for it.
 
     Attributes
     ----------
@@ -212,7 +193,7 @@ class FamilyResult:
         return tuple(found)
 
 
-def reproduced(result: FamilyResult, reading: str) -> bool:
+def reproduced(result: InstancesResult, reading: str) -> bool:
     """Whether the printed reduction lies in the middle of those of one run against one run."""
     values = result.reductions(reading, Effect.BOTH)
     known = values[np.isfinite(values)]

@@ -1,25 +1,24 @@
-"""A relative claim on a family of instances: optima and runs of the two procedures it compares."""
+"""A relative claim on instances: optima and runs of the two procedures it compares."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from concurrent.futures import ProcessPoolExecutor
-from contextlib import ExitStack
+from contextlib import ExitStack, closing
 from dataclasses import dataclass, replace
-from multiprocessing import get_context
 from typing import Any
 
 import numpy as np
 
-from ....heuristics import Algorithm, run
+from ....heuristics import Algorithm, in_processes, run
 from ....nlp import Solution, solve
 from ....problem import TOLERANCE, Coupling, Problem, check
 from ...gaps import SETTLED, settled_at
 from .result import Array, Optimum, Sample
 
 STARTS = 2
-"""Starts of every solve; one where the segments do not depend on each other."""
+"""Starts of every solve, for there are hundreds; one where the segments are independent."""
 _ROUTES = 3
+"""The slower procedure, its algorithm on the faster one's curve, and the faster procedure."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,10 +63,7 @@ def examine(
     with ExitStack() as stack:
         results: Iterable[tuple[Sample, ...]] = map(_examined, todo)
         if workers > 1:
-            # Spawned, because a fork copies the locks of the compiled libraries.
-            context = get_context("spawn")
-            pool = stack.enter_context(ProcessPoolExecutor(workers, mp_context=context))
-            results = pool.map(_examined, todo)
+            results = stack.enter_context(closing(in_processes(_examined, todo, workers)))
         for done, samples in enumerate(results, start=1):
             found += samples
             if progress is not None:
@@ -76,6 +72,7 @@ def examine(
 
 
 Kept = dict[tuple[object, ...], Any]
+"""What was computed already, by what tells one question from another."""
 
 
 def _examined(task: Task) -> tuple[Sample, ...]:
@@ -150,12 +147,12 @@ def _optimum(kept: Kept, problem: Problem) -> Optimum:
     if key not in kept:
         polynomials = problem.curve.piecewise
         alone = polynomials is not None and set(polynomials.continuity) <= {0}
-        kept[key] = _told(solve(problem, starts=1 if alone else STARTS))
+        kept[key] = _ended(solve(problem, starts=1 if alone else STARTS))
     known: Optimum = kept[key]
     return known
 
 
-def _told(solution: Solution) -> Optimum:
+def _ended(solution: Solution) -> Optimum:
     words = f"{solution.status}" + (f" ({solution.why})" if solution.why else "")
     total = solution.total_time if solution.infimum is None else solution.infimum
     return Optimum(total, solution.evidence, words)

@@ -1,6 +1,6 @@
 from .condition_count import judge_counts
 from .continuous_time import judge_motions
-from .distances import judge_distances, reference_of
+from .distances import judge_distances
 from .on_instances import HANDLED, attributed, judge_instances, placed
 from .open_points import list_open_points
 from .printed_chain import judge_kinematics
@@ -24,6 +24,5 @@ __all__ = [
     "judge_vertices",
     "list_open_points",
     "placed",
-    "reference_of",
     "vertices",
 ]

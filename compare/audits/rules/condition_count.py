@@ -6,9 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ....nlp import Evidence
 from ....problem.cases import ConditionsClaim
-from ..finding import Basis, ClaimVerdict, Finding, Scope, Severity
+from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..study import Study
 
 
@@ -37,20 +36,20 @@ def conditions(claim: ConditionsClaim) -> int:
 def _counted(study: Study, claim: ConditionsClaim) -> Finding:
     wanted = conditions(claim)
     available = sum(d + 1 for d in claim.degrees)
-    family = "-".join(map(str, claim.degrees))
+    degrees = "-".join(map(str, claim.degrees))
     computed = f"{wanted} conditions on {available} coefficients"
     printed = None if claim.count is None else str(claim.count)
     verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
-    message = f"{family} polynomials: {computed} per joint."
+    message = f"{degrees} polynomials: {computed} per joint."
     if claim.count is not None and claim.count.fraction != wanted:
         verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
-        message = f"{family} polynomials: {computed} per joint, where {printed} is printed."
+        message = f"{degrees} polynomials: {computed} per joint, where {printed} is printed."
     elif wanted > available:
         impossible = _impossible_segments(study, claim)
         if impossible:
             verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
             message = (
-                f"{family} polynomials: {computed} per joint. No polynomial of that degree meets "
+                f"{degrees} polynomials: {computed} per joint. No polynomial of that degree meets "
                 f"them in segment {', '.join(map(str, impossible))}, where the way-points differ."
             )
         else:
@@ -60,15 +59,10 @@ def _counted(study: Study, claim: ConditionsClaim) -> Finding:
         rule="TG107",
         severity=severity,
         verdict=verdict,
-        scope=Scope.ALL,
-        evidence=Evidence.NONE,
         basis=Basis.COUNT,
         claim=claim.id,
-        problem=None,
-        reading=None,
         printed=printed,
         computed=computed,
-        gap=None,
         message=message,
     )
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
-from ....nlp import Evidence
 from ....problem import QUANTITIES, Extremum, Verdict, extrema, fit, peak_gradients
 from ....problem.cases import (
     AnyClaim,
@@ -15,9 +15,19 @@ from ....problem.cases import (
     PeakClaim,
     StatementClaim,
 )
-from ..finding import Basis, ClaimVerdict, Finding, Scope, Severity
-from ..rounding import Rounding
+from ...documents import UNITS, Basis, ClaimVerdict, Finding, Rounding, Severity
 from ..study import Study
+
+
+@dataclass(frozen=True)
+class _Judged:
+    """What the rounding box says of printed durations."""
+
+    verdict: ClaimVerdict
+    severity: Severity
+    message: str
+    kind: str
+
 
 _VERDICTS = {
     Rounding.KEEPS: (ClaimVerdict.SUPPORTED, Severity.INFO),
@@ -25,9 +35,9 @@ _VERDICTS = {
     Rounding.BREAKS: (ClaimVerdict.REFUTED, Severity.ERROR),
     Rounding.UNDECIDED: (ClaimVerdict.NOT_CHECKABLE, Severity.INFO),
 }
+"""What a rounding verdict says of the claim, and how much that weighs."""
 _NARROW = 0.01
 """Share of a limit above which rounding blurs a peak too much to call the limit reached."""
-_UNITS = {"position": "rad", "velocity": "rad/s", "acceleration": "rad/s²", "jerk": "rad/s³"}
 
 
 def judge_motions(study: Study) -> Iterator[Finding]:
@@ -59,13 +69,11 @@ def _ratio(study: Study, claim: AnyClaim, pid: str, rid: str) -> str:
     if worst.quantity == "curve":
         return "the printed durations define no curve"
     where = f"joint {worst.joint} " if worst.joint is not None else f"segment {worst.segment + 1} "
-    unit = "s" if worst.quantity == "duration" else _UNITS[worst.quantity]
+    unit = "s" if worst.quantity == "duration" else UNITS[worst.quantity]
     return f"{where}{worst.quantity} {abs(worst.value):.6g} against {worst.limit:.6g} {unit}"
 
 
-def _judged(
-    study: Study, claim: AnyClaim, pid: str, rid: str
-) -> tuple[ClaimVerdict, Severity, str]:
+def _judged(study: Study, claim: AnyClaim, pid: str, rid: str) -> _Judged:
     rounding = study.claim_rounding(claim, pid, rid)
     verdict, severity = _VERDICTS[rounding.verdict]
     at_print = _ratio(study, claim, pid, rid)
@@ -75,8 +83,10 @@ def _judged(
         Rounding.BREAKS: "Every input that prints alike breaks a limit",
         Rounding.UNDECIDED: "The printed digits do not decide whether the limits are kept",
     }[rounding.verdict]
+    kind = str(rounding.verdict)
     found = study.claim_check(claim, pid, rid)
     if found.verdict is Verdict.DISCONTINUOUS and rounding.verdict is Rounding.UNDECIDED:
+        kind = str(found.verdict)
         jumps = sum(jump.order == 1 for jump in found.jumps)
         explained = (
             "discontinuous: the printed point keeps every limit inside the segments, and the "
@@ -92,17 +102,17 @@ def _judged(
             kept = cut is not Rounding.UNDECIDED
             verdict = ClaimVerdict.SUPPORTED if kept else ClaimVerdict.NOT_CHECKABLE
             message += f" With digits cut off instead of rounded: {cut}."
-            return verdict, Severity.WARNING, message
+            return _Judged(verdict, Severity.WARNING, message, kind)
         message += " So does every input with digits cut off instead of rounded."
-    return verdict, severity, message
+    return _Judged(verdict, severity, message, kind)
 
 
 def broken(study: Study, claim: AnyClaim, pid: str, rid: str) -> str | None:
     """What shows that every input printing alike, rounded or cut off, breaks a limit; or None."""
     if not isinstance(claim, DurationsClaim | MaximumClaim):
         return None
-    verdict, _, message = _judged(study, claim, pid, rid)
-    return message if verdict is ClaimVerdict.REFUTED else None
+    judged = _judged(study, claim, pid, rid)
+    return judged.message if judged.verdict is ClaimVerdict.REFUTED else None
 
 
 def said_to_keep(study: Study, claim: AnyClaim) -> bool:
@@ -122,25 +132,21 @@ def said_to_keep(study: Study, claim: AnyClaim) -> bool:
 def _limits(study: Study, claim: AnyClaim) -> Iterator[Finding]:
     said = said_to_keep(study, claim)
     for pid, rid in study.claim_pairs(claim):
-        verdict, severity, message = _judged(study, claim, pid, rid)
-        if not said:
-            verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
-            message += " Nothing printed says that these durations keep the limits."
+        judged = _judged(study, claim, pid, rid)
+        unsaid = "" if said else " Nothing printed says that these durations keep the limits."
         yield Finding(
             rule="TG201",
-            severity=severity,
-            verdict=verdict,
-            scope=Scope.SOME,
-            evidence=Evidence.NONE,
+            severity=judged.severity if said else Severity.INFO,
+            verdict=judged.verdict if said else ClaimVerdict.NOT_CHECKABLE,
             basis=Basis.ENCLOSURE,
             claim=claim.id,
             problem=pid,
             reading=rid,
             printed=f"{_durations_text(claim)} s",
             computed=_ratio(study, claim, pid, rid),
-            gap=None,
-            message=message,
+            message=judged.message + unsaid,
             decides=said,
+            kind=judged.kind,
         )
 
 
@@ -154,17 +160,12 @@ def _jumps(study: Study, claim: AnyClaim) -> Iterator[Finding]:
         top = max(velocity, key=lambda jump: abs(jump.size))
         yield Finding(
             rule="TG202",
-            severity=Severity.INFO,
-            verdict=ClaimVerdict.NOT_CHECKABLE,
-            scope=Scope.SOME,
-            evidence=Evidence.NONE,
             basis=Basis.CHECK,
             claim=claim.id,
             problem=pid,
             reading=rid,
             printed=f"{_durations_text(claim)} s",
             computed=f"{len(velocity)} jumps of velocity, up to {abs(top.size):.6g} rad/s",
-            gap=None,
             message=(
                 f"discontinuous under this reading: the velocity jumps {len(velocity)} times at "
                 f"the via-points, most in joint {top.joint} at t = {top.time:.6g} s by "
@@ -185,12 +186,11 @@ def _limits_statement(study: Study, claim: StatementClaim) -> Iterator[Finding]:
         ]
         if not judged:
             continue
-        verdicts = [v for _, _, (v, _, _) in judged]
-        broken = [(c, pid, m) for c, pid, (v, _, m) in judged if v is ClaimVerdict.REFUTED]
-        if broken:
+        breaking = [one for one in judged if one[2].verdict is ClaimVerdict.REFUTED]
+        if breaking:
             verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
-            message = " ".join(f"{c.id} ({pid}): {m}" for c, pid, m in broken)
-        elif all(v is ClaimVerdict.SUPPORTED for v in verdicts):
+            message = " ".join(f"{c.id} ({pid}): {one.message}" for c, pid, one in breaking)
+        elif all(one.verdict is ClaimVerdict.SUPPORTED for _, _, one in judged):
             verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
             every = ", ".join(dict.fromkeys(c.id for c, _, _ in judged))
             message = (
@@ -199,11 +199,12 @@ def _limits_statement(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             )
         else:
             verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
-            open_ = [(c, p, m) for c, p, (v, _, m) in judged if v is ClaimVerdict.NOT_CHECKABLE]
-            message = f"The printed digits do not decide {', '.join(c.id for c, _, _ in open_)}."
+            undecided = [one for one in judged if one[2].verdict is ClaimVerdict.NOT_CHECKABLE]
+            names = ", ".join(c.id for c, _, _ in undecided)
+            message = f"The printed digits do not decide {names}."
             jumping = [
-                f"{c.id} ({pid}): {m}"
-                for c, pid, m in open_
+                f"{c.id} ({pid}): {one.message}"
+                for c, pid, one in undecided
                 if study.claim_check(c, pid, rid).verdict is Verdict.DISCONTINUOUS
             ]
             message = " ".join(jumping) or message
@@ -211,15 +212,9 @@ def _limits_statement(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             rule="TG201",
             severity=severity,
             verdict=verdict,
-            scope=Scope.SOME,
-            evidence=Evidence.NONE,
             basis=Basis.ENCLOSURE,
             claim=claim.id,
-            problem=None,
             reading=rid,
-            printed=None,
-            computed=None,
-            gap=None,
             message=message,
         )
 
@@ -252,15 +247,9 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             rule="TG202",
             severity=severity,
             verdict=verdict,
-            scope=Scope.SOME,
-            evidence=Evidence.NONE,
             basis=Basis.CHECK,
             claim=claim.id,
-            problem=None,
             reading=rid,
-            printed=None,
-            computed=None,
-            gap=None,
             message=message,
         )
 
@@ -293,17 +282,10 @@ def _said_to_jump(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             )
         yield Finding(
             rule="TG206",
-            severity=Severity.INFO,
             verdict=verdict,
-            scope=Scope.SOME,
-            evidence=Evidence.NONE,
             basis=Basis.CHECK,
             claim=claim.id,
-            problem=None,
             reading=rid,
-            printed=None,
-            computed=None,
-            gap=None,
             message=message,
         )
 
@@ -353,22 +335,18 @@ def _used_up(study: Study, claim: AnyClaim) -> Iterator[Finding]:
                 if abs(abs(top.value) - limit) <= reach <= _NARROW * limit:
                     tight.append(
                         f"joint {problem.joints[top.joint]} {quantity} {abs(top.value):.6g} "
-                        f"± {reach:.1g} at its limit {limit:.6g} {_UNITS[quantity]}"
+                        f"± {reach:.1g} at its limit {limit:.6g} {UNITS[quantity]}"
                     )
         if tight:
             yield Finding(
                 rule="TG204",
-                severity=Severity.INFO,
                 verdict=ClaimVerdict.SUPPORTED,
-                scope=Scope.SOME,
-                evidence=Evidence.NONE,
                 basis=Basis.CHECK,
                 claim=claim.id,
                 problem=pid,
                 reading=rid,
                 printed=f"{_durations_text(claim)} s",
                 computed="; ".join(tight),
-                gap=None,
                 message="To first order in the rounding of the printed inputs, a limit is reached: "
                 + "; ".join(tight)
                 + ".",
@@ -396,20 +374,17 @@ def _peak(study: Study, claim: PeakClaim) -> Iterator[Finding]:
             reach = _box_reach(study, source, pid, rid, top)
             printed = study.case.measured(claim.value, claim.derivative, pid, rid)
             near = printed.lower - reach <= abs(top.value) <= printed.upper + reach
-            unit = _UNITS[claim.derivative]
+            unit = UNITS[claim.derivative]
             yield Finding(
                 rule="TG203",
                 severity=Severity.INFO if near else Severity.WARNING,
                 verdict=ClaimVerdict.SUPPORTED if near else ClaimVerdict.INCONSISTENT,
-                scope=Scope.SOME,
-                evidence=Evidence.NONE,
                 basis=Basis.CHECK,
                 claim=claim.id,
                 problem=pid,
                 reading=rid,
                 printed=f"{claim.value}",
                 computed=f"{abs(top.value):.6g} ± {reach:.1g} {unit}",
-                gap=None,
                 message=(
                     f"The printed durations of {source.id} have the peak {abs(top.value):.6g} "
                     f"± {reach:.1g} {unit} (first order in the rounding of the inputs); printed "

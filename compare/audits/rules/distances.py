@@ -13,9 +13,18 @@ from ....problem.cases import (
     StatementClaim,
     TotalTimeClaim,
 )
-from ...gaps import Gap, GapKind, Reference, gap
-from ..finding import Basis, ClaimVerdict, Finding, Scope, Severity
-from ..rounding import Rounding
+from ...documents import (
+    Basis,
+    ClaimVerdict,
+    Finding,
+    Gap,
+    GapKind,
+    Reference,
+    Rounding,
+    Severity,
+    Why,
+)
+from ...gaps import gap, reference_of
 from ..study import Study
 from .continuous_time import broken
 
@@ -23,10 +32,12 @@ _BELOW = (
     " The whole printed interval lies below the best known total. That value is not a proven "
     "bound; the limits, the reading or the printed digits differ, or a better optimum exists."
 )
+"""What is said of a printed total below a best known one."""
 _BELOW_BOUND = (
     " The whole printed interval lies below the proved lower bound of this problem as printed: "
     "the limits, the reading or the digits of the way-points differ."
 )
+"""What is said of a printed total below a proved bound."""
 
 
 def judge_distances(study: Study) -> Iterator[Finding]:
@@ -37,12 +48,6 @@ def judge_distances(study: Study) -> Iterator[Finding]:
                 yield from _beside_optimum(study, claim, pid, rid)
         elif isinstance(claim, StatementClaim) and claim.checks == "optimal":
             yield from _optimal_statement(study, claim)
-
-
-def reference_of(solution: Solution) -> Reference | None:
-    """The reference interval of a solution, or None where it has no positive time."""
-    best = solution.best
-    return Reference(best, solution.lower_bound) if 0 < best < float("inf") else None
 
 
 def _kept(study: Study, claim: AnyClaim, pid: str, rid: str) -> bool:
@@ -99,12 +104,11 @@ def _distance(
         )
     elif distance.highest < 0:
         severity = Severity.WARNING
-        message += _BELOW if reference.lower is None else _BELOW_BOUND
+        message += _BELOW if isinstance(reference.lower, Why) else _BELOW_BOUND
     return Finding(
         rule="TG303" if shared else "TG302",
         severity=severity,
         verdict=ClaimVerdict.SUPPORTED if kept else ClaimVerdict.NOT_CHECKABLE,
-        scope=Scope.SOME,
         evidence=solution.evidence,
         basis=Basis.OPTIMUM,
         claim=claim.id,
@@ -119,17 +123,17 @@ def _distance(
 
 
 def _bounded(reference: Reference) -> str:
-    if reference.lower is None:
+    if isinstance(reference.lower, Why):
         return ""
     width = (reference.upper - reference.lower) / reference.upper
     return f" (proved, gap {width:.1e})"
 
 
 def _named(distance: Gap) -> str:
-    name = "gap" if distance.kind is GapKind.OPTIMALITY else "difference of reported time"
-    return (
-        distance.percent if distance.percent.endswith("reference") else f"{name} {distance.percent}"
-    )
+    if distance.many_times:
+        return distance.percent
+    name = "gap" if distance.kind is GapKind.OPTIMALITY else str(distance.kind)
+    return f"{name} {distance.percent}"
 
 
 def _beside_procedure(
@@ -151,9 +155,7 @@ def _beside_procedure(
     )
     yield Finding(
         rule="TG302",
-        severity=Severity.INFO,
         verdict=ClaimVerdict.SUPPORTED if inside else ClaimVerdict.NOT_CHECKABLE,
-        scope=Scope.SOME,
         evidence=answer.evidence,
         basis=Basis.OPTIMUM,
         claim=claim.id,
@@ -161,7 +163,6 @@ def _beside_procedure(
         reading=rid,
         printed=shown,
         computed=f"{wide.lowest:.6f} to {wide.highest:.6f} s",
-        gap=None,
         message=message,
         decides=False,
     )
@@ -218,16 +219,12 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
             rule="TG302",
             severity=severity,
             verdict=verdict,
-            scope=Scope.SOME,
             evidence=known,
             basis=Basis.ENCLOSURE if breaking and not longer else Basis.OPTIMUM,
             claim=statement.id,
-            problem=None,
             reading=rid,
-            printed=None,
-            computed=None,
-            gap=None,
             message=message,
+            kind="longer" if longer else "breaks" if breaking else str(known),
         )
 
 
@@ -246,7 +243,7 @@ def _shorter(
     reached = study.reachable(problem, solution.durations, pid, rid)
     if reached is None or interval[0] <= reached:
         return None
-    distance = gap(interval, Reference(reached), feasible=_kept(study, claim, pid, rid))
+    distance = gap(interval, Reference(upper=reached), feasible=_kept(study, claim, pid, rid))
     jumps = solution.check is not None and any(j.order == 1 for j in solution.check.jumps)
     kind = "a checked motion, whose velocity may jump at the via-points under this reading,"
     return (

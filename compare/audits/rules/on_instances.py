@@ -1,4 +1,4 @@
-"""TG404: relative claims on a family of instances, where the paper's own are not printed."""
+"""TG404: relative claims on instances drawn for them, where the paper's own are not printed."""
 
 from __future__ import annotations
 
@@ -6,15 +6,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ....nlp import Evidence
 from ....problem.cases import ConvergenceClaim
+from ...documents import Basis, Effect, Finding, Procedure
 from ...gaps import SETTLED
-from ..finding import Basis, ClaimVerdict, Finding, Scope, Severity
 from ..instances import (
     MIDDLE,
-    Effect,
-    FamilyResult,
-    Procedure,
+    InstancesResult,
     distribution,
     percent_range,
     reproduced,
@@ -31,39 +28,18 @@ HANDLED = {
 
 def judge_instances(study: Study) -> Iterator[Finding]:
     """Findings of TG404. None of them decides: the instances are not the paper's."""
-    for block in study.families:
-        result = study.family(block)
+    for block in study.instance_blocks:
+        result = study.instances(block)
         yield _summary(result)
         for reading in result.readings:
             yield _under(result, reading)
         for claim in study.case.claims:
-            own = Procedure(claim.problem or "", claim.algorithm or "")
+            own = Procedure(problem=claim.problem or "", algorithm=claim.algorithm or "")
             if isinstance(claim, ConvergenceClaim) and own == result.faster:
                 yield _convergence(result, claim)
 
 
-def _finding(
-    claim: str, reading: str | None, printed: str | None, computed: str, message: str
-) -> Finding:
-    return Finding(
-        rule="TG404",
-        severity=Severity.INFO,
-        verdict=ClaimVerdict.NOT_CHECKABLE,
-        scope=Scope.NO,
-        evidence=Evidence.NONE,
-        basis=Basis.REPLAY,
-        claim=claim,
-        problem=None,
-        reading=reading,
-        printed=printed,
-        computed=computed,
-        gap=None,
-        message=message,
-        decides=False,
-    )
-
-
-def placed(result: FamilyResult) -> str:
+def placed(result: InstancesResult) -> str:
     """Where the printed reduction lies among those of the runs, over all readings."""
     many = len(result.readings)
     drawn = f"{result.instances} instances drawn from the robot's workspace"
@@ -79,7 +55,7 @@ def placed(result: FamilyResult) -> str:
     )
 
 
-def attributed(result: FamilyResult) -> str:
+def attributed(result: InstancesResult) -> str:
     """What the reduction is due to: medians over the readings; empty if there are none."""
     both, curve = medians(result, Effect.BOTH), medians(result, Effect.CURVE)
     if both is None or curve is None:
@@ -95,7 +71,7 @@ def attributed(result: FamilyResult) -> str:
     )
 
 
-def _aside(result: FamilyResult, reading: str) -> str:
+def _aside(result: InstancesResult, reading: str) -> str:
     """On which side of the printed reduction those of a reading lie."""
     found = distribution(result.reductions(reading, Effect.BOTH))
     if found.missing == found.pairs or result.printed is None:
@@ -103,26 +79,37 @@ def _aside(result: FamilyResult, reading: str) -> str:
     return "larger there" if found.median > result.printed[1] else "smaller there"
 
 
-def medians(result: FamilyResult, effect: Effect, at: int = 0) -> tuple[float, float] | None:
+def medians(result: InstancesResult, effect: Effect, at: int = 0) -> tuple[float, float] | None:
     """Smallest and largest median over the readings; None if no pair has two answers."""
     found = [distribution(result.reductions(r, effect, at)).median for r in result.readings]
     known = [m for m in found if np.isfinite(m)]
     return (min(known), max(known)) if known else None
 
 
-def _summary(result: FamilyResult) -> Finding:
+def _summary(result: InstancesResult) -> Finding:
     block = result.block
     span = medians(result, Effect.BOTH)
-    message = (
-        f"{placed(result)} {attributed(result)} {block.why} They are not the paper's instances and "
-        "decide nothing about its totals."
-    ).replace("  ", " ")
+    said = (
+        placed(result),
+        attributed(result),
+        block.why,
+        "They are not the paper's instances and decide nothing about its totals.",
+    )
+    message = " ".join(sentence for sentence in said if sentence)
     printed = None if result.printed is None else percent_range(*result.printed)
     computed = f"medians {percent_range(*span, digits=1)}" if span else "no pair of answers"
-    return _finding(block.claim, None, printed, computed, message)
+    return Finding(
+        rule="TG404",
+        basis=Basis.REPLAY,
+        decides=False,
+        claim=block.claim,
+        printed=printed,
+        computed=computed,
+        message=message,
+    )
 
 
-def _under(result: FamilyResult, reading: str) -> Finding:
+def _under(result: InstancesResult, reading: str) -> Finding:
     fast, slow, block = result.faster, result.slower, result.block
     both = distribution(result.reductions(reading, Effect.BOTH))
     steps = ", ".join(f"{step:g}" for step in block.lengths)
@@ -156,10 +143,19 @@ def _under(result: FamilyResult, reading: str) -> Finding:
     if failed:
         parts.append(f"{failed} runs found nothing that keeps its limits.")
     printed = None if result.printed is None else percent_range(*result.printed)
-    return _finding(block.claim, reading, printed, str(both), " ".join(parts))
+    return Finding(
+        rule="TG404",
+        basis=Basis.REPLAY,
+        decides=False,
+        claim=block.claim,
+        reading=reading,
+        printed=printed,
+        computed=str(both),
+        message=" ".join(parts),
+    )
 
 
-def _convergence(result: FamilyResult, claim: ConvergenceClaim) -> Finding:
+def _convergence(result: InstancesResult, claim: ConvergenceClaim) -> Finding:
     shares = []
     for reading in result.readings:
         settled = result.settled(reading)
@@ -178,5 +174,12 @@ def _convergence(result: FamilyResult, claim: ConvergenceClaim) -> Finding:
         else f"Not reproduced by most runs in {missed} of {len(shares)} readings. The instances "
         "are not the paper's."
     )
-    share = f"{low:.3g} to {high:.3g} % of the runs"
-    return _finding(claim.id, None, f"{claim.iterations} iterations", share, message)
+    return Finding(
+        rule="TG404",
+        basis=Basis.REPLAY,
+        decides=False,
+        claim=claim.id,
+        printed=f"{claim.iterations} iterations",
+        computed=f"{low:.3g} to {high:.3g} % of the runs",
+        message=message,
+    )

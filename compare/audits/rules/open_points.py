@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ....nlp import Evidence
 from ....problem.cases import ImprovementClaim, StatementClaim, TotalTimeClaim
-from ..finding import Basis, ClaimVerdict, Finding, Scope, Severity
+from ...documents import Basis, Finding
 from ..study import Study
 
 
@@ -14,7 +13,8 @@ def list_open_points(study: Study) -> Iterator[Finding]:
     """One finding per statement and per damaged passage, never more than "not checkable"."""
     for claim in study.case.claims:
         if isinstance(claim, StatementClaim) and claim.not_checkable:
-            yield _listed(claim.id, f"{claim.where}: {claim.not_checkable}.")
+            why = claim.not_checkable.removesuffix(".")
+            yield _listed(claim.id, f"{claim.where}: {why}.")
     if not study.posed:
         yield from _without_waypoints(study)
     for item in study.case.not_checkable:
@@ -26,7 +26,7 @@ def _without_waypoints(study: Study) -> Iterator[Finding]:
     for claim in study.case.claims:
         if isinstance(claim, StatementClaim | ImprovementClaim):
             continue
-        why = study.case.statement(claim.problem).waypoints.not_printed
+        why = (study.case.statement(claim.problem).waypoints.not_printed or "").removesuffix(".")
         what = "An absolute time" if isinstance(claim, TotalTimeClaim) else "This"
         yield _listed(
             claim.id,
@@ -36,18 +36,4 @@ def _without_waypoints(study: Study) -> Iterator[Finding]:
 
 
 def _listed(claim: str | None, message: str) -> Finding:
-    return Finding(
-        rule="TG501",
-        severity=Severity.INFO,
-        verdict=ClaimVerdict.NOT_CHECKABLE,
-        scope=Scope.NO,
-        evidence=Evidence.NONE,
-        basis=Basis.TEXT,
-        claim=claim,
-        problem=None,
-        reading=None,
-        printed=None,
-        computed=None,
-        gap=None,
-        message=message.replace("..", "."),
-    )
+    return Finding(rule="TG501", basis=Basis.TEXT, claim=claim, message=message)

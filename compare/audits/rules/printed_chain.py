@@ -10,11 +10,10 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from ....nlp import Evidence
 from ....problem import Measured, to_si
 from ....problem.cases import Cartesian, Statement
 from ....problem.robots import Chain, Convention, DhTable, JointKind, Proximity, proximity
-from ..finding import Basis, ClaimVerdict, Finding, Scope, Severity
+from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..study import Study
 
 _NEGLIGIBLE = 1e-9
@@ -63,24 +62,20 @@ def judge_kinematics(study: Study) -> Iterator[Finding]:
     for reading in study.readings:
         posed: dict[object, tuple[str, Statement]] = {}
         for pid, rid in study.pairs:
-            statement = case.statement(pid, rid)
+            posing = case.statement(pid, rid)
             if rid == reading:
-                posed.setdefault(
-                    (statement.waypoints.points, statement.units.position), (pid, statement)
-                )
-        for pid, statement in posed.values():
-            yield _compared(study, dh, statement, reading, pid if len(posed) > 1 else None)
+                posed.setdefault((posing.waypoints.points, posing.units.position), (pid, posing))
+        for pid, posing in posed.values():
+            yield _compared(study, dh, posing, reading, pid if len(posed) > 1 else None)
 
 
-def _compared(
-    study: Study, dh: DhTable, statement: Statement, rid: str, pid: str | None
-) -> Finding:
+def _compared(study: Study, dh: DhTable, posing: Statement, rid: str, pid: str | None) -> Finding:
     printed = study.case.chain()
     assert printed is not None
-    joints = _joints(study, statement)
+    joints = _joints(study, posing)
     named = [(i, label) for i, label in enumerate(printed.labels) if label in joints]
     sliding = [label for i, label in named if printed.kinds[i] is JointKind.PRISMATIC]
-    places = _places(study, statement)
+    places = _places(study, posing)
     if sliding or any(k is None for k, _ in places):
         why = (
             f"joint {sliding[0]} slides, and way-points are printed as angles"
@@ -96,25 +91,25 @@ def _compared(
                 tuple(c) for n in range(len(dh.twisted)) for c in combinations(dh.twisted, n + 1)
             ]
         matches.append(_match(study, dh, convention, joints, places, flips))
-    return _finding(study, statement, rid, pid, [label for _, label in named], places, matches)
+    return _judged(study, posing, rid, pid, [label for _, label in named], places, matches)
 
 
-def _joints(study: Study, statement: Statement) -> Joints:
+def _joints(study: Study, posing: Statement) -> Joints:
     """Angles of every printed joint: those of the problems, and those in columns of their own."""
-    rows = statement.waypoints.points
+    rows = posing.waypoints.points
     found = {
-        label: tuple(statement.si(row[j], "position") for row in rows)
-        for j, label in enumerate(statement.labels)
+        label: tuple(posing.si(row[j], "position") for row in rows)
+        for j, label in enumerate(posing.labels)
     }
     for column in study.case.columns:
         if column.joint is not None and len(column.values) == len(rows):
-            found[column.joint] = tuple(statement.si(v, "position") for v in column.values)
+            found[column.joint] = tuple(posing.si(v, "position") for v in column.values)
     return found
 
 
-def _places(study: Study, statement: Statement) -> list[tuple[int | None, Cartesian]]:
+def _places(study: Study, posing: Statement) -> list[tuple[int | None, Cartesian]]:
     """Printed positions with the index of their way-point; None where there is none."""
-    labels, count = statement.waypoints.labels, len(statement.waypoints.points)
+    labels, count = posing.waypoints.labels, len(posing.waypoints.points)
     places = study.case.cartesian
     found: list[tuple[int | None, Cartesian]] = []
     for k, place in enumerate(places):
@@ -177,9 +172,9 @@ def _misses(near: tuple[Proximity, ...], slack: tuple[float, ...]) -> bool:
     return any(n.lower > s for n, s in zip(near, slack, strict=True))
 
 
-def _finding(
+def _judged(
     study: Study,
-    statement: Statement,
+    posing: Statement,
     rid: str,
     pid: str | None,
     printed: list[str],
@@ -190,7 +185,7 @@ def _finding(
     assert chain is not None
     free = [label for label in chain.labels if label not in printed]
     names = [place.label or place.id for _, place in places]
-    given = f"{chain.name}: joints {', '.join(printed)} in {statement.units.position}"
+    given = f"{chain.name}: joints {', '.join(printed)} in {posing.units.position}"
     given += f", joints {', '.join(free)} free" if free else ""
     fitting = next((m for m in matches if m.fits), None)
     if fitting is not None:
@@ -231,15 +226,11 @@ def _finding(
         rule="TG601",
         severity=severity,
         verdict=verdict,
-        scope=Scope.ALL,
-        evidence=Evidence.NONE,
         basis=Basis.KINEMATICS,
-        claim=None,
         problem=pid,
         reading=rid,
         printed="; ".join(dict.fromkeys(place.where for _, place in places)),
         computed=f"farthest position, as near as it gets: {worst}",
-        gap=None,
         message=message,
     )
 
@@ -269,18 +260,4 @@ def _up(metres: float) -> str:
 
 
 def _not_checkable(rid: str | None, message: str) -> Finding:
-    return Finding(
-        rule="TG601",
-        severity=Severity.INFO,
-        verdict=ClaimVerdict.NOT_CHECKABLE,
-        scope=Scope.NO,
-        evidence=Evidence.NONE,
-        basis=Basis.KINEMATICS,
-        claim=None,
-        problem=None,
-        reading=rid,
-        printed=None,
-        computed=None,
-        gap=None,
-        message=message,
-    )
+    return Finding(rule="TG601", basis=Basis.KINEMATICS, reading=rid, message=message)

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from itertools import combinations
 
-from ....nlp import Evidence
 from ....problem import Interval, Printed
 from ....problem.cases import (
     AnyClaim,
@@ -15,7 +14,7 @@ from ....problem.cases import (
     MaximumClaim,
     TotalTimeClaim,
 )
-from ..finding import Basis, ClaimVerdict, Finding, Scope, Severity
+from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..study import Study
 
 _SIGNIFICANT = 4
@@ -30,34 +29,6 @@ def judge_digits(study: Study) -> Iterator[Finding]:
     yield from _tables_alike(study)
     yield from _same_total(study)
     yield from _repeated_digits(study)
-
-
-def _finding(
-    rule: str,
-    verdict: ClaimVerdict,
-    severity: Severity,
-    claim: str | None,
-    message: str,
-    printed: str | None = None,
-    computed: str | None = None,
-    decides: bool = True,
-) -> Finding:
-    return Finding(
-        rule=rule,
-        severity=severity,
-        verdict=verdict,
-        scope=Scope.ALL,
-        evidence=Evidence.NONE,
-        basis=Basis.DIGITS,
-        claim=claim,
-        problem=None,
-        reading=None,
-        printed=printed,
-        computed=computed,
-        gap=None,
-        message=message,
-        decides=decides,
-    )
 
 
 def meet(a: Interval, b: Interval) -> bool:
@@ -95,21 +66,30 @@ def _compared(
 ) -> Finding:
     """A printed number against the interval that its printed ingredients allow."""
     shown, computed = f"{printed} {unit}", f"{_range(rounded)} {unit}"
+    verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
     if meet(printed.interval, rounded):
+        kind = "fits"
         message = f"{what} allows {computed}; printed is {shown}."
-        return _finding(
-            rule, ClaimVerdict.SUPPORTED, Severity.INFO, claim.id, message, shown, computed
-        )
-    if meet(printed.truncated, cut):
+    elif meet(printed.truncated, cut):
+        severity, kind = Severity.WARNING, "fits cut off"
         message = (
             f"{what} allows {computed} with rounded digits; printed is {shown}, which fits only "
             f"if digits are cut off instead of rounded ({_range(cut)} {unit})."
         )
-        return _finding(
-            rule, ClaimVerdict.SUPPORTED, Severity.WARNING, claim.id, message, shown, computed
-        )
-    message = f"{what} allows {computed}; printed is {shown}, rounded or cut off."
-    return _finding(rule, ClaimVerdict.REFUTED, Severity.ERROR, claim.id, message, shown, computed)
+    else:
+        verdict, severity, kind = ClaimVerdict.REFUTED, Severity.ERROR, "does not fit"
+        message = f"{what} allows {computed}; printed is {shown}, rounded or cut off."
+    return Finding(
+        rule=rule,
+        severity=severity,
+        verdict=verdict,
+        basis=Basis.DIGITS,
+        claim=claim.id,
+        printed=shown,
+        computed=computed,
+        message=message,
+        kind=f"{kind} in {unit}",
+    )
 
 
 def _unit(study: Study) -> str:
@@ -141,25 +121,20 @@ def _maxima(study: Study) -> Iterator[Finding]:
             longest = Interval(max(c.lower for c in column), max(c.upper for c in column))
             if not meet(hull(printed), longest):
                 wrong.append(f"segment {k + 1}: printed {printed}, longest {_range(longest)}")
-        shown = ", ".join(str(d) for d in claim.durations)
+        verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
+        message = f"The printed longest durations are those of the {len(rows)} rows."
         if wrong:
-            yield _finding(
-                "TG102",
-                ClaimVerdict.REFUTED,
-                Severity.ERROR,
-                claim.id,
-                "The printed longest durations are not those of the rows: " + "; ".join(wrong),
-                shown,
-            )
-        else:
-            yield _finding(
-                "TG102",
-                ClaimVerdict.SUPPORTED,
-                Severity.INFO,
-                claim.id,
-                f"The printed longest durations are those of the {len(rows)} rows.",
-                shown,
-            )
+            verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
+            message = "The printed longest durations are not those of the rows: " + "; ".join(wrong)
+        yield Finding(
+            rule="TG102",
+            severity=severity,
+            verdict=verdict,
+            basis=Basis.DIGITS,
+            claim=claim.id,
+            printed=", ".join(str(d) for d in claim.durations),
+            message=message,
+        )
 
 
 def _total(claim: AnyClaim) -> Printed | None:
@@ -236,7 +211,15 @@ def _unquantified(
     else:
         message = f"The printed totals {between} do not differ by more than their rounding."
         verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
-    return _finding("TG103", verdict, severity, claim.id, message, between, None)
+    return Finding(
+        rule="TG103",
+        severity=severity,
+        verdict=verdict,
+        basis=Basis.DIGITS,
+        claim=claim.id,
+        printed=between,
+        message=message,
+    )
 
 
 def _against_tables(
@@ -252,15 +235,16 @@ def _against_tables(
     if meet(hull(percent), allowed):
         return
     where = " and ".join(t.where for t in tables if t is not None)
-    yield _finding(
-        "TG103",
-        ClaimVerdict.INCONSISTENT,
-        Severity.ERROR,
-        claim.id,
-        f"From the totals printed in the tables ({where}: {slower} and {faster}) the reduction is "
-        f"{_range(allowed, 3)} %, not {percent} %.",
-        f"{percent} %",
-        f"{_range(allowed, 3)} %",
+    yield Finding(
+        rule="TG103",
+        severity=Severity.ERROR,
+        verdict=ClaimVerdict.INCONSISTENT,
+        basis=Basis.DIGITS,
+        claim=claim.id,
+        printed=f"{percent} %",
+        computed=f"{_range(allowed, 3)} %",
+        message=f"From the totals printed in the tables ({where}: {slower} and {faster}) the "
+        f"reduction is {_range(allowed, 3)} %, not {percent} %.",
     )
 
 
@@ -287,8 +271,13 @@ def _tables_alike(study: Study) -> Iterator[Finding]:
         )
         if apart:
             message += " Elsewhere the two results are set apart: " + ", ".join(apart) + "."
-        severity = Severity.ERROR if apart else Severity.WARNING
-        yield _finding("TG104", ClaimVerdict.INCONSISTENT, severity, None, message)
+        yield Finding(
+            rule="TG104",
+            severity=Severity.ERROR if apart else Severity.WARNING,
+            verdict=ClaimVerdict.INCONSISTENT,
+            basis=Basis.DIGITS,
+            message=message,
+        )
 
 
 def _all_digits(claim: AnyClaim) -> tuple[str, ...]:
@@ -308,18 +297,16 @@ def _same_total(study: Study) -> Iterator[Finding]:
             continue
         agree = meet(hull(claim.value), hull(total))
         unit = _unit(study)
-        message = (
-            f"{claim.where} prints {claim.value} {unit} and {table.where} prints {total} {unit} "
-            f"for the same total ({claim.algorithm})."
-        )
-        yield _finding(
-            "TG105",
-            ClaimVerdict.SUPPORTED if agree else ClaimVerdict.INCONSISTENT,
-            Severity.INFO if agree else Severity.ERROR,
-            claim.id,
-            message,
-            f"{claim.value} {unit}",
-            f"{total} {unit}",
+        yield Finding(
+            rule="TG105",
+            severity=Severity.INFO if agree else Severity.ERROR,
+            verdict=ClaimVerdict.SUPPORTED if agree else ClaimVerdict.INCONSISTENT,
+            basis=Basis.DIGITS,
+            claim=claim.id,
+            printed=f"{claim.value} {unit}",
+            computed=f"{total} {unit}",
+            message=f"{claim.where} prints {claim.value} {unit} and {table.where} prints {total} "
+            f"{unit} for the same total ({claim.algorithm}).",
         )
 
 
@@ -330,9 +317,9 @@ def _significant(number: Printed) -> str:
 def _repeated_digits(study: Study) -> Iterator[Finding]:
     """Way-point digits that stand in another printed column too."""
     case = study.case
-    statement = case.statement()
-    for j, label in zip(statement.joints, statement.labels, strict=False):
-        entries = [row[j] for row in statement.waypoints.points]
+    posing = case.statement()
+    for j, label in zip(posing.joints, posing.labels, strict=False):
+        entries = [row[j] for row in posing.waypoints.points]
         for group in _column_groups([*case.columns, *case.cartesian]):
             where, values = group
             repeated = [
@@ -342,20 +329,16 @@ def _repeated_digits(study: Study) -> Iterator[Finding]:
                 and any(v.text.lstrip("+-") == w.text.lstrip("+-") for v in values)
             ]
             if len(repeated) >= 2:
-                message = (
-                    f"{len(repeated)} of the {len(entries)} way-points of joint {label} "
-                    f"({statement.waypoints.where}: {', '.join(repeated)}) repeat digits of "
-                    f"{where}, a quantity of another kind. The digits alone do not say which "
-                    "column, if any, is meant otherwise."
-                )
-                yield _finding(
-                    "TG106",
-                    ClaimVerdict.NOT_CHECKABLE,
-                    Severity.WARNING,
-                    None,
-                    message,
-                    ", ".join(repeated),
+                yield Finding(
+                    rule="TG106",
+                    severity=Severity.WARNING,
+                    basis=Basis.DIGITS,
                     decides=False,
+                    printed=", ".join(repeated),
+                    message=f"{len(repeated)} of the {len(entries)} way-points of joint {label} "
+                    f"({posing.waypoints.where}: {', '.join(repeated)}) repeat digits of {where}, "
+                    "a quantity of another kind. The digits alone do not say which column, "
+                    "if any, is meant otherwise.",
                 )
 
 

@@ -6,11 +6,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from ....nlp import Evidence
 from ....problem import Interval, Printed
 from ....problem.cases import ControlVerticesClaim, Statement
 from ....problem.curves import vertex_matrix
-from ..finding import Basis, ClaimVerdict, Finding, Scope, Severity
+from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..study import Study
 from .printed_digits import hull, meet
 
@@ -118,14 +117,8 @@ def _judged(claim: ControlVerticesClaim, found: tuple[Vertex, ...]) -> Finding:
         rule="TG205",
         severity=severity,
         verdict=verdict,
-        scope=Scope.ALL,
-        evidence=Evidence.NONE,
         basis=Basis.DIGITS,
         claim=claim.id,
-        problem=None,
-        reading=None,
-        printed=None,
         computed=f"{len(found) - len(outside)} of {len(found)} inside",
-        gap=None,
         message=message,
     )

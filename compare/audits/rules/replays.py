@@ -8,7 +8,6 @@ from itertools import chain
 import numpy as np
 
 from ....heuristics import JointRuns, Run
-from ....nlp import Evidence
 from ....problem.cases import (
     AnyClaim,
     ConvergenceClaim,
@@ -17,8 +16,8 @@ from ....problem.cases import (
     MaximumClaim,
     TotalTimeClaim,
 )
-from ...gaps import SETTLED, settled_at, share_of_pairs, spread
-from ..finding import Basis, ClaimVerdict, Finding, Scope, Severity
+from ...documents import Basis, ClaimVerdict, Finding, Severity
+from ...gaps import SETTLED, settled_at, share_of_luck, share_of_pairs, spread
 from ..study import Study
 
 
@@ -31,35 +30,6 @@ def judge_replays(study: Study) -> Iterator[Finding]:
             yield from _total(study, claim)
         elif isinstance(claim, ConvergenceClaim):
             yield from _convergence(study, claim)
-
-
-def _finding(
-    rule: str,
-    claim: AnyClaim,
-    pid: str,
-    rid: str,
-    verdict: ClaimVerdict,
-    severity: Severity,
-    printed: str | None,
-    computed: str | None,
-    message: str,
-) -> Finding:
-    return Finding(
-        rule=rule,
-        severity=severity,
-        verdict=verdict,
-        scope=Scope.SOME,
-        evidence=Evidence.NONE,
-        basis=Basis.REPLAY,
-        claim=claim.id,
-        problem=pid,
-        reading=rid,
-        printed=printed,
-        computed=computed,
-        gap=None,
-        message=message,
-        decides=False,
-    )
 
 
 def _improvement(study: Study, claim: ImprovementClaim) -> Iterator[Finding]:
@@ -76,7 +46,7 @@ def _improvement(study: Study, claim: ImprovementClaim) -> Iterator[Finding]:
             continue
         slower, faster = (t["as listed"] for t in totals)
         shows = share_of_pairs(slower, faster, least)
-        luck = share_of_pairs(slower, slower, least)
+        luck = share_of_luck(slower, least)
         readings = [
             share_of_pairs(a, b, least) for a in totals[0].values() for b in totals[1].values()
         ]
@@ -94,16 +64,19 @@ def _improvement(study: Study, claim: ImprovementClaim) -> Iterator[Finding]:
             else f"Not reproduced in {missed} of {len(readings)} readings of the algorithms' open "
             "choices (most pairs of runs would have to show it)."
         )
-        yield _finding(
-            "TG401",
-            claim,
-            pid,
-            rid,
-            ClaimVerdict.SUPPORTED if reproduced else ClaimVerdict.NOT_CHECKABLE,
-            Severity.INFO if reproduced else Severity.WARNING,
-            f"{claim.percent} %",
-            f"median {100 * (1 - spread(faster).median / spread(slower).median):.3g} %",
-            message,
+        median = 1 - spread(faster).median / spread(slower).median
+        yield Finding(
+            rule="TG401",
+            severity=Severity.INFO if reproduced else Severity.WARNING,
+            verdict=ClaimVerdict.SUPPORTED if reproduced else ClaimVerdict.NOT_CHECKABLE,
+            basis=Basis.REPLAY,
+            decides=False,
+            claim=claim.id,
+            problem=pid,
+            reading=rid,
+            printed=f"{claim.percent} %",
+            computed=f"median {100 * median:.3g} %",
+            message=message,
         )
 
 
@@ -121,16 +94,16 @@ def _total(study: Study, claim: AnyClaim) -> Iterator[Finding]:
             continue
         variants = study.variant_totals(claim.algorithm, pid, rid)
         if not variants:
-            yield _finding(
-                "TG402",
-                claim,
-                pid,
-                rid,
-                ClaimVerdict.NOT_CHECKABLE,
-                Severity.INFO,
-                shown,
-                None,
-                f"The algorithm {claim.algorithm} is of a kind that is not implemented here.",
+            yield Finding(
+                rule="TG402",
+                basis=Basis.REPLAY,
+                decides=False,
+                claim=claim.id,
+                problem=pid,
+                reading=rid,
+                printed=shown,
+                message=f"The algorithm {claim.algorithm} is of a kind that is not implemented "
+                "here.",
             )
             continue
         reached = [bool(((t >= low) & (t <= high)).any()) for t in variants.values()]
@@ -148,16 +121,17 @@ def _total(study: Study, claim: AnyClaim) -> Iterator[Finding]:
             else f"Not reproduced in {missed} of {len(variants)} readings of the open choices "
             f"({runs} runs): it lies outside the spread of their totals."
         )
-        yield _finding(
-            "TG402",
-            claim,
-            pid,
-            rid,
-            ClaimVerdict.SUPPORTED if missed == 0 else ClaimVerdict.NOT_CHECKABLE,
-            Severity.INFO,
-            shown,
-            f"{listed.lowest:.6f} to {listed.highest:.6f} s",
-            message,
+        yield Finding(
+            rule="TG402",
+            verdict=ClaimVerdict.SUPPORTED if missed == 0 else ClaimVerdict.NOT_CHECKABLE,
+            basis=Basis.REPLAY,
+            decides=False,
+            claim=claim.id,
+            problem=pid,
+            reading=rid,
+            printed=shown,
+            computed=f"{listed.lowest:.6f} to {listed.highest:.6f} s",
+            message=message,
         )
 
 
@@ -185,14 +159,15 @@ def _convergence(study: Study, claim: ConvergenceClaim) -> Iterator[Finding]:
         )
         if not supported:
             message += " Not reproduced in the listed reading."
-        yield _finding(
-            "TG403",
-            claim,
-            pid,
-            rid,
-            ClaimVerdict.SUPPORTED if supported else ClaimVerdict.NOT_CHECKABLE,
-            Severity.INFO,
-            f"{claim.iterations} iterations",
-            f"median {np.median(settled):.0f} iterations",
-            message,
+        yield Finding(
+            rule="TG403",
+            verdict=ClaimVerdict.SUPPORTED if supported else ClaimVerdict.NOT_CHECKABLE,
+            basis=Basis.REPLAY,
+            decides=False,
+            claim=claim.id,
+            problem=pid,
+            reading=rid,
+            printed=f"{claim.iterations} iterations",
+            computed=f"median {np.median(settled):.0f} iterations",
+            message=message,
         )

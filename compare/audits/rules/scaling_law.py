@@ -7,11 +7,10 @@ from itertools import permutations
 
 import numpy as np
 
-from ....nlp import Evidence
 from ....problem import Problem
 from ....problem.cases import AnyClaim, DurationsClaim, MaximumClaim, StatementClaim
-from ...gaps import Reference, gap
-from ..finding import Basis, ClaimVerdict, Finding, Scope, Severity
+from ...documents import Basis, ClaimVerdict, Finding, Reference, Severity
+from ...gaps import gap
 from ..study import Study
 
 
@@ -84,37 +83,28 @@ def _stretched(
     shown, (low, high) = total
     if low <= reachable * (1 + 1e-9):
         return
-    distance = gap((low, high), Reference(reachable), feasible=False)
+    distance = gap((low, high), Reference(upper=reachable), feasible=False)
     message = (
         f"The durations of {source.id}, stretched by {factor:.6g}, keep the limit of "
         f"{target.id} and take {reachable:.6g} s; printed for {target.id} is {shown}, "
         f"{distance.percent} from there. With velocity limits only, shortest time times "
         "limit is a constant, so the two printed results cannot both be shortest."
     )
-    common = {
-        "rule": "TG301",
-        "scope": Scope.SOME,
-        "evidence": Evidence.NONE,
-        "basis": Basis.IDENTITY,
-        "problem": pairs[1][0],
-        "reading": rid,
-        "printed": shown,
-        "computed": f"{reachable:.6g} s",
-        "gap": None,
-        "message": message,
-    }
-    yield Finding(
+    beside = Finding(
+        rule="TG301",
         severity=Severity.WARNING,
         verdict=ClaimVerdict.INCONSISTENT,
-        claim=target.id,
+        basis=Basis.IDENTITY,
         decides=False,
-        **common,  # type: ignore[arg-type]
+        claim=target.id,
+        problem=pairs[1][0],
+        reading=rid,
+        printed=shown,
+        computed=f"{reachable:.6g} s",
+        message=message,
     )
+    yield beside
+    proof = {"severity": Severity.ERROR, "verdict": ClaimVerdict.REFUTED, "decides": True}
     for statement in statements:
         if target.id in statement.of:
-            yield Finding(
-                severity=Severity.ERROR,
-                verdict=ClaimVerdict.REFUTED,
-                claim=statement.id,
-                **common,  # type: ignore[arg-type]
-            )
+            yield beside.model_copy(update=proof | {"claim": statement.id})

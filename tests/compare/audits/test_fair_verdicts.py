@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from support.one_joint import HEAD, UNITS
 from trajgap.compare import audit
-from trajgap.compare.audits.finding import Basis, ClaimVerdict, Scope, Severity
+from trajgap.compare.documents import Basis, ClaimVerdict, Scope, Severity
 from trajgap.nlp import Evidence, Status, solve
 from trajgap.problem import Limits, Problem, cubic_spline, load_case, parse_case
 

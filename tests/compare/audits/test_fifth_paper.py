@@ -3,7 +3,7 @@
 import pytest
 from support.checkout import ROOT
 from trajgap.compare import audit
-from trajgap.compare.audits.finding import ClaimVerdict, Scope, Severity
+from trajgap.compare.documents import ClaimVerdict, Scope, Severity
 
 EXAMPLES = ROOT / "docs" / "examples"
 

@@ -7,24 +7,36 @@ import json
 from functools import cache
 from itertools import pairwise
 from math import exp, log, pi
-from typing import Any
 
 import numpy as np
 import pytest
 from rich.console import Console
-from support.documents import assert_reasons, assert_valid
+from support.documents import assert_reasons, assert_valid, plain
 from support.one_joint import HEAD, UNITS
 from support.studies import changed, shipped
 from trajgap.compare.audits.case_audit import AuditReport, CaseAudit
-from trajgap.compare.audits.finding import ClaimVerdict, Judgement, Scope
 from trajgap.compare.audits.reading_words import answers, holding, segments
-from trajgap.compare.audits.readings import Excess, Keeping, ReadingsSummary, readings_summary
+from trajgap.compare.audits.readings import readings_summary
 from trajgap.compare.audits.rules.continuous_time import judge_motions
 from trajgap.compare.audits.study import Study
-from trajgap.compare.audits.waterfall import Waterfall
-from trajgap.compare.cli.summary import audited
-from trajgap.compare.documents.results import audit_document
-from trajgap.compare.gaps.optimality_gap import GapKind
+from trajgap.compare.cli.auditing import audited
+from trajgap.compare.documents import (
+    AuditDocument,
+    Basis,
+    ClaimVerdict,
+    Excess,
+    Finding,
+    Gap,
+    GapKind,
+    Judgement,
+    Keeping,
+    Limited,
+    ReadingsSummary,
+    Scope,
+    Severity,
+    Waterfall,
+    Why,
+)
 from trajgap.compare.pages.blocks import Page
 from trajgap.compare.pages.markdown_text import markdown
 from trajgap.compare.pages.readings import side_by_side
@@ -41,17 +53,31 @@ def summed(case: Case, claims: dict[str, str], reading: str | None = None) -> Ca
 
 def laid_out(study: Study, claims: dict[str, str]) -> CaseAudit:
     case = study.case
-    falls = tuple(Waterfall(pid, rid, claims.get(pid), ()) for pid, rid in study.pairs)
+    falls = tuple(
+        Waterfall(problem=pid, reading=rid, claim=claims.get(pid), steps=())
+        for pid, rid in study.pairs
+    )
     ids = [r.id for r in case.readings]
-    judged = (
-        Judgement("x", ClaimVerdict.SUPPORTED, Scope.ALL, Evidence.NONE, "", tuple(
-            (rid, ClaimVerdict.SUPPORTED) for rid in ids)),
-        Judgement("y", ClaimVerdict.SUPPORTED, Scope.SOME, Evidence.NONE, "", tuple(
-            (rid, ClaimVerdict.REFUTED if k else ClaimVerdict.SUPPORTED)
-            for k, rid in enumerate(ids))),
-        Judgement("z", ClaimVerdict.NOT_CHECKABLE, Scope.NO, Evidence.NONE, "", tuple(
-            (rid, ClaimVerdict.NOT_CHECKABLE) for rid in ids)),
-    )  # fmt: skip
+    held, mixed, lost = (
+        dict.fromkeys(ids, ClaimVerdict.SUPPORTED),
+        dict.fromkeys(ids, ClaimVerdict.REFUTED) | {ids[0]: ClaimVerdict.SUPPORTED},
+        dict.fromkeys(ids, ClaimVerdict.NOT_CHECKABLE),
+    )
+    judged = tuple(
+        Judgement(
+            claim=claim,
+            verdict=verdict,
+            scope=scope,
+            evidence=Evidence.NONE,
+            why="",
+            readings=readings,
+        )
+        for claim, verdict, scope, readings in (
+            ("x", ClaimVerdict.SUPPORTED, Scope.ALL, held),
+            ("y", ClaimVerdict.SUPPORTED, Scope.SOME, mixed),
+            ("z", ClaimVerdict.NOT_CHECKABLE, Scope.NO, lost),
+        )
+    )
     return CaseAudit(case, study, (), judged, falls, readings_summary(study, falls, judged))
 
 
@@ -84,7 +110,7 @@ def test_every_unit_mix_of_the_polishing_paper_has_its_outcome() -> None:
     for reading, o in found.items():
         assert o.jumps == (48 if reading.endswith("stretched") else 0)
         assert bool(o.excesses) == (o.keeping is Keeping.BREAKS)
-        assert o.gap is not None
+        assert isinstance(o.gap, Gap)
         kept = o.keeping is Keeping.KEEPS
         assert o.gap.kind is (GapKind.OPTIMALITY if kept else GapKind.REPORTED)
 
@@ -113,13 +139,13 @@ def test_segments_over_a_limit_are_those_of_a_dense_sample() -> None:
 def test_the_fit_is_the_factor_that_makes_the_printed_durations_tight() -> None:
     one = polish()
     found = summary_of(one)
-    factors = dict(found.fits)
+    factors = {fit.reading: fit.factor for fit in found.fits}
     assert len(factors) == 16
     assert list(factors.values()) == sorted(factors.values())
     for outcome in found.outcomes:
         problem = one.case.problem(reading_id=outcome.reading)
         durations = one.case.claim_durations(one.case.claim("after"), outcome.reading).value
-        assert outcome.stretch is not None
+        assert not isinstance(outcome.stretch, Why)
         ratios = evaluate(problem, (durations * outcome.stretch)[None]).ratios
         assert ratios.max() == pytest.approx(1.0, rel=1e-9)
         factor = exp(abs(log(outcome.stretch)))
@@ -151,16 +177,14 @@ def test_the_words_say_how_it_is_measured_and_call_no_reading_the_right_one() ->
 
 def test_two_problems_of_one_reading_are_measured_by_the_worse() -> None:
     found = summary_of(pallet())
-    (best, factor), (other, _) = found.fits
-    assert (best, other) == ("waypoints-rad", "waypoints-deg")
-    own = {o.problem: o for o in found.outcomes if o.reading == best}
-    assert own["limit-110"].stretch == pytest.approx(factor)
+    best, other = found.fits
+    assert (best.reading, other.reading) == ("waypoints-rad", "waypoints-deg")
+    own = {o.problem: o for o in found.outcomes if o.reading == best.reading}
+    assert own["limit-110"].stretch == pytest.approx(best.factor)
     assert own["limit-80"].keeping is Keeping.KEEPS
     assert [e.segment for e in own["limit-110"].excesses] == [1]
     assert own["limit-110"].excesses[0].quantity == "velocity"
-    assert dict(found.fits)["waypoints-deg"] == pytest.approx(
-        180 / pi / own["limit-80"].stretch, rel=1e-6
-    )
+    assert other.factor == pytest.approx(180 / pi / own["limit-80"].stretch, rel=1e-6)
 
 
 def test_without_waypoints_the_reason_stands_in_place_of_numbers() -> None:
@@ -183,7 +207,7 @@ def test_a_single_reading_needs_no_comparison() -> None:
     text = HEAD.format(points="0, 1", limit="1.9496", time="0.962", checks="within_limits")
     one = summed(parse_case(text, "fair.toml"), {"main": "d"})
     assert one.readings is None
-    document = audit_document(AuditReport((one,)))
+    document = plain(AuditReport((one,)).document)
     assert_valid(document, "audit")
     assert document["cases"][0]["readings_why"] == "the case has one reading"
 
@@ -209,10 +233,10 @@ def test_digits_rounded_or_cut_off_are_given_their_due(time: str, keeping: Keepi
 def test_a_problem_without_printed_durations_has_an_optimum_and_no_verdict() -> None:
     one = summed(load_case(PALLET), {}, reading="waypoints-rad")
     found = summary_of(one)
-    assert {o.keeping for o in found.outcomes} == {None}
-    assert all(o.optimum is not None and o.gap is None for o in found.outcomes)
+    assert all(isinstance(o.keeping, Why) for o in found.outcomes)
+    assert all(isinstance(o.optimum, float) and isinstance(o.gap, Why) for o in found.outcomes)
     assert answers(found) == ()
-    document = audit_document(AuditReport((one,)))
+    document = plain(AuditReport((one,)).document)
     assert_valid(document, "audit")
     assert_reasons(document)
 
@@ -232,7 +256,8 @@ total = "6.81\""""
     study = Study(case, seeds=2, reading="angles-deg-v-rad-a-rad-timed")
     (outcome,) = summary_of(laid_out(study, {"nine-segments": "after"})).outcomes
     assert outcome.keeping is Keeping.UNDECIDED
-    assert (outcome.excesses, outcome.stretch) == ((), None)
+    assert outcome.excesses == ()
+    assert isinstance(outcome.stretch, Why)
     found = [f for f in judge_motions(study) if f.claim == "after"]
     assert "the printed durations define no curve" in found[0].message
 
@@ -242,7 +267,7 @@ total = "6.81\""""
 
 def test_the_document_carries_every_number() -> None:
     one = polish()
-    document = audit_document(AuditReport((one,)))
+    document = plain(AuditReport((one,)).document)
     assert_valid(document, "audit")
     assert_reasons(document)
     shown = document["cases"][0]["readings"]
@@ -250,7 +275,9 @@ def test_the_document_carries_every_number() -> None:
     found = summary_of(one)
     assert shown["answers"] == list(answers(found))
     assert shown["holding"] == list(holding(found))
-    assert [(f["reading"], f["factor"]) for f in shown["fits"]] == list(found.fits)
+    assert [(f["reading"], f["factor"]) for f in shown["fits"]] == [
+        (fit.reading, fit.factor) for fit in found.fits
+    ]
     for own, outcome in zip(shown["outcomes"], found.outcomes, strict=True):
         assert own["keeping"] == outcome.keeping
         assert own["optimum"] == outcome.optimum
@@ -273,7 +300,7 @@ def test_the_page_has_a_row_for_each_reading() -> None:
     assert "segments 1–4, 6–9<br>joint 6 velocity, ratio 15.25" in page
 
 
-def terminal(document: Any, width: int = 400) -> list[str]:
+def terminal(document: AuditDocument, width: int = 400) -> list[str]:
     out = io.StringIO()
     console = Console(file=out, width=width)
     for part in audited(document):
@@ -282,22 +309,24 @@ def terminal(document: Any, width: int = 400) -> list[str]:
 
 
 def test_the_terminal_says_once_what_many_readings_say() -> None:
-    document = audit_document(AuditReport((polish(),)))
-    (case,) = document["cases"]
-    readings = case["readings"]["admissible"]
-    case["findings"] = [
-        {"rule": "TG302", "severity": "error", "claim": "optimal", "reading": reading,
-         "message": f"Not shortest: {k}.5 s"}
-        for k, reading in enumerate(readings[:3])
-    ] + [
-        {"rule": "TG302", "severity": "error", "claim": "optimal", "reading": readings[3],
-         "message": "Not within the limits: a ratio of 3"},
-        {"rule": "TG104", "severity": "error", "claim": None, "reading": None, "message": "Alike."},
-        *({"rule": "TG201", "severity": "warning", "claim": "kept", "reading": reading,
-           "message": "Breaks."} for reading in readings[:2]),
-        {"rule": "TG106", "severity": "warning", "claim": None, "reading": None, "message": "m"},
-        {"rule": "TG101", "severity": "info", "claim": "kept", "reading": None, "message": "fits"},
+    case = polish().document
+    assert isinstance(case.readings, ReadingsSummary)
+    readings = case.readings.admissible
+    error, warning, info = Severity
+    found = [
+        *(("TG302", error, "optimal", reading, f"Not shortest: {k}.5 s", "longer")
+          for k, reading in enumerate(readings[:3])),
+        ("TG302", error, "optimal", readings[3], "Not within the limits: a ratio of 3", "breaks"),
+        ("TG104", error, None, None, "Alike.", ""),
+        *(("TG201", warning, "kept", reading, "Breaks.", "") for reading in readings[:2]),
+        ("TG106", warning, None, None, "m", ""),
+        ("TG101", info, "kept", None, "fits", ""),
     ]  # fmt: skip
+    keys = ("rule", "severity", "claim", "reading", "message", "kind")
+    findings = tuple(
+        Finding(basis=Basis.TEXT, **dict(zip(keys, one, strict=True))) for one in found
+    )
+    document = AuditDocument(cases=(case.model_copy(update={"findings": findings}),))
     lines = terminal(document)
     assert [line for line in lines if line.startswith(("error", "warning"))] == [
         f"error TG302 optimal (3 readings; as follows under {readings[0]}): Not shortest: 0.5 s",
@@ -319,4 +348,9 @@ def test_the_terminal_says_once_what_many_readings_say() -> None:
     [((0,), "1"), ((0, 1), "1, 2"), ((0, 1, 2, 4, 6, 7, 8, 9), "1–3, 5, 7–10"), ((), "")],
 )
 def test_runs_of_segments_are_drawn_together(numbers: tuple[int, ...], words: str) -> None:
-    assert segments([Excess(n, "1", "velocity", 2.0) for n in numbers]) == words
+    assert (
+        segments(
+            [Excess(segment=n, joint="1", quantity=Limited.VELOCITY, ratio=2.0) for n in numbers]
+        )
+        == words
+    )

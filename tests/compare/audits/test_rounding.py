@@ -12,13 +12,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from trajgap.compare.audits.rounding import (
-    Box,
     Place,
     Point,
-    Rounding,
+    RoundingBox,
     RoundingVerdict,
     judge_rounding,
 )
+from trajgap.compare.documents import Rounding
 from trajgap.nlp.enclosure import balls as interval
 from trajgap.nlp.enclosure import box_bound
 from trajgap.nlp.enclosure.balls import Ball, enclose_spline
@@ -56,12 +56,14 @@ def posed(seed: int, interpolant: Interpolant, joints: int = 2) -> tuple[Problem
 
 def boxes(durations: np.ndarray, half: float, waypoints: np.ndarray, angle: float):
     return (
-        Box(durations, durations - half, durations + half),
-        Box(waypoints, waypoints - angle, waypoints + angle),
+        RoundingBox(durations, durations - half, durations + half),
+        RoundingBox(waypoints, waypoints - angle, waypoints + angle),
     )
 
 
-def sampled_worst(problem: Problem, h: Box, q: Box, rng, groups: int = 40, each: int = 50):
+def sampled_worst(
+    problem: Problem, h: RoundingBox, q: RoundingBox, rng, groups: int = 40, each: int = 50
+):
     """Worst ratios at random points of the box, a quarter of them at its corners."""
     worst = []
     low = np.maximum(h.lower, problem.duration_lower)
@@ -79,7 +81,7 @@ def sampled_worst(problem: Problem, h: Box, q: Box, rng, groups: int = 40, each:
 
 
 def contradiction(
-    problem: Problem, h: Box, q: Box, verdict: RoundingVerdict, seed: int
+    problem: Problem, h: RoundingBox, q: RoundingBox, verdict: RoundingVerdict, seed: int
 ) -> str | None:
     """What a verdict states that some point of the box contradicts."""
     worst = sampled_worst(problem, h, q, np.random.default_rng(seed))
@@ -364,9 +366,9 @@ def test_several_places_share_a_proof():
     # be kept, not both: the worst is least at q = 1.
     limits = Limits(1.49)
     problem = Problem([0.0, 1.02, 2.0], limits, rest_to_rest(2, 3))
-    h = Box.exact(np.ones(2))
+    h = RoundingBox.exact(np.ones(2))
     reach = np.array([[0.0], [0.1], [0.0]])
-    q = Box(problem.waypoints, problem.waypoints - reach, problem.waypoints + reach)
+    q = RoundingBox(problem.waypoints, problem.waypoints - reach, problem.waypoints + reach)
     verdict = judge_rounding(problem, h, q)
     assert verdict.verdict is Rounding.BREAKS
     assert verdict.lower_bound_of_worst == pytest.approx(1.5 / 1.49, rel=1e-12)
@@ -390,8 +392,8 @@ def test_puma_table_3(reading):
         if claim.joint:
             columns = [problem.joints.index(claim.joint)]
             problem = problem.joint(columns[0])
-        h = Box(box.value, box.lower, box.upper)
-        q = Box(problem.waypoints, low[:, columns], high[:, columns])
+        h = RoundingBox(box.value, box.lower, box.upper)
+        q = RoundingBox(problem.waypoints, low[:, columns], high[:, columns])
         verdict = judge_rounding(problem, h, q)
         assert contradiction(problem, h, q, verdict, 0) is None
         verdicts.append(verdict.verdict)
@@ -411,8 +413,8 @@ def test_palletiser():
     for limit in ("80", "110"):
         box = case.claim_durations(case.claim(f"durations-{limit}"), "waypoints-rad")
         problem = case.problem(f"limit-{limit}", "waypoints-rad")
-        h = Box(box.value, box.lower, box.upper)
-        q = Box(problem.waypoints, *case.waypoint_box(f"limit-{limit}", "waypoints-rad"))
+        h = RoundingBox(box.value, box.lower, box.upper)
+        q = RoundingBox(problem.waypoints, *case.waypoint_box(f"limit-{limit}", "waypoints-rad"))
         verdicts[limit] = judge_rounding(problem, h, q)
         assert contradiction(problem, h, q, verdicts[limit], 1) is None
     assert verdicts["80"].verdict in (Rounding.KEEPS, Rounding.CONSISTENT)
@@ -430,7 +432,7 @@ def test_a_box_of_width_0_is_the_plain_check(interpolant):
     stretch = check(problem, h).stretch
     for share, expected in ((1.001, Rounding.KEEPS), (0.9999, Rounding.BREAKS)):
         at = h * stretch * share
-        verdict = judge_rounding(problem, Box.exact(at))
+        verdict = judge_rounding(problem, RoundingBox.exact(at))
         if interpolant is MOVING_ENDS:
             passes = check(problem, at).verdict is Verdict.PASS
             expected = Rounding.KEEPS if passes else Rounding.BREAKS
@@ -447,18 +449,18 @@ def test_a_box_of_width_0_is_the_plain_check(interpolant):
 def test_wide_boxes_prove_nothing_false(seed):
     problem, h = posed(seed, quintic_spline(4))
     h = 0.9 * check(problem, h).stretch * h
-    wide = Box(h, 0.6 * h, 1.4 * h)
+    wide = RoundingBox(h, 0.6 * h, 1.4 * h)
     assert judge_rounding(problem, wide).verdict is Rounding.CONSISTENT
-    held = Box(h, 0.6 * h, h * (1.0 + 1e-6))
+    held = RoundingBox(h, 0.6 * h, h * (1.0 + 1e-6))
     verdict = judge_rounding(problem, held)
     assert verdict.verdict in (Rounding.CONSISTENT, Rounding.UNDECIDED)
-    assert contradiction(problem, held, Box.exact(problem.waypoints), verdict, seed) is None
+    assert contradiction(problem, held, RoundingBox.exact(problem.waypoints), verdict, seed) is None
 
 
 def test_mean_speed_decides_where_nothing_else_does():
     problem, h = posed(1, quintic_spline(4))
     slow = replace(problem, limits=Limits(0.01, joints=2))
-    with_zero = Box(h, 0.0 * h, 1.4 * h)
+    with_zero = RoundingBox(h, 0.0 * h, 1.4 * h)
     verdict = judge_rounding(slow, with_zero)
     assert verdict.verdict is Rounding.BREAKS
     place = verdict.exhibit
@@ -521,7 +523,7 @@ def test_the_order_of_joints_does_not_matter():
 def test_durations_outside_their_bounds_break():
     problem, h = posed(2, three_five_three())
     h = 3.0 * check(problem, h).stretch * h
-    box = Box(h, h - 5e-4, h + 5e-4)
+    box = RoundingBox(h, h - 5e-4, h + 5e-4)
     short = replace(problem, duration_lower=np.array([0.0, h[1] + 0.01, 0.0]))
     verdict = judge_rounding(short, box)
     assert verdict.verdict is Rounding.BREAKS
@@ -539,7 +541,7 @@ def test_durations_outside_their_bounds_break():
 def test_the_search_stays_within_the_duration_bounds():
     problem, h = posed(2, three_five_three())
     h = 3.0 * check(problem, h).stretch * h
-    box = Box(h, h - 5e-4, h + 5e-4)
+    box = RoundingBox(h, h - 5e-4, h + 5e-4)
     at_bound = replace(problem, duration_lower=h, duration_upper=h)
     assert judge_rounding(at_bound, box).verdict is Rounding.KEEPS
     for side in (-1.0, 1.0):
@@ -556,12 +558,12 @@ def test_the_search_stays_within_the_duration_bounds():
 def test_a_bound_keeps_the_durations_from_repairing_the_motion():
     problem, h = posed(2, three_five_three())
     h = 0.9999 * check(problem, h).stretch * h
-    box = Box(h, h - 5e-4, h + 5e-4)
+    box = RoundingBox(h, h - 5e-4, h + 5e-4)
     assert judge_rounding(problem, box).verdict is Rounding.CONSISTENT
     held = replace(problem, duration_upper=h)
     verdict = judge_rounding(held, box)
     assert verdict.verdict in (Rounding.BREAKS, Rounding.UNDECIDED)
-    assert contradiction(held, box, Box.exact(held.waypoints), verdict, 3) is None
+    assert contradiction(held, box, RoundingBox.exact(held.waypoints), verdict, 3) is None
 
 
 def test_positions():
@@ -598,7 +600,7 @@ def test_positions():
 def test_a_joint_that_must_not_move():
     still = np.column_stack([[0.1, 0.5, 0.3, 0.2], [0.7] * 4])
     limits = Limits([9.0, 0.0], np.inf)
-    h = Box(np.ones(3), np.full(3, 0.9995), np.full(3, 1.0005))
+    h = RoundingBox(np.ones(3), np.full(3, 0.9995), np.full(3, 1.0005))
     assert judge_rounding(Problem(still, limits, three_five_three()), h).verdict is Rounding.KEEPS
     moving = still + np.array([[0.0, 0.0], [0.0, 1e-3], [0.0, 0.0], [0.0, 0.0]])
     verdict = judge_rounding(Problem(moving, limits, three_five_three()), h)
@@ -607,7 +609,7 @@ def test_a_joint_that_must_not_move():
     assert isinstance(verdict.exhibit, Place)
     assert verdict.exhibit.joint == "2"
     # With way-points that may all be equal there is no proof.
-    around = Box(moving, moving - 1e-3, moving + 1e-3)
+    around = RoundingBox(moving, moving - 1e-3, moving + 1e-3)
     verdict = judge_rounding(Problem(moving, limits, three_five_three()), h, around)
     assert verdict.verdict is Rounding.UNDECIDED
 
@@ -617,16 +619,16 @@ def test_a_jump_is_not_called_an_excess():
     problem = Problem([[0.1], [0.9], [0.4]], Limits(50.0), jumping)
     assert check(problem, [1.0, 0.9]).verdict is Verdict.DISCONTINUOUS
     h = np.array([1.0, 0.9])
-    verdict = judge_rounding(problem, Box(h, h - 5e-4, h + 5e-4))
+    verdict = judge_rounding(problem, RoundingBox(h, h - 5e-4, h + 5e-4))
     assert verdict.verdict is Rounding.UNDECIDED
     assert verdict.exhibit is None
-    fast = judge_rounding(replace(problem, limits=Limits(0.5)), Box(h, h - 5e-4, h + 5e-4))
+    fast = judge_rounding(replace(problem, limits=Limits(0.5)), RoundingBox(h, h - 5e-4, h + 5e-4))
     assert fast.verdict is Rounding.BREAKS
 
 
 def test_nothing_limited():
     problem = Problem([[0.1], [0.9], [0.4], [0.0]], Limits(joints=1), three_five_three())
-    verdict = judge_rounding(problem, Box.exact(np.ones(3)))
+    verdict = judge_rounding(problem, RoundingBox.exact(np.ones(3)))
     assert (verdict.verdict, verdict.worst_at_print) == (Rounding.KEEPS, 0.0)
     assert verdict.lower_bound_of_worst is None
 
@@ -657,24 +659,24 @@ def test_bisection_tightens():
 def test_bad_boxes_are_refused():
     problem, h = posed(0, three_five_three())
     with pytest.raises(TrajgapError, match="differ in shape"):
-        Box(h, h[:2], h)
+        RoundingBox(h, h[:2], h)
     with pytest.raises(TrajgapError, match="not finite"):
-        Box(h, h - np.inf, h)
+        RoundingBox(h, h - np.inf, h)
     with pytest.raises(TrajgapError, match="outside its bounds"):
-        Box(h, h + 1.0, h + 2.0)
+        RoundingBox(h, h + 1.0, h + 2.0)
     with pytest.raises(TrajgapError, match=r"waypoints: the box has shape \(4, 1\)"):
-        judge_rounding(problem, Box.exact(h), Box.exact(problem.waypoints[:, :1]))
+        judge_rounding(problem, RoundingBox.exact(h), RoundingBox.exact(problem.waypoints[:, :1]))
     with pytest.raises(TrajgapError, match=r"durations: expected 3"):
-        judge_rounding(problem, Box.exact(h[:2]))
+        judge_rounding(problem, RoundingBox.exact(h[:2]))
     with pytest.raises(TrajgapError, match="must all be positive"):
-        judge_rounding(problem, Box(0.0 * h, 0.0 * h, h))
+        judge_rounding(problem, RoundingBox(0.0 * h, 0.0 * h, h))
     free = Problem(problem.waypoints, problem.limits, piecewise((5, 5, 5), 2))
     with pytest.raises(TrajgapError, match="give nodal derivatives"):
-        judge_rounding(free, Box.exact(h))
+        judge_rounding(free, RoundingBox.exact(h))
 
 
 def test_a_moving_joint_with_limit_zero_alone_is_judged() -> None:
     points = np.array([[0.1], [0.4], [0.2], [0.6]])
     problem = Problem(points, Limits(0.0, np.inf, joints=1), three_five_three())
-    durations = Box(np.ones(3), np.full(3, 0.99), np.full(3, 1.01))
+    durations = RoundingBox(np.ones(3), np.full(3, 0.99), np.full(3, 1.01))
     assert judge_rounding(problem, durations, None).verdict is Rounding.BREAKS

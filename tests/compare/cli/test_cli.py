@@ -345,9 +345,9 @@ def test_a_broken_file(run: Run, command: str, name: str) -> None:
         (".", "is a directory; name a file in it"),
         ("", "is empty; name a published case or a file"),
         ("x" * 5000, "cannot be read"),
-        ("a\x1b[31mb", "a?[31mb: neither a published case nor a file"),
+        ("a\x1b[31mb", "a<U+001B>[31mb: neither a published case nor a file"),
         ("two\nlines", "neither a published case nor a file"),
-        ("\udcff", "neither a published case nor a file"),
+        ("\udcff", "<U+DCFF>: is not UTF-8; rename the file"),
     ],
 )
 def test_no_such_case(run: Run, source: str, reason: str) -> None:
@@ -583,7 +583,7 @@ def test_nothing_from_a_file_steers_the_terminal(run: Run) -> None:
     )
     code, out, _ = run("show", "evil.toml")
     assert code == 0
-    assert "[red]x [31m" in out
+    assert "[red]x<U+001B>[31m<U+0007>" in out
     assert "\x1b" not in out
     assert "\x07" not in out
 
@@ -634,7 +634,7 @@ def test_a_full_disk(arguments: tuple[str, ...]) -> None:
 def test_interrupted() -> None:
     # CasADi swallows a KeyboardInterrupt and would go on with a solve that was cut short.
     started = (
-        "import sys, trajgap.compare.cli.commands as c; from trajgap.compare.cli import main\n"
+        "import sys, trajgap.compare.cli.solving as c; from trajgap.compare.cli import main\n"
         "solve = c.solve_per_joint\n"
         "def slow(*a, **k):\n"
         "    print('solving', file=sys.stderr, flush=True)\n"
@@ -662,7 +662,7 @@ def test_interrupted_inside_a_library(run: Run, monkeypatch: pytest.MonkeyPatch)
     def stop(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("trajgap.compare.cli.commands.solve_per_joint", stop)
+    monkeypatch.setattr("trajgap.compare.cli.solving.solve_per_joint", stop)
     ended = run("solve", "mine.toml", "--out", "answer.json")
     assert ended == (130, "", "trajgap: interrupted\n")
     assert sorted(p.name for p in Path().iterdir()) == ["mine.toml"]
@@ -672,7 +672,7 @@ def test_a_fault_of_ours_is_told_apart(run: Run, monkeypatch: pytest.MonkeyPatch
     def fail(*_: object, **__: object) -> None:
         raise ZeroDivisionError
 
-    monkeypatch.setattr("trajgap.compare.cli.commands.solve_per_joint", fail)
+    monkeypatch.setattr("trajgap.compare.cli.solving.solve_per_joint", fail)
     code, out, err = run("solve", "mine.toml", "--out", "answer.json")
     assert (code, out) == (70, "")
     assert err.endswith("trajgap: a fault of trajgap itself, please report the lines above\n")

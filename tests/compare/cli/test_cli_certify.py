@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import re
 import signal
@@ -12,27 +13,34 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from support.checkout import ROOT
 from support.command_line import CASE, Run, on_terminal, strict
 from support.documents import SCHEMA, assert_valid
 from support.shipped_problems import POSED
 from trajgap.compare.cli import certifying as cli_certify
-from trajgap.compare.documents.proofs import NOT_COVERED, Worth
-from trajgap.nlp import ExactProblem, Outcome, Subject, shipped
+from trajgap.compare.documents import Uncovered
+from trajgap.nlp import ExactProblem, shipped
+from trajgap.nlp.proofs.document import shipped_folder
 from trajgap.nlp.proofs.state import read_state
 from trajgap.nlp.proofs.three_piece import rows as three_piece
 from trajgap.nlp.proofs.three_piece.rows import Row, exact_row
-from trajgap.nlp.verify import seal, verify
 from trajgap.problem import TrajgapError
+from trajgap.verify import CertifiedQuestion, Subject, seal
+from trajgap.verify import verify_certificate as verify
 
 IRB = "irb460-pso-353"
 ONE = (IRB, "--problem", "limit-80", "--reading", "waypoints-rad")
 NAME = f"{IRB}.limit-80.waypoints-rad"
 
 
+def files_of(out: str) -> list[str]:
+    """Lines of `verify` about a file; what was asked is indented below."""
+    return [line for line in out.splitlines() if not line.startswith(" ")]
+
+
 def test_words_are_those_of_the_library() -> None:
-    assert SCHEMA["$defs"]["outcome"]["enum"] == [*map(str, Outcome), NOT_COVERED]
-    assert SCHEMA["$defs"]["worth"]["enum"] == [*map(str, Worth)]
-    assert SCHEMA["$defs"]["subject"]["enum"] == [*map(str, Subject)]
+    outcome = SCHEMA["$defs"]["certified_result"]["properties"]["outcome"]
+    assert [one["$ref"] for one in outcome["anyOf"]] == ["#/$defs/outcome", "#/$defs/uncovered"]
     for name in ("certify", "verify"):
         assert {"$ref": f"#/$defs/{name}"} in SCHEMA["anyOf"]
 
@@ -55,7 +63,7 @@ def test_each_joint_is_certified_and_its_file_proves(run: Run) -> None:
     files = [r["certificate"] for r in document["intervals"]]
     code, out, err = run("verify", *files)
     assert (code, err) == (0, "")
-    assert [line.partition(": proves: ")[0] for line in out.splitlines()] == files
+    assert [line.partition(": proves: ")[0] for line in files_of(out)] == files
 
 
 def test_shared_durations_are_one_question(run: Run) -> None:
@@ -98,7 +106,7 @@ def test_a_curve_that_is_not_covered_is_named(run: Run) -> None:
     assert code == cli_certify.NOT_PROVED
     document = strict(out)
     assert_valid(document, "certify")
-    assert document["intervals"][0]["outcome"] == NOT_COVERED
+    assert document["intervals"][0]["outcome"] == Uncovered.NOT_COVERED
     assert "time a B-spline too" in document["intervals"][0]["lower_why"]
 
 
@@ -209,7 +217,7 @@ def test_verify_says_what_each_file_is_worth(run: Run, tmp_path: Path) -> None:
         (tmp_path / f"{name}.json").write_text(json.dumps(one))
     code, out, err = run("verify", "good.json", "harmless.json", "broken.json", "missing.json")
     assert (code, err) == (1, "")
-    words = [line.split(": ")[1] for line in out.splitlines()]
+    words = [line.split(": ")[1] for line in files_of(out)]
     assert words == ["proves", "altered, still proves", "refused", "refused"]
     code, out, _ = run("verify", "good.json", "harmless.json", "--json")
     assert code == 0
@@ -227,9 +235,114 @@ def test_huge_numbers_are_no_fault(run: Run, tmp_path: Path) -> None:
     document["claim"]["lower"] = "-1" + "0" * 350
     (tmp_path / "huge.json").write_text(json.dumps(document))
     code, out, _ = run("verify", "huge.json", "--json")
+    assert code == 1
+    assert "no number of at most 120 digits" in strict(out)["verified"][0]["reason"]
+    document["claim"]["lower"] = "-" + "9" * 120 + "e99"
+    (tmp_path / "huge.json").write_text(json.dumps(document))
+    code, out, _ = run("verify", "huge.json", "--json")
     assert code == 0
-    assert strict(out)["verified"][0]["lower_why"] == "beyond the range of floating point"
+    assert strict(out)["verified"][0]["lower"] == pytest.approx(-1e219)
     assert run("verify", "huge.json")[0] == 0
+
+
+def test_verify_says_which_question_it_proved(run: Run) -> None:
+    run("solve", *ONE, "--certify", "--gap", "0.1")
+    file = f"trajgap-certificates/{NAME}.json"
+    code, out, _ = run("verify", file)
+    assert code == 0
+    document = json.loads(Path(file).read_text())
+    asked = f"case {IRB}, problem limit-80, reading waypoints-rad"
+    assert out.splitlines()[1] == f"    {asked}; problem sha256 {seal(document['problem'])}"
+    (one,) = strict(run("verify", file, "--json")[1])["verified"]
+    case = (ROOT / "problem" / "published" / f"{IRB}.toml").read_bytes()
+    assert one["question"]["case_sha256"] == hashlib.sha256(case).hexdigest()
+    assert one["question"]["joint"] is None
+
+
+def test_verify_compares_with_a_case_number_by_number(run: Run, tmp_path: Path) -> None:
+    run("solve", *ONE, "--certify", "--gap", "0.1")
+    file = Path(f"trajgap-certificates/{NAME}.json")
+    code, out, _ = run("verify", str(file), "--case", IRB)
+    asked = f"case {IRB}, problem limit-80, reading waypoints-rad"
+    assert code == 0
+    assert out.splitlines()[2] == f"    the same problem as in the case: {asked}"
+    # 5.0 is the same number as 5, another name and a hash of nothing change no question.
+    document = json.loads(file.read_text())
+    document["problem"]["duration_lower"] = ["0.0", "0/7", "0e9"]
+    document["question"] = dict.fromkeys(document["question"])
+    file.write_text(json.dumps(document))
+    code, out, _ = run("verify", str(file), "--case", IRB, "--json")
+    assert code == 0
+    (one,) = strict(out)["verified"]
+    assert one["worth"] == "altered, still proves"
+    assert one["in_case"]["reading"] == "waypoints-rad"
+    # Another limit is another problem, and proved for itself.
+    document["problem"]["duration_lower"] = ["1e-9", "0", "0"]
+    document["question"] |= {"case": IRB, "problem": "limit-80", "reading": "waypoints-rad"}
+    file.write_text(json.dumps(document))
+    code, out, _ = run("verify", str(file), "--case", IRB)
+    assert code == 1
+    assert out.splitlines()[2] == "    not in the case: its problem differs in duration_lower"
+    code, out, _ = run("verify", str(file), "--case", "mine.toml", "--json")
+    assert code == 1
+    assert_valid(strict(out), "verify")
+    assert strict(out)["verified"][0]["in_case_why"] == "no problem of the case is this one"
+
+
+def test_verify_compares_each_joint_and_any_curve(run: Run) -> None:
+    folder = shipped_folder()
+    for case, ending in (("puma560-mnam-pso-353", ".joint-3"), (IRB, ".any-curve")):
+        for path in sorted(folder.glob(f"{case}*{ending}.json")):
+            code, out, _ = run("verify", str(path), "--case", case, "--json")
+            assert code == 0
+            (one,) = strict(out)["verified"]
+            wanted = one["question"] | {"case_sha256": one["in_case"]["case_sha256"]}
+            assert one["in_case"] == wanted
+
+
+def test_verify_ends_with_its_time(run: Run) -> None:
+    run("solve", *ONE, "--certify", "--gap", "0.1")
+    code, out, _ = run("verify", f"trajgap-certificates/{NAME}.json", "--time", "0", "--json")
+    assert code == 1
+    (one,) = strict(out)["verified"]
+    assert_valid(strict(out), "verify")
+    assert one["worth"] == one["lower_why"] == "out of time"
+
+
+def test_a_certificate_of_the_old_format_is_made_again(run: Run) -> None:
+    path = Path(f"trajgap-certificates/{NAME}.json")
+    path.parent.mkdir()
+    path.write_text('{"format": "trajgap-certificate-1"}')
+    _, out, _ = run("verify", str(path))
+    assert "`trajgap solve CASE --certify` makes it again" in out
+    assert run("solve", *ONE, "--certify", "--gap", "0.1")[0] == 0
+    assert verify(path).proves
+
+
+JOINTS = ("a/b", "a b", "a_b", "a.state", "x" * 300, "ä", "A", "", "joint-a", "..")
+"""Labels that a name made of plain characters would mix up, or that no file may have."""
+
+
+def test_each_question_has_files_of_its_own() -> None:
+    names = {}
+    for case, problem, reading in (("c", "p", "r"), ("c.p", "r", "x"), ("c", "p.r", "x")):
+        for joint in (None, *JOINTS):
+            asked = CertifiedQuestion(case, problem, reading, joint)
+            question = cli_certify.Question("", Any, asked, "")  # type: ignore[arg-type]
+            names[asked] = question.file
+    files = [f"{name}{kind}.json" for name in names.values() for kind in ("", ".state")]
+    assert len(set(files)) == len(files) == 2 * 3 * (1 + len(JOINTS))
+    assert all(len(file.encode()) < 200 and "/" not in file for file in files)
+    assert names[CertifiedQuestion("c", "p", "r")] == "c.p.r"
+
+
+def test_a_state_beside_a_finished_certificate_goes(run: Run) -> None:
+    state = Path(f"trajgap-certificates/{NAME}.state.json")
+    run("solve", *ONE, "--certify", "--time", "0")
+    assert str(verify(state)).startswith("proves: ")
+    run("solve", *ONE, "--certify", "--gap", "0.1", "--resume", str(state))
+    assert not state.exists()
+    assert verify(f"trajgap-certificates/{NAME}.json").proves
 
 
 @pytest.mark.parametrize(
@@ -240,8 +353,8 @@ def test_huge_numbers_are_no_fault(run: Run, tmp_path: Path) -> None:
         (("--certificates", "x"), "--certificates needs --certify"),
         (("--resume", "x"), "--resume needs --certify"),
         (("--certify", "--resume", "missing.json"), "missing.json: cannot be read"),
-        (("--certify", "--resume", "mine.toml"), "mine.toml: is no JSON"),
-        (("--certify", "--certificates", "taken"), "is no trajgap-certificate-1"),
+        (("--certify", "--resume", "mine.toml"), "mine.toml: no JSON"),
+        (("--certify", "--certificates", "taken"), "is no trajgap-certificate-2"),
         (("--certify", "--gap", "1"), "--gap: 1 is no relative width; give 0 or more, below 1"),
         (("--certify", "--gap", "inf"), "--gap: inf is no relative width"),
         (("--certify", "--certificates", "mine.toml"), "mine.toml: --certificates: is no folder"),
@@ -263,7 +376,7 @@ def test_a_nested_file_in_the_way_is_refused(run: Run) -> None:
     (folder / f"{NAME}.json").write_text("[" * 99_999)
     code, _, err = run("solve", *ONE, "--certify", "--time", "0")
     assert code == 2
-    assert "is no trajgap-certificate-1" in err
+    assert "is no trajgap-certificate-2" in err
 
 
 def test_a_state_of_another_problem_is_refused(run: Run) -> None:
@@ -278,7 +391,7 @@ def test_a_state_file_that_was_edited_is_refused(run: Run) -> None:
     run("solve", *ONE, "--certify", "--time", "0")
     path = Path(f"trajgap-certificates/{NAME}.state.json")
     document: dict[str, Any] = json.loads(path.read_text())
-    document["state"]["durations"][0] = "0.1"
+    document["claim"]["durations"][0] = "0.1"
     path.write_text(json.dumps(document))
     with pytest.raises(TrajgapError, match="differs from what was written"):
         read_state(path)
@@ -287,7 +400,7 @@ def test_a_state_file_that_was_edited_is_refused(run: Run) -> None:
     path.write_text(json.dumps(document))
     code, _, err = run("solve", *ONE, "--certify", "--resume", str(path))
     assert code == 2
-    assert "do not keep the limits" in err
+    assert "the state is not proved (answer: joint" in err
 
 
 def test_a_width_that_is_not_reached_is_not_called_certified(run: Run) -> None:

@@ -1,38 +1,25 @@
 import numpy as np
 import pytest
-from trajgap.compare.audits.finding import (
+from trajgap.compare.audits.judging import judge, weigh
+from trajgap.compare.documents import (
     RULES,
     Basis,
     ClaimVerdict,
     Finding,
+    GapKind,
+    Reference,
     Scope,
     Severity,
-    judge,
-    weigh,
 )
-from trajgap.compare.gaps.optimality_gap import GapKind, Reference, gap
-from trajgap.compare.gaps.statistics import settled_at, share_of_pairs, spread
+from trajgap.compare.gaps.optimality_gap import gap
+from trajgap.compare.gaps.statistics import settled_at, share_of_luck, share_of_pairs, spread
 from trajgap.nlp import Evidence, solve
 from trajgap.problem import TrajgapError, load_case
 
 
 def finding(verdict: ClaimVerdict, reading: str | None, **change: object) -> Finding:
-    values = {
-        "rule": "TG101",
-        "severity": Severity.INFO,
-        "verdict": verdict,
-        "scope": Scope.ALL,
-        "evidence": Evidence.NONE,
-        "basis": Basis.DIGITS,
-        "claim": "c",
-        "problem": None,
-        "reading": reading,
-        "printed": None,
-        "computed": None,
-        "gap": None,
-        "message": "m",
-    }
-    return Finding(**(values | change))
+    said = {"rule": "TG101", "basis": Basis.DIGITS, "claim": "c", "message": "m"}
+    return Finding(verdict=verdict, reading=reading, **(said | change))
 
 
 def test_a_gap_is_an_interval_against_both_ends_of_the_reference() -> None:
@@ -141,7 +128,7 @@ def test_rule_ids_are_unique() -> None:
 def test_shares_count_pairs_and_never_a_run_against_itself() -> None:
     slower, faster = np.array([2.0, 4.0]), np.array([1.0, 3.0])
     assert share_of_pairs(slower, faster, 0.25) == 3 / 4
-    assert share_of_pairs(slower, slower, 0.5) == 1 / 2
+    assert share_of_luck(slower, 0.5) == 1 / 2
     assert np.isnan(share_of_pairs(np.array([np.inf]), faster, 0.1))
 
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from trajgap.compare.audits.case_audit import CaseAudit, audit
 from trajgap.compare.audits.study import Study
-from trajgap.compare.audits.waterfall import Step, Waterfall
+from trajgap.compare.documents import Step, Waterfall, Why
 from trajgap.compare.pages.blocks import Cell, Grid, Page, Prose, Section
 from trajgap.compare.pages.markdown_text import markdown
 from trajgap.compare.pages.numbers import where_time_goes
@@ -17,20 +17,20 @@ from trajgap.problem import load_case
 def test_many_readings_share_a_table_and_few_have_pictures() -> None:
     case = load_case("irb460-pso-353")
     steps = (
-        Step("published", 1.9, 1.8, 2.0, Evidence.NONE, "printed"),
-        Step("optimum", 1.7, None, None, Evidence.BEST_KNOWN, ""),
-        Step("retimed", None, None, None, Evidence.NONE, "no acceleration is limited"),
+        Step(name="published", time=1.9, low=1.8, high=2.0, note="printed"),
+        Step(name="optimum", time=1.7, evidence=Evidence.BEST_KNOWN),
+        Step.missing("retimed", "no acceleration is limited"),
     )
-    first = Waterfall("limit-80", case.default_reading.id, None, steps)
+    first = Waterfall(problem="limit-80", reading=case.default_reading.id, claim=None, steps=steps)
     one = CaseAudit(case, Study(case, seeds=2), (), (), (first,))
     for others in (3, 5):
-        more = [replace(first, reading=f"reading-{k}") for k in range(others)]
+        more = [first.model_copy(update={"reading": f"reading-{k}"}) for k in range(others)]
         section = where_time_goes(replace(one, waterfalls=(first, *more)))
         drawn = Page("p", "t", (section,)).pictures
         tables = [b for b in section.blocks if isinstance(b, Grid) and b.columns[0] == "reading"]
         assert len(drawn) == (4 if others == 3 else 1)
         assert [len(t.rows) for t in tables] == ([] if others == 3 else [5])
-    known = [s for s in first.steps if s.time is not None]
+    known = [s for s in first.steps if not isinstance(s.time, Why)]
     assert tables[0].columns == ("reading", *(s.name for s in known))
     for cell, step in zip(tables[0].rows[0][1:], known, strict=True):
         assert cell.text.startswith(f"{step.time:.4f} s")

@@ -11,7 +11,7 @@ import matplotlib
 import numpy as np
 import pytest
 from matplotlib.text import Text
-from trajgap.compare.audits.waterfall import Step, Waterfall
+from trajgap.compare.documents import Step, Waterfall, Why
 from trajgap.compare.pictures.drawing import THEME, Picture, drawing, embedded, finish, shown, svg
 from trajgap.compare.pictures.motion import beyond, motion_picture
 from trajgap.compare.pictures.searches import convergence, endings
@@ -89,16 +89,22 @@ def joint_runs(problem: Problem) -> dict[str, list[JointRuns]]:
 
 
 def fall(*steps: Step) -> Waterfall:
-    return Waterfall("arm", "as-printed", "claim", steps)
+    return Waterfall(problem="arm", reading="as-printed", claim="claim", steps=steps)
 
 
 STEPS = (
-    Step("published", 1.9, 1.895, 1.905, Evidence.NONE, ""),
-    Step("feasible after repair", 2.1, None, None, Evidence.NONE, "stretched"),
-    Step("each joint at its optimum, longest per segment", 1.7, 1.6, 1.8, Evidence.BEST_KNOWN, ""),
-    Step("optimum", 1.5, None, None, Evidence.CERTIFIED, ""),
-    Step("retimed", None, None, None, Evidence.NONE, "jerk is limited"),
-    Step("any curve", 0.012, None, None, Evidence.BEST_KNOWN, ""),
+    Step(name="published", time=1.9, low=1.895, high=1.905),
+    Step(name="feasible after repair", time=2.1, note="stretched"),
+    Step(
+        name="each joint at its optimum, longest per segment",
+        time=1.7,
+        low=1.6,
+        high=1.8,
+        evidence=Evidence.BEST_KNOWN,
+    ),
+    Step(name="optimum", time=1.5, evidence=Evidence.CERTIFIED),
+    Step.missing("retimed", "jerk is limited"),
+    Step(name="any curve", time=0.012, evidence=Evidence.BEST_KNOWN),
 )
 
 
@@ -225,7 +231,7 @@ def test_text_of_case_files_is_drawn_as_it_stands_and_cannot_break_out(problem: 
     assert "script" not in {e.tag.removeprefix(SVG) for e in root.iter()}
     assert "</title><script>" in str(root.findtext(f"{SVG}title"))
     assert "<!--" not in document
-    waterfall = replace(STEPS[4], name=HOSTILE, note=HOSTILE)
+    waterfall = STEPS[4].model_copy(update={"name": HOSTILE, "note": HOSTILE})
     ElementTree.fromstring(svg(waterfall_picture(fall(STEPS[0], waterfall), title=HOSTILE)))
 
 
@@ -349,7 +355,7 @@ def test_a_limit_far_away_does_not_flatten_the_curve(problem: Problem) -> None:
 def test_the_waterfall_writes_every_value_and_every_reason(pictures: dict[str, Picture]) -> None:
     text = words(pictures["waterfall"])
     for step in STEPS:
-        assert (seconds(step) if step.time is not None else step.note) in text
+        assert (step.note if isinstance(step.time, Why) else seconds(step)) in text
     assert "1.9000 s (1.8950 to 1.9050)" in text
     assert "−0.4000 s" in text
     assert "−19.0 %" in text
@@ -368,7 +374,9 @@ def test_bars_start_at_zero_and_end_at_their_value(pictures: dict[str, Picture])
     (axes,) = pictures["waterfall"].axes
     bars = [bar for container in axes.containers for bar in container]
     assert [bar.get_x() for bar in bars] == [0] * 5
-    assert [bar.get_width() for bar in bars] == [s.time for s in STEPS if s.time is not None]
+    assert [bar.get_width() for bar in bars] == [
+        s.time for s in STEPS if not isinstance(s.time, Why)
+    ]
 
 
 @pytest.mark.parametrize("steps", [(), (STEPS[4],)])

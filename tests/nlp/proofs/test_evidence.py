@@ -10,18 +10,17 @@ from importlib import import_module
 import numpy as np
 import pytest
 from support.checkout import ROOT
-from support.documents import assert_valid
+from support.documents import assert_valid, plain
 from support.shipped_problems import POSED
 from trajgap.compare.audits.rules.distances import judge_distances
 from trajgap.compare.audits.study import Study
 from trajgap.compare.audits.waterfall import waterfalls
-from trajgap.compare.documents.results import results_document, solve_result
-from trajgap.compare.gaps.optimality_gap import Reference, gap
+from trajgap.compare.documents import Gap, Reference, SolveDocument, Why, solve_result
+from trajgap.compare.gaps.optimality_gap import gap
 from trajgap.nlp import (
     Evidence,
     ExactProblem,
     Interval,
-    Subject,
     certificate,
     certify,
     estimate_any_curve,
@@ -43,6 +42,7 @@ from trajgap.problem import (
     rest_to_rest,
     three_five_three,
 )
+from trajgap.verify import Subject
 
 evidence_module = import_module("trajgap.nlp.proofs.evidence")
 waterfall_module = import_module("trajgap.compare.audits.waterfall")
@@ -107,7 +107,7 @@ def test_nothing_is_called_certified_without_a_certificate() -> None:
     assert Evidence.CERTIFIED not in words
     assert not any("certified" in text for text in texts)
     assert any("best known optimum" in text for text in texts)
-    document = results_document([solve_result(IRB, *PAIR, study.optimum(*PAIR))])
+    document = plain(SolveDocument(results=(solve_result(IRB, *PAIR, study.optimum(*PAIR)),)))
     assert_valid(document, "solve")
     assert document["results"][0]["lower_bound"] is None
     assert document["results"][0]["evidence"] == "best known"
@@ -204,7 +204,7 @@ def test_the_output_of_a_procedure_is_not_certified() -> None:
     assert {s.evidence for s in answer.joints} == {Evidence.CERTIFIED}
     assert answer.joint_evidence is Evidence.CERTIFIED
     assert answer.evidence is Evidence.BEST_KNOWN
-    document = results_document([solve_result(PUMA, *pair, answer)])
+    document = plain(SolveDocument(results=(solve_result(PUMA, *pair, answer),)))
     assert_valid(document, "solve")
     result = document["results"][0]
     assert (result["evidence"], result["lower_bound"]) == ("best known", None)
@@ -221,20 +221,24 @@ def test_the_weakest_word_stands_for_all() -> None:
 
 
 def test_a_gap_is_measured_against_the_interval() -> None:
-    certified = Reference(2.0, 1.6)
+    certified = Reference(upper=2.0, lower=1.6)
     found = gap((2.4, 3.2), certified)
     assert found.lowest == pytest.approx(0.2)
     assert found.highest == pytest.approx(1.0)
     inside = gap(1.8, certified)
     assert inside.lowest < 0 < inside.highest, "between the bounds is not below the optimum"
     assert gap((1.4, 1.5), certified).highest < 0
-    assert gap(1.8, Reference(2.0)).highest < 0
+    assert gap(1.8, Reference(upper=2.0)).highest < 0
 
 
 def test_a_total_below_the_proved_bound_is_called_that(monkeypatch: pytest.MonkeyPatch) -> None:
     study = one_study()
     monkeypatch.setattr(Study, "claim_total", lambda *_: ("1.5 s", (1.4995, 1.5005)))
-    (message,) = (f.message for f in judge_distances(study) if f.claim == "durations-80" and f.gap)
+    (message,) = (
+        f.message
+        for f in judge_distances(study)
+        if f.claim == "durations-80" and isinstance(f.gap, Gap)
+    )
     assert "below the proved lower bound of this problem as printed" in message
     assert "best known" not in message
 
@@ -256,7 +260,7 @@ def test_a_bound_for_any_curve_stands_on_the_waterfall(
     assert step.note.count("no motion within the limits is shorter than 0.4 s: certified") == 1
     if upper is None:
         assert step.evidence is Evidence.BEST_KNOWN
-        assert step.time is not None
+        assert isinstance(step.time, float)
         assert step.time > 0.5
     else:
         assert (step.time, step.evidence) == (0.5, Evidence.CERTIFIED)
@@ -276,8 +280,8 @@ def test_a_bound_for_any_curve_may_round_above_the_answer_and_no_more(
     )
     step = waterfalls(study)[0].steps[-1]
     assert (step.evidence is Evidence.CERTIFIED) == certified
-    assert step.time is not None
-    assert step.low is None or step.low <= step.time
+    assert isinstance(step.time, float)
+    assert isinstance(step.low, Why) or step.low <= step.time
 
 
 def test_what_is_proved_of_any_curve_is_called_certified_under_every_reading() -> None:

@@ -16,10 +16,8 @@ from trajgap.compare.audits.instances import study as family_study
 from trajgap.compare.audits.instances.pose import printed_reduction
 from trajgap.compare.audits.instances.result import (
     MIDDLE,
-    Effect,
-    FamilyResult,
+    InstancesResult,
     Optimum,
-    Procedure,
     Sample,
     distribution,
     percent_range,
@@ -27,11 +25,11 @@ from trajgap.compare.audits.instances.result import (
 )
 from trajgap.compare.audits.rules.on_instances import judge_instances
 from trajgap.compare.audits.study import Study
-from trajgap.compare.documents.results import audit_document
+from trajgap.compare.documents import Effect, Procedure, json_text
 from trajgap.compare.pages.markdown_text import markdown
 from trajgap.compare.pages.writer import case_page
 from trajgap.compare.pictures.drawing import svg
-from trajgap.compare.pictures.instances import family_picture
+from trajgap.compare.pictures.instances import instances_picture
 from trajgap.nlp import Evidence
 from trajgap.problem import (
     Case,
@@ -151,13 +149,13 @@ def small(*changes: tuple[str, str]) -> Case:
     return parse_case(text, "small.toml")
 
 
-def examined(*changes: tuple[str, str], workers: int = 1) -> FamilyResult:
+def examined(*changes: tuple[str, str], workers: int = 1) -> InstancesResult:
     study = Study(small(*changes), seeds=2, workers=workers)
-    return study.family(study.families[0])
+    return study.instances(study.instance_blocks[0])
 
 
 @pytest.fixture(scope="module")
-def result() -> FamilyResult:
+def result() -> InstancesResult:
     return examined()
 
 
@@ -198,13 +196,13 @@ def test_a_step_that_nothing_reaches_is_named() -> None:
     case = small(('kind = "joint"', 'kind = "end"'), ("[0.3, 0.9]", "[5]"))
     study = Study(case, seeds=2)
     with pytest.raises(TrajgapError, match=r"^small\.toml: families\.drawn: step: none of the 50"):
-        study.family(study.families[0])
+        study.instances(study.instance_blocks[0])
 
 
 # --- what is computed -----------------------------------------------------------------------------
 
 
-def test_same_bits_on_any_number_of_workers(result: FamilyResult) -> None:
+def test_same_bits_on_any_number_of_workers(result: InstancesResult) -> None:
     other = examined(workers=2)
     assert [(s.reading, s.step, s.index) for s in other.samples] == [
         (s.reading, s.step, s.index) for s in result.samples
@@ -216,7 +214,7 @@ def test_same_bits_on_any_number_of_workers(result: FamilyResult) -> None:
         assert (one.slower, one.faster) == (two.slower, two.faster)
 
 
-def test_time_scaled_by_two_leaves_every_reduction_as_it_was(result: FamilyResult) -> None:
+def test_time_scaled_by_two_leaves_every_reduction_as_it_was(result: InstancesResult) -> None:
     # Powers of two are exact, so the runs themselves agree to the last bit.
     twice = examined(
         ("velocity = [1.5, 2.5]", "velocity = [3, 5]"),
@@ -249,7 +247,7 @@ def test_one_segment_by_hand() -> None:
         assert (s.totals >= times.max() * (1 - 1e-8)).all()
 
 
-def test_optima_against_a_scan_of_the_shares(result: FamilyResult) -> None:
+def test_optima_against_a_scan_of_the_shares(result: InstancesResult) -> None:
     shares = np.linspace(0.02, 0.98, 4001)
     unit = np.stack([shares, 1 - shares], axis=1)
     case = small()
@@ -263,7 +261,7 @@ def test_optima_against_a_scan_of_the_shares(result: FamilyResult) -> None:
         assert s.slower.total == pytest.approx(each.max(axis=1).sum(), rel=1e-9)
 
 
-def test_a_curve_beside_itself_saves_nothing(result: FamilyResult) -> None:
+def test_a_curve_beside_itself_saves_nothing(result: InstancesResult) -> None:
     assert result.reductions("joined", Effect.CURVE) == pytest.approx(np.zeros(4), abs=0.0)
     np.testing.assert_array_equal(
         result.reductions("joined", Effect.BOTH), result.reductions("joined", Effect.ALGORITHM)
@@ -274,7 +272,7 @@ def test_a_curve_beside_itself_saves_nothing(result: FamilyResult) -> None:
     )
 
 
-def test_no_answer_is_below_the_best_known_optimum_of_its_curve(result: FamilyResult) -> None:
+def test_no_answer_is_below_the_best_known_optimum_of_its_curve(result: InstancesResult) -> None:
     for s in result.samples:
         assert (s.totals[:, 0] >= s.slower.total * (1 - 1e-8)).all()
         assert (s.totals[:, 1:] >= s.faster.total * (1 - 1e-8)).all()
@@ -320,7 +318,7 @@ def test_an_answer_that_the_checker_does_not_pass_is_none(monkeypatch: pytest.Mo
 # --- what is said ---------------------------------------------------------------------------------
 
 
-def made(before: list[float], after: list[float], printed: tuple[float, float]) -> FamilyResult:
+def made(before: list[float], after: list[float], printed: tuple[float, float]) -> InstancesResult:
     """One instance with given totals of the slower and the faster procedure."""
     totals = np.array([[before, before, after]] * 2)
     known = [Optimum(t, Evidence.BEST_KNOWN, "optimal") for t in (2.0, 1.0)]
@@ -329,7 +327,7 @@ def made(before: list[float], after: list[float], printed: tuple[float, float]) 
         "as-printed", 0.3, 0, np.zeros((3, 2)), *known, totals, np.zeros(totals.shape, np.intp)
     )  # fmt: skip
     sides = [Procedure("stops", "plain"), Procedure("spline", "new")]
-    return FamilyResult(block, *sides, printed, ("as-printed",), 12, (sample,))
+    return InstancesResult(block, *sides, printed, ("as-printed",), 12, (sample,))
 
 
 def test_quantiles_of_every_pair_of_runs() -> None:
@@ -358,11 +356,11 @@ def test_reproduced_means_within_the_middle(printed: tuple[float, float], expect
 
 def test_the_printed_reduction_is_an_interval_of_the_digits() -> None:
     study = Study(load_case(WHALE), seeds=2)
-    low, high = printed_reduction(study, study.families[0]) or (0, 0)
+    low, high = printed_reduction(study, study.instance_blocks[0]) or (0, 0)
     assert low == pytest.approx(1 - 11.715 / 13.075, rel=1e-12)
     assert high == pytest.approx(1 - 11.705 / 13.085, rel=1e-12)
     printed = small(('slower = "old-total"', 'slower = "old-total"\npercent = "24.9"'))
-    low, high = Study(printed, seeds=2).family(printed.instances[0]).printed or (0, 0)
+    low, high = Study(printed, seeds=2).instances(printed.instances[0]).printed or (0, 0)
     assert (low, high) == (pytest.approx(0.2485), pytest.approx(0.2495))
 
 
@@ -410,11 +408,11 @@ def test_without_a_pair_of_answers_the_words_say_so() -> None:
 
 
 def test_one_problem_or_reading_selects() -> None:
-    assert Study(small(), seeds=2, problem="spline").families == ()
+    assert Study(small(), seeds=2, problem="spline").instance_blocks == ()
     study = Study(small(), seeds=2, reading="joined")
-    assert study.family(study.families[0]).readings == ("joined",)
+    assert study.instances(study.instance_blocks[0]).readings == ("joined",)
     unknown = small(('kind = "woa"', 'kind = "not-written"'))
-    assert Study(unknown, seeds=2).families == ()
+    assert Study(unknown, seeds=2).instance_blocks == ()
 
 
 # --- page, document, picture ----------------------------------------------------------------------
@@ -440,13 +438,12 @@ def test_the_page_has_the_comparison(report) -> None:
 
 
 def test_the_document_is_valid_and_whole(report) -> None:
-    document = audit_document(report)
+    document = json.loads(json_text(report.document))
     schema = json.loads((ROOT / "docs" / "output.schema.json").read_text(encoding="utf-8"))
     jsonschema.validate(document, schema)
-    json.dumps(document, allow_nan=False)
     (one,) = document["cases"][0]["families"]
     assert schema["$defs"]["effect"]["enum"] == [str(effect) for effect in Effect]
-    assert set(one) <= set(schema["$defs"]["family"]["properties"])
+    assert set(one) <= set(schema["$defs"]["examined_instances"]["properties"])
     whole = [r for r in one["reductions"] if r["step"] is None]
     assert len(whole) == 2 * (2 + 2 + 1)
     assert len(one["instances"]) == 4
@@ -457,9 +454,9 @@ def test_the_document_is_valid_and_whole(report) -> None:
     assert one["printed_lowest"] == pytest.approx(1 - 1.505 / 1.995)
 
 
-def test_the_picture_shows_every_pair(result: FamilyResult) -> None:
-    picture = family_picture(result, title="saved")
-    assert svg(picture) == svg(family_picture(result, title="saved"))
+def test_the_picture_shows_every_pair(result: InstancesResult) -> None:
+    picture = instances_picture(result, title="saved")
+    assert svg(picture) == svg(instances_picture(result, title="saved"))
     both, alone, curve = picture.axes
     points = np.concatenate([c.get_offsets() for c in both.collections if len(c.get_offsets())])
     shown = np.sort(points[:, 0])
@@ -508,7 +505,7 @@ def test_way_points_dropped_into_the_file_get_the_full_audit() -> None:
 def test_the_documented_digits_are_those_of_the_case_and_the_rule() -> None:
     page = (ROOT / "docs" / "families.md").read_text(encoding="utf-8")
     study = Study(load_case(WHALE), seeds=2)
-    (block,) = study.families
+    (block,) = study.instance_blocks
     claim = study.case.claim(block.claim)
     for side, name in ((claim.slower, "quintic"), (claim.faster, "b-spline")):
         total = study.case.claim(side)
@@ -521,7 +518,7 @@ def test_the_documented_digits_are_those_of_the_case_and_the_rule() -> None:
 @pytest.mark.slow
 def test_the_documented_medians_are_those_of_the_shipped_family() -> None:
     study = Study(load_case(WHALE), seeds=2)
-    found = study.family(study.families[0])
+    found = study.instances(study.instance_blocks[0])
     columns = [(e, at) for e in (Effect.BOTH, Effect.ALGORITHM) for at in (0, 1)]
     columns.append((Effect.CURVE, 0))
     page = (ROOT / "docs" / "families.md").read_text(encoding="utf-8")

@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 from support.b_splines import clamped, uniform, vertices_by_solving
 from support.studies import changed, shipped, source
-from trajgap.compare.audits.finding import Basis, ClaimVerdict, Finding, Severity
-from trajgap.compare.audits.rounding import Box, Rounding, judge_rounding
+from trajgap.compare.audits.rounding import RoundingBox, judge_rounding
 from trajgap.compare.audits.rules.continuous_time import judge_motions
 from trajgap.compare.audits.rules.distances import judge_distances
 from trajgap.compare.audits.rules.open_points import list_open_points
 from trajgap.compare.audits.rules.printed_digits import judge_digits
 from trajgap.compare.audits.rules.printed_vertices import judge_vertices, vertices
 from trajgap.compare.audits.study import Study
+from trajgap.compare.documents import Basis, ClaimVerdict, Finding, Rounding, Severity
 from trajgap.nlp.enclosure.balls import Ball
 from trajgap.nlp.enclosure.uniform import centred_stretched, centred_timed
 from trajgap.problem import (
@@ -170,8 +170,8 @@ def test_a_proof_lies_below_every_point_of_the_box(time: str) -> None:
     lower, upper = case.waypoint_box(reading_id=rid)
     verdict = judge_rounding(
         problem,
-        Box(box.value, box.lower, box.upper),
-        Box(problem.waypoints, lower, upper),
+        RoundingBox(box.value, box.lower, box.upper),
+        RoundingBox(problem.waypoints, lower, upper),
     )
     assert verdict.verdict is Rounding.BREAKS
     bound = {"stretched": 1.728, "timed": 1.156}[time]
@@ -193,22 +193,22 @@ def test_durations_printed_short_are_consistent_or_broken(time: str) -> None:
     problem, _ = uniform(time, 42, count=4)
     equal = np.ones(3)
     h = equal * check(problem, equal).stretch
-    loose = Box(h * 0.999, h * 0.99, h * 1.01)
-    tight = Box(h * 0.99, h * 0.985, h * 0.995)
+    loose = RoundingBox(h * 0.999, h * 0.99, h * 1.01)
+    tight = RoundingBox(h * 0.99, h * 0.985, h * 0.995)
     assert judge_rounding(problem, loose).verdict is Rounding.CONSISTENT
     assert judge_rounding(problem, tight).verdict is Rounding.BREAKS
-    assert judge_rounding(problem, Box.exact(h * (1 + 1e-12))).verdict is Rounding.KEEPS
+    assert judge_rounding(problem, RoundingBox.exact(h * (1 + 1e-12))).verdict is Rounding.KEEPS
 
 
 def test_clamped_splines_are_kept_consistent_or_undecided() -> None:
     problem, h = clamped((5, "averaged-continued", "times", "timed"), 43, count=5)
     tight = h * check(problem, h).stretch
-    assert judge_rounding(problem, Box.exact(tight * (1 + 1e-9))).verdict is Rounding.KEEPS
-    near = Box(tight * 0.999, tight * 0.99, tight * 1.01)
+    assert judge_rounding(problem, RoundingBox.exact(tight * (1 + 1e-9))).verdict is Rounding.KEEPS
+    near = RoundingBox(tight * 0.999, tight * 0.99, tight * 1.01)
     assert judge_rounding(problem, near).verdict is Rounding.CONSISTENT
-    short = Box(tight * 0.98, tight * 0.979, tight * 0.981)
+    short = RoundingBox(tight * 0.98, tight * 0.979, tight * 0.981)
     assert judge_rounding(problem, short).verdict is Rounding.UNDECIDED
-    hasty = Box(tight * 0.1, tight * 0.099, tight * 0.101)
+    hasty = RoundingBox(tight * 0.1, tight * 0.099, tight * 0.101)
     assert judge_rounding(problem, hasty).verdict is Rounding.BREAKS
 
 

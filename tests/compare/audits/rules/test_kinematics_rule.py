@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from support.checkout import ROOT
 from trajgap.compare.audits.case_audit import _GROUPS
-from trajgap.compare.audits.finding import RULES, Basis, ClaimVerdict, Finding, Severity
 from trajgap.compare.audits.rules.printed_chain import judge_kinematics
 from trajgap.compare.audits.study import Study
+from trajgap.compare.documents import RULES, Basis, ClaimVerdict, Finding, Severity
 from trajgap.problem.cases.load import load_case, parse_case
 from trajgap.problem.printed import Printed
 

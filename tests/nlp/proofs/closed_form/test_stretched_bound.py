@@ -12,9 +12,9 @@ from trajgap.nlp.proofs.certifiers import certify
 from trajgap.nlp.proofs.document import certificate
 from trajgap.nlp.proofs.exact import exact_problem
 from trajgap.nlp.proofs.outcome import Outcome
-from trajgap.nlp.verify import verify
-from trajgap.nlp.verify_stretched import _pieces
 from trajgap.problem import Limits, Problem, fit, solve_in_closed_form, uniform_cubic_b_spline
+from trajgap.verify import verify_certificate as verify
+from trajgap.verify.curve import _uniform
 
 
 def random_problem(seed: int) -> Problem:
@@ -60,7 +60,7 @@ def test_the_curve_is_the_same_by_three_routes() -> None:
     # From the control vertices, from the slopes at the way-points, and from the fit in floats.
     q = [Fraction(x) for x in ("0.3", "1.25", "-0.75", "2", "1.9")]
     vertices = uniform_coefficients([[x] for x in q])[0]
-    assert vertices == _pieces(q)
+    assert vertices == _uniform(q)
     curve = fit(
         uniform_cubic_b_spline(5, "stretched"), np.array([[float(x)] for x in q]), [1.0] * 4
     )
@@ -110,7 +110,7 @@ def test_what_favours_the_claim_is_refused(what: str, factor: Fraction, reason: 
     problem = Problem(q, Limits(1.5, 2.0), uniform_cubic_b_spline(4, "stretched"))
     document = certificate(certify(problem))
     wrong = copy.deepcopy(document)
-    segment = wrong["proof"]["segments"][1]
+    segment = wrong["proof"]["tree"][0][2]
     if what == "least":
         segment[3] = str(Fraction(segment[3]) * factor)
     elif what == "lower":

@@ -13,17 +13,17 @@ import numpy as np
 import pytest
 from support.checkout import ROOT
 from support.three_pieces import dense_best, random_problem
+from support.unjudged import unjudged
 from trajgap.nlp.proofs.answer import exact_coefficients, keeps_limits
 from trajgap.nlp.proofs.certifiers import certify, covered
 from trajgap.nlp.proofs.document import certificate
 from trajgap.nlp.proofs.exact import ExactProblem, exact_problem
 from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress
+from trajgap.nlp.proofs.state import state_document
 from trajgap.nlp.proofs.three_piece import rows as three_piece
 from trajgap.nlp.proofs.three_piece.ratios import SHAPES, Shape, shape_of
 from trajgap.nlp.proofs.three_piece.rows import PLACES, STRICT, Row, exact_row
 from trajgap.nlp.proofs.three_piece.square_polynomials import Poly
-from trajgap.nlp.verify import verify
-from trajgap.nlp.verify_problem import read_problem
 from trajgap.problem import (
     Limits,
     Problem,
@@ -33,9 +33,13 @@ from trajgap.problem import (
     three_five_three,
 )
 from trajgap.problem.cases.declaration import InterpolantBlock, declare
+from trajgap.verify import read_problem
+from trajgap.verify import three_piece as checker
+from trajgap.verify import verify_certificate as verify
+from trajgap.verify.reading import Clock
 
 search = import_module("trajgap.nlp.proofs.three_piece.search")
-checker = import_module("trajgap.nlp.verify_three_piece")
+MAKES = {"three-piece": checker.ThreeFiveThree, "four-three-four": checker.FourThreeFour}
 
 CURVE = piecewise((4, 3, 4))
 
@@ -93,19 +97,20 @@ def test_solver_and_verifier_have_the_same_rows(shape: Shape) -> None:
     found = certify(bounded, gap=0.5)
     document = certificate(found)
     stated = read_problem(document["problem"])
-    form = checker.FORMS[document["proof"]["kind"]]
-    assert form.degrees == list(shape.degrees)
     assert document["proof"]["kind"] == shape.proof
-    curves, total = checker._curves(stated, form), Fraction(17, 5)
+    total = Fraction(17, 5)
+    proof = MAKES[shape.proof](stated, document["proof"], total, Clock(60.0))
+    assert proof.degrees == list(shape.degrees)
+    curves = proof._curves()
     rows = [Row("lower", 2, 1), Row("mean", 0, 1, cap=2)]
     for order, cap in itertools.product((1, 2, 3), (-1, 0)):
         rows += [Row(end, 1, order, cap=cap) for end in ("first", "last")]
-        rows += [Row(kind, 1, order, -1, 123_456, cap) for kind in form.divisors]
-    rows += [Row(kind, 0, 0, sign, 777_777) for kind in form.divisors for sign in (1, -1)]
+        rows += [Row(kind, 1, order, -1, 123_456, cap) for kind in proof.divisors]
+    rows += [Row(kind, 0, 0, sign, 777_777) for kind in proof.divisors for sign in (1, -1)]
     for row in rows:
         mine = exact_row(exact_problem(bounded), row, total)
         entry = [row.kind, row.joint, row.order, row.sign, row.place, row.cap]
-        theirs = checker._row(stated, form, curves, entry, total)
+        theirs = proof._polynomial(curves, checker._Row.read(entry, proof))
         assert {k: v for k, v in np.ndenumerate(mine) if v} == {
             k: v for k, v in theirs.items() if v
         }
@@ -246,10 +251,12 @@ def test_a_broken_row_is_caught(kinds: tuple[str, ...], monkeypatch: pytest.Monk
         return exact_row(problem, row, total * Fraction(9, 10) if row.kind in kinds else total)
 
     monkeypatch.setattr(three_piece, "exact_row", broken)
+    raw = unjudged(monkeypatch)
     found = unlucky(problem, true.durations, monkeypatch)
     assert true.upper is not None
-    assert found.lower > true.upper, "the attack above would not have seen it"
-    assert not verify(certificate(found)).proves
+    assert raw[0].lower > true.upper, "the attack above would not have seen it"
+    assert not verify(certificate(raw[0])).proves
+    assert (found.outcome, found.lower, found.proof) == (Outcome.OPEN, 0, None)
 
 
 def test_a_stopped_run_goes_on_where_it_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -260,15 +267,14 @@ def test_a_stopped_run_goes_on_where_it_stopped(monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr(search, "_BATCH", 8)
     first = certify(fixed(), report=interrupt)
     assert first.outcome is Outcome.INTERVAL
-    assert first.resume is not None
     assert verify(certificate(first)).proves
-    state = json.loads(json.dumps(first.resume.document()))
+    state = json.loads(json.dumps(state_document(first)))
     second = certify(fixed(), resume=state)
     assert second.outcome is Outcome.CERTIFIED
-    with pytest.raises(TrajgapError, match="a state of kind"):
+    with pytest.raises(TrajgapError, match="about another problem"):
         certify(replace(fixed(), curve=three_five_three()), resume=state)
-    state["proved"]["total"] = str(second.upper)
-    with pytest.raises(TrajgapError, match="does not prove its lower bound"):
+    state["proof"]["total"] = str(second.upper)
+    with pytest.raises(TrajgapError, match="the state is not proved"):
         certify(fixed(), resume=state)
 
 

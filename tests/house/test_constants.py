@@ -2,11 +2,10 @@
 
 import ast
 import re
-from pathlib import Path
 
 import pytest
+from support.checkout import ROOT
 
-ROOT = Path(__file__).resolve().parent.parent
 FOLDERS = ("problem", "heuristics", "nlp", "compare", "verify")
 NAME = re.compile(r"_?[A-Z][A-Z0-9_]*")
 STILL_BARE = {"compare", "nlp/proofs", "verify"}

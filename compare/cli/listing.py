@@ -1,0 +1,30 @@
+"""The command `cases`: the published cases."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from rich.console import RenderableType
+
+from ...problem import published_ids
+from ..documents import CasesDocument, cases_document, json_text
+from .input import read_case
+from .output import emit, new_output
+from .table import Columns
+
+
+def list_cases(as_json: bool, out: Path | None) -> int:
+    """List the published cases."""
+    with new_output(out) as write:
+        document = cases_document(read_case(name) for name in published_ids())
+        write(json_text(document))
+    emit(document, _table, as_json)
+    return 0
+
+
+def _table(document: CasesDocument) -> list[RenderableType]:
+    rows = [
+        (one.id, one.title, len(one.problems), len(one.readings), one.claims)
+        for one in document.cases
+    ]
+    return [Columns(("case", "~title", ">problems", ">readings", ">claims"), rows)]

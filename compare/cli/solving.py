@@ -1,0 +1,151 @@
+"""The command `solve`: the exact optimum of each problem under each reading."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from rich.console import RenderableType
+
+from ...nlp import (
+    Solution,
+    solve,
+    solve_per_joint,
+    stated_exactly,
+    with_certificate,
+    with_certificates,
+)
+from ...nlp.optimum import OPTIMUM_SLACK
+from ...nlp.retiming import Retiming, retime
+from ...problem import Case, ClockedTrajectory, Coupling, fit
+from ..audits import Study
+from ..documents import (
+    Answer,
+    SolveDocument,
+    SolveResult,
+    Why,
+    given,
+    json_text,
+    reason,
+    solve_result,
+)
+from .input import Posed, naming, read_case, select
+from .output import emit, new_output, progress
+from .result_tables import by_result, place, reasons, seconds
+from .table import Columns, line
+
+
+def solve_case(
+    source: str,
+    problem: str | None,
+    reading: str | None,
+    coupling: str | None,
+    starts: int,
+    seed: int,
+    as_json: bool,
+    out: Path | None,
+) -> int:
+    """Solve each selected problem and reading."""
+    case = read_case(source)
+    posed = select(case, problem, reading, coupling)
+    with new_output(out) as write:
+        results = []
+        with progress("solve", len(posed)) as step, naming(case.file):
+            for one in posed:
+                step(f"{one.problem_id}, {one.reading_id}")
+                results.append(_solved(case, one, starts, seed))
+        document = SolveDocument(results=tuple(results))
+        write(json_text(document))
+    emit(document, _tables, as_json)
+    return 0
+
+
+def _solved(case: Case, one: Posed, starts: int, seed: int) -> SolveResult:
+    ids = (case.id, one.problem_id, one.reading_id)
+    if one.problem.coupling is Coupling.PER_JOINT:
+        halves = Study(case).half_digits(one.problem_id, one.reading_id)
+        slacks = tuple(dict.fromkeys((*halves, OPTIMUM_SLACK)))
+        apart = solve_per_joint(one.problem, starts=starts, seed=seed, slacks=slacks)
+        apart = with_certificates(apart, case.statement(one.problem_id, one.reading_id))
+        return solve_result(*ids, apart, [_retimed(s) for s in apart.joints])
+    answer = solve(one.problem, starts=starts, seed=seed)
+    answer = with_certificate(
+        answer, stated_exactly(case.statement(one.problem_id, one.reading_id))
+    )
+    return solve_result(*ids, answer, [_retimed(answer)])
+
+
+def _retimed(answer: Solution) -> Retiming | str:
+    problem = answer.problem
+    if answer.durations is None:
+        return "no durations, so no path"
+    trajectory = fit(problem.curve, problem.waypoints, answer.durations, answer.nodal)
+    if isinstance(trajectory, ClockedTrajectory):
+        return "time is not linear in the curve's parameter: its path is no polynomial in time"
+    return retime(trajectory, problem.limits)
+
+
+_COLUMNS = ("status", ">total s", "evidence", "durations s", "starts", "KKT", ">TOPPRA s")
+"""What the table says of each result, or of each of its joints."""
+
+
+def _tables(document: SolveDocument) -> list[RenderableType]:
+    results = document.results
+    parts: list[RenderableType] = [line(results[0].case, "bold")]
+    parts += by_result(results, _COLUMNS, _cells, "longest")
+    parts += [line(said) for result in results for said in _procedure(result)]
+    active = [
+        (r.problem, r.reading, place(a), f"{a.multiplier:.6g}", f"{a.sensitivity:+.4f}")
+        for r in results
+        for a in r.active
+    ]
+    if active:
+        limits = ("problem", "reading", "limit reached", ">multiplier s", ">10 % more changes s")
+        parts.append(Columns(limits, _without_repeats(active, 2)))
+    parts += reasons(results, lambda r: {"status": r.status_why, "toppra": reason(r.toppra)})
+    build, solve = sum(r.build_seconds for r in results), sum(r.solve_seconds for r in results)
+    return [*parts, line(f"build {build:.2f} s, solve {solve:.2f} s", "dim")]
+
+
+def _cells(result: Answer) -> tuple[object, ...]:
+    longest = result.longest_per_segment if isinstance(result, SolveResult) else None
+    durations = given((longest or result).segment_durations) or ()
+    residual, retimed = result.kkt_residual, result.toppra_extrapolated
+    known = retimed is not None and not isinstance(retimed.duration, Why)
+    return (
+        result.status,
+        seconds(result.total_time),
+        result.evidence,
+        " ".join(f"{d:.4f}" for d in durations),
+        f"{result.starts_at_best} of {result.starts}",
+        "" if reason(residual) else f"{residual:.0e}",
+        seconds(retimed.duration) if retimed is not None and known else "",
+    )
+
+
+def _procedure(result: SolveResult) -> list[str]:
+    """What is known of the longest durations per segment, where joints are solved one by one."""
+    longest = result.longest_per_segment
+    if longest is None:
+        return []
+    name = f"{result.problem}, {result.reading}: longest per segment"
+    if isinstance(longest.verdict, Why):
+        return [f"{name}: none, {longest.verdict}"]
+    lines = [f"{name}: {longest.verdict}, tight at {seconds(longest.tight_time)} s"]
+    for span in longest.ranges:
+        lines.append(
+            f"  {span.lowest:.6f} to {span.highest:.6f} s while each joint stays within "
+            f"{span.slack:g} s of its own optimum"
+        )
+    return lines
+
+
+def _without_repeats(rows: Iterable[Sequence[object]], count: int) -> list[Sequence[object]]:
+    """Blank the first cells of a row where they repeat those of the row above."""
+    shown: list[Sequence[object]] = []
+    above: Sequence[object] = ()
+    for row in rows:
+        same = list(row[:count]) == list(above[:count])
+        shown.append((*("" for _ in range(count)), *row[count:]) if same else row)
+        above = row
+    return shown

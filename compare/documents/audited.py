@@ -1,0 +1,33 @@
+"""What `audit` answers: findings, verdicts, where the time goes, readings, instances."""
+
+from __future__ import annotations
+
+from .entry import Count, Document, Entry, OrWhy
+from .finding import Finding, Judgement
+from .instances import ExaminedInstances
+from .side_by_side import ReadingsSummary
+from .waterfall import Waterfall
+
+
+class AuditedCase(Entry):
+    """What was found of one case."""
+
+    case: str
+    title: str
+    errors: Count
+    """How many findings have severity error."""
+    findings: tuple[Finding, ...]
+    verdicts: tuple[Judgement, ...]
+    """On every claim."""
+    waterfalls: tuple[Waterfall, ...]
+    """Where the time goes, for each problem and reading."""
+    readings: OrWhy[ReadingsSummary]
+    """The readings side by side."""
+    families: tuple[ExaminedInstances, ...]
+    """Relative claims on instances drawn from the robot's workspace."""
+
+
+class AuditDocument(Document):
+    """What `trajgap audit --json` prints."""
+
+    cases: tuple[AuditedCase, ...]

@@ -1,0 +1,142 @@
+"""What `solve --certify` answers: an interval of each optimum, with its proof."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+
+from ...nlp import Certified, Outcome
+from ...nlp.proofs import decimal
+from .entry import Count, Document, Entry, OrWhy, Why, known
+from .vocabulary import Uncovered
+
+
+class CertifiedResult(Entry):
+    """What was proved of one problem under one reading."""
+
+    case: str
+    problem: str
+    reading: str
+    joint: str | None
+    """The joint that was optimised by itself; null for all together."""
+    outcome: Outcome | Uncovered
+    outcome_why: str | None
+    lower: OrWhy[float]
+    """No feasible total is below it, s; rounded down."""
+    upper: OrWhy[float]
+    """Total of durations proved feasible, s; rounded up."""
+    gap: OrWhy[float]
+    """(upper - lower)/upper"""
+    nodes: OrWhy[Count]
+    """Boxes visited."""
+    open_nodes: OrWhy[Count]
+    """Boxes not yet proved."""
+    seconds: OrWhy[float]
+    lower_exact: str | None
+    """Decimal or quotient."""
+    upper_exact: str | None
+    segment_durations: OrWhy[tuple[float, ...]]
+    """Of `upper`, s."""
+    certificate: str | None
+    """File."""
+    state: str | None
+    """File to go on from."""
+
+
+class CertifyDocument(Document):
+    """What `trajgap solve --certify --json` prints."""
+
+    intervals: tuple[CertifiedResult, ...]
+
+
+def certify_result(
+    case: str,
+    problem: str,
+    reading: str,
+    joint: str | None,
+    found: Certified | str,
+    certificate: str | None,
+    state: str | None,
+    why: str | None = None,
+) -> CertifiedResult:
+    """What was proved of one problem under one reading.
+
+    Parameters
+    ----------
+    case, problem, reading : str
+        Ids.
+    joint : str or None
+        The joint that was optimised by itself; None for all together.
+    found : Certified or str
+        Or why the problem is not covered.
+    certificate, state : str or None
+        Files that were written.
+    why : str or None
+        Why the outcome is what it is, where that needs to be said.
+
+    Returns
+    -------
+    CertifiedResult
+    """
+    if isinstance(found, str):
+        nothing = Why(found)
+        return CertifiedResult(
+            case=case,
+            problem=problem,
+            reading=reading,
+            joint=joint,
+            outcome=Uncovered.NOT_COVERED,
+            outcome_why=found,
+            lower=nothing,
+            upper=nothing,
+            gap=nothing,
+            nodes=nothing,
+            open_nodes=nothing,
+            seconds=nothing,
+            lower_exact=None,
+            upper_exact=None,
+            segment_durations=nothing,
+            certificate=None,
+            state=None,
+        )
+    lower, upper = found.lower if found.proof is not None else None, found.upper
+    none = (
+        "infeasible" if found.outcome is Outcome.INFEASIBLE else "no feasible durations were found"
+    )
+    unproved = "nothing is proved yet"
+    return CertifiedResult(
+        case=case,
+        problem=problem,
+        reading=reading,
+        joint=joint,
+        outcome=found.outcome,
+        outcome_why=why,
+        lower=outwards(lower, unproved, -1),
+        upper=outwards(upper, none, 1),
+        gap=found.gap
+        if math.isfinite(found.gap) and lower is not None
+        else Why(none if upper is None else unproved),
+        nodes=found.nodes,
+        open_nodes=found.open_boxes,
+        seconds=found.seconds,
+        lower_exact=None if lower is None else decimal(lower),
+        upper_exact=None if upper is None else decimal(upper),
+        segment_durations=known(
+            None if found.durations is None else tuple(float(h) for h in found.durations), none
+        ),
+        certificate=certificate,
+        state=state,
+    )
+
+
+def outwards(value: Fraction | None, why: str, side: int) -> float | Why:
+    """A bound in floats, rounded down (side -1) or up (1), or why there is none."""
+    if value is None:
+        return Why(why)
+    try:
+        rounded = float(value)
+    except OverflowError:
+        return Why("beyond the range of floating point")
+    if side * (Fraction(rounded) - value) < 0:
+        rounded = math.nextafter(rounded, side * math.inf)
+    return rounded

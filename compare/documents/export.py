@@ -1,0 +1,148 @@
+"""What the docs say of the documents, written from the models and the vocabulary."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from pydantic.json_schema import GenerateJsonSchema, models_json_schema
+
+from .audited import AuditDocument
+from .certified import CertifyDocument
+from .checked import CheckDocument
+from .entry import SCHEMA, Document, Why
+from .listed import CasesDocument
+from .shown import ShowDocument
+from .solved import SolveDocument
+from .verified import VerifyDocument
+from .vocabulary import RULES, VOCABULARY, Words, meaning, meanings
+
+DOCUMENTS: tuple[type[Document], ...] = (
+    CasesDocument,
+    ShowDocument,
+    CheckDocument,
+    SolveDocument,
+    AuditDocument,
+    CertifyDocument,
+    VerifyDocument,
+)
+"""What each command answers."""
+
+SCHEMA_FILE = "output.schema.json"
+"""Name of the JSON Schema in the folder of the docs."""
+
+_TABLE = re.compile(r"(<!-- table: (\S+) -->\n).*?(?=<!-- end -->)", re.DOTALL)
+"""A generated table in a Markdown file, with its name."""
+
+
+def _key(name: str) -> str:
+    return re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower().removesuffix("_document")
+
+
+def named(kind: type) -> str:
+    """Name of a model or enumeration in the JSON Schema, such as "solve" or "check_result"."""
+    return _key(kind.__name__)
+
+
+class _Named(GenerateJsonSchema):
+    """JSON Schema whose shapes are named like keys, without titles that repeat them."""
+
+    def normalize_name(self, name: str) -> str:
+        return super().normalize_name(_key(name))
+
+    def field_title_should_be_set(self, schema: Any) -> bool:
+        return False
+
+
+def output_schema() -> dict[str, Any]:
+    """JSON Schema of every document.
+
+    Returns
+    -------
+    dict
+        JSON Schema, draft 2020-12.
+    """
+    _, schema = models_json_schema(
+        [(document, "validation") for document in DOCUMENTS], schema_generator=_Named
+    )
+    shapes = schema["$defs"]
+    # A reason stands in no key of its own: the keys say so themselves.
+    del shapes[named(Why)]
+    for words in (enum for one in VOCABULARY for enum in one.enums):
+        said = [f"{word}: {told}" for word, told in meanings(words).items()]
+        shapes[named(words)]["description"] = "\n".join([meaning(words), *said])
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": f"trajgap documents, {SCHEMA}",
+        "description": "What `trajgap cases|show|check|solve|audit|verify --json` print. Keys may "
+        "be added; none is removed or changed under this version.",
+        "anyOf": [{"$ref": f"#/$defs/{named(document)}"} for document in DOCUMENTS],
+        **schema,
+    }
+
+
+def tables() -> dict[str, str]:
+    """The tables of words in the docs, by name, as Markdown."""
+    found = {words.table: _table(meanings(*words.enums)) for words in VOCABULARY if words.table}
+    rules = "".join(f"| {rule.id} | {_inner(rule.title)} |\n" for rule in RULES)
+    return {
+        **found,
+        "rules": f"| id | looks at |\n|---|---|\n{rules}",
+        "words": "| key | values |\n|---|---|\n" + "".join(map(_row, VOCABULARY)),
+    }
+
+
+def _table(words: Mapping[str, str]) -> str:
+    rows = "".join(f"| {word} | {_inner(said)} |\n" for word, said in words.items())
+    return f"| word | meaning |\n|---|---|\n{rows}"
+
+
+def _row(words: Words) -> str:
+    """One key: its words, explained unless they have a table of their own."""
+    explained = {} if words.table else meanings(*words.enums)
+    every = dict.fromkeys(str(word) for enum in words.enums for word in enum)
+    return f"| {words.key} | {_listed(every, explained)} |\n"
+
+
+def _listed(every: Iterable[str], explained: Mapping[str, str]) -> str:
+    plain = ", ".join(f"`{word}`" for word in every if word not in explained)
+    told = " ".join(f"`{word}`: {_inner(m)}." for word, m in explained.items())
+    return ". ".join(part for part in (plain, told) if part)
+
+
+def _inner(sentence: str) -> str:
+    """A sentence as a cell of a table: without its full stop, and no bar of its own."""
+    return sentence.removesuffix(".").replace("|", "\\|")
+
+
+def filled(text: str) -> str:
+    """A Markdown file with its tables of words as they are now.
+
+    Parameters
+    ----------
+    text : str
+        A table stands between ``<!-- table: NAME -->`` and ``<!-- end -->``.
+
+    Returns
+    -------
+    str
+    """
+    now = tables()
+    return _TABLE.sub(lambda place: f"{place[1]}{now[place[2]]}", text)
+
+
+def schema_text() -> str:
+    """The file that holds the JSON Schema."""
+    return json.dumps(output_schema(), indent=2, ensure_ascii=False) + "\n"
+
+
+def write_docs(docs: Path) -> None:
+    """Write the JSON Schema and the tables of words into the folder of the docs."""
+    (docs / SCHEMA_FILE).write_text(schema_text(), encoding="utf-8")
+    for file in sorted(docs.glob("*.md")):
+        text = file.read_text(encoding="utf-8")
+        if filled(text) != text:
+            file.write_text(filled(text), encoding="utf-8")

@@ -1,0 +1,100 @@
+"""What an audit says: findings of rules with permanent ids, and a verdict on each claim."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import Field
+
+from ...nlp import Evidence
+from .entry import Entry, OrWhy, Real, Why
+from .vocabulary import Basis, ClaimVerdict, GapKind, Scope, Severity
+
+UNCERTIFIED = Why("not certified")
+"""Why there is no lower bound, where no certificate proves one."""
+
+
+def _evidence(data: dict[str, Any]) -> Evidence:
+    return Evidence.BEST_KNOWN if isinstance(data.get("lower"), Why) else Evidence.CERTIFIED
+
+
+class Reference(Entry):
+    """A reference time: the best known value, and a certified lower bound where there is one."""
+
+    upper: Real
+    """Total of a feasible trajectory, s."""
+    lower: OrWhy[float] = UNCERTIFIED
+    """Certified lower bound on the optimum, s."""
+    evidence: Evidence = Field(default_factory=_evidence)
+    """Certified if there is a lower bound, else best known."""
+
+
+class Gap(Entry):
+    """Relative distance of a time from the optimum, never clipped."""
+
+    kind: GapKind
+    lowest: Real
+    """(T − U)/U at the low end of the time's interval; negative where T is below the reference."""
+    highest: Real
+    """(T − U)/U at its high end; against the lower bound instead, where one is certified."""
+    reference: Reference
+
+    @property
+    def many_times(self) -> bool:
+        """Whether the time is so many times the reference that a percentage says nothing."""
+        return self.lowest > 10
+
+    @property
+    def percent(self) -> str:
+        """The interval in percent; a factor instead where the time is many times the reference."""
+        if self.many_times:
+            return f"{1 + self.lowest:.4g} times the reference"
+        low, high = 100 * self.lowest, 100 * self.highest
+        narrow = high - low < max(0.005 * abs(low), 5e-4)
+        return f"{low:+.3g} %" if narrow else f"{low:+.3g} to {high:+.3g} %"
+
+    def __str__(self) -> str:
+        return f"{self.percent} ({self.kind}, reference {self.reference.evidence})"
+
+
+class Finding(Entry):
+    """One conclusion of one rule."""
+
+    rule: Annotated[str, Field(pattern=r"^TG[0-9]{3}$")]
+    """Permanent id, e.g. "TG101"."""
+    severity: Severity = Severity.INFO
+    verdict: ClaimVerdict = ClaimVerdict.NOT_CHECKABLE
+    scope: Scope = Scope.NO
+    """Under how many admissible readings the verdict of this finding holds; the audit says."""
+    evidence: Evidence = Evidence.NONE
+    """Of the reference value used; none where none is used."""
+    basis: Basis
+    decides: bool = True
+    """Whether the finding enters the verdict on its claim."""
+    claim: str | None = None
+    """What it is about; null where it is about the case or a table and judges no claim."""
+    problem: str | None = None
+    """Null where it depends on none."""
+    reading: str | None = None
+    """Null where it depends on none."""
+    printed: str | None = None
+    """The printed digits, with units."""
+    computed: str | None = None
+    """What was computed, with units."""
+    gap: OrWhy[Gap] = Why("no time is set beside an optimum")
+    message: str
+    """One or two sentences with the numbers."""
+    kind: str = Field(default="", exclude=True)
+    """What findings of a rule have in common that say the same in other numbers; not in JSON."""
+
+
+class Judgement(Entry):
+    """The verdict on one claim over all admissible readings."""
+
+    claim: str
+    verdict: ClaimVerdict
+    scope: Scope
+    evidence: Evidence
+    why: str
+    readings: dict[str, ClaimVerdict]
+    """The verdict under each reading by itself."""

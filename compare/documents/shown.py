@@ -1,0 +1,122 @@
+"""What `show` answers: a case file, its numbers as printed."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, get_args
+
+from pydantic import BaseModel, PlainSerializer, SkipValidation, WithJsonSchema
+from pydantic.json_schema import JsonSchemaValue
+
+from ...problem import Case
+from ...problem.cases import (
+    AlgorithmBlock,
+    AnyClaim,
+    Assumption,
+    InstancesBlock,
+    NotCheckable,
+    ProblemBlock,
+    Reading,
+    Robot,
+    Source,
+    Table,
+)
+from .entry import Document
+
+
+def _as_in_the_file(block: BaseModel) -> dict[str, Any]:
+    return block.model_dump(mode="json", exclude_none=True, exclude_unset=True)
+
+
+_WRITTEN = PlainSerializer(_as_in_the_file)
+"""Writes a block of a case file with the keys that stand in the file."""
+
+
+def _keys(*texts: str, **others: JsonSchemaValue) -> WithJsonSchema:
+    """JSON Schema of a block: the keys that every such block has, most of them texts."""
+    keys = {**{key: {"type": "string"} for key in texts}, **others}
+    told = "As in the case file, digits as printed: case.schema.json."
+    return WithJsonSchema(
+        {"type": "object", "description": told, "required": [*keys], "properties": keys}
+    )
+
+
+_TEXTS = {"type": "array", "items": {"type": "string"}}
+"""JSON Schema of the joints' labels."""
+_QUANTITIES = {
+    "enum": [
+        get_args(kind.model_fields["quantity"].annotation)[0]
+        for kind in get_args(get_args(AnyClaim)[0])
+    ]
+}
+"""JSON Schema of what a claim is about: one word for each kind of claim."""
+
+
+class ShowDocument(Document):
+    """What `trajgap show --json` prints."""
+
+    id: str
+    title: str
+    source: Annotated[SkipValidation[Source], _WRITTEN, _keys()]
+    robot: Annotated[SkipValidation[Robot], _WRITTEN, _keys("name", joints=_TEXTS)]
+    problems: tuple[Annotated[SkipValidation[ProblemBlock], _WRITTEN, _keys("id")], ...]
+    readings: tuple[
+        Annotated[
+            SkipValidation[Reading], _WRITTEN, _keys("id", "why", default={"type": "boolean"})
+        ],
+        ...,
+    ]
+    claims: tuple[
+        Annotated[SkipValidation[AnyClaim], _WRITTEN, _keys("id", "where", quantity=_QUANTITIES)],
+        ...,
+    ]
+    assumptions: tuple[
+        Annotated[SkipValidation[Assumption], _WRITTEN, _keys("id", "text", "choice")], ...
+    ]
+    algorithms: tuple[Annotated[SkipValidation[AlgorithmBlock], _WRITTEN, _keys("id")], ...]
+    families: tuple[Annotated[SkipValidation[InstancesBlock], _WRITTEN, _keys("id")], ...]
+    tables: tuple[Annotated[SkipValidation[Table], _WRITTEN, _keys("id")], ...]
+    not_checkable: tuple[Annotated[SkipValidation[NotCheckable], _WRITTEN, _keys("id")], ...]
+
+
+def show_document(
+    case: Case, problem: str | None = None, reading: str | None = None
+) -> ShowDocument:
+    """Document of `show`: one case file, its numbers as printed.
+
+    Parameters
+    ----------
+    case : Case
+    problem, reading : str, optional
+        Keep only this one, and the claims that speak about it.
+
+    Returns
+    -------
+    ShowDocument
+
+    Raises
+    ------
+    CaseError
+        If the problem or reading is unknown.
+    """
+    pairs = case.selections(problem, reading)
+    problems = {pid for pid, _ in pairs}
+    readings = {rid for _, rid in pairs}
+    default = case.default_reading.id
+    return ShowDocument(
+        id=case.id,
+        title=case.title,
+        source=case.source,
+        robot=case.robot,
+        problems=tuple(p for p in case.problems if p.id in problems),
+        readings=tuple(
+            r.model_copy(update={"default": r.id == default})
+            for r in case.readings
+            if r.id in readings
+        ),
+        claims=tuple(c for c in case.claims if c.problem is None or c.problem in problems),
+        assumptions=case.assumptions,
+        algorithms=case.algorithms,
+        families=case.instances,
+        tables=case.tables,
+        not_checkable=case.not_checkable,
+    )

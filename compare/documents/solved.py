@@ -1,0 +1,270 @@
+"""What `solve` answers: the exact optimum of each problem under each reading."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ...nlp import Evidence, PerJointSolution, Solution, Status
+from ...nlp.optimum import Active
+from ...nlp.retiming import Retiming
+from ...problem import Coupling, Verdict
+from .entry import Count, Document, Entry, OrLeftOut, OrWhy, Real, Why, known
+from .finding import UNCERTIFIED
+from .vocabulary import Limited
+
+NOT_ASKED = "not asked for"
+"""Why a path is not retimed, where nobody wanted it."""
+
+
+class ActiveLimit(Entry):
+    """A limit that is reached."""
+
+    joint: str | None
+    """Null for a bound on a duration."""
+    quantity: Limited
+    segment: Count
+    time: OrWhy[float]
+    """s"""
+    multiplier: Real
+    """s"""
+    sensitivity: Real
+    """First-order change of the total time for 10 % more of this limit, s."""
+
+
+class RetimedPath(Entry):
+    """The path of the answer retimed on one grid, under velocity and acceleration limits only."""
+
+    duration: float
+    """s"""
+    gridpoints: Count
+
+
+class Extrapolated(Entry):
+    """Retimed durations on an infinitely fine grid."""
+
+    duration: OrWhy[float]
+    """s"""
+    error: OrWhy[float]
+    """s"""
+    order: OrWhy[float]
+    at_most_total_time: bool | None
+    """Null where it need not hold."""
+    why: str | None
+
+
+class Answer(Entry):
+    """What one solve says, whether of all joints or of one."""
+
+    status: Status
+    status_why: str | None
+    total_time: OrWhy[float]
+    """s"""
+    segment_durations: OrWhy[tuple[float, ...]]
+    """s"""
+    infimum: OrWhy[float]
+    """Value approached where none is attained, s."""
+    lower_bound: OrWhy[float]
+    """Certified, s."""
+    evidence: Evidence
+    """What stands behind `total_time`."""
+    max_violation: OrWhy[float]
+    """Largest relative excess over a limit, 0 if none."""
+    kkt_residual: OrWhy[float]
+    """Scaled, of the reduced problem, every active peak found again."""
+    active: tuple[ActiveLimit, ...]
+    starts: Count
+    starts_at_best: Count
+    """Starts that ended at the best total."""
+    build_seconds: float
+    solve_seconds: float
+    toppra: OrWhy[tuple[RetimedPath, ...]]
+    toppra_extrapolated: OrLeftOut[Extrapolated] = None
+    """Left out where `toppra` is null."""
+
+
+class SolvedJoint(Answer):
+    """The answer for one joint by itself."""
+
+    joint: str
+
+
+class Span(Entry):
+    """The total while each joint stays within `slack` s of its own optimum."""
+
+    slack: float
+    lowest: float
+    highest: float
+
+
+class LongestPerSegment(Entry):
+    """What the procedure makes of the joints' own optima: an output, not an optimum."""
+
+    segment_durations: OrWhy[tuple[float, ...]]
+    """s"""
+    verdict: OrWhy[Verdict]
+    total_time: OrWhy[float]
+    feasible_time: OrWhy[float]
+    tight_time: OrWhy[float]
+    ranges: tuple[Span, ...]
+    ranges_why: str | None
+
+
+class _Asked(Entry):
+    case: str
+    problem: str
+    reading: str
+    coupling: Coupling
+
+
+class SolveResult(Answer, _Asked):
+    """One problem under one reading.
+
+    Under per-joint coupling `segment_durations` is null, and `joints` and `longest_per_segment`
+    are there.
+    """
+
+    joints: OrLeftOut[tuple[SolvedJoint, ...]] = None
+    longest_per_segment: OrLeftOut[LongestPerSegment] = None
+
+
+class SolveDocument(Document):
+    """What `trajgap solve --json` prints."""
+
+    results: tuple[SolveResult, ...]
+
+
+def solve_result(
+    case: str,
+    problem: str,
+    reading: str,
+    answer: Solution | PerJointSolution,
+    retimings: Sequence[Retiming | str] = (),
+) -> SolveResult:
+    """Result of `solve` for one problem under one reading.
+
+    Parameters
+    ----------
+    case, problem, reading : str
+        Ids.
+    answer : Solution or PerJointSolution
+        The latter for joints that do not share their durations.
+    retimings : sequence of Retiming or str, optional
+        TOPPRA on the path of the answer, or why there is none; for a PerJointSolution one per
+        joint.
+
+    Returns
+    -------
+    SolveResult
+    """
+    ids = _Asked(case=case, problem=problem, reading=reading, coupling=Coupling.SHARED)
+    if isinstance(answer, Solution):
+        return SolveResult(**dict(ids), **dict(_solution(answer, *retimings[:1])))
+    paths = retimings or [NOT_ASKED] * len(answer.joints)
+    singles = zip(answer.problem.joints, answer.joints, paths, strict=True)
+    return SolveResult(
+        **dict(ids) | {"coupling": Coupling.PER_JOINT},
+        **dict(_procedure(answer)),
+        joints=tuple(SolvedJoint(joint=j, **dict(_solution(s, path))) for j, s, path in singles),
+        longest_per_segment=_longest(answer),
+    )
+
+
+def _solution(answer: Solution, path: Retiming | str = NOT_ASKED) -> Answer:
+    none = answer.why or str(answer.status)
+    there = answer.durations is not None
+    toppra, extrapolated = _toppra(path)
+    return Answer(
+        status=answer.status,
+        status_why=answer.why,
+        total_time=answer.total_time if there else Why(none),
+        segment_durations=_durations(answer, none),
+        infimum=known(answer.infimum, "the total time is attained" if there else none),
+        lower_bound=known(answer.lower_bound, UNCERTIFIED.reason),
+        evidence=answer.evidence,
+        max_violation=answer.check.max_violation if answer.check else Why(none),
+        kkt_residual=known(answer.kkt_residual, none),
+        active=tuple(_active(a) for a in answer.active),
+        starts=answer.starts,
+        starts_at_best=answer.starts_at_best,
+        build_seconds=answer.build_seconds,
+        solve_seconds=answer.solve_seconds,
+        toppra=toppra,
+        toppra_extrapolated=extrapolated,
+    )
+
+
+def _procedure(answer: PerJointSolution) -> Answer:
+    joints = answer.joints
+    none = answer.why or str(answer.status)
+    named = zip(answer.problem.joints, joints, strict=True)
+    unsettled = [f"joint {label}: {s.why}" for label, s in named if s.why]
+    residuals = [s.kkt_residual for s in joints if s.kkt_residual is not None]
+    return Answer(
+        status=answer.status,
+        status_why="; ".join(unsettled)
+        or "of the joints' own optima; the total is what their longest durations add up to",
+        total_time=answer.total_time if answer.check else Why(none),
+        segment_durations=Why("each joint has durations of its own, see joints"),
+        infimum=Why("the longest durations of a procedure, not an optimum"),
+        lower_bound=UNCERTIFIED,
+        evidence=answer.evidence,
+        max_violation=answer.check.max_violation if answer.check else Why(none),
+        kkt_residual=max(residuals) if len(residuals) == len(joints) else Why(none),
+        active=tuple(_active(a) for s in joints for a in s.active),
+        starts=sum(s.starts for s in joints),
+        starts_at_best=sum(s.starts_at_best for s in joints),
+        # Joints of one kind share one NLP, which is built once.
+        build_seconds=max(s.build_seconds for s in joints),
+        solve_seconds=sum(s.solve_seconds for s in joints),
+        toppra=Why("each joint has a path of its own, see joints"),
+    )
+
+
+def _durations(answer: Solution | PerJointSolution, none: str) -> tuple[float, ...] | Why:
+    return Why(none) if answer.durations is None else tuple(map(float, answer.durations))
+
+
+def _longest(answer: PerJointSolution) -> LongestPerSegment:
+    """The procedure's output: the longest duration of each segment, judged with all joints."""
+    none = answer.why or str(answer.status)
+    found = answer.check
+    return LongestPerSegment(
+        segment_durations=_durations(answer, none) if found else Why(none),
+        verdict=found.verdict if found else Why(none),
+        total_time=found.total_time if found else Why(none),
+        feasible_time=known(found.feasible_time, found.feasible_why) if found else Why(none),
+        tight_time=known(found.tight_time, found.tight_why) if found else Why(none),
+        ranges=tuple(
+            Span(slack=r.slack, lowest=r.lowest, highest=r.highest) for r in answer.ranges
+        ),
+        ranges_why=None if answer.ranges else none,
+    )
+
+
+def _active(active: Active) -> ActiveLimit:
+    return ActiveLimit(
+        joint=active.joint,
+        quantity=Limited(active.quantity),
+        segment=active.segment,
+        time=known(active.time, "a bound on the whole duration"),
+        multiplier=active.multiplier,
+        sensitivity=active.sensitivity,
+    )
+
+
+def _toppra(
+    retiming: Retiming | str,
+) -> tuple[tuple[RetimedPath, ...] | Why, Extrapolated | None]:
+    if isinstance(retiming, str):
+        return Why(retiming), None
+    if not retiming.applicable:
+        return Why(retiming.why or "not applicable"), None
+    runs = zip(retiming.durations, retiming.gridpoints, strict=True)
+    order = "the durations agree within the solver's accuracy, or show no one order"
+    return tuple(RetimedPath(duration=d, gridpoints=n) for d, n in runs), Extrapolated(
+        duration=known(retiming.extrapolated, retiming.why),
+        error=known(retiming.error, retiming.why),
+        order=known(retiming.order, order),
+        at_most_total_time=retiming.inequality_holds,
+        why=retiming.why,
+    )

@@ -1,0 +1,294 @@
+"""The words of an audit, each with its one explanation: pages, docs and JSON Schema read them here.
+
+A word is a member of an enumeration, and the docstring below it is its explanation.
+"""
+
+from __future__ import annotations
+
+import ast
+import inspect
+from dataclasses import dataclass
+from enum import StrEnum
+from itertools import pairwise
+
+from ...nlp import Evidence, Outcome, Status
+from ...problem import Coupling, Verdict
+from ...verify import Subject
+
+
+class Severity(StrEnum):
+    """How much a finding weighs; tied to its conclusion, never to a digit."""
+
+    ERROR = "error"
+    """A proof contradicts something printed, or shows that two printed things contradict each
+    other, whatever the reading."""
+    WARNING = "warning"
+    """A proof contradicts something printed under some readings and not under all, printed things
+    do not fit together, or a best known value speaks against a statement."""
+    INFO = "info"
+    """A fact beside the claim, or support for it."""
+
+
+class ClaimVerdict(StrEnum):
+    """What can be said of a claim."""
+
+    SUPPORTED = "supported"
+    """The computation agrees with the claim."""
+    REFUTED = "refuted"
+    """A proof contradicts the claim: interval arithmetic on the printed digits, a count of
+    conditions, an enclosure for every value that rounds to the printed digits, a scaling law, or a
+    checked motion that is shorter than one called optimal."""
+    NOT_CHECKABLE = "not checkable"
+    """Nothing that the text carries decides it, and the reason is given."""
+    INCONSISTENT = "inconsistent"
+    """Two printed things contradict each other; neither alone is refuted."""
+
+
+class Scope(StrEnum):
+    """Under how many admissible readings of the text the verdict holds.
+
+    Where they disagree the claim is called supported under some, with the counts beside the word.
+    """
+
+    ALL = "all"
+    SOME = "some"
+    NO = "no"
+
+
+class Basis(StrEnum):
+    """What a finding rests on."""
+
+    DIGITS = "printed digits"
+    """Interval arithmetic on the printed numbers alone."""
+    COUNT = "count"
+    """Conditions counted against coefficients."""
+    ENCLOSURE = "rounding box"
+    """True peaks for every value that rounds to the printed digits."""
+    CHECK = "check"
+    """True peaks at the printed point."""
+    IDENTITY = "identity"
+    """A scaling law that needs no solver."""
+    OPTIMUM = "optimum"
+    """A reference value of the exact side, or a motion of its own that was checked."""
+    REPLAY = "replay"
+    """Seeded runs of the algorithm under the listed choices. It can say that something is not
+    reproduced, never that it is refuted."""
+    KINEMATICS = "kinematics"
+    """Forward kinematics of the printed table of the robot."""
+    TEXT = "text"
+    """What the extracted text carries or does not."""
+
+
+class Rounding(StrEnum):
+    """What holds of printed durations, for every value that rounds to the printed digits."""
+
+    KEEPS = "keeps"
+    """The printed point itself keeps every limit for all t."""
+    CONSISTENT = "consistent"
+    """Some input that prints alike keeps every limit, and it is exhibited."""
+    BREAKS = "breaks"
+    """No input that prints alike keeps every limit: a rigorous lower bound of the worst ratio over
+    the whole rounding box exceeds 1."""
+    UNDECIDED = "undecided"
+    """Neither was shown."""
+
+
+class Keeping(StrEnum):
+    """The words of `Rounding` under one reading, digits rounded or cut off, and one more."""
+
+    KEEPS = "keeps"
+    CONSISTENT = "consistent"
+    DISCONTINUOUS = "discontinuous"
+    """The printed point keeps every limit inside the segments; its velocity jumps between them."""
+    BREAKS = "breaks"
+    UNDECIDED = "undecided"
+
+
+class GapKind(StrEnum):
+    """What a gap is a gap of."""
+
+    OPTIMALITY = "optimality gap"
+    """(T − U)/U for a motion that keeps its limits, with U the reference total; the whole interval
+    where T is printed. Never clipped: below the reference it is negative."""
+    REPORTED = "difference of reported time"
+    """The same number for a time whose motion is not shown to keep its limits."""
+
+
+class Effect(StrEnum):
+    """What a reduction of the total is due to."""
+
+    BOTH = "both together"
+    """Curve and algorithm: the procedure of the paper against the other one."""
+    ALGORITHM = "algorithm alone"
+    """The two algorithms on the curve of the paper's procedure."""
+    CURVE = "curve alone"
+    """The two curves at their best known totals, without any algorithm."""
+
+
+class Worth(StrEnum):
+    """What `verify` says of a file."""
+
+    PROVES = "proves"
+    """Its claim is proved."""
+    ALTERED = "altered, still proves"
+    """Its claim is proved, but a seal does not match: this is not what was written."""
+    REFUSED = "refused"
+    """Its claim is not proved."""
+    OUT_OF_TIME = "out of time"
+    """The time was over before anything was decided."""
+
+
+class Uncovered(StrEnum):
+    """How a certification ended that did not begin."""
+
+    NOT_COVERED = "not covered"
+    """No method for this curve; the reason is given."""
+
+
+class Limited(StrEnum):
+    """What is limited."""
+
+    VELOCITY = "velocity"
+    """Of a joint."""
+    ACCELERATION = "acceleration"
+    """Of a joint."""
+    JERK = "jerk"
+    """Of a joint."""
+    POSITION = "position"
+    """Angle of a joint."""
+    DURATION = "duration"
+    """Of a segment."""
+    CURVE = "curve"
+    """The durations define none."""
+
+
+UNITS = {"position": "rad", "velocity": "rad/s", "acceleration": "rad/s²", "jerk": "rad/s³"}
+"""Units of what is limited, as everything is computed."""
+
+
+def meanings(*enums: type[StrEnum]) -> dict[str, str]:
+    """The words of enumerations that are explained there, with their explanations.
+
+    Parameters
+    ----------
+    *enums : type of StrEnum
+
+    Returns
+    -------
+    dict
+        Word to the docstring below it, in the order of the members; of a word that several
+        explain, the first one's.
+    """
+    found: dict[str, str] = {}
+    for words in enums:
+        (declared,) = ast.parse(inspect.getsource(words)).body
+        body = declared.body if isinstance(declared, ast.ClassDef) else []
+        for member, below in pairwise(body):
+            match member, below:
+                case ast.Assign(targets=[ast.Name(name)]), ast.Expr(ast.Constant(str(text))):
+                    found.setdefault(str(words[name]), " ".join(text.split()))
+    return found
+
+
+def meaning(words: type[StrEnum]) -> str:
+    """What an enumeration tells apart: its docstring, on one line."""
+    return " ".join((words.__doc__ or "").split())
+
+
+@dataclass(frozen=True)
+class Words:
+    """Words that one key of the documents may hold.
+
+    Attributes
+    ----------
+    key : str
+        As docs/command-line.md names it.
+    enums : tuple of type
+    table : str
+        Name of the table in the docs that explains them; empty where the list of keys does.
+    """
+
+    key: str
+    enums: tuple[type[StrEnum], ...]
+    table: str = ""
+
+
+VOCABULARY = (
+    Words("`status`", (Status,)),
+    Words("`coupling`", (Coupling,)),
+    Words("`verdict` of a check", (Verdict,)),
+    Words("`keeping`", (Keeping,)),
+    Words("`rounding_verdict`", (Rounding,), "rounding"),
+    Words(
+        "`evidence`; of a verdict or a finding the word for its reference", (Evidence,), "evidence"
+    ),
+    Words("`outcome`", (Outcome, Uncovered), "outcome"),
+    Words("`worth`", (Worth,)),
+    Words("`subject`", (Subject,)),
+    Words("`severity`", (Severity,), "severity"),
+    Words("`verdict` on a claim", (ClaimVerdict,), "claims"),
+    Words("`scope`: how many readings", (Scope,)),
+    Words("`basis`", (Basis,)),
+    Words("`effect` of a reduction", (Effect,)),
+    Words("`kind` of a gap", (GapKind,)),
+    Words("`quantity`", (Limited,)),
+)
+"""Every set of words in the documents, in the order of docs/command-line.md."""
+
+TIMES = {
+    "feasible time": "T·max(1, c*): all durations stretched until every limit is kept.",
+    "tight time": "T·c*: all durations rescaled until a limit is just reached.",
+}
+"""Times that are no member of an enumeration and stand beside the gaps."""
+
+TERMS = {
+    "reading": "One way to understand what the text leaves open; everything is computed under each "
+    "reading that the text admits.",
+    "shared durations": "All joints pass each way-point together, so that they share the segment "
+    "durations.",
+    "relaxed family": "Curves of degree 5 or more in every segment, C2, through the same "
+    "way-points, within the same limits and end conditions; the optimiser uses the freedom left.",
+    "TOPPRA": "The fastest motion along the path of a given curve, under velocity and acceleration "
+    "limits only; on grids, extrapolated.",
+    "any curve through the way-points": "The fastest motion of bounded velocity and acceleration, "
+    "whatever the curve; joints meet at the way-points only.",
+    "KKT residual": "How far the answer is from meeting the first-order conditions of an optimum, "
+    "scaled; near 0 it meets them, which proves no global optimum.",
+    "starts at best": "How many starts of the local solver ended at the lowest total found.",
+}
+"""Terms of the pages that are no member of an enumeration: steps, optima and runs."""
+
+
+@dataclass(frozen=True)
+class Rule:
+    """A rule's permanent id and what it looks at."""
+
+    id: str
+    title: str
+
+
+RULES = (
+    Rule("TG101", "A printed total is the sum of its printed parts"),
+    Rule("TG102", "Printed longest durations are the longest of the printed rows"),
+    Rule("TG103", "A printed improvement follows from the printed totals"),
+    Rule("TG104", "Tables under different names print different digits"),
+    Rule("TG105", "Two places that print the same total agree"),
+    Rule("TG106", "Unrelated columns do not repeat each other's digits"),
+    Rule("TG107", "The conditions stated fit the number of coefficients"),
+    Rule("TG201", "Printed durations keep the limits for all t, over the rounding box"),
+    Rule("TG202", "Position, velocity and acceleration are continuous"),
+    Rule("TG203", "Printed peaks are those of the printed durations"),
+    Rule("TG204", "The limits are used up by the printed durations"),
+    Rule("TG205", "Printed control vertices follow from the printed way-points"),
+    Rule("TG206", "Acceleration jumps where it is said to"),
+    Rule("TG301", "Totals of one path under two velocity limits obey the scaling law"),
+    Rule("TG302", "A printed total beside the optimum of its own formulation"),
+    Rule("TG303", "A printed total beside the optimum with shared durations"),
+    Rule("TG401", "An improvement beside the spread over seeds"),
+    Rule("TG402", "A printed total beside replays of its algorithm"),
+    Rule("TG403", "Convergence within a number of iterations, beside replays"),
+    Rule("TG404", "A relative claim beside a family of instances drawn from the robot's workspace"),
+    Rule("TG501", "Not checkable from the text"),
+    Rule("TG601", "Joint and Cartesian way-points are consistent with the printed chain"),
+)
+"""Every rule; an id is never reused."""

@@ -1,0 +1,41 @@
+"""Where the time goes: the steps from a printed total down to any curve at all."""
+
+from __future__ import annotations
+
+from typing import Self
+
+from ...nlp import Evidence
+from .entry import Entry, OrWhy, Why
+
+EXACT = Why("a single value, not an interval")
+"""Why a value has no interval."""
+
+
+class Step(Entry):
+    """One value on the way down."""
+
+    name: str
+    time: OrWhy[float]
+    """Total time, s."""
+    low: OrWhy[float] = EXACT
+    """Of the value, where it is an interval, s."""
+    high: OrWhy[float] = EXACT
+    evidence: Evidence = Evidence.NONE
+    """Of the value: best known or certified; none for printed and derived values."""
+    note: str = ""
+
+    @classmethod
+    def missing(cls, name: str, note: str) -> Self:
+        """A step that was not computed, and why."""
+        why = Why(note or "not computed")
+        return cls(name=name, time=why, low=why, high=why, note=note)
+
+
+class Waterfall(Entry):
+    """Steps of one problem under one reading, starting from one claim."""
+
+    problem: str
+    reading: str
+    claim: str | None
+    """The printed durations for all joints of the problem; null if none are printed."""
+    steps: tuple[Step, ...]

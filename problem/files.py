@@ -1,0 +1,399 @@
+"""Files: read only if they are regular ones; written complete or not at all.
+
+Whatever is written is first a draft beside its target, ``.trajgap-TARGET-RANDOM.tmp``: TARGET is a
+hash of the target's name, RANDOM cannot be guessed. The process that writes it holds a lock on it.
+So a draft without a lock was left by a process that was killed, and the next one that writes the
+same target removes it; a draft with a lock says that somebody is writing that target now.
+
+A folder is replaced by exchanging it with its draft in one step where the system can (Linux).
+Elsewhere the old folder steps aside first, as ``.trajgap-TARGET-RANDOM.old``; when a process is
+killed just then, the next one that asks for the folder moves it back (`recover_folder`).
+"""
+
+from __future__ import annotations
+
+import ctypes
+import errno
+import os
+import shutil
+import stat
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from hashlib import sha256
+from pathlib import Path
+from uuid import uuid4
+
+from .errors import CaseError
+
+_PREFIX = ".trajgap-"
+"""Start of the name of every draft; hidden, and told apart from files of others."""
+_CURRENT_FOLDER = -100
+"""AT_FDCWD of Linux: paths are relative to the current folder."""
+_EXCHANGE = 2
+"""RENAME_EXCHANGE of Linux's renameat2."""
+_NOT_OFFERED = (errno.ENOSYS, errno.EINVAL, errno.ENOTSUP, errno.EPERM)
+"""What systems and file systems answer that cannot exchange names, or make hard links."""
+
+_drafts: set[Path] = set()
+"""Drafts of this process, for `remove_drafts`."""
+
+
+# --- reading --------------------------------------------------------------------------------------
+
+
+def read_regular(path: Path, largest: int, fix: str) -> bytes:
+    """Read a regular file of bounded size; never waits for one that is none.
+
+    Parameters
+    ----------
+    path : Path
+    largest : int
+        Bytes.
+    fix : str
+        What to do if it is larger, for the message.
+
+    Returns
+    -------
+    bytes
+
+    Raises
+    ------
+    CaseError
+        If the file is missing, not a regular file, too large or unreadable, or if its name is not
+        UTF-8.
+    """
+    name = str(path)
+    check_name(name)
+    try:
+        # Asked before opening: to open a device or a pipe can change or block something.
+        _check_regular(name, path.stat())
+        with open(path, "rb", opener=_without_waiting) as file:
+            status = os.fstat(file.fileno())
+            _check_regular(name, status)
+            # One byte more than allowed: the file may grow while it is read.
+            data = file.read(largest + 1)
+            size = max(status.st_size, len(data))
+    except (FileNotFoundError, NotADirectoryError):
+        raise CaseError(name, "", "no such file; check the path") from None
+    except OSError as error:
+        reason = error.strerror or type(error).__name__
+        raise CaseError(name, "", f"cannot be read ({reason}); check the path") from None
+    if size > largest:
+        raise CaseError(
+            name, "", f"has {size / 1e6:.1f} MB, the limit is {largest / 1e6:.0f} MB; {fix}"
+        )
+    return data
+
+
+def check_regular(path: Path) -> None:
+    """Refuse what is no regular file, whose reading might never end; absence is no fault here.
+
+    Raises
+    ------
+    CaseError
+    """
+    check_name(str(path))
+    with suppress(OSError):
+        _check_regular(str(path), path.stat())
+
+
+def check_name(name: str) -> None:
+    """Refuse the name of a file that is not UTF-8: no document could state it.
+
+    Raises
+    ------
+    CaseError
+    """
+    try:
+        name.encode("utf-8")
+    except UnicodeEncodeError:
+        raise CaseError(name, "", "is not UTF-8; rename the file") from None
+    if "\0" in name:
+        raise CaseError(name, "", "no such file; check the path")
+
+
+def _check_regular(name: str, status: os.stat_result) -> None:
+    if stat.S_ISDIR(status.st_mode):
+        raise CaseError(name, "", "is a directory; name a file in it")
+    if not stat.S_ISREG(status.st_mode):
+        raise CaseError(name, "", "is not a regular file; name a text file")
+
+
+def _without_waiting(path: str, flags: int) -> int:
+    # What was a regular file a moment ago may be a pipe now.
+    return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
+
+
+# --- writing --------------------------------------------------------------------------------------
+
+
+@contextmanager
+def new_file(path: Path) -> Iterator[Callable[[str], None]]:
+    """Reserve a new file; what is written appears under its name at once and complete.
+
+    Parameters
+    ----------
+    path : Path
+
+    Yields
+    ------
+    callable
+        To be called with the whole text, once.
+
+    Raises
+    ------
+    OSError
+        If the file exists, is being written by another process, or cannot be written.
+    """
+    if _there(path):
+        raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(path))
+    with _draft(path, reserve=True) as draft:
+
+        def write(text: str) -> None:
+            draft.write_text(text, encoding="utf-8", newline="\n")
+            _publish(draft, path)
+
+        yield write
+
+
+def replace_file(path: Path, text: str) -> None:
+    """Write a file under its name at once and complete, in the place of an earlier one.
+
+    Parameters
+    ----------
+    path : Path
+        Folders on the way to it are made.
+    text : str
+
+    Raises
+    ------
+    OSError
+        If it cannot be written.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with _draft(path) as draft:
+        draft.write_text(text, encoding="utf-8", newline="\n")
+        draft.replace(path)
+
+
+def replace_folder(folder: Path, files: Mapping[str, str]) -> None:
+    """Write a folder under its name at once and complete, in the place of an earlier one.
+
+    However the process ends, the earlier folder or the new one is there, or `recover_folder`
+    brings the earlier one back.
+
+    Parameters
+    ----------
+    folder : Path
+        Folders on the way to it are made.
+    files : mapping
+        Path inside the folder, with slashes, to text.
+
+    Raises
+    ------
+    OSError
+        If it cannot be written.
+    """
+    recover_folder(folder)
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with _draft(folder, is_folder=True) as draft:
+        for name, content in files.items():
+            file = draft / name
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(content, encoding="utf-8", newline="\n")
+        if not _there(folder):
+            draft.rename(folder)
+        elif not _exchanged(draft, folder):
+            _step_aside(draft, folder)
+
+
+def recover_folder(folder: Path) -> None:
+    """Bring a folder back that stepped aside for its successor when the process was killed.
+
+    Parameters
+    ----------
+    folder : Path
+        Left alone if it exists; remains of it are removed then.
+
+    Raises
+    ------
+    OSError
+        If the names of files there cannot be changed.
+    """
+    aside = [path for path in _left_behind(folder) if path.suffix == ".old"]
+    if aside and not _there(folder):
+        newest = max(aside, key=lambda path: path.stat().st_mtime)
+        newest.rename(folder)
+        aside.remove(newest)
+    for path in aside:
+        _remove(path)
+
+
+def try_writing_in(folder: Path) -> None:
+    """Find out whether files can be written into a folder, which need not exist yet.
+
+    Parameters
+    ----------
+    folder : Path
+
+    Raises
+    ------
+    OSError
+        If it cannot be made, or nothing can be written into it.
+    """
+    missing: list[Path] = []
+    for there in (folder, *folder.absolute().parents):
+        if _there(there):
+            break
+        missing.append(there)
+    for one in missing:
+        # Says whether the name is too long, which a path through missing folders does not.
+        _there(there / one.name)
+    if not there.is_dir():
+        raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR), str(there))
+    trial = there / f"{_PREFIX}{uuid4().hex}.tmp"
+    with _registered(trial):
+        trial.mkdir()
+
+
+def remove_drafts() -> None:
+    """Remove every draft of this process, which is about to end."""
+    for path in list(_drafts):
+        _remove(path)
+
+
+@contextmanager
+def _draft(target: Path, is_folder: bool = False, reserve: bool = False) -> Iterator[Path]:
+    """Make a locked draft beside its target, removed in the end; remains of others are swept."""
+    while True:
+        path = target.parent / f"{_stem(target)}{uuid4().hex}.tmp"
+        with _registered(path):
+            if is_folder:
+                path.mkdir()
+            else:
+                # Not `tempfile`: what it makes is for the user alone, and so would the file be.
+                os.close(os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
+            with _locked(path):
+                if not path.exists():
+                    # Another process took it for a remain before the lock was on it.
+                    continue
+                busy = _sweep(target, path)
+                if busy and reserve:
+                    raise BlockingIOError(errno.EBUSY, "another process writes it")
+                yield path
+                return
+
+
+@contextmanager
+def _registered(path: Path) -> Iterator[None]:
+    # Before it is made: an interrupt may come between any two lines.
+    _drafts.add(path)
+    try:
+        yield
+    finally:
+        _remove(path)
+        _drafts.discard(path)
+
+
+def _stem(target: Path) -> str:
+    return f"{_PREFIX}{sha256(os.fsencode(target.name)).hexdigest()[:16]}-"
+
+
+def _left_behind(target: Path) -> list[Path]:
+    """Drafts of a target, and folders that stepped aside for it."""
+    stem = _stem(target)
+    try:
+        return sorted(path for path in target.parent.iterdir() if path.name.startswith(stem))
+    except OSError:
+        return []
+
+
+def _sweep(target: Path, own: Path) -> bool:
+    """Remove drafts that killed processes left; whether another process is writing the target."""
+    busy = False
+    for path in _left_behind(target):
+        if path != own and path.suffix == ".tmp":
+            with suppress(OSError), _locked(path) as free:
+                if free:
+                    _remove(path)
+                busy |= free is False
+    return busy
+
+
+@contextmanager
+def _locked(path: Path) -> Iterator[bool | None]:
+    """Lock a file or folder; yields whether nobody else had, None where locks are not offered."""
+    if sys.platform == "win32":
+        yield None
+        return
+    import fcntl
+
+    descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_NOFOLLOW)
+    try:
+        free: bool | None = True
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            free = False
+        except OSError:
+            free = None
+        yield free
+    finally:
+        os.close(descriptor)
+
+
+def _publish(draft: Path, path: Path) -> None:
+    """Give a draft its name, never over another file."""
+    try:
+        os.link(draft, path)
+    except OSError as error:
+        if error.errno not in _NOT_OFFERED:
+            raise
+        if _there(path):
+            raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(path)) from None
+        draft.rename(path)
+
+
+def _exchanged(one: Path, other: Path) -> bool:
+    """Exchange the names of two folders in one step; False where the system does not offer it."""
+    if not sys.platform.startswith("linux"):
+        return False
+    try:
+        rename = ctypes.CDLL(None, use_errno=True).renameat2
+    except (OSError, AttributeError):
+        return False
+    names = os.fsencode(one), os.fsencode(other)
+    if rename(_CURRENT_FOLDER, names[0], _CURRENT_FOLDER, names[1], _EXCHANGE) == 0:
+        return True
+    number = ctypes.get_errno()
+    if number in _NOT_OFFERED:
+        return False
+    raise OSError(number, os.strerror(number), str(other))
+
+
+def _step_aside(draft: Path, folder: Path) -> None:
+    """Put a draft in the place of a folder by two renames; `recover_folder` covers the gap."""
+    old = folder.parent / f"{_stem(folder)}{uuid4().hex}.old"
+    folder.rename(old)
+    try:
+        draft.rename(folder)
+    finally:
+        recover_folder(folder)
+
+
+def _there(path: Path) -> bool:
+    """Whether anything has this name, a broken link included; other faults than absence show."""
+    try:
+        path.lstat()
+    except (FileNotFoundError, NotADirectoryError):
+        return False
+    return True
+
+
+def _remove(path: Path) -> None:
+    if path.is_dir() and not path.is_symlink():
+        shutil.rmtree(path, ignore_errors=True)
+    else:
+        with suppress(OSError):
+            path.unlink()

@@ -1,0 +1,155 @@
+"""Pictures, pages and places in a page: one name each, whatever the ids of a case."""
+
+import os
+import re
+import xml.etree.ElementTree as ElementTree
+from collections import Counter
+from pathlib import Path
+
+import pytest
+from trajgap.compare import AuditReport, audit, write_report
+from trajgap.compare.pages import foreign
+from trajgap.compare.pages.blocks import Cell, Grid, Page, Prose, Section, Terms
+from trajgap.compare.pages.markdown_text import markdown
+from trajgap.compare.pages.writer import case_page
+from trajgap.problem import file_name, parse_case
+
+DASH = """
+format = 1
+id = "dash"
+title = "t"
+source = {}
+robot = { name = "r", joints = ["1"] }
+units = { position = "rad", velocity = "rad/s", time = "s" }
+waypoints = { joint_rows = [[0, 1, 2, 3]] }
+limits = { velocity = 1 }
+interpolant = { family = "3-5-3" }
+[[problems]]
+id = "a"
+[[problems]]
+id = "a-b"
+limits = {velocity = 5}
+[[readings]]
+id = "b-c"
+why = "x"
+default = true
+[[readings]]
+id = "c"
+why = "y"
+limits = {velocity = 2}
+[[claims]]
+id = "x"
+quantity = "durations"
+where = "T"
+problem = "a"
+durations = ["1.5","1.5","1.5"]
+[[claims]]
+id = "y"
+quantity = "durations"
+where = "T"
+problem = "a-b"
+durations = ["2.5","2.5","2.5"]
+"""
+HIDDEN = "total \u202e5.1\u202c\u2066x\u2069\u200e\u200f\u061c\x1b[31m\x07\x9b\x7f s"
+SHOWN = (
+    "total <U+202E>5.1<U+202C><U+2066>x<U+2069><U+200E><U+200F><U+061C><U+001B>[31m<U+0007>"
+    "<U+009B><U+007F> s"
+)
+HIDES = re.compile("[\u202a-\u202e\u2066-\u2069\u200e\u200f\u061c\x00-\x08\x0b-\x1f\x7f-\x9f]")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Report of two cases whose names joined by dashes are the same, with hidden characters."""
+    hidden = "".join(f"\\u{ord(c):04x}" if ord(c) > 126 or ord(c) < 32 else c for c in HIDDEN)
+    text = DASH.replace('"t"', f'"{hidden}"', 1).replace('where = "T"', f'where = "{hidden}"')
+    text = text.replace('why = "x"', f'why = "{hidden}"').replace('"r"', f'"{hidden}"')
+    other = DASH.replace('id = "dash"', 'id = "dash-waterfall"', 1)
+    out = tmp_path_factory.mktemp("names") / "audit"
+    write_report(audit([parse_case(text, "f"), parse_case(other, "g")], seeds=2), out)
+    return out
+
+
+@pytest.mark.parametrize("name", ["dash", "dash-waterfall"])
+def test_no_id_stands_twice_in_a_page(folder: Path, name: str) -> None:
+    page = (folder / f"{name}.html").read_text(encoding="utf-8")
+    ids = Counter(re.findall(r'\bid="([^"]+)"', page))
+    assert [one for one, count in ids.items() if count > 1] == []
+    assert set(re.findall(r'href="#([^"]+)"', page)) <= ids.keys()
+    assert "claim-x" in ids
+
+
+def test_every_waterfall_has_its_picture(folder: Path) -> None:
+    files = sorted((folder / "pictures").iterdir())
+    for case in ("dash", "dash-waterfall"):
+        for problem in ("a", "a-b"):
+            for reading in ("b-c", "c"):
+                drawn = file_name("waterfall", problem, reading)
+                file = folder / "pictures" / f"{file_name(case, drawn)}.svg"
+                files.remove(file)
+                root = ElementTree.fromstring(file.read_text(encoding="utf-8"))
+                title = root.findtext("{http://www.w3.org/2000/svg}title")
+                assert title == f"Where the time goes: {problem}, {reading}"
+                for end in ("html", "md"):
+                    page = (folder / f"{case}.{end}").read_text(encoding="utf-8")
+                    assert f"pictures/{file.name}" in page
+    assert len(files) >= 2 * 4
+    assert foreign(folder) is None
+
+
+def test_an_earlier_report_is_known_by_the_names_of_its_time(folder: Path) -> None:
+    known = folder / "pictures" / "dash-waterfall-a-b-c.svg"
+    known.write_text("<svg/>", encoding="utf-8")
+    assert foreign(folder) is None
+    known.unlink()
+
+
+def test_a_folder_with_a_pipe_is_foreign(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "audit.json")
+    assert foreign(tmp_path) == "audit.json"
+
+
+def test_what_hides_or_steers_is_shown(folder: Path) -> None:
+    index = (folder / "index.html").read_text(encoding="utf-8")
+    page = (folder / "dash.html").read_text(encoding="utf-8")
+    text = (folder / "dash.md").read_text(encoding="utf-8")
+    whole = (folder / "audit.json").read_text(encoding="utf-8")
+    for one in (index, page, text, whole):
+        assert HIDES.search(one) is None
+    for one in (index, page):
+        assert SHOWN.replace("<", "&lt;").replace(">", "&gt;") in one
+    assert re.sub(r"([<>\[])", r"\\\1", SHOWN) in text
+    assert "\\u202e" in whole
+    for file in (folder / "pictures").iterdir():
+        assert HIDES.search(file.read_text(encoding="utf-8")) is None
+
+
+def test_every_block_of_markdown_shows_it() -> None:
+    section = Section(
+        HIDDEN,
+        HIDDEN,
+        (
+            Prose(HIDDEN),
+            Prose(HIDDEN, "heading"),
+            Terms(((HIDDEN, HIDDEN),)),
+            Grid((HIDDEN,), ((Cell(f"{HIDDEN}\n{HIDDEN}"),),), HIDDEN),
+        ),
+    )
+    text = markdown(Page("c", HIDDEN, (section,)))
+    assert HIDES.search(text) is None
+    assert text.count("\\<U+202E\\>") == 10
+    assert text.count("<br>") == 1
+
+
+def test_pages_of_cases_with_long_ids(tmp_path: Path) -> None:
+    ids = ["a" * 250, "a" * 251]
+    cases = [parse_case(DASH.replace('"dash"', f'"{name}"'), name) for name in ids]
+    for case in cases:
+        assert len(case_page(audit(case, seeds=2).cases[0]).file) < 130
+    report = AuditReport(tuple(audit(case, seeds=2).cases[0] for case in cases))
+    write_report(report, tmp_path / "out")
+    assert len(list((tmp_path / "out").glob("*.html"))) == 3
+    index = (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
+    for target in re.findall(r'href="([^"#]+)"', index):
+        assert (tmp_path / "out" / target).is_file()
+    write_report(report, tmp_path / "out")

@@ -1,0 +1,156 @@
+"""Work in processes that are really killed: done again once, in order, and never a hang."""
+
+import contextlib
+import multiprocessing
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from functools import partial
+from importlib import import_module
+from pathlib import Path
+
+import numpy as np
+import pytest
+from trajgap.heuristics import PSO, Run, in_processes, run_many
+from trajgap.problem import CaseError, Limits, Problem, TrajgapError, load_case, three_five_three
+
+WAYPOINTS = [[0.1, 0.5], [0.7, 0.2], [1.2, -0.4], [0.9, 0.3]]
+PROBLEM = Problem(WAYPOINTS, Limits(6.0, 8.0, joints=2), three_five_three())
+
+
+@pytest.fixture(autouse=True)
+def no_hang() -> Iterator[None]:
+    """End a test that hangs, and leave no process behind."""
+
+    def give_up(*_: object) -> None:
+        raise TimeoutError("hangs")
+
+    before = signal.signal(signal.SIGALRM, give_up)
+    signal.alarm(500)
+    yield
+    signal.alarm(0)
+    signal.signal(signal.SIGALRM, before)
+    assert multiprocessing.active_children() == []
+
+
+def kill_one() -> None:
+    """Kill a process of ours as the system does when memory runs out."""
+    os.kill(multiprocessing.active_children()[-1].pid or 0, signal.SIGKILL)
+
+
+def test_results_come_in_the_order_of_the_items() -> None:
+    # The first sleeps longest.
+    slow = partial(pow, 2)
+    assert list(in_processes(slow, [3, 1, 2, 0, 5], 2)) == [8, 2, 4, 1, 32]
+    assert list(in_processes(slow, [], 2)) == []
+
+
+def test_runs_are_the_same_after_a_worker_was_killed() -> None:
+    killed: list[int] = []
+
+    def progress(done: Run) -> None:
+        if not killed:
+            killed.append(done.seed)
+            kill_one()
+
+    wanted = run_many(PSO(), PROBLEM, range(6), iterations=40)
+    found = run_many(PSO(), PROBLEM, range(6), 2, 40, progress)
+    assert killed == [0]
+    assert [one.seed for one in found] == list(range(6))
+    for one, other in zip(found, wanted, strict=True):
+        assert np.array_equal(one.durations, other.durations)
+        assert np.array_equal(one.trace, other.trace)
+
+
+WORK = """
+import os, time
+
+def begin(item):
+    log, name, seconds = item
+    with open(log, "a") as file:
+        file.write(f"{name} {os.getpid()}\\n")
+    time.sleep(seconds)
+    return name
+"""
+
+
+def test_a_killed_worker_costs_its_own_work_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "logged_work.py").write_text(WORK)
+    monkeypatch.syspath_prepend(tmp_path)
+    begin = import_module("logged_work").begin
+    log = tmp_path / "log"
+    names = ["quick", "long", "next", "last"]
+    items = [(str(log), name, 2.0 if name == "long" else 0.0) for name in names]
+    results = in_processes(begin, items, 2)
+    assert next(results) == "quick"
+    while "long" not in log.read_text():
+        time.sleep(0.01)
+    (pid,) = (int(line.split()[1]) for line in log.read_text().splitlines() if "long" in line)
+    os.kill(pid, signal.SIGKILL)
+    assert list(results) == names[1:]
+    begun = [line.split()[0] for line in log.read_text().splitlines()]
+    assert sorted(begun) == ["last", "long", "long", "next", "quick"]
+
+
+def test_work_that_kills_twice_ends_in_one_line_after_what_finished() -> None:
+    results = in_processes(signal.raise_signal, [signal.SIGCONT, signal.SIGKILL], 1)
+    assert next(results) is None
+    with pytest.raises(TrajgapError) as caught:
+        next(results)
+    assert str(caught.value) == (
+        "workers: 2 processes ended at the same piece of work (SIGKILL); "
+        "use fewer workers or more memory"
+    )
+
+
+def test_a_worker_that_leaves_by_itself_is_gone_too() -> None:
+    with pytest.raises(TrajgapError, match=r"same piece of work \(exit code 3\)"):
+        list(in_processes(os._exit, [3], 2))
+
+
+def test_exceptions_arrive_as_they_are() -> None:
+    with pytest.raises(ZeroDivisionError):
+        list(in_processes(partial(divmod, 1), [1, 0], 2))
+    with pytest.raises(CaseError, match=r"^x: neither a published case nor a file; known: ") as one:
+        list(in_processes(load_case, ["x"], 1))
+    assert one.value.file == "x"
+
+
+def test_results_that_cannot_be_sent_are_named() -> None:
+    with pytest.raises(RuntimeError, match=r"^memoryview: .*pickle"):
+        list(in_processes(memoryview, [b"x"], 1))
+
+
+@pytest.mark.slow
+def test_an_audit_with_a_killed_worker_ends_as_without(tmp_path: Path) -> None:
+    arguments = ["audit", "irb460-pso-353", "--problem", "limit-80", "--reading", "waypoints-deg"]
+    arguments += ["--seeds", "4", "--workers", "2", "--json"]
+    command = [sys.executable, "-c", "import sys; from trajgap.compare.cli import main; main()"]
+    process = subprocess.Popen(
+        [*command, *arguments],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        cwd=tmp_path,
+    )
+    killed = None
+    while killed is None and process.poll() is None:
+        children = Path(f"/proc/{process.pid}/task/{process.pid}/children")
+        for pid in children.read_text().split() if children.exists() else ():
+            if b"spawn_main" in Path(f"/proc/{pid}/cmdline").read_bytes():
+                killed = int(pid)
+        time.sleep(0.02)
+    assert killed is not None
+    time.sleep(0.5)
+    with contextlib.suppress(ProcessLookupError):
+        os.kill(killed, signal.SIGKILL)
+    out, err = process.communicate(timeout=300)
+    assert (process.returncode, err) == (0, "")
+    alone = [*arguments[: arguments.index("--workers")], "--json"]
+    wanted = subprocess.run([*command, *alone], capture_output=True, text=True, cwd=tmp_path)
+    assert out == wanted.stdout
