@@ -9,7 +9,7 @@ SOURCES = ("problem", "nlp", "verify", "heuristics", "compare")
 TESTS = ROOT / "tests"
 
 # Folders of tests that mirror no folder of the source.
-OWN = {"house"}
+OWN = {"attacks", "house"}
 
 # Folders of the source without tests of their own, and where they are tested.
 ELSEWHERE = {

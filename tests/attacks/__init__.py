@@ -1,0 +1,1 @@
+"""Attacks: seeded generators and brute force against everything that trajgap reads and answers."""

@@ -1,0 +1,77 @@
+"""The long run: ``python tests/attacks --seconds 3600 --seed 1 --write docs/attacks.csv``."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from pathlib import Path
+
+# One thread a process: children are forked, and the machine has other work.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+# The folder above this one, as the tests have it; not this one, whose modules have plain names.
+_HERE = Path(__file__).resolve().parent
+sys.path[:] = [str(_HERE.parent), *(x for x in sys.path if Path(x or ".").resolve() != _HERE)]
+
+from attacks.registry import ATTACKS  # noqa: E402
+from attacks.run import Account, run, tried, warm  # noqa: E402
+from attacks.sandbox import available  # noqa: E402
+from attacks.table import PAGE, csv_text, page_with, rows_of, table  # noqa: E402
+
+
+def main() -> int:
+    """Run, say what broke, write the table; 1 if anything broke."""
+    parser = argparse.ArgumentParser(prog="python tests/attacks", description=__doc__)
+    parser.add_argument("--seconds", type=float, default=60.0, help="how long, on the clock")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--only", action="append", metavar="NAME", help="only these attacks")
+    parser.add_argument("--trial", type=int, help="repeat one trial of one attack")
+    parser.add_argument("--write", type=Path, metavar="CSV", help="write rows and the table")
+    parser.add_argument(
+        "--failures", type=Path, metavar="FOLDER", help="keep the input of what broke"
+    )
+    parser.add_argument("--list", action="store_true", help="list the attacks")
+    given = parser.parse_args()
+    chosen = [a for a in ATTACKS if not given.only or a.name in given.only]
+    if given.list or not chosen:
+        print("\n".join(a.name for a in ATTACKS))
+        return 0 if given.list else 2
+    if not available():
+        print("attacks: need Linux: children are forked, limited and watched", file=sys.stderr)
+        return 2
+    if given.trial is not None:
+        warm()
+        accounts = [Account(attack) for attack in chosen]
+        for account in accounts:
+            tried(account, given.seed, given.trial, _say)
+    else:
+        accounts = run(chosen, given.seed, given.seconds, _say)
+    rows = rows_of(accounts, given.seed)
+    for row in rows:
+        _say(f"{row.attack}: {row.trials} trials, {row.failures} failures ({row.outcomes})")
+    if given.failures is not None:
+        _keep(given.failures, accounts, given.seed)
+    if given.write is not None:
+        given.write.write_text(csv_text(rows), encoding="utf-8")
+        PAGE.write_text(page_with(PAGE.read_text("utf-8"), table(rows, ATTACKS)), "utf-8")
+    return 1 if any(row.failures for row in rows) else 0
+
+
+def _say(text: str) -> None:
+    print("".join(c if c.isprintable() or c == "\n" else "?" for c in text), flush=True)
+
+
+def _keep(folder: Path, accounts: list[Account], seed: int) -> None:
+    for account in accounts:
+        for failure in account.broken:
+            plain = "".join(c if c.isalnum() else "-" for c in account.attack.name)
+            own = folder / f"{plain}-{seed}-{failure.number}"
+            own.mkdir(parents=True, exist_ok=True)
+            (own / "why.txt").write_text(failure.why, encoding="utf-8")
+            for name, data in failure.files.items():
+                (own / name).write_bytes(data)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

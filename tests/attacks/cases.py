@@ -1,0 +1,256 @@
+"""Case files drawn from their grammar, with what each of their questions means in rad and s."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from attacks.curves import Array, Asked, NoCurve, peaks, segments_of
+from attacks.toml_text import Bare, toml_text
+
+Rng = np.random.Generator
+FAMILIES = (
+    "3-5-3",
+    "polynomials",
+    "cubic-spline",
+    "quintic-spline",
+    "cubic-spline-virtual",
+    "rest-to-rest",
+    "jtraj",
+    "uniform-cubic-b-spline",
+    "clamped-b-spline",
+)
+"""Every family that a case file may name; a test compares with the schema."""
+CLAIMS = (
+    "durations",
+    "maximum",
+    "total_time",
+    "improvement",
+    "peak",
+    "convergence",
+    "conditions",
+    "control_vertices",
+    "statement",
+)
+"""Every quantity that a claim may state; a test compares with the schema."""
+DERIVATIVES = ("velocity", "acceleration", "jerk")
+"""Quantities by order of derivative, from 1."""
+UNITS = {
+    "position": ("rad", "deg"),
+    "velocity": ("rad/s", "deg/s"),
+    "acceleration": ("rad/s^2", "deg/s^2"),
+    "jerk": ("rad/s^3", "deg/s^3"),
+    "time": ("s", "ms"),
+}
+"""Units of each quantity; the first is the one that everything is computed in."""
+_DETERMINED: tuple[tuple[tuple[int, ...], int, tuple[int, ...]], ...] = (
+    ((4, 3, 4), 2, (1, 2)),
+    ((3, 5, 3), 2, (1, 2)),
+    ((4, 2, 3), 1, (1,)),
+    ((5,), 2, (1, 2)),
+    ((3,), 2, (1,)),
+    ((4, 4), 2, (1, 2)),
+    ((4, 4), 3, (1,)),
+    ((3, 3, 3), 2, (1,)),
+    ((3, 3), 2, (2,)),
+    ((1, 1), 0, ()),
+    ((5, 4, 3, 4), 3, (1, 2)),
+    ((7,), 2, (1, 2, 3)),
+)
+"""Degrees, continuity and end orders; what does not count out right is a drawn bad declaration."""
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A case file, and its questions by (problem, reading) as they were drawn."""
+
+    raw: dict[str, Any]
+    asked: dict[tuple[str, str], Asked]
+
+    @property
+    def text(self) -> str:
+        return toml_text(self.raw)
+
+    @property
+    def first(self) -> Asked:
+        return next(iter(self.asked.values()))
+
+
+def draw_block(rng: Rng, family: str, points: int) -> tuple[dict[str, Any], int]:
+    """Interpolant of a family, and the number of way-points that it takes."""
+    block: dict[str, Any] = {"family": family}
+    if family == "3-5-3":
+        return block, 4
+    if family == "polynomials":
+        degrees, continuity, orders = _DETERMINED[rng.integers(len(_DETERMINED))]
+        if sum(d + 1 for d in degrees) == _conditions(degrees, continuity, orders):
+            block |= {"degrees": list(degrees), "continuity": continuity}
+            return block | {"end_orders": list(orders)}, len(degrees) + 1
+        block |= {"degrees": [4, 3, 4], "continuity": 2, "end_orders": [1, 2]}
+        return block, 4
+    if family == "cubic-spline" and rng.random() < 0.3:
+        block["end_orders"] = [2]
+    if family == "quintic-spline":
+        points = max(points, 3)
+    if family == "rest-to-rest":
+        block["degree"] = int(rng.choice([3, 5, 7, 9]))
+    if family == "uniform-cubic-b-spline":
+        block["time"] = str(rng.choice(["stretched", "timed"]))
+    if family == "clamped-b-spline":
+        points = max(points, 4)
+        block["knots"] = "averaged-continued" if rng.random() < 0.7 else "waypoints"
+        block["degree"] = 5 if block["knots"] == "waypoints" else int(rng.integers(3, 6))
+        block["parameters"] = str(rng.choice(["times", "chord", "joint-chord"]))
+        if block["parameters"] != "times" and rng.random() < 0.5:
+            block["time"] = "stretched"
+    return block, points
+
+
+def _conditions(degrees: tuple[int, ...], continuity: int, orders: tuple[int, ...]) -> int:
+    return 2 * len(degrees) + continuity * (len(degrees) - 1) + 2 * len(orders)
+
+
+def draw_asked(
+    rng: Rng,
+    family: str | None = None,
+    most_points: int = 6,
+    most_joints: int = 3,
+    bounds: float = 0.3,
+    odd: float = 0.25,
+    scale: float = 0.0,
+) -> Asked:
+    """A question in rad and s; ``bounds`` and ``odd`` are chances of bounds and of degeneracy.
+
+    ``scale`` is the largest power of ten by which way-points and limits are off from 1.
+    """
+    name = family or str(rng.choice(FAMILIES))
+    block, points = draw_block(rng, name, int(rng.integers(2, most_points + 1)))
+    joints = int(rng.integers(1, most_joints + 1))
+    segments = segments_of(block, points)
+    size = 10 ** rng.uniform(-scale, scale)
+    way = rng.uniform(-2, 2, joints) + rng.normal(size=(points, joints)) * rng.uniform(0.3, 2)
+    way *= size
+    if rng.random() < odd:
+        way[:, rng.integers(joints)] = way[0, 0]
+    if rng.random() < odd and points > 2:
+        k = int(rng.integers(points - 1))
+        way[k + 1] = way[k] + (0.0 if rng.random() < 0.5 else 1e-6 * size)
+    way = _rounded(way)
+    pace = size * 10 ** rng.uniform(-scale, scale)
+    kinds = rng.random(3) < (0.8, 0.6, 0.3)
+    if not kinds.any():
+        kinds[0] = True
+    limits = []
+    for r, wanted in enumerate(kinds, start=1):
+        value = _rounded(pace * rng.uniform(0.5, 3, joints) * 2.0**r)
+        if rng.random() < 0.1:
+            value[rng.integers(joints)] = np.inf
+        limits.append(value if wanted else np.full(joints, np.inf))
+    ends: dict[int, float] = {}
+    if name == "cubic-spline" and "end_orders" not in block and rng.random() < 0.2:
+        ends = {1: float(_rounded(np.array(rng.uniform(-0.3, 0.3) * pace)))}
+        block["end_derivatives"] = [ends[1]]
+    none = np.full(joints, np.inf)
+    asked = Asked(
+        block,
+        way,
+        *limits,
+        -none,
+        none,
+        np.zeros(segments),
+        np.full(segments, np.inf),
+        tuple(str(j + 1) for j in range(joints)),
+        str(rng.choice(["shared", "per-joint"])),
+        ends,
+    )
+    return _bounded(rng, asked) if rng.random() < bounds else asked
+
+
+def _bounded(rng: Rng, asked: Asked) -> Asked:
+    if rng.random() < 0.5:
+        span = np.ptp(asked.waypoints, axis=0) + 0.1
+        wide = span * rng.uniform(0.0, 0.5)
+        return replace(
+            asked,
+            position_lower=_rounded(asked.waypoints.min(axis=0) - wide),
+            position_upper=_rounded(asked.waypoints.max(axis=0) + wide),
+        )
+    try:
+        h = near_limits(rng, asked, 1.0)
+    except NoCurve:
+        return asked
+    lower = _rounded(h * rng.uniform(0.2, 1.0, len(h)))
+    upper = _rounded(h * rng.uniform(1.0, 3.0, len(h)))
+    if rng.random() < 0.4:
+        lower = np.zeros(len(h))
+    return replace(asked, duration_lower=lower, duration_upper=upper)
+
+
+def near_limits(rng: Rng, asked: Asked, spread: float, ratio: float = 1.0) -> Array:
+    """Random durations, stretched so that the largest ratio to a limit is about ``ratio``."""
+    for _ in range(8):
+        h = 2.0 ** rng.uniform(-spread, spread, asked.segments)
+        try:
+            for _ in range(3):
+                h = h * stretch(asked, h) / ratio ** (1 / 2)
+        except NoCurve:
+            continue
+        if np.isfinite(h).all() and (h > 0).all() and 1e-9 < h.min() <= h.max() < 1e9:
+            return _rounded(h)
+    raise NoCurve
+
+
+def stretch(asked: Asked, h: Array) -> float:
+    """c*: the factor on all durations that makes the motion tight; 1 if nothing is limited."""
+    low = peaks(asked, h).low
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratios = np.where(asked.limits > 0, low / asked.limits, 0.0)
+    c = float(np.max(ratios ** (1 / np.array([1, 2, 3])), initial=0.0))
+    return c if c > 0 and math.isfinite(c) else 1.0
+
+
+def _rounded(values: Array) -> Array:
+    """The same numbers with six digits, so that text and float mean one number."""
+    return np.array([float(f"{x:.6g}") for x in np.ravel(values)]).reshape(np.shape(values))
+
+
+def raw_of(asked: Asked, name: str = "drawn") -> dict[str, Any]:
+    """A case file that poses one question and nothing else, every number exact."""
+
+    def exact(values: Array) -> Any:
+        return [Bare("inf") if np.isinf(x) else Bare(repr(float(x))) for x in values]
+
+    limits: dict[str, Any] = {
+        key: exact(getattr(asked, key))
+        for key in DERIVATIVES
+        if np.isfinite(getattr(asked, key)).any()
+    }
+    for key in ("position_lower", "position_upper"):
+        if np.isfinite(getattr(asked, key)).all():
+            limits[key] = exact(getattr(asked, key))
+    durations: dict[str, Any] = {}
+    if asked.duration_lower.any():
+        durations["lower"] = exact(asked.duration_lower)
+    if np.isfinite(asked.duration_upper).any():
+        durations["upper"] = exact(asked.duration_upper)
+    return {
+        "format": 1,
+        "id": name,
+        "title": "drawn",
+        "coupling": asked.coupling,
+        "source": {},
+        "robot": {"name": "r", "joints": list(asked.labels)},
+        "units": {key: words[0] for key, words in UNITS.items()},
+        "waypoints": {"joint_rows": [exact(row) for row in asked.waypoints.T]},
+        "limits": limits,
+        "durations": durations,
+        "interpolant": asked.block,
+    }
+
+
+def alone(asked: Asked, name: str = "drawn") -> Drawn:
+    """A case file with one question."""
+    return Drawn(raw_of(asked, name), {("main", "as-printed"): asked})

@@ -1,0 +1,350 @@
+"""Faults put in: signals, full disks, folders without rights, dead workers, closed pipes."""
+
+from __future__ import annotations
+
+import json
+import signal
+import tempfile
+import tomllib
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from attacks.attack import Attack, demand, keep
+from attacks.cases import Rng
+from attacks.reading import well_ended
+from attacks.sandbox import Ended, Plan, command
+
+_CASE = """format = 1
+id = "kept"
+title = "Two joints"
+coupling = "{coupling}"
+[source]
+[robot]
+name = "r"
+joints = ["1", "2"]
+[units]
+position = "rad"
+velocity = "rad/s"
+acceleration = "rad/s^2"
+time = "s"
+[waypoints]
+joint_rows = [["0.10", "0.90", "-0.30", "0.40"], ["1.0", "0.2", "0.3", "-0.5"]]
+[limits]
+velocity = [2.0, 1.5]
+acceleration = [9.0, 8.0]
+[interpolant]
+family = "{family}"
+[[algorithms]]
+id = "pso"
+name = "PSO"
+kind = "pso"
+settings = {{ particles = 6, iterations = 8 }}
+[[claims]]
+id = "d"
+quantity = "durations"
+where = "Table 1"
+algorithm = "pso"
+durations = ["0.91", "1.02", "0.93"]
+"""
+"""A case with a replay, so that an audit has something to lose."""
+_TABLE = "1,2\n0.10,1.0\n0.90,0.2\n-0.30,0.3\n0.40,-0.5\n"
+"""The way-points of that case as a table."""
+_DRAFTS = (".trajgap", ".tmp", ".old")
+"""How names of drafts begin or end."""
+_SECONDS = 120.0
+"""Processor time of a command here."""
+
+
+@dataclass(frozen=True)
+class Work:
+    """A command that writes, and how to tell that what it wrote is whole."""
+
+    arguments: tuple[str, ...]
+    whole: Callable[[Path], bool]
+    """Whether everything that is there is whole; what is absent does not count."""
+    codes: tuple[int, ...] = (0,)
+    earlier: tuple[str, ...] = ()
+    """A command whose result is there before and must not be lost."""
+    family: str = "jtraj"
+    coupling: str = "shared"
+
+
+def _json(name: str) -> Callable[[Path], bool]:
+    return lambda folder: _parsed(folder / name)
+
+
+def _parsed(path: Path) -> bool:
+    if not path.exists():
+        return True
+    try:
+        return isinstance(json.loads(path.read_text("utf-8")), dict)
+    except ValueError:
+        return False
+
+
+def _pages(folder: Path) -> bool:
+    pages = folder / "pages"
+    if not pages.exists():
+        return True
+    names = ("index.html", "kept.html", "kept.md", "kept.json", "audit.json")
+    if not all((pages / name).is_file() for name in names):
+        return False
+    ended = all((pages / n).read_text("utf-8").rstrip().endswith("</html>") for n in names[:2])
+    return ended and all(_parsed(pages / name) for name in names[3:])
+
+
+def _proofs(folder: Path) -> bool:
+    return all(_parsed(path) for path in folder.glob("proofs/[!.]*.json"))
+
+
+def _toml(folder: Path) -> bool:
+    path = folder / "new.toml"
+    if not path.exists():
+        return True
+    try:
+        tomllib.loads(path.read_text("utf-8"))
+    except tomllib.TOMLDecodeError:
+        return False
+    return path.read_text("utf-8").endswith("\n")
+
+
+_AUDIT = ("audit", "case.toml", "--seeds", "2", "--out", "pages")
+_NEW = ("new", "new.toml", "--from", "table.csv", "--position-unit", "rad", "--velocity", "2")
+_NEW_UNITS = ("--velocity-unit", "rad/s", "--time-unit", "s")
+_CERTIFY = ("solve", "case.toml", "--certify", "--certificates", "proofs", "--gap")
+QUICK = ("check --out", "solve --out", "new")
+"""Commands that take less than a second or two."""
+WORKS: dict[str, Work] = {
+    "audit": Work(_AUDIT, _pages),
+    "audit again": Work(_AUDIT, _pages, earlier=_AUDIT),
+    "check --out": Work(
+        ("check", "case.toml", "--durations", "0.9,1.0,0.9", "--out", "out.json"),
+        _json("out.json"),
+    ),
+    "solve --out": Work(("solve", "case.toml", "--out", "out.json"), _json("out.json")),
+    "solve --certify": Work(
+        (*_CERTIFY, "1e-3", "--time", "3"), _proofs, (0, 3), family="cubic-spline"
+    ),
+    "solve --certify, each joint": Work(
+        (*_CERTIFY, "1e-6", "--time", "3", "--out", "out.json"),
+        lambda folder: _proofs(folder) and _parsed(folder / "out.json"),
+        (0, 3),
+        coupling="per-joint",
+    ),
+    "new": Work((*_NEW, *_NEW_UNITS), _toml),
+}
+"""Every command that writes files."""
+
+
+def _prepared(work: Work, folder: Path) -> None:
+    text = _CASE.format(family=work.family, coupling=work.coupling)
+    keep(folder, case=text)
+    (folder / "table.csv").write_text(_TABLE, encoding="utf-8")
+    if work.earlier:
+        ran = command(work.earlier, folder, _SECONDS)
+        demand(ran.code == 0, f"the earlier command ends with {ran.code}: {ran.err[-300:]}")
+
+
+@cache
+def _usual(name: str) -> tuple[float, int]:
+    """Seconds that a command takes undisturbed, and the size of its largest file."""
+    work, seconds, largest = WORKS[name], [], 0
+    for _ in range(2):  # the first run reads files that the second finds in memory
+        with tempfile.TemporaryDirectory(prefix="attack-") as place:
+            folder = Path(place)
+            _prepared(work, folder)
+            ran = command(work.arguments, folder, _SECONDS)
+            well_ended(ran, work.codes, name)
+            seconds.append(ran.seconds)
+            largest = max(p.stat().st_size for p in folder.rglob("*") if p.is_file())
+    return min(seconds), largest
+
+
+def _chosen(rng: Rng, folder: Path) -> tuple[str, Work]:
+    name = str(rng.choice(list(WORKS)))
+    _usual(name)
+    _prepared(WORKS[name], folder)
+    keep(folder, arguments=" ".join(WORKS[name].arguments))
+    return name, WORKS[name]
+
+
+def _drafts(folder: Path) -> list[str]:
+    return [
+        p.name for p in folder.rglob("*") if p.name.startswith(_DRAFTS) or p.name.endswith(_DRAFTS)
+    ]
+
+
+def _run(work: Work, folder: Path, plan: Plan) -> Ended:
+    ran = command(work.arguments, folder, _SECONDS, plan=plan)
+    demand(not ran.late, f"no end after {ran.seconds:.0f} s")
+    demand(not ran.leftover, "a process is left running")
+    return ran
+
+
+def _survived(name: str, work: Work, folder: Path) -> None:
+    """What is there is whole, what was there still is, and a new run works."""
+    demand(work.whole(folder), f"{name}: a file is not whole")
+    if work.earlier:
+        demand((folder / "pages" / "audit.json").exists(), f"{name}: the earlier report is lost")
+    for made in ("out.json", "new.toml"):
+        (folder / made).unlink(missing_ok=True)
+    again = command(work.arguments, folder, _SECONDS)
+    well_ended(again, work.codes, f"{name}, run again")
+    demand(work.whole(folder), f"{name}, run again: a file is not whole")
+
+
+def killed(rng: Rng, folder: Path) -> str | None:
+    """SIGKILL at a random moment of a command that writes."""
+    name, work = _chosen(rng, folder)
+    after = float(rng.uniform(0.0, 1.05)) * _usual(name)[0]
+    ran = _run(work, folder, Plan(signal=signal.SIGKILL, after=after))
+    _survived(name, work, folder)
+    return f"{name}: killed" if ran.code == -signal.SIGKILL else "too late"
+
+
+def interrupted(rng: Rng, folder: Path) -> str | None:
+    """SIGINT at a random moment of a command that writes."""
+    name, work = _chosen(rng, folder)
+    after = 0.02 + float(rng.uniform(0.0, 1.05)) * _usual(name)[0]
+    ran = _run(work, folder, Plan(signal=signal.SIGINT, after=after))
+    if ran.code not in (130, *work.codes) and "sandbox.py" in ran.err:
+        return None  # before the command had begun
+    what = f"{name}, interrupted after {after:.2f} s"
+    demand(ran.code in (130, *work.codes), f"{what}: exit code {ran.code}, {ran.err[-300:]}")
+    demand("Traceback" not in ran.err, f"{what}: a traceback: {ran.err[-1500:]}")
+    if ran.code == 130:
+        demand(ran.err == "trajgap: interrupted\n", f"{what}: {ran.err[-300:]!r}")
+    demand(not _drafts(folder), f"{what}: drafts are left: {_drafts(folder)}")
+    _survived(name, work, folder)
+    return f"{name}: interrupted" if ran.code == 130 else "too late"
+
+
+def full_disk(rng: Rng, folder: Path) -> str | None:
+    """No file may grow beyond a random size."""
+    name, work = _chosen(rng, folder)
+    largest = int(_usual(name)[1] * rng.choice([0.0, 0.001, rng.random(), 1.1]))
+    before = _tree(folder)
+    ran = _run(work, folder, Plan(largest_file=largest))
+    what = f"{name}, files up to {largest} bytes"
+    well_ended(ran, (2, *work.codes), what)
+    demand(not _drafts(folder), f"{what}: drafts are left: {_drafts(folder)}")
+    if ran.code == 2:
+        lost = [p for p, data in before.items() if _tree(folder).get(p) != data]
+        demand(not lost, f"{what}: changed {lost[:3]}")
+    _survived(name, work, folder)
+    return "refused" if ran.code == 2 else "fits"
+
+
+def _tree(folder: Path) -> dict[str, bytes]:
+    return {str(p): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
+
+
+def no_rights(rng: Rng, folder: Path) -> str | None:
+    """A folder that may be read and not written."""
+    name, work = _chosen(rng, folder)
+    for path in (folder, *folder.rglob("*")):
+        path.chmod(0o555 if path.is_dir() else 0o444)
+    before = _tree(folder)
+    ran = _run(work, folder, Plan(without_rights=True))
+    folder.chmod(0o755)
+    what = f"{name}, read-only"
+    well_ended(ran, (2,), what)
+    demand(_tree(folder) == before, f"{what}: something is changed")
+    usual = _usual(name)[0]
+    early = usual < 2.0 or ran.processor < usual / 2
+    demand(early, f"{what}: said after {ran.processor:.1f} of {usual:.1f} s")
+    return "refused"
+
+
+def dead_worker(rng: Rng, folder: Path) -> str | None:
+    """A worker of an audit killed: its work is done again, or one line says what happened."""
+    work = Work((*_AUDIT, "--workers", "2"), _pages)
+    _prepared(work, folder)
+    plan = Plan(signal=signal.SIGKILL, after=float(rng.uniform(0.0, 3.0)), to_worker=True)
+    ran = _run(work, folder, plan)
+    if not ran.signalled:
+        return None
+    well_ended(ran, (0, 2), "audit, a worker killed")
+    demand(work.whole(folder), "audit, a worker killed: a file is not whole")
+    demand(not _drafts(folder), f"drafts are left: {_drafts(folder)}")
+    return "done again" if ran.code == 0 else "one line"
+
+
+def closed_pipe(rng: Rng, folder: Path) -> str | None:
+    """Nobody reads standard output."""
+    _prepared(WORKS["new"], folder)
+    every: list[tuple[str, ...]] = [
+        ("cases", "--json"),
+        ("show", "case.toml", "--json"),
+        ("show", "case.toml"),
+        ("check", "case.toml", "--durations", "1,1,1"),
+        ("solve", "case.toml", "--json", "--out", "out.json"),
+        ("audit", "case.toml", "--seeds", "2"),
+    ]
+    arguments = every[rng.integers(len(every))]
+    ran = command(arguments, folder, _SECONDS, plan=Plan(close_output=True))
+    what = f"{arguments[0]}, nobody reads"
+    demand(ran.code == 141, f"{what}: exit code {ran.code}")
+    demand(ran.err == "", f"{what}: {ran.err[-300:]!r}")
+    demand(_parsed(folder / "out.json"), f"{what}: a file is not whole")
+    return "left"
+
+
+def _attack(name: str, tries: str, holds: str, trial: Any, share: float, quick: int) -> Attack:
+    return Attack(name, tries, holds, trial, share, quick)
+
+
+ATTACKS = (
+    _attack(
+        "killed",
+        "SIGKILL at a random moment of `audit` (new and over an earlier report), `check --out`, "
+        "`solve --out`, `solve --certify`, `new`",
+        "every file whole or absent, an earlier report there, the next run works",
+        killed,
+        2.0,
+        3,
+    ),
+    _attack(
+        "interrupted",
+        "the same with SIGINT",
+        "exit code 130 and one line, no drafts left; the same",
+        interrupted,
+        2.0,
+        3,
+    ),
+    _attack(
+        "full disk",
+        "the same with a limit on the size of files",
+        "exit code 2 and one line, no drafts left, nothing changed",
+        full_disk,
+        1.5,
+        3,
+    ),
+    _attack(
+        "no rights",
+        "the same in a folder that cannot be written to",
+        "exit code 2 and one line before computing, nothing changed",
+        no_rights,
+        0.5,
+        3,
+    ),
+    _attack(
+        "dead worker",
+        "SIGKILL to a worker of `audit --workers 2`",
+        "a whole report, or one line; no hang",
+        dead_worker,
+        1.0,
+        1,
+    ),
+    _attack(
+        "closed pipe",
+        "nobody reads standard output of any command",
+        "exit code 141, nothing on standard error",
+        closed_pipe,
+        0.3,
+        2,
+    ),
+)

@@ -1,0 +1,271 @@
+"""Whole case files drawn from their grammar, and a second reading of what they pose."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from attacks.cases import CLAIMS, DERIVATIVES, UNITS, Drawn, Rng, draw_asked, near_limits, raw_of
+from attacks.curves import Array, Asked, NoCurve, segments_of
+from attacks.toml_text import Bare
+
+FACTORS = {"rad": 1.0, "deg": math.pi / 180, "s": 1.0, "ms": 1e-3}
+"""What a unit is in rad and s; units of derivatives begin with one of these."""
+SEARCHES: dict[str, dict[str, Any]] = {
+    "pso": {"particles": 4, "iterations": 4},
+    "mnam-pso": {"particles": 6, "iterations": 4},
+    "constrained-pso": {"particles": 4, "iterations": 4},
+    "woa": {"whales": 4, "iterations": 4},
+    "improved-woa": {"whales": 4, "iterations": 4},
+    "ga": {"population": 4, "iterations": 4},
+    "improved-ga": {"population": 8, "iterations": 4},
+}
+"""Smallest settings of each algorithm that a case may replay."""
+_WORDS = ("within_limits", "continuous", "jumps", "optimal", "none")
+_STRANGE = ("joint 1", "θ₁", "a.b", "x" * 40, "1-2", "J\u00e9", "关节", "q/1", "l'axe", '"')
+"""Labels that are allowed and awkward."""
+
+
+def draw_case(rng: Rng, small: bool = False) -> Drawn:
+    """A valid case file with problems, readings, claims, tables, algorithms and all the rest."""
+    most = (4, 2) if small else (6, 3)
+    asked = draw_asked(rng, most_points=most[0], most_joints=most[1], scale=float(rng.integers(2)))
+    labels = tuple(asked.labels)
+    if rng.random() < 0.3:
+        labels = tuple(rng.permutation(_STRANGE)[: len(labels)].tolist())
+    raw = raw_of(asked, str(rng.choice(["drawn", "a", "a-b.c", "0", "x" * 60])))
+    raw["robot"]["joints"] = list(labels)
+    raw["title"] = str(rng.choice(["drawn", "T\u00eate", "<b>&amp;</b>", "a|b", "`x` _y_ *z*"]))
+    _reword(rng, raw)
+    if rng.random() < 0.5:
+        raw["source"] = {"authors": "A. Uthor", "year": 2020, "doi": "10.0/x", "note": "n"}
+    problems = _problems(rng, raw, asked, labels)
+    readings = _readings(rng, raw, asked)
+    if problems:
+        raw["problems"] = problems
+    if readings:
+        raw["readings"] = readings
+    first = problems[0]["id"] if problems else "main"
+    default = next((r["id"] for r in readings if r.get("default")), None)
+    default = default or (readings[0]["id"] if readings else "as-printed")
+    _claims(rng, raw, asked_of(raw, first, default), first if problems else None)
+    pairs = [
+        (p, r)
+        for p in [x["id"] for x in problems] or ["main"]
+        for r in [x["id"] for x in readings] or ["as-printed"]
+    ]
+    return Drawn(raw, {pair: asked_of(raw, *pair) for pair in pairs})
+
+
+def _reword(rng: Rng, raw: dict[str, Any]) -> None:
+    """The same numbers in other units, by way-point instead of by joint, printed or exact."""
+    for key, words in UNITS.items():
+        raw["units"][key] = str(rng.choice(words))
+
+    def said(text: str, unit: str, exact: bool) -> str:
+        if text == "inf":
+            return Bare("inf")
+        digits = f"{float(text) / FACTORS[unit.split('/')[0]]:.6g}"
+        return Bare(digits) if exact else digits
+
+    exact = bool(rng.random() < 0.5)
+    units, way, limits = raw["units"], raw["waypoints"], raw["limits"]
+    rows = [[said(x, units["position"], exact) for x in row] for row in way.pop("joint_rows")]
+    if rng.random() < 0.3:
+        way["waypoint_rows"] = [list(column) for column in zip(*rows, strict=True)]
+    else:
+        way["joint_rows"] = rows
+    if rng.random() < 0.5:
+        way["labels"] = [f"P{k}" for k in range(len(rows[0]))]
+    for key, values in limits.items():
+        unit = units["position" if key.startswith("position") else key]
+        limits[key] = [said(x, unit, bool(rng.random() < 0.5)) for x in values]
+        if len(set(limits[key])) == 1 and len(limits[key]) > 1:
+            limits[key] = limits[key][0]
+    for key, values in raw["durations"].items():
+        raw["durations"][key] = [said(x, units["time"], exact) for x in values]
+    ends = raw["interpolant"].get("end_derivatives")
+    if ends is not None:
+        raw["interpolant"] = dict(raw["interpolant"])
+        raw["interpolant"]["end_derivatives"] = [
+            said(repr(x), units[DERIVATIVES[r]], True) for r, x in enumerate(ends)
+        ]
+
+
+def _problems(
+    rng: Rng, raw: dict[str, Any], asked: Asked, labels: tuple[str, ...]
+) -> list[dict[str, Any]]:
+    if rng.random() < 0.6:
+        return []
+    made: list[dict[str, Any]] = [{"id": "p-1", "title": "first", "where": "s. 1"}]
+    second: dict[str, Any] = {"id": "p.2", "why": "slower"}
+    second["limits"] = {"velocity": Bare(f"{rng.uniform(20, 90):.3g}")}
+    if len(labels) > 1 and asked.family != "clamped-b-spline" and rng.random() < 0.5:
+        second["joints"] = [labels[-1]]
+    return [*made, second]
+
+
+def _readings(rng: Rng, raw: dict[str, Any], asked: Asked) -> list[dict[str, Any]]:
+    if rng.random() < 0.5:
+        return []
+    made: list[dict[str, Any]] = [{"id": "as-is", "why": "as printed"}]
+    for kind in rng.permutation(["units", "limits", "durations", "curve", "coupling"])[:2]:
+        own: dict[str, Any] = {"id": f"r.{kind}", "why": f"another {kind}"}
+        match kind:
+            case "units":
+                key = str(rng.choice(["velocity", "acceleration"]))
+                other = [u for u in UNITS[key] if u != raw["units"][key]]
+                own["units"] = {key: other[0]}
+            case "limits":
+                own["limits"] = {"acceleration": f"{rng.uniform(30, 90):.3g}", "jerk": Bare("inf")}
+            case "durations":
+                own["durations"] = {"lower": Bare("0"), "upper": Bare("inf")}
+            case "curve" if segments_of(asked.block, 9) == 8:
+                family = rng.choice(["jtraj", "cubic-spline", "uniform-cubic-b-spline"])
+                own["interpolant"] = {"family": str(family)}
+                if family == "uniform-cubic-b-spline":
+                    own["interpolant"]["time"] = "timed"
+            case _:
+                own["coupling"] = str(rng.choice(["shared", "per-joint"]))
+        made.append(own)
+    made[int(rng.integers(len(made)))]["default"] = True
+    return made
+
+
+def _claims(rng: Rng, raw: dict[str, Any], asked: Asked, problem: str | None) -> None:
+    """One claim of each quantity, some of them; and what they refer to."""
+    try:
+        h = near_limits(rng, asked, 1.0, float(rng.choice([0.7, 1.0, 1.4])))
+    except NoCurve:
+        h = np.ones(asked.segments)
+    h = h / FACTORS[raw["units"]["time"]]
+    raw["algorithms"] = []
+    if rng.random() < 0.5:
+        kind = str(rng.choice(list(SEARCHES)))
+        own = {"id": "search", "name": "S", "kind": kind, "settings": SEARCHES[kind]}
+        raw["algorithms"].append(own | {"open": ["seed"]})
+    places = int(rng.integers(1, 7))
+    common: dict[str, Any] = {"where": "Table 1", "problem": problem}
+    if raw["algorithms"]:
+        common["algorithm"] = "search"
+    claims: list[dict[str, Any]] = []
+    for name, factor in (("d-1", 1.0), ("d-2", 1.1)):
+        durations = [_digits(x * factor, places) for x in h]
+        claims.append({"id": name, "quantity": "durations", **common, "durations": durations})
+        if rng.random() < 0.5:
+            claims[-1]["total"] = _digits(sum(map(float, durations)), places)
+    drawn = rng.permutation(CLAIMS)[: rng.integers(len(CLAIMS) + 1)]
+    for quantity in drawn:
+        if quantity != "durations":
+            claims.append({"id": f"c-{quantity}".replace("_", "-"), "quantity": str(quantity)})
+            claims[-1] |= common | _claim(rng, str(quantity), raw, claims, h)
+    if rng.random() < 0.3:
+        raw["tables"] = [{"id": "t", "where": "Table 1", "title": "Times"}]
+        claims[0]["table"] = "t"
+    raw["claims"] = claims
+    if rng.random() < 0.3:
+        raw["assumptions"] = [
+            {"id": "as", "text": "open", "choice": "closed", "affects": ["limits", "d-1"]}
+        ]
+        raw["not_checkable"] = [{"id": "n", "where": "F. 1", "what": "plot", "why": "blurred"}]
+        raw["columns"] = [{"id": "col", "where": "T", "unit": "-", "values": ["1", "2.50"]}]
+
+
+def _claim(
+    rng: Rng, quantity: str, raw: dict[str, Any], claims: list[dict[str, Any]], h: Array
+) -> dict[str, Any]:
+    joints, points = len(raw["robot"]["joints"]), _points(raw)
+    match quantity:
+        case "maximum":
+            longest = [max(a, b, key=float) for a, b in _pairs(claims)]
+            return {"of": ["d-1", "d-2"], "durations": longest}
+        case "total_time":
+            return {"value": f"{h.sum():.3g}"}
+        case "improvement":
+            return {"slower": "d-2", "faster": "d-1", "percent": "9.1"}
+        case "peak":
+            key = str(rng.choice(DERIVATIVES))
+            return {"derivative": key, "value": f"{10 ** rng.uniform(-1, 2):.3g}"}
+        case "convergence":
+            return {"iterations": Bare("30")}
+        case "control_vertices":
+            rows = rng.normal(size=(joints, points + 2))
+            return {"joint_rows": [[f"{x:.2f}" for x in row] for row in rows]}
+        case "conditions":
+            own = {"rest_at": "ends", "orders": [1, 2], "degrees": [3, 5, 3], "count": Bare("14")}
+            return own
+    checks = str(rng.choice(_WORDS))
+    return {"checks": checks} | (
+        {"not_checkable": "a word"} if checks == "none" else {"of": ["d-1"]}
+    )
+
+
+def _pairs(claims: list[dict[str, Any]]) -> list[tuple[str, str]]:
+    return list(zip(claims[0]["durations"], claims[1]["durations"], strict=True))
+
+
+def _digits(value: float, places: int) -> str:
+    """The value as a paper might print it: fixed places, but never 0."""
+    text = f"{value:.{places}f}"
+    return text if float(text) > 0 and len(text) < 60 else f"{value:.3e}"
+
+
+def _points(raw: dict[str, Any]) -> int:
+    way = raw["waypoints"]
+    return len(way["joint_rows"][0]) if "joint_rows" in way else len(way["waypoint_rows"])
+
+
+def asked_of(raw: dict[str, Any], problem: str, reading: str) -> Asked:
+    """What a case file asks under a problem and a reading, read a second time."""
+    layers = [raw]
+    for key, name in (("problems", problem), ("readings", reading)):
+        layers += [block for block in raw.get(key, []) if block["id"] == name]
+    units: dict[str, str] = {}
+    limits: dict[str, Any] = {}
+    bounds: dict[str, Any] = {}
+    block, coupling, taken = raw["interpolant"], "shared", raw["robot"]["joints"]
+    for layer in layers:
+        units |= layer.get("units", {})
+        limits |= layer.get("limits", {})
+        bounds |= layer.get("durations", {})
+        block = layer.get("interpolant", block)
+        coupling = layer.get("coupling", coupling)
+        taken = layer.get("joints", taken)
+    way = raw["waypoints"]
+    rows = way.get("joint_rows") or [list(c) for c in zip(*way["waypoint_rows"], strict=True)]
+    own = {key: FACTORS[unit.split("/")[0]] for key, unit in units.items()}
+    labels = raw["robot"]["joints"]
+    columns = [j for j, label in enumerate(labels) if label in taken]
+    points = np.array([[float(x) for x in row] for row in rows]).T * own["position"]
+    segments = segments_of(block, len(points))
+
+    def each(values: Any, count: int, default: float, factor: float) -> Array:
+        if values is None:
+            return np.full(count, default)
+        if not isinstance(values, list):
+            values = [values] * count
+        return np.array([float(x) for x in values]) * factor
+
+    def limit(key: str, default: float) -> Array:
+        unit = own["position" if key.startswith("position") else key]
+        return each(limits.get(key), len(labels), default, unit)[columns]
+
+    orders = block.get("end_orders", [1] if block["family"] == "cubic-spline" else [1, 2])
+    values = block.get("end_derivatives", [])
+    ends = {r: float(x) * own[DERIVATIVES[r - 1]] for r, x in zip(orders, values, strict=False)}
+    return Asked(
+        block,
+        points[:, columns],
+        limit("velocity", np.inf),
+        limit("acceleration", np.inf),
+        limit("jerk", np.inf),
+        limit("position_lower", -np.inf),
+        limit("position_upper", np.inf),
+        each(bounds.get("lower"), segments, 0.0, own["time"]),
+        each(bounds.get("upper"), segments, np.inf, own["time"]),
+        tuple(labels[j] for j in columns),
+        coupling,
+        ends,
+    )

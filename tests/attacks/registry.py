@@ -1,0 +1,14 @@
+"""Every attack, in the order of the table."""
+
+from __future__ import annotations
+
+from attacks import faults, judging, optima, proofs, reading
+from attacks.attack import Attack
+
+ATTACKS: tuple[Attack, ...] = (
+    *reading.ATTACKS,
+    *judging.ATTACKS,
+    *optima.ATTACKS,
+    *proofs.ATTACKS,
+    *faults.ATTACKS,
+)

@@ -1,0 +1,300 @@
+"""Commands and functions run in a forked child: bounded in processor time and memory, watched.
+
+The parent has everything imported and compiled, so that a command costs what it does and not the
+seconds that Python takes to start. Signals, pipes and limits are those of a process of its own.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import io
+import os
+import pickle
+import resource
+import selectors
+import signal
+import sys
+import time
+import traceback
+import types
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+MEMORY_MB = 2048
+"""What a child may take on top of its parent: far above what a case of 5 MB needs."""
+SECONDS = 60.0
+"""Processor time of a child, unless the attack says otherwise."""
+_WALL = 8.0
+"""Seconds on the clock for each second of processor time, before it counts as hanging."""
+_GRACE = 5.0
+"""Seconds that processes started by a child may outlive it: they notice by a closed pipe."""
+_PASS_MODES = 0b1110
+"""CAP_DAC_OVERRIDE, CAP_DAC_READ_SEARCH and CAP_FOWNER as bits."""
+_FAILED = 99
+"""Exit code of a child whose function raised."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What is done to a child while it runs.
+
+    ``signal`` is sent ``after`` seconds from the start; with ``to_worker`` it goes to a process
+    that the child has started. ``largest_file`` limits every file that it writes, in bytes, and
+    ``without_rights`` takes its rights to write what it does not own.
+    """
+
+    signal: int | None = None
+    after: float = 0.0
+    to_worker: bool = False
+    largest_file: int | None = None
+    without_rights: bool = False
+    close_output: bool = False
+
+
+@dataclass(frozen=True)
+class Ended:
+    """How a child ended.
+
+    ``code`` is its exit code, or minus the signal; ``late`` says that it had to be stopped.
+    """
+
+    code: int
+    out: str
+    err: str
+    value: Any
+    seconds: float
+    processor: float
+    late: bool
+    signalled: bool
+    leftover: bool
+    """Whether processes that it had started outlived it."""
+
+    @property
+    def last(self) -> str:
+        """The last line on standard error."""
+        return self.err.rstrip("\n").rpartition("\n")[2]
+
+
+def available() -> bool:
+    """Whether children can be forked and watched here."""
+    return sys.platform == "linux"
+
+
+def call(
+    function: Callable[[], Any], seconds: float = SECONDS, memory_mb: int = MEMORY_MB
+) -> Ended:
+    """Run a function; its value is pickled back."""
+    return _forked(function, Plan(), seconds, memory_mb, None)
+
+
+def command(
+    arguments: Sequence[str],
+    folder: Path,
+    seconds: float = SECONDS,
+    memory_mb: int = MEMORY_MB,
+    plan: Plan | None = None,
+    environment: Mapping[str, str] | None = None,
+) -> Ended:
+    """Run ``trajgap`` with these arguments in a folder."""
+
+    def run() -> int:
+        from trajgap.compare.cli import main
+
+        os.environ.update(environment or {})
+        sys.argv = ["trajgap", *arguments]
+        # Workers import what the main module is: here it is the command and not the runner.
+        sys.modules["__main__"] = types.ModuleType("__main__")
+        return main()
+
+    return _forked(run, plan or Plan(), seconds, memory_mb, folder)
+
+
+def _forked(
+    function: Callable[[], Any], plan: Plan, seconds: float, memory_mb: int, folder: Path | None
+) -> Ended:
+    pipes = [os.pipe() for _ in range(3)]
+    for stream in (sys.stdout, sys.stderr):
+        stream.flush()
+    began = time.monotonic()
+    with warnings.catch_warnings():
+        # Other threads of the parent may be alive; none of them holds a lock that a child needs.
+        warnings.simplefilter("ignore", DeprecationWarning)
+        pid = os.fork()
+    if pid == 0:
+        for own, _ in pipes:
+            os.close(own)
+        _child(function, plan, seconds, memory_mb, folder, [other for _, other in pipes])
+    for _, other in pipes:
+        os.close(other)
+    return _watched(pid, [own for own, _ in pipes], plan, began, seconds * _WALL)
+
+
+def _child(
+    function: Callable[[], Any],
+    plan: Plan,
+    seconds: float,
+    memory_mb: int,
+    folder: Path | None,
+    pipes: Sequence[int],
+) -> None:
+    code = _FAILED
+    try:
+        os.setsid()
+        os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+        os.dup2(pipes[0], 1)
+        os.dup2(pipes[1], 2)
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
+        for name, number in (("stdin", 0), ("stdout", 1), ("stderr", 2)):
+            mode = "r" if number == 0 else "w"
+            stream = io.TextIOWrapper(open(number, f"{mode}b", closefd=False), "utf-8")  # noqa: SIM115
+            setattr(sys, name, stream)
+            setattr(sys, f"__{name}__", stream)
+        if folder is not None:
+            os.chdir(folder)
+        _limited(plan, seconds, memory_mb)
+        value = function()
+        sys.stdout.flush()
+        sys.stderr.flush()
+        if folder is not None:
+            code = value
+        else:
+            with os.fdopen(pipes[2], "wb") as back:
+                pickle.dump(value, back)
+            code = 0
+    except BaseException:
+        traceback.print_exc()
+        sys.stderr.flush()
+    finally:
+        os._exit(code)
+
+
+def _limited(plan: Plan, seconds: float, memory_mb: int) -> None:
+    pages = int(Path("/proc/self/statm").read_text().split()[0])
+    room = pages * resource.getpagesize() + memory_mb * 2**20
+    resource.setrlimit(resource.RLIMIT_AS, (room, room))
+    whole = int(seconds) + 1
+    resource.setrlimit(resource.RLIMIT_CPU, (whole, whole + 5))
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    if plan.largest_file is not None:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (plan.largest_file, plan.largest_file))
+    if plan.without_rights and os.geteuid() == 0:
+        _drop_rights()
+
+
+def _drop_rights() -> None:
+    """Take from root, in this process, what lets it pass the modes of files (capset(2))."""
+    libc = ctypes.CDLL(None, use_errno=True)
+    version, this_process = 0x20080522, 0
+    header = (ctypes.c_uint32 * 2)(version, this_process)
+    # Effective, permitted, inheritable; the lower 32 capabilities, then the upper.
+    sets = (ctypes.c_uint32 * 6)()
+    if libc.capget(header, sets):
+        raise OSError(ctypes.get_errno(), "capget")
+    for which in (0, 1):
+        sets[which] &= ~_PASS_MODES
+    if libc.capset(header, sets):
+        raise OSError(ctypes.get_errno(), "capset")
+
+
+def _watched(pid: int, pipes: list[int], plan: Plan, began: float, wall: float) -> Ended:
+    seen: dict[int, list[bytes]] = {fd: [] for fd in pipes}
+    due = [] if plan.signal is None else [began + plan.after]
+    late = signalled = False
+    with selectors.DefaultSelector() as ready:
+        for fd in pipes:
+            ready.register(fd, selectors.EVENT_READ)
+        if plan.close_output:
+            ready.unregister(pipes[0])
+            os.close(pipes[0])
+        while ready.get_map():
+            now = time.monotonic()
+            if due and now >= due[0]:
+                signalled = _send(pid, plan)
+                # A worker may not have been started yet.
+                due = [] if signalled or not plan.to_worker else [now + 0.02]
+            if now - began > wall:
+                late = True
+                _sweep(pid)
+            if os.waitid(os.P_PID, pid, os.WEXITED | os.WNOHANG | os.WNOWAIT) is not None:
+                # Whatever it left running keeps the pipes open: they are read out and left.
+                for key, _ in ready.select(0.05):
+                    chunk = os.read(key.fd, 1 << 20)
+                    seen[key.fd].append(chunk)
+                    if not chunk:
+                        ready.unregister(key.fd)
+                if not ready.select(0.0):
+                    break
+                continue
+            next_due = min([0.2, *(max(0.0, x - now) for x in due)])
+            for key, _ in ready.select(next_due):
+                chunk = os.read(key.fd, 1 << 20)
+                seen[key.fd].append(chunk)
+                if not chunk:
+                    ready.unregister(key.fd)
+    _, status, usage = os.wait4(pid, 0)
+    seconds = time.monotonic() - began
+    leftover = not _gone(pid) and _sweep(pid)
+    for fd in pipes:
+        if not (plan.close_output and fd == pipes[0]):
+            os.close(fd)
+    out, err, value = (b"".join(seen[fd]) for fd in pipes)
+    return Ended(
+        os.waitstatus_to_exitcode(status),
+        out.decode("utf-8", "replace"),
+        err.decode("utf-8", "replace"),
+        pickle.loads(value) if value else None,
+        seconds,
+        usage.ru_utime + usage.ru_stime,
+        late,
+        signalled,
+        leftover,
+    )
+
+
+def _send(pid: int, plan: Plan) -> bool:
+    assert plan.signal is not None
+    target: int | None = pid
+    if plan.to_worker:
+        target = next(iter(_workers(pid)), None)
+    if target is None:
+        return False
+    try:
+        os.kill(target, plan.signal)
+    except ProcessLookupError:
+        return False
+    return True
+
+
+def _workers(pid: int) -> list[int]:
+    """Processes that a child computes in; the one that keeps account of semaphores is none."""
+    try:
+        children = Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
+        lines = {c: Path(f"/proc/{c}/cmdline").read_bytes() for c in children}
+    except OSError:
+        return []
+    return [int(c) for c, line in lines.items() if b"spawn_main" in line]
+
+
+def _gone(pid: int) -> bool:
+    """Wait a little for what a child has started to end by itself."""
+    end = time.monotonic() + _GRACE
+    while time.monotonic() < end:
+        try:
+            os.killpg(pid, 0)
+        except ProcessLookupError:
+            return True
+        time.sleep(0.02)
+    return False
+
+
+def _sweep(pid: int) -> bool:
+    """End what is left of a child's session; whether there was anything."""
+    try:
+        os.killpg(pid, signal.SIGKILL)
+    except ProcessLookupError:
+        return False
+    return True

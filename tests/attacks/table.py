@@ -1,0 +1,102 @@
+"""What was tried and held, as rows of a CSV and as the table of the documentation."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Sequence
+from dataclasses import astuple, dataclass, fields
+from pathlib import Path
+
+from attacks.attack import Attack
+from attacks.run import Account
+
+ROOT = Path(__file__).parents[2]
+CSV = ROOT / "docs" / "attacks.csv"
+PAGE = ROOT / "docs" / "attacks.md"
+BEGIN, END = "<!-- attacks: begin -->", "<!-- attacks: end -->"
+"""Between these lines of the page stands the table."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """One attack of one long run."""
+
+    attack: str
+    trials: int
+    held: int
+    not_judged: int
+    failures: int
+    seconds: int
+    seed: int
+    outcomes: str
+    """How often each word was seen."""
+
+
+def rows_of(accounts: Sequence[Account], seed: int) -> list[Row]:
+    """Rows of a run, in the order of the attacks."""
+    return [
+        Row(
+            a.attack.name,
+            a.tried,
+            a.held,
+            a.undecided,
+            len(a.broken),
+            round(a.seconds),
+            seed,
+            "; ".join(f"{word} {n}" for word, n in a.words.most_common()),
+        )
+        for a in accounts
+    ]
+
+
+def csv_text(rows: Sequence[Row]) -> str:
+    """The rows as CSV, with a header."""
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow([field.name for field in fields(Row)])
+    writer.writerows(map(astuple, rows))
+    return out.getvalue()
+
+
+def read_rows(text: str) -> list[Row]:
+    """The rows of a CSV that `csv_text` has written."""
+    whole = {"trials", "held", "not_judged", "failures", "seconds", "seed"}
+    return [
+        Row(**{key: int(x) if key in whole else x for key, x in line.items()})
+        for line in csv.DictReader(io.StringIO(text))
+    ]
+
+
+def table(rows: Sequence[Row], attacks: Sequence[Attack]) -> str:
+    """The table of the page, the command that made it above."""
+    by_name = {attack.name: attack for attack in attacks}
+    seconds, seeds = sum(r.seconds for r in rows), sorted({r.seed for r in rows})
+    lines = [
+        f"`{command_of(seconds, seeds[0])}`, {sum(r.trials for r in rows):,} trials, "
+        f"{sum(r.failures for r in rows)} failures:",
+        "",
+        "| attack | what is tried | what must hold | trials | held | not judged | failures |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    for row in rows:
+        attack = by_name[row.attack]
+        cells = (row.attack, attack.tries, attack.holds, *astuple(row)[1:5])
+        lines.append("| " + " | ".join(f"{x:,}" if isinstance(x, int) else x for x in cells) + " |")
+    return "\n".join(lines)
+
+
+def command_of(seconds: int, seed: int) -> str:
+    """The command of a run, its seconds rounded to whole minutes."""
+    minutes = max(1, round(seconds / 60))
+    run = f"python tests/attacks --seconds {60 * minutes} --seed {seed}"
+    return f"{run} --write docs/attacks.csv"
+
+
+def page_with(text: str, new: str) -> str:
+    """The page with another table between its markers."""
+    before, begin, rest = text.partition(BEGIN)
+    _, end, after = rest.partition(END)
+    if not begin or not end:
+        raise ValueError(f"{PAGE.name}: the markers {BEGIN} and {END} are missing; add them")
+    return f"{before}{begin}\n{new}\n{end}{after}"

@@ -1,0 +1,253 @@
+"""Each attack finds a fault planted for it: trials fork, so that a child has the fault too."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import trajgap.compare.audits
+import trajgap.nlp
+import trajgap.problem
+from trajgap.compare.cli import commands, output
+from trajgap.nlp.optimum import Status
+from trajgap.problem import Verdict
+
+from attacks import faults
+from attacks.attack import Broken
+from attacks.reading import hold_together
+from attacks.registry import ATTACKS
+from attacks.run import Account, tried, warm
+from attacks.sandbox import available
+
+pytestmark = pytest.mark.skipif(not available(), reason="children are forked and watched on Linux")
+
+Patch = pytest.MonkeyPatch
+CHECK = trajgap.problem.check
+PARSE = trajgap.problem.parse_case
+SOLVE = trajgap.nlp.solve
+
+
+@pytest.fixture(autouse=True)
+def _warm() -> Iterator[None]:
+    warm()
+    yield
+    # How long a command takes with a fault planted is not how long it takes.
+    faults._usual.cache_clear()
+
+
+def check_passes(patch: Patch) -> None:
+    def check(*given: Any) -> Any:
+        return replace(CHECK(*given), verdict=Verdict.PASS, limits=Verdict.PASS)
+
+    patch.setattr(trajgap.problem, "check", check)
+
+
+def check_violates(patch: Patch) -> None:
+    def check(*given: Any) -> Any:
+        return replace(CHECK(*given), verdict=Verdict.VIOLATED, limits=Verdict.VIOLATED)
+
+    patch.setattr(trajgap.problem, "check", check)
+
+
+def peaks_one_per_mille_low(patch: Patch) -> None:
+    def check(*given: Any) -> Any:
+        found = CHECK(*given)
+        return replace(found, peaks=tuple(replace(p, value=0.999 * p.value) for p in found.peaks))
+
+    patch.setattr(trajgap.problem, "check", check)
+
+
+def joint_one_by_a_second(patch: Patch) -> None:
+    def check(problem: Any, h: Any) -> Any:
+        found = CHECK(problem, h)
+        factor = 1 + 1e-3 * float(np.sum(h)) + 1e-3 * abs(float(problem.waypoints[0, 0]))
+        return replace(found, peaks=tuple(replace(p, ratio=factor * p.ratio) for p in found.peaks))
+
+    patch.setattr(trajgap.problem, "check", check)
+
+
+def degrees_a_little_off(patch: Patch) -> None:
+    class Read:
+        def __init__(self, case: Any, off: bool) -> None:
+            self.case, self.off = case, off
+            self.selections = case.selections
+
+        def problem(self, *pair: str) -> Any:
+            problem = self.case.problem(*pair)
+            way = problem.waypoints * (1 + 1e-4 * self.off)
+            return replace(problem, waypoints=way)
+
+    def parse(text: str, file: str) -> Any:
+        return Read(PARSE(text, file), '"deg"' in text)
+
+    patch.setattr(trajgap.problem, "parse_case", parse)
+
+
+def everything_breaks(patch: Patch) -> None:
+    judge = trajgap.compare.audits.judge_rounding
+
+    def judged(*given: Any) -> Any:
+        return replace(judge(*given), verdict="breaks")
+
+    patch.setattr(trajgap.compare.audits, "judge_rounding", judged)
+
+
+def one_per_mille_long(patch: Patch) -> None:
+    def solve(problem: Any, **options: Any) -> Any:
+        answer = SOLVE(problem, **options)
+        longer = None if answer.durations is None else answer.durations * 1.001
+        infimum = None if answer.infimum is None else answer.infimum * 1.001
+        return replace(answer, durations=longer, infimum=infimum)
+
+    patch.setattr(trajgap.nlp, "solve", solve)
+
+
+def all_infeasible(patch: Patch) -> None:
+    def solve(problem: Any, **options: Any) -> Any:
+        return replace(SOLVE(problem, **options), status=Status.INFEASIBLE, durations=None)
+
+    patch.setattr(trajgap.nlp, "solve", solve)
+
+
+def a_fault(patch: Patch) -> None:
+    def fail(*_: Any, **__: Any) -> int:
+        raise ZeroDivisionError
+
+    for name in ("show", "check_durations", "solve_case", "audit_cases"):
+        patch.setattr(commands, name, fail)
+
+
+def two_lines(patch: Patch) -> None:
+    from trajgap.compare.cli import app
+
+    fail = app._fail
+    patch.setattr(app, "_fail", lambda message, code: fail("one", code) and fail(message, code))
+
+
+def files_by_and_by(patch: Patch) -> None:
+    @contextmanager
+    def new_file(path: Path | None, field: str = "--out") -> Iterator[Callable[[str], None]]:
+        def write(text: str) -> None:
+            if path is not None:
+                for half in (text[: len(text) // 2], text):
+                    path.write_text(half)
+                    time.sleep(0.3)
+
+        yield write
+
+    patch.setattr(commands, "new_file", new_file)
+    patch.setattr("trajgap.compare.cli.scaffolding.new_file", new_file)
+
+
+def drafts_stay(patch: Patch) -> None:
+    patch.setattr("trajgap.compare.cli.interrupt._remove", lambda path: None)
+
+
+def writing_raises(patch: Patch) -> None:
+    @contextmanager
+    def writing(name: str, field: str) -> Iterator[None]:
+        try:
+            yield
+        except OSError as error:
+            raise RuntimeError from error
+
+    patch.setattr(output, "_writing", writing)
+
+
+def trees_are_not_walked(patch: Patch) -> None:
+    patch.setattr("trajgap.verify.certificate.walk", lambda kind, tree, clock: None)
+
+
+def leaves_are_not_proved(patch: Patch) -> None:
+    patch.setattr("trajgap.verify.three_piece._covers", lambda *_: True)
+    patch.setattr("trajgap.verify.closed_form.need", lambda *_: None)
+    patch.setattr("trajgap.verify.any_curve.need", lambda *_: None)
+
+
+def answers_are_not_looked_at(patch: Patch) -> None:
+    patch.setattr("trajgap.verify.certificate.check_answer", lambda *_: None)
+
+
+def the_verifier_raises(patch: Patch) -> None:
+    def fail(*_: Any) -> None:
+        raise AssertionError
+
+    patch.setattr("trajgap.verify.certificate.walk", fail)
+
+
+def the_clock_stands(patch: Patch) -> None:
+    def slowly(kind: Any, tree: Any, clock: Any) -> None:
+        end = time.process_time() + 4
+        while time.process_time() < end:
+            pass
+
+    patch.setattr("trajgap.verify.certificate.walk", slowly)
+
+
+PLANTED: list[tuple[str, Callable[[Patch], None], int]] = [
+    ("verdicts", check_passes, 20),
+    ("verdicts", check_violates, 20),
+    ("peaks", peaks_one_per_mille_low, 10),
+    ("identities", joint_one_by_a_second, 20),
+    ("units", degrees_a_little_off, 20),
+    ("readings", degrees_a_little_off, 20),
+    ("rounding boxes", everything_breaks, 20),
+    ("optima", one_per_mille_long, 6),
+    ("optima", all_infeasible, 6),
+    ("tight duration bounds", all_infeasible, 6),
+    ("damaged case files", a_fault, 40),
+    ("damaged case files", two_lines, 10),
+    ("bytes that are no case file", two_lines, 10),
+    ("valid case files", a_fault, 2),
+    ("certificates", trees_are_not_walked, 40),
+    ("certificates", leaves_are_not_proved, 60),
+    ("certificates", answers_are_not_looked_at, 60),
+    ("certificates", the_verifier_raises, 20),
+    ("certificates", the_clock_stands, 10),
+    ("forged proofs", trees_are_not_walked, 20),
+    ("states", trees_are_not_walked, 60),
+    ("killed", files_by_and_by, 12),
+    ("interrupted", drafts_stay, 8),
+    ("full disk", writing_raises, 6),
+    ("no rights", writing_raises, 6),
+]
+"""Attack, fault, and the trials within which it must be found."""
+
+
+@pytest.mark.parametrize(
+    ("name", "plant", "trials"), PLANTED, ids=[f"{n}: {p.__name__}" for n, p, _ in PLANTED]
+)
+def test_a_planted_fault_is_found(
+    name: str, plant: Callable[[Patch], None], trials: int, monkeypatch: Patch
+) -> None:
+    account = Account(next(a for a in ATTACKS if a.name == name))
+    monkeypatch.setattr(faults, "WORKS", {key: faults.WORKS[key] for key in faults.QUICK})
+    plant(monkeypatch)
+    faults._usual.cache_clear()
+    for number in range(trials):
+        tried(account, 11, number)
+        if account.broken:
+            return
+    raise AssertionError(f"{trials} trials hold: {account.words}")
+
+
+@pytest.mark.parametrize(
+    ("page", "why"),
+    [
+        ('<p id="a"></p><p id="a"></p>', "stand twice"),
+        ('<a href="#b"></a>', "which is not there"),
+        ("\u202e", "control characters"),
+    ],
+)
+def test_a_faulty_page_is_found(tmp_path: Path, page: str, why: str) -> None:
+    (tmp_path / "audit.json").write_text('{"cases": [{"case": "c"}]}')
+    (tmp_path / "c.md").write_text("plain")
+    (tmp_path / "c.html").write_text(page, encoding="utf-8")
+    with pytest.raises(Broken, match=why):
+        hold_together(tmp_path)
