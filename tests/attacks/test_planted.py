@@ -14,7 +14,7 @@ import pytest
 import trajgap.compare.audits
 import trajgap.nlp
 import trajgap.problem
-from trajgap.compare.cli import commands, output
+from trajgap.compare.cli import output
 from trajgap.nlp.optimum import Status
 from trajgap.problem import Verdict
 
@@ -119,8 +119,9 @@ def a_fault(patch: Patch) -> None:
     def fail(*_: Any, **__: Any) -> int:
         raise ZeroDivisionError
 
-    for name in ("show", "check_durations", "solve_case", "audit_cases"):
-        patch.setattr(commands, name, fail)
+    names = ("showing.show_case", "checking.check_durations", "solving.solve_case")
+    for name in (*names, "auditing.audit_cases"):
+        patch.setattr(f"trajgap.compare.cli.{name}", fail)
 
 
 def two_lines(patch: Patch) -> None:
@@ -132,21 +133,19 @@ def two_lines(patch: Patch) -> None:
 
 def files_by_and_by(patch: Patch) -> None:
     @contextmanager
-    def new_file(path: Path | None, field: str = "--out") -> Iterator[Callable[[str], None]]:
+    def new_file(path: Path) -> Iterator[Callable[[str], None]]:
         def write(text: str) -> None:
-            if path is not None:
-                for half in (text[: len(text) // 2], text):
-                    path.write_text(half)
-                    time.sleep(0.3)
+            for half in (text[: len(text) // 2], text):
+                path.write_text(half)
+                time.sleep(0.3)
 
         yield write
 
-    patch.setattr(commands, "new_file", new_file)
-    patch.setattr("trajgap.compare.cli.scaffolding.new_file", new_file)
+    patch.setattr(output, "new_file", new_file)
 
 
 def drafts_stay(patch: Patch) -> None:
-    patch.setattr("trajgap.compare.cli.interrupt._remove", lambda path: None)
+    patch.setattr("trajgap.problem.files._remove", lambda path: None)
 
 
 def writing_raises(patch: Patch) -> None:
@@ -161,7 +160,7 @@ def writing_raises(patch: Patch) -> None:
 
 
 def trees_are_not_walked(patch: Patch) -> None:
-    patch.setattr("trajgap.verify.certificate.walk", lambda kind, tree, clock: None)
+    patch.setattr("trajgap.verify.verdict.walk", lambda kind, tree, clock: None)
 
 
 def leaves_are_not_proved(patch: Patch) -> None:
@@ -171,14 +170,14 @@ def leaves_are_not_proved(patch: Patch) -> None:
 
 
 def answers_are_not_looked_at(patch: Patch) -> None:
-    patch.setattr("trajgap.verify.certificate.check_answer", lambda *_: None)
+    patch.setattr("trajgap.verify.verdict.check_answer", lambda *_: None)
 
 
 def the_verifier_raises(patch: Patch) -> None:
     def fail(*_: Any) -> None:
         raise AssertionError
 
-    patch.setattr("trajgap.verify.certificate.walk", fail)
+    patch.setattr("trajgap.verify.verdict.walk", fail)
 
 
 def the_clock_stands(patch: Patch) -> None:
@@ -187,7 +186,7 @@ def the_clock_stands(patch: Patch) -> None:
         while time.process_time() < end:
             pass
 
-    patch.setattr("trajgap.verify.certificate.walk", slowly)
+    patch.setattr("trajgap.verify.verdict.walk", slowly)
 
 
 PLANTED: list[tuple[str, Callable[[Patch], None], int]] = [
