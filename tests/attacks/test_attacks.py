@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from trajgap.problem import parse_case
-from trajgap.problem.cases.claim import QUANTITY_KINDS
 from trajgap.problem.cases import declaration
+from trajgap.problem.cases.claim import QUANTITY_KINDS
 
 from attacks import faults
 from attacks.attack import Attack
