@@ -56,9 +56,7 @@ def nine(value: Fraction, rounding: Callable[[Fraction], int]) -> str:
     return f"{Decimal(rounding(value * 10**9)).scaleb(-9):.9f}"
 
 
-def line(
-    name: str, asked: CertifiedQuestion, exact: ExactProblem, gap: float, seconds: float
-) -> str:
+def line(asked: CertifiedQuestion, exact: ExactProblem, gap: float, seconds: float) -> str:
     """Certify, write, and prove again."""
     name = f"{asked.case}.{asked.problem}.{asked.reading}"
     path = shipped_folder() / f"{name}.any-curve.json"

@@ -196,10 +196,14 @@ def _derivative_peaks(
             if not np.isfinite(limits[j, r - 1]):
                 continue
             points = extrema(trajectory, j, r)
-            bounds = [float(error[e.segment, r, j]) for e in points]
-            i = int(np.argmax([abs(e.value) for e in points]))
+            bounds = np.array([float(error[e.segment, r, j]) for e in points])
+            sizes = np.array([abs(e.value) for e in points])
+            i = int(np.argmax(sizes))
             top = points[i]
-            bound = max(bounds)
+            # The true peak is at least its own extremum less that one's error, and at most the
+            # largest sum of an extremum and its error: a short segment, whose error is large but
+            # whose values are small, does not blur the peak of another.
+            bound = max(float(bounds[i]), float((sizes + bounds).max() - sizes[i]))
             limit = float(limits[j, r - 1])
             ratio = _ratio(top.value, limit, bound)
             at = problem.curve.segment_of(h, top)

@@ -12,7 +12,6 @@ killed just then, the next one that asks for the folder moves it back (`recover_
 
 from __future__ import annotations
 
-import ctypes
 import errno
 import os
 import shutil
@@ -359,6 +358,8 @@ def _exchanged(one: Path, other: Path) -> bool:
     """Exchange the names of two folders in one step; False where the system does not offer it."""
     if not sys.platform.startswith("linux"):
         return False
+    import ctypes
+
     try:
         rename = ctypes.CDLL(None, use_errno=True).renameat2
     except (OSError, AttributeError):

@@ -8,7 +8,6 @@ from enum import StrEnum
 from typing import Any, TypeVar, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...heuristics import (
     KINDS,
@@ -29,8 +28,9 @@ from ...nlp import (
     with_certificate,
     with_certificates,
 )
-from ...nlp.optimum import OPTIMUM_SLACK
+from ...nlp.optimum import OPTIMUM_SLACK, free_values
 from ...problem import (
+    Array,
     Case,
     Check,
     Coupling,
@@ -38,6 +38,7 @@ from ...problem import (
     Problem,
     TrajgapError,
     check,
+    fit,
     reachable_total,
 )
 from ...problem.cases import Claim, DurationsClaim, InstancesBlock, MaximumClaim, TotalTimeClaim
@@ -50,7 +51,6 @@ Pair = tuple[str, str]
 Replays = tuple[Run, ...] | tuple[JointRuns, ...]
 """Runs of one algorithm, one for each seed: of all joints, or of each joint by itself."""
 
-Array = NDArray[np.float64]
 
 SEEDS = 30
 """Seeds of a replay by default: enough for a median and its spread, a minute or so of one core."""
@@ -128,12 +128,39 @@ class Study:
             which = "all joints" if joint is None else f"joint {joint}"
             self._progress(f"{self.case.id}: optimum of {which}, {pid}, {rid}")
             index = None if joint is None else problem.joints.index(joint)
-            found = solve(problem if index is None else problem.joint(index))
+            one = problem if index is None else problem.joint(index)
+            found = solve(one, known=self.known_motions(pid, rid, joint))
             return with_certificate(found, stated_exactly(self.case.statement(pid, rid), index))
 
         if joint is not None and len(self.problem(pid, rid).joints) == 1:
             joint = None
         return self._once(("optimum", pid, rid, joint), compute)
+
+    def known_motions(self, pid: str, rid: str, joint: str | None = None) -> Array:
+        """Durations that the study has anyway, printed and replayed: what keeps is an incumbent.
+
+        Shape (motions, segments), s. Replays are run for the main reading, whose pages show them;
+        of other readings those count that are there.
+        """
+        problem = self.problem(pid, rid)
+        alone = joint if len(problem.joints) > 1 else None
+        found: list[Array] = []
+        for claim in self.case.claims:
+            if not isinstance(claim, DurationsClaim) or claim.problem not in (None, pid):
+                continue
+            if claim.joint == joint or (alone is None and claim.joint in problem.joints[:1]):
+                found.append(self.case.claim_durations(claim, rid).value)
+        for algorithm in self.case.algorithms:
+            key = ("runs", algorithm.id, pid, rid)
+            runs = self.runs(algorithm.id, pid, rid) if rid == self.main_reading else ()
+            for run in runs or cast(Replays, self._kept.get(key, ())):
+                if alone is None:
+                    found.append(run.durations)
+                elif isinstance(run, JointRuns):
+                    found.append(run.runs[problem.joints.index(alone)].durations)
+        usable = [h for h in found if h.shape == (problem.segments,) and np.isfinite(h).all()]
+        positive = [h for h in usable if (h > 0).all()]
+        return np.array(positive).reshape(-1, problem.segments)
 
     def per_joint(self, pid: str, rid: str) -> PerJointSolution:
         """Each joint by itself, with the ranges within half a printed digit and 1e-6 s."""
@@ -141,7 +168,9 @@ class Study:
         def compute() -> PerJointSolution:
             self._progress(f"{self.case.id}: each joint by itself, {pid}, {rid}")
             slacks = dict.fromkeys((*self.half_digits(pid, rid), OPTIMUM_SLACK))
-            found = solve_per_joint(self.problem(pid, rid), slacks=tuple(slacks))
+            problem = self.problem(pid, rid)
+            known = {label: self.known_motions(pid, rid, label) for label in problem.joints}
+            found = solve_per_joint(problem, slacks=tuple(slacks), known=known)
             return with_certificates(found, self.case.statement(pid, rid))
 
         return self._once(("per joint", pid, rid), compute)
@@ -162,20 +191,26 @@ class Study:
 
         def compute() -> Solution:
             problem = self.problem(pid, rid)
-            given = problem.curve
-            if not isinstance(given, Interpolant):
+            given = problem.curve.piecewise
+            if given is None:
                 why = "only a declared piecewise polynomial is a member of its relaxed family"
                 return Solution(problem, Status.FAILED, why)
             self._progress(f"{self.case.id}: relaxed family, {pid}, {rid}")
             inner = problem.segments - 1
-            relaxed = Interpolant(
+            family = Interpolant(
                 tuple(max(5, degree) for degree in given.degrees),
                 (2,) * inner,
                 (given.prescribed[0], *((),) * inner, given.prescribed[-1]),
                 virtual=given.virtual,
                 name="relaxed family",
             )
-            return solve(replace(problem, curve=relaxed, coupling=Coupling.SHARED))
+            relaxed = replace(problem, curve=family, coupling=Coupling.SHARED)
+            member = self.optimum(pid, rid)
+            if member.durations is None or given.free:
+                return solve(relaxed)
+            curve = fit(given, problem.waypoints, member.durations)
+            nodal = free_values(family, curve)[None]
+            return solve(relaxed, known=member.durations, known_nodal=nodal)
 
         return self._once(("relaxed", pid, rid), compute)
 

@@ -9,7 +9,7 @@ import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from importlib.resources import files
+from importlib.resources import files as resources
 from pathlib import Path
 from types import FrameType
 from typing import Any
@@ -192,7 +192,7 @@ def _stated(case: Case, one: Posed, coupling: Coupling) -> Iterator[Question]:
 def _hash(case: Case) -> str | None:
     """SHA-256 of a case file; None if it cannot be read any more."""
     published = case.file in published_ids()
-    path = files(_PUBLISHED) / f"{case.file}.toml" if published else Path(case.file)
+    path = resources(_PUBLISHED) / f"{case.file}.toml" if published else Path(case.file)
     try:
         return hashlib.sha256(path.read_bytes()).hexdigest()
     except OSError:

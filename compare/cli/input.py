@@ -8,9 +8,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...problem import Case, CaseError, Printed, Problem, TrajgapError, load_case, to_si
+from ...problem import Array, Case, CaseError, Printed, Problem, TrajgapError, load_case, to_si
 from ..audits import RoundingBox
 
 
@@ -170,7 +169,7 @@ def waypoint_box(case: Case, posed: Posed) -> RoundingBox:
 def one_joint(box: RoundingBox, joint: int) -> RoundingBox:
     """The column of one joint."""
 
-    def column(array: NDArray[np.float64]) -> NDArray[np.float64]:
+    def column(array: Array) -> Array:
         return array[:, joint : joint + 1]
 
     return RoundingBox(column(box.value), column(box.lower), column(box.upper))

@@ -17,7 +17,7 @@ from ...nlp import (
 )
 from ...nlp.optimum import OPTIMUM_SLACK
 from ...nlp.retiming import Retiming, retime
-from ...problem import Case, ClockedTrajectory, Coupling, fit
+from ...problem import Case, Coupling, fit
 from ..audits import Study
 from ..documents import (
     Answer,
@@ -80,7 +80,7 @@ def _retimed(answer: Solution) -> Retiming | str:
     if answer.durations is None:
         return "no durations, so no path"
     trajectory = fit(problem.curve, problem.waypoints, answer.durations, answer.nodal)
-    if isinstance(trajectory, ClockedTrajectory):
+    if not trajectory.polynomial_in_time:
         return "time is not linear in the curve's parameter: its path is no polynomial in time"
     return retime(trajectory, problem.limits)
 

@@ -1,4 +1,5 @@
 from .audited import AuditDocument, AuditedCase
+from .case_shown import ShowDocument, show_document
 from .certified import CertifiedResult, CertifyDocument, certify_result
 from .checked import (
     BrokenPlace,
@@ -23,7 +24,6 @@ from .instances import (
     Totals,
 )
 from .listed import CasesDocument, ListedCase, cases_document
-from .shown import ShowDocument, show_document
 from .side_by_side import Excess, Fit, ReadingOutcome, ReadingsSummary, Tally
 from .solved import ActiveLimit, Answer, SolvedJoint, SolveDocument, SolveResult, solve_result
 from .verified import (

@@ -11,11 +11,11 @@ from typing import Any
 from pydantic.json_schema import GenerateJsonSchema, models_json_schema
 
 from .audited import AuditDocument
+from .case_shown import ShowDocument
 from .certified import CertifyDocument
 from .checked import CheckDocument
 from .entry import SCHEMA, Document, Why
 from .listed import CasesDocument
-from .shown import ShowDocument
 from .solved import SolveDocument
 from .verified import VerifyDocument
 from .vocabulary import RULES, VOCABULARY, Words, meaning, meanings

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...problem import Array
+
 SETTLED = 1e-3
 """A run counts as converged when its best-so-far is within this share of its final total."""
 
@@ -28,7 +30,7 @@ class Spread:
         return text + (f", {self.failed} of {self.runs} without answer" if self.failed else "")
 
 
-def spread(totals: NDArray[np.float64]) -> Spread:
+def spread(totals: Array) -> Spread:
     """Spread of the totals of one algorithm over its seeds.
 
     Parameters
@@ -52,9 +54,7 @@ def spread(totals: NDArray[np.float64]) -> Spread:
     )
 
 
-def share_of_pairs(
-    slower: NDArray[np.float64], faster: NDArray[np.float64], reduction: float
-) -> float:
+def share_of_pairs(slower: Array, faster: Array, reduction: float) -> float:
     """Share of pairs, one run of each, in which the second is shorter by at least ``reduction``.
 
     Parameters
@@ -72,14 +72,14 @@ def share_of_pairs(
     return _share(slower, faster, reduction, np.ones((slower.size, faster.size), dtype=bool))
 
 
-def share_of_luck(totals: NDArray[np.float64], reduction: float) -> float:
+def share_of_luck(totals: Array, reduction: float) -> float:
     """The same for two different runs of one algorithm: what luck alone shows."""
     return _share(totals, totals, reduction, ~np.eye(totals.size, dtype=bool))
 
 
 def _share(
-    slower: NDArray[np.float64],
-    faster: NDArray[np.float64],
+    slower: Array,
+    faster: Array,
     reduction: float,
     paired: NDArray[np.bool_],
 ) -> float:
@@ -89,7 +89,7 @@ def _share(
     return float((reductions[pairs] >= reduction).mean()) if pairs.any() else float("nan")
 
 
-def settled_at(trace: NDArray[np.float64], tolerance: float) -> int:
+def settled_at(trace: Array, tolerance: float) -> int:
     """First iteration from which the best-so-far stays within ``tolerance`` (s) of its end."""
     close = trace <= trace[-1] + tolerance
     return int(np.argmax(close)) if np.isfinite(trace[-1]) else trace.size

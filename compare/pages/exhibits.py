@@ -6,10 +6,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...heuristics.algorithms import ImprovedWOA, InitialRule, TentRule
-from ...problem import TrajgapError, file_name, forward_kinematics, to_si
+from ...problem import Array, TrajgapError, file_name, forward_kinematics, to_si
 from ...problem.cases import ControlVerticesClaim, DurationsClaim, MaximumClaim
 from ...problem.robots import Chain, DhTable, proximity, sample_workspace
 from ..audits import Study
@@ -33,7 +32,6 @@ _SEED = 0
 """Of the sampled positions, so that every page shows the same."""
 _NEGLIGIBLE = 1e-9
 """Distance that float arithmetic alone could leave, m."""
-Array = NDArray[np.float64]
 
 
 def exhibits_of_motion(study: Study) -> list[Section]:

@@ -5,18 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...heuristics import JointRuns
 from ...nlp import Solution, weakest
-from ...problem import Problem, TrajgapError, file_name
+from ...problem import Array, Problem, TrajgapError, file_name
 from ...problem.cases import AnyClaim, DurationsClaim, MaximumClaim, TotalTimeClaim
 from ..audits import CaseAudit, Study
 from ..pictures import Picture, Runs, convergence, endings, landscape, motion_picture, svg
 from .blocks import Block, Drawn, Folded, Grid, Prose, Section
 from .numbers import REPLAY_COLUMNS, replay_rows
-
-Array = NDArray[np.float64]
 
 
 def _nothing(one: CaseAudit) -> tuple[Block, ...]:

@@ -8,8 +8,8 @@ from math import cos, pi, sin
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.transforms import Bbox
-from numpy.typing import NDArray
 
+from ...problem import Array
 from .drawing import INK, PAPER
 
 _SIZE = 8.0
@@ -22,7 +22,7 @@ _DOT = 9.0
 """Room of a point that no label may cover, points: a little more than the dot."""
 
 
-def place_labels(axes: Axes, points: NDArray[np.float64], labels: Sequence[str]) -> None:
+def place_labels(axes: Axes, points: Array, labels: Sequence[str]) -> None:
     """Write a label beside every point of a panel whose limits and place are settled.
 
     Parameters
@@ -67,7 +67,7 @@ def place_labels(axes: Axes, points: NDArray[np.float64], labels: Sequence[str])
         )
 
 
-def _together(places: NDArray[np.float64], labels: Sequence[str]) -> dict[tuple[float, float], str]:
+def _together(places: Array, labels: Sequence[str]) -> dict[tuple[float, float], str]:
     """Labels by place, in points; those of places too near to tell apart are joined."""
     groups: list[tuple[float, float, list[str]]] = []
     for (x, y), label in zip(places, labels, strict=True):

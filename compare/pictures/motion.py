@@ -7,11 +7,12 @@ from itertools import pairwise
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ...problem import (
     QUANTITIES,
     TOLERANCE,
+    Array,
     Check,
     Extremum,
     Problem,
@@ -20,7 +21,6 @@ from ...problem import (
     extrema,
     fit,
 )
-from ...problem.curves import ClockedTrajectory, numerators
 from ..documents import UNITS
 from .drawing import BLUE, GRID, INK, PAPER, RED, Picture, drawing, finish, shown
 
@@ -98,7 +98,7 @@ def motion_picture(
     return figure
 
 
-def _array(values: ArrayLike | None) -> NDArray[np.float64] | None:
+def _array(values: ArrayLike | None) -> Array | None:
     return None if values is None else np.asarray(values, dtype=np.float64)
 
 
@@ -186,9 +186,7 @@ def _mark_peak(axes: Axes, top: Extremum, limit: float) -> None:
     axes.set_title(text, color=colour, fontsize=8, loc="right")
 
 
-def sampled(
-    trajectory: Trajectory, column: int, order: int
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def sampled(trajectory: Trajectory, column: int, order: int) -> tuple[Array, Array]:
     """Times and values, with the exact extrema among them and a gap where the curve jumps.
 
     Parameters
@@ -202,52 +200,19 @@ def sampled(
     times, values : ndarray, shape (samples,)
         s and rad/sᵒʳᵈᵉʳ; a value is NaN at a jump.
     """
-    times: list[NDArray[np.float64]] = []
-    values: list[NDArray[np.float64]] = []
+    times: list[Array] = []
+    values: list[Array] = []
     scale = max(abs(e.value) for e in extrema(trajectory, column, order)) or 1.0
     for k, start in enumerate(trajectory.breaks[:-1]):
         own = [e.s for e in extrema(trajectory, column, order) if e.segment == k]
         s = np.unique(np.concatenate([np.linspace(0.0, 1.0, _SAMPLES + 1), own]))
-        v = _valued(trajectory, k, column, order, s)
+        v = trajectory.values(k, column, order, s)
         if values and abs(values[-1][-1] - v[0]) > 1e-6 * scale:
             times.append(np.array([start]))
             values.append(np.array([np.nan]))
-        times.append(_times(trajectory, k, s))
+        times.append(trajectory.times(k, s))
         values.append(v)
     return np.concatenate(times), np.concatenate(values)
-
-
-def _valued(
-    trajectory: Trajectory, piece: int, column: int, order: int, s: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Derivative in time at places of a piece."""
-    if isinstance(trajectory, ClockedTrajectory):
-        return np.array([trajectory.value(piece, column, order, float(x)) for x in s])
-    found = np.polynomial.polynomial.polyval(s, trajectory.derivative(piece, column, order))
-    return np.asarray(found, dtype=np.float64)
-
-
-def _times(trajectory: Trajectory, piece: int, s: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Times of places of a piece, s."""
-    if isinstance(trajectory, ClockedTrajectory):
-        found = np.polynomial.polynomial.polyval(s, trajectory.clock[piece])
-        return np.asarray(found, dtype=np.float64)
-    return np.asarray(trajectory.breaks[piece] + s * trajectory.durations[piece])
-
-
-def _excess(
-    trajectory: Trajectory, piece: int, column: int, order: int, level: float
-) -> NDArray[np.float64]:
-    """Polynomial on a piece that vanishes where a derivative has the value ``level``."""
-    if order == 0 or not isinstance(trajectory, ClockedTrajectory):
-        found = np.asarray(trajectory.derivative(piece, column, order), dtype=np.float64).copy()
-        found[0] -= level
-        return found
-    # With a clock the derivative is N/t′²ʳ⁻¹, and t′ > 0.
-    clock = trajectory.clock[piece]
-    above = numerators(trajectory.scaled[piece, :4, column], clock, order)[-1]
-    below = np.polynomial.polynomial.polypow(clock[1:] * np.arange(1, clock.size), 2 * order - 1)
-    return np.asarray(np.polynomial.polynomial.polysub(np.real(above), level * below))
 
 
 def beyond(
@@ -274,14 +239,14 @@ def beyond(
         cuts = [0.0, 1.0]
         for limit in (low - slack, high + slack):
             if np.isfinite(limit):
-                shifted = _excess(trajectory, k, column, order, limit)
+                shifted = trajectory.level(k, column, order, limit)
                 roots = np.polynomial.polynomial.polyroots(np.trim_zeros(shifted, "b"))
                 cuts += [float(r.real) for r in roots if abs(r.imag) < 1e-9 and 0 < r.real < 1]
         cuts.sort()
         for s0, s1 in pairwise(cuts):
-            v = float(_valued(trajectory, k, column, order, np.array([(s0 + s1) / 2]))[0])
+            v = float(trajectory.values(k, column, order, np.array([(s0 + s1) / 2]))[0])
             if s1 > s0 and not low - slack <= v <= high + slack:
-                t0, t1 = map(float, _times(trajectory, k, np.array([s0, s1])))
+                t0, t1 = map(float, trajectory.times(k, np.array([s0, s1])))
                 if found and t0 - found[-1][1] <= 1e-12 * trajectory.total_time:
                     found[-1] = (found[-1][0], t1)
                 else:

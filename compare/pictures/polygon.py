@@ -7,9 +7,9 @@ from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ...problem import TrajgapError, fit
+from ...problem import Array, TrajgapError, fit
 from ...problem.curves import StretchedUniformBSpline, control_vertices
 from ..audits.rules import Vertex
 from .drawing import (
@@ -27,7 +27,6 @@ from .drawing import (
 )
 from .motion import sampled
 
-Array = NDArray[np.float64]
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 """Digits as exponents, for type without formulas."""
 

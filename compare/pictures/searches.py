@@ -9,10 +9,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.lines import Line2D
-from numpy.typing import NDArray
 
 from ...heuristics import JointRuns, Run
-from ...problem import TrajgapError
+from ...problem import Array, TrajgapError
 from .drawing import (
     INK,
     RED,
@@ -116,9 +115,9 @@ def convergence(
     return figure
 
 
-def _panels(runs: Mapping[str, Runs]) -> list[dict[str, NDArray[np.float64]]]:
+def _panels(runs: Mapping[str, Runs]) -> list[dict[str, Array]]:
     """Traces of each panel by algorithm, each of shape (seeds, iterations + 1)."""
-    panels: list[dict[str, NDArray[np.float64]]] = []
+    panels: list[dict[str, Array]] = []
     for name, replays in runs.items():
         split = [r.runs if isinstance(r, JointRuns) else (r,) for r in replays]
         for i, seeds in enumerate(zip(*split, strict=True)):
@@ -130,7 +129,7 @@ def _panels(runs: Mapping[str, Runs]) -> list[dict[str, NDArray[np.float64]]]:
     return panels
 
 
-def _words(where: str, name: str, traces: NDArray[np.float64], optimum: float) -> str:
+def _words(where: str, name: str, traces: Array, optimum: float) -> str:
     ends = traces[:, -1]
     good = ends[np.isfinite(ends)]
     if not good.size:
@@ -144,7 +143,7 @@ def _words(where: str, name: str, traces: NDArray[np.float64], optimum: float) -
 
 def _panel(
     axes: Axes,
-    panel: Mapping[str, NDArray[np.float64]],
+    panel: Mapping[str, Array],
     optimum: float,
     printed: Mapping[str, float],
     rounding: float,
@@ -189,7 +188,7 @@ def _panel(
     light_grid(axes, "y")
 
 
-def _stairs(iterations: NDArray[np.float64], values: NDArray[np.float64]) -> NDArray[np.float64]:
+def _stairs(iterations: Array, values: Array) -> Array:
     """Corners of a best-so-far curve, nothing before the first feasible answer.
 
     Steps of less than a fiftieth of the gap are joined: on the logarithmic axis they are thinner
@@ -299,9 +298,7 @@ def endings(
     return figure
 
 
-def _room_for_labels(
-    axes: Axes, ends: Mapping[str, NDArray[np.float64]], values: Sequence[float]
-) -> None:
+def _room_for_labels(axes: Axes, ends: Mapping[str, Array], values: Sequence[float]) -> None:
     every = np.concatenate([*ends.values(), np.asarray(values, dtype=np.float64)])
     every = every[np.isfinite(every)]
     if every.size:
@@ -309,7 +306,7 @@ def _room_for_labels(
         axes.set_xlim(float(every.min()) - 0.04 * width, float(every.max()) + 0.42 * width)
 
 
-def _range(ends: NDArray[np.float64]) -> str:
+def _range(ends: Array) -> str:
     good = ends[np.isfinite(ends)]
     missing = ends.size - good.size
     tail = f", {missing} without answer" if missing else ""

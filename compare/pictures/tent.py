@@ -7,10 +7,10 @@ from fractions import Fraction
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import NDArray
 
 from ...heuristics import TentCollapse, tent_collapse
 from ...heuristics.algorithms import TentRule, exact_orbit, tent_population
+from ...problem import Array
 from .drawing import (
     BLUE,
     GRID,
@@ -25,7 +25,6 @@ from .drawing import (
 
 _BEYOND = 12
 """Steps drawn after the double orbit has come to rest."""
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,7 +13,7 @@ from matplotlib.tri import Triangulation
 from numpy.typing import ArrayLike, NDArray
 
 from ...nlp import Solution
-from ...problem import Problem, TrajgapError, evaluate
+from ...problem import Array, Problem, TrajgapError, evaluate
 from .drawing import (
     INK,
     MUTED,
@@ -26,8 +26,6 @@ from .drawing import (
     finish,
     shown,
 )
-
-Array = NDArray[np.float64]
 
 LEVELS = (0.0, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
 """Contours in percent above the reference total."""

@@ -11,7 +11,7 @@ from matplotlib.patches import PathPatch, Rectangle
 from matplotlib.path import Path
 from numpy.typing import ArrayLike, NDArray
 
-from ...problem import TrajgapError
+from ...problem import Array, TrajgapError
 from ...problem.robots import Workspace
 from .drawing import (
     BLUE,
@@ -35,7 +35,6 @@ _LARGEST_CLOUD = 2_000
 """Sampled positions that are drawn: more of them only make the file larger."""
 _ROOM = 1.1
 """Half the width of a view by half the extent of what it shows: a margin of a tenth."""
-Array = NDArray[np.float64]
 
 
 def workspace_picture(

@@ -5,7 +5,7 @@ from .per_joint import OPTIMUM_SLACK, PerJointSolution, Range, solve_per_joint
 from .solution import Evidence, Solution, Status, weakest
 from .solver import STARTS, solve
 from .starts import random_starts
-from .tracking import structure_of
+from .tracking import free_values, structure_of
 
 __all__ = [
     "KKT",
@@ -23,6 +23,7 @@ __all__ = [
     "Status",
     "Structure",
     "build",
+    "free_values",
     "kkt",
     "random_starts",
     "solve",

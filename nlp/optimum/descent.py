@@ -14,7 +14,7 @@ from scipy.linalg import LinAlgError, cholesky, solve_triangular
 from scipy.optimize import nnls
 
 from ...problem import Array, Problem
-from .exact_rows import ExactRows, exact_rows
+from .limit_rows import ExactRows, exact_rows
 
 STEPS = 80
 """Most steps of one descent; with a superlinear end 10 to 30 suffice."""

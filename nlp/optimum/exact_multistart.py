@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...problem import Array, Check, Interpolant, Problem, Verdict, check
+from ...problem import Array, Check, Problem, Verdict, check
 from .descent import Box, Descent, descend
 from .starts import SETTLED_SEGMENTS, equal_start
 from .tracking import Local
@@ -17,6 +17,8 @@ LEAST_SHARE = 1e-12
 UNEQUAL = 0.02
 """A duration below this share of the mean makes the tracked NLP slow and blunt: it counts in
 durations, not in their logarithms."""
+WIDTH = 3.0
+"""Log durations by which starts anywhere differ from the usual ones: a factor of 20."""
 AT_BOUND = 0.99
 """Share of an upper bound from which a duration counts as held by it."""
 
@@ -60,10 +62,17 @@ def box_above(problem: Problem, floor: Array) -> Box:
 
 
 def ordinary(problem: Problem, basin: Basin) -> bool:
-    """Whether the tracked NLP is at its best: stretching repairs, durations are alike."""
+    """Whether the tracked NLP is at its best: stretching repairs, durations are alike.
+
+    With a clock of its own a curve's jerk is a ratio of polynomials over t′⁵. On the coarse places
+    IPOPT then often runs into its iteration limit, and the descents are several times as quick.
+    """
     h = basin.durations
+    curve = problem.curve
+    clocked = curve.piecewise is None and curve.shape(problem.waypoints) is None
     return bool(
         basin.excess == 0.0
+        and not (clocked and np.isfinite(problem.limits.jerk).any())
         and problem.curve.homogeneous
         and not problem.limits.limits_position
         and (h >= UNEQUAL * h.mean()).all()
@@ -73,7 +82,7 @@ def ordinary(problem: Problem, basin: Basin) -> bool:
 
 def kept(problem: Problem, verdict: Check) -> bool:
     """Whether a motion counts as feasible: curves that always jump are judged by their limits."""
-    if isinstance(problem.curve, Interpolant):
+    if problem.curve.piecewise is not None:
         return verdict.verdict is Verdict.PASS
     return verdict.limits is Verdict.PASS
 
@@ -98,3 +107,12 @@ def exact_starts(problem: Problem, count: int, seed: int, floor: Array) -> list[
     """The best basins of a wide search above the floors."""
     generator = np.random.default_rng(seed)
     return basins(problem, equal_start(problem), box_above(problem, floor), count, generator)
+
+
+def anywhere(problem: Problem, count: int, seed: int, floor: Array) -> Array:
+    """Starts drawn over the box, up to `WIDTH` to both sides of the usual durations."""
+    box, base = box_above(problem, floor), np.log(equal_start(problem))
+    low = np.maximum(box.low, np.minimum(base, box.high) - WIDTH)
+    high = np.minimum(box.high, np.maximum(base, box.low) + WIDTH)
+    spread = np.random.default_rng(seed).uniform(0.0, 1.0, (count, problem.segments))
+    return np.asarray(np.exp(low + spread * (high - low)))

@@ -2,9 +2,19 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
+
 import numpy as np
 
-from ...problem import QUANTITIES, Problem
+from ...problem import QUANTITIES, Array, Problem, Verdict, check
+
+SURE = 1.0 + 1e-6
+"""What a need must exceed to be a proof: far above the checker's tolerance and rounding."""
+AMPLE = 1e6
+"""Duration of a segment without an upper bound, in shares of the others: nothing is reached."""
+ENDLESS = 1e29
+"""s; longer than this is beyond what `check` takes."""
 
 
 def impossible(problem: Problem) -> str | None:
@@ -17,6 +27,9 @@ def impossible(problem: Problem) -> str | None:
         or _outside_range(problem)
         or _prescribed_beyond_limit(problem)
         or _too_little_time(problem)
+        or _too_far_from_rest(problem)
+        or _too_sharp_a_turn(problem)
+        or _each_segment_by_itself(problem)
     )
 
 
@@ -70,3 +83,118 @@ def _too_little_time(problem: Problem) -> str | None:
                 f"{w} and {w + 1} at its velocity limit; the duration bounds allow {room:.6g} s"
             )
     return None
+
+
+def _smooth(problem: Problem, order: int) -> bool:
+    """Whether derivatives up to ``order`` agree at every break of a motion that passes.
+
+    `check` demands it of declared curves; other kinds may jump, unless they say that they do not.
+    """
+    curve = problem.curve
+    inner = range(1, curve.segments)
+    return curve.piecewise is not None or all(curve.smooth_order(b) >= order for b in inner)
+
+
+def _room(problem: Problem) -> tuple[Array, Array]:
+    """Least and largest time, s, between successive way-points."""
+    breaks = np.array(problem.curve.waypoint_breaks)
+    low, high = (
+        np.add.reduceat(bound, breaks[:-1])
+        for bound in (problem.duration_lower, problem.duration_upper)
+    )
+    return low, high
+
+
+def _from_rest(problem: Problem) -> Iterator[tuple[bool, int]]:
+    """Ends (the last one if true) and orders of the limits that hold the motion back there."""
+    for last, end in enumerate(problem.curve.ends):
+        still = {order for order, value in end if value == 0.0}
+        for order in (2, 3):
+            if still >= set(range(1, order)) and _smooth(problem, order - 1):
+                yield bool(last), order
+
+
+def _too_far_from_rest(problem: Problem) -> str | None:
+    """|Δq| ≤ At²/2 from a start at rest; ≤ Jt³/6 if its acceleration is 0 too. Ends alike."""
+    _, high = _room(problem)
+    for last, order in _from_rest(problem):
+        q, room = (problem.waypoints[::-1], high[::-1]) if last else (problem.waypoints, high)
+        distance, room = np.abs(q[1:] - q[0]), np.cumsum(room)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            share = math.factorial(order) * distance / problem.limits.derivatives[:, order - 1]
+        needed = np.where(distance > 0, share, 0.0) ** (1.0 / order)
+        late = np.argwhere(needed > room[:, None] * SURE)
+        if late.size:
+            w, j = (int(x) for x in late[0])
+            point = len(q) - 2 - w if last else w + 1
+            where = f"from way-point {point} to rest" if last else f"from rest to way-point {point}"
+            return (
+                f"joint {problem.joints[j]} needs at least {needed[w, j]:.6g} s {where} at its "
+                f"{QUANTITIES[order - 1]} limit; the duration bounds allow {room[w]:.6g} s"
+            )
+    return None
+
+
+def _too_sharp_a_turn(problem: Problem) -> str | None:
+    """Three way-points whose mean velocities differ by more than the acceleration allows.
+
+    The second divided difference of q is a mean of q̈/2 (Peano), so over two neighbouring spans
+    2|Δq₂/T₂ − Δq₁/T₁|/(T₁ + T₂) ≤ A, whatever happens at the way-points.
+    """
+    if not _smooth(problem, 1):
+        return None
+    low, high = _room(problem)
+    step = np.diff(problem.waypoints, axis=0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ends = np.stack([step / low[:, None], step / high[:, None]])
+    ends = np.where(np.isnan(ends), 0.0, ends)  # 0/0: a still span with a lower bound of 0
+    slow, fast = ends.min(axis=0), ends.max(axis=0)
+    apart = np.maximum(slow[1:] - fast[:-1], slow[:-1] - fast[1:])
+    needed = 2.0 * np.maximum(apart, 0.0) / (high[1:] + high[:-1])[:, None]
+    sharp = np.argwhere(needed > problem.limits.acceleration * SURE)
+    if sharp.size == 0:
+        return None
+    w, j = (int(x) for x in sharp[0])
+    return (
+        f"joint {problem.joints[j]} needs an acceleration of {needed[w, j]:.6g} rad/s² near "
+        f"way-point {w + 1} within the duration bounds; its limit is "
+        f"{problem.limits.acceleration[j]:.6g}"
+    )
+
+
+def _apart(problem: Problem) -> bool:
+    """Whether each segment's curve depends on its own duration only, by a stretch."""
+    curve = problem.curve.piecewise
+    if curve is None:
+        return problem.curve.shape(problem.waypoints) is not None
+    given = [{order for order, _ in curve.prescribed_at(b)} for b in range(1, curve.segments)]
+    alone = all(
+        set(range(1, order + 1)) <= orders
+        for order, orders in zip(curve.continuity, given, strict=True)
+    )
+    return alone and curve.homogeneous and not curve.free and not curve.virtual
+
+
+def _each_segment_by_itself(problem: Problem) -> str | None:
+    """A limit that is exceeded at the longest durations, where stretching only lowers ratios.
+
+    The path itself, and with it every position, does not depend on the durations.
+    """
+    if not _apart(problem):
+        return None
+    longest = np.array(problem.duration_upper)
+    open_ = np.isinf(longest)
+    usual = float(longest[~open_].max(initial=0.0)) or 1.0
+    longest[open_] = np.maximum(AMPLE * usual, problem.duration_lower[open_])
+    if longest.max() > ENDLESS:
+        return None
+    verdict = check(problem, longest)
+    worst = verdict.worst
+    if verdict.limits is not Verdict.VIOLATED or worst is None or not worst.ratio > SURE:
+        return None
+    if worst.quantity != "position" and open_[worst.segment]:
+        return None
+    return (
+        f"joint {worst.joint} exceeds its {worst.quantity} limit in segment {worst.segment + 1} "
+        f"even at the longest durations, {worst.value:.6g} against {worst.limit:.6g}"
+    )

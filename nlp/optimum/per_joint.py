@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ...problem import Array, Check, Problem, check
 from .near_optimal import longest_per_segment_range
@@ -107,6 +109,7 @@ def solve_per_joint(
     starts: int = STARTS,
     seed: int = 0,
     slacks: tuple[float, ...] = (OPTIMUM_SLACK,),
+    known: Mapping[str, ArrayLike] | None = None,
 ) -> PerJointSolution:
     """Optimise each joint by itself and take the longest duration of each segment.
 
@@ -119,6 +122,8 @@ def solve_per_joint(
     slacks : tuple of float
         Excesses over each joint's own optimum, s, for which the range of the procedure's total
         is reported; none for an empty tuple.
+    known : mapping, optional
+        As in `solve`, by the joint's label.
 
     Returns
     -------
@@ -126,7 +131,10 @@ def solve_per_joint(
     """
     began = time.perf_counter()
     singles = [problem.joint(j) for j in range(problem.waypoints.shape[1])]
-    solutions = tuple(solve(p, starts=starts, seed=seed) for p in singles)
+    given = known or {}
+    solutions = tuple(
+        solve(p, starts=starts, seed=seed, known=given.get(p.joints[0])) for p in singles
+    )
     answers = [s.durations for s in solutions if s.durations is not None]
     ranges: list[Range] = []
     if len(answers) < len(solutions):

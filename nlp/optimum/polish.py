@@ -64,12 +64,13 @@ def polish(problem: Problem, durations: Array, report: KKT) -> tuple[Array, KKT]
         return durations, report
     h = np.clip(h * max(1.0, verdict.stretch), problem.duration_lower, problem.duration_upper)
     better = kkt(problem, h)
-    if better.residual < report.residual and check(problem, h).max_violation <= 1e-15:
+    allowed = max(1e-15, check(problem, durations).max_violation)
+    if better.residual < report.residual and check(problem, h).max_violation <= allowed:
         return h, better
     return durations, report
 
 
-_ORDERS = {"velocity": 1, "acceleration": 2, "jerk": 3}
+_ORDERS = {"position": 0, "velocity": 1, "acceleration": 2, "jerk": 3}
 """Quantities whose active limit is a peak of this derivative."""
 
 
@@ -103,8 +104,22 @@ def _conditions(
             if e.segment == a.segment and (e.s in (0.0, 1.0)) == (a.s in (0.0, 1.0))
         ]
         points.append(min(same, key=lambda e: abs(e.s - a.s), default=a))
-    limits = np.array([problem.limits.derivatives[e.joint, e.order - 1] for e in points])
-    values = np.array([e.value for e in points])
+    sides = [_side(problem, e) for e in points]
+    signs = np.array([sign for sign, _, _ in sides])
+    excess = np.array([x for _, x, _ in sides])
+    scales = np.array([scale for _, _, scale in sides])
     gradients = peak_gradients(problem, h, points).durations
-    columns = (np.sign(values)[:, None] * gradients * h / limits[:, None]).T
-    return h + columns @ weights, np.abs(values) / limits - 1.0, columns
+    columns = (signs[:, None] * gradients * h / scales[:, None]).T
+    return h + columns @ weights, excess, columns
+
+
+def _side(problem: Problem, e: Extremum) -> tuple[float, float, float]:
+    """Sign, excess and scale of an active extremum, scaled as in `kkt`."""
+    limits, j = problem.limits, e.joint
+    if e.order > 0:
+        limit = float(limits.derivatives[j, e.order - 1])
+        return float(np.sign(e.value)), abs(e.value) / limit - 1.0, limit
+    ends = (float(limits.position_lower[j]), float(limits.position_upper[j]))
+    scale = max(1.0, *(abs(x) for x in ends if np.isfinite(x)))
+    sign = -1.0 if abs(e.value - ends[0]) < abs(e.value - ends[1]) else 1.0
+    return sign, sign * (e.value - ends[int(sign > 0)]) / scale, scale

@@ -14,8 +14,11 @@ from ...problem import Array, Problem, TrajgapError, check, fit
 from ...problem.curves import coefficient_gradient, segment_peaks
 from .curve_formulation import compiled_curve, curve_structure
 from .curve_tracking import curve_multistart
+from .descent import restored
 from .exact_multistart import (
     UNEQUAL,
+    anywhere,
+    box_above,
     exact_search,
     exact_starts,
     kept,
@@ -48,6 +51,12 @@ FLOORS = (1e-3, 1e-4)
 """Smallest durations tried, relative to the mean, where the case sets no lower bound."""
 DEEPER = (1e-6, 1e-8)
 """Further floors where way-points nearly coincide: the total may rise again below the others."""
+SHORT = 1e-2
+"""Share of the mean that an idle segment takes where rounding hides the limits at the floors."""
+RESTORABLE = 200
+"""Segments up to which the feasibility phase runs: its gradients are dense, (segments)² each."""
+ANYWHERE = 8
+"""Further starts all over the box before nothing is said to be found."""
 BETTER = 1e-7
 """Relative gain from which a basin or a known motion is worth a further descent."""
 
@@ -59,6 +68,7 @@ def solve(
     seed: int = 0,
     initial: ArrayLike | None = None,
     known: ArrayLike | None = None,
+    known_nodal: ArrayLike | None = None,
     form: Form | None = None,
 ) -> Solution:
     """Best known total time of a problem with shared durations, from an exact NLP.
@@ -77,6 +87,9 @@ def solve(
     known : array_like, shape (motions, segments), optional
         Durations, s, that somebody already has: printed ones, replays, a certificate's. Each that
         `check` passes is an incumbent: the answer is never worse. The others do no harm.
+    known_nodal : array_like, shape (motions, free, joints), optional
+        Their free derivatives, where the curve leaves some open; without them those motions are
+        not determined, and not used.
     form : Form, optional
         Reduced or lifted; by default the faster one for the size.
 
@@ -98,8 +111,12 @@ def solve(
         seed,
         None if initial is None else _vectors(problem, "initial", initial),
         np.empty((0, problem.segments)) if known is None else _vectors(problem, "known", known),
+        None if known_nodal is None else np.asarray(known_nodal, dtype=np.float64),
         form,
     )
+    wanted = (len(ask.known), problem.curve.free, len(problem.joints))
+    if ask.known_nodal is not None and ask.known_nodal.shape != wanted:
+        raise TrajgapError(f"known_nodal: expected shape {wanted}, got {ask.known_nodal.shape}")
     idle = idle_segments(problem)
     if idle:
         return _with_idle(problem, idle, ask)
@@ -114,6 +131,7 @@ class _Ask:
     seed: int
     initial: Array | None
     known: Array
+    known_nodal: Array | None
     form: Form | None
 
 
@@ -134,6 +152,8 @@ def _solve_moving(problem: Problem, ask: _Ask) -> Solution:
     began = time.perf_counter()
     if not searchable(problem):
         solution = _tracked(problem, ask)
+        if solution.durations is None:
+            solution = _after_restoration(problem, ask, solution)
     elif ask.initial is not None:
         mean = ask.initial.mean(axis=1, keepdims=True)
         alike = stretchable(problem) and (ask.initial >= UNEQUAL * mean).all()
@@ -198,8 +218,15 @@ def _searched(problem: Problem, ask: _Ask, durations: Array | None = None) -> So
         else:
             points = ask.initial
         points = np.vstack([points, carried])
-        solution = judged(problem, exact_search(problem, points, floor), floor, len(points))
-        if solution.durations is None or solution.status is not Status.NOT_ATTAINED:
+        found = exact_search(problem, points, floor)
+        solution = judged(problem, found, floor, len(points))
+        if solution.durations is None and coarse is not None:
+            return coarse  # further down, rounding hides the limits
+        if solution.durations is None and ask.initial is None:
+            more = anywhere(problem, ANYWHERE, ask.seed, floor)
+            found += exact_search(problem, more, floor)
+            solution = judged(problem, found, floor, len(found))
+        if solution.status is not Status.NOT_ATTAINED:
             return solution
         if coarse is not None:
             solution = _approached(problem, coarse, solution, shares[k - 1], share)
@@ -209,6 +236,26 @@ def _searched(problem: Problem, ask: _Ask, durations: Array | None = None) -> So
         coarse, carried = solution, solution.durations[None]
     assert coarse is not None
     return coarse
+
+
+def _after_restoration(problem: Problem, ask: _Ask, solution: Solution) -> Solution:
+    """The tracked NLP once more, from starts that a feasibility phase has brought to the limits."""
+    if problem.curve.free:
+        usual = equal_start(problem)  # stretched to be tight, with the free derivatives at rest
+        nodal = first_nodal(problem)
+        if not kept(problem, check(problem, usual, nodal)):
+            return solution
+        assert nodal is not None
+        return _with_known(
+            problem, solution, replace(ask, known=usual[None], known_nodal=nodal[None])
+        )
+    if problem.segments > RESTORABLE:
+        return solution
+    floor = _floor(problem, FLOORS[-1])
+    starts = np.vstack([equal_start(problem), anywhere(problem, ask.starts, ask.seed, floor)])
+    box = box_above(problem, floor)
+    ends = [restored(problem, start, box).durations for start in starts]
+    return _tracked(problem, replace(ask, initial=np.array(ends)))
 
 
 def _nearly_coincident(problem: Problem, solution: Solution, floor: Array) -> bool:
@@ -253,13 +300,20 @@ def _settled(solution: Solution) -> bool:
 
 def _with_known(problem: Problem, solution: Solution, ask: _Ask) -> Solution:
     """The answer, or the shortest known motion that `check` passes, made shorter if possible."""
+    nodal: list[Array | None] = [None] * len(ask.known)
     if problem.curve.free:
-        return solution  # durations alone determine no motion
-    passed = [h for h in ask.known if h.sum() < solution.best and kept(problem, check(problem, h))]
+        if ask.known_nodal is None:
+            return solution
+        nodal = list(ask.known_nodal)
+    passed = [
+        (h, v)
+        for h, v in zip(ask.known, nodal, strict=True)
+        if h.sum() < solution.best and kept(problem, check(problem, h, v))
+    ]
     if not passed:
         return solution
-    best = min(passed, key=lambda h: float(h.sum()))
-    incumbent = Local(best, None, float(best.sum()), False, True, 0)
+    best, values = min(passed, key=lambda motion: float(motion[0].sum()))
+    incumbent = Local(best, values, float(best.sum()), False, True, 0)
     floor = np.minimum(_floor(problem, FLOORS[-1]), best / 2.0)
     found = [incumbent]
     if searchable(problem):
@@ -351,7 +405,11 @@ def _with_idle(problem: Problem, idle: list[int], ask: _Ask) -> Solution:
     h[idle] = problem.duration_lower[idle]
     vanishing = [k for k in idle if h[k] == 0]
     infimum = float(h.sum()) if vanishing else None
-    h[vanishing] = FLOORS[-1] * held.mean()
+    for share in (FLOORS[-1], FLOORS[0], SHORT):
+        # Across very unequal durations the checker's bound on rounding may hide the limits.
+        h[vanishing] = share * held.mean()
+        if not vanishing or kept(problem, check(problem, h)):
+            break
     report = kkt(problem, h)
     answer = replace(
         solution,

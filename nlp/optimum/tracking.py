@@ -247,13 +247,28 @@ def unpack(
         return h, nodal * scaled.angle_unit / scaled.time_unit**orders
     top = max(interpolant.degrees) + 1
     c = x[n:].reshape((top, joints, n)).transpose(2, 0, 1) * scaled.angle_unit
-    trajectory = Trajectory(None, h, c, interpolant.degrees)
+    return h, free_values(interpolant, Trajectory(None, h, c, interpolant.degrees))
+
+
+def free_values(interpolant: Interpolant, trajectory: Trajectory) -> Array:
+    """What a trajectory gives the free derivatives of a declaration with the same breaks.
+
+    Parameters
+    ----------
+    interpolant : Interpolant
+    trajectory : Trajectory
+
+    Returns
+    -------
+    ndarray, shape (free, joints)
+    """
+    n, joints = interpolant.segments, trajectory.scaled.shape[2]
     nodal = np.empty((interpolant.free, joints))
     for i, (b, order) in enumerate(interpolant.free_derivatives):
         for j in range(joints):
             side = trajectory.derivative(min(b, n - 1), j, order)
             nodal[i, j] = side[0] if b < n else side.sum()
-    return h, nodal
+    return nodal
 
 
 @dataclass(frozen=True, eq=False)

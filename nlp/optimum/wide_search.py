@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...problem import Array, CurveError, Interpolant, Problem, evaluate, fit
+from ...problem import Array, CurveError, Problem, evaluate, fit
 from ...problem.curves import batch_coefficients
 from .descent import Box
 
@@ -31,8 +31,8 @@ HOPELESS = 10.0
 def _scaled(problem: Problem, h: Array) -> Array:
     """Coefficients of all vectors, shape (vectors, pieces, powers, joints); NaN without a curve."""
     curve = problem.curve
-    if isinstance(curve, Interpolant):
-        return batch_coefficients(curve, problem.waypoints, h)
+    if curve.piecewise is not None:
+        return batch_coefficients(curve.piecewise, problem.waypoints, h)
     found: list[Array | None] = []
     for one in h:
         try:

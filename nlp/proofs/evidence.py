@@ -106,7 +106,7 @@ def with_certificate(solution: Solution, problem: ExactProblem | None) -> Soluti
         return solution
     if not solution.best <= float(found.upper) * (1 + _SAME):
         start = np.array([float(h) for h in found.durations])
-        again = solve(solution.problem, initial=start)
+        again = solve(solution.problem, initial=start, known=start)
         solution = again if again.best < solution.best else solution
     lower = float(found.lower)
     if Fraction(lower) > found.lower:

@@ -15,7 +15,6 @@ OWN = {"attacks", "house"}
 ELSEWHERE = {
     "nlp": "nlp/optimum",
     "nlp/enclosure": "compare/audits/test_rounding.py",
-    "verify/cubic": "nlp/proofs/cubic",
     "compare": "compare/audits",
 }
 

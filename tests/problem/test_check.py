@@ -638,3 +638,15 @@ def test_a_reachable_total_holds_for_every_waypoint_of_the_box() -> None:
     assert reachable_total(bounded, h, q, q) is None
     ranged = Problem(q, Limits(1.5, 4.0, np.inf, -2.0, 2.0, joints=2), three_five_three())
     assert reachable_total(ranged, h, q, q) is None
+
+
+def test_a_still_segment_of_any_length_does_not_blur_the_peak_of_another() -> None:
+    """Errors grow as 1/h³: with a still segment of 1e-5 s they once hid a limit that is met."""
+    q = np.array([[0.10379], [-0.035097], [-0.035097], [0.009476]])
+    problem = Problem(q, Limits(jerk=2813.87), rest_to_rest(3, 5))
+    h = np.array([0.2, 1e-5, 0.2])
+    h[[0, 2]] *= check(problem, h).stretch
+    verdict = check(problem, h)
+    assert verdict.verdict is Verdict.PASS
+    assert verdict.worst.error < 1e-12 * verdict.worst.limit
+    assert check(problem, [h[0] * (1 - 1e-8), *h[1:]]).verdict is Verdict.VIOLATED

@@ -66,7 +66,9 @@ def signed_peak(polynomial: np.ndarray, duration: float, order: int) -> float:
     for _ in range(50):
         if bend(x) == 0:
             break
-        x = float(np.clip(x - slope(x) / bend(x), 0.0, duration))
+        last, x = x, float(np.clip(x - slope(x) / bend(x), 0.0, duration))
+        if x == last:
+            break
     return max(abs(float(value(x))), abs(float(value(best))))
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from ....problem import Array
 from ...documents import (
     Effect,
     ExaminedInstances,
@@ -17,7 +18,7 @@ from ...documents import (
     Why,
     known,
 )
-from .result import Array, InstancesResult, Optimum, Sample, distribution
+from .result import InstancesResult, Optimum, Sample, distribution
 
 
 def examined_entry(result: InstancesResult) -> ExaminedInstances:

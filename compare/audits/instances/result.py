@@ -8,10 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....nlp import Evidence
+from ....problem import Array
 from ....problem.cases import InstancesBlock
 from ...documents import Effect, Procedure
-
-Array = NDArray[np.float64]
 
 MIDDLE = 0.9
 """Share of a distribution within which a printed reduction counts as reproduced."""

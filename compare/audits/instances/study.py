@@ -11,9 +11,9 @@ import numpy as np
 
 from ....heuristics import Algorithm, in_processes, run
 from ....nlp import Solution, solve
-from ....problem import TOLERANCE, Coupling, Problem, check
+from ....problem import TOLERANCE, Array, Coupling, Problem, check
 from ...gaps import SETTLED, settled_at
-from .result import Array, Optimum, Sample
+from .result import Optimum, Sample
 
 STARTS = 2
 """Starts of every solve, for there are hundreds; one where the segments are independent."""

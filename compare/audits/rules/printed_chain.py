@@ -8,9 +8,8 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ....problem import Measured, to_si
+from ....problem import Array, Measured, to_si
 from ....problem.cases import Cartesian, Statement
 from ....problem.robots import Chain, Convention, DhTable, JointKind, Proximity, proximity
 from ...documents import Basis, ClaimVerdict, Finding, Severity
@@ -153,7 +152,7 @@ def _match(
     return _Match(convention, first, tuple(slack), tuple(others), radial)
 
 
-def _held(chain: Chain, joints: Joints, k: int) -> tuple[NDArray[np.float64], float]:
+def _held(chain: Chain, joints: Joints, k: int) -> tuple[Array, float]:
     """Joint values at a way-point, NaN where not printed, and what their rounding moves."""
     held, loose = np.full(chain.joints, np.nan), 0.0
     for i, label in enumerate(chain.labels):

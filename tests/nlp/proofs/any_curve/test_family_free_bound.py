@@ -7,7 +7,7 @@ import json
 from collections import Counter
 from dataclasses import replace
 from fractions import Fraction
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -33,8 +33,7 @@ from trajgap.nlp.proofs.any_curve import (
 from trajgap.nlp.proofs.any_curve import (
     search as family_free_search,
 )
-from trajgap.nlp.proofs.any_curve.certifier import certify_family_free
-from trajgap.nlp.proofs.any_curve.estimate import family_free
+from trajgap.nlp.proofs.any_curve.estimate import estimate_any_curve
 from trajgap.nlp.proofs.any_curve.exact import missing, question
 from trajgap.nlp.proofs.any_curve.proof import restored
 from trajgap.nlp.proofs.any_curve.reach import furthest, reachable
@@ -59,6 +58,7 @@ from trajgap.verify import CertificateVerdict, Subject
 from trajgap.verify import verify_certificate as verify
 
 Array = NDArray[np.float64]
+certify_any = partial(certify, subject=Subject.ANY)
 
 
 def posed(
@@ -87,7 +87,7 @@ def proved(found: Certified) -> CertificateVerdict:
 
 def interval(problem: Problem, gap: float = 1e-6) -> tuple[float, float]:
     """A certified interval of the wanted width."""
-    found = certify_family_free(problem, gap=gap, seconds=30)
+    found = certify_any(problem, gap=gap, seconds=30)
     proved(found)
     assert found.outcome is Outcome.CERTIFIED, found
     assert found.upper is not None
@@ -141,7 +141,7 @@ def test_lower_duration_bounds_can_be_the_optimum() -> None:
 def test_ends_free_or_moving(ends: tuple[tuple[int, float], ...]) -> None:
     problem = posed([0.0, 1.0, 0.4], 1.25, 2.0, ends)
     low, high = interval(problem)
-    known = family_free(problem).total_time
+    known = estimate_any_curve(problem).total_time
     assert known is not None
     assert low <= known <= high * (1 + 1e-9)
     if not ends:
@@ -158,7 +158,7 @@ def test_acceleration_limits_alone() -> None:
 def test_a_joint_that_brakes_for_another_needs_boxes() -> None:
     # Joint 1 would fly through the first segment, but joint 2 makes it last.
     problem = posed([[0.0, 0.0], [0.2, 1.0], [3.0, 1.1]], [3.0, 1.4], [2.0, 4.0])
-    found = certify_family_free(problem, gap=1e-7)
+    found = certify_any(problem, gap=1e-7)
     assert found.outcome is Outcome.CERTIFIED
     assert found.nodes > 1
     proved(found)
@@ -193,7 +193,7 @@ def test_dense_grids_never_beat_the_bound_and_come_near_it(seed: int) -> None:
     rng = np.random.default_rng(seed)
     problem = random_problem(rng, 2, 1 + seed % 3)
     low, high = interval(problem)
-    known = family_free(problem).durations
+    known = estimate_any_curve(problem).durations
     assert known is not None
     wide = np.exp(rng.uniform(-1.5, 1.5, (1000, 2))) * known
     near = (1 + rng.uniform(-0.05, 0.05, (1000, 2))) * known
@@ -208,7 +208,7 @@ def test_grids_of_three_segments(seed: int) -> None:
     rng = np.random.default_rng(100 + seed)
     problem = random_problem(rng, 3, 2)
     low, high = interval(problem)
-    known = family_free(problem).durations
+    known = estimate_any_curve(problem).durations
     assert known is not None
     h = np.concatenate([np.exp(rng.normal(0, 0.2, (300, 3))) * known, [known * 1.02]])
     good = grid_feasible(problem, h, np.linspace(-1, 1, 61))
@@ -259,7 +259,7 @@ def test_fixed_durations_agree_with_a_linear_program(seed: int) -> None:
 
     def fixed(scale: float) -> Certified:
         h = scale * shares
-        found = certify_family_free(replace(problem, duration_lower=h, duration_upper=h))
+        found = certify_any(replace(problem, duration_lower=h, duration_upper=h))
         proved(found)
         return found
 
@@ -269,13 +269,13 @@ def test_fixed_durations_agree_with_a_linear_program(seed: int) -> None:
 
 
 def test_too_short_upper_bounds_are_infeasible() -> None:
-    found = certify_family_free(posed([0.0, 1.0, 0.0], 1.0, 2.0, duration_upper=[1.2, 1.3]))
+    found = certify_any(posed([0.0, 1.0, 0.0], 1.0, 2.0, duration_upper=[1.2, 1.3]))
     assert found.outcome is Outcome.INFEASIBLE
     assert proved(found).infeasible
-    late = certify_family_free(posed([0.0, 1.0, 0.0], 1.0, 2.0, duration_upper=[0.5, 9.0]))
+    late = certify_any(posed([0.0, 1.0, 0.0], 1.0, 2.0, duration_upper=[0.5, 9.0]))
     assert late.outcome is Outcome.INFEASIBLE
     assert proved(late).infeasible
-    half = certify_family_free(posed([0.0, 1.0, 0.0], 1.0, 2.0, duration_upper=[1.2, np.inf]))
+    half = certify_any(posed([0.0, 1.0, 0.0], 1.0, 2.0, duration_upper=[1.2, np.inf]))
     assert half.outcome is Outcome.OPEN
     assert half.proof is None
 
@@ -356,13 +356,13 @@ def test_rows_hold_for_every_motion(
 @lru_cache(maxsize=1)
 def attacked() -> tuple[Problem, str]:
     problem = posed([[0.0, 0.0], [0.25, 1.0], [3.0, 1.125]], [3.0, 1.5], [2.0, 4.0])
-    found = certify_family_free(problem, gap=1e-5)
+    found = certify_any(problem, gap=1e-5)
     return problem, json.dumps(certificate(found))
 
 
 def test_falsified_rows_are_seen_and_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     problem, _ = attacked()
-    honest = certify_family_free(problem, gap=1e-5)
+    honest = certify_any(problem, gap=1e-5)
 
     def stronger(asked: Any, row: Row, box: Any, speed: Fraction) -> Exact:
         found = exact_row(asked, row, box, speed)
@@ -370,7 +370,7 @@ def test_falsified_rows_are_seen_and_refused(monkeypatch: pytest.MonkeyPatch) ->
 
     monkeypatch.setattr(family_free_rows, "exact_row", stronger)
     raw = unjudged(monkeypatch)
-    found = certify_family_free(problem, gap=1e-5)
+    found = certify_any(problem, gap=1e-5)
     assert raw[0].upper is not None
     assert raw[0].lower >= honest.lower
     verdict = verify(certificate(raw[0]))
@@ -398,8 +398,8 @@ def poor(monkeypatch: pytest.MonkeyPatch) -> Problem:
 
 def test_a_poor_first_answer_is_replaced(monkeypatch: pytest.MonkeyPatch) -> None:
     problem, _ = attacked()
-    honest = certify_family_free(problem, gap=1e-6)
-    found = certify_family_free(poor(monkeypatch), gap=1e-6)
+    honest = certify_any(problem, gap=1e-6)
+    found = certify_any(poor(monkeypatch), gap=1e-6)
     proved(found)
     assert found.outcome is Outcome.CERTIFIED
     assert found.upper is not None
@@ -409,9 +409,9 @@ def test_a_poor_first_answer_is_replaced(monkeypatch: pytest.MonkeyPatch) -> Non
 
 def test_an_answer_that_is_not_optimal_is_never_certified(monkeypatch: pytest.MonkeyPatch) -> None:
     problem, _ = attacked()
-    honest = certify_family_free(problem, gap=1e-6)
+    honest = certify_any(problem, gap=1e-6)
     monkeypatch.setattr(family_free_certify, "_local_motion", lambda *_: None)
-    found = certify_family_free(poor(monkeypatch), gap=1e-6, seconds=1.0)
+    found = certify_any(poor(monkeypatch), gap=1e-6, seconds=1.0)
     assert found.outcome is Outcome.INTERVAL
     assert honest.upper is not None
     assert found.lower <= honest.upper
@@ -426,7 +426,7 @@ def test_a_bound_that_is_too_high_is_refused(monkeypatch: pytest.MonkeyPatch) ->
 
     monkeypatch.setattr(family_free_search, "bound", higher)
     raw = unjudged(monkeypatch)
-    assert certify_family_free(problem, gap=1e-2).proof is None
+    assert certify_any(problem, gap=1e-2).proof is None
     assert not verify(certificate(raw[0])).proves
 
 
@@ -457,7 +457,7 @@ def alter_every_field(per_field: int, seed: int) -> Counter[str]:
     rng = np.random.default_rng(seed)
     outcomes: Counter[str] = Counter()
     base = json.loads(text)
-    estimates = {json.dumps(base["problem"]): family_free(restated(base)).total_time}
+    estimates = {json.dumps(base["problem"]): estimate_any_curve(restated(base)).total_time}
     for name, paths in fields(base).items():
         for k in rng.integers(0, len(paths), per_field):
             data = json.loads(text)
@@ -473,7 +473,7 @@ def alter_every_field(per_field: int, seed: int) -> Counter[str]:
             assert not verdict.infeasible
             key = json.dumps(data["problem"])
             if key not in estimates:
-                estimates[key] = family_free(restated(data)).total_time
+                estimates[key] = estimate_any_curve(restated(data)).total_time
             true = estimates[key]
             assert verdict.lower is not None
             if true is not None:
@@ -545,7 +545,7 @@ def test_a_row_must_not_look_the_wrong_way() -> None:
 
 def by_hand(problem: Problem, total: str, rows: list[Any], leaf: list[Any]) -> dict[str, Any]:
     """A certificate of one box that no solver wrote, sealed."""
-    document = json.loads(json.dumps(certificate(certify_family_free(problem))))
+    document = json.loads(json.dumps(certificate(certify_any(problem))))
     document["claim"] |= {"lower": total, "upper": None, "durations": None, "speeds": None}
     document["proof"] |= {"total": total, "cap": total, "rows": rows, "tree": [[".", *leaf]]}
     return dict(document)
@@ -567,7 +567,7 @@ def test_nothing_is_proved_in_floats(sign: Any) -> None:
 
 @pytest.mark.parametrize(("key", "bound"), [("position_upper", "4"), ("position_lower", "6")])
 def test_a_joint_that_stays_where_it_must_not_be_has_no_answer(key: str, bound: str) -> None:
-    found = certify_family_free(posed([[0.0, 5.0], [1.0, 5.0]], 1.0, 1.0))
+    found = certify_any(posed([[0.0, 5.0], [1.0, 5.0]], 1.0, 1.0))
     document = json.loads(json.dumps(certificate(found)))
     assert document["claim"]["upper"] is not None
     document["problem"][key] = [None, "5"]
@@ -579,7 +579,7 @@ def test_a_joint_that_stays_where_it_must_not_be_has_no_answer(key: str, bound: 
     side = {key: (np.inf if key == "position_upper" else -np.inf, float(bound))}
     limits = Limits(1.0, 1.0, joints=2, **side)
     problem = replace(posed([[0.0, 5.0], [1.0, 5.0]], 1.0, 1.0), limits=limits)
-    found = certify_family_free(problem)
+    found = certify_any(problem)
     assert found.upper is None
     assert proved(found).lower is not None
 
@@ -589,11 +589,11 @@ def test_a_joint_that_stays_where_it_must_not_be_has_no_answer(key: str, bound: 
 
 def test_jerk_and_position_limits_keep_the_lower_bound_alone() -> None:
     plain = posed([0.0, 1.0, 0.5], 1.0, 2.0)
-    known = certify_family_free(plain)
+    known = certify_any(plain)
     jerk = replace(plain, limits=Limits(1.0, 2.0, 9.0, joints=1))
     walls = replace(plain, limits=Limits(1.0, 2.0, np.inf, -1.0, 1.01, joints=1))
     for problem in (jerk, walls):
-        found = certify_family_free(problem)
+        found = certify_any(problem)
         assert found.upper is None
         assert found.durations is None
         assert found.lower == known.lower
@@ -614,19 +614,19 @@ def test_jerk_and_position_limits_keep_the_lower_bound_alone() -> None:
 )
 def test_what_is_not_covered_is_said(problem: Problem, reason: str) -> None:
     with pytest.raises(TrajgapError, match=reason):
-        certify_family_free(problem)
+        certify_any(problem)
 
 
 def test_a_stopped_run_has_a_proof_and_goes_on() -> None:
     problem = printed("puma560-mnam-pso-353", "six-joints", "durations-positive")
     seen: list[Progress] = []
-    stopped = certify_family_free(problem, gap=1e-7, seconds=0.0, report=seen.append)
+    stopped = certify_any(problem, gap=1e-7, seconds=0.0, report=seen.append)
     assert stopped.outcome is Outcome.INTERVAL
     assert stopped.lower > 0
     assert seen
     proved(stopped)
     state = json.loads(json.dumps(state_document(stopped)))
-    first = certify_family_free(problem, gap=1e-7, resume=state)
+    first = certify_any(problem, gap=1e-7, resume=state)
     proved(first)
     assert first.outcome is Outcome.CERTIFIED
     assert first.lower >= stopped.lower
@@ -642,7 +642,7 @@ def test_a_stopped_run_has_a_proof_and_goes_on() -> None:
         broken = copy.deepcopy(state)
         put(broken["proof"], path, value)
         with pytest.raises(TrajgapError, match="resume: the state is not proved"):
-            certify_family_free(problem, resume=broken)
+            certify_any(problem, resume=broken)
         # Whoever reads it trusts it no more than that.
         if value != [["?"]]:
             with pytest.raises(TrajgapError, match="cannot be resumed"):
@@ -656,7 +656,7 @@ def test_ctrl_c_keeps_what_is_proved() -> None:
         raise KeyboardInterrupt
 
     problem = printed("puma560-mnam-pso-353", "six-joints", "durations-positive")
-    found = certify_family_free(problem, report=stop)
+    found = certify_any(problem, report=stop)
     assert found.outcome is Outcome.INTERVAL
     proved(found)
 
@@ -670,12 +670,12 @@ def printed(case: str, problem: str, reading: str) -> ExactProblem:
 
 @pytest.mark.parametrize("least", ["at-least-0.3", "positive"])
 def test_puma_to_nine_digits(least: str) -> None:
-    found = certify_family_free(
+    found = certify_any(
         printed("puma560-mnam-pso-353", "six-joints", f"durations-{least}"), gap=1e-9
     )
     assert found.outcome is Outcome.CERTIFIED
     proved(found)
-    known = family_free(load_case("puma560-mnam-pso-353").statement("six-joints").problem())
+    known = estimate_any_curve(load_case("puma560-mnam-pso-353").statement("six-joints").problem())
     assert known.total_time is not None
     assert float(found.lower) <= known.total_time * (1 + 1e-12)
     assert float(found.upper or 0) == pytest.approx(known.total_time, rel=1e-9)
@@ -698,7 +698,7 @@ def test_every_shipped_question_has_a_bound_that_is_proved() -> None:
                 assert found is not None, f"{name}: run benchmarks/family_free_bound.py"
                 assert found.upper is not None
                 assert found.upper - found.lower <= found.upper / 10**5, name
-                estimate = family_free(statement.problem(), starts=1).total_time
+                estimate = estimate_any_curve(statement.problem(), starts=1).total_time
                 assert estimate is not None
                 assert float(found.lower) <= estimate * (1 + 1e-12), name
                 assert float(found.upper) == pytest.approx(estimate, rel=1e-9), name
@@ -754,7 +754,7 @@ def test_end_velocities_of_other_kinds_of_curve_are_stated(orders: tuple[int, ..
     low, _ = interval(problem)
     ends = ((1, 0.0),) if 1 in orders else ()
     assert low == pytest.approx(interval(posed([0.0, 1.0, 0.2], 1.0, 2.0, ends))[0], rel=1e-5)
-    data = certificate(certify_family_free(problem))
+    data = certificate(certify_any(problem))
     assert ("ends" in data["problem"]) == (1 in orders)
     if 1 in orders:
         del data["problem"]["ends"]

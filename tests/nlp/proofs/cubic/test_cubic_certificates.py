@@ -46,7 +46,7 @@ from trajgap.problem import (
     fit,
     load_case,
 )
-from trajgap.verify import TICKS, read_problem
+from trajgap.verify import MOST_INTEGER, TICKS, read_problem
 from trajgap.verify import verify_certificate as verify
 from trajgap.verify.cubic.box import Box
 from trajgap.verify.cubic.system import Cubic
@@ -515,6 +515,23 @@ def test_durations_that_no_trajectory_keeps_are_proved_infeasible() -> None:
     assert verdict.infeasible
     document["problem"]["duration_upper"] = [str(h * 2) for h in best.durations]
     assert not verify(document).proves
+
+
+def test_durations_far_too_short_are_proved_infeasible_within_the_range_of_a_proof() -> None:
+    # Mean speeds alone ask for 100 s each: more ticks than the integers of a proof may have.
+    problem = Problem([[0.0], [1.0], [2.0], [3.0]], Limits(0.01, 1.0), cubic_spline(3), 0.0, 5.0)
+    found = certify(problem)
+    assert found.outcome is Outcome.INFEASIBLE
+    assert found.verdict is not None
+    assert found.verdict.infeasible
+    document = certificate(found)
+    assert max(document["proof"]["root"]) <= document["proof"]["cap"] <= MOST_INTEGER
+
+
+def test_a_spline_that_is_too_long_for_a_certificate_is_not_covered() -> None:
+    many = Problem(np.arange(66.0)[:, None], Limits(1.0, 1.0), cubic_spline(65))
+    with pytest.raises(TrajgapError, match="more than 64 segments"):
+        certify(many)
 
 
 def test_what_is_not_covered_is_said() -> None:

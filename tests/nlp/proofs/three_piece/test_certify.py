@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import json
+from dataclasses import replace
 from fractions import Fraction
 from importlib import import_module
 from pathlib import Path
@@ -17,7 +18,7 @@ from support.three_pieces import dense_best, random_problem
 from support.unjudged import unjudged
 from trajgap.nlp import solve
 from trajgap.nlp.proofs.answer import exact_coefficients, keeps_limits, never_above
-from trajgap.nlp.proofs.certifiers import certify
+from trajgap.nlp.proofs.certifiers import certify, covered
 from trajgap.nlp.proofs.document import certificate, problem_document, shipped, shipped_folder
 from trajgap.nlp.proofs.exact import ExactProblem, decimal, exact_problem
 from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress
@@ -339,6 +340,26 @@ def test_a_state_is_proved_like_a_certificate(monkeypatch: pytest.MonkeyPatch) -
     verdict = verify(state_of(found))
     assert str(verdict).startswith("proves: ")
     assert (verdict.lower, verdict.upper) == (found.lower, found.upper)
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        ({"waypoints": np.array([[0.0], [1e-200], [0.5], [1.0]])}, "at most 120 digits"),
+        ({"joints": ("x" * 10_001,)}, "joints: no text, or too long"),
+    ],
+)
+def test_what_no_certificate_can_state_is_not_covered(change: dict[str, Any], reason: str) -> None:
+    q = np.array([[0.0], [1.0], [0.5], [1.0]])
+    problem = Problem(q, Limits(1.0, joints=1), three_five_three())
+    assert covered(exact_problem(problem)) is None
+    wider = replace(problem, **change)
+    why = covered(exact_problem(wider))
+    assert why is not None
+    assert why.startswith("no certificate can state the problem (malformed: ")
+    assert reason in why
+    with pytest.raises(TrajgapError, match="no certificate can state the problem"):
+        certify(wider)
 
 
 def test_no_time_gives_no_lower_bound() -> None:

@@ -1,0 +1,380 @@
+"""`solve` on problems on which it once gave wrong answers, and what it may say without a proof."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+from dataclasses import replace
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize
+from trajgap.compare import audit
+from trajgap.nlp import Solution, Status, solve, solve_per_joint
+from trajgap.nlp.optimum import feasibility, limit_rows
+from trajgap.nlp.optimum.descent import Box, descend, least_point, restored
+from trajgap.nlp.optimum.limit_rows import exact_rows
+from trajgap.problem import (
+    Limits,
+    Problem,
+    TrajgapError,
+    Verdict,
+    check,
+    cubic_spline,
+    load_case,
+    parse_case,
+    piecewise,
+    quintic_spline,
+    rest_to_rest,
+    three_five_three,
+    uniform_cubic_b_spline,
+)
+
+BENCHMARK = Path(__file__).parents[3] / "benchmarks/solver_errors.py"
+
+HEAD = """
+format = 1
+id = "{id}"
+title = "solver"
+[source]
+[robot]
+name = "r"
+joints = ["1"]
+[units]
+position = "rad"
+velocity = "rad/s"
+acceleration = "rad/s^2"
+jerk = "rad/s^3"
+time = "s"
+"""
+NATURAL_NEAR = """
+[waypoints]
+joint_rows = [[0.656747, 0.147626, 0.147625]]
+[limits]
+velocity = 0.796
+acceleration = 2.0
+[interpolant]
+family = "cubic-spline"
+end_orders = [2]
+"""
+QUINTIC_NEAR = """
+[waypoints]
+joint_rows = [[-0.9916, 1.6801773, 1.6801763, 0.5139]]
+[limits]
+velocity = 0.00692
+acceleration = 0.00022
+[interpolant]
+family = "quintic-spline"
+"""
+BOXED = """
+[waypoints]
+joint_rows = [[-0.6432, 1.66535, 1.33154, -1.05607, 0.75371]]
+[limits]
+velocity = 2.24057
+acceleration = 2.87475
+jerk = 6.80544
+[durations]
+lower = [0.767, 0.352, 0.405, 0.378]
+upper = [2.408, 1.594, 1.740, 2.077]
+[interpolant]
+family = "cubic-spline"
+"""
+CLAIMS = """
+[[claims]]
+id = "keeps"
+quantity = "durations"
+where = "T"
+durations = ["0.64009", "0.00000125908"]
+[[claims]]
+id = "shortest"
+quantity = "statement"
+where = "T"
+checks = "optimal"
+of = ["keeps"]
+"""
+
+
+def case(name: str, *parts: str):
+    return parse_case(HEAD.format(id=name) + "".join(parts), f"{name}.toml")
+
+
+@pytest.mark.parametrize(
+    ("text", "passes"),
+    [
+        (NATURAL_NEAR, [0.64009, 0.00000125908]),
+        (QUINTIC_NEAR, [700.6, 0.00076, 280.2]),
+        (BOXED, [1.9765, 0.9903, 1.7399, 2.0769]),
+    ],
+)
+def test_no_answer_is_worse_than_a_motion_that_passes(text: str, passes: list[float]) -> None:
+    problem = case("near", text).problem()
+    assert check(problem, passes).verdict is Verdict.PASS
+    solution = solve(problem)
+    assert solution.status is Status.OPTIMAL
+    assert solution.best <= sum(passes)
+    assert check(problem, solution.durations).verdict is Verdict.PASS
+
+
+def test_an_audit_never_calls_best_known_what_its_own_checks_undercut() -> None:
+    report = audit(case("claimed", NATURAL_NEAR, CLAIMS), seeds=2)
+    optimum = report.cases[0].study.optimum("main", "as-printed")
+    assert optimum.best < 0.64009 + 0.00000125908
+    relaxed = report.cases[0].study.relaxed("main", "as-printed")
+    assert relaxed.best <= optimum.best * (1 + 1e-9)
+
+
+def test_certified_bounds_and_answers_of_nearly_coincident_points_agree() -> None:
+    from trajgap.nlp import certify
+
+    found = certify(case("near", NATURAL_NEAR).problem(), gap=0.05, seconds=20)
+    assert found.upper is not None
+    assert float(found.upper) < 0.6402
+
+
+def two_joints() -> Problem:
+    q = np.array([[0.3, 1.0], [0.9, 0.2], [0.5, 0.4], [1.4, 0.8]])
+    return Problem(q, Limits([1.0, 2.0], 3.0), three_five_three())
+
+
+def test_a_known_motion_is_never_undercut_by_the_answer() -> None:
+    problem = replace(two_joints(), duration_upper=[9.0, 9.0, 9.0])
+    best = solve(problem)
+    poor = solve(problem, initial=[[8.9, 8.9, 8.9]], known=best.durations)
+    assert poor.best <= best.best * (1 + 1e-9)
+    breaking = 0.5 * best.durations
+    again = solve(problem, known=[breaking, 1.1 * best.durations])
+    assert again.durations == pytest.approx(best.durations, rel=1e-6)
+
+
+def test_a_known_motion_is_kept_where_the_solver_finds_nothing(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    from trajgap.nlp.optimum import solver
+
+    problem = two_joints()
+    known = 1.3 * solve(problem).durations
+
+    def lost(one: Problem, *_: object) -> Solution:
+        return Solution(one, Status.NONE_FOUND, "lost")
+
+    monkeypatch.setattr(solver, "_tracked", lost)
+    monkeypatch.setattr(solver, "_searched", lost)
+    monkeypatch.setattr(solver, "_challenged", lambda one, *_: lost(one))
+    assert solve(problem).status is Status.NONE_FOUND
+    found = solve(problem, known=known)
+    assert found.total_time <= known.sum()
+    assert found.check.verdict is Verdict.PASS
+
+
+def test_known_motions_of_each_joint_and_of_free_curves() -> None:
+    problem = two_joints()
+    own = solve(problem.joint(1))
+    answer = solve_per_joint(problem, slacks=(), known={"2": own.durations})
+    assert answer.joints[1].best <= own.best * (1 + 1e-9)
+    free = replace(problem, curve=piecewise((5, 5, 5), 2))
+    best = solve(free)
+    kept = solve(free, initial=[[9.0, 9.0, 9.0]], known=best.durations, known_nodal=[best.nodal])
+    assert kept.best <= best.best * (1 + 1e-9)
+    assert solve(free, known=best.durations / 2.0).best == pytest.approx(best.best, rel=1e-6)
+
+
+def test_known_motions_of_a_wrong_shape_are_refused() -> None:
+    with pytest.raises(TrajgapError, match=r"known: expected shape \(starts, 3\)"):
+        solve(two_joints(), known=[[1.0, 2.0]])
+    with pytest.raises(TrajgapError, match=r"known_nodal: expected shape \(1, 0, 2\)"):
+        solve(two_joints(), known=[[1.0, 2.0, 1.0]], known_nodal=[[[1.0]]])
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        (
+            {"limits": Limits(acceleration=3.0, joints=2), "duration_upper": [0.6, 9.0, 9.0]},
+            "joint 1 needs at least 0.632456 s from rest to way-point 1 at its acceleration",
+        ),
+        (
+            {"limits": Limits(acceleration=3.0, joints=2), "duration_upper": [9.0, 9.0, 0.7]},
+            "joint 1 needs at least 0.774597 s from way-point 2 to rest at its acceleration",
+        ),
+        (
+            {"limits": Limits(jerk=4.0, joints=2), "duration_upper": [9.0, 0.4, 0.6]},
+            "joint 1 needs at least 1.10521 s from way-point 2 to rest at its jerk limit",
+        ),
+        (
+            {
+                "limits": Limits(acceleration=[3.0, 1.5], joints=2),
+                "duration_upper": [2.0, 0.3, 0.3],
+                "curve": cubic_spline(3, ends=((2, 0.0),)),
+            },
+            "needs an acceleration of",
+        ),
+        (
+            {"curve": rest_to_rest(3, 5), "duration_upper": [0.9, 2.0, 2.0]},
+            "in segment 1 even at the longest durations",
+        ),
+    ],
+)
+def test_infeasible_is_said_with_a_proof(change: dict[str, object], reason: str) -> None:
+    problem = replace(two_joints(), **change)
+    solution = solve(problem)
+    assert solution.status is Status.INFEASIBLE
+    assert reason in str(solution.why)
+    # A second route: no motion of a dense grid within the bounds passes.
+    upper = np.minimum(problem.duration_upper, 3.0)
+    grid = np.stack(np.meshgrid(*[np.linspace(0.2, 1.0, 7)] * 3), axis=-1).reshape(-1, 3)
+    assert all(check(problem, share * upper).verdict is not Verdict.PASS for share in grid)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_elementary_proofs_never_speak_of_feasible_problems(seed: int) -> None:
+    """Bounds that just hold a motion that passes are never called infeasible."""
+    generator = np.random.default_rng(seed)
+    curve = (cubic_spline(4), quintic_spline(4), rest_to_rest(4, 5), three_five_three())[seed % 4]
+    q = generator.normal(size=(curve.segments + 1, 2))
+    problem = Problem(q, Limits(1.0, 2.0, 9.0, joints=2), curve)
+    h = np.exp(generator.normal(size=curve.segments))
+    h *= check(problem, h).stretch
+    assert check(problem, h).limits is Verdict.PASS
+    held = replace(problem, duration_lower=0.999 * h, duration_upper=h)
+    assert feasibility.impossible(held) is None
+
+
+def test_nothing_found_is_a_word_of_its_own_with_the_least_excess() -> None:
+    generator = np.random.default_rng(2)
+    q = generator.normal(size=(4, 3))
+    problem = Problem(q, Limits(1.0, 1.0, joints=3), quintic_spline(3))
+    base = solve(problem)
+    tight = replace(problem, duration_upper=0.97 * base.durations)
+    solution = solve(tight)
+    assert solution.status is Status.NONE_FOUND
+    assert str(solution.status) == "none found"
+    assert "not a proof" in solution.why
+    excess = float(solution.why.split("limit was ")[1].split()[0])
+    # Simplex from the corner, where every ratio is least to first order, finds no less.
+    worst = minimize(
+        lambda z: check(tight, np.exp(np.minimum(z, np.log(tight.duration_upper)))).max_violation,
+        np.log(0.99 * tight.duration_upper),
+        method="Nelder-Mead",
+        options={"maxfev": 300},
+    ).fun
+    assert 0.0 < excess <= worst * 1.001
+
+
+def test_timed_b_splines_with_jerk_limits_are_solved() -> None:
+    generator = np.random.default_rng(11)
+    q = generator.uniform(-2.0, 2.0, (8, 6))
+    curve = uniform_cubic_b_spline(8, "timed")
+    solution = solve(Problem(q, Limits(1.0, 2.0, 2.0, joints=6), curve))
+    assert solution.status is Status.OPTIMAL
+    assert solution.check.verdict is Verdict.PASS
+    assert solution.total_time == pytest.approx(27.70736506, rel=1e-8)  # also by IPOPT, 2 starts
+
+
+def test_the_least_point_is_that_of_another_method() -> None:
+    generator = np.random.default_rng(4)
+    for _ in range(20):
+        root = generator.normal(size=(4, 4))
+        hessian, slope = root @ root.T + 0.1 * np.eye(4), generator.normal(size=4)
+        rows, room = generator.normal(size=(7, 4)), generator.uniform(0.0, 1.0, 7)
+        found = least_point(hessian, slope, rows, room)
+        assert found is not None
+        step, weights = found
+        other = minimize(
+            lambda d, h=hessian, g=slope: 0.5 * d @ h @ d + g @ d,
+            np.zeros(4),
+            constraints=[{"type": "ineq", "fun": lambda d, a=rows, b=room: b - a @ d}],
+            method="SLSQP",
+            options={"ftol": 1e-14},
+        )
+        assert step == pytest.approx(other.x, abs=1e-5)
+        assert hessian @ step + slope + rows.T @ weights == pytest.approx(np.zeros(4), abs=1e-9)
+        assert (weights >= 0).all()
+    contradiction = np.array([[1.0, 0, 0, 0], [-1.0, 0, 0, 0]])
+    assert least_point(np.eye(4), np.zeros(4), contradiction, np.array([-1.0, -1.0])) is None
+
+
+@pytest.mark.parametrize("curve", [quintic_spline(3), uniform_cubic_b_spline(4, "timed")])
+def test_exact_rows_have_the_gradients_of_their_excesses(
+    monkeypatch: pytest.MonkeyPatch, curve: object
+) -> None:
+    monkeypatch.setattr(limit_rows, "NEAR", 1e-6)  # no row comes or goes with a small step
+    generator = np.random.default_rng(6)
+    q = generator.normal(size=(4, 2)) + 3.0
+    limits = Limits(0.4, 0.5, 0.9, q.min() - 0.01, q.max() + 0.01, joints=2)
+    problem, h = Problem(q, limits, curve), np.array([1.1, 0.7, 1.6])
+    rows, step = exact_rows(problem, h), 1e-6
+    assert {e.order for e in rows.points} == {0, 1, 2, 3}
+
+    def excess(h: np.ndarray, e: object, sign: float) -> float:
+        """Of the row at the same extremum; rounding makes some come and go at the very ends."""
+        there = exact_rows(problem, h)
+        same = [
+            (abs(p.s - e.s), x)
+            for p, x, side in zip(there.points, there.excess, there.signs, strict=True)
+            if (p.joint, p.order, p.segment, side) == (e.joint, e.order, e.segment, sign)
+        ]
+        return min(same)[1]
+
+    inner = [i for i, e in enumerate(rows.points) if e.s in (0.0, 1.0) or 0.01 < e.s < 0.99]
+    assert len(inner) > 25
+    for k in range(3):
+        ahead, behind = (h * np.exp(way * step * np.eye(3)[k]) for way in (1, -1))
+        for i in inner:
+            e, sign = rows.points[i], rows.signs[i]
+            slope = (excess(ahead, e, sign) - excess(behind, e, sign)) / (2 * step)
+            assert rows.gradient[i, k] == pytest.approx(slope, abs=1e-5)
+
+
+def test_a_descent_starts_outside_the_limits_and_ends_within() -> None:
+    problem = case("boxed", BOXED).problem()
+    box = Box(np.log(problem.duration_lower), np.log(problem.duration_upper))
+    start = np.sqrt(problem.duration_lower * problem.duration_upper)
+    assert check(problem, start).verdict is Verdict.VIOLATED
+    assert restored(problem, start, box).worst < 1e-9
+    ended = descend(problem, start, box)
+    assert ended.feasible
+    assert ended.converged
+    assert ended.durations.sum() == pytest.approx(6.776743, abs=1e-5)
+
+
+def benchmark() -> ModuleType:
+    spec = importlib.util.spec_from_file_location("solver_errors", BENCHMARK)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module  # dataclasses look their module up
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.mark.parametrize("seed", [16, 39, 142, 221, 309])
+def test_brute_force_improves_no_answer_and_contradicts_no_word(seed: int) -> None:
+    errors = benchmark()
+    problem = errors.random_problem(np.random.default_rng(seed))
+    assert errors.judged(solve(problem), errors.brute_force(problem, seed)) == ""
+
+
+def test_the_benchmark_sees_wrong_words_and_improvable_answers() -> None:
+    errors = benchmark()
+    problem = two_joints()
+    brute = errors.brute_force(problem, 0)
+    good = solve(problem)
+    assert errors.judged(good, brute) == ""
+    longer = replace(good, durations=1.01 * good.durations)
+    assert errors.judged(longer, brute) == "improvable"
+    assert errors.judged(replace(good, durations=0.9 * good.durations), brute) != ""
+    lost = Solution(problem, Status.INFEASIBLE, "wrong")
+    assert errors.judged(lost, brute) == "wrong infeasible"
+
+
+def test_shipped_optima_are_those_of_the_exact_descents() -> None:
+    """The two solvers of small problems share nothing but the extrema; they agree."""
+    problem = load_case("puma560-mnam-pso-353").problem()
+    solution = solve(problem)
+    floor = 1e-4 * solution.durations.mean()
+    box = Box(np.full(3, np.log(floor)), np.full(3, 5.0))
+    low = np.maximum(box.low, np.log(np.maximum(problem.duration_lower, 1e-300)))
+    ended = descend(problem, 2.0 * solution.durations, Box(low, box.high))
+    assert ended.durations.sum() == pytest.approx(solution.total_time, rel=1e-9)
