@@ -15,7 +15,7 @@ from typing import Any
 from attacks.attack import Attack, demand, keep
 from attacks.cases import Rng
 from attacks.reading import well_ended
-from attacks.sandbox import Ended, Plan, command
+from attacks.sandbox import Ended, Plan, at_once, command
 
 _CASE = """format = 1
 id = "kept"
@@ -259,6 +259,20 @@ def no_rights(rng: Rng, folder: Path) -> str | None:
     return "refused"
 
 
+def together(rng: Rng, folder: Path) -> str | None:
+    """The same command two or three times at once, all writing the same files."""
+    name, work = _chosen(rng, folder)
+    runs = at_once(work.arguments, folder, int(rng.integers(2, 4)), _SECONDS)
+    new = "--out out.json" in " ".join(work.arguments) or name == "new"
+    for ran in runs:
+        well_ended(ran, (2, *work.codes) if new else work.codes, f"{name}, at once")
+    done = [ran for ran in runs if ran.code != 2]
+    demand(len(done) == 1 or not new, f"{name}: {len(done)} of them have written a new file")
+    demand(work.whole(folder), f"{name}, at once: a file is not whole")
+    demand(not _drafts(folder), f"{name}, at once: drafts are left: {_drafts(folder)}")
+    return f"{name}: {len(done)} of {len(runs)}"
+
+
 def dead_worker(rng: Rng, folder: Path) -> str | None:
     """A worker of an audit killed: its work is done again, or one line says what happened."""
     work = Work((*_AUDIT, "--workers", "2"), _pages)
@@ -330,6 +344,14 @@ ATTACKS = (
         no_rights,
         0.5,
         3,
+    ),
+    _attack(
+        "several at once",
+        "the same, two or three times at once in one folder",
+        "a new file is written by exactly one; every file whole, no drafts left",
+        together,
+        1.0,
+        2,
     ),
     _attack(
         "dead worker",

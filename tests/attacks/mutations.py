@@ -18,6 +18,8 @@ NUMBERS = (
     "1e+308", "0.1e-299", "1e1000000000", "123456789012345678901234567890123456789012345678901234",
 )  # fmt: skip
 """Numbers at and beyond what floats and the format hold."""
+ODD = ("0", "-0.0", "1e-12", "1e12", "1e-300", "1e300", "0.000", "1", "1e6", "1e-6", "99999")
+"""Numbers that the format allows in many places, and that computing may stumble over."""
 STRINGS = (
     "", " ", "\t", "\n", "\x00", "\x1b[31mred\x1b[0m", "\u202egnirts", "\u2066x\u2069", "\ufeff",
     "é" * 300, "x" * 5000, "../../etc", "a/b", ".", "..", "CON", "<script>alert(1)</script>",
@@ -70,6 +72,10 @@ def _other_type(rng: Rng) -> Any:
 def damaged(rng: Rng, raw: dict[str, Any]) -> tuple[str, str]:
     """Text of a case file with one to three faults, and what was done to it."""
     document, done = copy.deepcopy(raw), []
+    if rng.random() < 0.4:
+        for _ in range(int(rng.integers(1, 3))):
+            done.append(_odd_number(rng, document))
+        return toml_text(document), ", ".join(done)
     for _ in range(int(rng.integers(1, 4))):
         done.append(_structural(rng, document))
     try:
@@ -80,6 +86,33 @@ def damaged(rng: Rng, raw: dict[str, Any]) -> tuple[str, str]:
         text, what = _textual(rng, text)
         done.append(what)
     return text, ", ".join(done)
+
+
+def _odd_number(rng: Rng, document: dict[str, Any]) -> str:
+    """A number of the problem replaced by another that is no fault by itself, but odd."""
+    parts = ("waypoints", "limits", "durations", "claims", "interpolant", "problems", "readings")
+    every = [p for p in places(document) if p[0] in parts and len(p) > 2]
+    numbers = [p for p in every if _is_number(_parent(document, p)[p[-1]])]
+    if not numbers:
+        return "no number"
+    place = numbers[rng.integers(len(numbers))]
+    parent, before = _parent(document, place), str(_parent(document, place)[place[-1]])
+    new = str(rng.choice(ODD)) if rng.random() < 0.6 else f"{_scaled(rng, before)}"
+    parent[place[-1]] = Bare(new) if isinstance(parent[place[-1]], Bare) else new
+    return f"{'.'.join(map(str, place))} is {new}"
+
+
+def _is_number(value: Any) -> bool:
+    try:
+        float(value)
+    except (TypeError, ValueError):
+        return False
+    return isinstance(value, str)
+
+
+def _scaled(rng: Rng, text: str) -> str:
+    value = float(text) * 10.0 ** float(rng.integers(-9, 10))
+    return f"{value:.6g}" if abs(value) < 1e300 else "1e300"
 
 
 def _structural(rng: Rng, document: dict[str, Any]) -> str:

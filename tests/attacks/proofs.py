@@ -3,296 +3,28 @@
 from __future__ import annotations
 
 import copy
-import hashlib
 import json
-from collections.abc import Callable
 from fractions import Fraction
-from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from attacks.attack import Attack, demand, keep
-from attacks.cases import Rng, alone, draw_asked
+from attacks.cases import Rng
 from attacks.curves import Asked, NoCurve, excess
-from attacks.mutations import places
+from attacks.forging import altered, as_text, claim_more, forge_tables, one_number, sealed
 from attacks.reading import well_ended
 from attacks.sandbox import Ended, call, command
 from attacks.stated import asked_in, claimed, least_any, least_declared
+from attacks.true_proofs import some_proof
 
-KINDS: dict[str, tuple[str, dict[str, Any], float]] = {
-    "rest-to-rest": ("rest-to-rest", {}, 1e-6),
-    "three-piece": ("3-5-3", {}, 0.05),
-    "four-three-four": ("polynomials", {"degrees": [4, 3, 4]}, 0.05),
-    "stretched": ("uniform-cubic-b-spline", {"time": "stretched"}, 1e-6),
-    "cubic": ("cubic-spline", {}, 0.1),
-    "cubic, virtual": ("cubic-spline-virtual", {}, 0.2),
-    "quintic-spline": ("quintic-spline", {}, 0.2),
-    "any-curve": ("cubic-spline", {}, 0.1),
-}
-"""Family, what its declaration must say, and the gap to prove, by kind of proof."""
-_EACH = 3
-"""Different certificates of each kind that are altered."""
-_MAKE_SECONDS = 20.0
-"""For making one of them."""
 _BUDGETS = (0.3, 2.0, 8.0)
 """Time limits that the verifier is given, s."""
 _SLACK = 1.5
 """Seconds that it may take beyond them: reading a file of the largest size."""
 _MARGIN = 1e-9
 """Relative excess of a bound over a feasible total that counts as rounding of the samples."""
-
-
-def _certified(kind: str, number: int, seconds: float) -> list[dict[str, Any]]:
-    """The certificate of a drawn problem, and the state of a run cut short; in a child."""
-    family, wanted, gap = KINDS[kind]
-    asked = _drawn(family, wanted, number)
-
-    def make() -> list[dict[str, Any]]:
-        from trajgap.nlp import certificate, certify
-        from trajgap.nlp.proofs import state_document
-        from trajgap.problem import parse_case
-        from trajgap.verify import Subject
-
-        problem = parse_case(alone(asked).text, "case.toml").problem()
-        subject = Subject.ANY if kind == "any-curve" else Subject.DECLARED
-        made: list[dict[str, Any]] = []
-        for goal, limit in ((gap, seconds), (1e-9, 0.2)):
-            found = certify(problem, subject=subject, gap=goal, seconds=limit)
-            state = state_document(found)
-            made += [certificate(found)] if found.proof is not None else []
-            made += [state] if state is not None else []
-        return made
-
-    ran = call(make, 6 * seconds)
-    return [] if ran.value is None else list(ran.value)
-
-
-def _drawn(family: str, wanted: dict[str, Any], number: int) -> Asked:
-    for attempt in range(1000):
-        rng = np.random.default_rng([number, attempt])
-        asked = draw_asked(rng, family, 4, 2, bounds=0.3, odd=0.1)
-        small = 3 <= len(asked.waypoints) <= 4 and not any(asked.ends.values())
-        limited = np.isfinite(asked.acceleration).all() and np.isfinite(asked.velocity).all()
-        if small and limited and all(asked.block.get(k) == v for k, v in wanted.items()):
-            return asked
-    raise RuntimeError(f"{family}: nothing drawn")
-
-
-@cache
-def _pool(kind: str, number: int) -> tuple[str, ...]:
-    return tuple(json.dumps(d) for d in _certified(kind, number, _MAKE_SECONDS))
-
-
-@lru_cache(maxsize=1)
-def _shipped() -> tuple[str, ...]:
-    from trajgap.nlp.proofs.document import shipped_folder
-
-    return tuple(p.read_text("utf-8") for p in sorted(shipped_folder().glob("*.json")))
-
-
-def _some(rng: Rng, states: bool) -> dict[str, Any] | None:
-    """A true certificate, or a state."""
-    if not states and rng.random() < 0.2:
-        text = _shipped()[rng.integers(len(_shipped()))]
-        return dict(json.loads(text))
-    kind = str(rng.choice(list(KINDS)))
-    pool = [json.loads(x) for x in _pool(kind, int(rng.integers(_EACH)))]
-    fitting = [d for d in pool if ("state" in d["format"]) == states]
-    # What proves nothing yet has little to alter.
-    fitting = [d for d in fitting if d["proof"]] or fitting
-    return dict(fitting[rng.integers(len(fitting))]) if fitting else None
-
-
-def _hash(part: Any) -> str:
-    words = json.dumps(part, sort_keys=True, separators=(",", ":"), ensure_ascii=True)
-    return hashlib.sha256(words.encode()).hexdigest()
-
-
-def sealed(document: dict[str, Any]) -> dict[str, Any]:
-    """The document with both hashes made right."""
-    own = {**document, "problem_hash": _hash(document.get("problem"))}
-    own.pop("seal", None)
-    return {**own, "seal": _hash(own)}
-
-
-# --- alterations ----------------------------------------------------------------------------------
-
-_NUMBERS = ("9" * 120, "0", "-1", "1e99", "-1e99", "1e-99", "1/3", "1/0", "٣", " 1", "1_0", "nan")
-"""Numbers as text that a reader may take for others."""
-
-
-def altered(rng: Rng, document: dict[str, Any], other: dict[str, Any] | None) -> str:
-    """Alter a certificate in place in one way; what was done."""
-    ways: tuple[Callable[[], str], ...] = (
-        lambda: _one_number(rng, document),
-        lambda: _one_number(rng, document["proof"]),
-        lambda: _one_number(rng, document["problem"]),
-        lambda: _claim(rng, document),
-        lambda: _claim(rng, document),
-        lambda: _claim(rng, document),
-        lambda: _structure(rng, document),
-        lambda: _tree(rng, document),
-        lambda: _graft(rng, document, other),
-        lambda: _easier(rng, document),
-        lambda: _infeasible(document),
-    )
-    return ways[rng.integers(len(ways))]()
-
-
-def _leaf_places(value: Any) -> list[tuple[Any, ...]]:
-    return [p for p in places(value) if not isinstance(_at(value, p), dict | list)]
-
-
-def _at(value: Any, place: tuple[Any, ...]) -> Any:
-    for key in place:
-        value = value[key]
-    return value
-
-
-def _put(value: Any, place: tuple[Any, ...], new: Any) -> None:
-    _at(value, place[:-1])[place[-1]] = new
-
-
-def _one_number(rng: Rng, part: Any) -> str:
-    every = _leaf_places(part) if isinstance(part, dict) else []
-    if not every:
-        return "nothing"
-    place = every[rng.integers(len(every))]
-    before = _at(part, place)
-    _put(part, place, _other(rng, before))
-    return f"{'.'.join(map(str, place))}: {str(before)[:40]} is {str(_at(part, place))[:40]}"
-
-
-def _other(rng: Rng, value: Any) -> Any:
-    draw = rng.random()
-    if draw < 0.1:
-        return [None, True, [], {}, "x", 0, -1, 2**53, 2**70, 1.5][rng.integers(10)]
-    if isinstance(value, bool):
-        return not value
-    if isinstance(value, int):
-        near = [value + 1, value - 1, -value, 0, 2 * value, int(rng.integers(-9, 2**20))]
-        return near[rng.integers(len(near))]
-    try:
-        number = Fraction(value)
-    except (TypeError, ValueError, ZeroDivisionError):
-        return _NUMBERS[rng.integers(len(_NUMBERS))]
-    if draw < 0.2:
-        return _NUMBERS[rng.integers(len(_NUMBERS))]
-    if draw < 0.3:
-        return _text(-number)
-    factor = 1 + Fraction(int(rng.integers(-99, 100)), 10 ** int(rng.integers(1, 13)))
-    return _text(number * factor)
-
-
-def _text(number: Fraction) -> str:
-    return f"{number.numerator}/{number.denominator}" if number.denominator > 1 else str(number)
-
-
-def _claim(rng: Rng, document: dict[str, Any]) -> str:
-    """More than is proved: bounds raised together, or an answer shortened."""
-    claim, proof = document["claim"], document["proof"]
-    up = 1 + Fraction(int(rng.integers(1, 100)), 10 ** int(rng.integers(2, 7)))
-    what = int(rng.integers(6))
-    if what == 5 and claim["durations"]:
-        claim["durations"] = [_text(Fraction(x) / up) for x in claim["durations"]]
-        claim["upper"] = _text(Fraction(claim["upper"]) / up)
-        return f"answer shorter by {float(up)}"
-    claim["lower"] = _text(Fraction(claim["lower"]) * up)
-    if what > 0 and proof:
-        proof["total"] = _text(Fraction(proof["total"]) * up)
-        if "cap" in proof:
-            proof["cap"] = _text(Fraction(proof["cap"]) * up)
-    if what > 1:
-        claim["upper"] = claim["durations"] = claim["speeds"] = None
-    return f"lower bound higher by {float(up)}"
-
-
-def _structure(rng: Rng, document: dict[str, Any]) -> str:
-    every = places(document)
-    place = every[rng.integers(len(every))]
-    parent, key = _at(document, place[:-1]), place[-1]
-    name = ".".join(map(str, place))
-    match int(rng.integers(4)):
-        case 0:
-            del parent[key]
-            return f"{name} left out"
-        case 1 if isinstance(parent, list):
-            parent.insert(key, copy.deepcopy(parent[int(rng.integers(len(parent)))]))
-            return f"{name} put in"
-        case 2:
-            other = every[rng.integers(len(every))]
-            value = copy.deepcopy(_at(document, other))
-            _put(document, place, value)
-            return f"{name} from {'.'.join(map(str, other))}"
-    if isinstance(parent, dict):
-        parent[f"{key} "] = 1
-        return "a key more"
-    parent.reverse()
-    return f"around {name} turned round"
-
-
-def _tree(rng: Rng, document: dict[str, Any]) -> str:
-    """Nodes left out, doubled, exchanged, or a part replaced by a leaf from elsewhere."""
-    proof = document["proof"]
-    if not proof or not isinstance(proof.get("tree"), list) or len(proof["tree"]) < 2:
-        return "no tree"
-    tree = proof["tree"]
-    i, j = (int(x) for x in rng.integers(0, len(tree), 2))
-    match int(rng.integers(4)):
-        case 0:
-            del tree[i]
-        case 1:
-            tree.insert(i, copy.deepcopy(tree[j]))
-        case 2:
-            tree[i], tree[j] = tree[j], tree[i]
-        case _:
-            leaves = [n for n in tree if isinstance(n, list) and n and n[0] == "."]
-            del tree[i : i + int(rng.integers(1, 6))]
-            tree.insert(i, copy.deepcopy(leaves[rng.integers(len(leaves))]) if leaves else ["."])
-    return f"tree at {i}, {j}"
-
-
-def _graft(rng: Rng, document: dict[str, Any], other: dict[str, Any] | None) -> str:
-    """The problem of one certificate with the proof of another."""
-    if other is None:
-        return "nothing to graft"
-    key = str(rng.choice(["proof", "problem", "claim"]))
-    document[key] = copy.deepcopy(other[key])
-    return f"{key} of another"
-
-
-def _easier(rng: Rng, document: dict[str, Any]) -> str:
-    """Limits higher, ways shorter or bounds wider: the bound that is proved no longer holds."""
-    problem = document["problem"]
-    factor = 1 + Fraction(int(rng.integers(1, 100)), 10 ** int(rng.integers(1, 8)))
-
-    def times(value: Any, by: Fraction) -> Any:
-        if isinstance(value, dict):
-            return {**value, "value": _text(Fraction(value["value"]) * by)}
-        return None if value is None else _text(Fraction(value) * by)
-
-    match int(rng.integers(3)):
-        case 0:
-            j = int(rng.integers(len(problem["limits"])))
-            problem["limits"][j] = [times(x, factor) for x in problem["limits"][j]]
-        case 1:
-            problem["waypoints"] = [[times(x, 1 / factor) for x in r] for r in problem["waypoints"]]
-        case _:
-            problem["duration_lower"] = [times(x, 1 / factor) for x in problem["duration_lower"]]
-            problem["duration_upper"] = [None] * len(problem["duration_upper"])
-    return f"easier by {float(factor)}"
-
-
-def _infeasible(document: dict[str, Any]) -> str:
-    claim = document["claim"]
-    claim["infeasible"] = True
-    claim["upper"] = claim["durations"] = claim["speeds"] = None
-    return "called infeasible"
-
-
-# --- what is judged -------------------------------------------------------------------------------
 
 
 def _verified(document: dict[str, Any], budget: float) -> tuple[Ended, dict[str, Any] | None]:
@@ -362,11 +94,11 @@ def _least(
 
 
 def _attacked(rng: Rng, folder: Path, states: bool) -> str | None:
-    original = _some(rng, states)
+    original = some_proof(rng, states)
     if original is None:
         return None
     document = copy.deepcopy(original)
-    other, done = _some(rng, states), []
+    other, done = some_proof(rng, states), []
     for _ in range(int(rng.integers(1, 4))):
         try:
             done.append(altered(rng, document, other))
@@ -400,15 +132,15 @@ def states(rng: Rng, folder: Path) -> str | None:
 
 def resumed(rng: Rng, folder: Path) -> str | None:
     """An altered state taken up again: refused, or only what is true comes of it."""
-    original = _some(rng, True)
+    original = some_proof(rng, True)
     if original is None:
         return None
     document = copy.deepcopy(original)
     # The problem stays: a state of another question is refused before anything is looked at.
     parts = [p for p in ("proposals", "proof", "claim") if document[p]]
-    done = _one_number(rng, document[parts[rng.integers(len(parts))]])
+    done = one_number(rng, document[parts[rng.integers(len(parts))]])
     if rng.random() < 0.5:
-        done += "; " + _claim(rng, document)
+        done += "; " + claim_more(rng, document)
     document = sealed(document)
     keep(folder, proof=json.dumps(document), done=done)
     asked = asked_in(document)
@@ -469,7 +201,7 @@ def _posable(asked: Asked) -> Asked:
 
 def forged(rng: Rng, folder: Path) -> str | None:
     """Proofs made from nothing: rows, weights, trees and bounds at random, for a true problem."""
-    original = _some(rng, False)
+    original = some_proof(rng, False)
     if original is None:
         return None
     document = copy.deepcopy(original)
@@ -478,12 +210,12 @@ def forged(rng: Rng, folder: Path) -> str | None:
     best = Fraction(original["claim"]["upper"] or original["claim"]["lower"])
     share = rng.uniform(1.002, 2.0) if rng.random() < 0.6 else 10 ** rng.uniform(-2.0, 0.0)
     total = Fraction(_short(best * Fraction(float(share))))
-    claim["lower"], proof["total"] = _text(total), _text(total)
+    claim["lower"], proof["total"] = as_text(total), as_text(total)
     if "cap" in proof:
-        proof["cap"] = _text(total * int(rng.integers(1, 4)))
+        proof["cap"] = as_text(total * int(rng.integers(1, 4)))
     if rng.random() < 0.2:
         claim["infeasible"] = True
-    _forged_tables(rng, proof)
+    forge_tables(rng, proof)
     document = sealed(document)
     keep(folder, proof=json.dumps(document))
     ran, said = _verified(document, 8.0)
@@ -500,39 +232,9 @@ def _short(number: Fraction) -> str:
     return f"{float(number):.12g}"
 
 
-def _forged_tables(rng: Rng, proof: dict[str, Any]) -> None:
-    """Leaves from a pool of the proof's own numbers, in another tree, or of few large weights."""
-    tree = proof["tree"]
-    leaves = [n for n in tree if isinstance(n, list) and n and n[0] == "."]
-    cuts = [n for n in tree if n not in leaves]
-    if not leaves:
-        return
-    depth = int(rng.integers(0, 6))
-    forged_tree: list[Any] = []
-
-    def grow(level: int) -> None:
-        if level and cuts and rng.random() < 0.8:
-            forged_tree.append(copy.deepcopy(cuts[rng.integers(len(cuts))]))
-            if isinstance(forged_tree[-1], int) or forged_tree[-1][0] == "/":
-                grow(level - 1)
-            grow(level - 1)
-            return
-        leaf = copy.deepcopy(leaves[rng.integers(len(leaves))])
-        if rng.random() < 0.5:
-            _one_number(rng, {"leaf": leaf})
-        forged_tree.append(leaf)
-
-    grow(depth)
-    proof["tree"] = forged_tree
-    for key in ("rows", "windows"):
-        if proof.get(key) and rng.random() < 0.5:
-            for _ in range(int(rng.integers(1, 4))):
-                _one_number(rng, {key: proof[key]})
-
-
 def files(rng: Rng, folder: Path) -> str | None:
     """Files handed to `trajgap verify`: cut, doubled, nested, binary, with keys twice."""
-    original = _some(rng, bool(rng.random() < 0.3))
+    original = some_proof(rng, bool(rng.random() < 0.3))
     if original is None:
         return None
     text = json.dumps(original)

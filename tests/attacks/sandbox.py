@@ -18,7 +18,7 @@ import time
 import traceback
 import types
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -96,25 +96,42 @@ def command(
     seconds: float = SECONDS,
     memory_mb: int = MEMORY_MB,
     plan: Plan | None = None,
-    environment: Mapping[str, str] | None = None,
 ) -> Ended:
     """Run ``trajgap`` with these arguments in a folder."""
+    return _forked(_trajgap(arguments), plan or Plan(), seconds, memory_mb, folder)
 
+
+def at_once(
+    arguments: Sequence[str], folder: Path, times: int, seconds: float = SECONDS
+) -> list[Ended]:
+    """Run the same command several times at once."""
+    begun = [_begun(_trajgap(arguments), Plan(), seconds, MEMORY_MB, folder) for _ in range(times)]
+    return [_watched(*one, Plan(), seconds * _WALL * times) for one in begun]
+
+
+def _trajgap(arguments: Sequence[str]) -> Callable[[], int]:
     def run() -> int:
         from trajgap.compare.cli import main
 
-        os.environ.update(environment or {})
         sys.argv = ["trajgap", *arguments]
         # Workers import what the main module is: here it is the command and not the runner.
         sys.modules["__main__"] = types.ModuleType("__main__")
         return main()
 
-    return _forked(run, plan or Plan(), seconds, memory_mb, folder)
+    return run
 
 
 def _forked(
     function: Callable[[], Any], plan: Plan, seconds: float, memory_mb: int, folder: Path | None
 ) -> Ended:
+    begun = _begun(function, plan, seconds, memory_mb, folder)
+    return _watched(*begun, plan, seconds * _WALL)
+
+
+def _begun(
+    function: Callable[[], Any], plan: Plan, seconds: float, memory_mb: int, folder: Path | None
+) -> tuple[int, list[int], float]:
+    """Fork a child; its number, the pipes to read from, and when it began."""
     pipes = [os.pipe() for _ in range(3)]
     for stream in (sys.stdout, sys.stderr):
         stream.flush()
@@ -129,7 +146,7 @@ def _forked(
         _child(function, plan, seconds, memory_mb, folder, [other for _, other in pipes])
     for _, other in pipes:
         os.close(other)
-    return _watched(pid, [own for own, _ in pipes], plan, began, seconds * _WALL)
+    return pid, [own for own, _ in pipes], began
 
 
 def _child(
@@ -200,7 +217,7 @@ def _drop_rights() -> None:
         raise OSError(ctypes.get_errno(), "capset")
 
 
-def _watched(pid: int, pipes: list[int], plan: Plan, began: float, wall: float) -> Ended:
+def _watched(pid: int, pipes: list[int], began: float, plan: Plan, wall: float) -> Ended:
     seen: dict[int, list[bytes]] = {fd: [] for fd in pipes}
     due = [] if plan.signal is None else [began + plan.after]
     late = signalled = False

@@ -14,7 +14,7 @@ import pytest
 import trajgap.compare.audits
 import trajgap.nlp
 import trajgap.problem
-from trajgap.compare.cli import auditing, checking, output, showing, solving
+from trajgap.compare.cli import output
 from trajgap.nlp.optimum import Status
 from trajgap.problem import Verdict
 
@@ -119,10 +119,9 @@ def a_fault(patch: Patch) -> None:
     def fail(*_: Any, **__: Any) -> int:
         raise ZeroDivisionError
 
-    patch.setattr(showing, "show_case", fail)
-    patch.setattr(checking, "check_durations", fail)
-    patch.setattr(solving, "solve_case", fail)
-    patch.setattr(auditing, "audit_cases", fail)
+    names = ("showing.show_case", "checking.check_durations", "solving.solve_case")
+    for name in (*names, "auditing.audit_cases"):
+        patch.setattr(f"trajgap.compare.cli.{name}", fail)
 
 
 def two_lines(patch: Patch) -> None:

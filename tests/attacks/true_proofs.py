@@ -1,0 +1,90 @@
+"""True certificates and states of every kind, to be altered: shipped ones, and drawn problems'."""
+
+from __future__ import annotations
+
+import json
+from functools import cache, lru_cache
+from typing import Any
+
+import numpy as np
+
+from attacks.cases import Rng, alone, draw_asked
+from attacks.curves import Asked
+from attacks.sandbox import call
+
+KINDS: dict[str, tuple[str, dict[str, Any], float]] = {
+    "rest-to-rest": ("rest-to-rest", {}, 1e-6),
+    "three-piece": ("3-5-3", {}, 0.05),
+    "four-three-four": ("polynomials", {"degrees": [4, 3, 4]}, 0.05),
+    "stretched": ("uniform-cubic-b-spline", {"time": "stretched"}, 1e-6),
+    "cubic": ("cubic-spline", {}, 0.1),
+    "cubic, virtual": ("cubic-spline-virtual", {}, 0.2),
+    "quintic-spline": ("quintic-spline", {}, 0.2),
+    "any-curve": ("cubic-spline", {}, 0.1),
+}
+"""Family, what its declaration must say, and the gap to prove, by kind of proof."""
+_EACH = 3
+"""Different certificates of each kind that are altered."""
+_MAKE_SECONDS = 20.0
+"""For making one of them."""
+
+
+def _certified(kind: str, number: int, seconds: float) -> list[dict[str, Any]]:
+    """The certificate of a drawn problem, and the state of a run cut short; in a child."""
+    family, wanted, gap = KINDS[kind]
+    asked = _drawn(family, wanted, number)
+
+    def make() -> list[dict[str, Any]]:
+        from trajgap.nlp import certificate, certify
+        from trajgap.nlp.proofs import state_document
+        from trajgap.problem import parse_case
+        from trajgap.verify import Subject
+
+        problem = parse_case(alone(asked).text, "case.toml").problem()
+        subject = Subject.ANY if kind == "any-curve" else Subject.DECLARED
+        made: list[dict[str, Any]] = []
+        for goal, limit in ((gap, seconds), (1e-9, 0.2)):
+            found = certify(problem, subject=subject, gap=goal, seconds=limit)
+            state = state_document(found)
+            made += [certificate(found)] if found.proof is not None else []
+            made += [state] if state is not None else []
+        return made
+
+    ran = call(make, 6 * seconds)
+    return [] if ran.value is None else list(ran.value)
+
+
+def _drawn(family: str, wanted: dict[str, Any], number: int) -> Asked:
+    for attempt in range(1000):
+        rng = np.random.default_rng([number, attempt])
+        asked = draw_asked(rng, family, 4, 2, bounds=0.3, odd=0.1)
+        small = 3 <= len(asked.waypoints) <= 4 and not any(asked.ends.values())
+        limited = np.isfinite(asked.acceleration).all() and np.isfinite(asked.velocity).all()
+        if small and limited and all(asked.block.get(k) == v for k, v in wanted.items()):
+            return asked
+    raise RuntimeError(f"{family}: nothing drawn")
+
+
+@cache
+def _pool(kind: str, number: int) -> tuple[str, ...]:
+    return tuple(json.dumps(d) for d in _certified(kind, number, _MAKE_SECONDS))
+
+
+@lru_cache(maxsize=1)
+def _shipped() -> tuple[str, ...]:
+    from trajgap.nlp.proofs.document import shipped_folder
+
+    return tuple(p.readas_text("utf-8") for p in sorted(shipped_folder().glob("*.json")))
+
+
+def some_proof(rng: Rng, states: bool) -> dict[str, Any] | None:
+    """A true certificate, or a state."""
+    if not states and rng.random() < 0.2:
+        text = _shipped()[rng.integers(len(_shipped()))]
+        return dict(json.loads(text))
+    kind = str(rng.choice(list(KINDS)))
+    pool = [json.loads(x) for x in _pool(kind, int(rng.integers(_EACH)))]
+    fitting = [d for d in pool if ("state" in d["format"]) == states]
+    # What proves nothing yet has little to alter.
+    fitting = [d for d in fitting if d["proof"]] or fitting
+    return dict(fitting[rng.integers(len(fitting))]) if fitting else None
