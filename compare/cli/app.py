@@ -159,6 +159,13 @@ def solve(
             show_default="60",
         ),
     ] = None,
+    any_curve: Annotated[
+        bool,
+        typer.Option(
+            "--any-curve",
+            help="With --certify: over every motion through the way-points, whatever its curve.",
+        ),
+    ] = False,
     certificates: Annotated[
         Path | None,
         typer.Option(
@@ -186,6 +193,7 @@ def solve(
         options = {
             "--gap": gap,
             "--time": seconds,
+            "--any-curve": any_curve or None,
             "--certificates": certificates,
             "--resume": resume or None,
         }
@@ -195,6 +203,7 @@ def solve(
         from .solving import solve_case
 
         return solve_case(case, problem, reading, coupling, starts, seed, as_json, out)
+    from ...verify import Subject
     from .certifying import certify_case
 
     return certify_case(
@@ -205,6 +214,7 @@ def solve(
         1e-6 if gap is None else gap,
         60.0 if seconds is None else seconds,
         seed,
+        Subject.ANY if any_curve else Subject.DECLARED,
         certificates,
         resume or [],
         as_json,

@@ -40,6 +40,7 @@ from ...verify import (
     CertificateVerdict,
     CertifiedQuestion,
     Refused,
+    Subject,
     read_document,
     verify_certificate,
 )
@@ -85,6 +86,8 @@ class Question:
     asked: CertifiedQuestion
     problem: ExactProblem | str
     """Or why it is not covered."""
+    subject: Subject = Subject.DECLARED
+    """What the interval is to speak about."""
 
     @property
     def file(self) -> str:
@@ -96,6 +99,7 @@ class Question:
         asked = self.asked
         parts = [str(x) for x in (asked.case, asked.problem, asked.reading)]
         parts += [] if asked.joint is None else [f"joint-{asked.joint}"]
+        parts += ["any-curve"] if self.subject is Subject.ANY else []
         plain = ".".join(quote(part, safe="").replace(".", "%2E") for part in parts)
         if len(plain) <= _LONGEST:
             return plain
@@ -110,6 +114,7 @@ def certify_case(
     gap: float,
     seconds: float,
     seed: int,
+    subject: Subject,
     folder: Path | None,
     resume: Sequence[Path],
     as_json: bool,
@@ -118,7 +123,7 @@ def certify_case(
     """Prove an interval of the optimum of each selected problem and reading."""
     case = read_case(source)
     chosen = select(case, problem, reading, coupling)
-    asked = [q for one in chosen for q in _questions(case, one)]
+    asked = [q for one in chosen for q in _questions(case, one, subject)]
     states = _states(resume, asked)
     folder = CERTIFICATE_FOLDER if folder is None and not as_json else folder
     if not 0 <= gap < 1:
@@ -139,6 +144,7 @@ def certify_case(
                     if isinstance(one.problem, str)
                     else certify(
                         one.problem,
+                        subject=subject,
                         gap=gap,
                         seconds=seconds,
                         seed=seed,
@@ -149,7 +155,7 @@ def certify_case(
                 unsettled |= isinstance(found, str) or found.outcome not in _SETTLED
                 files = _written(folder, one, found)
                 ids = (case.id, one.posed.problem_id, one.posed.reading_id, one.asked.joint)
-                results.append(certify_result(*ids, found, *files, _why(found)))
+                results.append(certify_result(*ids, subject, found, *files, _why(found)))
         document = CertifyDocument(intervals=tuple(results))
         write(json_text(document))
     emit(document, cli_proofs.certified, as_json)
@@ -160,12 +166,15 @@ def certify_case(
     return NOT_PROVED if unsettled else 0
 
 
-def _questions(case: Case, one: Posed) -> Iterator[Question]:
+def _questions(case: Case, one: Posed, subject: Subject) -> Iterator[Question]:
     """What is asked under one reading, of all joints or of each, with why it is not covered."""
-    for question in _stated(case, one, one.problem.coupling):
+    # A bound over any curve is one of all joints together: what else would they share.
+    coupling = Coupling.SHARED if subject is Subject.ANY else one.problem.coupling
+    for question in _stated(case, one, coupling):
         exact = question.problem
-        why = exact if isinstance(exact, str) else covered(exact)
-        yield question if why is None else replace(question, problem=why)
+        why = exact if isinstance(exact, str) else covered(exact, subject)
+        asked = replace(question, subject=subject)
+        yield asked if why is None else replace(asked, problem=why)
 
 
 def _stated(case: Case, one: Posed, coupling: Coupling) -> Iterator[Question]:
@@ -204,7 +213,11 @@ def _states(resume: Sequence[Path], asked: Sequence[Question]) -> dict[str, Stat
     found: dict[str, StateFile] = {}
     for path in resume:
         state = read_state(path)
-        fits = [q.name for q in asked if not isinstance(q.problem, str) and state.fits(q.problem)]
+        fits = [
+            q.name
+            for q in asked
+            if not isinstance(q.problem, str) and state.fits(q.problem, q.subject)
+        ]
         if not fits:
             raise CaseError(
                 state.name, "problem", "is none of those selected; name the case and reading of it"

@@ -7,6 +7,7 @@ from fractions import Fraction
 
 from ...nlp import Certified, Outcome
 from ...nlp.proofs import decimal
+from ...verify import Subject
 from .entry import Count, Document, Entry, OrWhy, Why, known
 from .vocabulary import Uncovered
 
@@ -19,6 +20,8 @@ class CertifiedResult(Entry):
     reading: str
     joint: str | None
     """The joint that was optimised by itself; null for all together."""
+    subject: Subject
+    """What the interval speaks about."""
     outcome: Outcome | Uncovered
     outcome_why: str | None
     lower: OrWhy[float]
@@ -54,6 +57,7 @@ def certify_result(
     problem: str,
     reading: str,
     joint: str | None,
+    subject: Subject,
     found: Certified | str,
     certificate: str | None,
     state: str | None,
@@ -67,6 +71,8 @@ def certify_result(
         Ids.
     joint : str or None
         The joint that was optimised by itself; None for all together.
+    subject : Subject
+        What the interval is to speak about.
     found : Certified or str
         Or why the problem is not covered.
     certificate, state : str or None
@@ -85,6 +91,7 @@ def certify_result(
             problem=problem,
             reading=reading,
             joint=joint,
+            subject=subject,
             outcome=Uncovered.NOT_COVERED,
             outcome_why=found,
             lower=nothing,
@@ -109,6 +116,7 @@ def certify_result(
         problem=problem,
         reading=reading,
         joint=joint,
+        subject=subject,
         outcome=found.outcome,
         outcome_why=why,
         lower=outwards(lower, unproved, -1),

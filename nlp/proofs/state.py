@@ -40,9 +40,9 @@ class StateFile:
     name: str
     document: dict[str, Any]
 
-    def fits(self, problem: ExactProblem) -> bool:
+    def fits(self, problem: ExactProblem, subject: Subject = Subject.DECLARED) -> bool:
         """Whether it is about exactly this question."""
-        return fits(self.document, problem, Subject.DECLARED)
+        return fits(self.document, problem, subject)
 
 
 def state_document(

@@ -18,6 +18,7 @@ from support.command_line import CASE, Run, on_terminal, strict
 from support.documents import SCHEMA, assert_valid
 from support.shipped_problems import POSED
 from trajgap.compare.cli import certifying as cli_certify
+from trajgap.compare.cli import main
 from trajgap.compare.documents import Uncovered
 from trajgap.nlp import ExactProblem, shipped
 from trajgap.nlp.proofs.document import shipped_folder
@@ -408,3 +409,22 @@ def test_a_width_that_is_not_reached_is_not_called_certified(run: Run) -> None:
     (result,) = strict(out)["intervals"]
     assert 0 < result["gap"] < 1e-9
     assert (code, result["outcome"]) == (3, "interval")
+
+
+def test_a_bound_over_any_curve_is_certified_verified_and_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "proofs"
+    assert main(["solve", *ONE, "--certify", "--any-curve", "--certificates", str(folder)]) == 0
+    capsys.readouterr()
+    (file,) = folder.iterdir()
+    assert file.name == f"{NAME}.any-curve.json"
+    assert main(["verify", str(file), "--case", IRB, "--json"]) == 0
+    (one,) = json.loads(capsys.readouterr().out)["verified"]
+    assert one["subject"] == "any curve"
+    shown = json.loads((shipped_folder() / f"{NAME}.any-curve.json").read_text("utf-8"))
+    assert one["lower"] == pytest.approx(float(Fraction(shown["claim"]["lower"])), rel=1e-6)
+    assert main(["solve", *ONE, "--certify", "--certificates", str(folder)]) == 0
+    assert len(list(folder.iterdir())) == 2, "another question, another file"
+    assert main(["solve", *ONE, "--any-curve"]) == 2
+    assert "--any-curve needs --certify" in capsys.readouterr().err
