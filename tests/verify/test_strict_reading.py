@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import copy
+import itertools
 import json
 import os
 import random
 import time
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 from support.small_certificates import REST, Document, rest_to_rest, sealed
-from trajgap.verify import STATE_FORMAT, CertificateVerdict, seal
+from trajgap.verify import STATE_FORMAT, CertificateVerdict, reading, seal
 from trajgap.verify import verify_certificate as verify
 from trajgap.verify.ranges import MOST_BYTES, MOST_DEPTH
 
@@ -195,11 +197,19 @@ def test_long_splines_are_refused_before_arithmetic() -> None:
 
 
 @pytest.mark.parametrize("make", [cubic, quintic])
-def test_exact_elimination_ends_with_the_time(make: Callable[[int, int], Document]) -> None:
+def test_exact_elimination_ends_with_the_time(
+    make: Callable[[int, int], Document], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # A clock that moves on whenever it is read: however fast the machine, the time is up amid the
+    # elimination, which reads it for every column.
+    ticks = itertools.count()
+    slow = SimpleNamespace(monotonic=lambda: 0.01 * next(ticks))
+    monkeypatch.setattr(reading, "time", slow)
     verdict = refused_quickly(make(26, 100), seconds=0.2)
     assert verdict.out_of_time
     assert str(verdict) == "out of time: nothing was decided in 0.2 s; give more time"
     assert verdict.lower is None
+    assert 20 < next(ticks) < 30
 
 
 def test_a_walk_ends_with_the_time() -> None:
