@@ -199,7 +199,7 @@ def _transformed(rng: Rng, kind: str, asked: Asked, h: Array) -> tuple[Asked, Ar
 
 def rounding(rng: Rng, folder: Path) -> str | None:
     """The verdict over all inputs that print alike, against random inputs of the box."""
-    from trajgap.compare.audits import Box, judge_rounding
+    from trajgap.compare.audits import RoundingBox, judge_rounding
     from trajgap.problem import Printed
 
     try:
@@ -209,7 +209,9 @@ def rounding(rng: Rng, folder: Path) -> str | None:
         return None
     digits = [f"{x:.{int(rng.integers(2, 5))}g}" for x in h]
     boxes = [Printed(x) for x in digits]
-    times = Box(*(np.array([getattr(b, k) for b in boxes]) for k in ("value", "lower", "upper")))
+    times = RoundingBox(
+        *(np.array([getattr(b, k) for b in boxes]) for k in ("value", "lower", "upper"))
+    )
     places = int(rng.integers(2, 6))
     raw = raw_of(asked)
     words = [[f"{x:.{places}f}" for x in row] for row in asked.waypoints.T]
@@ -218,7 +220,7 @@ def rounding(rng: Rng, folder: Path) -> str | None:
     asked = drawn.first
     keep(folder, case=drawn.text, durations=",".join(digits))
     half = 0.5 * 10.0**-places
-    way = Box(asked.waypoints, asked.waypoints - half, asked.waypoints + half)
+    way = RoundingBox(asked.waypoints, asked.waypoints - half, asked.waypoints + half)
     try:
         found = judge_rounding(_problem(drawn), times, way)
     except Exception as error:

@@ -74,7 +74,7 @@ def _pool(kind: str, number: int) -> tuple[str, ...]:
 def _shipped() -> tuple[str, ...]:
     from trajgap.nlp.proofs.document import shipped_folder
 
-    return tuple(p.readas_text("utf-8") for p in sorted(shipped_folder().glob("*.json")))
+    return tuple(p.read_text("utf-8") for p in sorted(shipped_folder().glob("*.json")))
 
 
 def some_proof(rng: Rng, states: bool) -> dict[str, Any] | None:
