@@ -9,7 +9,7 @@ from trajgap.compare.pages.blocks import Drawn
 from trajgap.compare.pages.exhibits import exhibits_of_motion, exhibits_of_search
 from trajgap.compare.pictures.drawing import svg
 from trajgap.compare.pictures.waterfall import waterfall_picture
-from trajgap.problem import load_case
+from trajgap.problem import file_name, load_case
 
 PICTURES = Path(__file__).parent / "pictures"
 
@@ -23,7 +23,7 @@ def waterfall_puma560() -> str:
 
 
 EXHIBITS = {
-    "jumps-irb1600": ("irb1600-ga-cubic-bspline", "jumps-nine-segments-after"),
+    "jumps-irb1600": ("irb1600-ga-cubic-bspline", file_name("jumps", "nine-segments", "after")),
     "polygon-irb1600": ("irb1600-ga-cubic-bspline", "polygon-control-vertices"),
     "workspace-irb460": ("irb460-pso-353", "workspace-modified"),
     "tent-z1": ("z1-woa-bspline", "tent-improved-woa"),

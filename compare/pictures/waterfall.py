@@ -55,7 +55,7 @@ def waterfall_picture(waterfall: Waterfall, *, title: str) -> Picture:
     """
     steps = waterfall.steps
     ends = [x for s in steps for x in (s.time, s.high) if not isinstance(x, Why)]
-    top = max(ends, default=1.0)
+    top = max(ends, default=1.0) or 1.0
     description = "; ".join(f"{s.name}: {seconds(s)}, {_evidence(s)}" for s in steps)
     with drawing():
         figure = Picture(title, description, 9.6, 1.1 + 0.5 * max(1, len(steps)))
@@ -147,7 +147,9 @@ def _bar(axes: Axes, row: int, step: Step, top: float) -> None:
 
 
 def _change(time: float, base: float) -> tuple[str, str]:
-    if abs(time - base) < 5e-5 * min(1.0, base):
+    if abs(time - base) <= 5e-5 * min(1.0, base):
         return "0 s", "0 %"
-    texts = f"{time - base:+.4f} s", f"{100 * (time / base - 1):+.1f} %"
+    # A step of 0 s, where nothing limits the total, has no multiples.
+    share = f"{100 * (time / base - 1):+.1f} %" if base > 0 else ""
+    texts = f"{time - base:+.4f} s", share
     return texts[0].replace("-", "−"), texts[1].replace("-", "−")

@@ -16,6 +16,7 @@ ELSEWHERE = {
     "nlp": "nlp/optimum",
     "nlp/enclosure": "compare/audits/test_rounding.py",
     "compare": "compare/audits",
+    "verify/cubic": "nlp/proofs/cubic",
 }
 
 

@@ -17,7 +17,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 from support.samples import DECLARATIONS
-from trajgap.problem.curves import kernel, peak, spline
+from trajgap.problem.curves import interpolant, kernel, peak, spline
 from trajgap.problem.curves import kind as curve
 
 checker = importlib.import_module("trajgap.problem.checker")
@@ -80,7 +80,7 @@ def use(
         monkeypatch.setattr(suite.test_peak, "extrema", mutant.extrema)
         monkeypatch.setattr(suite.test_peak, "critical_points", mutant.critical_points)
     elif module is curve:
-        monkeypatch.setattr(checker, "enclosed", mutant.enclosed)
+        monkeypatch.setattr(interpolant, "value_errors", mutant.value_errors)
     else:
         for test_module in (suite.test_check, suite.test_peak):
             for name in ("check", "evaluate", "Verdict"):
@@ -218,10 +218,10 @@ KERNEL: list[tuple[str, str, Killer]] = [
 ]
 
 PEAK: list[tuple[str, str, Killer]] = [
-    ("np.concatenate([[0.0], critical_points(a), [1.0]])", "np.concatenate([[0.0], [1.0]])", waves),
-    ("critical_points(a), [1.0]])", "critical_points(a)])", waves),
-    ("([[0.0], critical_points(a)", "([critical_points(a)", waves),
-    ("    if degree < 2:", "    if degree < 3:", waves),
+    ("trajectory.turning(k, joint, order), [1.0]", "[1.0]", waves),
+    ("(k, joint, order), [1.0]])", "(k, joint, order)])", waves),
+    ("([[0.0], trajectory.turning", "([trajectory.turning", waves),
+    ("    if degree < 2:", "    if degree < 3:", chebyshev),
     ("a[1:] * np.arange(1, degree + 1)", "a[1:] * np.arange(degree)", chebyshev),
 ]
 
@@ -234,7 +234,7 @@ CHECKER: list[tuple[str, str, Killer]] = [
     ("return abs(value) / limit", "return value / limit", waves),
     ("[abs(e.value) for e in points]", "[e.value for e in points]", waves),
     (
-        "bound = max(bounds)",
+        "bound = max(float(bounds[i]), float((sizes + bounds).max() - sizes[i]))",
         "bound = 0.0",
         named("test_check", "test_rounding_that_hides_the_limit_is_undecided"),
     ),

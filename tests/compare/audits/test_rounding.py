@@ -680,3 +680,11 @@ def test_a_moving_joint_with_limit_zero_alone_is_judged() -> None:
     problem = Problem(points, Limits(0.0, np.inf, joints=1), three_five_three())
     durations = RoundingBox(np.ones(3), np.full(3, 0.99), np.full(3, 1.01))
     assert judge_rounding(problem, durations, None).verdict is Rounding.BREAKS
+
+
+def test_nothing_limited_is_kept_by_every_duration() -> None:
+    free = Problem([[0.0], [1.0], [0.5]], Limits(np.inf), cubic_spline(2), duration_lower=0.5)
+    below = RoundingBox(np.array([0.49, 0.6]), np.array([0.48, 0.59]), np.array([0.495, 0.61]))
+    assert judge_rounding(free, below).verdict is Rounding.BREAKS
+    around = RoundingBox(np.array([0.49, 0.6]), np.array([0.48, 0.59]), np.array([0.51, 0.61]))
+    assert judge_rounding(free, around).verdict in (Rounding.CONSISTENT, Rounding.UNDECIDED)

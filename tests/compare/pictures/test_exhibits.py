@@ -24,6 +24,7 @@ from trajgap.problem import (
     Printed,
     Problem,
     TrajgapError,
+    file_name,
     three_five_three,
 )
 from trajgap.problem.curves import control_vertices, uniform_cubic_b_spline
@@ -243,7 +244,7 @@ def test_the_polishing_case_shows_jumps_and_polygon(irb1600: Study) -> None:
     assert isinstance(picture, Drawn)
     assert isinstance(folded, Folded)
     # Durations of 1 s throughout leave no jump; the times of the other reading are smooth.
-    assert picture.name == "jumps-nine-segments-after"
+    assert picture.name == file_name("jumps", "nine-segments", "after")
     assert "under 8 of 16 readings" in picture.caption
     assert irb1600.main_reading in picture.caption
     (grid,) = folded.blocks

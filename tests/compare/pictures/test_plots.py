@@ -379,6 +379,13 @@ def test_bars_start_at_zero_and_end_at_their_value(pictures: dict[str, Picture])
     ]
 
 
+def test_a_step_of_no_time_is_drawn() -> None:
+    steps = (Step(name="published", time=1.0), Step(name="optimum", time=0.0))
+    back = (Step(name="published", time=0.0), Step(name="optimum", time=1.0))
+    for order in (steps, back, (steps[1], back[0])):
+        assert svg(waterfall_picture(fall(*order), title="Where the time goes"))
+
+
 @pytest.mark.parametrize("steps", [(), (STEPS[4],)])
 def test_a_waterfall_without_any_value_is_still_drawn(steps: tuple[Step, ...]) -> None:
     ElementTree.fromstring(svg(waterfall_picture(fall(*steps), title="Nothing")))

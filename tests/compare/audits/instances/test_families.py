@@ -326,7 +326,10 @@ def made(before: list[float], after: list[float], printed: tuple[float, float]) 
     sample = Sample(
         "as-printed", 0.3, 0, np.zeros((3, 2)), *known, totals, np.zeros(totals.shape, np.intp)
     )  # fmt: skip
-    sides = [Procedure("stops", "plain"), Procedure("spline", "new")]
+    sides = [
+        Procedure(problem="stops", algorithm="plain"),
+        Procedure(problem="spline", algorithm="new"),
+    ]
     return InstancesResult(block, *sides, printed, ("as-printed",), 12, (sample,))
 
 

@@ -14,6 +14,7 @@ import pytest
 from support.alterations import changed, get, places, put
 from support.checkout import ROOT
 from support.unjudged import unjudged
+from support.unlucky import answering
 from trajgap.nlp.proofs.answer import keeps_limits
 from trajgap.nlp.proofs.certifiers import certify
 from trajgap.nlp.proofs.cubic import (
@@ -150,7 +151,7 @@ def test_dense_search_never_leaves_the_interval_of_two_hundred_problems() -> Non
 def test_one_clamped_piece_has_a_closed_form(limits: Limits, total: float) -> None:
     problem = Problem([[-1.0], [2.0]], limits, cubic_spline(1))
     # `certify` prefers the closed form of rest-to-rest polynomials.
-    found = CUBIC.certify(exact_problem(problem), Request(gap=1e-3))
+    found = CUBIC.run(exact_problem(problem), Request(gap=1e-3))
     assert found.outcome is Outcome.CERTIFIED
     assert float(found.lower) <= total * (1 + 1e-12)
     assert float(found.upper or 0) == pytest.approx(total, rel=1e-7)
@@ -384,11 +385,8 @@ def unlucky(monkeypatch: pytest.MonkeyPatch, seconds: float) -> tuple[float, Cer
     assert best.durations is not None
     worse = tuple(h * Fraction(11, 10) for h in best.durations)
 
-    def answer(run: Any, initial: Any = None) -> None:
-        run.durations = worse
-
-    monkeypatch.setattr(cubic_certify._Run, "answer", answer)
-    monkeypatch.setattr(cubic_certify._Run, "improve", lambda *_: None)
+    answering(monkeypatch, lambda call, initial: worse)
+    monkeypatch.setattr(cubic_certify._Watch, "improve", lambda *_: None)
     return float(best.upper or 0), certify(base_problem(), gap=0.02, seconds=seconds)
 
 
@@ -416,17 +414,9 @@ def test_a_broken_relaxation_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_a_worse_local_answer_is_replaced(monkeypatch: pytest.MonkeyPatch) -> None:
     best = base()
-    answer, calls = cubic_certify._Run.answer, []
-
-    def local(run: Any, initial: Any = None) -> None:
-        calls.append(initial)
-        if len(calls) == 1:
-            assert best.durations is not None
-            run.durations = tuple(h * 2 for h in best.durations)
-        else:
-            answer(run, initial)
-
-    monkeypatch.setattr(cubic_certify._Run, "answer", local)
+    assert best.durations is not None
+    double = tuple(h * 2 for h in best.durations)
+    calls = answering(monkeypatch, lambda call, initial: double if call == 1 else True)
     found = certify(base_problem(), gap=0.02)
     assert len(calls) > 1
     assert found.outcome is Outcome.CERTIFIED
@@ -442,12 +432,6 @@ def interrupted(after: int) -> Certified:
     return certify(base_problem(), gap=1e-3, report=report)
 
 
-@pytest.fixture
-def talkative(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(cubic_certify, "_OFTEN", 0.0)
-
-
-@pytest.mark.usefixtures("talkative")
 def test_a_stopped_run_goes_on_where_it_stopped() -> None:
     first = interrupted(12)
     assert first.outcome is Outcome.INTERVAL
@@ -464,7 +448,6 @@ def test_a_stopped_run_goes_on_where_it_stopped() -> None:
     assert second.nodes < whole.nodes
 
 
-@pytest.mark.usefixtures("talkative")
 def test_an_altered_state_is_refused() -> None:
     document = json.loads(json.dumps(state_document(interrupted(12))))
     rng = np.random.default_rng(0)

@@ -15,6 +15,7 @@ import pytest
 from scipy.interpolate import make_interp_spline
 from support.checkout import ROOT
 from support.unjudged import unjudged
+from support.unlucky import answering
 from trajgap.nlp import solve
 from trajgap.nlp.proofs.certifiers import certify, covered
 from trajgap.nlp.proofs.document import certificate
@@ -23,6 +24,7 @@ from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress, Request
 from trajgap.nlp.proofs.quintic.bound import bound, centre
 from trajgap.nlp.proofs.quintic.rows import PLACES, row_shape
 from trajgap.nlp.proofs.quintic.windows import window, window_bound, window_terms
+from trajgap.nlp.proofs.session import Session
 from trajgap.nlp.proofs.state import state_document
 from trajgap.problem import Limits, Problem, TrajgapError, evaluate, quintic_spline
 from trajgap.verify import seal
@@ -189,10 +191,10 @@ def test_limits_falsified_on_purpose_prove_too_much_and_are_refused(
     assert (judged.outcome, judged.proof) == (Outcome.OPEN, None)
     units = module._units(exact_problem(small()))
     assert units == module.Units((0, 0), 0)
-    run = module._Run(exact_problem(small()), units, Request(), 0.0, truth.durations)
-    library = module.windows(run.steps, run.limits, np.array([float(h) for h in truth.durations]))
-    run.deadline = np.inf
-    too_much = run.stage(module._below(truth.upper * Fraction(101, 100)), library)
+    session = Session(exact_problem(small()), Request(seconds=np.inf))
+    session.durations = truth.durations
+    stages = module._Search(session)
+    too_much = stages.stage(stages.rounded(truth.upper * Fraction(101, 100)))
     assert too_much.total > truth.upper
     document = certificate(false[0])
     document["proof"], document["claim"]["lower"] = too_much.document(), str(truth.upper)
@@ -205,14 +207,8 @@ def test_limits_falsified_on_purpose_prove_too_much_and_are_refused(
 def test_an_answer_that_is_too_long_is_never_certified(monkeypatch: pytest.MonkeyPatch) -> None:
     best = solve(small(), seed=0).durations
     assert best is not None
-    given = module._answer
-
-    def unlucky(floats: Any, exact: Any, seed: int, initial: Any) -> Any:
-        if initial is None:
-            return tuple(Fraction(float(h)) for h in 1.05 * best * np.array([1.2, 0.9, 1.1]))
-        return given(floats, exact, seed, initial)
-
-    monkeypatch.setattr(module, "_answer", unlucky)
+    long = tuple(Fraction(float(h)) for h in 1.05 * best * np.array([1.2, 0.9, 1.1]))
+    answering(monkeypatch, lambda call, initial: long if initial is None else True)
     found = certify(small(), gap=0.01)
     assert found.outcome is Outcome.CERTIFIED
     assert float(found.upper or 0) == pytest.approx(best.sum(), rel=1e-6)

@@ -6,6 +6,7 @@ import copy
 import json
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -16,12 +17,14 @@ from support.checkout import ROOT
 from support.shipped_problems import POSED
 from support.three_pieces import dense_best, random_problem
 from support.unjudged import unjudged
+from support.unlucky import answering
 from trajgap.nlp import solve
 from trajgap.nlp.proofs.answer import exact_coefficients, keeps_limits, never_above
 from trajgap.nlp.proofs.certifiers import certify, covered
 from trajgap.nlp.proofs.document import certificate, problem_document, shipped, shipped_folder
 from trajgap.nlp.proofs.exact import ExactProblem, decimal, exact_problem
-from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress
+from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress, Request
+from trajgap.nlp.proofs.session import Session
 from trajgap.nlp.proofs.state import resumed, state_document
 from trajgap.nlp.proofs.three_piece import rows as three_piece
 from trajgap.nlp.proofs.three_piece.boxes import Boxes
@@ -120,8 +123,8 @@ def unlucky(monkeypatch: pytest.MonkeyPatch, seconds: float = 2.0) -> tuple[floa
     assert true is not None
     upper = Fraction(true["claim"]["upper"])
     worse = tuple(Fraction(h) * Fraction(21, 20) for h in true["claim"]["durations"])
-    monkeypatch.setattr(module, "_answer", lambda *_: worse)
-    monkeypatch.setattr(module._Run, "improve", lambda *_: None)
+    answering(monkeypatch, lambda call, initial: worse)
+    monkeypatch.setattr(module._Search, "_look", lambda run, *_: run.session.check_clock())
     return float(upper), certify(exact, seconds=seconds)
 
 
@@ -149,15 +152,8 @@ def test_a_local_answer_is_replaced_by_a_better_one(monkeypatch: pytest.MonkeyPa
     exact = POSED["puma560-mnam-pso-353.six-joints.durations-positive.joint-6"]
     true = shipped(exact)
     assert true is not None
-    answer, calls = module._answer, []
-
-    def local(*arguments: object) -> tuple[Fraction, ...] | None:
-        calls.append(arguments)
-        if len(calls) == 1:
-            return tuple(Fraction(h) * 2 for h in true["claim"]["durations"])
-        return answer(*arguments)  # type: ignore[arg-type]
-
-    monkeypatch.setattr(module, "_answer", local)
+    double = tuple(Fraction(h) * 2 for h in true["claim"]["durations"])
+    calls = answering(monkeypatch, lambda call, initial: double if call == 1 else True)
     found = certify(exact)
     assert len(calls) > 1
     assert found.outcome is Outcome.CERTIFIED
@@ -225,7 +221,8 @@ def test_an_edited_state_proves_nothing_false(monkeypatch: pytest.MonkeyPatch) -
             node[path[-1]] = mangled(node[path[-1]], rng)
             try:
                 state = resumed(exact, data)
-                pending = module._pending(exact, state)
+                session = Session(exact, Request(resume=state))
+                pending = session.taken_up(partial(module._proposed, exact, "three-piece"))
             except TrajgapError:
                 outcomes.append((part, "refused"))
                 continue
@@ -275,7 +272,7 @@ def test_a_resumed_bound_alone_proves_nothing_infeasible(monkeypatch: pytest.Mon
     state["claim"] |= {"durations": None, "upper": None}
     assert state["proof"] is not None
     assert None in exact.duration_upper
-    monkeypatch.setattr(module, "_answer", lambda *_: None)
+    answering(monkeypatch, lambda call, initial: None)
     again = certify(exact, resume=state)
     assert again.outcome is Outcome.OPEN
     assert again.lower == found.lower

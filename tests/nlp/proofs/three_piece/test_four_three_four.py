@@ -14,6 +14,7 @@ import pytest
 from support.checkout import ROOT
 from support.three_pieces import dense_best, random_problem
 from support.unjudged import unjudged
+from support.unlucky import answering
 from trajgap.nlp.proofs.answer import exact_coefficients, keeps_limits
 from trajgap.nlp.proofs.certifiers import certify, covered
 from trajgap.nlp.proofs.document import certificate
@@ -227,8 +228,8 @@ def unlucky(
     """Certify with an answer 5 % above the optimum and no search for a better one."""
     assert durations is not None
     worse = tuple(h * Fraction(21, 20) for h in durations)
-    monkeypatch.setattr(search, "_answer", lambda *_: worse)
-    monkeypatch.setattr(search._Run, "improve", lambda *_: None)
+    answering(monkeypatch, lambda call, initial: worse)
+    monkeypatch.setattr(search._Search, "_look", lambda run, *_: run.session.check_clock())
     return certify(problem, seconds=1.5)
 
 
