@@ -53,6 +53,8 @@ DEEPER = (1e-6, 1e-8)
 """Further floors where way-points nearly coincide: the total may rise again below the others."""
 SHORT = 1e-2
 """Share of the mean that an idle segment takes where rounding hides the limits at the floors."""
+ROUNDED = 2e-9
+"""Relative gain of a known motion that counts: twice what the checker's tolerance gives away."""
 RESTORABLE = 200
 """Segments up to which the feasibility phase runs: its gradients are dense, (segments)² each."""
 ANYWHERE = 8
@@ -308,7 +310,7 @@ def _with_known(problem: Problem, solution: Solution, ask: _Ask) -> Solution:
     passed = [
         (h, v)
         for h, v in zip(ask.known, nodal, strict=True)
-        if h.sum() < solution.best and kept(problem, check(problem, h, v))
+        if h.sum() < solution.best * (1 - ROUNDED) and kept(problem, check(problem, h, v))
     ]
     if not passed:
         return solution
