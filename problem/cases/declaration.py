@@ -78,10 +78,10 @@ FAMILIES = {
 
 
 def _known(name: object) -> str:
-    if name not in FAMILIES:
+    if not isinstance(name, str) or name not in FAMILIES:
         *most, last = map(repr, FAMILIES)
         raise fault("", f"{name!r} is not allowed; use {', '.join(most)} or {last}")
-    return str(name)
+    return name
 
 
 FamilyName = Annotated[
