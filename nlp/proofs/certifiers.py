@@ -26,7 +26,9 @@ CERTIFIERS: tuple[Certifier, ...] = (
     QUINTIC,
     ANY_CURVE,
 )
-"""Every kind of proof; no curve is declared by two of them that speak about the same subject."""
+"""Every kind of proof; of those that declare a curve and speak about a subject the first is taken.
+
+A rest-to-rest cubic is a C2 cubic spline too: closed forms stand in front."""
 
 
 def _certifier(problem: ExactProblem, subject: Subject) -> Certifier | None:

@@ -89,7 +89,7 @@ class Search:
             if not prover.narrow(box):
                 return -1
             laid = self.relaxation.over(prover.side(box), box.ranges)
-            found = self._total(laid, box)
+            laid, found = self._total(laid, box)
             if found is None or box.closed:
                 break
             best = errors(laid, found)
@@ -109,8 +109,11 @@ class Search:
     def _volume(self, box: Box) -> float:
         return float(np.prod(np.subtract(box.high, box.low, dtype=np.float64)))
 
-    def _total(self, laid: Laid, box: Box) -> Proposal | None:
-        """Raise the floor by the bound of the total, with velocities at the peaks found so far."""
+    def _total(self, laid: Laid, box: Box) -> tuple[Laid, Proposal | None]:
+        """Raise the floor by the bound of the total, with velocities at the peaks found so far.
+
+        Returns the program with those velocities in it, and its answer.
+        """
         prover = self.prover
         found = laid.bound(TOTAL, capped=False)
         if found is not None:
@@ -120,16 +123,15 @@ class Search:
             if new:
                 self.rows += new
                 self.relaxation = Relaxation(prover.system, self.rows, prover.total)
-                again = self.relaxation.over(laid.side, box.ranges)
-                laid.__dict__.update(again.__dict__)
+                laid = self.relaxation.over(laid.side, box.ranges)
                 found = laid.bound(TOTAL, capped=False)
         if found is None:
             empty = laid.emptiness()
             if empty is not None:
                 prover.clear(box, empty.weights)
-            return None
+            return laid, None
         prover.lift(box, found.weights)
-        return found
+        return laid, found
 
     def _sides(self, laid: Laid, box: Box, found: Proposal) -> None:
         """Move the sides inward."""
