@@ -12,17 +12,7 @@ from .cases import (
     scaffold,
 )
 from .characters import escaped, visible
-from .checker import (
-    TOLERANCE,
-    Check,
-    Evaluation,
-    Jump,
-    Peak,
-    Verdict,
-    check,
-    evaluate,
-    reachable_total,
-)
+from .checker import TOLERANCE, Check, Jump, Peak, Verdict, check
 from .curves import (
     ClampedBSpline,
     ClampedReading,
@@ -52,6 +42,7 @@ from .curves import (
     uniform_cubic_b_spline,
 )
 from .errors import CaseError, CurveError, TrajgapError
+from .evaluation import Evaluation, evaluate, reachable_total
 from .file_names import LONGEST_NAME, file_name
 from .files import (
     check_name,

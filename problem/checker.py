@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import StrEnum
-from functools import lru_cache
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from .arrays import Array
 from .curves import (
@@ -15,8 +14,8 @@ from .curves import (
     as_durations,
     extrema,
 )
-from .errors import CurveError, TrajgapError
-from .limits import QUANTITIES, Limits
+from .errors import CurveError
+from .limits import QUANTITIES
 from .problem import Problem
 
 TOLERANCE = 1e-9
@@ -398,131 +397,3 @@ def check(
         tight_why=tight_why,
         tolerance=tolerance,
     )
-
-
-def reachable_total(
-    problem: Problem, durations: ArrayLike, lower: ArrayLike, upper: ArrayLike
-) -> float | None:
-    """A total that these durations, stretched, keep for every way-point in a box.
-
-    For fixed durations the curve is linear in the way-points, so its peaks over the box are at
-    most those at ``problem.waypoints`` plus, for each way-point, its deviation times the peaks of
-    the cardinal curve (that way-point 1, the others 0).
-
-    Parameters
-    ----------
-    problem : Problem
-        With a determined, homogeneous curve.
-    durations : array_like, shape (segments,)
-        s.
-    lower, upper : array_like, shape (way-points, joints)
-        Box around ``problem.waypoints``, rad.
-
-    Returns
-    -------
-    float or None
-        An upper bound, s, on the optimum of every problem in the box, rounding errors of the
-        peaks included; None if no stretch is known to repair all of them.
-    """
-    h = as_durations(durations, problem.segments)
-    q, points = problem.waypoints, len(problem.waypoints)
-    plain = not problem.curve.free and problem.curve.homogeneous
-    if not plain or problem.limits.limits_position:
-        return None
-    away = np.maximum(np.asarray(upper) - q, q - np.asarray(lower))
-    unlimited = Limits(joints=points)
-    cardinal = replace(
-        problem,
-        waypoints=np.eye(points),
-        limits=unlimited.with_derivatives(np.ones((points, 3))),
-        joints=(),
-    )
-    unit = evaluate(cardinal, h[None]).ratios[0]
-    own = evaluate(problem, h[None]).ratios[0]
-    limits = problem.limits.derivatives
-    moves = away.T @ unit
-    with np.errstate(invalid="ignore", divide="ignore"):
-        ratios = own + np.where(np.isfinite(limits), moves / limits, 0.0)
-    if not np.isfinite(ratios).all():
-        return None
-    slack = 1.0 + TOLERANCE
-    roots = [ratios[:, 0], np.sqrt(ratios[:, 1]), np.cbrt(ratios[:, 2])]
-    stretch = max(1.0, float(np.max(roots)) * slack)
-    stretched = h * stretch
-    inside = (stretched * slack >= problem.duration_lower).all()
-    if not inside or (stretched > problem.duration_upper * slack).any():
-        return None
-    return float(stretched.sum())
-
-
-@dataclass(frozen=True, eq=False)
-class Evaluation:
-    """True peak ratios of a batch of duration vectors.
-
-    Attributes
-    ----------
-    ratios : ndarray, shape (batch, joints, 3)
-        max over t of |v|/V, |a|/A, |j|/J; 0 where there is no limit, inf where a duration is
-        not positive and finite.
-    stretch : ndarray, shape (batch,)
-        c* of each vector.
-    """
-
-    ratios: Array
-    stretch: Array
-
-
-def evaluate(problem: Problem, durations: ArrayLike, nodal: ArrayLike | None = None) -> Evaluation:
-    """Exact peak ratios for many duration vectors at once.
-
-    Parameters
-    ----------
-    problem : Problem
-    durations : array_like, shape (batch, segments)
-        Duration vectors, s.
-    nodal : array_like, shape (free, joints), optional
-        Free derivatives, the same for every vector.
-
-    Returns
-    -------
-    Evaluation
-
-    Raises
-    ------
-    TrajgapError
-        If the shape is not (batch, segments).
-    """
-    try:
-        h = np.asarray(durations, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise TrajgapError("durations: not numbers; give seconds, (batch, segments)") from None
-    if nodal is None:
-        values, limits, wanted = _fixed_question(problem)
-    else:
-        values, limits, wanted = _question(problem, np.asarray(nodal, dtype=np.float64))
-    peaks = problem.curve.batch_peaks(values, h, wanted)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        ratios = peaks / limits
-    undefined = np.isnan(ratios)  # 0/0 is kept, inf/inf is not
-    if undefined.any():
-        ratios[undefined] = np.where(peaks[undefined] > 0, np.inf, 0.0)
-    top = ratios[:, 0].copy()
-    for j in range(1, ratios.shape[1]):  # far quicker than max() along a middle axis
-        np.maximum(top, ratios[:, j], out=top)
-    stretch = np.maximum(top[:, 0], np.maximum(np.sqrt(top[:, 1]), np.cbrt(top[:, 2])))
-    return Evaluation(ratios, stretch)
-
-
-Question = tuple[Array, Array, NDArray[np.bool_]]
-
-
-def _question(problem: Problem, nodal: Array | None) -> Question:
-    limits = problem.limits.derivatives
-    values = problem.curve.motion_values(problem.waypoints, nodal)
-    return values, limits, np.isfinite(limits)
-
-
-@lru_cache(maxsize=64)
-def _fixed_question(problem: Problem) -> Question:
-    """Keyed by the problem's identity: a swarm asks the same problem thousands of times."""
-    return _question(problem, None)

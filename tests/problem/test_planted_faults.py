@@ -17,6 +17,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 from support.samples import DECLARATIONS
+from trajgap.problem import evaluation
 from trajgap.problem.curves import interpolant, kernel, peak, spline
 from trajgap.problem.curves import kind as curve
 
@@ -84,7 +85,7 @@ def use(
     else:
         for test_module in (suite.test_check, suite.test_peak):
             for name in ("check", "evaluate", "Verdict"):
-                if hasattr(test_module, name):
+                if hasattr(test_module, name) and hasattr(mutant, name):
                     monkeypatch.setattr(test_module, name, getattr(mutant, name))
 
 
@@ -338,6 +339,9 @@ CHECKER: list[tuple[str, str, Killer]] = [
         "True",
         named("test_check", "test_duration_bounds"),
     ),
+]
+
+EVALUATION: list[tuple[str, str, Killer]] = [
     (
         "np.where(peaks[undefined] > 0, np.inf, 0.0)",
         "0.0",
@@ -359,7 +363,13 @@ CURVE: list[tuple[str, str, Killer]] = [
 
 ALL = [
     (module, old, new, killer)
-    for module, faults in ((kernel, KERNEL), (peak, PEAK), (checker, CHECKER), (curve, CURVE))
+    for module, faults in (
+        (kernel, KERNEL),
+        (peak, PEAK),
+        (checker, CHECKER),
+        (evaluation, EVALUATION),
+        (curve, CURVE),
+    )
     for old, new, killer in faults
 ]
 
@@ -387,7 +397,7 @@ def test_a_planted_fault_fails(
         killer(suite)
 
 
-@pytest.mark.parametrize("module", [kernel, peak, checker], ids=name)
+@pytest.mark.parametrize("module", [kernel, peak, checker, evaluation], ids=name)
 def test_without_a_fault_the_same_tests_pass(
     monkeypatch: pytest.MonkeyPatch, suite: Suite, module: ModuleType
 ) -> None:
