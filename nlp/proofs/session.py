@@ -10,16 +10,14 @@ from fractions import Fraction
 from typing import Any, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...problem import TrajgapError, evaluate
+from ...problem import Array, TrajgapError, evaluate
 from ...verify import Subject
 from ..optimum import solve
 from .answer import float_problem, prove_feasible
 from .exact import ExactProblem
 from .outcome import Argument, Certified, Outcome, Progress, Request
 
-Array = NDArray[np.float64]
 T = TypeVar("T")
 
 OFTEN = 0.2

@@ -7,6 +7,7 @@ from fractions import Fraction
 
 import numpy as np
 
+from ....problem import Array
 from ....verify import Subject
 from ..answer import float_problem
 from ..exact import ExactProblem
@@ -17,7 +18,6 @@ from .exact import FreeQuestion, missing, prove_motion, question, unanswered
 from .local import Question, local_optimum
 from .proof import DIGITS, free_bound, restored
 from .search import Node, Search
-from .tangents import Array
 
 _SHARE = 0.9
 """Of the gap asked for, so that rounding has room."""

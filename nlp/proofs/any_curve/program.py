@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import linprog
 
-from .tangents import Array, Floats, Ints, matrix
+from ....problem import Array
+from .tangents import Floats, Ints, matrix
 
 _EXACT = {"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10}
 

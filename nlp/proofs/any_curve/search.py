@@ -11,11 +11,11 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
+from ....problem import Array
 from .exact import FreeQuestion
 from .program import least_total, lower
 from .rows import BRAKE, CHANGE, REACH, Box, Row, bound
 from .tangents import (
-    Array,
     Floats,
     Ints,
     brake_rows,

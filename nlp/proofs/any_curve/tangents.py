@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
+from ....problem import Array
 from .exact import FreeQuestion
 from .rows import BRAKE, CHANGE, REACH, UNIT, Row
 
-Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 _LARGEST = 1e5

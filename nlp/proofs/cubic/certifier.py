@@ -11,13 +11,14 @@ from typing import Any
 
 import numpy as np
 
+from ....problem import Array
 from ....verify import MOST_CUBIC_SEGMENTS, TICKS
 from ..exact import ExactProblem
 from ..session import Certifier, Ladder, Session
 from .ranges import implied
 from .replay import replayed
 from .search import Search
-from .system import Array, CubicSystem, cubic_system, kind_of_ends
+from .system import CubicSystem, cubic_system, kind_of_ends
 from .tree import Box, Prover, proof_document
 
 _LADDER = Ladder((0.1, 0.01, 1e-3, 1e-4, 1e-5), 0.98, 3.0)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from ....problem import Array
 from .ranges import matrices
 from .relaxation import Laid, Proposal
-from .system import PLACES, Array, CubicSystem, Row
+from .system import PLACES, CubicSystem, Row
 
 _TINY = 1e-9
 _EXCESS = 1.001

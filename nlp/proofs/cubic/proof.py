@@ -9,9 +9,10 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from ....problem import Array
 from ...enclosure import EPS, Ball, raised
 from .ranges import Side, matrices
-from .system import Array, CubicSystem, Row
+from .system import CubicSystem, Row
 
 MIX = 32
 """Shares of a product's two bounds are multiples of 1/MIX."""

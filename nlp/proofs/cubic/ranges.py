@@ -9,8 +9,9 @@ from functools import lru_cache
 
 import numpy as np
 
+from ....problem import Array
 from ...enclosure import EPS, Ball, raised
-from .system import Array, CubicSystem
+from .system import CubicSystem
 
 _ROUNDS = 6
 _SPARE = 1e-8

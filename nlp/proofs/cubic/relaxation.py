@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 from scipy.optimize import linprog
 from scipy.sparse import csr_array, hstack, vstack
 
+from ....problem import Array
 from .proof import MIX, Target, Weights
 from .ranges import Side, matrices
-from .system import Array, CubicSystem, Row
+from .system import CubicSystem, Row
 
 _TANGENTS = 5
 _SLOPES = 4

@@ -13,13 +13,8 @@ import math
 from dataclasses import dataclass, field
 from fractions import Fraction
 
-import numpy as np
-from numpy.typing import NDArray
-
 from ....problem import Interpolant, cubic_spline_virtual
 from ..exact import ExactProblem
-
-Array = NDArray[np.float64]
 
 PLACES = 64
 """Velocity limits are looked at in multiples of 1/PLACES of a piece."""

@@ -10,11 +10,12 @@ from typing import Any
 
 import numpy as np
 
+from ....problem import Array
 from ....verify import CUT, LEAF, MIX_DIGITS, OPEN, TICKS
 from ..exact import decimal
 from .proof import NOTHING, TOTAL, Target, Weights, least, multiplied
 from .ranges import Side, a_priori, implied, narrowed, with_rho
-from .system import Array, CubicSystem, Row
+from .system import CubicSystem, Row
 
 
 @dataclass(frozen=True, eq=False)

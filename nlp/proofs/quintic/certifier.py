@@ -8,9 +8,8 @@ from fractions import Fraction
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ....problem import Interpolant, Verdict, check
+from ....problem import Array, Interpolant, Verdict, check
 from ....verify import MOST_POWER, MOST_QUINTIC_JOINTS, MOST_QUINTIC_SEGMENTS, SMALLEST
 from ..exact import ExactProblem, decimal
 from ..rounding import below
@@ -18,8 +17,6 @@ from ..session import Certifier, Ladder, OutOfTime, Session, Shorter
 from .leaves import Leaves
 from .search import DONE, FULL, PAUSED, SHORTER, search
 from .windows import Windows, windows
-
-Array = NDArray[np.float64]
 
 _LADDER = Ladder(
     (0.3, 0.2, 0.1, 0.05, *(x * 10.0**-k for k in range(2, 7) for x in (2.0, 1.0, 0.5))), 0.9, 1.5

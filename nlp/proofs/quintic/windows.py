@@ -16,9 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linprog
 
+from ....problem import Array
 from .bound import ROUNDING, compiled
-
-Array = NDArray[np.float64]
 
 UNIT = 2.0**16
 """ψ and c are multiples of 1/UNIT."""

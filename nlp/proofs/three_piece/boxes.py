@@ -12,13 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linprog
 
+from ....problem import Array
 from ..exact import ExactProblem
 from .ratios import POWERS
 from .rows import (
     PLACES,
     STRICT,
     TOTAL,
-    Array,
     Prover,
     Row,
     on_square,

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ....problem import TrajgapError
 from ..exact import ExactProblem
@@ -22,8 +21,6 @@ from .square_polynomials import (
     power,
     times,
 )
-
-Array = NDArray[np.float64]
 
 PLACES = 2**20
 """Places on a piece are multiples of 1/PLACES."""
