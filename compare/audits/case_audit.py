@@ -175,8 +175,10 @@ def audit_case(study: Study) -> CaseAudit:
     scoped = _with_scopes(found, study)
     by_rule = sorted(scoped, key=_weight)
     admissible = [reading.id for reading in study.case.readings]
-    judgements = tuple(judge(claim.id, by_rule, admissible) for claim in study.case.claims)
-    ordered = sorted(weigh(by_rule, judgements), key=_weight)
+    judgements = tuple(
+        judge(claim.id, by_rule, admissible, study.readings) for claim in study.case.claims
+    )
+    ordered = sorted(weigh(by_rule, judgements, admissible), key=_weight)
     steps = waterfalls(study) if study.posed else ()
     readings = readings_summary(study, steps, judgements)
     return CaseAudit(study.case, study, tuple(ordered), judgements, steps, readings)

@@ -2,60 +2,78 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from ...nlp import Evidence
 from ..documents import ClaimVerdict, Finding, Judgement, Scope, Severity
 
+_ORDER = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT, ClaimVerdict.SUPPORTED)
+"""What decides under one reading, the strongest first: a proof outweighs what only agrees."""
+_RANK = (Evidence.NONE, Evidence.CERTIFIED, Evidence.BEST_KNOWN)
+"""The weakest reference last: a verdict rests on the weakest of what stands behind it."""
 
-def judge(claim: str, findings: Iterable[Finding], readings: Iterable[str]) -> Judgement:
+
+def judge(
+    claim: str,
+    findings: Iterable[Finding],
+    admissible: Sequence[str],
+    computed: Sequence[str] | None = None,
+) -> Judgement:
     """Combine the deciding findings about one claim into its verdict.
 
     Under each reading a claim is refuted if a deciding finding refutes it, else inconsistent if
-    one contradicts it, else supported if one supports it, else not checkable. A verdict that
-    holds under some readings only says so; what no reading decides is not checkable.
+    one contradicts it, else supported if one supports it, else not checkable. The claim has that
+    word if every reading gives the same one; else it depends on the reading.
+
+    Parameters
+    ----------
+    claim : str
+    findings : iterable of Finding
+    admissible : sequence of str
+        Every reading of the case.
+    computed : sequence of str, optional
+        The readings that were computed, of which the verdict speaks; all by default.
+
+    Returns
+    -------
+    Judgement
     """
     about = [f for f in findings if f.claim == claim]
     own = [f for f in about if f.decides]
-    order = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT, ClaimVerdict.SUPPORTED)
     each: dict[str, ClaimVerdict] = {}
-    for reading in readings:
+    for reading in computed or admissible:
         there = {f.verdict for f in own if f.reading in (None, reading)}
-        found = next((v for v in order if v in there), ClaimVerdict.NOT_CHECKABLE)
-        each[reading] = found
-    per_reading = list(each.values())
-    decided = [v for v in per_reading if v is not ClaimVerdict.NOT_CHECKABLE]
-    if not decided:
-        beside = [f"{f.rule}, which decides nothing: {f.message}" for f in about if not f.decides]
+        each[reading] = next((v for v in _ORDER if v in there), ClaimVerdict.NOT_CHECKABLE)
+    words = list(dict.fromkeys(each.values()))
+    verdict = words[0] if len(words) == 1 else ClaimVerdict.DEPENDS
+    if verdict is ClaimVerdict.NOT_CHECKABLE:
+        beside = [f"{f.message} ({f.rule}, informational)" for f in about if not f.decides]
         why = next((f.message for f in own), next(iter(beside), "no rule applies to this claim"))
-        nothing = ClaimVerdict.NOT_CHECKABLE
-        return Judgement(
-            claim=claim,
-            verdict=nothing,
-            scope=Scope.NO,
-            evidence=Evidence.NONE,
-            why=why,
-            readings=each,
-        )
-    verdict = next(v for v in order if v in decided)
-    if verdict is not ClaimVerdict.SUPPORTED and decided.count(verdict) < len(per_reading):
-        supported = decided.count(ClaimVerdict.SUPPORTED)
-        if supported:
-            verdict = ClaimVerdict.SUPPORTED
-    scope = Scope.ALL if per_reading.count(verdict) == len(per_reading) else Scope.SOME
-    behind = [f for f in own if f.verdict is verdict]
-    rank = [Evidence.NONE, Evidence.CERTIFIED, Evidence.BEST_KNOWN]
-    evidence = max((f.evidence for f in behind), key=rank.index, default=Evidence.NONE)
-    against = [f for f in own if f.verdict in order[:2] and f.verdict is not verdict]
-    said = [f"{f.rule}: {f.message}" for f in behind]
-    said += [f"But {f.verdict} under {f.reading or 'all'}, {f.rule}: {f.message}" for f in against]
-    why = " ".join(dict.fromkeys(said))
+        scope, evidence = Scope.NO, Evidence.NONE
+    else:
+        partial = len(words) > 1 or len(each) < len(admissible)
+        scope = Scope.SOME if partial else Scope.ALL
+        behind = [f for f in own if f.verdict in words and f.verdict in _ORDER]
+        evidence = max((f.evidence for f in behind), key=_RANK.index, default=Evidence.NONE)
+        why = " ".join(dict.fromkeys(_said(behind, verdict)))
     return Judgement(
         claim=claim, verdict=verdict, scope=scope, evidence=evidence, why=why, readings=each
     )
 
 
-def weigh(findings: Iterable[Finding], judgements: Iterable[Judgement]) -> tuple[Finding, ...]:
+def _said(behind: Iterable[Finding], verdict: ClaimVerdict) -> Iterable[str]:
+    """The messages behind a verdict; where readings disagree, the word and reading before each."""
+    for f in sorted(behind, key=lambda f: _ORDER.index(f.verdict)):
+        if verdict is ClaimVerdict.DEPENDS:
+            under = "every reading" if f.reading is None else f"reading {f.reading}"
+            yield f"{f.verdict.capitalize()} under {under}: {f.message}"
+        else:
+            yield f.message
+
+
+def weigh(
+    findings: Iterable[Finding], judgements: Iterable[Judgement], admissible: Sequence[str]
+) -> tuple[Finding, ...]:
     """Findings whose severity fits the verdict on their claim.
 
     What a proof says under one reading is an error only where the claim falls under every
@@ -65,7 +83,9 @@ def weigh(findings: Iterable[Finding], judgements: Iterable[Judgement]) -> tuple
     ----------
     findings : iterable of Finding
     judgements : iterable of Judgement
-        Of the claims, over all admissible readings.
+        Of the claims.
+    admissible : sequence of str
+        Every reading of the case.
 
     Returns
     -------
@@ -74,7 +94,9 @@ def weigh(findings: Iterable[Finding], judgements: Iterable[Judgement]) -> tuple
     """
     against = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT)
     fallen = {
-        j.claim for j in judgements if j.readings and all(v in against for v in j.readings.values())
+        j.claim
+        for j in judgements
+        if set(j.readings) == set(admissible) and all(v in against for v in j.readings.values())
     }
     return tuple(
         f.model_copy(update={"severity": Severity.WARNING})

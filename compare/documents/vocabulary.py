@@ -42,12 +42,14 @@ class ClaimVerdict(StrEnum):
     """Nothing that the text carries decides it, and the reason is given."""
     INCONSISTENT = "inconsistent"
     """Two printed things contradict each other; neither alone is refuted."""
+    DEPENDS = "depends on the reading"
+    """The admissible readings of the text give different words; each stands beside its reading."""
 
 
 class Scope(StrEnum):
     """Under how many admissible readings of the text the verdict holds.
 
-    Where they disagree the claim is called supported under some, with the counts beside the word.
+    Where they disagree, or where only some of them were computed, it holds under some.
     """
 
     ALL = "all"

@@ -56,11 +56,12 @@ def test_a_reference_must_be_a_positive_finite_time(reference: float) -> None:
         gap(1.0, reference)
 
 
-S, R, X, N = (
+S, R, X, N, D = (
     ClaimVerdict.SUPPORTED,
     ClaimVerdict.REFUTED,
     ClaimVerdict.INCONSISTENT,
     ClaimVerdict.NOT_CHECKABLE,
+    ClaimVerdict.DEPENDS,
 )
 
 
@@ -69,9 +70,10 @@ S, R, X, N = (
     [
         ([(S, "a"), (S, "b")], S, Scope.ALL),
         ([(R, "a"), (R, "b")], R, Scope.ALL),
-        ([(R, "a"), (S, "b")], S, Scope.SOME),
-        ([(R, "a"), (N, "b")], R, Scope.SOME),
-        ([(S, "a")], S, Scope.SOME),
+        ([(R, "a"), (S, "b")], D, Scope.SOME),
+        ([(R, "a"), (N, "b")], D, Scope.SOME),
+        ([(R, "a"), (X, "b")], D, Scope.SOME),
+        ([(S, "a")], D, Scope.SOME),
         ([(N, "a"), (N, "b")], N, Scope.NO),
         ([], N, Scope.NO),
         ([(S, None), (R, "a"), (R, "b")], R, Scope.ALL),
@@ -90,10 +92,30 @@ def test_findings_about_other_claims_or_beside_the_point_do_not_decide() -> None
     assert judge("c", findings, ["a"]).verdict is S
 
 
+def test_a_claim_that_depends_on_the_reading_names_each_reading_with_its_word() -> None:
+    findings = [finding(S, "a", message="kept."), finding(R, "b", message="broken.")]
+    judged = judge("c", findings, ["a", "b"])
+    assert judged.why == "Refuted under reading b: broken. Supported under reading a: kept."
+    assert judged.readings == {"a": S, "b": R}
+
+
+def test_one_supporting_reading_of_sixteen_supports_nothing() -> None:
+    readings = [str(k) for k in range(16)]
+    assert judge("c", [finding(S, "3")], readings).verdict is D
+
+
+def test_a_verdict_speaks_of_the_readings_that_were_computed() -> None:
+    judged = judge("c", [finding(R, "a")], ["a", "b"], ["a"])
+    assert (judged.verdict, judged.scope, judged.readings) == (R, Scope.SOME, {"a": R})
+    error = finding(R, "a", severity=Severity.ERROR)
+    (weighed,) = weigh([error], [judged], ["a", "b"])
+    assert weighed.severity is Severity.WARNING
+
+
 def test_a_claim_that_nothing_decides_names_what_stands_beside_it() -> None:
     beside = finding(S, None, decides=False, rule="TG403", message="replays")
     judged = judge("c", [beside], ["a"])
-    assert (judged.verdict, judged.why) == (N, "TG403, which decides nothing: replays")
+    assert (judged.verdict, judged.why) == (N, "replays (TG403, informational)")
     assert judge("c", [], ["a"]).why == "no rule applies to this claim"
 
 
@@ -114,7 +136,7 @@ def test_a_severity_fits_the_verdict_on_the_claim(found, errors) -> None:
         finding(v, reading, severity=Severity.ERROR if v in (R, X) else Severity.INFO)
         for v, reading in found
     ]
-    weighed = weigh(findings, [judge("c", findings, ["a", "b"])])
+    weighed = weigh(findings, [judge("c", findings, ["a", "b"])], ["a", "b"])
     assert sum(f.severity is Severity.ERROR for f in weighed) == errors
     softened = sum(f.severity is Severity.WARNING for f in weighed)
     assert errors + softened == sum(v in (R, X) for v, _ in found)
