@@ -12,6 +12,7 @@ from ...problem import Case, load_case, published_ids
 from ..documents import (
     AuditDocument,
     AuditedCase,
+    Cause,
     ClaimVerdict,
     Finding,
     Judgement,
@@ -21,6 +22,7 @@ from ..documents import (
     Waterfall,
     known,
 )
+from .causes import find_causes, with_caveats
 from .instances import examined_entry
 from .judging import judge, weigh
 from .readings import readings_summary
@@ -65,13 +67,14 @@ class CaseAudit:
     findings: tuple[Finding, ...]
     judgements: tuple[Judgement, ...]
     waterfalls: tuple[Waterfall, ...]
+    causes: tuple[Cause, ...]
     readings: ReadingsSummary | None = None
     """The readings side by side; None if the case has only one."""
 
     @property
     def errors(self) -> int:
-        """Number of findings of severity error."""
-        return sum(f.severity is Severity.ERROR for f in self.findings)
+        """Number of causes of severity error."""
+        return sum(cause.severity is Severity.ERROR for cause in self.causes)
 
     @cached_property
     def document(self) -> AuditedCase:
@@ -81,6 +84,7 @@ class CaseAudit:
             case=self.case.id,
             title=self.case.title,
             errors=self.errors,
+            causes=self.causes,
             findings=self.findings,
             verdicts=self.judgements,
             waterfalls=self.waterfalls,
@@ -95,10 +99,7 @@ class CaseAudit:
             + ", ".join(f"{counts[v]} {v}" for v in ClaimVerdict if counts[v])
             + f" of {len(self.judgements)} claims"
         ]
-        for f in self.findings:
-            if f.severity is Severity.ERROR:
-                reading = f" [{f.reading}]" if f.reading else ""
-                lines.append(f"  {f.rule}{reading} {f.claim or ''}: {f.message}")
+        lines += [f"  {c.says}" for c in self.causes if c.severity is Severity.ERROR]
         return "\n".join(lines)
 
 
@@ -110,7 +111,7 @@ class AuditReport:
 
     @property
     def errors(self) -> int:
-        """Number of findings of severity error in all cases."""
+        """Number of causes of severity error in all cases."""
         return sum(one.errors for one in self.cases)
 
     @property
@@ -179,9 +180,11 @@ def audit_case(study: Study) -> CaseAudit:
         judge(claim.id, by_rule, admissible, study.readings) for claim in study.case.claims
     )
     ordered = sorted(weigh(by_rule, judgements, admissible), key=_weight)
+    judgements = with_caveats(study, judgements, ordered)
     steps = waterfalls(study) if study.posed else ()
     readings = readings_summary(study, steps, judgements)
-    return CaseAudit(study.case, study, tuple(ordered), judgements, steps, readings)
+    behind = find_causes(study, ordered)
+    return CaseAudit(study.case, study, tuple(ordered), judgements, steps, behind, readings)
 
 
 def _weight(finding: Finding) -> tuple[int, str]:

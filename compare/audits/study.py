@@ -218,6 +218,11 @@ class Study:
         """Problems and readings that a claim speaks about."""
         return (pair for pair in self.pairs if claim.problem in (None, pair[0]))
 
+    @staticmethod
+    def has_durations(claim: Claim) -> bool:
+        """Whether a claim prints durations, so that a motion can be built from it."""
+        return isinstance(claim, DurationsClaim | MaximumClaim)
+
     def claim_problem(self, claim: Claim, pid: str, rid: str) -> Problem:
         """The problem a claim's durations belong to: one joint's, or that of all joints."""
         problem = self.problem(pid, rid)

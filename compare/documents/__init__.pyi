@@ -1,5 +1,6 @@
 from .audited import AuditDocument, AuditedCase
 from .case_shown import ShowDocument, show_document
+from .cause import Cause, Consequence, Explanation
 from .certified import CertifiedResult, CertifyDocument, certify_result
 from .checked import (
     BrokenPlace,
@@ -78,17 +79,20 @@ __all__ = [
     "Basis",
     "BrokenPlace",
     "CasesDocument",
+    "Cause",
     "CertifiedResult",
     "CertifyDocument",
     "CheckDocument",
     "CheckResult",
     "CheckedJoint",
     "ClaimVerdict",
+    "Consequence",
     "Document",
     "Effect",
     "Entry",
     "ExaminedInstances",
     "Excess",
+    "Explanation",
     "Finding",
     "Fit",
     "Gap",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from .cause import Cause
 from .entry import Count, Document, Entry, OrWhy
 from .finding import Finding, Judgement
 from .instances import ExaminedInstances
@@ -15,7 +16,9 @@ class AuditedCase(Entry):
     case: str
     title: str
     errors: Count
-    """How many findings have severity error."""
+    """How many causes have severity error."""
+    causes: tuple[Cause, ...]
+    """What speaks against something printed, each once; the gravest first."""
     findings: tuple[Finding, ...]
     verdicts: tuple[Judgement, ...]
     """On every claim."""

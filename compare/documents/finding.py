@@ -86,6 +86,12 @@ class Finding(Entry):
     """One or two sentences with the numbers."""
     kind: str = Field(default="", exclude=True)
     """What findings of a rule have in common that say the same in other numbers; not in JSON."""
+    root: str = Field(default="", exclude=True)
+    """What it shows, as a key that findings of one cause share; by itself if empty; not in JSON."""
+    follows: tuple[str, ...] = Field(default=(), exclude=True)
+    """Roots from which it follows, where they are found; not in JSON."""
+    between: tuple[str, ...] = Field(default=(), exclude=True)
+    """Claims that contradict each other: neither side is taken; not in JSON."""
 
 
 class Judgement(Entry):
@@ -96,5 +102,7 @@ class Judgement(Entry):
     scope: Scope
     evidence: Evidence
     why: str
+    caveats: tuple[str, ...] = ()
+    """What goes with the word: a curve whose velocity jumps, a contradiction in print."""
     readings: dict[str, ClaimVerdict]
     """The verdict under each reading by itself."""

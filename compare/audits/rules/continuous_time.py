@@ -16,6 +16,7 @@ from ....problem.cases import (
     StatementClaim,
 )
 from ...documents import UNITS, Basis, ClaimVerdict, Finding, Rounding, Severity
+from ..explanations import LIMITS
 from ..study import Study
 
 
@@ -147,6 +148,7 @@ def _limits(study: Study, claim: AnyClaim) -> Iterator[Finding]:
             message=judged.message + unsaid,
             decides=said,
             kind=judged.kind,
+            root=f"{LIMITS} {claim.id}" if judged.verdict is ClaimVerdict.REFUTED else "",
         )
 
 
@@ -216,6 +218,8 @@ def _limits_statement(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             claim=claim.id,
             reading=rid,
             message=message,
+            kind=str(verdict),
+            follows=tuple(f"{LIMITS} {c.id}" for c, _, _ in breaking),
         )
 
 
@@ -390,4 +394,6 @@ def _peak(study: Study, claim: PeakClaim) -> Iterator[Finding]:
                     f"± {reach:.1g} {unit} (first order in the rounding of the inputs); printed "
                     f"is {claim.value}."
                 ),
+                root="" if near else f"peaks of {source.id}",
+                between=() if near else (claim.id, source.id),
             )

@@ -25,6 +25,7 @@ from ...documents import (
     Why,
 )
 from ...gaps import gap, reference_of
+from ..explanations import LIMITS, OPTIMAL
 from ..study import Study
 from .continuous_time import broken
 
@@ -177,6 +178,7 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
     """
     for rid in study.readings:
         longer, breaking, judged, open_ = [], [], 0, 0
+        roots: list[str] = []
         evidence: list[Evidence] = []
         for claim in (study.case.claim(i) for i in statement.of):
             for pid, reading in study.claim_pairs(claim):
@@ -194,6 +196,7 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
                     longer.append(shorter)
                 elif proof is not None:
                     breaking.append(f"{claim.id} ({pid}): {proof}")
+                    roots.append(f"{LIMITS} {claim.id}")
                 elif not interval[0] <= best <= interval[1]:
                     open_ += 1
         if not judged:
@@ -225,6 +228,8 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
             reading=rid,
             message=message,
             kind="longer" if longer else "breaks" if breaking else str(known),
+            root=f"{OPTIMAL} {statement.id}" if longer else "",
+            follows=() if longer else tuple(roots),
         )
 
 

@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from itertools import combinations
 
-from ....problem import Interval, Printed
+from ....problem import Case, Interval, Printed
 from ....problem.cases import (
     AnyClaim,
     DurationsClaim,
     ImprovementClaim,
     MaximumClaim,
+    Table,
     TotalTimeClaim,
 )
 from ...documents import Basis, ClaimVerdict, Finding, Severity
+from ..explanations import SUM, TABLES
 from ..study import Study
 
+_FEWEST = 4
+"""Numbers that a table needs before two tables alike are worth a word."""
 _SIGNIFICANT = 4
 """Digits that a number needs before its repetition is worth a word."""
 
@@ -63,6 +67,7 @@ def _compared(
     cut: Interval,
     what: str,
     unit: str,
+    root: str,
 ) -> Finding:
     """A printed number against the interval that its printed ingredients allow."""
     shown, computed = f"{printed} {unit}", f"{_range(rounded)} {unit}"
@@ -89,6 +94,7 @@ def _compared(
         computed=computed,
         message=message,
         kind=f"{kind} in {unit}",
+        root="" if verdict is ClaimVerdict.SUPPORTED else root,
     )
 
 
@@ -107,6 +113,7 @@ def _sums(study: Study) -> Iterator[Finding]:
                 _sum([d.truncated for d in claim.durations]),
                 "The sum of the printed durations",
                 _unit(study),
+                f"{SUM} {claim.id}",
             )
 
 
@@ -176,13 +183,14 @@ def _improvements(study: Study) -> Iterator[Finding]:
         ):
             if number is not None:
                 what = f"The reduction between the printed totals {between}"
-                yield _compared("TG103", claim, number, rounded, cut, what, unit)
+                root = f"improvement {claim.id}"
+                yield _compared("TG103", claim, number, rounded, cut, what, unit, root)
         if claim.percent is None and claim.seconds is None:
             yield _unquantified(study, claim, slower, faster, seconds)
         tables = [_table_total(study, c.algorithm, c.problem) for c in (slower_claim, faster_claim)]
         totals = [_total(t) for t in tables if t is not None]
         if claim.percent is not None and len(totals) == 2 and None not in totals:
-            yield from _against_tables(claim, claim.percent, tables, totals)
+            yield from _against_tables(study, claim, claim.percent, tables, totals)
 
 
 def _unquantified(
@@ -219,10 +227,12 @@ def _unquantified(
         claim=claim.id,
         printed=between,
         message=message,
+        follows=_doubted(study, [study.case.claim(i) for i in (claim.slower, claim.faster)]),
     )
 
 
 def _against_tables(
+    study: Study,
     claim: ImprovementClaim,
     percent: Printed,
     tables: Sequence[AnyClaim | None],
@@ -245,38 +255,60 @@ def _against_tables(
         computed=f"{_range(allowed, 3)} %",
         message=f"From the totals printed in the tables ({where}: {slower} and {faster}) the "
         f"reduction is {_range(allowed, 3)} %, not {percent} %.",
+        follows=_doubted(study, [t for t in tables if t is not None]),
+        between=(claim.id, *(t.id for t in tables if t is not None)),
     )
 
 
-def _tables_alike(study: Study) -> Iterator[Finding]:
-    case = study.case
+def _alike(case: Case) -> Iterator[tuple[Table, Table]]:
+    """Tables of different algorithms whose numbers are the same, digit by digit."""
     for first, second in combinations(case.tables, 2):
         rows = [case.table_claims(t.id) for t in (first, second)]
         if first.algorithm == second.algorithm or not rows[0] or len(rows[0]) != len(rows[1]):
             continue
         printed = [[_all_digits(claim) for claim in table] for table in rows]
-        count = sum(len(row) for row in printed[0])
-        if count < 4 or printed[0] != printed[1]:
-            continue
-        apart = [
-            c.id
+        if sum(len(row) for row in printed[0]) >= _FEWEST and printed[0] == printed[1]:
+            yield first, second
+
+
+def _doubted(study: Study, claims: Iterable[AnyClaim]) -> tuple[str, ...]:
+    """Roots of the tables alike that print one of the claims."""
+    tables = {claim.table for claim in claims} - {None}
+    return tuple(
+        f"{TABLES} {first.id} {second.id}"
+        for first, second in _alike(study.case)
+        if tables & {first.id, second.id}
+    )
+
+
+def _tables_alike(study: Study) -> Iterator[Finding]:
+    case = study.case
+    for first, second in _alike(case):
+        rows = [case.table_claims(t.id) for t in (first, second)]
+        count = sum(len(_all_digits(claim)) for claim in rows[0])
+        apart = any(
+            {case.claim(c.slower).algorithm, case.claim(c.faster).algorithm}
+            == {first.algorithm, second.algorithm}
             for c in case.claims
             if isinstance(c, ImprovementClaim)
-            and {case.claim(c.slower).algorithm, case.claim(c.faster).algorithm}
-            == {first.algorithm, second.algorithm}
-        ]
-        message = (
-            f"All {count} numbers of {first.where} ({first.title}) and {second.where} "
-            f"({second.title}) are alike, digit by digit."
         )
-        if apart:
-            message += " Elsewhere the two results are set apart: " + ", ".join(apart) + "."
+        message = (
+            f"{first.where} ({first.title}) and {second.where} ({second.title}) agree in all "
+            f"{count} numbers, digit by digit"
+        )
+        message += "; elsewhere the two results differ." if apart else "."
         yield Finding(
             rule="TG104",
             severity=Severity.ERROR if apart else Severity.WARNING,
             verdict=ClaimVerdict.INCONSISTENT,
             basis=Basis.DIGITS,
             message=message,
+            root=f"{TABLES} {first.id} {second.id}",
+            between=tuple(
+                c.id
+                for c in case.claims
+                if apart and {first.id, second.id} & {c.table, *c.printed_tables}
+            ),
         )
 
 
@@ -307,6 +339,8 @@ def _same_total(study: Study) -> Iterator[Finding]:
             computed=f"{total} {unit}",
             message=f"{claim.where} prints {claim.value} {unit} and {table.where} prints {total} "
             f"{unit} for the same total ({claim.algorithm}).",
+            follows=() if agree else _doubted(study, [table]),
+            between=() if agree else (claim.id, table.id),
         )
 
 

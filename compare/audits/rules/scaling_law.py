@@ -11,6 +11,7 @@ from ....problem import Problem
 from ....problem.cases import AnyClaim, DurationsClaim, MaximumClaim, StatementClaim
 from ...documents import Basis, ClaimVerdict, Finding, Reference, Severity
 from ...gaps import gap
+from ..explanations import OPTIMAL
 from ..study import Study
 
 
@@ -102,9 +103,11 @@ def _stretched(
         printed=shown,
         computed=f"{reachable:.6g} s",
         message=message,
+        follows=tuple(f"{OPTIMAL} {s.id}" for s in statements if target.id in s.of),
     )
     yield beside
     proof = {"severity": Severity.ERROR, "verdict": ClaimVerdict.REFUTED, "decides": True}
     for statement in statements:
         if target.id in statement.of:
-            yield beside.model_copy(update=proof | {"claim": statement.id})
+            own = {"claim": statement.id, "root": f"{OPTIMAL} {statement.id}", "follows": ()}
+            yield beside.model_copy(update=proof | own)

@@ -1,0 +1,134 @@
+"""One cause for all findings that follow from it, and the contradictions that claims rest on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from ...problem.cases import AnyClaim, ImprovementClaim, MaximumClaim, StatementClaim
+from ..documents import Cause, ClaimVerdict, Consequence, Finding, Judgement, Severity
+from .explanations import explained
+from .study import Study
+
+_AGAINST = (Severity.ERROR, Severity.WARNING)
+"""What a cause may weigh; what only informs has none."""
+
+
+def find_causes(study: Study, findings: Iterable[Finding]) -> tuple[Cause, ...]:
+    """Group findings that speak against something printed by what they follow from.
+
+    Findings of one root are one cause, under however many readings; so are those that say the same
+    of one claim. A finding that follows from the root of another is listed under it.
+
+    Parameters
+    ----------
+    study : Study
+    findings : iterable of Finding
+        With their final severities.
+
+    Returns
+    -------
+    tuple of Cause
+        The gravest first.
+    """
+    groups: dict[str, list[Finding]] = {}
+    for f in findings:
+        if f.severity in _AGAINST:
+            groups.setdefault(_root(f), []).append(f)
+    below: dict[str, list[Finding]] = {root: [] for root in groups}
+    own = []
+    for root, group in groups.items():
+        above = {up for f in group for up in f.follows if up in groups and up != root}
+        if not above:
+            own.append(root)
+        for up in above:
+            below[up] += group
+    found = [_cause(study, root, groups[root], below[root]) for root in own]
+    return tuple(sorted(found, key=lambda cause: list(Severity).index(cause.severity)))
+
+
+def _root(finding: Finding) -> str:
+    said = finding.rule, finding.claim or "", finding.problem or "", finding.verdict, finding.kind
+    return finding.root or "\n".join(said)
+
+
+def _cause(study: Study, root: str, group: list[Finding], below: list[Finding]) -> Cause:
+    first = next((f for f in group if f.reading in (None, study.main_reading)), group[0])
+    readings = dict.fromkeys(f.reading for f in group if f.reading is not None)
+    if any(f.reading is None for f in group):
+        readings = {}
+    consequences: dict[tuple[str, str | None], Consequence] = {}
+    for f in (*group, *below):
+        if (f.rule, f.claim) != (first.rule, first.claim):
+            one = Consequence(rule=f.rule, claim=f.claim, says=f.message)
+            consequences.setdefault((f.rule, f.claim), one)
+    weights = [f.severity for f in (*group, *below)]
+    return Cause(
+        severity=next(s for s in Severity if s in weights),
+        rule=first.rule,
+        claim=first.claim,
+        says=first.message,
+        readings=tuple(r for r in readings if r is not None),
+        explanations=explained(study, root, first),
+        consequences=tuple(consequences.values()),
+    )
+
+
+def with_caveats(
+    study: Study, judgements: Iterable[Judgement], findings: Iterable[Finding]
+) -> tuple[Judgement, ...]:
+    """Judgements that say what goes with their word.
+
+    Where two printed things contradict each other neither side is taken: every claim that rests on
+    either says so. What is supported on a curve whose velocity jumps says that too.
+    """
+    found = list(findings)
+    against = _contradictions(found)
+    return tuple(
+        j.model_copy(update={"caveats": tuple(_caveats(study, j, against))}) for j in judgements
+    )
+
+
+def _contradictions(findings: list[Finding]) -> dict[str, set[str]]:
+    """The message of the first finding of each root, and the claims on either side of it."""
+    heads: dict[str, Finding] = {}
+    for f in findings:
+        heads.setdefault(_root(f), f)
+    sides: dict[str, set[str]] = {}
+    for f in findings:
+        if f.between:
+            up = next((heads[r] for r in f.follows if r in heads), heads[_root(f)])
+            sides.setdefault(up.message, set()).update(f.between)
+    return sides
+
+
+def _caveats(study: Study, judgement: Judgement, against: dict[str, set[str]]) -> Iterator[str]:
+    claim = study.case.claim(judgement.claim)
+    held = [r for r, v in judgement.readings.items() if v is ClaimVerdict.SUPPORTED]
+    jumping = [r for r in held if _jumps(study, claim, r)]
+    if jumping:
+        count = "" if len(judgement.readings) == 1 else f" ({len(jumping)} of {len(held)} readings)"
+        yield f"on a curve whose velocity jumps{count}"
+    rests = {claim.id, *_rests_on(claim)}
+    if judgement.verdict is ClaimVerdict.INCONSISTENT:
+        return
+    for message, sides in against.items():
+        if rests & sides:
+            yield f"rests on numbers that others in print contradict: {message}"
+
+
+def _rests_on(claim: AnyClaim) -> tuple[str, ...]:
+    if isinstance(claim, MaximumClaim | StatementClaim):
+        return claim.of
+    return (claim.slower, claim.faster) if isinstance(claim, ImprovementClaim) else ()
+
+
+def _jumps(study: Study, claim: AnyClaim, rid: str) -> bool:
+    """Whether the velocity of a motion that a claim speaks about jumps under a reading."""
+    about = [claim, *(study.case.claim(i) for i in _rests_on(claim))]
+    return any(
+        any(jump.order == 1 for jump in study.claim_check(one, pid, rid).jumps)
+        for one in about
+        if study.has_durations(one)
+        for pid, reading in study.claim_pairs(one)
+        if reading == rid
+    )

@@ -1,0 +1,188 @@
+"""Innocent explanations of what does not fit in print, each tried by computing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import combinations, islice, pairwise
+from math import isclose, tau
+
+import numpy as np
+
+from ...problem import Array, Check, Printed, Problem, check
+from ...problem.cases import AnyClaim, DurationsClaim, MaximumClaim
+from ..documents import Explanation, Finding, Rounding
+from .rounding import RoundingBox, judge_rounding
+from .study import Study
+
+_TRIED = 400
+"""Changes of one kind that are tried: enough for every digit of a printed row, and bounded."""
+_NEAR = 1.01
+"""Ratio up to which rounding alone may still bring a changed motion within its limits; nearer ones
+are judged over their rounding box, which costs more."""
+_LIKELY = 1.5
+"""Largest factor by which a misprinted digit may change a duration: a leading digit could always
+make a duration long enough, and such a change explains nothing."""
+_LEAST_GAIN = 0.9
+"""Share of the excess that a change must leave at most to be called an improvement."""
+
+LIMITS, TABLES, SUM, OPTIMAL = "limits", "tables", "sum", "optimal"
+"""First words of the roots that several rules share: limits broken, tables alike, a sum that is not
+its parts, durations that are not the shortest."""
+
+
+def explained(study: Study, root: str, finding: Finding) -> tuple[Explanation, ...]:
+    """Changes in print that the numbers allow and that would settle a finding.
+
+    Parameters
+    ----------
+    study : Study
+    root : str
+        Of the cause.
+    finding : Finding
+        The first finding of the cause.
+
+    Returns
+    -------
+    tuple of Explanation
+        One of each kind that fits, the most charitable first; the smallest change of its kind.
+    """
+    kind = root.split(" ")[0]
+    if kind == TABLES:
+        return (
+            Explanation(
+                change="One table may have been printed twice by mistake.",
+                effect="Then the numbers of one of them are not in print, what is said of both can "
+                "hold together, and nothing that rests on the missing one can be checked.",
+            ),
+        )
+    claim = study.case.claim(finding.claim) if finding.claim else None
+    if not isinstance(claim, DurationsClaim | MaximumClaim):
+        return ()
+    if kind == SUM and claim.total is not None:
+        return tuple(islice(_sums(claim, claim.total), 1))
+    if kind == LIMITS and finding.problem and finding.reading:
+        return tuple(_kept_if(study, claim, finding.problem, finding.reading))
+    return ()
+
+
+def one_digit_off(number: Printed) -> Iterator[Printed]:
+    """The number with one digit changed, or two neighbouring digits exchanged."""
+    places = [k for k, character in enumerate(number.text) if character.isdigit()]
+    for one, next_ in pairwise(places):
+        a, b = number.text[one], number.text[next_]
+        if a != b:
+            text = f"{number.text[:one]}{b}{number.text[one + 1 : next_]}{a}"
+            yield Printed(text + number.text[next_ + 1 :])
+    for place in reversed(places):
+        for digit in "0123456789":
+            if digit != number.text[place]:
+                yield Printed(f"{number.text[:place]}{digit}{number.text[place + 1 :]}")
+
+
+def _sums(claim: AnyClaim, total: Printed) -> Iterator[Explanation]:
+    """A total or a part with one digit off."""
+    assert isinstance(claim, DurationsClaim | MaximumClaim)
+    parts = list(claim.durations)
+    low, high = sum(p.interval.lower for p in parts), sum(p.interval.upper for p in parts)
+
+    def said(what: str, was: Printed, other: Printed) -> Explanation:
+        return Explanation(
+            change=f"One digit of {what} may be misprinted: {other.text} in place of {was.text}.",
+            effect="Then the printed total is the sum of its parts.",
+        )
+
+    for other in one_digit_off(total):
+        if other.interval.lower <= high and low <= other.interval.upper:
+            yield said("the total", total, other)
+    for k, part in enumerate(parts):
+        for other in one_digit_off(part):
+            shift_low = low - part.interval.lower + other.interval.lower
+            shift_high = high - part.interval.upper + other.interval.upper
+            if total.interval.lower <= shift_high and shift_low <= total.interval.upper:
+                yield said(f"the duration of segment {k + 1}", part, other)
+
+
+def _kept_if(
+    study: Study, claim: DurationsClaim | MaximumClaim, pid: str, rid: str
+) -> Iterator[Explanation]:
+    """What would bring printed durations within the limits, the smallest change of each kind."""
+    problem = study.claim_problem(claim, pid, rid)
+    printed = study.case.claim_durations(claim, rid)
+    found = check(problem, printed.value)
+    if found.worst is None or found.worst.quantity in ("curve", "duration"):
+        return
+    widths = (printed.upper - printed.lower) / 2
+    exchanged = []
+    for i, k in islice(combinations(range(len(printed.value)), 2), _TRIED):
+        order = np.arange(len(printed.value))
+        order[[i, k]] = k, i
+        change = f"The durations of segments {i + 1} and {k + 1} may have been exchanged in print."
+        exchanged.append((change, problem, printed.value[order], widths[order]))
+    turned = []
+    joint = None if found.worst.joint is None else problem.joints.index(found.worst.joint)
+    if joint is not None:
+        for w in range(problem.waypoints.shape[0]):
+            for turn in (-tau, tau):
+                q = problem.waypoints.copy()
+                q[w, joint] += turn
+                change = (
+                    f"The angle of joint {problem.joints[joint]} at way-point {w + 1} may be meant "
+                    f"modulo a full turn: {q[w, joint]:.6g} rad in place of "
+                    f"{problem.waypoints[w, joint]:.6g} rad."
+                )
+                turned.append((change, replace(problem, waypoints=q), printed.value, widths))
+    digits = []
+    statement = study.case.statement(pid, rid)
+    for k, number in enumerate(claim.durations):
+        for other in one_digit_off(number):
+            h = printed.value.copy()
+            h[k] = statement.si(other, "time").value
+            if not 1 / _LIKELY <= h[k] / printed.value[k] <= _LIKELY:
+                continue
+            change = (
+                f"One digit of the duration of segment {k + 1} may be misprinted: {other.text} in "
+                f"place of {number.text}."
+            )
+            digits.append((abs(h[k] - printed.value[k]), (change, problem, h, widths)))
+    nearest = [one for _, one in sorted(digits, key=lambda pair: pair[0])[:_TRIED]]
+    for kind in (exchanged, turned, nearest):
+        effect = _first_that_helps(found, kind)
+        if effect is not None:
+            yield effect
+
+
+def _first_that_helps(
+    before: Check,
+    changes: list[tuple[str, Problem, Array, Array]],
+) -> Explanation | None:
+    """The first change that keeps the limits; else the one that lowers the excess most."""
+    best: tuple[float, str, Check] | None = None
+    for change, problem, durations, widths in changes:
+        after = check(problem, durations)
+        if after.worst is None or after.worst.quantity == "curve":
+            continue
+        ratio = float(after.worst.ratio)
+        if ratio <= _NEAR and _keeps(problem, durations, widths):
+            return Explanation(change=change, effect="Then every limit is kept.")
+        if best is None or ratio < best[0]:
+            best = ratio, change, after
+    assert before.worst is not None
+    excess = float(before.worst.ratio) - 1.0
+    # A duration whose digit is changed can always be made long: only a change that settles counts.
+    if best is None or "digit" in best[1] or best[0] - 1.0 > _LEAST_GAIN * excess:
+        return None
+    if isclose(best[0], float(before.worst.ratio)):
+        return None
+    return Explanation(
+        change=best[1],
+        effect=f"Then the largest ratio to a limit falls from {before.worst.ratio:.4g} to "
+        f"{best[0]:.4g}, and a limit is still broken.",
+    )
+
+
+def _keeps(problem: Problem, durations: Array, widths: Array) -> bool:
+    """Whether some value that rounds to the changed digits keeps every limit."""
+    h = RoundingBox(durations, durations - widths, durations + widths)
+    q = RoundingBox(problem.waypoints, problem.waypoints, problem.waypoints)
+    return judge_rounding(problem, h, q).verdict in (Rounding.KEEPS, Rounding.CONSISTENT)

@@ -1,0 +1,44 @@
+"""What lies behind findings: one cause with all that follows from it, and what would explain it."""
+
+from __future__ import annotations
+
+from .entry import Entry
+from .vocabulary import Severity
+
+
+class Consequence(Entry):
+    """What follows from a cause and is no fault of its own."""
+
+    rule: str
+    """Permanent id of the rule that saw it."""
+    claim: str | None
+    """Null where it is about no claim."""
+    says: str
+    """One or two sentences with the numbers."""
+
+
+class Explanation(Entry):
+    """An innocent reason that the printed numbers allow, tried by computing."""
+
+    change: str
+    """What would have to be otherwise in print."""
+    effect: str
+    """What that would settle, and what it would leave."""
+
+
+class Cause(Entry):
+    """One thing that speaks against something printed; findings that follow from it stand below."""
+
+    severity: Severity
+    """The gravest of its findings."""
+    rule: str
+    """Permanent id of the rule that saw it first."""
+    claim: str | None
+    """What it is about; null where it is about the case or a table."""
+    says: str
+    """One or two sentences with the numbers, under the first of its readings."""
+    readings: tuple[str, ...]
+    """The readings under which it holds; empty where it depends on none."""
+    explanations: tuple[Explanation, ...]
+    """The most charitable first; empty where none that was tried fits the numbers."""
+    consequences: tuple[Consequence, ...]
