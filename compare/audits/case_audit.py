@@ -67,9 +67,10 @@ class CaseAudit:
     findings: tuple[Finding, ...]
     judgements: tuple[Judgement, ...]
     waterfalls: tuple[Waterfall, ...]
-    causes: tuple[Cause, ...]
     readings: ReadingsSummary | None = None
     """The readings side by side; None if the case has only one."""
+    causes: tuple[Cause, ...] = ()
+    """What speaks against something printed, each once; the gravest first."""
 
     @property
     def errors(self) -> int:
@@ -184,7 +185,7 @@ def audit_case(study: Study) -> CaseAudit:
     steps = waterfalls(study) if study.posed else ()
     readings = readings_summary(study, steps, judgements)
     behind = find_causes(study, ordered)
-    return CaseAudit(study.case, study, tuple(ordered), judgements, steps, behind, readings)
+    return CaseAudit(study.case, study, tuple(ordered), judgements, steps, readings, behind)
 
 
 def _weight(finding: Finding) -> tuple[int, str]:

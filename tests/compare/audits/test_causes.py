@@ -1,0 +1,109 @@
+"""One cause for what follows from it, and innocent explanations that the numbers allow."""
+
+from __future__ import annotations
+
+from support.one_joint import HEAD
+from support.studies import audited
+from trajgap.compare import audit
+from trajgap.compare.audits.case_audit import CaseAudit
+from trajgap.compare.audits.explanations import one_digit_off
+from trajgap.compare.documents import ClaimVerdict, Severity
+from trajgap.problem import Printed, parse_case
+
+TWO_SEGMENTS = HEAD.replace('durations = ["{time}"]', "durations = [{time}]\ntotal = {total}")
+
+
+def judged(points: str, limit: str, time: str, total: str, checks: str) -> CaseAudit:
+    text = TWO_SEGMENTS.format(points=points, limit=limit, time=time, total=total, checks=checks)
+    return audit(parse_case(text, "made-up.toml"), seeds=2).cases[0]
+
+
+def test_what_follows_from_two_tables_alike_is_one_error() -> None:
+    one = audited("puma560-mnam-pso-353")
+    (error,) = [c for c in one.causes if c.severity is Severity.ERROR]
+    assert one.errors == one.document.errors == 1
+    assert error.rule == "TG104"
+    assert "agree in all 28 numbers" in error.says
+    followed = [(c.rule, c.claim) for c in error.consequences]
+    joints = [("TG103", f"better-fitness-joint-{j}") for j in (1, 2, 3)]
+    assert set(followed) == {("TG103", "improvement"), ("TG105", "pso-total"), *joints}
+    assert len(followed) == len(set(followed))
+    (innocent,) = error.explanations
+    assert innocent.change == "One table may have been printed twice by mistake."
+
+
+def test_neither_side_of_a_contradiction_in_print_is_taken() -> None:
+    """3.961 s stands in the text and 3.528 s in a table that equals another table."""
+    one = audited("puma560-mnam-pso-353")
+    by = {j.claim: j for j in one.judgements}
+    for claim in ("pso-longest", "mnam-longest", "mnam-total", "pso-joint-1", "limits-kept"):
+        (said,) = by[claim].caveats
+        assert said.startswith("rests on numbers that others in print contradict: Table 2")
+    assert by["pso-total"].verdict is ClaimVerdict.INCONSISTENT
+    assert by["conditions"].caveats == ()
+
+
+def test_a_motion_and_a_scaling_law_that_refute_one_claim_are_one_error() -> None:
+    one = audited("irb460-pso-353")
+    (error,) = [c for c in one.causes if c.claim == "time-optimal"]
+    assert {c.rule for c in error.consequences} == {"TG301", "TG302"}
+    (broken,) = [c for c in one.causes if c.claim == "durations-110" and c.rule == "TG201"]
+    assert [c.claim for c in broken.consequences] == ["limits-kept"]
+    changes = [e.change for e in broken.explanations]
+    assert changes[0] == "The durations of segments 1 and 3 may have been exchanged in print."
+    assert broken.explanations[0].effect == "Then every limit is kept."
+    assert "0.4854 in place of 0.3854" in changes[1]
+
+
+def test_one_claim_under_many_readings_is_one_error() -> None:
+    units = ("velocity", "deg/s"), ("acceleration", "deg/s^2"), ("jerk", "deg/s^3")
+    readings = "".join(
+        f'\n[[readings]]\nid = "r{k}"\nwhy = "a test"\nunits = {{ {name} = "{unit}" }}\n'
+        for k, (name, unit) in enumerate(units)
+    )
+    text = HEAD.format(points="0, 1", limit="1.9496", time="0.5", checks="within_limits")
+    one = audit(parse_case(text + readings, "made-up.toml"), seeds=2).cases[0]
+    assert one.errors == 1
+    (cause,) = one.causes
+    assert cause.readings == ("r0", "r1", "r2")
+    assert [(c.rule, c.claim) for c in cause.consequences] == [("TG201", "s")]
+
+
+def test_exchanged_durations_are_the_first_explanation() -> None:
+    """Rest to rest by quintics, 1.875 |Δq|/h: 3 rad in 3 s and 1 rad in 1 s keep 1.9 rad/s."""
+    one = judged("0, 3, 4", "1.9", '"1.000", "3.000"', '"4.000"', "within_limits")
+    (cause,) = one.causes
+    first = cause.explanations[0]
+    assert first.change == "The durations of segments 1 and 2 may have been exchanged in print."
+    assert first.effect == "Then every limit is kept."
+    kept = judged("0, 3, 4", "1.9", '"3.000", "1.000"', '"4.000"', "within_limits")
+    assert kept.causes == ()
+
+
+def test_an_angle_is_tried_modulo_a_full_turn() -> None:
+    """From 0.1 to 6.3 rad is 6.2 rad; from 0.1 to 6.3 − 2π it is 0.083 rad."""
+    one = judged("0.1, 6.3", "1.9", '"1.00"', '"1.00"', "within_limits")
+    said = [e for e in one.causes[0].explanations if "modulo a full turn" in e.change]
+    assert len(said) == 1
+    assert "6.38319 rad in place of 0.1 rad" in said[0].change
+    assert said[0].effect == "Then every limit is kept."
+
+
+def test_a_misprinted_digit_explains_a_sum() -> None:
+    one = judged("0, 3, 4", "1.9", '"3.000", "1.000"', '"4.100"', "within_limits")
+    (cause,) = one.causes
+    assert cause.rule == "TG101"
+    (said,) = cause.explanations
+    assert "4.000 in place of 4.100" in said.change
+
+
+def test_what_no_small_change_explains_has_no_explanation() -> None:
+    one = judged("0, 3", "1.9", '"0.100"', '"0.100"', "within_limits")
+    assert one.causes[0].explanations == ()
+
+
+def test_one_digit_off_is_one_digit_or_two_neighbours_exchanged() -> None:
+    off = {p.text for p in one_digit_off(Printed("1.20"))}
+    assert len(off) == 3 * 9 + 2  # 2.10 and 1.02 are the exchanges
+    assert {"2.10", "1.02", "1.29", "9.20"} <= off
+    assert "1.20" not in off
