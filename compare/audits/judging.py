@@ -9,7 +9,7 @@ from ..documents import ClaimVerdict, Finding, Judgement, Scope, Severity
 
 _ORDER = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT, ClaimVerdict.SUPPORTED)
 """What decides under one reading, the strongest first: a proof outweighs what only agrees."""
-_RANK = (Evidence.NONE, Evidence.CERTIFIED, Evidence.BEST_KNOWN)
+_RANK = (Evidence.NONE, Evidence.CERTIFIED, Evidence.BEST_KNOWN, Evidence.UNCONVERGED)
 """The weakest reference last: a verdict rests on the weakest of what stands behind it."""
 
 

@@ -6,7 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from math import log
 
-from ...nlp import Evidence
+from ...nlp import Evidence, weakest
 from ..documents import Excess, Gap, Keeping, ReadingOutcome, ReadingsSummary, Scope, Why
 
 
@@ -75,9 +75,7 @@ def _of_gaps(own: Sequence[ReadingOutcome]) -> str:
             high = 1 + max(g.highest for g in gaps)
             low_, high_ = f"{low:.3g}", f"{high:.3g}"
             parts.append(f"{where} {low_ if low_ == high_ else f'{low_} to {high_}'} times")
-    evidence = Evidence.CERTIFIED
-    if any(o.evidence is not Evidence.CERTIFIED for o in own):
-        evidence = Evidence.BEST_KNOWN
+    evidence = weakest(o.evidence for o in own if o.evidence is not Evidence.NONE)
     return f" Printed total: {', '.join(parts)} the {evidence} optimum." if parts else ""
 
 

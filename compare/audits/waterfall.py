@@ -5,7 +5,7 @@ from __future__ import annotations
 from decimal import ROUND_FLOOR, Context, Decimal, localcontext
 from fractions import Fraction
 
-from ...nlp import Evidence, Solution, proved, stated_exactly
+from ...nlp import Evidence, Solution, Status, stated_exactly
 from ...nlp.proofs.any_curve import estimate_any_curve
 from ...nlp.retiming import retime
 from ...problem import Coupling, down, fit, up
@@ -67,7 +67,7 @@ def _waterfall(study: Study, pid: str, rid: str) -> Waterfall:
         steps.append(_procedure(study, pid, rid))
     shared = study.optimum(pid, rid)
     steps.append(_known("optimum of the same curve, shared durations", shared))
-    relaxed = study.relaxed(pid, rid)
+    relaxed = _converged(study.relaxed(pid, rid))
     steps.append(
         _known("relaxed family", relaxed, "degree 5 or more in every segment, C2, freedom used")
     )
@@ -79,6 +79,14 @@ def _waterfall(study: Study, pid: str, rid: str) -> Waterfall:
         claim=claim.id if claim is not None else None,
         steps=tuple(steps),
     )
+
+
+def _converged(solution: Solution) -> Solution:
+    """The solution, without its answer where the search did not converge: that is no optimum."""
+    if solution.evidence is not Evidence.UNCONVERGED:
+        return solution
+    why = f"the search did not converge ({solution.why}): no optimum of this family is known"
+    return Solution(solution.problem, Status.FAILED, why)
 
 
 def _published(study: Study, claim: AnyClaim, pid: str, rid: str) -> list[Step]:

@@ -26,7 +26,7 @@ class Reference(Entry):
     lower: OrWhy[float] = UNCERTIFIED
     """Certified lower bound on the optimum, s."""
     evidence: Evidence = Field(default_factory=_evidence)
-    """Certified if there is a lower bound, else best known."""
+    """Certified if there is a lower bound, else best known; of a solution, that of its search."""
 
 
 class Gap(Entry):

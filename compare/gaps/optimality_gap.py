@@ -14,7 +14,8 @@ def reference_of(solution: Solution) -> Reference | None:
 
 
 def _reference(solution: Solution) -> Reference:
-    return Reference(upper=solution.best, lower=known(solution.lower_bound, UNCERTIFIED.reason))
+    lower = known(solution.lower_bound, UNCERTIFIED.reason)
+    return Reference(upper=solution.best, lower=lower, evidence=solution.evidence)
 
 
 def gap(

@@ -28,12 +28,14 @@ _COLUMNS = (("to the step above", -1, 1.23, 1.36), ("to the first step", 0, 1.55
 _FILLS = {
     Evidence.CERTIFIED: {"facecolor": BLUE, "edgecolor": BLUE, "hatch": ""},
     Evidence.BEST_KNOWN: {"facecolor": PAPER, "edgecolor": BLUE, "hatch": "////"},
+    Evidence.UNCONVERGED: {"facecolor": PAPER, "edgecolor": BLUE, "hatch": "...."},
     Evidence.NONE: {"facecolor": ORANGE, "edgecolor": ORANGE, "hatch": ""},
 }
 """Fill of a bar by what stands behind its value."""
 _WORDS = {
     Evidence.CERTIFIED: "certified",
     Evidence.BEST_KNOWN: "best known",
+    Evidence.UNCONVERGED: "not converged",
     Evidence.NONE: "printed, or derived from it",
 }
 """The same in words, for the legend and the description."""

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+import time
+
 import numpy as np
 
 from ...problem import Array, Problem, Verdict, check, evaluate
@@ -97,12 +100,14 @@ def curve_track(
 
 
 def curve_multistart(
-    problem: Problem, built: CompiledCurve, points: Array, floor: float
+    problem: Problem, built: CompiledCurve, points: Array, floor: float, until: float = math.inf
 ) -> list[Local]:
     """Local optima of all starts; the same coarse solution is tracked only once."""
     tracked: list[tuple[Array, Local]] = []
     found: list[Local] = []
     for start in points:
+        if found and time.monotonic() > until:
+            break
         coarse, scaled, success, iterations = curve_coarse(problem, built, start, floor)
         usable = success and np.isfinite(coarse).all()
         known = [

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+import time
+
 import numpy as np
 
 from ...problem import Array, Check, Problem, Verdict, check
@@ -97,10 +100,20 @@ def as_local(problem: Problem, found: Descent) -> Local:
     return Local(h, None, float(h.sum()), found.converged, kept(problem, verdict), found.steps)
 
 
-def exact_search(problem: Problem, points: Array, floor: Array) -> list[Local]:
-    """Local optima of all starts, above the floors; starts that end together are kept apart."""
+def exact_search(
+    problem: Problem, points: Array, floor: Array, until: float = math.inf
+) -> list[Local]:
+    """Local optima of all starts, above the floors; starts that end together are kept apart.
+
+    After the reading ``until`` of the monotonic clock no further descent is begun, but one is.
+    """
     box = box_above(problem, floor)
-    return [as_local(problem, descend(problem, start, box)) for start in points]
+    found: list[Local] = []
+    for start in points:
+        if found and time.monotonic() > until:
+            break
+        found.append(as_local(problem, descend(problem, start, box)))
+    return found
 
 
 def exact_starts(problem: Problem, count: int, seed: int, floor: Array) -> list[Basin]:

@@ -37,6 +37,9 @@ class Evidence(StrEnum):
     BEST_KNOWN = "best known"
     """The best value found and checked, with nothing proved below it. A gap against it is a lower
     estimate of the true one."""
+    UNCONVERGED = "not converged"
+    """The value of a checked motion at which the search stopped before it met the conditions of an
+    optimum: shorter ones are to be expected."""
     NONE = "none"
     """No value. A verdict that rests on none rests on the printed digits, a count, a check of what
     is printed, or a shorter motion that was checked and needs no optimum beside it."""
@@ -44,7 +47,7 @@ class Evidence(StrEnum):
 
 def weakest(evidence: Iterable[Evidence]) -> Evidence:
     """The weakest of some words; none for no words."""
-    order = [Evidence.CERTIFIED, Evidence.BEST_KNOWN, Evidence.NONE]
+    order = [Evidence.CERTIFIED, Evidence.BEST_KNOWN, Evidence.UNCONVERGED, Evidence.NONE]
     return max(evidence, key=order.index, default=Evidence.NONE)
 
 
@@ -107,10 +110,12 @@ class Solution:
 
     @property
     def evidence(self) -> Evidence:
-        """Certified only with a lower bound; otherwise best known, or none."""
+        """Certified only with a lower bound; best known only where the search converged."""
         if self.durations is None:
             return Evidence.NONE
-        return Evidence.BEST_KNOWN if self.lower_bound is None else Evidence.CERTIFIED
+        if self.lower_bound is not None:
+            return Evidence.CERTIFIED
+        return Evidence.UNCONVERGED if self.status is Status.FEASIBLE else Evidence.BEST_KNOWN
 
     def __str__(self) -> str:
         lines = [f"{self.problem.name}: {self.status}" + (f" ({self.why})" if self.why else "")]

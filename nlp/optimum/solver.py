@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -72,6 +73,7 @@ def solve(
     known: ArrayLike | None = None,
     known_nodal: ArrayLike | None = None,
     form: Form | None = None,
+    seconds: float = math.inf,
 ) -> Solution:
     """Best known total time of a problem with shared durations, from an exact NLP.
 
@@ -94,6 +96,9 @@ def solve(
         not determined, and not used.
     form : Form, optional
         Reduced or lifted; by default the faster one for the size.
+    seconds : float
+        After so long no further start is begun; one that has begun is finished, so that there is
+        always an answer. What is found then depends on the machine.
 
     Returns
     -------
@@ -115,6 +120,7 @@ def solve(
         np.empty((0, problem.segments)) if known is None else _vectors(problem, "known", known),
         None if known_nodal is None else np.asarray(known_nodal, dtype=np.float64),
         form,
+        time.monotonic() + seconds,
     )
     wanted = (len(ask.known), problem.curve.free, len(problem.joints))
     if ask.known_nodal is not None and ask.known_nodal.shape != wanted:
@@ -135,6 +141,8 @@ class _Ask:
     known: Array
     known_nodal: Array | None
     form: Form | None
+    until: float
+    """Reading of the monotonic clock after which no further start is begun."""
 
 
 def _vectors(problem: Problem, name: str, given: ArrayLike) -> Array:
@@ -176,7 +184,7 @@ def _floor(problem: Problem, share: float) -> Array:
 
 def _tracked(problem: Problem, ask: _Ask) -> Solution:
     """The tracked NLP from each start."""
-    search, build_seconds = _search(problem, ask.form)
+    search, build_seconds = _search(problem, ask)
     points = ask.initial
     if points is None:
         points = screened_starts(problem, ask.starts, np.random.default_rng(ask.seed))
@@ -190,7 +198,7 @@ def _tracked(problem: Problem, ask: _Ask) -> Solution:
         if solution.status is Status.FEASIBLE and _reduced(problem, ask.form):
             # Eliminating across very unequal durations loses digits; the lifted form does not.
             lifted = compiled(structure_of(problem, Form.LIFTED))
-            found += _multistart(problem, lifted, points, floor)
+            found += _multistart(problem, lifted, points, floor, ask.until)
             solution = judged(problem, found, made, len(points))
         if solution.status is not Status.NOT_ATTAINED:
             break
@@ -220,13 +228,13 @@ def _searched(problem: Problem, ask: _Ask, durations: Array | None = None) -> So
         else:
             points = ask.initial
         points = np.vstack([points, carried])
-        found = exact_search(problem, points, floor)
+        found = exact_search(problem, points, floor, ask.until)
         solution = judged(problem, found, floor, len(points))
         if solution.durations is None and coarse is not None:
             return coarse  # further down, rounding hides the limits
         if solution.durations is None and ask.initial is None:
             more = anywhere(problem, ANYWHERE, ask.seed, floor)
-            found += exact_search(problem, more, floor)
+            found += exact_search(problem, more, floor, ask.until)
             solution = judged(problem, found, floor, len(found))
         if solution.status is not Status.NOT_ATTAINED:
             return solution
@@ -280,7 +288,7 @@ def _challenged(problem: Problem, solution: Solution, wide: list[Basin], ask: _A
     if points.size == 0:
         return solution
     floor = _floor(problem, FLOORS[-1])
-    found = judged(problem, exact_search(problem, points, floor), floor, solution.starts)
+    found = judged(problem, exact_search(problem, points, floor, ask.until), floor, solution.starts)
     return _better_of(solution, found)
 
 
@@ -319,23 +327,21 @@ def _with_known(problem: Problem, solution: Solution, ask: _Ask) -> Solution:
     floor = np.minimum(_floor(problem, FLOORS[-1]), best / 2.0)
     found = [incumbent]
     if searchable(problem):
-        found += exact_search(problem, best[None], floor)
+        found += exact_search(problem, best[None], floor, ask.until)
     else:
-        search, _ = _search(problem, ask.form)
+        search, _ = _search(problem, ask)
         found += search(best[None], FLOORS[-1] * float(best.mean()))
     shorter = judged(problem, found, floor, solution.starts)
     return shorter if shorter.best < solution.best else solution
 
 
-def _search(
-    problem: Problem, form: Form | None
-) -> tuple[Callable[[Array, float], list[Local]], float]:
+def _search(problem: Problem, ask: _Ask) -> tuple[Callable[[Array, float], list[Local]], float]:
     """Local search from starts above a floor, and the time its build took, s."""
     if problem.curve.piecewise is not None:
-        build_ = compiled(structure_of(problem, form))
-        return partial(_multistart, problem, build_), build_.build_seconds
+        build_ = compiled(structure_of(problem, ask.form))
+        return partial(_multistart, problem, build_, until=ask.until), build_.build_seconds
     built = compiled_curve(curve_structure(problem))
-    return partial(curve_multistart, problem, built), built.build_seconds
+    return partial(curve_multistart, problem, built, until=ask.until), built.build_seconds
 
 
 def _reduced(problem: Problem, form: Form | None) -> bool:
@@ -344,11 +350,15 @@ def _reduced(problem: Problem, form: Form | None) -> bool:
     return structure_of(problem, form).form is Form.REDUCED
 
 
-def _multistart(problem: Problem, build_: Compiled, points: Array, floor: float) -> list[Local]:
+def _multistart(
+    problem: Problem, build_: Compiled, points: Array, floor: float, until: float
+) -> list[Local]:
     """Local optima of all starts; the same coarse solution is tracked only once."""
     tracked: list[tuple[Array, Local]] = []
     found: list[Local] = []
     for start in points:
+        if found and time.monotonic() > until:
+            break
         near = settled(problem, start)
         x, scaled, success, iterations = solve_coarse(problem, build_, near, floor)
         coarse, _ = unpack(problem, build_.formulation, scaled, x)
@@ -357,14 +367,14 @@ def _multistart(problem: Problem, build_: Compiled, points: Array, floor: float)
             for h, local in tracked
             if np.abs(h - coarse).max() <= 1e-6 * coarse.sum() and local.feasible
         ]
-        local = known[0] if known else track(problem, build_, x, scaled, floor)
+        local = known[0] if known else track(problem, build_, x, scaled, floor, until)
         if success and not known:
             tracked.append((coarse, local))
         bar, _, _ = merit(problem, start, first_nodal(problem))
         if bar < local.total:
             # The coarse solve left the start's basin for a worse one: descend from the start.
             first = pack(problem, build_.formulation, scaled, start, first_nodal(problem))
-            direct = track(problem, build_, first, scaled, floor)
+            direct = track(problem, build_, first, scaled, floor, until)
             local = min(local, direct, key=lambda one: one.total)
         found.append(replace(local, iterations=local.iterations + iterations))
     return found

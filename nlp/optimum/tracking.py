@@ -349,8 +349,12 @@ def merit(problem: Problem, h: Array, nodal: Array | None) -> tuple[float, Array
     return verdict.feasible_time, h * factor, nodal
 
 
-def track(problem: Problem, build_: Compiled, x: Array, scaled: Scaled, floor: float) -> Local:
+def track(
+    problem: Problem, build_: Compiled, x: Array, scaled: Scaled, floor: float, until: float
+) -> Local:
     """Put the slots on the true extrema and solve again, inside a trust region, until they stay.
+
+    After the reading ``until`` of the monotonic clock no further step is begun.
 
     Every step is judged by the exact repaired total, so that a slot that lost its extremum costs
     a smaller step and never a worse answer; all extrema are found anew before each solve.
@@ -364,6 +368,8 @@ def track(problem: Problem, build_: Compiled, x: Array, scaled: Scaled, floor: f
     radius, step, iterations, converged, duals = 0.5, np.inf, 0, False, None
     stale = 0
     for _ in range(_PASSES):
+        if time.monotonic() > until:
+            break
         trajectory = fit(problem.curve, problem.waypoints, h, nodal)
         c = trajectory.scaled / scaled.angle_unit
         places, weights = place_slots(f, replace(trajectory, scaled=c))
