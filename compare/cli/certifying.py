@@ -9,7 +9,6 @@ import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from importlib.resources import files as resources
 from pathlib import Path
 from types import FrameType
 from typing import Any
@@ -31,8 +30,8 @@ from ...problem import (
     TrajgapError,
     check_regular,
     file_name,
-    published_ids,
 )
+from ...problem.cases import PUBLISHED
 from ...verify import (
     CERTIFICATE_FORMAT,
     OLD_FORMATS,
@@ -65,8 +64,6 @@ from .output import (
     say,
 )
 
-_PUBLISHED = "trajgap.problem.published"
-"""Package that holds the published cases as data."""
 CERTIFICATE_FOLDER = Path("trajgap-certificates")
 """Where certificates go, unless the command line says otherwise."""
 NOT_PROVED = 3
@@ -197,8 +194,7 @@ def _stated(case: Case, one: Posed, coupling: Coupling) -> Iterator[Question]:
 
 def _hash(case: Case) -> str | None:
     """SHA-256 of a case file; None if it cannot be read any more."""
-    published = case.file in published_ids()
-    path = resources(_PUBLISHED) / f"{case.file}.toml" if published else Path(case.file)
+    path = PUBLISHED.file(case.file) if case.file in PUBLISHED.ids() else Path(case.file)
     try:
         return hashlib.sha256(path.read_bytes()).hexdigest()
     except OSError:
