@@ -291,6 +291,7 @@ RULES = (
     Rule("TG403", "Convergence within a number of iterations, beside replays"),
     Rule("TG404", "A relative claim beside a family of instances drawn from the robot's workspace"),
     Rule("TG501", "Not checkable from the text"),
+    Rule("TG502", "Not computed for this problem; the message says why"),
     Rule("TG601", "Joint and Cartesian way-points are consistent with the printed chain"),
 )
 """Every rule; an id is never reused."""

@@ -178,7 +178,7 @@ class _Search:
     def _look(self, durations: Array, below_it: float) -> bool:
         """Raise `Shorter` if the direction of ``durations`` holds a total below the one given.
 
-        False if it does but for bounds that stretching cannot mend: more would follow.
+        False if it does but for bounds that stretching cannot repair: more would follow.
         """
         time = float(self.units.time)
         found = self.session.stretched(durations[None] * time)[0]

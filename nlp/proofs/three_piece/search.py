@@ -182,7 +182,7 @@ def _above_all(exact: ExactProblem) -> Fraction | None:
 
 
 def _positions_alone(exact: ExactProblem) -> ExactProblem:
-    """The problem without anything that more time could mend."""
+    """The problem without anything that more time could repair."""
     nothing = ((None, None, None),) * len(exact.joints)
     return replace(exact, limits=nothing, duration_lower=(Fraction(0),) * exact.segments)
 
