@@ -24,36 +24,9 @@ from ..documents import (
 from .instances import examined_entry
 from .judging import judge, weigh
 from .readings import readings_summary
-from .rules import (
-    judge_counts,
-    judge_digits,
-    judge_distances,
-    judge_instances,
-    judge_kinematics,
-    judge_motions,
-    judge_replays,
-    judge_scaling,
-    judge_vertices,
-    list_open_points,
-)
+from .rules import GROUPS
 from .study import SEEDS, Study
 from .waterfall import waterfalls
-
-_GROUPS = (
-    judge_digits,
-    judge_counts,
-    judge_motions,
-    judge_vertices,
-    judge_scaling,
-    judge_distances,
-    judge_replays,
-    judge_instances,
-    list_open_points,
-    judge_kinematics,
-)
-"""The rules, in the order in which their findings of one severity and id stand."""
-_WITHOUT_WAYPOINTS = (judge_digits, judge_instances, list_open_points)
-"""Those of them that say something while the way-points are missing."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,8 +143,8 @@ def audit(
 
 def audit_case(study: Study) -> CaseAudit:
     """Run every rule on one case."""
-    groups = _GROUPS if study.posed else _WITHOUT_WAYPOINTS
-    found = [finding for group in groups for finding in group(study)]
+    groups = [group for group in GROUPS if study.posed or group.without_waypoints]
+    found = [finding for group in groups for finding in group.judge(study)]
     scoped = _with_scopes(found, study)
     by_rule = sorted(scoped, key=_weight)
     admissible = [reading.id for reading in study.case.readings]
