@@ -36,7 +36,6 @@ from .verified import (
     worth,
 )
 from .vocabulary import (
-    RULES,
     TERMS,
     TIMES,
     UNITS,
@@ -62,7 +61,6 @@ from .waterfall import EXACT, Step, Waterfall
 __all__ = [
     "DOCUMENTS",
     "EXACT",
-    "RULES",
     "SCHEMA",
     "TERMS",
     "TIMES",
