@@ -33,14 +33,18 @@ _AT = np.array(
      [p * (p - 1) for p in range(6)]], dtype=np.float64,
 )  # fmt: skip
 _HERMITE = np.rint(2.0 * np.linalg.inv(_AT).T) / 2.0
+"""Its basis, inverted instead of typed: one more way than the solver's to the same numbers."""
 _JUMPS = np.array(
     [24 * _HERMITE[:, 4], -24 * _HERMITE[:, 4] - 120 * _HERMITE[:, 5], -6 * _HERMITE[:, 3],
      6 * _HERMITE[:, 3] + 24 * _HERMITE[:, 4] + 60 * _HERMITE[:, 5]]
 )  # fmt: skip
 """q'''' and q''' that a segment adds to the jumps at its ends, by (q0, q1, v0, v1, a0, a1)."""
 _STIFF, _LOAD = _JUMPS[:, 2:], -_JUMPS[:, 1]
+"""Of velocities and accelerations, and of the step (q₀ = 0, q₁ = Δq) on the other side."""
 _LOAD_POWER = np.array([4, 4, 3, 3])
+"""Powers of r = 1/h in the rows of b: q'''' brings r⁴, q''' brings r³."""
 _POWER = _LOAD_POWER[:, None] - np.array([1, 1, 2, 2])
+"""Powers of r in M: a velocity comes with h, an acceleration with h²."""
 
 
 class Task:

@@ -17,6 +17,7 @@ from .ranges import MOST_BYTES, MOST_DIGITS, MOST_TEXT
 T = TypeVar("T")
 
 _N = MOST_DIGITS
+"""A short name for the pattern below."""
 _NUMBER = re.compile(
     rf"-?\d{{1,{_N}}}(/[1-9]\d{{0,{_N - 1}}}|\.\d{{1,{_N}}})?(e-?\d{{1,2}})?", re.ASCII
 )

@@ -33,12 +33,15 @@ Square = tuple[Fraction, Fraction, Fraction, Fraction]
 """A box: a from, to, b from, to."""
 
 ONE: Poly = {(0, 0): Fraction(1)}
-M: tuple[Poly, ...] = (  # shares of the total, times S
+"""The polynomial 1: products begin with it."""
+M: tuple[Poly, ...] = (
     {(1, 0): Fraction(1), (1, 1): Fraction(-1)},
     {(0, 0): Fraction(1), (1, 0): Fraction(-1), (0, 1): Fraction(-1), (1, 1): Fraction(1)},
     {(0, 1): Fraction(1), (1, 1): Fraction(-1)},
 )
+"""m = (a(1 − b), (1 − a)(1 − b), b(1 − a)): a segment's share of the total, times S."""
 S: Poly = {(0, 0): Fraction(1), (1, 1): Fraction(-1)}
+"""S = 1 − ab: what the shares add up to."""
 
 Ratios = dict[tuple[int, int], list[Fraction]]
 """Coefficients in s of each xⁱyʲ."""

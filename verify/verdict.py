@@ -39,10 +39,15 @@ SECONDS = 60.0
 OLD_FORMATS = ("trajgap-certificate-1", "trajgap-state-1")
 """That were once written; what is in them is not read."""
 _NAME_ONE = "name a certificate"
+"""How to fix it: the words that end a message about another kind of file."""
 _KEYS = ("format", "made_by", "question", "problem", "problem_hash", "claim", "proof", "seal")
+"""Of the file; all are there and no other, so that nothing in it goes unread."""
 _CLAIM = ("subject", "infeasible", "lower", "upper", "durations", "speeds")
+"""Keys of ``claim``."""
 _QUESTION = ("case", "problem", "reading", "joint", "case_sha256")
+"""Keys of ``question``: the fields of `CertifiedQuestion`."""
 _PROOF = ("kind", "total", "tree")
+"""Keys of ``proof`` that every kind has; a kind adds its own ``keys``."""
 
 
 def _quintic() -> type[ProofKind[Any]]:

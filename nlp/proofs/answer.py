@@ -15,7 +15,10 @@ from ...problem.curves import ConditionKind, StretchedUniformBSpline, vertex_mat
 from .exact import ExactProblem
 
 _STRETCHES = tuple(Fraction(1, 10**k) for k in (13, 12, 11, 10, 9, 8, 7))
+"""Shares by which an answer is stretched until it is feasible, tried in turn: from some roundings
+of a float to a tenth of the gap that is asked for by default."""
 _DEEPEST = 60
+"""Halvings after which a polynomial is taken to exceed its bound: finer than any float."""
 
 
 def float_problem(exact: ExactProblem) -> Problem:

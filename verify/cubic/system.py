@@ -17,6 +17,7 @@ from ..reading import given, listed, need, sign_of, whole
 Vector = dict[Any, Fraction]
 """Factors by unknown, or by (coordinate, unknown) for a product."""
 ZERO = Fraction(0)
+"""Sums begin with it, so that empty ones are exact, too."""
 _FINE = 2**60
 """A square root is rounded up to its multiples: some digits more than a float has."""
 

@@ -15,6 +15,7 @@ from .rows import KINDS, Row
 from .search import Node, Search
 
 KIND = "any-curve"
+"""Of the proof, as `trajgap.verify` knows it."""
 DIGITS = (4, 6, 8, 12)
 """Of the weights: as few as prove the bound."""
 

@@ -15,7 +15,9 @@ Box = tuple[tuple[Fraction, Fraction], ...]
 UNIT = 10**10
 """Parameters of rows are multiples of 1/UNIT."""
 REACH, BRAKE, CHANGE = range(3)
+"""Kinds of rows as integers: a row is a line of an integer array."""
 KINDS = ("reach", "brake", "change")
+"""Their names in a certificate, in the order of the integers."""
 
 
 class Row(NamedTuple):

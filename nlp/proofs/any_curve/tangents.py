@@ -16,6 +16,7 @@ from .rows import BRAKE, CHANGE, REACH, UNIT, Row
 Ints = NDArray[np.int64]
 
 _LARGEST = 1e5
+"""Largest slope in a row: times `UNIT` it is an integer that a float still holds exactly."""
 
 
 @dataclass(frozen=True, eq=False)

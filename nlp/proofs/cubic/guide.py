@@ -10,6 +10,7 @@ from .relaxation import Laid, Proposal
 from .system import PLACES, CubicSystem, Row
 
 _TINY = 1e-9
+"""Stands for a span of 0 in a quotient: spans are of order 1 in the units of a system."""
 _EXCESS = 1.001
 """A peak counts where it exceeds its limit by this factor."""
 

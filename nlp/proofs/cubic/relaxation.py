@@ -16,10 +16,13 @@ from .ranges import Side, matrices
 from .system import CubicSystem, Row
 
 _TANGENTS = 5
+"""Of 1/T over a side: what they miss falls with the square of the box, and rows cost time."""
 _SLOPES = 4
+"""Tangents of ρ over a box: what they miss falls with its square, too."""
 _LARGEST = 2**22
 """Of the integer weights."""
 _SMALLEST = 0.6
+"""Weights below it, in units of the rounding, are left out: those kept round to 1 or more."""
 _BARRED = 1e6
 """Total that stands for "not limited"."""
 

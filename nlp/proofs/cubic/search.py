@@ -19,6 +19,7 @@ from .system import CubicSystem
 from .tree import Box, Prover
 
 _ROUNDS = 4
+"""On one box at most: a guard, since they end where one shrinks it by less than `_AGAIN`."""
 _WORTH = 0.05
 """A side is moved if it gains this share of the width."""
 _NEAR = 0.1

@@ -21,6 +21,7 @@ STIFFNESS = np.array(
 POWERS = np.array([[3, 3, 2, 2], [3, 3, 2, 2], [2, 2, 1, 1], [2, 2, 1, 1]])
 """Power of r in each entry of ``STIFFNESS`` for a segment of duration 1/r."""
 LOAD = np.array([360.0, 360.0, 60.0, -60.0])
+"""−∂²/∂x∂Δ of ½∫(q''')², a step Δ of position moving the quintic: b without its powers of r."""
 LOAD_POWERS = np.array([4, 4, 3, 3])
 """Right-hand side b of a segment is ``LOAD · r**LOAD_POWERS`` times its step of position."""
 BASIS = np.array(
@@ -33,7 +34,9 @@ ROUNDING = 1e-12
 """Share of the sum of absolute values that covers every rounding (fewer than 2000 on any path)."""
 _CHOOSE = np.array([[1, 0, 0, 0, 0], [1, 1, 0, 0, 0], [1, 2, 1, 0, 0], [1, 3, 3, 1, 0],
                     [1, 4, 6, 4, 1]], dtype=np.float64)  # fmt: skip
+"""Binomial coefficients, up to those of r⁴."""
 _SQUARINGS = 4
+"""Of A before ‖A¹⁶‖^(1/16) bounds its largest eigenvalue, at rank 25 within 11 %."""
 KERNELS = ("bound.py", "rows.py", "search.py", "windows.py")
 """Every file of compiled functions here: they call each other, so they share a stamp."""
 compiled = compiler(*(Path(__file__).with_name(name) for name in KERNELS))

@@ -9,10 +9,15 @@ from .bound import BASIS, compiled, place
 PLACES = 1024
 """Places on a segment are multiples of 1/PLACES."""
 MOST = 40
+"""Rows that take part in a box: below `MOST_LIMITS` of a leaf, and the table stays small."""
 _GRID = 9
+"""Places where a derivative is scanned: it has at most three extrema inside a segment."""
 _STEPS = 3
+"""Newton steps to an extremum, which begin less than an eighth of a segment away."""
 _PIVOTS = 60
+"""Of the simplex method: a guard, since any weights are valid."""
 _SMALL = 1e-9
+"""Gain below which no variable enters: what it could win is lost in rounding."""
 
 
 def derivative_table() -> np.ndarray:
@@ -26,6 +31,7 @@ def derivative_table() -> np.ndarray:
 
 
 TABLE = derivative_table()
+"""Computed once: compiled functions take it as a constant."""
 
 
 @compiled

@@ -22,8 +22,11 @@ from .bound import ROUNDING, compiled
 UNIT = 2.0**16
 """ψ and c are multiples of 1/UNIT."""
 _CELLS = 6
+"""Of a segment in the linear program for ψ: it only proposes, the mean of |ψ| is exact later."""
 _PROMISING = 4
+"""Conditions that are tried with multipliers of the total: the nearest to excluding the box."""
 _SPREAD = 0.5
+"""Deviation of the random log durations: directions within a factor of about e of the answer's."""
 
 
 def mean_size(psi: Array) -> Array:

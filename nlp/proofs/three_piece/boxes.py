@@ -28,8 +28,12 @@ from .rows import (
 from .square_polynomials import MONOMIALS, SHARES, SUM, padded, power, times
 
 MOST_PLACES = 8
+"""Rows at places in the program of one box: the heaviest. An optimum in
+three durations seldom has more than three active limits."""
 _GRID = 65
+"""Places where a curve is scanned for its peaks; Newton steps from there find the place."""
 _SLACK = 1e-13
+"""What floats may be below 0 and the exact test is tried all the same: about their rounding."""
 _DIGITS = (4, 9)
 """Digits of the weights: few, or enough for steep rows."""
 

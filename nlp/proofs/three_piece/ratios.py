@@ -23,6 +23,7 @@ POWERS = 6
 """Coefficients in s that hold every piece."""
 
 _HALF = Fraction(1, 2)
+"""Exact: the basis holds halves."""
 # Hermite basis on [0, 1], ascending: blend of the positions, velocities and accelerations.
 _QUINTIC: tuple[tuple[int | Fraction, ...], ...] = (
     (0, 0, 0, 10, -15, 6),
@@ -127,8 +128,11 @@ def _middle_quintic(q: Sequence[Fraction]) -> dict[Ratios, Powers]:
 
 
 _D = {(0, 0): 1, (1, 0): 2, (0, 1): 2, (1, 1): 3}
+"""D = 1 + 2x + 2y + 3xy, by which the middle cubic of 4-3-4 is multiplied to be a polynomial."""
 _XD = {(i + 1, j): c for (i, j), c in _D.items()}
+"""x·D, for the first piece."""
 _YD = {(i, j + 1): c for (i, j), c in _D.items()}
+"""y·D, for the last piece."""
 
 
 def _turned(ratios: Mapping[Ratios, Fraction]) -> dict[Ratios, Fraction]:
@@ -207,6 +211,7 @@ SHAPES = (
         ((0, 0), (1, 0), (2, 0), (0, 1), (0, 2), (1, 1), (2, 1), (1, 2)),
     ),
 )
+"""The two curves that have this form: docs/certificates.md derives it for each."""
 
 
 def shape_of(curve: Curve) -> Shape | None:

@@ -60,9 +60,13 @@ def minus(p: Poly, q: Poly) -> Poly:
 
 
 _A, _B = _poly({(1, 0): 1}), _poly({(0, 1): 1})
+"""a and b."""
 _A1, _B1 = _poly({(0, 0): 1, (1, 0): -1}), _poly({(0, 0): 1, (0, 1): -1})
+"""1 − a and 1 − b."""
 SUM = _poly({(0, 0): 1, (1, 1): -1})
+"""S = 1 − ab: what the shares add up to."""
 SHARES = (times(_A, _B1), times(_A1, _B1), times(_B, _A1))
+"""m = (a(1 − b), (1 − a)(1 − b), b(1 − a)): durations are T·m/S."""
 MONOMIALS = {
     (i, j): times(
         times(power(_A, 2 - i), power(_A1, i)),
