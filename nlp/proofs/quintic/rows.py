@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .bound import BASIS, compiled, place
+from .nodal import BASIS, compiled, place
 
 PLACES = 1024
 """Places on a segment are multiples of 1/PLACES."""
@@ -149,6 +149,9 @@ def candidates(  # type: ignore[no-untyped-def]
 @compiled
 def simplex(n, count, value, gradient, r, e, total, weight):  # type: ignore[no-untyped-def]
     """Weights w ≥ 0 of sum 1 and tau that maximise the least linearised sum over the box.
+
+    That is Σ w_i value_i + tau·(Σ 1/r − total) − Σ_k |Σ w_i gradient_ik − tau/r_k²|·e_k, where the
+    absolute values are the sums of two variables whose difference the table holds.
 
     Returns (that least sum, tau). Stops early after a number of pivots: any weights are valid.
     """

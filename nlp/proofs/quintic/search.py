@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .bound import bound, centre, compiled
+from .bound import bound
+from .nodal import centre, compiled
 from .rows import MOST, candidates, simplex
 from .windows import excluding_window
 
