@@ -55,7 +55,7 @@ def need(condition: bool, reason: str) -> None:
         raise Refused(reason)
 
 
-def given(value: T | None, reason: str) -> T:
+def required(value: T | None, reason: str) -> T:
     """A value that must be there."""
     if value is None:
         raise Refused(reason)

@@ -15,7 +15,7 @@ from typing import Any, ClassVar
 from .curve import derivative, pieces, value_at
 from .problem import StatedProblem
 from .ranges import MOST_ROWS, MOST_WEIGHTS, PLACES
-from .reading import Clock, given, listed, need, number, sign_of, text, whole
+from .reading import Clock, listed, need, number, required, sign_of, text, whole
 from .tree import ProofKind
 
 STRICT = Fraction(1, 2**40)
@@ -159,7 +159,7 @@ class _ThreePieces(ProofKind[Square]):
         """Polynomial in a, b that is < 0 wherever a trajectory below the total is feasible."""
         self.clock.check()
         problem, cap = self.problem, row.cap
-        longest = given(
+        longest = required(
             self.total if cap < 0 else problem.longest[cap],
             "a row leans on an upper bound that is not there",
         )
@@ -169,13 +169,13 @@ class _ThreePieces(ProofKind[Square]):
             return _plus((problem.shortest[row.joint] / c, hold), (Fraction(-1), M[row.joint]))
         q, order, sign = [w[row.joint] for w in problem.waypoints], row.order, row.sign
         if order == 0:
-            ends = given(
+            ends = required(
                 problem.position[(1 + sign) // 2][row.joint],
                 "a row leans on a position limit that is not there",
             )
             limit = max(sign * x for x in ends) + STRICT
         else:
-            bound = given(
+            bound = required(
                 problem.limits[row.joint][order - 1], "a row leans on a limit that is not there"
             )
             limit = bound[1]

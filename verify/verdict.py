@@ -20,11 +20,11 @@ from .reading import (
     OutOfTime,
     Refused,
     fields,
-    given,
     listed,
     need,
     number,
     read_document,
+    required,
     shown,
     text,
 )
@@ -240,7 +240,7 @@ def _judged(document: dict[str, Any], clock: Clock) -> Claimed:
     subject = next((s for s in Subject if s == claim["subject"]), None)
     infeasible, lower = claim["infeasible"], number(claim["lower"])
     need(type(infeasible) is bool, "malformed: infeasible: neither true nor false")
-    subject = given(subject, "malformed: subject: neither the declared curve nor any curve")
+    subject = required(subject, "malformed: subject: neither the declared curve nor any curve")
     answer = _read_answer(problem, claim, subject)
     kind, total = _read_proof(document, problem, clock)
     if kind is not None:

@@ -12,7 +12,7 @@ from typing import Any
 
 from ..problem import Bounds, Declaration, StatedProblem
 from ..ranges import MOST_CUBIC_SEGMENTS, MOST_INTEGER, MOST_POWER, SPOTS, TICKS
-from ..reading import given, listed, need, sign_of, whole
+from ..reading import listed, need, required, sign_of, whole
 
 Vector = dict[Any, Fraction]
 """Factors by unknown, or by (coordinate, unknown) for a product."""
@@ -27,7 +27,7 @@ class Cubic:
 
     def __init__(self, problem: StatedProblem, proof: dict[str, Any]) -> None:
         self.problem = problem
-        declared = given(problem.declaration, "the curve is no declared piecewise polynomial")
+        declared = required(problem.declaration, "the curve is no declared piecewise polynomial")
         self.ends, self.virtual = _kind_of_ends(declared)
         q = problem.waypoints
         self.n, self.m, self.joints = problem.segments, len(q) - 1, problem.joints
@@ -105,7 +105,7 @@ class Cubic:
             return -1, {}, {t: Fraction(1) for t in range(self.m)}, -self.cap
         if kind in ("lower", "upper"):
             whole(k, 0, self.n - 1)
-            bound = given(
+            bound = required(
                 self.shortest[k] if kind == "lower" else self.longest[k],
                 "a bound of a duration that is not there",
             )
@@ -114,7 +114,7 @@ class Cubic:
             return -1, {}, along, -side * bound
         limits = self.limits[whole(joint, 0, self.joints - 1)]
         need(kind in ("jerk", "velocity"), "a row of an unknown kind")
-        limit = given(
+        limit = required(
             limits[2 if kind == "jerk" else 0], "a condition leans on a limit that is not there"
         )
         if kind == "jerk":

@@ -36,7 +36,7 @@ class Row(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Exact:
+class ExactRow:
     """time·h + start·v₀ + end·v₁ ≥ right."""
 
     time: Fraction
@@ -45,7 +45,7 @@ class Exact:
     right: Fraction
 
 
-def exact_row(asked: FreeQuestion, row: Row, box: Box, speed: Fraction) -> Exact:
+def exact_row(asked: FreeQuestion, row: Row, box: Box, speed: Fraction) -> ExactRow:
     """A row in rational numbers.
 
     Parameters
@@ -59,26 +59,26 @@ def exact_row(asked: FreeQuestion, row: Row, box: Box, speed: Fraction) -> Exact
 
     Returns
     -------
-    Exact
+    ExactRow
         Why it holds is in docs/certificates-any-curve.md.
     """
     acceleration = asked.loose[row.joint][1]
     assert acceleration is not None
     if row.kind == CHANGE:
-        return Exact(acceleration, Fraction(row.sign), Fraction(-row.sign), Fraction(0))
+        return ExactRow(acceleration, Fraction(row.sign), Fraction(-row.sign), Fraction(0))
     way = abs(asked.steps[row.segment][row.joint])
     a, b = Fraction(row.a, UNIT), Fraction(row.b, UNIT)
     if row.kind == REACH:
         n = Fraction(row.c, UNIT) / speed
         peak = (2 * a - a * a + 2 * b - b * b) / (2 * acceleration) - way * n * n
-        return Exact(
+        return ExactRow(
             Fraction(1),
             row.sign * a / acceleration,
             row.sign * b / acceleration,
             2 * way * n + min(Fraction(0), peak * speed),
         )
     low, high = box[row.segment]
-    return Exact(
+    return ExactRow(
         acceleration * (a * a + b * b) / 2 - way / (low * high),
         -row.sign * a,
         -row.sign * b,

@@ -6,7 +6,7 @@ import numpy as np
 
 from ....problem import Array
 from .ranges import matrices
-from .relaxation import Laid, Proposal
+from .relaxation import BoxProgram, Proposal
 from .system import PLACES, CubicSystem, Row
 
 _TINY = 1e-9
@@ -15,12 +15,12 @@ _EXCESS = 1.001
 """A peak counts where it exceeds its limit by this factor."""
 
 
-def errors(laid: Laid, proposal: Proposal) -> Array:
+def errors(program: BoxProgram, proposal: Proposal) -> Array:
     """How far the products of each coordinate are from being products, shape (free,)."""
-    system = laid.relaxation.system
+    system = program.relaxation.system
     out = np.zeros(system.coordinates)
     scale = np.maximum(np.abs(proposal.unknowns).max(axis=1, initial=0.0), 1e-9)
-    for p, (k, i) in enumerate(laid.relaxation.pairs):
+    for p, (k, i) in enumerate(program.relaxation.pairs):
         miss = np.abs(proposal.products[:, p] - proposal.point[k] * proposal.unknowns[:, i])
         out[k] += float((miss / scale).sum())
     for h, _, rho in system.curved:

@@ -49,7 +49,7 @@ class Proposal:
 
 
 class Relaxation:
-    """The relaxation of one system under some conditions, to be laid over boxes."""
+    """The relaxation of one system under some conditions, to be written down for boxes."""
 
     def __init__(self, system: CubicSystem, rows: list[Row], cap: Fraction) -> None:
         self.system, self.cap = system, cap
@@ -66,10 +66,10 @@ class Relaxation:
         self._linear = np.array([linear[k, :, i] for k, i in self.pairs])
         self._fixed = fixed
 
-    def over(self, side: Side, ranges: tuple[Array, Array]) -> Laid:
-        """Lay it over a box."""
+    def over(self, side: Side, ranges: tuple[Array, Array]) -> BoxProgram:
+        """Its program over a box."""
         joints = np.flatnonzero(np.isfinite(ranges[1]).all(axis=0))
-        return Laid(self, side, ranges, joints)
+        return BoxProgram(self, side, ranges, joints)
 
 
 class _Entries:
@@ -93,8 +93,8 @@ class _Entries:
         return csr_array((self.value, (self.row, self.column)), shape=shape)
 
 
-class Laid:
-    """A relaxation over one box."""
+class BoxProgram:
+    """The linear program of a relaxation over one box."""
 
     def __init__(
         self,
