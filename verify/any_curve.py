@@ -95,7 +95,14 @@ class _Row:
     def terms(
         self, step: Fraction, v_max: Fraction, bend: Fraction, sides: tuple[Fraction, Fraction]
     ) -> tuple[Fraction, Fraction, Fraction, Fraction]:
-        """The factors time, first and last, and the right-hand side."""
+        """The factors time, first and last, and the right-hand side.
+
+        From the docs, for d ≥ 0 the mirrored step, c = (m₀(2 − m₀) + m₁(2 − m₁))/2A − dn² and
+        l ≤ h ≤ u:
+
+        - reach: h + (m₀v₀ + m₁v₁)/A ≥ 2dn + min(0, cV),
+        - brake: A(m₀² + m₁²)h/2 + d(l + u − h)/lu + |1 − m₀ − m₁|V ≥ m₀v₀ + m₁v₁.
+        """
         sign = self.sign
         if self.kind == "change":  # A·h ≥ ∓(v₁ − v₀)
             return bend, Fraction(sign), Fraction(-sign), Zero
@@ -183,7 +190,10 @@ class AnyCurve(ProofKind[Sides]):
         need(proved >= self.total, f"it proves only {float(proved):.12g} s")
 
     def _least_total(self, box: Sides, weighted: Sequence[tuple[_Row, Fraction]]) -> Fraction:
-        """Least value of Σh − Σ weight·(left − right) over a box and all speeds within bounds."""
+        """Least value of Σh − Σ weight·(left − right) over a box and all speeds within bounds.
+
+        Every motion has left ≥ right and so Σh ≥ that; it is linear, least at ends of the sides.
+        """
         asked, result = self._asked, Zero
         slope: dict[tuple[int, int], Fraction] = {}
         times = [Fraction(1)] * len(box)

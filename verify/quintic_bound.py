@@ -164,7 +164,12 @@ class Bound:
         return self.root @ matrix @ back, ROUND * rough.sum(axis=2).max(axis=1)
 
     def _coercivity(self) -> Array:
-        """κ with M(r)⁻¹ ≼ RᵀR/κ all over each box."""
+        """κ with M(r)⁻¹ ≼ RᵀR/κ all over each box.
+
+        M_k(r) = t·T M_k(r⁰) T with t = r/r⁰, T = diag(t, t, 1, 1) on (v, v, a, a), hence
+        κ = (1 − max e/r⁰)(1 − √λ)²(1 − ‖R M⁰ Rᵀ − 1‖), λ the largest eigenvalue against M⁰ of its
+        velocity block weighted with (e_k/r⁰_k)²: at most the 16th root of ‖A¹⁶‖, A its frame.
+        """
         frame, rounding = self._framed(self.m0)
         off = np.abs(frame - np.eye(frame.shape[1])).sum(axis=2).max(axis=1) + rounding
         need(bool((off < 1e-6).all()), "the matrix of a leaf is ill-conditioned")
@@ -215,6 +220,7 @@ class Bound:
         size = (moved * top**2 + against[0] + against[1] * top + against[2] / bottom).sum(axis=1)
         size += np.abs(self.tau) * (task.total + (1.0 / bottom).sum(axis=1))
         # Taylor coefficients of what depends on one duration; joints add to them below.
+        # 1/(r + δ) = 1/r − δ/r² + δ²/r³ − δ³/(r³(r + δ)).
         alone = np.zeros((5, self.size, n))
         change = self.tau[:, None] - against[2]
         alone[0] = bent * r**2 - against[0] - against[1] * r + change / r
@@ -280,7 +286,8 @@ class Bound:
         )
         for o in range(3):
             adjoint += (self._energy(gain[o]) * e ** (o + 1)).sum(axis=1)
-        # ρ = b − M x̃.
+        # ρ = b − M x̃: constant and linear parts, which are 0 but for rounding; then, o ≥ 2,
+        # (b_o − M_o x0 − M_(o−1) X_k) δ_kᵒ of each segment k, and −M_o X_m δ_kᵒ δ_m for m ≠ k.
         pulled = np.einsum("olkij,lmj->olkmi", stiff[1:], slope)
         zero = load[0].sum(axis=1) - np.einsum("lij,lj->li", self.m0, x0)
         linear = rise - np.einsum("lij,lmj->lmi", self.m0, slope)

@@ -156,7 +156,11 @@ class _ThreePieces(ProofKind[Square]):
         return out
 
     def _polynomial(self, curves: Curves, row: _Row) -> Poly:
-        """Polynomial in a, b that is < 0 wherever a trajectory below the total is feasible."""
+        """Polynomial in a, b that is < 0 wherever a trajectory below the total is feasible.
+
+        With h_g < c·M_g/hold, a piece N/E and |q⁽ʳ⁾(s)| ≤ limit·h_gʳ in its own time: the row is
+        sign·N⁽ʳ⁾(s)·holdʳ/(limit·cʳ) − E·M_gʳ, for a position sign·N − limit·E.
+        """
         self.clock.check()
         problem, cap = self.problem, row.cap
         longest = required(
@@ -314,7 +318,8 @@ def _covers(poly: Poly, box: Square) -> bool:
 def _blossom(low: Fraction, high: Fraction) -> Sequence[list[int]]:
     """Weights of the powers in each Bernstein coefficient, times a positive number.
 
-    Coefficient i is the blossom of the polynomial at i arguments ``high``, the others ``low``.
+    Coefficient i is the blossom of the polynomial at i arguments ``high``, the others ``low``: that
+    of tᵖ is e_p(arguments)/C(n, p), e_p the elementary symmetric polynomial.
     """
     n, scale = SIZE - 1, lcm(low.denominator, high.denominator)
     first, last = int(low * scale), int(high * scale)

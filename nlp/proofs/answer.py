@@ -116,7 +116,12 @@ def uniform_coefficients(waypoints: Sequence[Sequence[Fraction]]) -> list[list[l
 
 
 def never_above(coefficients: Sequence[Fraction], bound: Fraction) -> bool:
-    """Whether a polynomial is ≤ bound on [0, 1]: Bernstein form, halved until it shows."""
+    """Whether a polynomial is ≤ bound on [0, 1]: Bernstein form, halved until it shows.
+
+    Σ c_k sᵏ = Σ b_i C(n, i) sⁱ(1 − s)ⁿ⁻ⁱ with b_i = Σ_(k ≤ i) C(i, k)/C(n, k) c_k lies between the
+    least and the largest b_i, and is b_0 and b_n at the ends. De Casteljau's means give the b_i of
+    both halves.
+    """
     n = len(coefficients) - 1
     start = [
         bound

@@ -74,7 +74,12 @@ class Cubic:
         return {k - 1: 1}
 
     def _equations(self) -> tuple[list[Vector], dict[int, tuple[int, int]]]:
-        """Left-hand sides, keyed by unknown or (coordinate, unknown); right: ±6Δq/T of a span."""
+        """Left-hand sides, keyed by unknown or (coordinate, unknown); right: ±6Δq/T of a span.
+
+        Acceleration from a to b in a line: 2(v₁ − v₀) = T(a + b), 6v₀ + T(2a + b) = 6Δq/T. From
+        rest, with a at the virtual way-point, at h, and b at T: 2v = T(a + b) − h b and
+        6Δq/T = (2T − h)a + (T − 2h + h²/T)b.
+        """
         n, m, v = self.n, self.m, self.n + 1
         rows: list[dict[Any, int]] = []
         moved = {}
@@ -135,7 +140,12 @@ class Cubic:
         return joint, terms, {}, -limit
 
     def fastest(self, joint: int) -> tuple[Fraction | None, Fraction | None]:
-        """Bounds of |v| and |a| that the cap implies."""
+        """Bounds of |v| and |a| that the cap L implies.
+
+        The acceleration is 0 somewhere: |a| ≤ J·L. Around an |a| of α it takes α/J to vanish, in
+        which the velocity changes by α²/2J: at most 2V over both sides, V over one side of a rest,
+        so α² ≤ 2VJ. From a rest the velocity is at most A·L, half of that between two.
+        """
         velocity, acceleration, jerk = self.limits[joint]
         a = smaller(acceleration, None if jerk is None else jerk * self.cap)
         if jerk is not None and velocity is not None:

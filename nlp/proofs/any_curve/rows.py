@@ -60,7 +60,14 @@ def exact_row(asked: FreeQuestion, row: Row, box: Box, speed: Fraction) -> Exact
     Returns
     -------
     ExactRow
-        Why it holds is in docs/certificates-any-curve.md.
+        With d = |displacement|, V and A the limits, l ≤ h ≤ u the box:
+
+        - change: A h ± (v₀ − v₁) ≥ 0,
+        - reach: h + (a v₀ + b v₁)/A ≥ 2dn + min(0, peak·V), n = c/V,
+          peak = (a(2 − a) + b(2 − b))/2A − dn²,
+        - brake: (A(a² + b²)/2 − d/lu)·h − a v₀ − b v₁ ≥ −|1 − a − b|·V − d(1/l + 1/u).
+
+        Why they hold for all a, b and c ≥ 0 is in docs/certificates-any-curve.md.
     """
     acceleration = asked.loose[row.joint][1]
     assert acceleration is not None

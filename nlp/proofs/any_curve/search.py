@@ -186,7 +186,10 @@ class Search:
         return np.asarray((left @ x - right < _NEAR) | (rows[:, 0] == CHANGE))
 
     def _stress(self, node: Node, h: Array, low: Array, high: Array) -> Array:
-        """What the chords in a box cost in each segment: weight times their distance."""
+        """What the chords in a box cost in each segment: weight times their distance.
+
+        A brake's chord lies d(1/l + 1/u − h/lu − 1/h) above d/h.
+        """
         braking = node.rows[:, 0] == BRAKE
         k, j = node.rows[braking, 1], node.rows[braking, 2]
         a, b, c = low[k], high[k], h[k]

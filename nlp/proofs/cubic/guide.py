@@ -31,6 +31,9 @@ def errors(program: BoxProgram, proposal: Proposal) -> Array:
 def peaks(system: CubicSystem, point: Array) -> list[Row]:
     """Velocity conditions at the interior peaks of the splines for some durations.
 
+    On a piece the acceleration runs from a to b in a line, and is 0 at the share s = a/(a − b); the
+    velocity there is v₀ + length·(a(s − s²/2) + b s²/2).
+
     Parameters
     ----------
     system : CubicSystem

@@ -65,7 +65,11 @@ class Weights:
 
 @dataclass(frozen=True, eq=False)
 class Lagrangian:
-    """Σ alone·x + Σ product·y·x + along·y + Σ inverse/T + constant; the first two are exact."""
+    """Σ alone·x + Σ product·y·x + along·y + Σ inverse/T + constant; the first two are exact.
+
+    It is scale·target + Σ w·g(y, x) + Σ μ·(M(y)x − b(y)), by its powers: at a feasible point g ≤ 0
+    and M(y)x = b(y), so that its least value over the box bounds scale·target from below.
+    """
 
     alone: Array
     product: Array

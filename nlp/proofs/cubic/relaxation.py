@@ -144,7 +144,11 @@ class BoxProgram:
             self.divisor.append(by)
 
     def _simple(self) -> csr_array:
-        """Bounds of 1/T and of ρ."""
+        """Bounds of 1/T and of ρ = h²/T.
+
+        1/T ≥ 2/τ − T/τ² and 1/T ≤ 1/l + 1/u − T/lu for l ≤ T ≤ u; ρ ≥ 2θh − θ²T for any θ, and
+        ρ ≤ h²/l ≤ ((h_l + h_u)h − h_l h_u)/l, or ρ ≤ h where l is 0.
+        """
         system, side = self.relaxation.system, self.side
         _, _, _, which = matrices(system)
         out, low, high = _Entries(), side.low, side.high
@@ -168,7 +172,11 @@ class BoxProgram:
         return out.matrix(self.columns)
 
     def _products(self, low: Array, high: Array) -> csr_array:
-        """Four bounds of every product: below and above, exact where the unknown is low or high."""
+        """Four bounds of every product: below and above, exact where the unknown is low or high.
+
+        McCormick's: y·x ≥ corner·x + edge·y − corner·edge at the two equal corners (low, low) and
+        (high, high) of the box, ≤ at the two others.
+        """
         pairs = self.relaxation.pairs
         k = np.array([p[0] for p in pairs])
         i = np.array([p[1] for p in pairs])
@@ -282,6 +290,8 @@ class BoxProgram:
             for i, w in enumerate(equal.tolist())
             if abs(w * unit) > _SMALLEST
         }
+        # A product's four bounds as in `_products`: the first and the third are exact where the
+        # unknown is lowest.
         parts = np.maximum(dual[dual.size - 4 * len(self.joints) * self.count :], 0.0)
         parts = parts.reshape(4, len(self.joints), self.count)
         lowest, highest = parts[0] + parts[2], parts[1] + parts[3]

@@ -102,7 +102,10 @@ def on_square(ratios: dict[Ratios, Fraction]) -> Poly:
 def exact_row(problem: ExactProblem, row: Row, total: Fraction) -> Poly:
     """Row as a polynomial that is negative at every feasible direction with a total < ``total``.
 
-    Normalised: a feasible trajectory has (left side)/(limit·capʳ) − (shares) < 0.
+    A piece is N/E in the ratios, both with a²b² taken in, and h_g < cap·m_g/hold. So a feasible
+    trajectory, |q⁽ʳ⁾(s)| ≤ limit·h_gʳ in the piece's own time, has
+
+        sign·N⁽ʳ⁾(s)·holdʳ/(limit·capʳ) − E·m_gʳ < 0.
     """
     cap = total
     if row.cap != TOTAL:

@@ -80,12 +80,15 @@ MONOMIALS = {
 
 @lru_cache(maxsize=5_000)
 def _bernstein(level: int, index: int, size: int) -> Poly:
-    """Integer matrix from power to Bernstein coefficients on [index, index + 1]/2^level, scaled."""
+    """Integer matrix from power to Bernstein coefficients on [index, index + 1]/2^level, scaled.
+
+    ((index + t)/2^level)ʲ = Σ_k C(j, k) index^(j − k) t^k/2^(level·j), and t^k has the Bernstein
+    coefficients C(i, k)/C(n, k); all times 2^(level·n) and the lcm of the C(n, k).
+    """
     n = size - 1
     out = np.zeros((size, size), dtype=object)
     unit = math.lcm(*(math.comb(n, k) for k in range(size)))
     for j in range(size):
-        # t^j ↦ ((index + t)/2^level)^j, times 2^(level·n).
         for k in range(j + 1):
             value = math.comb(j, k) * index ** (j - k) * 2 ** (level * (n - j))
             for i in range(k, size):
