@@ -28,42 +28,13 @@ from .causes import find_causes, with_caveats
 from .instances import examined_entry
 from .judging import judge, weigh
 from .readings import readings_summary
-from .rules import (
-    judge_counts,
-    judge_digits,
-    judge_distances,
-    judge_instances,
-    judge_kinematics,
-    judge_motions,
-    judge_replays,
-    judge_scaling,
-    judge_vertices,
-    list_open_points,
-)
+from .rules import GROUPS, NOT_COMPUTED
 from .study import SEEDS, Pair, Study
 from .waterfall import waterfalls
 
 _Group = Callable[[Study], Iterator[Finding]]
 """Rules that are judged together."""
-_GROUPS: tuple[_Group, ...] = (
-    judge_digits,
-    judge_counts,
-    judge_motions,
-    judge_vertices,
-    judge_scaling,
-    judge_distances,
-    judge_replays,
-    judge_instances,
-    list_open_points,
-    judge_kinematics,
-)
-"""The rules, in the order in which their findings of one severity and id stand."""
-_WITHOUT_WAYPOINTS: tuple[_Group, ...] = (judge_digits, judge_instances, list_open_points)
-"""Those of them that say something while the way-points are missing."""
 
-
-_NOT_COMPUTED = "TG502"
-"""The rule of what others cannot compute."""
 _ENDING = (CaseError, ProcessError)
 """What ends an audit: a wrong case file, or processes that are gone; neither is a finding."""
 
@@ -189,9 +160,9 @@ def audit_case(study: Study) -> CaseAudit:
 
     What a rule cannot compute for a claim is a finding that says why, and ends nothing else.
     """
-    groups = _GROUPS if study.posed else _WITHOUT_WAYPOINTS
-    found = [finding for group in groups for finding in _judged(group, study)]
-    found = [f for at, f in enumerate(found) if f.rule != _NOT_COMPUTED or f not in found[:at]]
+    groups = [group for group in GROUPS if study.posed or group.without_waypoints]
+    found = [finding for group in groups for finding in _judged(group.judge, study)]
+    found = [f for at, f in enumerate(found) if f.rule != NOT_COMPUTED.id or f not in found[:at]]
     scoped = _with_scopes(found, study)
     by_rule = sorted(scoped, key=_weight)
     admissible = [reading.id for reading in study.case.readings]
@@ -216,7 +187,7 @@ def _judged(group: _Group, study: Study) -> Iterator[Finding]:
         claims = [(one, _alone(group, study, one)) for one in study.claims]
         for _, found in claims:
             yield from found
-        if not any(f.rule == _NOT_COMPUTED for _, found in claims for f in found):
+        if not any(f.rule == NOT_COMPUTED.id for _, found in claims for f in found):
             yield _not_computed(error)
 
 
@@ -246,7 +217,7 @@ def _not_computed(
 ) -> Finding:
     problem, reading = pair or (None, None)
     return Finding(
-        rule=_NOT_COMPUTED,
+        rule=NOT_COMPUTED.id,
         basis=Basis.CHECK,
         claim=None if claim is None else claim.id,
         problem=problem,
