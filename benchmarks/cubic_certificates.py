@@ -129,8 +129,8 @@ def by_width(name: str, found: Certified) -> str:
         prover.narrow(box)
         rows = system.starting_rows()
         for _ in range(10):
-            laid = Relaxation(system, rows, prover.total).over(prover.side(box), box.ranges)
-            proposal = laid.bound(TOTAL, capped=False)
+            program = Relaxation(system, rows, prover.total).over(prover.side(box), box.ranges)
+            proposal = program.bound(TOTAL, capped=False)
             assert proposal is not None
             new = [x for x in peaks(system, proposal.point[: system.free]) if x not in rows]
             if not new:

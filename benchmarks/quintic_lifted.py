@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import linprog
 from scipy.sparse import csr_array, vstack
-from trajgap.nlp.proofs.quintic.bound import BASIS
+from trajgap.nlp.proofs.quintic.nodal import BASIS
 
 SPOTS = np.arange(1, 8) / 8.0
 """Inner places of a segment; at its ends the boxes of the nodal values say the same."""

@@ -15,7 +15,7 @@ import numpy as np
 from pyscipopt import Model, quicksum
 from quintic_instances import instances
 from trajgap.nlp import solve
-from trajgap.nlp.proofs.quintic.bound import LOAD, LOAD_POWERS, POWERS, STIFFNESS
+from trajgap.nlp.proofs.quintic.nodal import LOAD, LOAD_POWERS, POWERS, STIFFNESS
 from trajgap.nlp.proofs.quintic.rows import PLACES, row_shape
 from trajgap.problem import Limits, Problem, quintic_spline
 

@@ -1,4 +1,5 @@
 from .audits import (
+    RULES,
     AuditReport,
     CaseAudit,
     RoundingBox,
@@ -9,7 +10,6 @@ from .audits import (
     waterfalls,
 )
 from .documents import (
-    RULES,
     Basis,
     ClaimVerdict,
     Finding,

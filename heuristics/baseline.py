@@ -35,7 +35,7 @@ def uniform_rescaling(problem: Problem) -> Array:
         )
     stretch = float(evaluate(problem, np.ones((1, problem.segments))).stretch[0])
     if not np.isfinite(stretch):
-        raise TrajgapError("uniform rescaling: a joint with limit 0 moves; no stretch mends that")
+        raise TrajgapError("uniform rescaling: a joint with limit 0 moves; no stretch repairs that")
     equal = np.full(problem.segments, stretch)
     durations: Array = np.clip(equal, problem.duration_lower, problem.duration_upper)
     if not (durations > 0).all():
@@ -48,6 +48,6 @@ def uniform_rescaling(problem: Problem) -> Array:
         clipped = " set to the duration bounds" if (durations != equal).any() else ""
         raise TrajgapError(
             f"uniform rescaling: {stretch:g} s per segment{clipped} is {found.verdict}; "
-            "no uniform stretch mends that"
+            "no uniform stretch repairs that"
         )
     return durations

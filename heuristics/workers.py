@@ -12,7 +12,7 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from typing import Any, TypeVar
 
-from ..problem import TrajgapError
+from ..problem import ProcessError
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -48,7 +48,7 @@ def in_processes(
 
     Raises
     ------
-    TrajgapError
+    ProcessError
         If a process ends twice at the same piece of work, or none can be started.
     Exception
         Whatever ``one`` raises.
@@ -99,7 +99,7 @@ class _Worker:
             process.start()
         except OSError as error:
             ours.close()
-            raise TrajgapError(
+            raise ProcessError(
                 f"workers: a process cannot be started ({error.strerror}); use fewer workers"
             ) from None
         finally:
@@ -173,7 +173,7 @@ def _ready(crew: list[_Worker]) -> list[_Worker]:
 def _again(at: int, tries: int, worker: _Worker, todo: deque[int]) -> None:
     """Put the work of a dead process back, unless it was not the first to die at it."""
     if tries >= _TRIES:
-        raise TrajgapError(
+        raise ProcessError(
             f"workers: {_TRIES} processes ended at the same piece of work ({worker.ended}); "
             "use fewer workers or more memory"
         )

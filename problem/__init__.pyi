@@ -41,7 +41,7 @@ from .curves import (
     three_five_three,
     uniform_cubic_b_spline,
 )
-from .errors import CaseError, CurveError, TrajgapError
+from .errors import CaseError, CurveError, ProcessError, TrajgapError
 from .evaluation import Evaluation, evaluate, reachable_total
 from .file_names import LONGEST_NAME, file_name
 from .files import (
@@ -117,6 +117,7 @@ __all__ = [
     "PeakGradients",
     "Printed",
     "Problem",
+    "ProcessError",
     "Proximity",
     "Scale",
     "StepKind",

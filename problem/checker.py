@@ -378,7 +378,7 @@ def check(
     tight_time, tight_why = _rescaled(problem, h, stretch, peaks)
     if serious:
         feasible_time, tight_time = None, None
-        feasible_why = tight_why = "the motion jumps at a break; stretching does not mend that"
+        feasible_why = tight_why = "the motion jumps at a break; stretching does not repair that"
     return Check(
         verdict=verdict,
         limits=about_limits,

@@ -9,6 +9,10 @@ class TrajgapError(ValueError):
     """Root of every exception that trajgap raises on purpose."""
 
 
+class ProcessError(TrajgapError):
+    """Processes that compute ended or cannot be started; it says nothing about a problem."""
+
+
 class CurveError(TrajgapError):
     """Durations that define no curve: time would run backwards, or no spline passes.
 

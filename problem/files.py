@@ -36,6 +36,8 @@ _NOT_OFFERED = (errno.ENOSYS, errno.EINVAL, errno.ENOTSUP, errno.EPERM)
 
 _drafts: set[Path] = set()
 """Drafts of this process, for `remove_drafts`."""
+_stepping: set[Path] = set()
+"""Folders of this process that step aside just now, for `remove_drafts`."""
 
 
 # --- reading --------------------------------------------------------------------------------------
@@ -257,7 +259,10 @@ def try_writing_in(folder: Path) -> None:
 
 
 def remove_drafts() -> None:
-    """Remove every draft of this process, which is about to end."""
+    """Remove every draft of this process, which is about to end, at whatever moment."""
+    for folder in list(_stepping):
+        with suppress(OSError):
+            recover_folder(folder)
     for path in list(_drafts):
         _remove(path)
 
@@ -376,11 +381,13 @@ def _exchanged(one: Path, other: Path) -> bool:
 def _step_aside(draft: Path, folder: Path) -> None:
     """Put a draft in the place of a folder by two renames; `recover_folder` covers the gap."""
     old = folder.parent / f"{_stem(folder)}{uuid4().hex}.old"
-    folder.rename(old)
+    _stepping.add(folder)
     try:
+        folder.rename(old)
         draft.rename(folder)
     finally:
         recover_folder(folder)
+        _stepping.discard(folder)
 
 
 def _there(path: Path) -> bool:

@@ -42,10 +42,10 @@ def main() -> int:
         metavar="SECONDS",
         help="for each file (default: %(default)g)",
     )
-    given = parser.parse_args()
+    arguments = parser.parse_args()
     proved = True
-    for name in given.files:
-        verdict = package.verify_certificate(name, seconds=given.time)
+    for name in arguments.files:
+        verdict = package.verify_certificate(name, seconds=arguments.time)
         proved &= verdict.proves
         print(f"{package.shown(name, 500)}: {verdict}")
         if verdict.problem_hash is not None:

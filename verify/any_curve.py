@@ -14,10 +14,12 @@ from typing import Any
 from .answer import check_durations
 from .problem import Bounds, StatedProblem
 from .ranges import MOST_ROWS, MOST_TANGENT, MOST_WEIGHTS, TANGENT_UNIT
-from .reading import Clock, given, listed, need, number, sign_of, text, whole
+from .reading import Clock, listed, need, number, required, sign_of, text, whole
 from .tree import ProofKind, Subject
 
 Zero = Fraction(0)
+_NO_LIMIT = "a row leans on a limit that is not there"
+"""Said of a speed or an acceleration without a bound: a row needs both."""
 
 Sides = list[tuple[Fraction, Fraction]]
 """A box: least and largest duration of each span between way-points."""
@@ -93,7 +95,14 @@ class _Row:
     def terms(
         self, step: Fraction, v_max: Fraction, bend: Fraction, sides: tuple[Fraction, Fraction]
     ) -> tuple[Fraction, Fraction, Fraction, Fraction]:
-        """The factors time, first and last, and the right-hand side."""
+        """The factors time, first and last, and the right-hand side.
+
+        From the docs, for d ≥ 0 the mirrored step, c = (m₀(2 − m₀) + m₁(2 − m₁))/2A − dn² and
+        l ≤ h ≤ u:
+
+        - reach: h + (m₀v₀ + m₁v₁)/A ≥ 2dn + min(0, cV),
+        - brake: A(m₀² + m₁²)h/2 + d(l + u − h)/lu + |1 − m₀ − m₁|V ≥ m₀v₀ + m₁v₁.
+        """
         sign = self.sign
         if self.kind == "change":  # A·h ≥ ∓(v₁ − v₀)
             return bend, Fraction(sign), Fraction(-sign), Zero
@@ -181,15 +190,18 @@ class AnyCurve(ProofKind[Sides]):
         need(proved >= self.total, f"it proves only {float(proved):.12g} s")
 
     def _least_total(self, box: Sides, weighted: Sequence[tuple[_Row, Fraction]]) -> Fraction:
-        """Least value of Σh − Σ weight·(left − right) over a box and all speeds within bounds."""
+        """Least value of Σh − Σ weight·(left − right) over a box and all speeds within bounds.
+
+        Every motion has left ≥ right and so Σh ≥ that; it is linear, least at ends of the sides.
+        """
         asked, result = self._asked, Zero
         slope: dict[tuple[int, int], Fraction] = {}
         times = [Fraction(1)] * len(box)
         for row, weight in weighted:
             self.clock.check()
             k, joint = row.span, row.joint
-            v_max = given(self._speeds[joint], "a row leans on a limit that is not there")
-            bend = given(asked.acceleration[joint], "a row leans on a limit that is not there")[1]
+            v_max = required(self._speeds[joint], _NO_LIMIT)
+            bend = required(asked.acceleration[joint], _NO_LIMIT)[1]
             need(v_max > 0 and bend > 0, "a row leans on a limit of 0")
             time, first, last, right = row.terms(asked.steps[k][joint], v_max, bend, box[k])
             result += weight * right
@@ -200,7 +212,7 @@ class AnyCurve(ProofKind[Sides]):
         for (at, joint), c in slope.items():
             self.clock.check()
             end = asked.ends[0] if at == 0 else asked.ends[1] if at == len(box) else None
-            v_max = given(self._speeds[joint], "a row leans on a limit that is not there")
+            v_max = required(self._speeds[joint], _NO_LIMIT)
             result += c * end if end is not None else -abs(c) * v_max
         return result
 
@@ -253,7 +265,7 @@ def check_motion(
             need(all(v is None or top is None or abs(v) <= top for v in asked.ends), "answer: ends")
             continue
         need(bend[0] > 0, f"answer: joint {j + 1} moves with the acceleration limit 0")
-        v = [row[j] for row in given(speeds, "answer: no speeds at the way-points")]
+        v = [row[j] for row in required(speeds, "answer: no speeds at the way-points")]
         ends = zip(asked.ends, (v[0], v[-1]), strict=True)
         need(all(want in (None, have) for want, have in ends), "answer: speed at an end")
         need(top is None or max(map(abs, v)) <= top, "answer: velocity at a way-point")

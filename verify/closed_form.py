@@ -13,7 +13,7 @@ from typing import Any, NoReturn
 from .curve import UNIFORM, derivative, uniform_pieces, value_at
 from .problem import StatedProblem
 from .ranges import PLACES
-from .reading import Clock, Refused, given, listed, need, number, whole
+from .reading import Clock, Refused, listed, need, number, required, whole
 from .tree import ProofKind
 
 
@@ -52,7 +52,7 @@ class ClosedForm(ProofKind[None]):
             if whole(joint, -1, problem.joints - 1) == -1:
                 need(x <= problem.shortest[k], f"segment {k + 1}: above its lower bound")
             else:
-                bound = given(
+                bound = required(
                     problem.limits[joint][whole(order, 1, 3) - 1], "a limit that is not there"
                 )
                 need(bound[1] > 0, "a limit that is not there")
@@ -108,7 +108,7 @@ class Stretched(ClosedForm):
 
 
 def _degree(problem: StatedProblem) -> int:
-    declared = given(problem.declaration, "declaration not covered: no rest-to-rest polynomials")
+    declared = required(problem.declaration, "declaration not covered: no rest-to-rest polynomials")
     degree, n = declared.degrees[0], len(declared.degrees)
     rest = {order: Fraction(0) for order in range(1, (degree + 1) // 2)}
     need(

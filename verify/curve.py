@@ -8,7 +8,7 @@ from itertools import pairwise
 from math import comb, lcm, perm
 
 from .problem import StatedProblem
-from .reading import Clock, given, need
+from .reading import Clock, need, required
 
 Pieces = list[list[list[Fraction]]]
 """Coefficients [joint][segment][power] in the time since the start of the segment."""
@@ -40,7 +40,7 @@ def pieces(problem: StatedProblem, h: Sequence[Fraction], clock: Clock) -> Piece
     Refused
         If the conditions do not determine the curve.
     """
-    declared = given(problem.declaration, "the curve is no declared piecewise polynomial")
+    declared = required(problem.declaration, "the curve is no declared piecewise polynomial")
     n, joints = len(declared.degrees), problem.joints
     first = [sum(d + 1 for d in declared.degrees[:k]) for k in range(n + 1)]
     rows: list[tuple[dict[int, Fraction], list[Fraction]]] = []

@@ -18,6 +18,7 @@ Bounds = tuple[Fraction, Fraction] | None
 """Rational bounds of a number that may carry π; None where there is no limit."""
 
 _POLYNOMIALS = ("degrees", "continuity", "prescribed", "virtual")
+"""Keys that declare a piecewise polynomial; without them the curve is named."""
 _KEYS = (
     "unit",
     "joints",
@@ -28,6 +29,7 @@ _KEYS = (
     "duration_lower",
     "duration_upper",
 )
+"""Keys that every problem states; what is missing is null, never left out."""
 
 
 @dataclass(frozen=True)

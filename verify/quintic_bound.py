@@ -33,14 +33,18 @@ _AT = np.array(
      [p * (p - 1) for p in range(6)]], dtype=np.float64,
 )  # fmt: skip
 _HERMITE = np.rint(2.0 * np.linalg.inv(_AT).T) / 2.0
+"""Its basis, inverted instead of typed: one more way than the solver's to the same numbers."""
 _JUMPS = np.array(
     [24 * _HERMITE[:, 4], -24 * _HERMITE[:, 4] - 120 * _HERMITE[:, 5], -6 * _HERMITE[:, 3],
      6 * _HERMITE[:, 3] + 24 * _HERMITE[:, 4] + 60 * _HERMITE[:, 5]]
 )  # fmt: skip
 """q'''' and q''' that a segment adds to the jumps at its ends, by (q0, q1, v0, v1, a0, a1)."""
 _STIFF, _LOAD = _JUMPS[:, 2:], -_JUMPS[:, 1]
+"""Of velocities and accelerations, and of the step (q₀ = 0, q₁ = Δq) on the other side."""
 _LOAD_POWER = np.array([4, 4, 3, 3])
+"""Powers of r = 1/h in the rows of b: q'''' brings r⁴, q''' brings r³."""
 _POWER = _LOAD_POWER[:, None] - np.array([1, 1, 2, 2])
+"""Powers of r in M: a velocity comes with h, an acceleration with h²."""
 
 
 class Task:
@@ -160,7 +164,12 @@ class Bound:
         return self.root @ matrix @ back, ROUND * rough.sum(axis=2).max(axis=1)
 
     def _coercivity(self) -> Array:
-        """κ with M(r)⁻¹ ≼ RᵀR/κ all over each box."""
+        """κ with M(r)⁻¹ ≼ RᵀR/κ all over each box.
+
+        M_k(r) = t·T M_k(r⁰) T with t = r/r⁰, T = diag(t, t, 1, 1) on (v, v, a, a), hence
+        κ = (1 − max e/r⁰)(1 − √λ)²(1 − ‖R M⁰ Rᵀ − 1‖), λ the largest eigenvalue against M⁰ of its
+        velocity block weighted with (e_k/r⁰_k)²: at most the 16th root of ‖A¹⁶‖, A its frame.
+        """
         frame, rounding = self._framed(self.m0)
         off = np.abs(frame - np.eye(frame.shape[1])).sum(axis=2).max(axis=1) + rounding
         need(bool((off < 1e-6).all()), "the matrix of a leaf is ill-conditioned")
@@ -211,6 +220,7 @@ class Bound:
         size = (moved * top**2 + against[0] + against[1] * top + against[2] / bottom).sum(axis=1)
         size += np.abs(self.tau) * (task.total + (1.0 / bottom).sum(axis=1))
         # Taylor coefficients of what depends on one duration; joints add to them below.
+        # 1/(r + δ) = 1/r − δ/r² + δ²/r³ − δ³/(r³(r + δ)).
         alone = np.zeros((5, self.size, n))
         change = self.tau[:, None] - against[2]
         alone[0] = bent * r**2 - against[0] - against[1] * r + change / r
@@ -276,7 +286,8 @@ class Bound:
         )
         for o in range(3):
             adjoint += (self._energy(gain[o]) * e ** (o + 1)).sum(axis=1)
-        # ρ = b − M x̃.
+        # ρ = b − M x̃: constant and linear parts, which are 0 but for rounding; then, o ≥ 2,
+        # (b_o − M_o x0 − M_(o−1) X_k) δ_kᵒ of each segment k, and −M_o X_m δ_kᵒ δ_m for m ≠ k.
         pulled = np.einsum("olkij,lmj->olkmi", stiff[1:], slope)
         zero = load[0].sum(axis=1) - np.einsum("lij,lj->li", self.m0, x0)
         linear = rise - np.einsum("lij,lmj->lmi", self.m0, slope)

@@ -17,6 +17,7 @@ from .ranges import MOST_BYTES, MOST_DIGITS, MOST_TEXT
 T = TypeVar("T")
 
 _N = MOST_DIGITS
+"""A short name for the pattern below."""
 _NUMBER = re.compile(
     rf"-?\d{{1,{_N}}}(/[1-9]\d{{0,{_N - 1}}}|\.\d{{1,{_N}}})?(e-?\d{{1,2}})?", re.ASCII
 )
@@ -54,7 +55,7 @@ def need(condition: bool, reason: str) -> None:
         raise Refused(reason)
 
 
-def given(value: T | None, reason: str) -> T:
+def required(value: T | None, reason: str) -> T:
     """A value that must be there."""
     if value is None:
         raise Refused(reason)

@@ -15,7 +15,7 @@ from typing import Any, ClassVar
 from .curve import derivative, pieces, value_at
 from .problem import StatedProblem
 from .ranges import MOST_ROWS, MOST_WEIGHTS, PLACES
-from .reading import Clock, given, listed, need, number, sign_of, text, whole
+from .reading import Clock, listed, need, number, required, sign_of, text, whole
 from .tree import ProofKind
 
 STRICT = Fraction(1, 2**40)
@@ -33,12 +33,15 @@ Square = tuple[Fraction, Fraction, Fraction, Fraction]
 """A box: a from, to, b from, to."""
 
 ONE: Poly = {(0, 0): Fraction(1)}
-M: tuple[Poly, ...] = (  # shares of the total, times S
+"""The polynomial 1: products begin with it."""
+M: tuple[Poly, ...] = (
     {(1, 0): Fraction(1), (1, 1): Fraction(-1)},
     {(0, 0): Fraction(1), (1, 0): Fraction(-1), (0, 1): Fraction(-1), (1, 1): Fraction(1)},
     {(0, 1): Fraction(1), (1, 1): Fraction(-1)},
 )
+"""m = (a(1 − b), (1 − a)(1 − b), b(1 − a)): a segment's share of the total, times S."""
 S: Poly = {(0, 0): Fraction(1), (1, 1): Fraction(-1)}
+"""S = 1 − ab: what the shares add up to."""
 
 Ratios = dict[tuple[int, int], list[Fraction]]
 """Coefficients in s of each xⁱyʲ."""
@@ -153,10 +156,14 @@ class _ThreePieces(ProofKind[Square]):
         return out
 
     def _polynomial(self, curves: Curves, row: _Row) -> Poly:
-        """Polynomial in a, b that is < 0 wherever a trajectory below the total is feasible."""
+        """Polynomial in a, b that is < 0 wherever a trajectory below the total is feasible.
+
+        With h_g < c·M_g/hold, a piece N/E and |q⁽ʳ⁾(s)| ≤ limit·h_gʳ in its own time: the row is
+        sign·N⁽ʳ⁾(s)·holdʳ/(limit·cʳ) − E·M_gʳ, for a position sign·N − limit·E.
+        """
         self.clock.check()
         problem, cap = self.problem, row.cap
-        longest = given(
+        longest = required(
             self.total if cap < 0 else problem.longest[cap],
             "a row leans on an upper bound that is not there",
         )
@@ -166,13 +173,13 @@ class _ThreePieces(ProofKind[Square]):
             return _plus((problem.shortest[row.joint] / c, hold), (Fraction(-1), M[row.joint]))
         q, order, sign = [w[row.joint] for w in problem.waypoints], row.order, row.sign
         if order == 0:
-            ends = given(
+            ends = required(
                 problem.position[(1 + sign) // 2][row.joint],
                 "a row leans on a position limit that is not there",
             )
             limit = max(sign * x for x in ends) + STRICT
         else:
-            bound = given(
+            bound = required(
                 problem.limits[row.joint][order - 1], "a row leans on a limit that is not there"
             )
             limit = bound[1]
@@ -311,7 +318,8 @@ def _covers(poly: Poly, box: Square) -> bool:
 def _blossom(low: Fraction, high: Fraction) -> Sequence[list[int]]:
     """Weights of the powers in each Bernstein coefficient, times a positive number.
 
-    Coefficient i is the blossom of the polynomial at i arguments ``high``, the others ``low``.
+    Coefficient i is the blossom of the polynomial at i arguments ``high``, the others ``low``: that
+    of tᵖ is e_p(arguments)/C(n, p), e_p the elementary symmetric polynomial.
     """
     n, scale = SIZE - 1, lcm(low.denominator, high.denominator)
     first, last = int(low * scale), int(high * scale)

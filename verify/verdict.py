@@ -20,11 +20,11 @@ from .reading import (
     OutOfTime,
     Refused,
     fields,
-    given,
     listed,
     need,
     number,
     read_document,
+    required,
     shown,
     text,
 )
@@ -39,10 +39,15 @@ SECONDS = 60.0
 OLD_FORMATS = ("trajgap-certificate-1", "trajgap-state-1")
 """That were once written; what is in them is not read."""
 _NAME_ONE = "name a certificate"
+"""How to fix it: the words that end a message about another kind of file."""
 _KEYS = ("format", "made_by", "question", "problem", "problem_hash", "claim", "proof", "seal")
+"""Of the file; all are there and no other, so that nothing in it goes unread."""
 _CLAIM = ("subject", "infeasible", "lower", "upper", "durations", "speeds")
+"""Keys of ``claim``."""
 _QUESTION = ("case", "problem", "reading", "joint", "case_sha256")
+"""Keys of ``question``: the fields of `CertifiedQuestion`."""
 _PROOF = ("kind", "total", "tree")
+"""Keys of ``proof`` that every kind has; a kind adds its own ``keys``."""
 
 
 def _quintic() -> type[ProofKind[Any]]:
@@ -235,7 +240,7 @@ def _judged(document: dict[str, Any], clock: Clock) -> Claimed:
     subject = next((s for s in Subject if s == claim["subject"]), None)
     infeasible, lower = claim["infeasible"], number(claim["lower"])
     need(type(infeasible) is bool, "malformed: infeasible: neither true nor false")
-    subject = given(subject, "malformed: subject: neither the declared curve nor any curve")
+    subject = required(subject, "malformed: subject: neither the declared curve nor any curve")
     answer = _read_answer(problem, claim, subject)
     kind, total = _read_proof(document, problem, clock)
     if kind is not None:

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from ...problem import Case, load_case, published_ids
+from ...problem import Case, CaseError, ProcessError, TrajgapError, load_case, published_ids
+from ...problem.cases import AnyClaim
 from ..documents import (
     AuditDocument,
     AuditedCase,
+    Basis,
     Cause,
     ClaimVerdict,
     Finding,
@@ -26,36 +28,15 @@ from .causes import find_causes, with_caveats
 from .instances import examined_entry
 from .judging import judge, weigh
 from .readings import readings_summary
-from .rules import (
-    judge_counts,
-    judge_digits,
-    judge_distances,
-    judge_instances,
-    judge_kinematics,
-    judge_motions,
-    judge_replays,
-    judge_scaling,
-    judge_vertices,
-    list_open_points,
-)
-from .study import SEEDS, Study
+from .rules import GROUPS, NOT_COMPUTED
+from .study import SEEDS, Pair, Study
 from .waterfall import waterfalls
 
-_GROUPS = (
-    judge_digits,
-    judge_counts,
-    judge_motions,
-    judge_vertices,
-    judge_scaling,
-    judge_distances,
-    judge_replays,
-    judge_instances,
-    list_open_points,
-    judge_kinematics,
-)
-"""The rules, in the order in which their findings of one severity and id stand."""
-_WITHOUT_WAYPOINTS = (judge_digits, judge_instances, list_open_points)
-"""Those of them that say something while the way-points are missing."""
+_Group = Callable[[Study], Iterator[Finding]]
+"""Rules that are judged together."""
+
+_ENDING = (CaseError, ProcessError)
+"""What ends an audit: a wrong case file, or processes that are gone; neither is a finding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,13 +148,21 @@ def audit(
         )
         for one in loaded
     ]
+    for study in studies:
+        for algorithm in study.case.algorithms:
+            # Settings that are wrong end the audit, before anything is computed.
+            study.algorithm(algorithm.id)
     return AuditReport(tuple(audit_case(study) for study in studies))
 
 
 def audit_case(study: Study) -> CaseAudit:
-    """Run every rule on one case."""
-    groups = _GROUPS if study.posed else _WITHOUT_WAYPOINTS
-    found = [finding for group in groups for finding in group(study)]
+    """Run every rule on one case.
+
+    What a rule cannot compute for a claim is a finding that says why, and ends nothing else.
+    """
+    groups = [group for group in GROUPS if study.posed or group.without_waypoints]
+    found = [finding for group in groups for finding in _judged(group.judge, study)]
+    found = [f for at, f in enumerate(found) if f.rule != NOT_COMPUTED.id or f not in found[:at]]
     scoped = _with_scopes(found, study)
     by_rule = sorted(scoped, key=_weight)
     admissible = [reading.id for reading in study.case.readings]
@@ -186,6 +175,55 @@ def audit_case(study: Study) -> CaseAudit:
     readings = readings_summary(study, steps, judgements)
     behind = find_causes(study, ordered)
     return CaseAudit(study.case, study, tuple(ordered), judgements, steps, readings, behind)
+
+
+def _judged(group: _Group, study: Study) -> Iterator[Finding]:
+    """What rules say; where they fail, what they say of each claim, problem and reading alone."""
+    try:
+        yield from list(group(study))
+    except _ENDING:
+        raise
+    except TrajgapError as error:
+        claims = [(one, _alone(group, study, one)) for one in study.claims]
+        for _, found in claims:
+            yield from found
+        if not any(f.rule == NOT_COMPUTED.id for _, found in claims for f in found):
+            yield _not_computed(error)
+
+
+def _alone(group: _Group, study: Study, claim: AnyClaim) -> list[Finding]:
+    """What rules say of one claim; what they cannot compute under a reading is a finding."""
+    try:
+        return list(group(study.only(claim)))
+    except _ENDING:
+        raise
+    except TrajgapError:
+        pairs = study.claim_pairs(claim)
+        found = [f for pair in pairs for f in _under(group, study.only(claim, pair), claim, pair)]
+        return [f for at, f in enumerate(found) if f not in found[:at]]
+
+
+def _under(group: _Group, study: Study, claim: AnyClaim, pair: Pair) -> Iterator[Finding]:
+    try:
+        yield from group(study)
+    except _ENDING:
+        raise
+    except TrajgapError as error:
+        yield _not_computed(error, claim, pair)
+
+
+def _not_computed(
+    error: TrajgapError, claim: AnyClaim | None = None, pair: Pair | None = None
+) -> Finding:
+    problem, reading = pair or (None, None)
+    return Finding(
+        rule=NOT_COMPUTED.id,
+        basis=Basis.CHECK,
+        claim=None if claim is None else claim.id,
+        problem=problem,
+        reading=reading,
+        message=f"Not computed: {str(error).removesuffix('.')}.",
+    )
 
 
 def _weight(finding: Finding) -> tuple[int, str]:

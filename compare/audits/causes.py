@@ -130,5 +130,5 @@ def _jumps(study: Study, claim: AnyClaim, rid: str) -> bool:
         for one in about
         if study.has_durations(one)
         for pid, reading in study.claim_pairs(one)
-        if reading == rid
+        if reading == rid and study.unmoved(one, pid, rid) is None
     )

@@ -94,10 +94,14 @@ def _outcome(study: Study, waterfall: Waterfall) -> ReadingOutcome:
     jumps = 0
     if waterfall.claim is not None:
         claim = study.case.claim(waterfall.claim)
-        found = study.claim_check(claim, pid, rid)
-        keeping = _keeping(study, claim, pid, rid)
-        jumps = sum(jump.order == 1 for jump in found.jumps)
-        stretch = found.stretch if isfinite(found.stretch) and found.stretch > 0 else None
+        unmoved = study.unmoved(claim, pid, rid)
+        if unmoved is None:
+            found = study.claim_check(claim, pid, rid)
+            keeping = _keeping(study, claim, pid, rid)
+            jumps = sum(jump.order == 1 for jump in found.jumps)
+            stretch = found.stretch if isfinite(found.stretch) and found.stretch > 0 else None
+        else:
+            keeping = Why(unmoved)
         if keeping is Keeping.BREAKS:
             excesses = _excesses(study, claim, pid, rid)
         total = study.claim_total(claim, rid)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from copy import copy
 from dataclasses import fields, replace
 from enum import StrEnum
 from typing import Any, TypeVar, cast
@@ -12,6 +13,7 @@ import numpy as np
 from ...heuristics import (
     KINDS,
     Algorithm,
+    DeathPenalty,
     JointRuns,
     Run,
     from_settings,
@@ -32,16 +34,25 @@ from ...nlp.optimum import OPTIMUM_SLACK, free_values
 from ...problem import (
     Array,
     Case,
+    CaseError,
     Check,
     Coupling,
     Interpolant,
     Problem,
+    ProcessError,
     TrajgapError,
     check,
     fit,
     reachable_total,
 )
-from ...problem.cases import Claim, DurationsClaim, InstancesBlock, MaximumClaim, TotalTimeClaim
+from ...problem.cases import (
+    AnyClaim,
+    Claim,
+    DurationsClaim,
+    InstancesBlock,
+    MaximumClaim,
+    TotalTimeClaim,
+)
 from .instances import InstancesResult, examined, readings_of
 from .rounding import RoundingBox, RoundingVerdict, judge_rounding
 
@@ -86,19 +97,37 @@ class Study:
         if seeds < 2:
             raise TrajgapError(f"seeds: {seeds} show no spread; give 2 or more, 30 is customary")
         self.case = case
+        self.claims: tuple[AnyClaim, ...] = tuple(case.claims)
         self.seeds = seeds
         self.workers = workers
         selected = case.selections(problem, reading)
         self.selected: tuple[Pair, ...] = tuple(selected)
         self.readings: tuple[str, ...] = tuple(dict.fromkeys(rid for _, rid in selected))
         self.pairs: tuple[Pair, ...] = tuple(p for p in selected if case.statement(*p).complete)
+        default = case.default_reading.id
+        self.main_reading = default if default in self.readings else self.readings[0]
         self._progress = progress or (lambda _: None)
         self._kept: dict[tuple[Any, ...], Any] = {}
 
     def _once(self, key: tuple[Any, ...], compute: Callable[[], T]) -> T:
         if key not in self._kept:
-            self._kept[key] = compute()
-        return cast(T, self._kept[key])
+            try:
+                self._kept[key] = compute()
+            except TrajgapError as error:
+                self._kept[key] = error
+        found = self._kept[key]
+        if isinstance(found, TrajgapError):
+            raise found
+        return cast(T, found)
+
+    def only(self, claim: AnyClaim, pair: Pair | None = None) -> Study:
+        """The same study, asked about one claim alone, and about one problem and reading."""
+        view = copy(self)
+        view.claims = (claim,)
+        if pair is not None:
+            view.selected = view.pairs = (pair,)
+            view.readings = pair[1:]
+        return view
 
     @property
     def posed(self) -> bool:
@@ -109,12 +138,6 @@ class Study:
     def problems(self) -> tuple[str, ...]:
         """Ids of the problems that are posed, in order."""
         return tuple(dict.fromkeys(pid for pid, _ in self.pairs))
-
-    @property
-    def main_reading(self) -> str:
-        """The case's default reading, or the only one selected."""
-        default = self.case.default_reading.id
-        return default if default in self.readings else self.readings[0]
 
     def problem(self, pid: str, rid: str) -> Problem:
         """Problem of the case, with its coupling."""
@@ -129,7 +152,10 @@ class Study:
             self._progress(f"{self.case.id}: optimum of {which}, {pid}, {rid}")
             index = None if joint is None else problem.joints.index(joint)
             one = problem if index is None else problem.joint(index)
-            found = solve(one, known=self.known_motions(pid, rid, joint))
+            try:
+                found = solve(one, known=self.known_motions(pid, rid, joint))
+            except TrajgapError as error:
+                return Solution(one, Status.FAILED, str(error))
             return with_certificate(found, stated_exactly(self.case.statement(pid, rid), index))
 
         if joint is not None and len(self.problem(pid, rid).joints) == 1:
@@ -170,7 +196,11 @@ class Study:
             slacks = dict.fromkeys((*self.half_digits(pid, rid), OPTIMUM_SLACK))
             problem = self.problem(pid, rid)
             known = {label: self.known_motions(pid, rid, label) for label in problem.joints}
-            found = solve_per_joint(problem, slacks=tuple(slacks), known=known)
+            try:
+                found = solve_per_joint(problem, slacks=tuple(slacks), known=known)
+            except TrajgapError as error:
+                joints = tuple(self.optimum(pid, rid, label) for label in problem.joints)
+                return PerJointSolution(problem, joints, None, None, (), str(error), 0.0)
             return with_certificates(found, self.case.statement(pid, rid))
 
         return self._once(("per joint", pid, rid), compute)
@@ -205,6 +235,13 @@ class Study:
                 name="relaxed family",
             )
             relaxed = replace(problem, curve=family, coupling=Coupling.SHARED)
+            settled = len(family.free_derivatives)
+            if settled < family.free:
+                why = (
+                    f"the relaxed family has {family.free} free coefficients per joint, and "
+                    f"derivatives at the way-points settle {settled} of them"
+                )
+                return Solution(relaxed, Status.FAILED, why)
             member = self.optimum(pid, rid)
             if member.durations is None or given.free:
                 return solve(relaxed)
@@ -240,20 +277,39 @@ class Study:
     def reachable(self, problem: Problem, durations: Array, pid: str, rid: str) -> float | None:
         """A total (s) that some stretch of ``durations`` keeps whatever the way-points round from.
 
-        None if there is no such stretch.
+        None if there is no such stretch, or if durations alone define no motion.
         """
+        if problem.curve.free:
+            return None
         return reachable_total(problem, durations, *self._box_columns(problem, pid, rid))
 
     def claim_optimum(self, claim: Claim, pid: str, rid: str) -> Solution:
         """Best known answer of `claim_problem`."""
         return self.optimum(pid, rid, claim.joint)
 
+    def unmoved(self, claim: Claim, pid: str, rid: str) -> str | None:
+        """Why durations alone define no motion; None if they do."""
+        curve = self.claim_problem(claim, pid, rid).curve
+        if not curve.free:
+            return None
+        return (
+            f"the curve ({curve.name}) leaves {curve.free} coefficients per joint free, so that "
+            "durations alone define no motion"
+        )
+
+    def _determined(self, claim: Claim, pid: str, rid: str) -> Problem:
+        """`claim_problem`, whose curve durations settle; raises if they do not."""
+        why = self.unmoved(claim, pid, rid)
+        if why is not None:
+            raise TrajgapError(why)
+        return self.claim_problem(claim, pid, rid)
+
     def claim_check(self, claim: Claim, pid: str, rid: str) -> Check:
         """The printed durations judged at the printed point."""
 
         def compute() -> Check:
             durations = self.case.claim_durations(claim, rid).value
-            return check(self.claim_problem(claim, pid, rid), durations)
+            return check(self._determined(claim, pid, rid), durations)
 
         return self._once(("check", claim.id, pid, rid), compute)
 
@@ -271,7 +327,7 @@ class Study:
 
     def _judged_box(self, claim: Claim, pid: str, rid: str, cut: bool) -> RoundingVerdict:
         self._progress(f"{self.case.id}: rounding box of {claim.id}, {rid}")
-        problem = self.claim_problem(claim, pid, rid)
+        problem = self._determined(claim, pid, rid)
         printed = self.case.claim_durations(claim, rid)
         durations = RoundingBox(printed.value, printed.lower, printed.upper)
         waypoints = RoundingBox(problem.waypoints, *self._box_columns(problem, pid, rid))
@@ -304,10 +360,26 @@ class Study:
         except TrajgapError as error:
             raise TrajgapError(f"{self.case.file}: algorithms.{algorithm_id}: {error}") from None
 
-    def runs(self, algorithm_id: str, pid: str, rid: str) -> Replays:
-        """Replays of an algorithm under the listed choices, one per seed; empty if unknown."""
+    def unreplayed(self, algorithm_id: str, pid: str, rid: str) -> str | None:
+        """Why an algorithm is not replayed on a problem, as a sentence; None if it is."""
         algorithm = self.algorithm(algorithm_id)
         if algorithm is None:
+            return f"The algorithm {algorithm_id} is of a kind that is not implemented here."
+        problem = self.problem(pid, rid)
+        try:
+            # What judges the positions of every run says whether it can.
+            DeathPenalty(problem, algorithm.penalty)
+        except TrajgapError as error:
+            return f"The algorithm {algorithm_id} is not replayed: {error}."
+        return None
+
+    def runs(self, algorithm_id: str, pid: str, rid: str) -> Replays:
+        """Replays of an algorithm under the listed choices, one per seed; empty if there are none.
+
+        `unreplayed` says why.
+        """
+        algorithm = self.algorithm(algorithm_id)
+        if algorithm is None or self.unreplayed(algorithm_id, pid, rid) is not None:
             return ()
         return self._once(
             ("runs", algorithm_id, pid, rid),
@@ -344,7 +416,9 @@ class Study:
         return found
 
     def variant_totals(self, algorithm_id: str, pid: str, rid: str) -> dict[str, Array]:
-        """Reported totals of each variant over its seeds, s."""
+        """Reported totals of each variant over its seeds, s; empty as `runs`."""
+        if self.unreplayed(algorithm_id, pid, rid) is not None:
+            return {}
 
         def compute() -> dict[str, Array]:
             totals: dict[str, Array] = {}
@@ -363,9 +437,20 @@ class Study:
     def instance_blocks(self) -> tuple[InstancesBlock, ...]:
         """Designs of instances of which both problems and some reading are selected.
 
-        All of it is implemented.
+        All of it is implemented, and can be replayed.
         """
-        return tuple(block for block in self.case.instances if readings_of(self, block))
+        declared = (block for block in self.case.instances if readings_of(self, block))
+        return tuple(block for block in declared if self.unexamined(block) is None)
+
+    def unexamined(self, block: InstancesBlock) -> str | None:
+        """Why the two procedures of a design cannot be run on its instances; None if they can."""
+        try:
+            self.instances(block)
+        except (CaseError, ProcessError):
+            raise
+        except TrajgapError as error:
+            return str(error)
+        return None
 
     def instances(self, block: InstancesBlock) -> InstancesResult:
         """What the two procedures of an improvement do on instances that are drawn for it."""

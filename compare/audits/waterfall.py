@@ -95,6 +95,11 @@ def _published(study: Study, claim: AnyClaim, pid: str, rid: str) -> list[Step]:
     shown, (low, high) = total
     number = claim.total if isinstance(claim, DurationsClaim | MaximumClaim) else None
     value = None if number is None else study.case.measured(number, "time", pid, rid).value
+    why = study.unmoved(claim, pid, rid)
+    if why is not None:
+        time = study.case.claim_durations(claim, rid).value.sum() if value is None else value
+        alone = Step(name="published", time=time, low=low, high=high, note=f"printed {shown}")
+        return [alone, Step.missing("feasible after repair", why)]
     verdict = study.claim_check(claim, pid, rid)
     rounding = study.claim_rounding(claim, pid, rid)
     printed = Step(

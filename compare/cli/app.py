@@ -27,7 +27,7 @@ _ENDS = """\b
 Exit codes:
   0    done
   1    audit --strict, and a finding has severity error; verify, and a file is refused
-  2    bad input; one line on standard error says what to mend
+  2    bad input; one line on standard error says how to fix it
   3    solve --certify, and an interval is wider than asked for or nothing is proved
   70   a fault of trajgap itself
   130  interrupted

@@ -22,7 +22,6 @@ from ..documents import (
     Why,
 )
 from .input import read_cases
-from .interrupt import unwinding
 from .output import check_folder, emit, progress, say
 from .result_tables import seconds
 from .table import Columns, line
@@ -65,8 +64,7 @@ def audit_cases(
             from ..pages import write_report
 
             step("pages and pictures")
-            with unwinding():
-                write_report(report, folder)
+            write_report(report, folder)
     emit(report.document, audited, as_json)
     if folder is not None and not as_json:
         say(f"pages: {folder / 'index.html'}\n")

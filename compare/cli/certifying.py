@@ -9,11 +9,9 @@ import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from importlib.resources import files as resources
 from pathlib import Path
 from types import FrameType
 from typing import Any
-from urllib.parse import quote
 
 from ...nlp import Certified, ExactProblem, Outcome, Progress, certify, printed_problem
 from ...nlp.proofs import (
@@ -31,8 +29,9 @@ from ...problem import (
     Coupling,
     TrajgapError,
     check_regular,
-    published_ids,
+    file_name,
 )
+from ...problem.cases import PUBLISHED
 from ...verify import (
     CERTIFICATE_FORMAT,
     OLD_FORMATS,
@@ -65,10 +64,6 @@ from .output import (
     say,
 )
 
-_PUBLISHED = "trajgap.problem.published"
-"""Package that holds the published cases as data."""
-_LONGEST = 150
-"""Characters of a file's name, its ending apart: most file systems take 255 bytes."""
 CERTIFICATE_FOLDER = Path("trajgap-certificates")
 """Where certificates go, unless the command line says otherwise."""
 NOT_PROVED = 3
@@ -91,19 +86,18 @@ class Question:
 
     @property
     def file(self) -> str:
-        """Name of its files, which no other question has.
+        """Name of its files, which no other question has, whatever the case of letters.
 
-        The parts are quoted, so that the dots between them are the only ones; a long name ends
-        with a hash instead.
+        The parts with dots between them, where that is a plain name and its only dots are these;
+        else what `file_name` makes of them, which ends with an underscore and a hash.
         """
         asked = self.asked
         parts = [str(x) for x in (asked.case, asked.problem, asked.reading)]
         parts += [] if asked.joint is None else [f"joint-{asked.joint}"]
         parts += ["any-curve"] if self.subject is Subject.ANY else []
-        plain = ".".join(quote(part, safe="").replace(".", "%2E") for part in parts)
-        if len(plain) <= _LONGEST:
-            return plain
-        return f"{plain[:_LONGEST]}~{hashlib.sha256(plain.encode()).hexdigest()[:16]}"
+        plain = ".".join(parts)
+        apart = all(part and "." not in part for part in parts)
+        return plain if apart and file_name(plain) == plain else file_name(*parts)
 
 
 def certify_case(
@@ -200,8 +194,7 @@ def _stated(case: Case, one: Posed, coupling: Coupling) -> Iterator[Question]:
 
 def _hash(case: Case) -> str | None:
     """SHA-256 of a case file; None if it cannot be read any more."""
-    published = case.file in published_ids()
-    path = resources(_PUBLISHED) / f"{case.file}.toml" if published else Path(case.file)
+    path = PUBLISHED.file(case.file) if case.file in PUBLISHED.ids() else Path(case.file)
     try:
         return hashlib.sha256(path.read_bytes()).hexdigest()
     except OSError:

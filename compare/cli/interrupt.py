@@ -7,8 +7,7 @@ import os
 import signal
 import sys
 import threading
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from types import FrameType
 
 from ...problem import remove_drafts
@@ -27,29 +26,15 @@ def catch_interrupts() -> None:
         signal.signal(signal.SIGINT, _end)
 
 
-@contextmanager
-def unwinding() -> Iterator[None]:
-    """Let Ctrl-C raise KeyboardInterrupt, for what cleans up after itself."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
-
-
 def _end(signum: int, frame: FrameType | None) -> None:
-    workers = multiprocessing.active_children()
-    for process in workers:
+    # The second Ctrl-C of an impatient hand would only say the same again.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    for process in multiprocessing.active_children():
         process.terminate()
-    if workers:
-        # Nothing but the workers' owner runs here, and it waits for them to end.
-        raise KeyboardInterrupt
     remove_drafts()
     # A progress bar hides the cursor.
     restored = "\x1b[?25h\r\x1b[K" if sys.stderr.isatty() else ""
     with suppress(OSError):
         os.write(2, f"{restored}trajgap: interrupted\n".encode())
+    # An exception would unwind whatever runs, and could be printed on its way or be lost in a call.
     os._exit(INTERRUPTED)

@@ -37,7 +37,6 @@ from .verified import (
     worth,
 )
 from .vocabulary import (
-    RULES,
     TERMS,
     TIMES,
     UNITS,
@@ -63,7 +62,6 @@ from .waterfall import EXACT, Step, Waterfall
 __all__ = [
     "DOCUMENTS",
     "EXACT",
-    "RULES",
     "SCHEMA",
     "TERMS",
     "TIMES",

@@ -18,7 +18,7 @@ from .entry import SCHEMA, Document, Why
 from .listed import CasesDocument
 from .solved import SolveDocument
 from .verified import VerifyDocument
-from .vocabulary import RULES, VOCABULARY, Words, meaning, meanings
+from .vocabulary import VOCABULARY, Rule, Words, meaning, meanings
 
 DOCUMENTS: tuple[type[Document], ...] = (
     CasesDocument,
@@ -84,13 +84,13 @@ def output_schema() -> dict[str, Any]:
     }
 
 
-def tables() -> dict[str, str]:
-    """The tables of words in the docs, by name, as Markdown."""
+def tables(rules: Iterable[Rule]) -> dict[str, str]:
+    """The tables of words and rules in the docs, by name, as Markdown."""
     found = {words.table: _table(meanings(*words.enums)) for words in VOCABULARY if words.table}
-    rules = "".join(f"| {rule.id} | {_inner(rule.title)} |\n" for rule in RULES)
+    rows = "".join(f"| {rule.id} | {_inner(rule.title)} |\n" for rule in rules)
     return {
         **found,
-        "rules": f"| id | looks at |\n|---|---|\n{rules}",
+        "rules": f"| id | looks at |\n|---|---|\n{rows}",
         "words": "| key | values |\n|---|---|\n" + "".join(map(_row, VOCABULARY)),
     }
 
@@ -118,19 +118,21 @@ def _inner(sentence: str) -> str:
     return sentence.removesuffix(".").replace("|", "\\|")
 
 
-def filled(text: str) -> str:
+def filled(text: str, rules: Iterable[Rule]) -> str:
     """A Markdown file with its tables of words as they are now.
 
     Parameters
     ----------
     text : str
         A table stands between ``<!-- table: NAME -->`` and ``<!-- end -->``.
+    rules : iterable of Rule
+        Of the audit, which the documents do not know.
 
     Returns
     -------
     str
     """
-    now = tables()
+    now = tables(rules)
     return _TABLE.sub(lambda place: f"{place[1]}{now[place[2]]}", text)
 
 
@@ -139,10 +141,12 @@ def schema_text() -> str:
     return json.dumps(output_schema(), indent=2, ensure_ascii=False) + "\n"
 
 
-def write_docs(docs: Path) -> None:
-    """Write the JSON Schema and the tables of words into the folder of the docs."""
+def write_docs(docs: Path, rules: Iterable[Rule]) -> None:
+    """Write the JSON Schema and the tables of words and rules into the folder of the docs."""
+    rules = tuple(rules)
     (docs / SCHEMA_FILE).write_text(schema_text(), encoding="utf-8")
     for file in sorted(docs.glob("*.md")):
         text = file.read_text(encoding="utf-8")
-        if filled(text) != text:
-            file.write_text(filled(text), encoding="utf-8")
+        now = filled(text, rules)
+        if now != text:
+            file.write_text(now, encoding="utf-8")

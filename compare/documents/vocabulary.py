@@ -267,30 +267,3 @@ class Rule:
 
     id: str
     title: str
-
-
-RULES = (
-    Rule("TG101", "A printed total is the sum of its printed parts"),
-    Rule("TG102", "Printed longest durations are the longest of the printed rows"),
-    Rule("TG103", "A printed improvement follows from the printed totals"),
-    Rule("TG104", "Tables under different names print different digits"),
-    Rule("TG105", "Two places that print the same total agree"),
-    Rule("TG106", "Unrelated columns do not repeat each other's digits"),
-    Rule("TG107", "The conditions stated fit the number of coefficients"),
-    Rule("TG201", "Printed durations keep the limits for all t, over the rounding box"),
-    Rule("TG202", "Position, velocity and acceleration are continuous"),
-    Rule("TG203", "Printed peaks are those of the printed durations"),
-    Rule("TG204", "The limits are used up by the printed durations"),
-    Rule("TG205", "Printed control vertices follow from the printed way-points"),
-    Rule("TG206", "Acceleration jumps where it is said to"),
-    Rule("TG301", "Totals of one path under two velocity limits obey the scaling law"),
-    Rule("TG302", "A printed total beside the optimum of its own formulation"),
-    Rule("TG303", "A printed total beside the optimum with shared durations"),
-    Rule("TG401", "An improvement beside the spread over seeds"),
-    Rule("TG402", "A printed total beside replays of its algorithm"),
-    Rule("TG403", "Convergence within a number of iterations, beside replays"),
-    Rule("TG404", "A relative claim beside a family of instances drawn from the robot's workspace"),
-    Rule("TG501", "Not checkable from the text"),
-    Rule("TG601", "Joint and Cartesian way-points are consistent with the printed chain"),
-)
-"""Every rule; an id is never reused."""

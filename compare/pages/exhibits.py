@@ -79,7 +79,9 @@ def _jumps_of(
     study: Study, pid: str, claims: list[DurationsClaim | MaximumClaim]
 ) -> Iterator[Block]:
     first = claims[0]
-    readings = [rid for p, rid in study.pairs if p == pid]
+    readings = [
+        rid for p, rid in study.pairs if p == pid and study.unmoved(first, pid, rid) is None
+    ]
     jumping = [
         rid
         for rid in readings

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 from ...nlp import Evidence
 from ...problem import Verdict
+from ..audits import RULES
 from ..documents import (
-    RULES,
     TERMS,
     TIMES,
     Basis,

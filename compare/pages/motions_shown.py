@@ -64,8 +64,12 @@ def _printed_motions(study: Study, pid: str, rid: str) -> Iterator[Block]:
     for claims in alike.values():
         first = claims[0]
         problem = study.problem(pid, rid)
-        rounding = study.claim_rounding(first, pid, rid).verdict
         title = f"Printed durations of {', '.join(c.id for c in claims)}"
+        unmoved = study.unmoved(first, pid, rid)
+        if unmoved is not None:
+            yield Prose(f"{title} are not drawn: {unmoved}. Reading {rid}.", "note")
+            continue
+        rounding = study.claim_rounding(first, pid, rid).verdict
         worst = study.claim_check(first, pid, rid).worst
         if worst is not None and worst.quantity == "curve":
             yield Prose(f"{title} define no curve. Reading {rid}.", "note")
@@ -80,7 +84,8 @@ def _printed_motions(study: Study, pid: str, rid: str) -> Iterator[Block]:
         where = "; ".join(c.where for c in claims)
         yield _drawn(file_name("motion", pid, first.id), picture, f"{where}. Reading {rid}.")
     for tables, singles in _tables_by_joint(study, pid).items():
-        yield _joint_by_joint(study, pid, rid, tables, singles)
+        if study.unmoved(singles[0], pid, rid) is None:
+            yield _joint_by_joint(study, pid, rid, tables, singles)
 
 
 def _tables_by_joint(study: Study, pid: str) -> dict[str, list[DurationsClaim]]:

@@ -98,6 +98,8 @@ _OPTIMA = "Optimum of each formulation"
 """Title of the section."""
 NINE = Decimal("1e-9")
 """Nine decimals of a proved bound, as the certificates' tables have them."""
+_KEPT = ("keeps", "consistent")
+"""Verdicts over the rounding box under which durations may keep the limits."""
 _ANSWER = ("status", "total", "evidence", "durations, s", "check", "KKT residual", "starts at best")
 """Columns that say how a solve ended."""
 
@@ -178,7 +180,8 @@ def _joints(study: Study, pid: str, rid: str) -> Iterator[Block]:
             reference = reference_of(solution)
             if total is not None and reference is not None:
                 shown.setdefault(total[0], []).append(claim.where)
-                kept = study.claim_rounding(claim, pid, rid).verdict in ("keeps", "consistent")
+                moved = study.unmoved(claim, pid, rid) is None
+                kept = moved and study.claim_rounding(claim, pid, rid).verdict in _KEPT
                 gaps.append(_gap_text(gap(total[1], reference, feasible=kept)))
         rows.append(
             (

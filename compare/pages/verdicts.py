@@ -18,10 +18,9 @@ from ...problem.cases import (
     PeakClaim,
     TotalTimeClaim,
 )
-from ..audits import CaseAudit, Study, named
+from ..audits import RULES, CaseAudit, Study, named
 from ..audits.rules import placed
 from ..documents import (
-    RULES,
     UNITS,
     ClaimVerdict,
     Finding,

@@ -20,17 +20,17 @@ from matplotlib.ft2font import FT2Font
 
 from ...problem import visible
 
-# Okabe & Ito's colours, told apart with any common colour blindness, on a white page.
-INK = "#1f2933"
-MUTED = "#5b6673"
-GRID = "#d5dae1"
-PAPER = "#ffffff"
-BLUE = "#0072b2"
-ORANGE = "#e69f00"
-GREEN = "#009e73"
-PURPLE = "#cc79a7"
-SKY = "#56b4e9"
-RED = "#c8102e"
+# Greys of a white page, and Okabe & Ito's colours: told apart with any common colour blindness.
+INK = "#1f2933"  # text and the main lines: nearly black
+MUTED = "#5b6673"  # ticks and notes: lighter than the text, and still read with ease on white
+GRID = "#d5dae1"  # lines of reference behind the data: just seen
+PAPER = "#ffffff"  # what all of it stands on
+BLUE = "#0072b2"  # the first series; Okabe & Ito's blue
+ORANGE = "#e69f00"  # the second series; their orange
+GREEN = "#009e73"  # the third series; their bluish green
+PURPLE = "#cc79a7"  # the fourth series; their reddish purple
+SKY = "#56b4e9"  # the light one beside a dark one; their sky blue
+RED = "#c8102e"  # what is printed, or wrong: darker than their vermilion, apart from the orange
 THEME = {
     "ink": INK,
     "muted": MUTED,

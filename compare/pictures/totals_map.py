@@ -35,9 +35,10 @@ _DIVISIONS = 120
 """Of each side of the triangle: 7,381 totals, a second or so, and contours without corners."""
 _CORNERS: Array = np.array([[0.0, 0.0], [1.0, 0.0], [0.5, np.sqrt(3) / 2]])
 """Of the triangle of shares, each where one duration is all of the total."""
-# On the map, whose colours do not follow the page's theme, neither may these.
-_DARK = "#101418"
-_LIGHT = "#fefefe"
+# On the map, whose colours do not follow the page's theme, neither may these; none of them is a
+# colour of the theme, which a page would replace.
+_DARK = "#101418"  # on the light part of the map
+_LIGHT = "#fefefe"  # on its dark part
 _PRINTED = ("D", "s", "P", "X")
 """Markers of printed durations, in their order."""
 _ENDS = (("o", SKY), ("^", PURPLE), ("v", _LIGHT), ("<", ORANGE))

@@ -295,7 +295,16 @@ def _best(problem: Problem, lower: Array, upper: Array, form: _MeanValue) -> Bou
 
 
 def _weights(form: _MeanValue, some: NDArray[np.int64], remainder: Array) -> Array | None:
-    """Weights of the rows from the linear program; durations and way-points in units of radii."""
+    """Weights of the rows from the linear program; durations and way-points in units of radii.
+
+    Row i asks for t ≥ (sign_i f_i − offset_i)/width_i, f_i in centred form. With x = (Δh, Δq) in
+    units of the radii, |x| ≤ 1, and the radius of ∂f_i/∂h taken off as ``remainder``,
+
+        t ≥ min over |x| ≤ 1 of max_i (level_i + slope_i·x).
+
+    The program's multipliers λ ≥ 0, Σλ = 1, give Σ λ_i level_i − |Σ λ_i slope_i|₁, and `forced`
+    takes μ_i = λ_i/width_i.
+    """
     rows = form.rows.pick(some)
     width = rows.width[:, None]
     sign = rows.sign[:, None]

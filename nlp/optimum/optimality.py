@@ -117,6 +117,17 @@ def kkt(
     -------
     KKT
         Multipliers by non-negative least squares on the envelope gradients.
+
+    Notes
+    -----
+    In log durations z = log h and free nodal derivatives x, in units of their limits, with T = Σh,
+
+        min log T  subject to  g_i = ratio_i − 1 ≤ 0:
+        h_k/T + Σ_i w_i ∂g_i/∂z_k = 0,  Σ_i w_i ∂g_i/∂x = 0,  w ≥ 0,  w_i g_i = 0.
+
+    A peak's gradient is that of the derivative at its fixed place (envelope theorem), and
+    ∂/∂z_k = h_k ∂/∂h_k. A bound of a duration is g = ±(z_k − log bound). Since d(log T) = dT/T, the
+    multiplier of T itself is w_i T; easing limit i by a share ε changes T by −ε w_i T.
     """
     n, total = problem.segments, float(durations.sum())
     joints = problem.waypoints.shape[1]

@@ -15,7 +15,10 @@ from ...problem.curves import ConditionKind, StretchedUniformBSpline, vertex_mat
 from .exact import ExactProblem
 
 _STRETCHES = tuple(Fraction(1, 10**k) for k in (13, 12, 11, 10, 9, 8, 7))
+"""Shares by which an answer is stretched until it is feasible, tried in turn: from some roundings
+of a float to a tenth of the gap that is asked for by default."""
 _DEEPEST = 60
+"""Halvings after which a polynomial is taken to exceed its bound: finer than any float."""
 
 
 def float_problem(exact: ExactProblem) -> Problem:
@@ -113,7 +116,12 @@ def uniform_coefficients(waypoints: Sequence[Sequence[Fraction]]) -> list[list[l
 
 
 def never_above(coefficients: Sequence[Fraction], bound: Fraction) -> bool:
-    """Whether a polynomial is ≤ bound on [0, 1]: Bernstein form, halved until it shows."""
+    """Whether a polynomial is ≤ bound on [0, 1]: Bernstein form, halved until it shows.
+
+    Σ c_k sᵏ = Σ b_i C(n, i) sⁱ(1 − s)ⁿ⁻ⁱ with b_i = Σ_(k ≤ i) C(i, k)/C(n, k) c_k lies between the
+    least and the largest b_i, and is b_0 and b_n at the ends. De Casteljau's means give the b_i of
+    both halves.
+    """
     n = len(coefficients) - 1
     start = [
         bound

@@ -20,6 +20,7 @@ from .exact import ExactProblem, printed_problem
 WIDEST = Fraction(1, 100)
 """Relative width from which an interval is too wide to call the optimum certified."""
 _SAME = 1e-9
+"""Relative excess within which a solver's total is the certificate's: what its tolerance is."""
 
 
 @dataclass(frozen=True)

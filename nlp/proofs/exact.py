@@ -14,6 +14,7 @@ from ...problem import Curve, Interpolant, Printed, Problem, Scale, TrajgapError
 from ...problem.cases import Statement
 
 _PI = Scale(Fraction(1), 1).bounds
+"""Rational bounds of π, the same as for printed numbers."""
 
 
 def decimal(number: Fraction) -> str:

@@ -48,7 +48,7 @@ class Argument(Protocol):
 
 
 @dataclass(frozen=True)
-class Given:
+class EarlierProof:
     """A proof from a state, as it was read there, and proved again by `trajgap.verify`."""
 
     proof: dict[str, Any]
@@ -66,7 +66,7 @@ class Resumed:
     ----------
     lower : Fraction
         Proved by ``proof``, s; 0 without it.
-    proof : Given or None
+    proof : EarlierProof or None
     durations : tuple of Fraction or None
         Proved to keep the limits.
     speeds : tuple or None
@@ -76,7 +76,7 @@ class Resumed:
     """
 
     lower: Fraction
-    proof: Given | None
+    proof: EarlierProof | None
     durations: tuple[Fraction, ...] | None
     speeds: tuple[tuple[Fraction, ...], ...] | None
     proposals: dict[str, Any] | None

@@ -19,7 +19,7 @@ from ...verify import (
 )
 from .document import document_of, fits, sealed
 from .exact import ExactProblem
-from .outcome import Certified, Given, Resumed
+from .outcome import Certified, EarlierProof, Resumed
 
 SECONDS = 600.0
 """For a proof in a state, or at the end of a run: what took hours is proved again in minutes."""
@@ -131,7 +131,7 @@ def resumed(
     durations, speeds = claim["durations"], claim["speeds"]
     return Resumed(
         Fraction(0) if proof is None else number(claim["lower"]),
-        None if proof is None else Given(proof),
+        None if proof is None else EarlierProof(proof),
         None if durations is None else tuple(map(number, durations)),
         None if speeds is None else tuple(tuple(map(number, row)) for row in speeds),
         document["proposals"],

@@ -12,6 +12,7 @@ from .claim import (
     StatementClaim,
     TotalTimeClaim,
 )
+from .data_files import PUBLISHED
 from .instances import InstancesBlock, instance_waypoints
 from .load import load_case, parse_case, published_ids
 from .robot_file import load_robot, robot_ids
@@ -32,6 +33,7 @@ from .schema import (
 from .statement import Statement
 
 __all__ = [
+    "PUBLISHED",
     "AlgorithmBlock",
     "AnyClaim",
     "Assumption",

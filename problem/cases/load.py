@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
 
 from ..errors import CaseError
-from ..fields import nearest
-from ..textfile import parse_toml, read_text
+from ..textfile import parse_toml
 from .case import Case
+from .data_files import PUBLISHED
 from .faults import first_fault
 from .references import check_claims, check_kinematics, check_references
 from .schema import CaseFile
@@ -20,15 +19,10 @@ from .sizes import check_sizes, check_values
 FORMAT = 1
 """The version of the case file format that this module reads."""
 
-_PUBLISHED = "trajgap.problem.published"
-"""Package that holds the published cases as data."""
-
 
 def published_ids() -> tuple[str, ...]:
     """Ids of the case files shipped with the package, sorted."""
-    folder = files(_PUBLISHED)
-    names = (entry.name for entry in folder.iterdir())
-    return tuple(sorted(n.removesuffix(".toml") for n in names if n.endswith(".toml")))
+    return PUBLISHED.ids()
 
 
 def load_case(source: str | Path) -> Case:
@@ -49,16 +43,7 @@ def load_case(source: str | Path) -> Case:
         If there is no such case or file, or anything in it is wrong: one line naming the file,
         the field and how to fix it.
     """
-    known = published_ids()
-    if isinstance(source, str) and source in known:
-        text = files(_PUBLISHED).joinpath(f"{source}.toml").read_text("utf-8")
-        return parse_case(text, source)
-    path = Path(source)
-    if not path.suffix and not path.exists():
-        raise CaseError(
-            str(source), "", f"neither a published case nor a file; {nearest(str(source), known)}"
-        )
-    return parse_case(read_text(path), str(source))
+    return parse_case(PUBLISHED.text(source), str(source))
 
 
 def parse_case(text: str, file: str) -> Case:

@@ -3,28 +3,24 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from importlib.resources import files
 from pathlib import Path
 
 from pydantic import ValidationError
 
 from ..errors import CaseError
-from ..fields import nearest
 from ..robots import Chain
-from ..textfile import parse_toml, read_text
+from ..textfile import parse_toml
+from .data_files import ROBOTS
 from .faults import first_fault
 from .schema import RobotFile
 
 FORMAT = 1
 """The version of the robot file format that this module reads."""
-_ROBOTS = "trajgap.problem.robots"
-"""Package that holds the shipped robots as data."""
 
 
 def robot_ids() -> tuple[str, ...]:
     """Ids of the robots shipped with the package, sorted."""
-    names = (entry.name for entry in files(_ROBOTS).iterdir())
-    return tuple(sorted(n.removesuffix(".toml") for n in names if n.endswith(".toml")))
+    return ROBOTS.ids()
 
 
 def load_robot(source: str | Path) -> Chain:
@@ -71,21 +67,7 @@ def robot_file(source: str | Path) -> RobotFile:
     CaseError
         As `load_robot`.
     """
-    known = robot_ids()
-    if isinstance(source, str) and source in known:
-        return _shipped(source)
-    path = Path(source)
-    if not path.suffix and not path.exists():
-        raise CaseError(
-            str(source), "", f"neither a shipped robot nor a file; {nearest(str(source), known)}"
-        )
-    return parse_robot(read_text(path), str(source))
-
-
-@lru_cache(maxsize=32)
-def _shipped(robot_id: str) -> RobotFile:
-    path = files(_ROBOTS).joinpath(f"{robot_id}.toml")
-    return parse_robot(path.read_text("utf-8"), robot_id)
+    return _parsed(ROBOTS.text(source), str(source))
 
 
 def parse_robot(text: str, file: str) -> RobotFile:
@@ -117,3 +99,6 @@ def parse_robot(text: str, file: str) -> RobotFile:
         return RobotFile.model_validate(raw)
     except ValidationError as error:
         raise CaseError(file, *first_fault(error)) from None
+
+
+_parsed = lru_cache(maxsize=32)(parse_robot)

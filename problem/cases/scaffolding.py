@@ -112,7 +112,7 @@ def _table(name: str, text: str) -> tuple[list[str], list[list[str]]]:
                 lines.append((reader.line_num, [cell.strip() for cell in row]))
     except csv.Error as error:
         raise CaseError(
-            name, f"line {reader.line_num}", f"not valid CSV, {error}; mend it"
+            name, f"line {reader.line_num}", f"not valid CSV, {error}; fix it"
         ) from None
     _, header = lines[0]
     first = 1 if header[0].lower() in _LABEL_HEADERS else 0

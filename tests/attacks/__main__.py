@@ -15,9 +15,17 @@ _HERE = Path(__file__).resolve().parent
 sys.path[:] = [str(_HERE.parent), *(x for x in sys.path if Path(x or ".").resolve() != _HERE)]
 
 from attacks.registry import ATTACKS  # noqa: E402
-from attacks.run import Account, run, tried, warm  # noqa: E402
+from attacks.run import Account, run, run_each, tried, warm  # noqa: E402
 from attacks.sandbox import available  # noqa: E402
-from attacks.table import PAGE, csv_text, page_with, rows_of, table  # noqa: E402
+from attacks.table import (  # noqa: E402
+    PAGE,
+    SIGNALS,
+    csv_text,
+    each_table,
+    page_with,
+    rows_of,
+    table,
+)
 
 
 def main() -> int:
@@ -25,15 +33,22 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python tests/attacks", description=__doc__)
     parser.add_argument("--seconds", type=float, default=60.0, help="how long, on the clock")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--only", action="append", metavar="NAME", help="only these attacks")
+    parser.add_argument(
+        "--only", action="append", metavar="NAME[,NAME]", help='only these, such as "killed: new"'
+    )
     parser.add_argument("--trial", type=int, help="repeat one trial of one attack")
+    parser.add_argument(
+        "--trials", type=int, metavar="N", help="N trials of each attack, of each of its commands"
+    )
     parser.add_argument("--write", type=Path, metavar="CSV", help="write rows and the table")
     parser.add_argument(
         "--failures", type=Path, metavar="FOLDER", help="keep the input of what broke"
     )
     parser.add_argument("--list", action="store_true", help="list the attacks")
     given = parser.parse_args()
-    chosen = [a for a in ATTACKS if not given.only or a.name in given.only]
+    named = {name for entry in given.only or () for name in (entry, *entry.split(","))}
+    chosen = [a for a in ATTACKS if not named or a.name in named]
+    chosen += [p for a in ATTACKS if a.parts for p in a.each if p.name in named]
     if given.list or not chosen:
         print("\n".join(a.name for a in ATTACKS))
         return 0 if given.list else 2
@@ -45,6 +60,8 @@ def main() -> int:
         accounts = [Account(attack) for attack in chosen]
         for account in accounts:
             tried(account, given.seed, given.trial, _say)
+    elif given.trials is not None:
+        accounts = run_each(chosen, given.seed, given.trials, _say)
     else:
         accounts = run(chosen, given.seed, given.seconds, _say)
     rows = rows_of(accounts, given.seed)
@@ -54,7 +71,12 @@ def main() -> int:
         _keep(given.failures, accounts, given.seed)
     if given.write is not None:
         given.write.write_text(csv_text(rows), encoding="utf-8")
-        PAGE.write_text(page_with(PAGE.read_text("utf-8"), table(rows, ATTACKS)), "utf-8")
+        page = PAGE.read_text("utf-8")
+        if given.trials is None:
+            page = page_with(page, table(rows, ATTACKS))
+        else:
+            page = page_with(page, each_table(rows), SIGNALS)
+        PAGE.write_text(page, "utf-8")
     return 1 if any(row.failures for row in rows) else 0
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from attacks.cases import Rng
@@ -35,6 +35,8 @@ class Attack:
         Trials of the short run in the tests.
     inside : bool
         Whether the trial itself runs in a child that is bounded in time and memory.
+    parts : mapping
+        What one of the trial's parts is called, to the trial of that part alone.
     """
 
     name: str
@@ -44,6 +46,16 @@ class Attack:
     share: float = 1.0
     quick: int = 10
     inside: bool = False
+    parts: Mapping[str, Trial] = field(default_factory=dict)
+
+    @property
+    def each(self) -> tuple[Attack, ...]:
+        """The attack on every part by itself; the attack if it has none."""
+        split = (
+            replace(self, name=f"{self.name}: {part}", trial=trial, parts={})
+            for part, trial in self.parts.items()
+        )
+        return tuple(split) or (self,)
 
 
 def demand(holds: bool, why: str) -> None:

@@ -33,7 +33,7 @@ def motions(form: Declared, way: Array, h: Array) -> Array:
 
 
 def ratios(asked: Asked, form: Declared, h: Array) -> tuple[Array, Array]:
-    """Stretch c* and the largest ratio to a bound that no stretch mends, one for each h."""
+    """Stretch c* and the largest ratio to a bound that no stretch repairs, one for each h."""
     seen = motions(form, asked.waypoints, h)
     tops = np.abs(seen[..., 1:]).max(axis=(2, 3))
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -7,12 +7,14 @@ import signal
 import tempfile
 import tomllib
 from collections.abc import Callable
-from dataclasses import dataclass
-from functools import cache
+from dataclasses import dataclass, replace
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
-from attacks.attack import Attack, demand, keep
+from trajgap.nlp.proofs.document import shipped_folder
+
+from attacks.attack import Attack, Trial, demand, keep
 from attacks.cases import Rng
 from attacks.reading import well_ended
 from attacks.sandbox import Ended, Plan, at_once, command
@@ -66,6 +68,8 @@ class Work:
     whole: Callable[[Path], bool]
     """Whether everything that is there is whole; what is absent does not count."""
     codes: tuple[int, ...] = (0,)
+    quick: bool = False
+    """Whether it takes less than a second or two."""
     earlier: tuple[str, ...] = ()
     """A command whose result is there before and must not be lost."""
     family: str = "jtraj"
@@ -115,16 +119,20 @@ _AUDIT = ("audit", "case.toml", "--seeds", "2", "--out", "pages")
 _NEW = ("new", "new.toml", "--from", "table.csv", "--position-unit", "rad", "--velocity", "2")
 _NEW_UNITS = ("--velocity-unit", "rad/s", "--time-unit", "s")
 _CERTIFY = ("solve", "case.toml", "--certify", "--certificates", "proofs", "--gap")
-QUICK = ("check --out", "solve --out", "new")
-"""Commands that take less than a second or two."""
+_RENEWED = (*_CERTIFY, "1e-3", "--time", "2")
+_SHIPPED = str(shipped_folder() / "irb460-pso-353.limit-80.waypoints-deg.json")
+"""A certificate that is proved again in a moment."""
 WORKS: dict[str, Work] = {
     "audit": Work(_AUDIT, _pages),
     "audit again": Work(_AUDIT, _pages, earlier=_AUDIT),
+    "cases --out": Work(("cases", "--out", "out.json"), _json("out.json"), quick=True),
+    "show --out": Work(("show", "case.toml", "--out", "out.json"), _json("out.json"), quick=True),
     "check --out": Work(
         ("check", "case.toml", "--durations", "0.9,1.0,0.9", "--out", "out.json"),
         _json("out.json"),
+        quick=True,
     ),
-    "solve --out": Work(("solve", "case.toml", "--out", "out.json"), _json("out.json")),
+    "solve --out": Work(("solve", "case.toml", "--out", "out.json"), _json("out.json"), quick=True),
     "solve --certify": Work(
         (*_CERTIFY, "1e-3", "--time", "3"), _proofs, (0, 3), family="cubic-spline"
     ),
@@ -134,7 +142,9 @@ WORKS: dict[str, Work] = {
         (0, 3),
         coupling="per-joint",
     ),
-    "new": Work((*_NEW, *_NEW_UNITS), _toml),
+    "solve --certify again": Work(_RENEWED, _proofs, (0, 3), earlier=_RENEWED),
+    "verify --out": Work(("verify", _SHIPPED, "--out", "out.json"), _json("out.json"), quick=True),
+    "new": Work((*_NEW, *_NEW_UNITS), _toml, quick=True),
 }
 """Every command that writes files."""
 
@@ -144,8 +154,22 @@ def _prepared(work: Work, folder: Path) -> None:
     keep(folder, case=text)
     (folder / "table.csv").write_text(_TABLE, encoding="utf-8")
     if work.earlier:
+        for name, data in _earlier(work).items():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            (folder / name).write_bytes(data)
+
+
+@cache
+def _earlier(work: Work) -> dict[str, bytes]:
+    """The files that the earlier command leaves."""
+    with tempfile.TemporaryDirectory(prefix="attack-") as place:
+        folder = Path(place)
+        _prepared(replace(work, earlier=()), folder)
         ran = command(work.earlier, folder, _SECONDS)
-        demand(ran.code == 0, f"the earlier command ends with {ran.code}: {ran.err[-300:]}")
+        demand(ran.code in work.codes, f"the earlier command: {ran.code}, {ran.err[-300:]}")
+        return {
+            str(p.relative_to(folder)): p.read_bytes() for p in folder.rglob("*.*") if p.is_file()
+        }
 
 
 @cache
@@ -163,8 +187,8 @@ def _usual(name: str) -> tuple[float, int]:
     return min(seconds), largest
 
 
-def _chosen(rng: Rng, folder: Path) -> tuple[str, Work]:
-    name = str(rng.choice(list(WORKS)))
+def _chosen(rng: Rng, folder: Path, name: str | None = None) -> tuple[str, Work]:
+    name = str(rng.choice(list(WORKS))) if name is None else name
     _usual(name)
     _prepared(WORKS[name], folder)
     keep(folder, arguments=" ".join(WORKS[name].arguments))
@@ -188,7 +212,8 @@ def _survived(name: str, work: Work, folder: Path) -> None:
     """What is there is whole, what was there still is, and a new run works."""
     demand(work.whole(folder), f"{name}: a file is not whole")
     if work.earlier:
-        demand((folder / "pages" / "audit.json").exists(), f"{name}: the earlier report is lost")
+        kept = any((*folder.glob("pages/audit.json"), *folder.glob("proofs/[!.]*.json")))
+        demand(kept, f"{name}: what was there before is lost")
     for made in ("out.json", "new.toml"):
         (folder / made).unlink(missing_ok=True)
     again = command(work.arguments, folder, _SECONDS)
@@ -196,18 +221,18 @@ def _survived(name: str, work: Work, folder: Path) -> None:
     demand(work.whole(folder), f"{name}, run again: a file is not whole")
 
 
-def killed(rng: Rng, folder: Path) -> str | None:
-    """SIGKILL at a random moment of a command that writes."""
-    name, work = _chosen(rng, folder)
+def killed(rng: Rng, folder: Path, only: str | None = None) -> str | None:
+    """SIGKILL at a random moment of a command that writes, of any or of one."""
+    name, work = _chosen(rng, folder, only)
     after = float(rng.uniform(0.0, 1.05)) * _usual(name)[0]
     ran = _run(work, folder, Plan(signal=signal.SIGKILL, after=after))
     _survived(name, work, folder)
     return f"{name}: killed" if ran.code == -signal.SIGKILL else "too late"
 
 
-def interrupted(rng: Rng, folder: Path) -> str | None:
-    """SIGINT at a random moment of a command that writes."""
-    name, work = _chosen(rng, folder)
+def interrupted(rng: Rng, folder: Path, only: str | None = None) -> str | None:
+    """SIGINT at a random moment of a command that writes, of any or of one."""
+    name, work = _chosen(rng, folder, only)
     after = 0.02 + float(rng.uniform(0.0, 1.05)) * _usual(name)[0]
     ran = _run(work, folder, Plan(signal=signal.SIGINT, after=after))
     if ran.code not in (130, *work.codes) and "sandbox.py" in ran.err:
@@ -239,7 +264,7 @@ def full_disk(rng: Rng, folder: Path) -> str | None:
 
 
 def _tree(folder: Path) -> dict[str, bytes]:
-    return {str(p): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
+    return {str(p.relative_to(folder)): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
 
 
 def no_rights(rng: Rng, folder: Path) -> str | None:
@@ -307,19 +332,33 @@ def closed_pipe(rng: Rng, folder: Path) -> str | None:
     return "left"
 
 
-def _attack(name: str, tries: str, holds: str, trial: Any, share: float, quick: int) -> Attack:
-    return Attack(name, tries, holds, trial, share, quick)
+def _attack(
+    name: str,
+    tries: str,
+    holds: str,
+    trial: Any,
+    share: float,
+    quick: int,
+    parts: dict[str, Trial] | None = None,
+) -> Attack:
+    return Attack(name, tries, holds, trial, share, quick, parts=parts or {})
+
+
+def _each(trial: Callable[..., str | None]) -> dict[str, Trial]:
+    return {name: partial(trial, only=name) for name in WORKS}
 
 
 ATTACKS = (
     _attack(
         "killed",
-        "SIGKILL at a random moment of `audit` (new and over an earlier report), `check --out`, "
-        "`solve --out`, `solve --certify`, `new`",
-        "every file whole or absent, an earlier report there, the next run works",
+        "SIGKILL at a random moment of every command that writes: `audit` and `solve --certify` "
+        "(new and over earlier files), `new`, and `--out` of `cases`, `show`, `check`, `solve`, "
+        "`verify`",
+        "every file whole or absent, an earlier one there, the next run works",
         killed,
         2.0,
         3,
+        _each(killed),
     ),
     _attack(
         "interrupted",
@@ -328,6 +367,7 @@ ATTACKS = (
         interrupted,
         2.0,
         3,
+        _each(interrupted),
     ),
     _attack(
         "full disk",

@@ -119,6 +119,19 @@ def run(
     return accounts
 
 
+def run_each(
+    attacks: Sequence[Attack], seed: int, trials: int, say: Callable[[str], None]
+) -> list[Account]:
+    """Run so many trials of every part of each attack."""
+    warm()
+    accounts = [Account(part) for attack in attacks for part in attack.each]
+    for account in accounts:
+        for number in range(trials):
+            tried(account, seed, number, say)
+        say(f"{account.attack.name}: {account.held} of {account.tried} held")
+    return accounts
+
+
 def warm() -> None:
     """Import and compile once what every child needs."""
     import matplotlib.pyplot  # noqa: F401

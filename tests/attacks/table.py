@@ -14,6 +14,9 @@ from attacks.run import Account
 ROOT = Path(__file__).parents[2]
 CSV = ROOT / "docs" / "attacks.csv"
 PAGE = ROOT / "docs" / "attacks.md"
+SIGNALS_CSV = ROOT / "docs" / "attacks-signals.csv"
+SIGNALS = "attacks, each command"
+"""What the markers around the table of each command say."""
 BEGIN, END = "<!-- attacks: begin -->", "<!-- attacks: end -->"
 """Between these lines of the page stands the table."""
 
@@ -93,10 +96,31 @@ def command_of(seconds: int, seed: int) -> str:
     return f"{run} --write docs/attacks.csv"
 
 
-def page_with(text: str, new: str) -> str:
+def each_table(rows: Sequence[Row]) -> str:
+    """The table of every command by itself, the command that made it above."""
+    attacks = list(dict.fromkeys(row.attack.partition(": ")[0] for row in rows))
+    most = max(row.trials for row in rows)
+    lines = [
+        f"`python tests/attacks --only {','.join(attacks)} --trials {most} --seed {rows[0].seed} "
+        f"--write docs/attacks-signals.csv`, {sum(r.trials for r in rows):,} trials, "
+        f"{sum(r.failures for r in rows)} failures:",
+        "",
+        "| attack | command | trials | held | not judged | failures | what was seen |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    for row in rows:
+        attack, _, part = row.attack.partition(": ")
+        seen = row.outcomes.replace(f"{part}: ", "")
+        cells = (attack, f"`{part}`", *astuple(row)[1:5], seen)
+        lines.append("| " + " | ".join(map(str, cells)) + " |")
+    return "\n".join(lines)
+
+
+def page_with(text: str, new: str, name: str = "attacks") -> str:
     """The page with another table between its markers."""
-    before, begin, rest = text.partition(BEGIN)
-    _, end, after = rest.partition(END)
+    opening, closing = BEGIN.replace("attacks", name), END.replace("attacks", name)
+    before, begin, rest = text.partition(opening)
+    _, end, after = rest.partition(closing)
     if not begin or not end:
-        raise ValueError(f"{PAGE.name}: the markers {BEGIN} and {END} are missing; add them")
+        raise ValueError(f"{PAGE.name}: the markers {opening} and {closing} are missing; add them")
     return f"{before}{begin}\n{new}\n{end}{after}"

@@ -18,7 +18,17 @@ from attacks.mutations import damaged
 from attacks.registry import ATTACKS
 from attacks.run import Account, tried, warm
 from attacks.sandbox import available
-from attacks.table import CSV, PAGE, page_with, read_rows, table
+from attacks.table import (
+    CSV,
+    PAGE,
+    SIGNALS,
+    SIGNALS_CSV,
+    Row,
+    each_table,
+    page_with,
+    read_rows,
+    table,
+)
 
 pytestmark = pytest.mark.skipif(not available(), reason="children are forked and watched on Linux")
 
@@ -41,7 +51,7 @@ def holds(attack: Attack, trials: int) -> None:
 
 @pytest.mark.parametrize("attack", ATTACKS, ids=lambda a: a.name)
 def test_a_few_trials_hold(attack: Attack, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(faults, "WORKS", {key: faults.WORKS[key] for key in faults.QUICK})
+    monkeypatch.setattr(faults, "WORKS", {k: w for k, w in faults.WORKS.items() if w.quick})
     holds(attack, attack.quick)
 
 
@@ -83,6 +93,21 @@ def test_the_table_of_the_docs_is_that_of_the_rows() -> None:
         assert row.failures == 0
     text = PAGE.read_text("utf-8")
     assert page_with(text, table(rows, ATTACKS)) == text
+
+
+def test_every_command_that_writes_is_tried_by_itself() -> None:
+    signals = [a for a in ATTACKS if a.name in ("killed", "interrupted")]
+    for attack in signals:
+        assert [part.name for part in attack.each] == [f"{attack.name}: {w}" for w in faults.WORKS]
+    rows = [Row("killed: new", 50, 49, 1, 0, 60, 1, "new: killed 40; too late 9")]
+    text = each_table(rows)
+    assert "--only killed --trials 50 --seed 1" in text
+    assert "| killed | `new` | 50 | 49 | 1 | 0 | killed 40; too late 9 |" in text
+    page = PAGE.read_text("utf-8")
+    assert text in page_with(page, text, SIGNALS)
+    if SIGNALS_CSV.exists():
+        shown = each_table(read_rows(SIGNALS_CSV.read_text("utf-8")))
+        assert page_with(page, shown, SIGNALS) == page
 
 
 def test_the_page_names_every_file() -> None:

@@ -1,4 +1,4 @@
-"""Algorithms from the settings of a case file: every bad one is named with its mend."""
+"""Algorithms from the settings of a case file: every bad one is named with how to fix it."""
 
 import tomllib
 from collections.abc import Mapping

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from support.checkout import ROOT
 
-STAMPED = ("trajgap.problem.curves.kernel", "trajgap.nlp.proofs.quintic.bound")
+STAMPED = ("trajgap.problem.curves.kernel", "trajgap.nlp.proofs.quintic.nodal")
 
 
 def folder_of(module: str) -> Path:

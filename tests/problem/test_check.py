@@ -362,7 +362,7 @@ def test_velocity_jump_is_discontinuous() -> None:
     np.testing.assert_allclose([j.size for j in result.jumps], [-2.4, 1.2], rtol=1e-12)
     np.testing.assert_allclose([j.time for j in result.jumps], [0.5, 0.9], rtol=1e-12)
     assert result.feasible_time is result.tight_time is None
-    assert result.feasible_why == "the motion jumps at a break; stretching does not mend that"
+    assert result.feasible_why == "the motion jumps at a break; stretching does not repair that"
     assert result.tight_why == result.feasible_why
     # a limit that is exceeded is said first
     slow = one_joint([0.3, 1.0, 0.6, 0.8], lines, velocity=1.0)

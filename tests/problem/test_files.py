@@ -209,6 +209,24 @@ def test_a_kill_between_two_renames_is_recovered_from(tmp_path: Path, again: boo
         assert content(out) == OLD
 
 
+def test_a_folder_that_stepped_aside_is_back_when_the_program_ends(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    replace_folder(out, OLD)
+    killed(
+        "module._exchanged = lambda *_: False\n"
+        "rename = Path.rename\n"
+        "def interrupted(self, to):\n"
+        "    if '.old' in (self.suffix, to.suffix): return rename(self, to)\n"
+        "    module.remove_drafts()\n"
+        "    die()\n"
+        "Path.rename = interrupted\n"
+        f"replace_folder(Path('out'), {NEW!r})",
+        tmp_path,
+    )
+    assert content(out) == OLD
+    assert names(tmp_path) == ["out"]
+
+
 def test_a_rename_that_fails_brings_the_folder_back(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -54,7 +54,7 @@ START = "import sys; from trajgap.compare.cli import main; sys.exit(main())"
 
 
 def assert_refused(ended: tuple[int, str, str], *words: str) -> None:
-    """Exit code 2, nothing on standard output, one line with a mend; nothing half-written."""
+    """Exit code 2, no output, one line that says how to fix it; nothing half-written."""
     code, out, err = ended
     assert (code, out) == (2, "")
     assert err.startswith("trajgap: ")

@@ -59,7 +59,15 @@ class Box:
         return out
 
     def narrow(self, clock: Clock) -> None:
-        """Narrow the ranges by the limits, then by the equations at the centre of the box."""
+        """Narrow the ranges by the limits, then by the equations at the centre of the box.
+
+        With M(y) = M(c) + Σ (y_k − c_k)B_k, Y ≈ M(c)⁻¹ and x̃ ≈ Y b(c), M(y)x = b(y) says (Krawczyk)
+
+            x − x̃ = Y(b(c) − M(c)x̃) + Y Σ (y_k − c_k)(b'_k − B_k x̃)
+                    + (I − Y M(c) − Σ (y_k − c_k) Y B_k)(x − x̃),
+
+        b'_k the slope of b from c_k to y_k. The first line is ``offset``, the second ``change``.
+        """
         cubic, sides = self.cubic, self.sides()
         self._from_limits(sides)
         moving = [(i, t, sign) for i, (t, sign) in cubic.moved.items() if any(cubic.steps[t])]
@@ -124,7 +132,10 @@ class Box:
             self._contract(j, middles[j], offsets[j], change)
 
     def _from_limits(self, sides: Sequence[tuple[Fraction, Fraction]]) -> None:
-        """|v| and |a| by the limits, Markov's inequality, and jerk since a rest of a."""
+        """|v| and |a| by the limits, Markov's inequality, and jerk since a rest of a.
+
+        A parabola within ±V on a length h has |slope| ≤ 8V/h (2n²/h for degree n).
+        """
         cubic, n = self.cubic, self.cubic.n
         least, most = (
             [

@@ -12,11 +12,12 @@ from typing import Any
 
 from ..problem import Bounds, Declaration, StatedProblem
 from ..ranges import MOST_CUBIC_SEGMENTS, MOST_INTEGER, MOST_POWER, SPOTS, TICKS
-from ..reading import given, listed, need, sign_of, whole
+from ..reading import listed, need, required, sign_of, whole
 
 Vector = dict[Any, Fraction]
 """Factors by unknown, or by (coordinate, unknown) for a product."""
 ZERO = Fraction(0)
+"""Sums begin with it, so that empty ones are exact, too."""
 _FINE = 2**60
 """A square root is rounded up to its multiples: some digits more than a float has."""
 
@@ -26,7 +27,7 @@ class Cubic:
 
     def __init__(self, problem: StatedProblem, proof: dict[str, Any]) -> None:
         self.problem = problem
-        declared = given(problem.declaration, "the curve is no declared piecewise polynomial")
+        declared = required(problem.declaration, "the curve is no declared piecewise polynomial")
         self.ends, self.virtual = _kind_of_ends(declared)
         q = problem.waypoints
         self.n, self.m, self.joints = problem.segments, len(q) - 1, problem.joints
@@ -73,7 +74,12 @@ class Cubic:
         return {k - 1: 1}
 
     def _equations(self) -> tuple[list[Vector], dict[int, tuple[int, int]]]:
-        """Left-hand sides, keyed by unknown or (coordinate, unknown); right: ±6Δq/T of a span."""
+        """Left-hand sides, keyed by unknown or (coordinate, unknown); right: ±6Δq/T of a span.
+
+        Acceleration from a to b in a line: 2(v₁ − v₀) = T(a + b), 6v₀ + T(2a + b) = 6Δq/T. From
+        rest, with a at the virtual way-point, at h, and b at T: 2v = T(a + b) − h b and
+        6Δq/T = (2T − h)a + (T − 2h + h²/T)b.
+        """
         n, m, v = self.n, self.m, self.n + 1
         rows: list[dict[Any, int]] = []
         moved = {}
@@ -104,7 +110,7 @@ class Cubic:
             return -1, {}, {t: Fraction(1) for t in range(self.m)}, -self.cap
         if kind in ("lower", "upper"):
             whole(k, 0, self.n - 1)
-            bound = given(
+            bound = required(
                 self.shortest[k] if kind == "lower" else self.longest[k],
                 "a bound of a duration that is not there",
             )
@@ -113,7 +119,7 @@ class Cubic:
             return -1, {}, along, -side * bound
         limits = self.limits[whole(joint, 0, self.joints - 1)]
         need(kind in ("jerk", "velocity"), "a row of an unknown kind")
-        limit = given(
+        limit = required(
             limits[2 if kind == "jerk" else 0], "a condition leans on a limit that is not there"
         )
         if kind == "jerk":
@@ -134,7 +140,12 @@ class Cubic:
         return joint, terms, {}, -limit
 
     def fastest(self, joint: int) -> tuple[Fraction | None, Fraction | None]:
-        """Bounds of |v| and |a| that the cap implies."""
+        """Bounds of |v| and |a| that the cap L implies.
+
+        The acceleration is 0 somewhere: |a| ≤ J·L. Around an |a| of α it takes α/J to vanish, in
+        which the velocity changes by α²/2J: at most 2V over both sides, V over one side of a rest,
+        so α² ≤ 2VJ. From a rest the velocity is at most A·L, half of that between two.
+        """
         velocity, acceleration, jerk = self.limits[joint]
         a = smaller(acceleration, None if jerk is None else jerk * self.cap)
         if jerk is not None and velocity is not None:

@@ -8,7 +8,7 @@ from math import floor, isqrt
 from typing import Any
 
 from ..ranges import MIX, MIX_DIGITS, MOST_INTEGER, MOST_WEIGHTS
-from ..reading import given, listed, need, text, whole
+from ..reading import listed, need, required, text, whole
 from .box import FINE, Box
 from .system import ZERO
 
@@ -81,7 +81,7 @@ def least(
     need(set(mix) <= set(MIX_DIGITS), "malformed: a share of a product")
     for letter, (joint, k, v, x) in zip(mix, products, strict=True):
         share = Fraction(MIX_DIGITS.index(letter), MIX)
-        ends = given(box.x[joint][v], "a product of an unknown without bounds")
+        ends = required(box.x[joint][v], "a product of an unknown without bounds")
         # y·u ≥ corner·u + edge·y − corner·edge where (y − corner)(u − edge) ≥ 0, and so on.
         for part, edge, first in ((share, ends[0], True), (1 - share, ends[1], False)):
             corner = sides[k][0 if (x > 0) == first else 1]
@@ -90,7 +90,7 @@ def least(
             constant -= x * part * corner * edge
     for (joint, v), x in lines.items():
         if x:
-            ends = given(box.x[joint][v], "an unknown without bounds")
+            ends = required(box.x[joint][v], "an unknown without bounds")
             constant += min(x * ends[0], x * ends[1])
     return constant + _over(along, inverse, sides, cubic.rho())
 

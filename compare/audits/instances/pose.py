@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, cast
 
 from ....heuristics import Algorithm
-from ....problem import TrajgapError
+from ....problem import CaseError, TrajgapError
 from ....problem.cases import Claim, ImprovementClaim, InstancesBlock, instance_waypoints
 from ...documents import Procedure
 from .result import InstancesResult
@@ -84,7 +84,7 @@ def examined(
 
     Raises
     ------
-    TrajgapError
+    CaseError
         If no instance can be drawn at a step.
     """
     case = study.case
@@ -99,7 +99,7 @@ def examined(
     try:
         drawn = instance_waypoints(block, chain, case.robot.joints, count)
     except TrajgapError as error:
-        raise TrajgapError(f"{case.file}: families.{block.id}: {error}") from None
+        raise CaseError(case.file, f"families.{block.id}", str(error)) from None
     tasks = [
         Task(
             step=step,

@@ -1,28 +1,14 @@
-from .condition_count import judge_counts
-from .continuous_time import judge_motions
-from .distances import judge_distances
-from .on_instances import HANDLED, attributed, judge_instances, placed
-from .open_points import list_open_points
-from .printed_chain import judge_kinematics
-from .printed_digits import judge_digits
-from .printed_vertices import Vertex, judge_vertices, vertices
-from .replays import judge_replays
-from .scaling_law import judge_scaling
+from .on_instances import HANDLED, attributed, placed
+from .printed_vertices import Vertex, vertices
+from .registry import GROUPS, NOT_COMPUTED, RULES
 
 __all__ = [
+    "GROUPS",
     "HANDLED",
+    "NOT_COMPUTED",
+    "RULES",
     "Vertex",
     "attributed",
-    "judge_counts",
-    "judge_digits",
-    "judge_distances",
-    "judge_instances",
-    "judge_kinematics",
-    "judge_motions",
-    "judge_replays",
-    "judge_scaling",
-    "judge_vertices",
-    "list_open_points",
     "placed",
     "vertices",
 ]

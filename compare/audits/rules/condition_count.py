@@ -13,7 +13,7 @@ from ..study import Study
 
 def judge_counts(study: Study) -> Iterator[Finding]:
     """Count what each statement about boundary conditions asks for."""
-    for claim in study.case.claims:
+    for claim in study.claims:
         if isinstance(claim, ConditionsClaim):
             yield _counted(study, claim)
 

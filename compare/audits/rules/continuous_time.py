@@ -43,7 +43,7 @@ _NARROW = 0.01
 
 def judge_motions(study: Study) -> Iterator[Finding]:
     """Findings of TG201 to TG204."""
-    for claim in study.case.claims:
+    for claim in study.claims:
         if isinstance(claim, DurationsClaim | MaximumClaim):
             yield from _limits(study, claim)
             yield from _jumps(study, claim)
@@ -111,6 +111,8 @@ def _judged(study: Study, claim: AnyClaim, pid: str, rid: str) -> _Judged:
 def broken(study: Study, claim: AnyClaim, pid: str, rid: str) -> str | None:
     """What shows that every input printing alike, rounded or cut off, breaks a limit; or None."""
     if not isinstance(claim, DurationsClaim | MaximumClaim):
+        return None
+    if study.unmoved(claim, pid, rid) is not None:
         return None
     judged = _judged(study, claim, pid, rid)
     return judged.message if judged.verdict is ClaimVerdict.REFUTED else None

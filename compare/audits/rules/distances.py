@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ....nlp import Evidence, Solution, weakest
+from ....nlp import Evidence, Solution, Status, weakest
 from ....problem import Coupling
 from ....problem.cases import (
     AnyClaim,
@@ -43,7 +43,7 @@ _BELOW_BOUND = (
 
 def judge_distances(study: Study) -> Iterator[Finding]:
     """Findings of TG302 and TG303."""
-    for claim in study.case.claims:
+    for claim in study.claims:
         if isinstance(claim, DurationsClaim | MaximumClaim | TotalTimeClaim):
             for pid, rid in study.claim_pairs(claim):
                 yield from _beside_optimum(study, claim, pid, rid)
@@ -52,7 +52,7 @@ def judge_distances(study: Study) -> Iterator[Finding]:
 
 
 def _kept(study: Study, claim: AnyClaim, pid: str, rid: str) -> bool:
-    if isinstance(claim, TotalTimeClaim):
+    if isinstance(claim, TotalTimeClaim) or study.unmoved(claim, pid, rid) is not None:
         return False
     return study.claim_rounding(claim, pid, rid).verdict in (Rounding.KEEPS, Rounding.CONSISTENT)
 
@@ -89,7 +89,7 @@ def _distance(
         f"Printed {shown}; {reference.evidence} optimum {which} {reference.upper:.6f} s"
         f"{_bounded(reference)}: {_named(distance)}."
     )
-    if not isinstance(claim, TotalTimeClaim):
+    if not isinstance(claim, TotalTimeClaim) and study.unmoved(claim, pid, rid) is None:
         verdict = study.claim_check(claim, pid, rid)
         if verdict.feasible_time is not None:
             repaired = gap(verdict.feasible_time, reference)
@@ -179,11 +179,14 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
     for rid in study.readings:
         longer, breaking, judged, open_ = [], [], 0, 0
         roots: list[str] = []
+        failed: list[str] = []
         evidence: list[Evidence] = []
         for claim in (study.case.claim(i) for i in statement.of):
             for pid, reading in study.claim_pairs(claim):
                 total = study.claim_total(claim, rid)
                 solution = study.claim_optimum(claim, pid, rid) if reading == rid else None
+                if solution is not None and solution.status is Status.FAILED:
+                    failed.append(f"{claim.id} ({pid}): {solution.why or solution.status}")
                 if total is None or solution is None or solution.durations is None:
                     continue
                 judged += 1
@@ -199,6 +202,14 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
                     roots.append(f"{LIMITS} {claim.id}")
                 elif not interval[0] <= best <= interval[1]:
                     open_ += 1
+        if not judged and failed:
+            yield Finding(
+                rule="TG302",
+                basis=Basis.OPTIMUM,
+                claim=statement.id,
+                reading=rid,
+                message=f"No optimum to compare with: {'; '.join(failed)}.",
+            )
         if not judged:
             continue
         known = weakest(evidence)

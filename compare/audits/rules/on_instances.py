@@ -14,6 +14,7 @@ from ..instances import (
     InstancesResult,
     distribution,
     percent_range,
+    readings_of,
     reproduced,
 )
 from ..study import Study
@@ -28,6 +29,11 @@ HANDLED = {
 
 def judge_instances(study: Study) -> Iterator[Finding]:
     """Findings of TG404. None of them decides: the instances are not the paper's."""
+    for block in study.case.instances:
+        why = study.unexamined(block) if readings_of(study, block) else None
+        if why is not None:
+            message = f"Family {block.id} is not examined: {why}."
+            yield Finding(rule="TG404", basis=Basis.REPLAY, decides=False, message=message)
     for block in study.instance_blocks:
         result = study.instances(block)
         yield _summary(result)

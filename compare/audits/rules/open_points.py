@@ -11,7 +11,7 @@ from ..study import Study
 
 def list_open_points(study: Study) -> Iterator[Finding]:
     """One finding per statement and per damaged passage, never more than "not checkable"."""
-    for claim in study.case.claims:
+    for claim in study.claims:
         if isinstance(claim, StatementClaim) and claim.not_checkable:
             why = claim.not_checkable.removesuffix(".")
             yield _listed(claim.id, f"{claim.where}: {why}.")
@@ -23,7 +23,7 @@ def list_open_points(study: Study) -> Iterator[Finding]:
 
 def _without_waypoints(study: Study) -> Iterator[Finding]:
     """What cannot be said of claims while the way-points are missing."""
-    for claim in study.case.claims:
+    for claim in study.claims:
         if isinstance(claim, StatementClaim | ImprovementClaim):
             continue
         why = (study.case.statement(claim.problem).waypoints.not_printed or "").removesuffix(".")

@@ -103,7 +103,7 @@ def _unit(study: Study) -> str:
 
 
 def _sums(study: Study) -> Iterator[Finding]:
-    for claim in study.case.claims:
+    for claim in study.claims:
         if isinstance(claim, DurationsClaim | MaximumClaim) and claim.total is not None:
             yield _compared(
                 "TG101",
@@ -118,7 +118,7 @@ def _sums(study: Study) -> Iterator[Finding]:
 
 
 def _maxima(study: Study) -> Iterator[Finding]:
-    for claim in study.case.claims:
+    for claim in study.claims:
         if not isinstance(claim, MaximumClaim):
             continue
         rows = [study.case.printed_durations(study.case.claim(i)) for i in claim.of]
@@ -152,7 +152,7 @@ def _total(claim: AnyClaim) -> Printed | None:
 
 def _table_total(study: Study, algorithm: str | None, problem: str | None) -> AnyClaim | None:
     """The claim that prints an algorithm's total for all joints in a table."""
-    for claim in study.case.claims:
+    for claim in study.claims:
         same = claim.algorithm == algorithm and claim.problem == problem
         if isinstance(claim, MaximumClaim) and same and claim.total is not None:
             return claim
@@ -167,7 +167,7 @@ def _reduction(slower: Interval, faster: Interval) -> tuple[Interval, Interval]:
 
 
 def _improvements(study: Study) -> Iterator[Finding]:
-    for claim in study.case.claims:
+    for claim in study.claims:
         if not isinstance(claim, ImprovementClaim):
             continue
         slower_claim, faster_claim = (study.case.claim(i) for i in (claim.slower, claim.faster))
@@ -320,7 +320,7 @@ def _all_digits(claim: AnyClaim) -> tuple[str, ...]:
 
 
 def _same_total(study: Study) -> Iterator[Finding]:
-    for claim in study.case.claims:
+    for claim in study.claims:
         if not isinstance(claim, TotalTimeClaim) or claim.algorithm is None:
             continue
         table = _table_total(study, claim.algorithm, claim.problem)

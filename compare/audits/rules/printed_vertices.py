@@ -54,7 +54,7 @@ class Vertex:
 
 def judge_vertices(study: Study) -> Iterator[Finding]:
     """Set every printed control vertex beside the way-points of its problem."""
-    for claim in study.case.claims:
+    for claim in study.claims:
         if isinstance(claim, ControlVerticesClaim):
             statement = study.case.statement(claim.problem)
             if statement.complete:

@@ -23,7 +23,7 @@ from ..study import Study
 
 def judge_replays(study: Study) -> Iterator[Finding]:
     """Findings of TG401 to TG403. None of them decides: operators and seeds are not printed."""
-    for claim in study.case.claims:
+    for claim in study.claims:
         if isinstance(claim, ImprovementClaim) and claim.joint is None:
             yield from _improvement(study, claim)
         elif isinstance(claim, MaximumClaim | DurationsClaim | TotalTimeClaim):
@@ -41,9 +41,11 @@ def _improvement(study: Study, claim: ImprovementClaim) -> Iterator[Finding]:
     for pid in study.problems:
         if claim.problem not in (None, pid):
             continue
-        totals = [study.variant_totals(str(name), pid, rid) for name in names]
-        if not totals[0] or not totals[1]:
+        why = (study.unreplayed(str(name), pid, rid) for name in dict.fromkeys(names))
+        if missing := " ".join(reason for reason in why if reason is not None):
+            yield _not_replayed("TG401", claim, pid, rid, missing)
             continue
+        totals = [study.variant_totals(str(name), pid, rid) for name in names]
         slower, faster = (t["as listed"] for t in totals)
         shows = share_of_pairs(slower, faster, least)
         luck = share_of_luck(slower, least)
@@ -92,20 +94,11 @@ def _total(study: Study, claim: AnyClaim) -> Iterator[Finding]:
         alone = claim.joint is not None and len(problem.joints) > 1
         if reading != rid or alone:
             continue
-        variants = study.variant_totals(claim.algorithm, pid, rid)
-        if not variants:
-            yield Finding(
-                rule="TG402",
-                basis=Basis.REPLAY,
-                decides=False,
-                claim=claim.id,
-                problem=pid,
-                reading=rid,
-                printed=shown,
-                message=f"The algorithm {claim.algorithm} is of a kind that is not implemented "
-                "here.",
-            )
+        missing = study.unreplayed(claim.algorithm, pid, rid)
+        if missing is not None:
+            yield _not_replayed("TG402", claim, pid, rid, missing, shown)
             continue
+        variants = study.variant_totals(claim.algorithm, pid, rid)
         reached = [bool(((t >= low) & (t <= high)).any()) for t in variants.values()]
         beyond = [bool(np.nanmin(t) <= high and np.nanmax(t) >= low) for t in variants.values()]
         missed = sum(not (a or b) for a, b in zip(reached, beyond, strict=True))
@@ -135,6 +128,21 @@ def _total(study: Study, claim: AnyClaim) -> Iterator[Finding]:
         )
 
 
+def _not_replayed(
+    rule: str, claim: AnyClaim, pid: str, rid: str, why: str, printed: str | None = None
+) -> Finding:
+    return Finding(
+        rule=rule,
+        basis=Basis.REPLAY,
+        decides=False,
+        claim=claim.id,
+        problem=pid,
+        reading=rid,
+        printed=printed,
+        message=why,
+    )
+
+
 def _traces(runs: Sequence[Run] | Sequence[JointRuns]) -> list[Run]:
     return list(chain.from_iterable(r.runs if isinstance(r, JointRuns) else (r,) for r in runs))
 
@@ -146,9 +154,11 @@ def _convergence(study: Study, claim: ConvergenceClaim) -> Iterator[Finding]:
     for pid in study.problems:
         if claim.problem not in (None, pid):
             continue
-        runs = _traces(study.runs(claim.algorithm, pid, rid))
-        if not runs:
+        missing = study.unreplayed(claim.algorithm, pid, rid)
+        if missing is not None:
+            yield _not_replayed("TG403", claim, pid, rid, missing)
             continue
+        runs = _traces(study.runs(claim.algorithm, pid, rid))
         settled = np.array([settled_at(r.trace, SETTLED * r.trace[-1]) for r in runs])
         within = float((settled <= claim.iterations.value).mean())
         supported = within >= 0.5

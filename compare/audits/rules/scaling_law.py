@@ -17,9 +17,9 @@ from ..study import Study
 
 def judge_scaling(study: Study) -> Iterator[Finding]:
     """Stretch one claim's durations to another's limits: a feasible total the other can meet."""
-    claims = [c for c in study.case.claims if isinstance(c, DurationsClaim | MaximumClaim)]
+    claims = [c for c in study.claims if isinstance(c, DurationsClaim | MaximumClaim)]
     statements = [
-        c for c in study.case.claims if isinstance(c, StatementClaim) and c.checks == "optimal"
+        c for c in study.claims if isinstance(c, StatementClaim) and c.checks == "optimal"
     ]
     for slow, fast in permutations(claims, 2):
         if slow.problem == fast.problem or slow.joint != fast.joint:

@@ -105,6 +105,7 @@ def _close(session: Session, search: Search, root: Node, motion: Motion | None) 
 
 
 ANY_CURVE = Certifier("every C1 motion", lambda _: True, missing, _prove, subject=Subject.ANY)
+"""Takes every curve, since of a curve only the velocities at its two ends count."""
 
 
 def _first_motion(exact: ExactProblem, asked: FreeQuestion, seed: int) -> Motion | None:

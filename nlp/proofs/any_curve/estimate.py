@@ -13,6 +13,7 @@ from .local import KEPT, Question, local_optimum, starting_points
 from .reach import profile
 
 STARTS = 6
+"""Standing still at every way-point, and five random ones: the problem is not convex."""
 SAME = 1e-6
 """Relative difference below which two totals count as the same."""
 

@@ -14,7 +14,9 @@ from numpy.typing import NDArray
 from ..exact import ExactProblem, Real
 
 _STRETCHES = (Fraction(0), *(Fraction(1, 10**k) for k in range(13, 6, -1)))
+"""Shares by which a motion is stretched until it is feasible, as in `answer.prove_feasible`."""
 _DIGITS = 16
+"""Of durations and speeds in an answer: as many as a float has, so that cutting loses nothing."""
 
 Number = Fraction | None
 

@@ -9,6 +9,7 @@ from ....problem import Array
 from .tangents import Floats, Ints, matrix
 
 _EXACT = {"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10}
+"""Options of HiGHS: the smallest tolerances that it takes, since its errors weaken the bound."""
 
 
 def least_total(
@@ -59,6 +60,8 @@ def least_total(
     )
     if found.status != 0 or found.fun <= 0:
         return None
+    # The multipliers w prove Σ w (right − left) ≥ fun all over the box. So factor·w prove the bound
+    # Σ low + factor·fun, which is 2·target − Σ low with this factor.
     factor = 2 * (target - low.sum()) / found.fun
     weights = np.maximum(0.0, -found.ineqlin.marginals) / size
     return np.asarray(found.x[:-1]), weights * max(factor, 1.0)

@@ -15,6 +15,7 @@ from .rows import KINDS, Row
 from .search import Node, Search
 
 KIND = "any-curve"
+"""Of the proof, as `trajgap.verify` knows it."""
 DIGITS = (4, 6, 8, 12)
 """Of the weights: as few as prove the bound."""
 
@@ -93,24 +94,28 @@ def restored(search: Search, document: dict[str, Any], target: float) -> Node:
     try:
         rows = np.array([_row(search, row) for row in document["rows"]], dtype=np.int64)
         root = search.root(durations, speeds, -np.inf)
-        stack, leaves = [root], []
+        stack, divided = [root], []
         for tag, *data in document["tree"]:
             node = stack.pop()
             if tag == CUT:
                 cut = (int(data[0]), number(data[1]))
                 stack += reversed(search.halves(node, *cut, -np.inf))
+                divided.append(node)
                 continue
             used = rows.reshape(-1, 7)[[int(n) for n in data[::2]]]
             node.carried = np.unique(np.concatenate([node.carried, used]), axis=0)
-            leaves.append(node)
         if stack:
             raise ValueError("the tree leaves a part open")
     except (KeyError, IndexError, TypeError, ValueError, OverflowError, ZeroDivisionError) as error:
         raise TrajgapError(f"certify: the state cannot be resumed: {error}") from None
-    for leaf in leaves:
-        if leaf.box:
-            vars(leaf).update(vars(search.node(leaf.box, leaf.carried, target, None)))
-    return root
+
+    def bounded(node: Node) -> Node:
+        open_leaf = node.box and not node.parts
+        return search.node(node.box, node.carried, target, None) if open_leaf else node
+
+    for node in divided:
+        node.parts = tuple(map(bounded, node.parts))
+    return bounded(root)
 
 
 def _row(search: Search, row: Any) -> Row:

@@ -15,7 +15,9 @@ Box = tuple[tuple[Fraction, Fraction], ...]
 UNIT = 10**10
 """Parameters of rows are multiples of 1/UNIT."""
 REACH, BRAKE, CHANGE = range(3)
+"""Kinds of rows as integers: a row is a line of an integer array."""
 KINDS = ("reach", "brake", "change")
+"""Their names in a certificate, in the order of the integers."""
 
 
 class Row(NamedTuple):
@@ -34,7 +36,7 @@ class Row(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Exact:
+class ExactRow:
     """time·h + start·v₀ + end·v₁ ≥ right."""
 
     time: Fraction
@@ -43,7 +45,7 @@ class Exact:
     right: Fraction
 
 
-def exact_row(asked: FreeQuestion, row: Row, box: Box, speed: Fraction) -> Exact:
+def exact_row(asked: FreeQuestion, row: Row, box: Box, speed: Fraction) -> ExactRow:
     """A row in rational numbers.
 
     Parameters
@@ -57,26 +59,33 @@ def exact_row(asked: FreeQuestion, row: Row, box: Box, speed: Fraction) -> Exact
 
     Returns
     -------
-    Exact
-        Why it holds is in docs/certificates-any-curve.md.
+    ExactRow
+        With d = |displacement|, V and A the limits, l ≤ h ≤ u the box:
+
+        - change: A h ± (v₀ − v₁) ≥ 0,
+        - reach: h + (a v₀ + b v₁)/A ≥ 2dn + min(0, peak·V), n = c/V,
+          peak = (a(2 − a) + b(2 − b))/2A − dn²,
+        - brake: (A(a² + b²)/2 − d/lu)·h − a v₀ − b v₁ ≥ −|1 − a − b|·V − d(1/l + 1/u).
+
+        Why they hold for all a, b and c ≥ 0 is in docs/certificates-any-curve.md.
     """
     acceleration = asked.loose[row.joint][1]
     assert acceleration is not None
     if row.kind == CHANGE:
-        return Exact(acceleration, Fraction(row.sign), Fraction(-row.sign), Fraction(0))
+        return ExactRow(acceleration, Fraction(row.sign), Fraction(-row.sign), Fraction(0))
     way = abs(asked.steps[row.segment][row.joint])
     a, b = Fraction(row.a, UNIT), Fraction(row.b, UNIT)
     if row.kind == REACH:
         n = Fraction(row.c, UNIT) / speed
         peak = (2 * a - a * a + 2 * b - b * b) / (2 * acceleration) - way * n * n
-        return Exact(
+        return ExactRow(
             Fraction(1),
             row.sign * a / acceleration,
             row.sign * b / acceleration,
             2 * way * n + min(Fraction(0), peak * speed),
         )
     low, high = box[row.segment]
-    return Exact(
+    return ExactRow(
         acceleration * (a * a + b * b) / 2 - way / (low * high),
         -row.sign * a,
         -row.sign * b,

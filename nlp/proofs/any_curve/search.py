@@ -26,16 +26,23 @@ from .tangents import (
 )
 
 _TOLERANCE = 1e-10
+"""Excess, scaled, above which a tangent is added: the tolerance of the linear program."""
 _ROUNDS = 60
+"""Linear programs for one box at most: a guard, since they end where tangents gain little."""
 _STALL = 4
+"""Rounds in which a bound must gain a tenth of what it lacks: fewer could be one unlucky vertex."""
 _NEAR = 1e-3
 """Rows this close to being active are handed on to the halves of a box."""
 _MARGIN = 0.1
 """A box is never cut closer to its sides than this share of its width."""
 _TRIALS = 5
+"""Cuts tried for one box: each costs the bounds of two halves."""
 _FAINT = 0.01
+"""Share of the largest score below which cutting a segment cannot pay."""
 _NARROWEST = 1e-12
+"""Relative width below which a side is not cut: some digits more, and no float is inside."""
 _DOUBTFUL = 1e-6
+"""Excess, scaled, below which durations look feasible enough for the local solver to try them."""
 
 
 @dataclass(eq=False)
@@ -179,7 +186,10 @@ class Search:
         return np.asarray((left @ x - right < _NEAR) | (rows[:, 0] == CHANGE))
 
     def _stress(self, node: Node, h: Array, low: Array, high: Array) -> Array:
-        """What the chords in a box cost in each segment: weight times their distance."""
+        """What the chords in a box cost in each segment: weight times their distance.
+
+        A brake's chord lies d(1/l + 1/u − h/lu − 1/h) above d/h.
+        """
         braking = node.rows[:, 0] == BRAKE
         k, j = node.rows[braking, 1], node.rows[braking, 2]
         a, b, c = low[k], high[k], h[k]

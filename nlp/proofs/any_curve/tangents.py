@@ -16,6 +16,7 @@ from .rows import BRAKE, CHANGE, REACH, UNIT, Row
 Ints = NDArray[np.int64]
 
 _LARGEST = 1e5
+"""Largest slope in a row: times `UNIT` it is an integer that a float still holds exactly."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,7 +119,10 @@ def change_rows(scaled: Floats) -> Ints:
 
 
 def reach_rows(scaled: Floats, h: Array, v: Array, tolerance: float) -> Ints:
-    """Tangents of the least time for a displacement, where ``h`` falls short of it.
+    """Tangents of the least time for a displacement, where ``h`` is shorter than it.
+
+    The least time is (d + ((p − v₀)² + (p − v₁)²)/2A)/p at its least over p ≤ V, which is at
+    p = min(V, √(A d + (v₀² + v₁²)/2)). A row touches it there with slopes (p − v)/p and n = 1/p.
 
     Parameters
     ----------
@@ -154,7 +158,10 @@ def reach_rows(scaled: Floats, h: Array, v: Array, tolerance: float) -> Ints:
 def brake_rows(
     scaled: Floats, h: Array, v: Array, low: Array, high: Array, tolerance: float
 ) -> tuple[Ints, Array]:
-    """Tangents of the most that can be covered slowly, where ``v`` is too fast for it.
+    """Tangents of the least that can be covered, where ``v`` is too fast for the displacement.
+
+    Braking to −p and back covers −p h + ((p + v₀)² + (p + v₁)²)/2A at the least, which is at
+    p = min(V, (A h − v₀ − v₁)/2). A row touches it there with slopes (p + v)/(A h).
 
     Parameters
     ----------

@@ -157,3 +157,4 @@ REST_TO_REST = Certifier(
     proving("rest-to-rest", closed_form),
     instant=True,
 )
+"""Rest at every way-point makes each segment a formula, whatever the odd degree."""

@@ -80,3 +80,4 @@ STRETCHED = Certifier(
     proving("stretched", closed_form),
     instant=True,
 )
+"""One curve alone: its segments do not know of each other, so that each is a formula."""

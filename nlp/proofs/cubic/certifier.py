@@ -171,3 +171,4 @@ def _missing(problem: ExactProblem) -> str | None:
 
 
 CUBIC = Certifier("C2 cubic splines (clamped, natural, virtual)", _declares, _missing, _prove)
+"""The ends that `kind_of_ends` knows: only for them are the equations derived."""

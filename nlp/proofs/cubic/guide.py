@@ -6,20 +6,21 @@ import numpy as np
 
 from ....problem import Array
 from .ranges import matrices
-from .relaxation import Laid, Proposal
+from .relaxation import BoxProgram, Proposal
 from .system import PLACES, CubicSystem, Row
 
 _TINY = 1e-9
+"""Stands for a span of 0 in a quotient: spans are of order 1 in the units of a system."""
 _EXCESS = 1.001
 """A peak counts where it exceeds its limit by this factor."""
 
 
-def errors(laid: Laid, proposal: Proposal) -> Array:
+def errors(program: BoxProgram, proposal: Proposal) -> Array:
     """How far the products of each coordinate are from being products, shape (free,)."""
-    system = laid.relaxation.system
+    system = program.relaxation.system
     out = np.zeros(system.coordinates)
     scale = np.maximum(np.abs(proposal.unknowns).max(axis=1, initial=0.0), 1e-9)
-    for p, (k, i) in enumerate(laid.relaxation.pairs):
+    for p, (k, i) in enumerate(program.relaxation.pairs):
         miss = np.abs(proposal.products[:, p] - proposal.point[k] * proposal.unknowns[:, i])
         out[k] += float((miss / scale).sum())
     for h, _, rho in system.curved:
@@ -29,6 +30,9 @@ def errors(laid: Laid, proposal: Proposal) -> Array:
 
 def peaks(system: CubicSystem, point: Array) -> list[Row]:
     """Velocity conditions at the interior peaks of the splines for some durations.
+
+    On a piece the acceleration runs from a to b in a line, and is 0 at the share s = a/(a − b); the
+    velocity there is v₀ + length·(a(s − s²/2) + b s²/2).
 
     Parameters
     ----------

@@ -17,6 +17,7 @@ from .system import CubicSystem, Row
 MIX = 32
 """Shares of a product's two bounds are multiples of 1/MIX."""
 _SLOPES = 33
+"""Tangents of ρ = h²/T that are tried: the best one misses it by T·(1/64)² at most."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +38,7 @@ class Target:
 
 
 TOTAL, NOTHING = Target(None), Target(None, 0)
+"""What raises a floor, and what shows that a box is empty."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +65,11 @@ class Weights:
 
 @dataclass(frozen=True, eq=False)
 class Lagrangian:
-    """Σ alone·x + Σ product·y·x + along·y + Σ inverse/T + constant; the first two are exact."""
+    """Σ alone·x + Σ product·y·x + along·y + Σ inverse/T + constant; the first two are exact.
+
+    It is scale·target + Σ w·g(y, x) + Σ μ·(M(y)x − b(y)), by its powers: at a feasible point g ≤ 0
+    and M(y)x = b(y), so that its least value over the box bounds scale·target from below.
+    """
 
     alone: Array
     product: Array

@@ -14,6 +14,7 @@ from ...enclosure import EPS, Ball, raised
 from .system import CubicSystem
 
 _ROUNDS = 6
+"""Of narrowing by the equations: as many as the verifier makes, which could not follow more."""
 _SPARE = 1e-8
 """Relative widening: the verifier's own enclosure need not be a hair tighter than this one."""
 

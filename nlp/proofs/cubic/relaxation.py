@@ -16,10 +16,13 @@ from .ranges import Side, matrices
 from .system import CubicSystem, Row
 
 _TANGENTS = 5
+"""Of 1/T over a side: what they miss falls with the square of the box, and rows cost time."""
 _SLOPES = 4
+"""Tangents of ρ over a box: what they miss falls with its square, too."""
 _LARGEST = 2**22
 """Of the integer weights."""
 _SMALLEST = 0.6
+"""Weights below it, in units of the rounding, are left out: those kept round to 1 or more."""
 _BARRED = 1e6
 """Total that stands for "not limited"."""
 
@@ -46,7 +49,7 @@ class Proposal:
 
 
 class Relaxation:
-    """The relaxation of one system under some conditions, to be laid over boxes."""
+    """The relaxation of one system under some conditions, to be written down for boxes."""
 
     def __init__(self, system: CubicSystem, rows: list[Row], cap: Fraction) -> None:
         self.system, self.cap = system, cap
@@ -63,10 +66,10 @@ class Relaxation:
         self._linear = np.array([linear[k, :, i] for k, i in self.pairs])
         self._fixed = fixed
 
-    def over(self, side: Side, ranges: tuple[Array, Array]) -> Laid:
-        """Lay it over a box."""
+    def over(self, side: Side, ranges: tuple[Array, Array]) -> BoxProgram:
+        """Its program over a box."""
         joints = np.flatnonzero(np.isfinite(ranges[1]).all(axis=0))
-        return Laid(self, side, ranges, joints)
+        return BoxProgram(self, side, ranges, joints)
 
 
 class _Entries:
@@ -90,8 +93,8 @@ class _Entries:
         return csr_array((self.value, (self.row, self.column)), shape=shape)
 
 
-class Laid:
-    """A relaxation over one box."""
+class BoxProgram:
+    """The linear program of a relaxation over one box."""
 
     def __init__(
         self,
@@ -141,7 +144,11 @@ class Laid:
             self.divisor.append(by)
 
     def _simple(self) -> csr_array:
-        """Bounds of 1/T and of ρ."""
+        """Bounds of 1/T and of ρ = h²/T.
+
+        1/T ≥ 2/τ − T/τ² and 1/T ≤ 1/l + 1/u − T/lu for l ≤ T ≤ u; ρ ≥ 2θh − θ²T for any θ, and
+        ρ ≤ h²/l ≤ ((h_l + h_u)h − h_l h_u)/l, or ρ ≤ h where l is 0.
+        """
         system, side = self.relaxation.system, self.side
         _, _, _, which = matrices(system)
         out, low, high = _Entries(), side.low, side.high
@@ -165,7 +172,11 @@ class Laid:
         return out.matrix(self.columns)
 
     def _products(self, low: Array, high: Array) -> csr_array:
-        """Four bounds of every product: below and above, exact where the unknown is low or high."""
+        """Four bounds of every product: below and above, exact where the unknown is low or high.
+
+        McCormick's: y·x ≥ corner·x + edge·y − corner·edge at the two equal corners (low, low) and
+        (high, high) of the box, ≤ at the two others.
+        """
         pairs = self.relaxation.pairs
         k = np.array([p[0] for p in pairs])
         i = np.array([p[1] for p in pairs])
@@ -279,6 +290,8 @@ class Laid:
             for i, w in enumerate(equal.tolist())
             if abs(w * unit) > _SMALLEST
         }
+        # A product's four bounds as in `_products`: the first and the third are exact where the
+        # unknown is lowest.
         parts = np.maximum(dual[dual.size - 4 * len(self.joints) * self.count :], 0.0)
         parts = parts.reshape(4, len(self.joints), self.count)
         lowest, highest = parts[0] + parts[2], parts[1] + parts[3]

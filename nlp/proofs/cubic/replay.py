@@ -14,6 +14,7 @@ from .system import CubicSystem, Row, kind_of_ends, scaled
 from .tree import Box, Prover, Step
 
 _LARGEST = 2**26
+"""Of the integer weights in a state: up to there `proof.lagrangian` adds them up exactly."""
 
 
 def replayed(exact: ExactProblem, document: dict[str, Any]) -> tuple[Prover, Box, int]:

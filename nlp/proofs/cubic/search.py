@@ -14,11 +14,12 @@ from numpy.typing import NDArray
 from ....verify import TICKS
 from .guide import errors, peaks
 from .proof import TOTAL, Target
-from .relaxation import Laid, Proposal, Relaxation
+from .relaxation import BoxProgram, Proposal, Relaxation
 from .system import CubicSystem
 from .tree import Box, Prover
 
 _ROUNDS = 4
+"""On one box at most: a guard, since they end where one shrinks it by less than `_AGAIN`."""
 _WORTH = 0.05
 """A side is moved if it gains this share of the width."""
 _NEAR = 0.1
@@ -88,13 +89,13 @@ class Search:
         for _ in range(_ROUNDS):
             if not prover.narrow(box):
                 return -1
-            laid = self.relaxation.over(prover.side(box), box.ranges)
-            laid, found = self._total(laid, box)
+            program = self.relaxation.over(prover.side(box), box.ranges)
+            program, found = self._total(program, box)
             if found is None or box.closed:
                 break
-            best = errors(laid, found)
+            best = errors(program, found)
             before = self._volume(box)
-            self._sides(laid, box, found)
+            self._sides(program, box, found)
             if box.closed or self._volume(box) > _AGAIN * before:
                 break
         widths = np.array(box.high) - np.array(box.low)
@@ -109,13 +110,13 @@ class Search:
     def _volume(self, box: Box) -> float:
         return float(np.prod(np.subtract(box.high, box.low, dtype=np.float64)))
 
-    def _total(self, laid: Laid, box: Box) -> tuple[Laid, Proposal | None]:
+    def _total(self, program: BoxProgram, box: Box) -> tuple[BoxProgram, Proposal | None]:
         """Raise the floor by the bound of the total, with velocities at the peaks found so far.
 
         Returns the program with those velocities in it, and its answer.
         """
         prover = self.prover
-        found = laid.bound(TOTAL, capped=False)
+        found = program.bound(TOTAL, capped=False)
         if found is not None:
             point = found.point[: prover.system.free]
             self.watch.improve(prover.system, point)
@@ -123,17 +124,17 @@ class Search:
             if new:
                 self.rows += new
                 self.relaxation = Relaxation(prover.system, self.rows, prover.total)
-                laid = self.relaxation.over(laid.side, box.ranges)
-                found = laid.bound(TOTAL, capped=False)
+                program = self.relaxation.over(program.side, box.ranges)
+                found = program.bound(TOTAL, capped=False)
         if found is None:
-            empty = laid.emptiness()
+            empty = program.emptiness()
             if empty is not None:
                 prover.clear(box, empty.weights)
-            return laid, None
+            return program, None
         prover.lift(box, found.weights)
-        return laid, found
+        return program, found
 
-    def _sides(self, laid: Laid, box: Box, found: Proposal) -> None:
+    def _sides(self, program: BoxProgram, box: Box, found: Proposal) -> None:
         """Move the sides inward."""
         for k in range(self.prover.system.free):
             for sign in (1, -1):
@@ -143,7 +144,7 @@ class Search:
                 distance = place - box.low[k] if sign > 0 else box.high[k] - place
                 if distance <= _NEAR * width:
                     continue
-                moved = laid.bound(Target(k, sign))
+                moved = program.bound(Target(k, sign))
                 if moved is not None:
                     least = max(1, math.ceil(_WORTH * width))
                     self.prover.tighten(box, k, sign, moved.weights, least)

@@ -19,6 +19,7 @@ from ..exact import ExactProblem
 PLACES = 64
 """Velocity limits are looked at in multiples of 1/PLACES of a piece."""
 _STARTING = (16, 32, 48)
+"""Places of the first velocity rows, the quarters: `guide.peaks` adds others where they count."""
 _EXPONENT = 3
 """The unit of time is a power of two for which the longest total is below 2^(_EXPONENT + 1)."""
 

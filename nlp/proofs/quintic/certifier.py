@@ -31,6 +31,7 @@ _SLIGHT = 1e-7
 _NEAR = 8
 """Powers of two by which a size may differ from 1 before the units are changed."""
 _REST = ((1, 0.0), (2, 0.0))
+"""Velocity and acceleration 0 at an end, as a declaration prescribes them."""
 
 
 @dataclass(frozen=True)
@@ -178,7 +179,7 @@ class _Search:
     def _look(self, durations: Array, below_it: float) -> bool:
         """Raise `Shorter` if the direction of ``durations`` holds a total below the one given.
 
-        False if it does but for bounds that stretching cannot mend: more would follow.
+        False if it does but for bounds that stretching cannot repair: more would follow.
         """
         time = float(self.units.time)
         found = self.session.stretched(durations[None] * time)[0]
@@ -221,3 +222,4 @@ def _prove(session: Session) -> bool:
 
 
 QUINTIC = Certifier("C4 quintic splines at rest at the ends", _declares, _missing, _prove)
+"""At rest alone: the windows and the nodal equations are derived for it."""

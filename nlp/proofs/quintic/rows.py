@@ -4,15 +4,20 @@ from __future__ import annotations
 
 import numpy as np
 
-from .bound import BASIS, compiled, place
+from .nodal import BASIS, compiled, place
 
 PLACES = 1024
 """Places on a segment are multiples of 1/PLACES."""
 MOST = 40
+"""Rows that take part in a box: below `MOST_LIMITS` of a leaf, and the table stays small."""
 _GRID = 9
+"""Places where a derivative is scanned: it has at most three extrema inside a segment."""
 _STEPS = 3
+"""Newton steps to an extremum, which begin less than an eighth of a segment away."""
 _PIVOTS = 60
+"""Of the simplex method: a guard, since any weights are valid."""
 _SMALL = 1e-9
+"""Gain below which no variable enters: what it could win is lost in rounding."""
 
 
 def derivative_table() -> np.ndarray:
@@ -26,6 +31,7 @@ def derivative_table() -> np.ndarray:
 
 
 TABLE = derivative_table()
+"""Computed once: compiled functions take it as a constant."""
 
 
 @compiled
@@ -143,6 +149,9 @@ def candidates(  # type: ignore[no-untyped-def]
 @compiled
 def simplex(n, count, value, gradient, r, e, total, weight):  # type: ignore[no-untyped-def]
     """Weights w ≥ 0 of sum 1 and tau that maximise the least linearised sum over the box.
+
+    That is Σ w_i value_i + tau·(Σ 1/r − total) − Σ_k |Σ w_i gradient_ik − tau/r_k²|·e_k, where the
+    absolute values are the sums of two variables whose difference the table holds.
 
     Returns (that least sum, tau). Stops early after a number of pivots: any weights are valid.
     """

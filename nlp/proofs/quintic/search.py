@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .bound import bound, centre, compiled
+from .bound import bound
+from .nodal import centre, compiled
 from .rows import MOST, candidates, simplex
 from .windows import excluding_window
 
@@ -19,9 +20,13 @@ MOST_TAU = 2.0**52
 SPARE = 1e-9
 """Part of the limits by which a leaf must exceed them, so that another evaluation agrees."""
 _SLACK = 1e-12
+"""Share that boxes are widened by, as in `trajgap.verify`: far more than the rounding of sums."""
 _WIDEST = 0.6
+"""Relative half-width in 1/h of a box with a bound, as in `trajgap.verify`; at 1 there is none."""
 _KEPT = 1e-5
+"""Weight of a row below which it is left out: they sum up to 1, and short leaves are cheap."""
 _BRIEFEST = 1e-40
+"""Durations of a box with a bound are above it, as in `trajgap.verify`: nothing underflows."""
 
 
 @compiled

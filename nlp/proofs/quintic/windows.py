@@ -17,17 +17,24 @@ from numpy.typing import NDArray
 from scipy.optimize import linprog
 
 from ....problem import Array
-from .bound import ROUNDING, compiled
+from .energy import ROUNDING
+from .nodal import compiled
 
 UNIT = 2.0**16
 """ψ and c are multiples of 1/UNIT."""
 _CELLS = 6
+"""Of a segment in the linear program for ψ: it only proposes, the mean of |ψ| is exact later."""
 _PROMISING = 4
+"""Conditions that are tried with multipliers of the total: the nearest to excluding the box."""
 _SPREAD = 0.5
+"""Deviation of the random log durations: directions within a factor of about e of the answer's."""
 
 
 def mean_size(psi: Array) -> Array:
-    """Mean of |ψ| on each segment, ψ linear between its nodal values."""
+    """Mean of |ψ| on each segment, ψ linear between its nodal values.
+
+    (|a| + |b|)/2; where ψ changes its sign, two triangles: (a² + b²)/(2(|a| + |b|)).
+    """
     a, b = np.abs(psi[:-1]), np.abs(psi[1:])
     both = a + b
     crossing = (a * a + b * b) / np.where(both > 0.0, 2.0 * both, 1.0)
@@ -38,6 +45,9 @@ def window(
     steps: Array, durations: Array, velocity: float, acceleration: float
 ) -> tuple[Array, Array] | None:
     """ψ and c of the condition that is violated most at given durations, rounded; None if none.
+
+    The largest Σ c_k Δ_k/h_k with A Σ m_k h_k + V Σ |c_k + ψ_k − ψ_{k−1}| = 1, a linear program if
+    the mean m_k of |ψ| is taken over the middles of cells.
 
     Parameters
     ----------
@@ -232,7 +242,7 @@ def excluding_window(n, library, low, high, total):  # type: ignore[no-untyped-d
         if f < 0:
             break
         for k in range(n):
-            # The slope at the upper end of one duration, cancelled.
+            # d/dh (p/h + (tau − q)h) = 0 at the upper end of one duration.
             tau = library[f, n + k] + library[f, k] / (high[k] * high[k])
             for part in (1.0, 0.7):
                 if tau > 0.0 and window_bound(n, library[f], low, high, part * tau, total) > 0.0:

@@ -28,8 +28,12 @@ from .rows import (
 from .square_polynomials import MONOMIALS, SHARES, SUM, padded, power, times
 
 MOST_PLACES = 8
+"""Rows at places in the program of one box: the heaviest. An optimum in
+three durations seldom has more than three active limits."""
 _GRID = 65
+"""Places where a curve is scanned for its peaks; Newton steps from there find the place."""
 _SLACK = 1e-13
+"""What floats may be below 0 and the exact test is tried all the same: about their rounding."""
 _DIGITS = (4, 9)
 """Digits of the weights: few, or enough for steep rows."""
 
@@ -141,7 +145,11 @@ class Proposer:
         self._bounds = np.array([limit[4] for limit in self._limits], dtype=np.float64)
 
     def _maps(self, boxes: Boxes) -> Array:
-        """Matrices from power to local Bernstein coefficients, (boxes, 2, size, size)."""
+        """Matrices from power to local Bernstein coefficients, (boxes, 2, size, size).
+
+        (start + width·t)ʲ = Σ_k C(j, k) start^(j − k) width^k t^k, and t^k has the Bernstein
+        coefficients C(i, k)/C(n, k).
+        """
         width = 0.5**boxes.level
         start = boxes.index * width
         k = np.arange(self.size)
@@ -150,7 +158,11 @@ class Proposer:
         return np.asarray(self._to_bernstein @ shift)
 
     def _places(self, boxes: Boxes) -> tuple[Array, Ints, Ints]:
-        """Coefficients (boxes, caps, K, monomials + 1) of the heaviest places, limits and place."""
+        """Coefficients (boxes, caps, K, monomials + 1) of the heaviest places, limits and place.
+
+        A place weighs, at the centre of a box, the least duration that its limit leaves,
+        (|q⁽ʳ⁾(s)|/limit)^(1/r), over the longest that the caps leave the segment.
+        """
         width = 0.5**boxes.level
         a, b = ((boxes.index + 0.5) * width).T
         x, y = (1 - a) / a, (1 - b) / b

@@ -23,6 +23,7 @@ POWERS = 6
 """Coefficients in s that hold every piece."""
 
 _HALF = Fraction(1, 2)
+"""Exact: the basis holds halves."""
 # Hermite basis on [0, 1], ascending: blend of the positions, velocities and accelerations.
 _QUINTIC: tuple[tuple[int | Fraction, ...], ...] = (
     (0, 0, 0, 10, -15, 6),
@@ -110,6 +111,11 @@ def _by(factor: Fraction, ratios: Mapping[Ratios, int]) -> dict[Ratios, Fraction
 
 
 def _middle_quintic(q: Sequence[Fraction]) -> dict[Ratios, Powers]:
+    """The quintic between the cubics q₀ + d₁s³ and q₃ − d₃(1 − s)³.
+
+    They end and begin with velocity 3d₁/h₁ and 3d₃/h₃, acceleration 6d₁/h₁² and −6d₃/h₃²: in the
+    quintic's own time 3d₁x, 3d₃y, 6d₁x², −6d₃y².
+    """
     d1, d2, d3 = _steps(q)
     ends: tuple[tuple[Ratios, Fraction], ...] = (
         ((0, 0), d2),
@@ -127,8 +133,11 @@ def _middle_quintic(q: Sequence[Fraction]) -> dict[Ratios, Powers]:
 
 
 _D = {(0, 0): 1, (1, 0): 2, (0, 1): 2, (1, 1): 3}
+"""D = 1 + 2x + 2y + 3xy, by which the middle cubic of 4-3-4 is multiplied to be a polynomial."""
 _XD = {(i + 1, j): c for (i, j), c in _D.items()}
+"""x·D, for the first piece."""
 _YD = {(i, j + 1): c for (i, j), c in _D.items()}
+"""y·D, for the last piece."""
 
 
 def _turned(ratios: Mapping[Ratios, Fraction]) -> dict[Ratios, Fraction]:
@@ -136,7 +145,11 @@ def _turned(ratios: Mapping[Ratios, Fraction]) -> dict[Ratios, Fraction]:
 
 
 def _bulge(d1: Fraction, d2: Fraction, d3: Fraction) -> dict[Ratios, Fraction]:
-    """x·D·u for the first piece q₀ + d₁s³ + u(s³ − s⁴)."""
+    """x·D·u for the first piece q₀ + d₁s³ + u(s³ − s⁴).
+
+    Equal accelerations at both ends of the middle cubic are two equations in u and w (of the last
+    piece); by Cramer's rule x·D·u = d₁x(3xy + 2x + 6y + 3) + 2d₃y² − d₂(3y + 1).
+    """
     return {
         (2, 1): 3 * d1,
         (2, 0): 2 * d1,
@@ -170,7 +183,7 @@ def _middle_cubic(q: Sequence[Fraction]) -> dict[Ratios, Powers]:
     d1, d2, d3 = _steps(q)
 
     def speed(near: Fraction, far: Fraction) -> dict[Ratios, Fraction]:
-        """Scaled velocity at the beginning of the cubic, times D."""
+        """Scaled velocity at the beginning of the cubic, times D: D·x(3d₁ − u)."""
         return {
             (2, 1): 6 * near,
             (2, 0): 4 * near,
@@ -207,6 +220,7 @@ SHAPES = (
         ((0, 0), (1, 0), (2, 0), (0, 1), (0, 2), (1, 1), (2, 1), (1, 2)),
     ),
 )
+"""The two curves that have this form: docs/certificates.md derives it for each."""
 
 
 def shape_of(curve: Curve) -> Shape | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 
 import numpy as np
 
@@ -102,17 +103,26 @@ def on_square(ratios: dict[Ratios, Fraction]) -> Poly:
 def exact_row(problem: ExactProblem, row: Row, total: Fraction) -> Poly:
     """Row as a polynomial that is negative at every feasible direction with a total < ``total``.
 
-    Normalised: a feasible trajectory has (left side)/(limit·capʳ) − (shares) < 0.
+    A piece is N/E in the ratios, both with a²b² taken in, and h_g < cap·m_g/hold. So a feasible
+    trajectory, |q⁽ʳ⁾(s)| ≤ limit·h_gʳ in the piece's own time, has
+
+        sign·N⁽ʳ⁾(s)·holdʳ/(limit·capʳ) − E·m_gʳ < 0.
     """
     cap = total
     if row.cap != TOTAL:
         upper = problem.duration_upper[row.cap]
         assert upper is not None
         cap = upper * (1 + STRICT)
+    left, right = _without_cap(problem, row)
+    return minus(left * (1 / cap ** (1 if row.kind == "lower" else row.order)), right)
+
+
+@lru_cache(maxsize=2_000)
+def _without_cap(problem: ExactProblem, row: Row) -> tuple[Poly, Poly]:
+    """Both sides of a row, the left one times capʳ: the same in every stage of a search."""
     hold = SUM if row.cap == TOTAL else SHARES[row.cap]
     if row.kind == "lower":
-        left = hold * (problem.duration_lower[row.joint] / cap)
-        return minus(left, SHARES[row.joint])
+        return hold * problem.duration_lower[row.joint], SHARES[row.joint]
     if row.order == 0:
         end = (problem.position_upper if row.sign > 0 else problem.position_lower)[row.joint]
         assert end is not None
@@ -134,9 +144,9 @@ def exact_row(problem: ExactProblem, row: Row, total: Fraction) -> Poly:
         way *= 1 if row.kind == "mean" else shape.ends[row.order - 1]
         left, right = np.full((1, 1), way, dtype=object), np.ones((1, 1), dtype=object)
     if row.order == 0:
-        return minus(left, right * limit)
-    left = times(left, power(hold, row.order)) * (1 / (limit * cap**row.order))
-    return minus(left, times(right, power(SHARES[segment], row.order)))
+        return left, right * limit
+    left = times(left, power(hold, row.order)) * (1 / limit)
+    return left, times(right, power(SHARES[segment], row.order))
 
 
 class Prover:

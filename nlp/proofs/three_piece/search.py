@@ -21,7 +21,9 @@ from .rows import STRICT, shape_for
 from .tree import State, proposed, tree_document
 
 _BATCH = 256
+"""Boxes that are looked at together: numpy is busy, and a look at the clock comes soon."""
 _LOOKS = 3
+"""Directions of a batch that are checked for a better answer: the shortest ones."""
 _ENDLESS = Fraction(10**12)
 """A total that stands for "whatever the total": only rows without it may be used."""
 _LADDER = Ladder(tuple(x * 10.0**-k for k in range(1, 9) for x in (3.0, 1.0)), 0.9, 1.0)
@@ -31,6 +33,7 @@ _DIGITS = 11
 _SLIGHT = 1e-9
 """Share by which durations must be shorter to be worth a new start of the ladder."""
 _DEEPEST = 44
+"""Halvings of a side: `Proposer` computes with its ends as floats, which have 53 bits."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,7 +185,7 @@ def _above_all(exact: ExactProblem) -> Fraction | None:
 
 
 def _positions_alone(exact: ExactProblem) -> ExactProblem:
-    """The problem without anything that more time could mend."""
+    """The problem without anything that more time could repair."""
     nothing = ((None, None, None),) * len(exact.joints)
     return replace(exact, limits=nothing, duration_lower=(Fraction(0),) * exact.segments)
 
@@ -190,3 +193,4 @@ def _positions_alone(exact: ExactProblem) -> ExactProblem:
 THREE_PIECE = Certifier(
     "C2 3-5-3 and 4-3-4 polynomials at rest at the ends", _declares, _missing, _prove
 )
+"""At rest alone: the pieces are quotients of polynomials in two ratios only then."""

@@ -60,9 +60,13 @@ def minus(p: Poly, q: Poly) -> Poly:
 
 
 _A, _B = _poly({(1, 0): 1}), _poly({(0, 1): 1})
+"""a and b."""
 _A1, _B1 = _poly({(0, 0): 1, (1, 0): -1}), _poly({(0, 0): 1, (0, 1): -1})
+"""1 − a and 1 − b."""
 SUM = _poly({(0, 0): 1, (1, 1): -1})
+"""S = 1 − ab: what the shares add up to."""
 SHARES = (times(_A, _B1), times(_A1, _B1), times(_B, _A1))
+"""m = (a(1 − b), (1 − a)(1 − b), b(1 − a)): durations are T·m/S."""
 MONOMIALS = {
     (i, j): times(
         times(power(_A, 2 - i), power(_A1, i)),
@@ -76,12 +80,15 @@ MONOMIALS = {
 
 @lru_cache(maxsize=5_000)
 def _bernstein(level: int, index: int, size: int) -> Poly:
-    """Integer matrix from power to Bernstein coefficients on [index, index + 1]/2^level, scaled."""
+    """Integer matrix from power to Bernstein coefficients on [index, index + 1]/2^level, scaled.
+
+    ((index + t)/2^level)ʲ = Σ_k C(j, k) index^(j − k) t^k/2^(level·j), and t^k has the Bernstein
+    coefficients C(i, k)/C(n, k); all times 2^(level·n) and the lcm of the C(n, k).
+    """
     n = size - 1
     out = np.zeros((size, size), dtype=object)
     unit = math.lcm(*(math.comb(n, k) for k in range(size)))
     for j in range(size):
-        # t^j ↦ ((index + t)/2^level)^j, times 2^(level·n).
         for k in range(j + 1):
             value = math.comb(j, k) * index ** (j - k) * 2 ** (level * (n - j))
             for i in range(k, size):

@@ -15,6 +15,7 @@ from .boxes import Boxes, Proof
 from .rows import PLACES, TOTAL, Row, shape_for
 
 _DEEPEST = 60
+"""Halvings of a side in a tree that is read: an index of 64 bits holds them."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 from trajgap.compare.audits.judging import judge, weigh
+from trajgap.compare.audits.rules import RULES
 from trajgap.compare.documents import (
-    RULES,
     Basis,
     ClaimVerdict,
     Finding,

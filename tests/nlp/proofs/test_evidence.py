@@ -192,9 +192,9 @@ def test_a_worse_answer_is_replaced_by_that_of_the_certificate() -> None:
     answer = study.optimum(*PAIR)
     assert answer.durations is not None
     worse = replace(answer, durations=answer.durations * 1.2, lower_bound=None)
-    mended = with_certificate(worse, exact)
-    assert mended.total_time == pytest.approx(answer.total_time, rel=1e-9)
-    assert mended.evidence is Evidence.CERTIFIED
+    repaired = with_certificate(worse, exact)
+    assert repaired.total_time == pytest.approx(answer.total_time, rel=1e-9)
+    assert repaired.evidence is Evidence.CERTIFIED
 
 
 def test_the_output_of_a_procedure_is_not_certified() -> None:

@@ -100,7 +100,7 @@ def test_what_is_written_loads_or_the_table_is_refused(tmp_path_factory, joints,
             "line 2, column 2: 'nan' is not a finite decimal number; "
             'write the printed digits alone, such as "0.660"',
         ),
-        ('a,b\n1,"2\n3,4\n', "line 3: not valid CSV, unexpected end of data; mend it"),
+        ('a,b\n1,"2\n3,4\n', "line 3: not valid CSV, unexpected end of data; fix it"),
     ],
 )
 def test_tables_that_are_refused(table, text, reason):

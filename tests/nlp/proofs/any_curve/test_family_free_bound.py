@@ -37,7 +37,7 @@ from trajgap.nlp.proofs.any_curve.estimate import estimate_any_curve
 from trajgap.nlp.proofs.any_curve.exact import missing, question
 from trajgap.nlp.proofs.any_curve.proof import restored
 from trajgap.nlp.proofs.any_curve.reach import furthest, reachable
-from trajgap.nlp.proofs.any_curve.rows import BRAKE, REACH, UNIT, Exact, Row, exact_row
+from trajgap.nlp.proofs.any_curve.rows import BRAKE, REACH, UNIT, ExactRow, Row, exact_row
 from trajgap.nlp.proofs.any_curve.search import Search
 from trajgap.nlp.proofs.certifiers import certify
 from trajgap.nlp.proofs.document import certificate, shipped_folder
@@ -364,7 +364,7 @@ def test_falsified_rows_are_seen_and_refused(monkeypatch: pytest.MonkeyPatch) ->
     problem, _ = attacked()
     honest = certify_any(problem, gap=1e-5)
 
-    def stronger(asked: Any, row: Row, box: Any, speed: Fraction) -> Exact:
+    def stronger(asked: Any, row: Row, box: Any, speed: Fraction) -> ExactRow:
         found = exact_row(asked, row, box, speed)
         return replace(found, right=found.right + Fraction(1, 20) * abs(found.right))
 

@@ -337,8 +337,8 @@ def test_weights_without_the_target_prove_nothing_about_it() -> None:
     prover, _ = both(base_problem(), 11 * TICKS)
     box = prover.root()
     prover.narrow(box)
-    laid = Relaxation(prover.system, prover.system.starting_rows(), prover.total)
-    found = laid.over(prover.side(box), box.ranges).bound(Target(0, -1))
+    relaxation = Relaxation(prover.system, prover.system.starting_rows(), prover.total)
+    found = relaxation.over(prover.side(box), box.ranges).bound(Target(0, -1))
     assert found is not None
     assert prover.bound(box, Target(0, -1), found.weights) is not None
     assert prover.bound(box, Target(0, -1), replace(found.weights, scale=0)) is None
@@ -361,10 +361,10 @@ def test_a_bound_with_any_weights_holds_at_feasible_points() -> None:
         )
         ranges = narrowed(system, side, *a_priori(system, side, total))
         assert ranges is not None
-        laid = Relaxation(system, rows, total).over(side, ranges)
+        program = Relaxation(system, rows, total).over(side, ranges)
         for k in range(system.free):
             for sign in (1, -1):
-                found = laid.bound(Target(k, sign))
+                found = program.bound(Target(k, sign))
                 assert found is not None
                 weights = found.weights
                 for key in weights.equations:

@@ -21,7 +21,8 @@ from trajgap.nlp.proofs.certifiers import certify, covered
 from trajgap.nlp.proofs.document import certificate
 from trajgap.nlp.proofs.exact import exact_problem
 from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress, Request
-from trajgap.nlp.proofs.quintic.bound import bound, centre
+from trajgap.nlp.proofs.quintic.bound import bound
+from trajgap.nlp.proofs.quintic.nodal import centre
 from trajgap.nlp.proofs.quintic.rows import PLACES, row_shape
 from trajgap.nlp.proofs.quintic.windows import window, window_bound, window_terms
 from trajgap.nlp.proofs.session import Session

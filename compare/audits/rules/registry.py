@@ -1,0 +1,113 @@
+"""Every rule of the audit, with its permanent id and what it looks at."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from ...documents import Finding, Rule
+from ..study import Study
+from .condition_count import judge_counts
+from .continuous_time import judge_motions
+from .distances import judge_distances
+from .on_instances import judge_instances
+from .open_points import list_open_points
+from .printed_chain import judge_kinematics
+from .printed_digits import judge_digits
+from .printed_vertices import judge_vertices
+from .replays import judge_replays
+from .scaling_law import judge_scaling
+
+
+@dataclass(frozen=True)
+class RuleGroup:
+    """Rules that one function judges.
+
+    Attributes
+    ----------
+    judge : callable
+        From a study to the findings.
+    rules : dict
+        What each rule looks at, by its permanent id; an id is never reused.
+    without_waypoints : bool
+        Whether it says something while the way-points are missing.
+    """
+
+    judge: Callable[[Study], Iterator[Finding]]
+    rules: dict[str, str]
+    without_waypoints: bool = False
+
+
+GROUPS = (
+    RuleGroup(
+        judge_digits,
+        {
+            "TG101": "A printed total is the sum of its printed parts",
+            "TG102": "Printed longest durations are the longest of the printed rows",
+            "TG103": "A printed improvement follows from the printed totals",
+            "TG104": "Tables under different names print different digits",
+            "TG105": "Two places that print the same total agree",
+            "TG106": "Unrelated columns do not repeat each other's digits",
+        },
+        without_waypoints=True,
+    ),
+    RuleGroup(judge_counts, {"TG107": "The conditions stated fit the number of coefficients"}),
+    RuleGroup(
+        judge_motions,
+        {
+            "TG201": "Printed durations keep the limits for all t, over the rounding box",
+            "TG202": "Position, velocity and acceleration are continuous",
+            "TG203": "Printed peaks are those of the printed durations",
+            "TG204": "The limits are used up by the printed durations",
+            "TG206": "Acceleration jumps where it is said to",
+        },
+    ),
+    RuleGroup(
+        judge_vertices,
+        {"TG205": "Printed control vertices follow from the printed way-points"},
+    ),
+    RuleGroup(
+        judge_scaling,
+        {"TG301": "Totals of one path under two velocity limits obey the scaling law"},
+    ),
+    RuleGroup(
+        judge_distances,
+        {
+            "TG302": "A printed total beside the optimum of its own formulation",
+            "TG303": "A printed total beside the optimum with shared durations",
+        },
+    ),
+    RuleGroup(
+        judge_replays,
+        {
+            "TG401": "An improvement beside the spread over seeds",
+            "TG402": "A printed total beside replays of its algorithm",
+            "TG403": "Convergence within a number of iterations, beside replays",
+        },
+    ),
+    RuleGroup(
+        judge_instances,
+        {"TG404": "A relative claim beside a family of instances drawn from the robot's workspace"},
+        without_waypoints=True,
+    ),
+    RuleGroup(list_open_points, {"TG501": "Not checkable from the text"}, without_waypoints=True),
+    RuleGroup(
+        judge_kinematics,
+        {"TG601": "Joint and Cartesian way-points are consistent with the printed chain"},
+    ),
+)
+"""In the order in which their findings of one severity and id stand; a new rule adds its line."""
+
+NOT_COMPUTED = Rule("TG502", "Not computed for this problem; the message says why")
+"""What stands in place of a finding that a group could not compute; the audit itself says it."""
+
+RULES = tuple(
+    sorted(
+        (
+            NOT_COMPUTED,
+            *(Rule(id_, title) for group in GROUPS for id_, title in group.rules.items()),
+        ),
+        key=lambda rule: rule.id,
+    )
+)
+"""Every rule, by its id."""

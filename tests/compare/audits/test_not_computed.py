@@ -1,0 +1,174 @@
+"""What an audit cannot compute says why in one line, and everything else is judged as usual."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from trajgap.compare.audits import CaseAudit, Study, audit, case_audit
+from trajgap.compare.documents import ClaimVerdict, Finding, Why
+from trajgap.compare.pages import write_report
+from trajgap.problem import CaseError, ProcessError, TrajgapError, parse_case
+
+CASE = """format = 1
+id = "partly"
+title = "Two joints, some of which cannot be computed"
+[source]
+[robot]
+name = "r"
+joints = ["1", "2"]
+[units]
+position = "rad"
+velocity = "rad/s"
+acceleration = "rad/s^2"
+time = "s"
+[waypoints]
+joint_rows = [["0.10", "0.90", "-0.30", "0.40"], ["1.0", "0.2", "0.3", "-0.5"]]
+[limits]
+velocity = [2.0, 1.5]
+acceleration = [9.0, 8.0]
+{limits}
+[interpolant]
+{interpolant}
+[[algorithms]]
+id = "pso"
+name = "PSO"
+kind = "pso"
+settings = {{ particles = 6, iterations = 8 }}
+[[claims]]
+id = "d"
+quantity = "durations"
+where = "Table 1"
+algorithm = "pso"
+durations = ["0.91", "1.02", "0.93"]
+total = "2.86"
+[[claims]]
+id = "by"
+quantity = "convergence"
+where = "Fig. 1"
+algorithm = "pso"
+iterations = 5
+[[claims]]
+id = "shortest"
+quantity = "statement"
+where = "abstract"
+checks = "optimal"
+of = ["d"]
+"""
+SEPTIC = 'family = "rest-to-rest"\ndegree = 7'
+SPLINE = 'family = "3-5-3"'
+POSITIONS = "position_lower = -4.0\nposition_upper = 4.0"
+FREE = 'family = "polynomials"\ndegrees = [5, 5, 5]\nfree = 4'
+UNSOLVED = 'family = "polynomials"\ndegrees = [5, 5, 5]\nend_orders = [1]\ncontinuity = 1\nfree = 8'
+
+
+def audited(folder: Path, interpolant: str, limits: str = "") -> CaseAudit:
+    case = parse_case(CASE.format(interpolant=interpolant, limits=limits), "partly.toml")
+    report = audit(case, seeds=2)
+    write_report(report, folder / "pages")
+    return report.cases[0]
+
+
+def verdict(one: CaseAudit, claim: str) -> ClaimVerdict:
+    return next(j.verdict for j in one.judgements if j.claim == claim)
+
+
+def test_a_relaxed_family_that_is_not_solved_is_a_step_without_a_time(tmp_path: Path) -> None:
+    one = audited(tmp_path, SEPTIC)
+    steps = {step.name: step for step in one.waterfalls[0].steps}
+    assert steps["relaxed family"].time == Why(
+        "the relaxed family has 8 free coefficients per joint, and derivatives at the way-points "
+        "settle 6 of them"
+    )
+    assert isinstance(steps["optimum of the same curve, shared durations"].time, float)
+    assert verdict(one, "d") is verdict(one, "shortest") is ClaimVerdict.REFUTED
+
+
+def test_an_algorithm_that_cannot_judge_a_limit_is_not_replayed(tmp_path: Path) -> None:
+    one = audited(tmp_path, SPLINE, POSITIONS)
+    said = {f.rule: f.message for f in one.findings if f.rule in ("TG402", "TG403")}
+    why = "The algorithm pso is not replayed: limits.position: the heuristics' objective judges"
+    assert set(said) == {"TG402", "TG403"}
+    assert all(message.startswith(why) for message in said.values())
+    assert verdict(one, "by") is ClaimVerdict.NOT_CHECKABLE
+    assert verdict(one, "d") is verdict(one, "shortest") is ClaimVerdict.REFUTED
+
+
+def test_durations_of_a_curve_that_leaves_coefficients_free_define_no_motion(
+    tmp_path: Path,
+) -> None:
+    one = audited(tmp_path, FREE)
+    (found,) = (f for f in one.findings if f.rule == "TG502")
+    assert (found.claim, found.problem, found.reading) == ("d", "main", "as-printed")
+    assert found.message == (
+        "Not computed: the curve (5-5-5 polynomials, C2) leaves 4 coefficients per joint free, so "
+        "that durations alone define no motion."
+    )
+    assert verdict(one, "by") is verdict(one, "shortest") is ClaimVerdict.NOT_CHECKABLE
+    assert verdict(one, "d") is ClaimVerdict.SUPPORTED, "its total is the sum of its durations"
+    distance = next(f for f in one.findings if f.rule == "TG302" and f.claim == "d")
+    assert distance.message.startswith("Printed 2.86 s; best known optimum with shared durations")
+    page = (tmp_path / "pages" / "partly.html").read_text("utf-8")
+    assert "are not drawn: the curve (5-5-5 polynomials, C2) leaves 4" in page
+
+
+def test_a_curve_that_cannot_be_solved_leaves_the_digits_judged(tmp_path: Path) -> None:
+    one = audited(tmp_path, UNSOLVED)
+    about = next(f for f in one.findings if f.claim == "shortest")
+    assert about.message.startswith("No optimum to compare with: d (main): interpolant 5-5-5")
+    assert [f.verdict for f in one.findings if f.rule == "TG101"] == [ClaimVerdict.SUPPORTED]
+
+
+def broken_rule(study: Study):
+    """A rule that cannot judge one claim."""
+    for claim in study.claims:
+        if claim.id == "by":
+            raise TrajgapError("nobody knows")
+        yield Finding(rule="TG101", basis="check", claim=claim.id, message="seen")
+
+
+def test_one_claim_that_fails_takes_no_other_with_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(case_audit, "_GROUPS", (broken_rule,))
+    case = parse_case(CASE.format(interpolant=SPLINE, limits=""), "partly.toml")
+    one = case_audit.audit_case(Study(case, seeds=2))
+    assert {(f.rule, f.claim, f.message) for f in one.findings} == {
+        ("TG101", "d", "seen"),
+        ("TG101", "shortest", "seen"),
+        ("TG502", "by", "Not computed: nobody knows."),
+    }
+
+
+def failing(error: TrajgapError):
+    def rule(study: Study):
+        if len(study.claims) > 1:
+            raise error
+        yield from ()
+
+    return rule
+
+
+def test_what_fails_for_no_single_claim_is_said_all_the_same(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(case_audit, "_GROUPS", (failing(TrajgapError("only together.")),))
+    case = parse_case(CASE.format(interpolant=SPLINE, limits=""), "partly.toml")
+    one = case_audit.audit_case(Study(case, seeds=2))
+    assert [(f.claim, f.message) for f in one.findings] == [(None, "Not computed: only together.")]
+
+
+@pytest.mark.parametrize(
+    "error", [CaseError("partly.toml", "x", "is wrong"), ProcessError("workers: gone")]
+)
+def test_bad_input_and_dead_processes_still_end_an_audit(
+    error: TrajgapError, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(case_audit, "_GROUPS", (failing(error),))
+    case = parse_case(CASE.format(interpolant=SPLINE, limits=""), "partly.toml")
+    with pytest.raises(type(error), match=r"is wrong|workers: gone"):
+        case_audit.audit_case(Study(case, seeds=2))
+
+
+def test_wrong_settings_of_an_algorithm_end_an_audit_before_it_begins() -> None:
+    text = CASE.format(interpolant=SPLINE, limits="").replace("particles = 6", "particles = -6")
+    with pytest.raises(TrajgapError, match=r"partly\.toml: algorithms\.pso: particles"):
+        audit(parse_case(text, "partly.toml"), seeds=2)
