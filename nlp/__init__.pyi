@@ -32,6 +32,7 @@ from .proofs import (
     stated_exactly,
     with_certificate,
     with_certificates,
+    with_interval,
     write_certificate,
 )
 from .proofs.any_curve import AnyCurveEstimate, estimate_any_curve
@@ -74,5 +75,6 @@ __all__ = [
     "weakest",
     "with_certificate",
     "with_certificates",
+    "with_interval",
     "write_certificate",
 ]

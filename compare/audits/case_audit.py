@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 from ...problem import Case, CaseError, ProcessError, TrajgapError, load_case, published_ids
 from ...problem.cases import AnyClaim
@@ -26,6 +27,7 @@ from ..documents import (
 )
 from .causes import find_causes, with_caveats
 from .instances import examined_entry
+from .intervals import CERTIFY_SECONDS
 from .judging import judge, weigh
 from .readings import readings_summary
 from .rules import GROUPS, NOT_COMPUTED
@@ -71,6 +73,7 @@ class CaseAudit:
             verdicts=self.judgements,
             waterfalls=self.waterfalls,
             readings=known(self.readings, "the case has one reading"),
+            left_out=tuple(self.study.intervals.left_out),
             families=tuple(examined_entry(self.study.instances(b)) for b in blocks),
         )
 
@@ -113,6 +116,8 @@ def audit(
     problem: str | None = None,
     reading: str | None = None,
     progress: Callable[[str], None] | None = None,
+    certify_seconds: float = CERTIFY_SECONDS,
+    certificates: Sequence[dict[str, Any]] = (),
 ) -> AuditReport:
     """Audit published claims against the exact optimum of the very problems they state.
 
@@ -128,6 +133,11 @@ def audit(
         Keep to one problem or reading.
     progress : callable, optional
         Called with a short text before anything that takes a while.
+    certify_seconds : float
+        For each case: time for certifying optima that no certificate proves; 0 turns it off. What
+        is certified in it depends on the machine, and what was left out is said.
+    certificates : sequence of dict
+        Certificates beside the shipped ones; each is proved again before it counts.
 
     Returns
     -------
@@ -144,7 +154,14 @@ def audit(
     loaded = [one if isinstance(one, Case) else load_case(one) for one in chosen]
     studies = [
         Study(
-            one, seeds=seeds, workers=workers, problem=problem, reading=reading, progress=progress
+            one,
+            seeds=seeds,
+            workers=workers,
+            problem=problem,
+            reading=reading,
+            progress=progress,
+            certify_seconds=certify_seconds,
+            certificates=certificates,
         )
         for one in loaded
     ]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from copy import copy
 from dataclasses import fields, replace
 from enum import StrEnum
@@ -27,8 +27,8 @@ from ...nlp import (
     solve,
     solve_per_joint,
     stated_exactly,
-    with_certificate,
     with_certificates,
+    with_interval,
 )
 from ...nlp.optimum import OPTIMUM_SLACK, free_values
 from ...problem import (
@@ -54,6 +54,7 @@ from ...problem.cases import (
     TotalTimeClaim,
 )
 from .instances import InstancesResult, examined, readings_of
+from .intervals import CERTIFY_SECONDS, Intervals
 from .rounding import RoundingBox, RoundingVerdict, judge_rounding
 
 T = TypeVar("T")
@@ -65,6 +66,11 @@ Replays = tuple[Run, ...] | tuple[JointRuns, ...]
 
 SEEDS = 30
 """Seeds of a replay by default: enough for a median and its spread, a minute or so of one core."""
+RELAXED_SECONDS = 15.0
+"""After which no step of the search over the relaxed family is begun: it is information beside the
+claims, and one problem in some must not take most of an audit."""
+OPTIMUM_SECONDS = 60.0
+"""After which no start of the search for an optimum is begun; usual problems take a second."""
 VARIANT_SEEDS = 6
 """Seeds under each changed choice, of which there are many: enough to see a median move."""
 
@@ -83,6 +89,10 @@ class Study:
         Keep to one problem or reading of the case.
     progress : callable, optional
         Called with a short text before anything that takes a while.
+    certify_seconds : float
+        For certifying optima that no certificate proves; 0 turns it off.
+    certificates : sequence of dict
+        Certificates beside the shipped ones; each is proved again before it counts.
     """
 
     def __init__(
@@ -93,6 +103,8 @@ class Study:
         problem: str | None = None,
         reading: str | None = None,
         progress: Callable[[str], None] | None = None,
+        certify_seconds: float = CERTIFY_SECONDS,
+        certificates: Sequence[dict[str, Any]] = (),
     ) -> None:
         if seeds < 2:
             raise TrajgapError(f"seeds: {seeds} show no spread; give 2 or more, 30 is customary")
@@ -108,6 +120,7 @@ class Study:
         self.main_reading = default if default in self.readings else self.readings[0]
         self._progress = progress or (lambda _: None)
         self._kept: dict[tuple[Any, ...], Any] = {}
+        self.intervals = Intervals(certificates, certify_seconds, self._progress)
 
     def _once(self, key: tuple[Any, ...], compute: Callable[[], T]) -> T:
         if key not in self._kept:
@@ -153,10 +166,13 @@ class Study:
             index = None if joint is None else problem.joints.index(joint)
             one = problem if index is None else problem.joint(index)
             try:
-                found = solve(one, known=self.known_motions(pid, rid, joint))
+                found = solve(
+                    one, known=self.known_motions(pid, rid, joint), seconds=OPTIMUM_SECONDS
+                )
             except TrajgapError as error:
                 return Solution(one, Status.FAILED, str(error))
-            return with_certificate(found, stated_exactly(self.case.statement(pid, rid), index))
+            exact = stated_exactly(self.case.statement(pid, rid), index)
+            return with_interval(found, None if exact is None else self.intervals.interval(exact))
 
         if joint is not None and len(self.problem(pid, rid).joints) == 1:
             joint = None
@@ -201,7 +217,7 @@ class Study:
             except TrajgapError as error:
                 joints = tuple(self.optimum(pid, rid, label) for label in problem.joints)
                 return PerJointSolution(problem, joints, None, None, (), str(error), 0.0)
-            return with_certificates(found, self.case.statement(pid, rid))
+            return with_certificates(found, self.case.statement(pid, rid), self.intervals.interval)
 
         return self._once(("per joint", pid, rid), compute)
 
@@ -244,10 +260,12 @@ class Study:
                 return Solution(relaxed, Status.FAILED, why)
             member = self.optimum(pid, rid)
             if member.durations is None or given.free:
-                return solve(relaxed)
+                return solve(relaxed, seconds=RELAXED_SECONDS)
             curve = fit(given, problem.waypoints, member.durations)
             nodal = free_values(family, curve)[None]
-            return solve(relaxed, known=member.durations, known_nodal=nodal)
+            return solve(
+                relaxed, known=member.durations, known_nodal=nodal, seconds=RELAXED_SECONDS
+            )
 
         return self._once(("relaxed", pid, rid), compute)
 

@@ -10,7 +10,6 @@ from ...nlp.proofs.any_curve import estimate_any_curve
 from ...nlp.retiming import retime
 from ...problem import Coupling, down, fit, up
 from ...problem.cases import AnyClaim, DurationsClaim, MaximumClaim
-from ...verify import Subject
 from ..documents import EXACT, Step, Waterfall, Why
 from .study import Study
 
@@ -167,7 +166,7 @@ def _free(study: Study, pid: str, rid: str) -> Step:
         return Step.missing(name, answer.why or "")
     note = "upper estimate" + (f"; {answer.why}" if answer.why else "")
     exact = stated_exactly(study.case.statement(pid, rid))
-    bound = None if exact is None else proved(exact, Subject.ANY)
+    bound = None if exact is None else study.intervals.any_curve(exact)
     # An infimum that is met to the last digit may round to either side of its bound.
     if bound is None or not 0 < bound.lower <= answer.total_time * (1 + _ROUNDING):
         return Step(name=name, time=answer.total_time, evidence=answer.evidence, note=note)

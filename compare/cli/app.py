@@ -269,6 +269,21 @@ def audit(
             "longer than a few dozen short replays.",
         ),
     ] = 1,
+    certify_seconds: Annotated[
+        float,
+        typer.Option(
+            metavar="SECONDS",
+            min=0.0,
+            help="For each case: time to certify optima that no certificate proves; 0 for none.",
+        ),
+    ] = 20.0,
+    certificates: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FOLDER",
+            help="Certificates to use beside the shipped ones; each is proved again.",
+        ),
+    ] = None,
     strict: Annotated[
         bool, typer.Option("--strict", help="Exit with 1 if a finding has severity error.")
     ] = False,
@@ -287,7 +302,18 @@ def audit(
     """Audit every claim of the cases, and write pages with pictures."""
     from .auditing import audit_cases
 
-    return audit_cases(cases or [], problem, reading, seeds, workers, strict, as_json, out)
+    return audit_cases(
+        cases or [],
+        problem,
+        reading,
+        seeds,
+        workers,
+        certify_seconds,
+        certificates,
+        strict,
+        as_json,
+        out,
+    )
 
 
 @app.command(epilog=_ENDS)

@@ -21,6 +21,7 @@ from ..documents import (
     Waterfall,
     Why,
 )
+from .certifying import read_certificates
 from .input import read_cases
 from .output import check_folder, emit, progress, say
 from .result_tables import seconds
@@ -36,6 +37,8 @@ def audit_cases(
     reading: str | None,
     seeds: int,
     workers: int,
+    certify_seconds: float,
+    certificates: Path | None,
     strict: bool,
     as_json: bool,
     out: Path | None,
@@ -46,6 +49,7 @@ def audit_cases(
         study = Study(case, seeds=seeds, problem=problem, reading=reading)
         for algorithm in case.algorithms:
             study.algorithm(algorithm.id)
+    given = [] if certificates is None else read_certificates(certificates)
     folder = out if out is not None or as_json else AUDIT_FOLDER
     if folder is not None:
         check_folder(folder, chosen)
@@ -59,6 +63,8 @@ def audit_cases(
             problem=problem,
             reading=reading,
             progress=step,
+            certify_seconds=certify_seconds,
+            certificates=given,
         )
         if folder is not None:
             from ..pages import write_report
@@ -86,6 +92,7 @@ def audited(document: AuditDocument) -> list[RenderableType]:
         parts += [line(said) for said in _said_once(case.findings, Severity.ERROR)]
         warned = _places(case.findings, Severity.WARNING)
         parts += [line(f"warnings: {', '.join(warned)}", "dim")] if warned else []
+        parts += [line(f"not certified: {one}", "dim") for one in case.left_out]
         parts.append(line(""))
     return parts
 

@@ -160,6 +160,27 @@ def certify_case(
     return NOT_PROVED if unsettled else 0
 
 
+def read_certificates(folder: Path) -> list[dict[str, Any]]:
+    """The certificates in a folder; other files of it are left alone.
+
+    Raises
+    ------
+    CaseError
+        If it is no folder, or holds no certificate.
+    """
+    if not folder.is_dir():
+        raise CaseError(str(folder), "--certificates", "is no folder; name the one with your files")
+    documents = [_read(path) for path in sorted(folder.glob("*.json"))]
+    found = [one for one in documents if one.get("format") == CERTIFICATE_FORMAT]
+    if not found:
+        raise CaseError(
+            str(folder),
+            "--certificates",
+            f"holds no {CERTIFICATE_FORMAT}; make one with solve --certify",
+        )
+    return found
+
+
 def _questions(case: Case, one: Posed, subject: Subject) -> Iterator[Question]:
     """What is asked under one reading, of all joints or of each, with why it is not covered."""
     # A bound over any curve is one of all joints together: what else would they share.

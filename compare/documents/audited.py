@@ -26,6 +26,8 @@ class AuditedCase(Entry):
     """Where the time goes, for each problem and reading."""
     readings: OrWhy[ReadingsSummary]
     """The readings side by side."""
+    left_out: tuple[str, ...]
+    """What the time budget left uncertified."""
     families: tuple[ExaminedInstances, ...]
     """Relative claims on instances drawn from the robot's workspace."""
 

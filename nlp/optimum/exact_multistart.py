@@ -41,9 +41,9 @@ def least_durations(problem: Problem) -> Array:
     distance = np.abs(np.diff(problem.waypoints, axis=0))
     with np.errstate(divide="ignore", invalid="ignore"):
         needed = np.where(distance > 0, distance / problem.limits.velocity, 0.0).max(axis=1)
-    for w, time in enumerate(needed):
-        if breaks[w + 1] == breaks[w] + 1 and np.isfinite(time):
-            least[breaks[w]] = max(least[breaks[w]], (1.0 - ROUND) * time)
+    for w, seconds in enumerate(needed):
+        if breaks[w + 1] == breaks[w] + 1 and np.isfinite(seconds):
+            least[breaks[w]] = max(least[breaks[w]], (1.0 - ROUND) * seconds)
     return least
 
 

@@ -1,6 +1,14 @@
 from .certifiers import certify, covered
 from .document import certificate, certificate_text, fits, shipped, unlike, write_certificate
-from .evidence import Interval, proved, stated_exactly, with_certificate, with_certificates
+from .evidence import (
+    Interval,
+    interval_of,
+    proved,
+    stated_exactly,
+    with_certificate,
+    with_certificates,
+    with_interval,
+)
 from .exact import ExactProblem, decimal, exact_problem, printed_problem
 from .outcome import Certified, Outcome, Progress
 from .state import StateFile, read_state, state_document
@@ -19,6 +27,7 @@ __all__ = [
     "decimal",
     "exact_problem",
     "fits",
+    "interval_of",
     "printed_problem",
     "proved",
     "read_state",
@@ -28,5 +37,6 @@ __all__ = [
     "unlike",
     "with_certificate",
     "with_certificates",
+    "with_interval",
     "write_certificate",
 ]

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
 from ...problem import TrajgapError
 from ...problem.cases import Statement
-from ...verify import Subject, verify_certificate
+from ...verify import CertificateVerdict, Subject, verify_certificate
 from ..optimum import PerJointSolution, Solution, solve
 from .certifiers import certify, covered, instant
-from .document import certificate, shipped
+from .document import certificate, fits, shipped
 from .exact import ExactProblem, printed_problem
 
 WIDEST = Fraction(1, 100)
@@ -69,7 +71,39 @@ def proved(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> Interv
         verdict = found.verdict
     else:
         verdict = None if document is None else verify_certificate(document)
-    if document is None or verdict is None or not verdict.proves or verdict.lower is None:
+    return None if document is None or verdict is None else _narrow(document, verdict)
+
+
+def interval_of(
+    document: dict[str, Any],
+    problem: ExactProblem,
+    subject: Subject = Subject.DECLARED,
+    verdict: CertificateVerdict | None = None,
+) -> Interval | None:
+    """The interval of a given certificate, proved again.
+
+    Parameters
+    ----------
+    document : dict
+        Of any origin: nothing in it is trusted.
+    problem : ExactProblem
+    subject : Subject
+    verdict : CertificateVerdict, optional
+        What `verify_certificate` said of this very document, if it was asked already.
+
+    Returns
+    -------
+    Interval or None
+        None if it is about another problem, proves nothing, or leaves an interval wider than
+        `WIDEST`.
+    """
+    if not fits(document, problem, subject):
+        return None
+    return _narrow(document, verdict or verify_certificate(document))
+
+
+def _narrow(document: dict[str, Any], verdict: CertificateVerdict) -> Interval | None:
+    if not verdict.proves or verdict.lower is None:
         return None
     if verdict.upper is not None and verdict.upper - verdict.lower > WIDEST * verdict.lower:
         return None
@@ -102,7 +136,22 @@ def with_certificate(solution: Solution, problem: ExactProblem | None) -> Soluti
         Solved once more from the certificate's durations if these are shorter. Unchanged if
         nothing is proved, or if the answer lies below the bound: then one of the two is wrong.
     """
-    found = None if problem is None else proved(problem)
+    return with_interval(solution, None if problem is None else proved(problem))
+
+
+def with_interval(solution: Solution, found: Interval | None) -> Solution:
+    """Add a proved lower bound of the same problem, as `with_certificate` does.
+
+    Parameters
+    ----------
+    solution : Solution
+    found : Interval or None
+        Proved for the same problem in exact numbers.
+
+    Returns
+    -------
+    Solution
+    """
     if found is None or found.upper is None or found.durations is None:
         return solution
     if not solution.best <= float(found.upper) * (1 + _SAME):
@@ -115,7 +164,11 @@ def with_certificate(solution: Solution, problem: ExactProblem | None) -> Soluti
     return replace(solution, lower_bound=lower) if lower <= solution.best < math.inf else solution
 
 
-def with_certificates(answer: PerJointSolution, statement: Statement) -> PerJointSolution:
+def with_certificates(
+    answer: PerJointSolution,
+    statement: Statement,
+    find: Callable[[ExactProblem], Interval | None] = proved,
+) -> PerJointSolution:
     """`with_certificate` for each joint's own optimum; the procedure's output stays what it is.
 
     Parameters
@@ -123,13 +176,17 @@ def with_certificates(answer: PerJointSolution, statement: Statement) -> PerJoin
     answer : PerJointSolution
     statement : Statement
         Of the same problem.
+    find : callable, optional
+        Where intervals come from: the certificates that are shipped.
 
     Returns
     -------
     PerJointSolution
     """
+    exact = [stated_exactly(statement, j) for j in range(len(answer.joints))]
     joints = [
-        with_certificate(s, stated_exactly(statement, j)) for j, s in enumerate(answer.joints)
+        with_interval(s, None if problem is None else find(problem))
+        for s, problem in zip(answer.joints, exact, strict=True)
     ]
     same = all(new.best == old.best for new, old in zip(joints, answer.joints, strict=True))
     # Durations of another answer would not be the ones behind the procedure's output.

@@ -1,0 +1,94 @@
+"""Proved intervals for an audit: shipped, given in files, or certified within a time budget."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from ...nlp import ExactProblem, Interval, Outcome, certificate, certify, proved
+from ...nlp.proofs import covered, interval_of
+from ...problem import TrajgapError
+from ...verify import Subject
+
+CERTIFY_SECONDS = 20.0
+"""For all problems of a case: most three-piece and short spline problems are certified in it, and
+a usual audit still ends in about a minute."""
+_GAP = 1e-4
+"""Relative width that is asked for: far below the digits that papers print, and cheap to reach."""
+_SHARE = 1 / 3
+"""Of what is left of the budget, for one problem: later ones get their turn too."""
+_LEAST = 0.5
+"""Seconds below which no further search is begun: it would prove nothing."""
+
+
+class Intervals:
+    """Where the proved intervals of one audit come from.
+
+    Parameters
+    ----------
+    documents : sequence of dict
+        Certificates of any origin: each is proved again before it counts.
+    seconds : float
+        For certifying what no certificate proves; 0 turns it off.
+    progress : callable
+        Called with a short text before a search.
+    """
+
+    def __init__(
+        self, documents: Sequence[dict[str, Any]], seconds: float, progress: Callable[[str], None]
+    ) -> None:
+        self._documents = tuple(documents)
+        self._left = seconds
+        self._progress = progress
+        self._found: dict[ExactProblem, Interval | None] = {}
+        self.left_out: list[str] = []
+        """Problems that are covered and were not certified, in words."""
+
+    def interval(self, problem: ExactProblem) -> Interval | None:
+        """The interval that is proved for a problem, if there is one.
+
+        Parameters
+        ----------
+        problem : ExactProblem
+
+        Returns
+        -------
+        Interval or None
+        """
+        if problem not in self._found:
+            self._found[problem] = self._sought(problem)
+        return self._found[problem]
+
+    def any_curve(self, problem: ExactProblem) -> Interval | None:
+        """The interval over any curve that a given or shipped certificate proves."""
+        return self._given(problem, Subject.ANY)
+
+    def _given(self, problem: ExactProblem, subject: Subject) -> Interval | None:
+        mine = (interval_of(one, problem, subject) for one in self._documents)
+        return next((found for found in mine if found is not None), None) or proved(
+            problem, subject
+        )
+
+    def _sought(self, problem: ExactProblem) -> Interval | None:
+        found = self._given(problem, Subject.DECLARED)
+        if found is not None or covered(problem) is not None:
+            return found
+        seconds = self._left * _SHARE
+        if seconds < _LEAST:
+            if self._left > 0:
+                self.left_out.append(f"{problem.name}: no time was left to certify its optimum")
+            return None
+        self._progress(f"certifying {problem.name}, at most {seconds:.0f} s")
+        began = time.monotonic()
+        try:
+            answer = certify(problem, gap=_GAP, seconds=seconds)
+        except TrajgapError:
+            return None  # nothing limits its total
+        finally:
+            self._left -= time.monotonic() - began
+        if answer.proof is not None and answer.outcome is not Outcome.OPEN:
+            found = interval_of(certificate(answer), problem, verdict=answer.verdict)
+        if found is None:
+            self.left_out.append(f"{problem.name}: not certified within {seconds:.0f} s")
+        return found

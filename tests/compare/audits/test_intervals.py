@@ -1,0 +1,103 @@
+"""Optima that an audit certifies by itself, takes from given files, or leaves out and says so."""
+
+from __future__ import annotations
+
+import numpy as np
+from trajgap.compare import audit
+from trajgap.compare.audits.case_audit import CaseAudit
+from trajgap.compare.audits.study import Study
+from trajgap.compare.audits.waterfall import waterfalls
+from trajgap.compare.documents import Why
+from trajgap.nlp import Evidence, Solution, Status, certificate, certify, printed_problem, solve
+from trajgap.problem import Case, parse_case
+
+TEXT = """
+format = 1
+id = "four-points"
+title = "one joint through four points"
+source = { year = 2024 }
+robot = { name = "arm", joints = ["1"] }
+units = { position = "rad", velocity = "rad/s", acceleration = "rad/s^2", time = "s" }
+waypoints = { where = "Table 1", joint_rows = [["0.13", "0.71", "-0.42", "0.37"]] }
+limits = { velocity = 2, acceleration = 5 }
+interpolant = { family = "3-5-3" }
+[[claims]]
+id = "d"
+quantity = "durations"
+where = "Table 2"
+durations = ["0.9", "1.4", "1.1"]
+[[claims]]
+id = "best"
+quantity = "statement"
+where = "abstract"
+checks = "optimal"
+of = ["d"]
+"""
+
+
+def stated() -> Case:
+    return parse_case(TEXT, "four-points.toml")
+
+
+def distance_of(one: CaseAudit) -> Evidence:
+    return next(f.evidence for f in one.findings if f.rule == "TG302" and f.claim == "d")
+
+
+def test_an_audit_certifies_what_it_can() -> None:
+    (one,) = audit(stated(), seeds=2).cases
+    assert distance_of(one) is Evidence.CERTIFIED
+    assert one.document.left_out == ()
+    optimum = one.study.optimum("main", "as-printed")
+    assert optimum.lower_bound is not None
+    assert optimum.lower_bound <= optimum.best <= optimum.lower_bound * 1.01
+
+
+def test_without_time_nothing_is_certified() -> None:
+    (one,) = audit(stated(), seeds=2, certify_seconds=0).cases
+    assert distance_of(one) is Evidence.BEST_KNOWN
+    assert one.document.left_out == ()
+
+
+def test_what_the_budget_leaves_out_is_said() -> None:
+    (one,) = audit(stated(), seeds=2, certify_seconds=0.1).cases
+    assert distance_of(one) is Evidence.BEST_KNOWN
+    (said,) = one.document.left_out
+    assert said.endswith("no time was left to certify its optimum")
+
+
+def test_a_given_certificate_counts_once_it_is_proved_again() -> None:
+    exact = printed_problem(stated().statement())
+    given = certificate(certify(exact, gap=1e-3, seconds=30))
+    (one,) = audit(stated(), seeds=2, certify_seconds=0, certificates=[given]).cases
+    assert distance_of(one) is Evidence.CERTIFIED
+    forged = given | {"claim": given["claim"] | {"lower": given["claim"]["upper"]}}
+    (one,) = audit(stated(), seeds=2, certify_seconds=0, certificates=[forged]).cases
+    assert distance_of(one) is Evidence.BEST_KNOWN
+
+
+def test_a_search_that_did_not_converge_is_never_called_best_known() -> None:
+    problem = stated().problem()
+    best = solve(problem)
+    assert best.evidence is Evidence.BEST_KNOWN
+    early = Solution(problem, Status.FEASIBLE, "KKT residual 3e-01", best.durations)
+    assert early.evidence is Evidence.UNCONVERGED
+
+
+def test_an_unconverged_search_is_no_step_of_a_waterfall(monkeypatch) -> None:
+    study = Study(stated(), seeds=2, certify_seconds=0)
+    found = study.relaxed("main", "as-printed")
+    early = Solution(found.problem, Status.FEASIBLE, "KKT residual 3e-01", found.durations)
+    monkeypatch.setattr(Study, "relaxed", lambda *_: early)
+    steps = {s.name: s for s in waterfalls(study)[0].steps}
+    shown = steps["relaxed family"]
+    assert isinstance(shown.time, Why)
+    assert "did not converge (KKT residual 3e-01)" in shown.note
+    assert isinstance(steps["TOPPRA on the path of the relaxed family"].time, Why)
+
+
+def test_a_solve_without_time_still_answers() -> None:
+    problem = stated().problem()
+    quick, whole = solve(problem, seconds=0.0), solve(problem)
+    assert quick.durations is not None
+    assert quick.best >= whole.best * (1 - 1e-9)
+    assert np.isfinite(quick.best)
