@@ -16,9 +16,12 @@ from ...verify import Subject
 from ..optimum import solve
 from .answer import float_problem, prove_feasible
 from .exact import ExactProblem
-from .outcome import Argument, Certified, Outcome, Progress, Request
+from .outcome import Argument, Certified, Given, Outcome, Progress, Request
 
 T = TypeVar("T")
+
+Answer = tuple[tuple[Fraction, ...], tuple[tuple[Fraction, ...], ...] | None]
+"""Durations, and the speeds at the way-points that an answer of any curve has."""
 
 OFTEN = 0.2
 """Seconds between reports: a reader follows them, and they cost nothing beside the boxes."""
@@ -70,16 +73,16 @@ class Session:
     request : Request
     floats : Problem
         The nearest problem in floats, for the local solver.
-    durations : tuple of Fraction or None
-        The answer: the shortest durations proved feasible so far.
+    answer : tuple of (durations, speeds) or None
+        The shortest durations proved feasible so far, and, of any curve, the speeds at the
+        way-points that belong to them. One assignment sets both: an interrupt parts no pair.
     lower : Fraction
         The best bound proved, s.
     proof : Argument or None
         What proves it.
-    speeds : tuple or None
-        Of an answer of any curve, at the way-points.
     proposals : Argument or None
-        What a stopped run had not finished; a kind of proof sets it before it is interrupted.
+        What a stopped run had not finished; a kind of proof sets it before it is interrupted. Until
+        then it is what the run goes on from.
     infeasible : bool
         A kind of proof showed that nothing is feasible.
     one_sided : bool
@@ -91,10 +94,9 @@ class Session:
     def __init__(self, exact: ExactProblem, request: Request) -> None:
         self.exact, self.request = exact, request
         self.floats = float_problem(exact)
-        self.durations: tuple[Fraction, ...] | None = None
+        self.answer: Answer | None = None
         self.lower = Fraction(0)
         self.proof: Argument | None = None
-        self.speeds: tuple[tuple[Fraction, ...], ...] | None = None
         self.proposals: Argument | None = None
         self.infeasible = self.one_sided = False
         self.nodes = self.open_boxes = 0
@@ -102,8 +104,11 @@ class Session:
         self._reported = -math.inf
         resumed = request.resume
         if resumed is not None:
-            self.durations, self.speeds = resumed.durations, resumed.speeds
+            if resumed.durations is not None:
+                self.answer = resumed.durations, resumed.speeds
             self.lower, self.proof = resumed.lower, resumed.proof
+            if resumed.proposals is not None:
+                self.proposals = Given(resumed.proposals)
 
     def taken_up(self, read: Callable[[dict[str, Any]], T]) -> T | None:
         """What a stopped run had not finished, read by its kind of proof; None if there is nothing.
@@ -128,6 +133,15 @@ class Session:
                 raise
             name = type(error).__name__
             raise TrajgapError(f"resume: malformed state ({name}: {error})") from None
+
+    @property
+    def durations(self) -> tuple[Fraction, ...] | None:
+        """Of the answer; setting them alone leaves it without speeds."""
+        return None if self.answer is None else self.answer[0]
+
+    @durations.setter
+    def durations(self, durations: tuple[Fraction, ...]) -> None:
+        self.answer = durations, None
 
     @property
     def upper(self) -> Fraction | None:
@@ -239,6 +253,7 @@ class Session:
         TrajgapError
             If the bound lies above the answer: one of the two proofs is wrong.
         """
+        durations, speeds = (None, None) if self.answer is None else self.answer
         upper = self.upper
         if upper is not None and upper < self.lower:
             raise TrajgapError("certify: the proof contradicts the answer, one of them is wrong")
@@ -256,7 +271,7 @@ class Session:
             outcome,
             self.lower,
             upper,
-            self.durations,
+            durations,
             self.nodes,
             0 if complete else self.open_boxes,
             self.seconds,
@@ -264,7 +279,7 @@ class Session:
             outcome in (Outcome.INTERVAL, Outcome.OPEN) and not (complete and self.proof is None),
             None if complete else self.proposals,
             subject,
-            self.speeds,
+            speeds,
         )
 
 

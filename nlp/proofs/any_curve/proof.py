@@ -83,6 +83,8 @@ def free_bound(search: Search, root: Node, total: Fraction) -> FreeBound:
 def restored(search: Search, document: dict[str, Any], target: float) -> Node:
     """The boxes of a stopped run, bounded anew; of its rows only the parameters are used.
 
+    Under a lower cap the sides of the boxes end earlier: a part beyond them is left out.
+
     Raises
     ------
     TrajgapError
@@ -93,12 +95,21 @@ def restored(search: Search, document: dict[str, Any], target: float) -> Node:
     try:
         rows = np.array([_row(search, row) for row in document["rows"]], dtype=np.int64)
         root = search.root(durations, speeds, -np.inf)
-        stack, leaves = [root], []
+        stack: list[Node | None] = [root]
+        leaves: list[Node] = []
+        fallen = search.cap < number(document["cap"])
         for tag, *data in document["tree"]:
             node = stack.pop()
             if tag == CUT:
-                cut = (int(data[0]), number(data[1]))
-                stack += reversed(search.halves(node, *cut, -np.inf))
+                k, at = int(data[0]), number(data[1])
+                if node is None:
+                    stack += [None, None]
+                elif fallen and at >= node.box[k][1]:
+                    stack += [None, node]
+                else:
+                    stack += reversed(search.halves(node, k, at, -np.inf))
+                continue
+            if node is None:
                 continue
             used = rows.reshape(-1, 7)[[int(n) for n in data[::2]]]
             node.carried = np.unique(np.concatenate([node.carried, used]), axis=0)
