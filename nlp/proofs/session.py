@@ -5,16 +5,17 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, TypeVar
 
 import numpy as np
 
 from ...problem import Array, TrajgapError, evaluate
-from ...verify import Subject
+from ...verify import Subject, verify_certificate
 from ..optimum import solve
 from .answer import float_problem, prove_feasible
+from .document import certificate
 from .exact import ExactProblem
 from .outcome import Argument, Certified, Given, Outcome, Progress, Request
 
@@ -25,6 +26,16 @@ Answer = tuple[tuple[Fraction, ...], tuple[tuple[Fraction, ...], ...] | None]
 
 OFTEN = 0.2
 """Seconds between reports: a reader follows them, and they cost nothing beside the boxes."""
+
+
+JUDGING = 0.25
+"""Seconds that judging takes for one of search, before it is measured: more than any kind of proof
+needs but that for cubic splines, which is measured."""
+EARLY = 0.25
+"""Share of the time after which judging is measured: earlier, most runs that end in time are over,
+and judging twice would cost them more than it gives."""
+SAFE = 1.5
+"""Factor on what was measured: later boxes may take longer to judge than those so far."""
 
 
 class OutOfTime(Exception):
@@ -87,8 +98,8 @@ class Session:
         A kind of proof showed that nothing is feasible.
     one_sided : bool
         The kind of proof bounds from below only: no answer of its own is claimed.
-    nodes, open_boxes : int
-        Boxes visited, boxes left.
+    nodes, open_boxes, judged_boxes : int
+        Boxes visited, boxes left, and boxes of the proof where its kind says so.
     """
 
     def __init__(self, exact: ExactProblem, request: Request) -> None:
@@ -99,7 +110,8 @@ class Session:
         self.proof: Argument | None = None
         self.proposals: Argument | None = None
         self.infeasible = self.one_sided = False
-        self.nodes = self.open_boxes = 0
+        self.nodes = self.open_boxes = self.judged_boxes = 0
+        self._judging: float | None = None
         self._began = time.perf_counter()
         self._reported = -math.inf
         resumed = request.resume
@@ -154,9 +166,33 @@ class Session:
         return time.perf_counter() - self._began
 
     def check_clock(self) -> None:
-        """Raise `OutOfTime` when it is."""
-        if self.seconds > self.request.seconds:
+        """Raise `OutOfTime` when what is left of the time is needed for judging."""
+        seconds = self.seconds
+        judging = JUDGING * seconds if self._judging is None else self._judging * self.judged_boxes
+        if seconds + judging > self.request.seconds:
             raise OutOfTime
+
+    def weigh(self, boxes: int, proof: Callable[[], Argument]) -> None:
+        """Say how large the proof is by now, for kinds whose judging takes as long as the search.
+
+        Once in a run the proof is judged on the way, which tells how long a box takes.
+
+        Parameters
+        ----------
+        boxes : int
+            That judging would have to go through.
+        proof : callable
+            The proof so far.
+        """
+        self.judged_boxes = max(self.judged_boxes, boxes)
+        if self._judging is not None or boxes < 1:
+            return
+        if self.seconds < EARLY * self.request.seconds:
+            return
+        part = replace(self.result(False, Subject.DECLARED), lower=Fraction(0), proof=proof())
+        began = time.perf_counter()
+        verify_certificate(certificate(part), seconds=max(0.0, self.request.seconds - self.seconds))
+        self._judging = SAFE * (time.perf_counter() - began) / boxes
 
     # --- the answer -------------------------------------------------------------------------------
 

@@ -73,11 +73,15 @@ def _prove(session: Session) -> bool:
 
     if motion is not None:
         take(motion)
-    resumed = session.request.resume
-    if resumed is not None and resumed.proof is not None:
-        root = restored(search, resumed.proof.document(), target())
+    pending = session.proposals or session.proof
+    if pending is not None:
+        search.clock = session.check_clock
+        root = restored(search, pending.document(), target())
     else:
+        # The first box is bounded whatever the time: without it nothing is proved.
         root = search.root(*_floats(asked, motion), target())
+        search.clock = session.check_clock
+    session.proposals = None
     try:
         complete = False
         while not complete:

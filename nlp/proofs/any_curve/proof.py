@@ -102,6 +102,8 @@ def restored(search: Search, document: dict[str, Any], target: float) -> Node:
             node = stack.pop()
             if tag == CUT:
                 k, at = int(data[0]), number(data[1])
+                if not 0 <= k < len(durations):
+                    raise ValueError("a cut of a segment that is not there")
                 if node is None:
                     stack += [None, None]
                 elif fallen and at >= node.box[k][1]:

@@ -449,6 +449,9 @@ def test_a_stopped_run_goes_on_where_it_stopped() -> None:
 
 
 def test_an_altered_state_is_refused() -> None:
+    def stop(_: Progress) -> None:
+        raise KeyboardInterrupt
+
     document = json.loads(json.dumps(state_document(interrupted(12))))
     rng = np.random.default_rng(0)
     for part, key in (("proposals", "tree"), ("proposals", "root"), ("proof", "tree")):
@@ -458,7 +461,7 @@ def test_an_altered_state_is_refused() -> None:
             wrong = json.loads(json.dumps(document))
             put({"proof": wrong[part]}, path, 2**27 + int(rng.integers(0, 2**20)))
             try:
-                found = certify(base_problem(), gap=1e-3, resume=wrong, seconds=0.0)
+                found = certify(base_problem(), gap=1e-3, resume=wrong, report=stop)
             except TrajgapError as error:
                 refused += "resume" in str(error)
                 continue
