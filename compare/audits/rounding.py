@@ -274,8 +274,8 @@ def _descend(
             passing = ratio <= 1.0 + tolerance
             if passing and _checked(problem, point, tolerance).verdict is Verdict.PASS:
                 return point, True
-            if gain < 1e-13 or not np.isfinite(ratio):
-                break  # no gain, or nothing is limited
+            if gain < 1e-13 or not 0.0 < ratio < np.inf:
+                break  # no gain, nothing is limited, or nothing moves as far as rounding tells
             rows = rows.pick(np.flatnonzero(ratios > 0.7 * ratio))
             gradients = peak_gradients(there, point.durations, rows.points)
             slope = np.zeros((len(rows.points), *shape))

@@ -244,6 +244,8 @@ def _why(found: Certified | str) -> str | None:
     """Why a proof that was found does not count."""
     if isinstance(found, str) or found.verdict is None or found.verdict.proves:
         return None
+    if found.verdict.out_of_time:
+        return "the proof found was not verified within --time; resume with more"
     return f"the proof found is refused: {found.verdict.reason}"
 
 

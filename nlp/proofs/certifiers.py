@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 from ...problem import Problem, TrajgapError
@@ -11,10 +12,10 @@ from .any_curve import ANY_CURVE
 from .closed_form import REST_TO_REST, STRETCHED
 from .cubic import CUBIC
 from .exact import ExactProblem, exact_problem
-from .judged import judged, unstated
+from .judged import SPARE, Deadline, judged, unstated
 from .outcome import GAP, Certified, Progress, Request
 from .quintic import QUINTIC
-from .session import Certifier
+from .session import Certifier, Session
 from .state import resumed
 from .three_piece import THREE_PIECE
 
@@ -87,7 +88,11 @@ def certify(
     gap : float
         Relative width of the interval to reach.
     seconds : float
-        Time limit. At the limit, or at Ctrl-C, the best interval proved so far is returned.
+        Time limit of all of it: proving a state again, the search, and proving the result with
+        `trajgap.verify`, for which the search leaves time. At the limit, or at Ctrl-C, the best
+        interval proved so far is returned; a proof that could not be verified in time is left in
+        the state alone. It is kept to within a second and one box, but for the local solver, which
+        is not interrupted.
     seed : int
         Of the starts of the local solver that finds the answer.
     resume : Certified or dict, optional
@@ -112,7 +117,14 @@ def certify(
         raise TrajgapError(f"certify: {why}")
     if not 0 <= gap < 1 or not seconds >= 0:
         raise TrajgapError("certify: the gap must lie in [0, 1), the seconds must be 0 or more")
-    taken_up = None if resume is None else resumed(exact, resume, subject)
+    deadline = Deadline.after(seconds)
     certifier = _certifier(exact, subject)
     assert certifier is not None
-    return judged(certifier.run(exact, Request(gap, seconds, seed, taken_up, report)))
+    taken_up, before = None, None
+    if resume is not None:
+        taken_up = resumed(exact, resume, subject, seconds + SPARE)
+        request = Request(gap, 0.0, seed, taken_up)
+        before = Session(exact, request).result(False, subject)
+        before = replace(before, verdict=taken_up.verdict)
+    request = Request(gap, deadline.left, seed, taken_up, report)
+    return judged(certifier.run(exact, request), deadline, before)

@@ -2,14 +2,40 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+import time
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from ...verify import Refused, read_problem, verify_certificate
 from .document import certificate, problem_document
 from .exact import ExactProblem
 from .outcome import Certified, Outcome
-from .state import SECONDS
+
+SPARE = 1.0
+"""Seconds that judging may take beyond the time limit: what takes no time is judged without one."""
+
+
+@dataclass(frozen=True)
+class Deadline:
+    """The time limit of a certification: what it goes on from, its search and its judging.
+
+    Attributes
+    ----------
+    end : float
+        Of the limit, by `time.perf_counter`.
+    """
+
+    end: float
+
+    @classmethod
+    def after(cls, seconds: float) -> Deadline:
+        """So many seconds from now."""
+        return cls(time.perf_counter() + seconds)
+
+    @property
+    def left(self) -> float:
+        """Seconds until then; 0 where it is over."""
+        return max(0.0, self.end - time.perf_counter())
 
 
 def unstated(problem: ExactProblem) -> str | None:
@@ -30,12 +56,17 @@ def unstated(problem: ExactProblem) -> str | None:
     return None
 
 
-def judged(found: Certified) -> Certified:
+def judged(found: Certified, deadline: Deadline, before: Certified | None = None) -> Certified:
     """What was found, with the verdict of `trajgap.verify`; nothing is proved without one.
 
     Parameters
     ----------
     found : Certified
+    deadline : Deadline
+        Judging ends `SPARE` after it. A proof that takes longer to judge does not count: it becomes
+        what a state proposes, so that a run with more time can go on from it.
+    before : Certified, optional
+        What the state that the run went on from proved, with its verdict: it holds if time is up.
 
     Returns
     -------
@@ -43,8 +74,13 @@ def judged(found: Certified) -> Certified:
     """
     if found.proof is None:
         return found
-    verdict = verify_certificate(certificate(found), seconds=SECONDS)
+    verdict = verify_certificate(certificate(found), seconds=deadline.left + SPARE)
     if verdict.proves:
         return replace(found, verdict=verdict)
-    nothing = replace(found, outcome=Outcome.OPEN, lower=Fraction(0), proof=None)
-    return replace(nothing, verdict=verdict)
+    nothing = replace(
+        found, outcome=Outcome.OPEN, lower=Fraction(0), proof=None, verdict=verdict, stopped=True
+    )
+    if not verdict.out_of_time:
+        return replace(nothing, stopped=found.stopped)
+    late = nothing if before is None else replace(before, nodes=found.nodes, seconds=found.seconds)
+    return replace(late, proposals=found.proposals or found.proof)

@@ -73,6 +73,8 @@ class Resumed:
         At the way-points, for an answer of any curve.
     proposals : dict or None
         What the run had not finished: nothing in it is trusted.
+    verdict : CertificateVerdict
+        What `trajgap.verify` said of it.
     """
 
     lower: Fraction
@@ -80,6 +82,7 @@ class Resumed:
     durations: tuple[Fraction, ...] | None
     speeds: tuple[tuple[Fraction, ...], ...] | None
     proposals: dict[str, Any] | None
+    verdict: CertificateVerdict
 
 
 @dataclass(frozen=True)
@@ -91,7 +94,7 @@ class Request:
     gap : float
         Relative width of the interval to reach.
     seconds : float
-        Time limit.
+        Time limit of search and judging; the session ends the search early enough.
     seed : int
         Of the starts of a local solver.
     resume : Resumed or None

@@ -5,23 +5,37 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, TypeVar
 
 import numpy as np
 
 from ...problem import Array, TrajgapError, evaluate
-from ...verify import Subject
+from ...verify import Subject, verify_certificate
 from ..optimum import solve
 from .answer import float_problem, prove_feasible
+from .document import certificate
 from .exact import ExactProblem
-from .outcome import Argument, Certified, Outcome, Progress, Request
+from .outcome import Argument, Certified, EarlierProof, Outcome, Progress, Request
 
 T = TypeVar("T")
 
+Answer = tuple[tuple[Fraction, ...], tuple[tuple[Fraction, ...], ...] | None]
+"""Durations, and the speeds at the way-points that an answer of any curve has."""
+
 OFTEN = 0.2
 """Seconds between reports: a reader follows them, and they cost nothing beside the boxes."""
+
+
+JUDGING = 0.25
+"""Seconds that judging takes for one of search, before it is measured: more than any kind of proof
+needs but that for cubic splines, which is measured."""
+EARLY = 0.25
+"""Share of the time after which judging is measured: earlier, most runs that end in time are over,
+and judging twice would cost them more than it gives."""
+SAFE = 1.5
+"""Factor on what was measured: later boxes may take longer to judge than those so far."""
 
 
 class OutOfTime(Exception):
@@ -70,40 +84,43 @@ class Session:
     request : Request
     floats : Problem
         The nearest problem in floats, for the local solver.
-    durations : tuple of Fraction or None
-        The answer: the shortest durations proved feasible so far.
+    answer : tuple of (durations, speeds) or None
+        The shortest durations proved feasible so far, and, of any curve, the speeds at the
+        way-points that belong to them. One assignment sets both: an interrupt parts no pair.
     lower : Fraction
         The best bound proved, s.
     proof : Argument or None
         What proves it.
-    speeds : tuple or None
-        Of an answer of any curve, at the way-points.
     proposals : Argument or None
-        What a stopped run had not finished; a kind of proof sets it before it is interrupted.
+        What a stopped run had not finished; a kind of proof sets it before it is interrupted. Until
+        then it is what the run goes on from.
     infeasible : bool
         A kind of proof showed that nothing is feasible.
     one_sided : bool
         The kind of proof bounds from below only: no answer of its own is claimed.
-    nodes, open_boxes : int
-        Boxes visited, boxes left.
+    nodes, open_boxes, judged_boxes : int
+        Boxes visited, boxes left, and boxes of the proof where its kind says so.
     """
 
     def __init__(self, exact: ExactProblem, request: Request) -> None:
         self.exact, self.request = exact, request
         self.floats = float_problem(exact)
-        self.durations: tuple[Fraction, ...] | None = None
+        self.answer: Answer | None = None
         self.lower = Fraction(0)
         self.proof: Argument | None = None
-        self.speeds: tuple[tuple[Fraction, ...], ...] | None = None
         self.proposals: Argument | None = None
         self.infeasible = self.one_sided = False
-        self.nodes = self.open_boxes = 0
+        self.nodes = self.open_boxes = self.judged_boxes = 0
+        self._judging: float | None = None
         self._began = time.perf_counter()
         self._reported = -math.inf
         resumed = request.resume
         if resumed is not None:
-            self.durations, self.speeds = resumed.durations, resumed.speeds
+            if resumed.durations is not None:
+                self.answer = resumed.durations, resumed.speeds
             self.lower, self.proof = resumed.lower, resumed.proof
+            if resumed.proposals is not None:
+                self.proposals = EarlierProof(resumed.proposals)
 
     def taken_up(self, read: Callable[[dict[str, Any]], T]) -> T | None:
         """What a stopped run had not finished, read by its kind of proof; None if there is nothing.
@@ -130,6 +147,15 @@ class Session:
             raise TrajgapError(f"resume: malformed state ({name}: {error})") from None
 
     @property
+    def durations(self) -> tuple[Fraction, ...] | None:
+        """Of the answer; setting them alone leaves it without speeds."""
+        return None if self.answer is None else self.answer[0]
+
+    @durations.setter
+    def durations(self, durations: tuple[Fraction, ...]) -> None:
+        self.answer = durations, None
+
+    @property
     def upper(self) -> Fraction | None:
         """Total of the answer, s."""
         return None if self.durations is None else sum(self.durations, Fraction(0))
@@ -140,9 +166,33 @@ class Session:
         return time.perf_counter() - self._began
 
     def check_clock(self) -> None:
-        """Raise `OutOfTime` when it is."""
-        if self.seconds > self.request.seconds:
+        """Raise `OutOfTime` when what is left of the time is needed for judging."""
+        seconds = self.seconds
+        judging = JUDGING * seconds if self._judging is None else self._judging * self.judged_boxes
+        if seconds + judging > self.request.seconds:
             raise OutOfTime
+
+    def weigh(self, boxes: int, proof: Callable[[], Argument]) -> None:
+        """Say how large the proof is by now, for kinds whose judging takes as long as the search.
+
+        Once in a run the proof is judged on the way, which tells how long a box takes.
+
+        Parameters
+        ----------
+        boxes : int
+            That judging would have to go through.
+        proof : callable
+            The proof so far.
+        """
+        self.judged_boxes = max(self.judged_boxes, boxes)
+        if self._judging is not None or boxes < 1:
+            return
+        if self.seconds < EARLY * self.request.seconds:
+            return
+        part = replace(self.result(False, Subject.DECLARED), lower=Fraction(0), proof=proof())
+        began = time.perf_counter()
+        verify_certificate(certificate(part), seconds=max(0.0, self.request.seconds - self.seconds))
+        self._judging = SAFE * (time.perf_counter() - began) / boxes
 
     # --- the answer -------------------------------------------------------------------------------
 
@@ -239,6 +289,7 @@ class Session:
         TrajgapError
             If the bound lies above the answer: one of the two proofs is wrong.
         """
+        durations, speeds = (None, None) if self.answer is None else self.answer
         upper = self.upper
         if upper is not None and upper < self.lower:
             raise TrajgapError("certify: the proof contradicts the answer, one of them is wrong")
@@ -256,7 +307,7 @@ class Session:
             outcome,
             self.lower,
             upper,
-            self.durations,
+            durations,
             self.nodes,
             0 if complete else self.open_boxes,
             self.seconds,
@@ -264,7 +315,7 @@ class Session:
             outcome in (Outcome.INTERVAL, Outcome.OPEN) and not (complete and self.proof is None),
             None if complete else self.proposals,
             subject,
-            self.speeds,
+            speeds,
         )
 
 

@@ -9,6 +9,7 @@ from typing import Any
 
 from ...problem import TrajgapError, check_regular
 from ...verify import (
+    SECONDS,
     STATE_FORMAT,
     CertifiedQuestion,
     Refused,
@@ -20,9 +21,6 @@ from ...verify import (
 from .document import document_of, fits, sealed
 from .exact import ExactProblem
 from .outcome import Certified, EarlierProof, Resumed
-
-SECONDS = 600.0
-"""For a proof in a state, or at the end of a run: what took hours is proved again in minutes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,7 +97,10 @@ def read_state(path: str | Path) -> StateFile:
 
 
 def resumed(
-    problem: ExactProblem, state: Certified | dict[str, Any], subject: Subject = Subject.DECLARED
+    problem: ExactProblem,
+    state: Certified | dict[str, Any],
+    subject: Subject = Subject.DECLARED,
+    seconds: float = SECONDS,
 ) -> Resumed:
     """What a stopped run left, its proof and its answer proved again by `trajgap.verify`.
 
@@ -109,6 +110,8 @@ def resumed(
     state : Certified or dict
         The run, or its `state_document`.
     subject : Subject
+    seconds : float
+        Time limit.
 
     Returns
     -------
@@ -122,7 +125,7 @@ def resumed(
     document = state_document(state) if isinstance(state, Certified) else state
     if not isinstance(document, dict) or document.get("format") != STATE_FORMAT:
         raise TrajgapError(f"resume: no {STATE_FORMAT}; give a run that was stopped, or its state")
-    verdict = verify_certificate(document, seconds=SECONDS)
+    verdict = verify_certificate(document, seconds=seconds)
     if not verdict.proves:
         raise TrajgapError(f"resume: the state is not proved ({verdict.reason})")
     if not fits(document, problem, subject):
@@ -135,4 +138,5 @@ def resumed(
         None if durations is None else tuple(map(number, durations)),
         None if speeds is None else tuple(tuple(map(number, row)) for row in speeds),
         document["proposals"],
+        verdict,
     )

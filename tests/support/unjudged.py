@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from importlib import import_module
+from typing import Any
 
 import pytest
 from trajgap.nlp.proofs.judged import judged
@@ -12,9 +13,9 @@ from trajgap.nlp.proofs.outcome import Certified
 def unjudged(monkeypatch: pytest.MonkeyPatch) -> list[Certified]:
     """A list that receives whatever certifiers find from now on."""
 
-    def seen(found: Certified) -> Certified:
+    def seen(found: Certified, *rest: Any) -> Certified:
         raw.append(found)
-        return judged(found)
+        return judged(found, *rest)
 
     raw: list[Certified] = []
     monkeypatch.setattr(import_module("trajgap.nlp.proofs.certifiers"), "judged", seen)

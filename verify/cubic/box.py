@@ -15,6 +15,9 @@ from .system import ZERO, Cubic, smaller
 
 FINE = 2**44
 """Ranges are multiples of 1/FINE: fine enough for gaps of 1e-9, and no number grows in a tree."""
+_INNER = 2**80
+"""What the ranges are computed from is in multiples of 1/_INNER: where a span is almost 0, so is
+the determinant of the equations, and an inverse of 1e6 times ranges of 1e6 magnify a rounding."""
 _ROUNDS = 6
 """Of narrowing one range by the others: more gain nothing that the next box would not."""
 _SINGULAR = 1e-12
@@ -73,7 +76,7 @@ class Box:
         moving = [(i, t, sign) for i, (t, sign) in cubic.moved.items() if any(cubic.steps[t])]
         if any(sides[t][0] <= 0 for _, t, _ in moving):
             return
-        centre = [Fraction(floor((a + b) / 2 * FINE), FINE) for a, b in sides]
+        centre = [Fraction(floor((a + b) / 2 * _INNER), _INNER) for a, b in sides]
         half = [max(b - c, c - a) for (a, b), c in zip(sides, centre, strict=True)]
         rows: list[dict[int, Fraction]] = []
         linear: list[list[tuple[int, int, Fraction]]] = [[] for _ in sides]
@@ -123,7 +126,7 @@ class Box:
                         for end in (first, second)
                     )
                 # What rounding the pulls lost: half a unit for each of them.
-                total += sum(map(abs, line), ZERO) * sum(half, ZERO) / FINE
+                total += sum(map(abs, line), ZERO) * sum(half, ZERO) / _INNER
                 offset.append(total)
             middles[j], offsets[j] = x, offset
         change = _changes(y, rows, linear, half, clock)
@@ -185,7 +188,7 @@ class Box:
                 assert r is not None
                 radius.append(ceil(max(abs(r[0] - x), abs(r[1] - x)) * FINE))
             for v, line in enumerate(change):
-                moved = sum(a * b for a, b in zip(line, radius, strict=True)) // FINE + 1
+                moved = sum(a * b for a, b in zip(line, radius, strict=True)) // _INNER + 1
                 reach = Fraction(base[v] + moved, FINE)
                 self._between(j, v, middle[v] - reach, middle[v] + reach)
             if self.empty:
@@ -193,7 +196,7 @@ class Box:
 
 
 def _nearest(x: Fraction) -> Fraction:
-    return Fraction(round(x * FINE), FINE)
+    return Fraction(round(x * _INNER), _INNER)
 
 
 def _inverse(rows: Sequence[dict[int, Fraction]], clock: Clock) -> list[list[Fraction]] | None:
@@ -225,7 +228,7 @@ def _changes(
     half: Sequence[Fraction],
     clock: Clock,
 ) -> list[list[int]]:
-    """|I − Y M(c)| + Σ half_k |Y B_k|, rounded up, in units of 1/FINE."""
+    """|I − Y M(c)| + Σ half_k |Y B_k|, rounded up, in units of 1/_INNER."""
     out = []
     for r, line in enumerate(y):
         clock.check()
@@ -240,5 +243,5 @@ def _changes(
                 moved[v] = moved.get(v, ZERO) + line[i] * x
             for v, x in moved.items():
                 total[v] += width * abs(x)
-        out.append([ceil(x * FINE) for x in total])
+        out.append([ceil(x * _INNER) for x in total])
     return out

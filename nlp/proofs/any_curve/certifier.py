@@ -37,7 +37,8 @@ def _prove(session: Session) -> bool:
     """
     exact, gap = session.exact, session.request.gap
     asked = question(exact)
-    motion = _first_motion(exact, asked, session.request.seed)
+    answered = unanswered(exact) is None
+    motion = _shorter(_given_motion(session, asked), _first_motion(session, asked))
     longest = [x for x in asked.longest if x is not None]
     bounded = len(longest) == len(asked.longest)
     if motion is not None:
@@ -51,8 +52,9 @@ def _prove(session: Session) -> bool:
 
     def take(better: Motion) -> None:
         found.append(better)
-        if unanswered(exact) is None:
-            session.durations = better[0]
+        session.one_sided = not answered
+        if answered:
+            session.answer = better[0], _all_speeds(exact, asked, better)
 
     def target() -> float:
         total = sum(found[-1][0]) if found else cap
@@ -71,11 +73,15 @@ def _prove(session: Session) -> bool:
 
     if motion is not None:
         take(motion)
-    resumed = session.request.resume
-    if resumed is not None and resumed.proof is not None:
-        root = restored(search, resumed.proof.document(), target())
+    pending = session.proposals or session.proof
+    if pending is not None:
+        search.clock = session.check_clock
+        root = restored(search, pending.document(), target())
     else:
+        # The first box is bounded whatever the time: without it nothing is proved.
         root = search.root(*_floats(asked, motion), target())
+        search.clock = session.check_clock
+    session.proposals = None
     try:
         complete = False
         while not complete:
@@ -91,15 +97,11 @@ def _prove(session: Session) -> bool:
 
 def _close(session: Session, search: Search, root: Node, motion: Motion | None) -> None:
     """Leave the bound of all boxes, proved in rational numbers, and the motion as the answer."""
-    exact = session.exact
-    answer = motion if session.durations is not None else None
-    session.one_sided = motion is not None and answer is None
     top = search.cap if motion is None else sum(motion[0], Fraction(0))
     least = min(search.exact(leaf, DIGITS[-1])[0] for leaf in root.leaves)
     total = down(min(least, top), _DIGITS)
     if total > 0:
         session.keep(total, free_bound(search, root, total))
-    session.speeds = _all_speeds(exact, search, answer)
     wanted = float(top) * (1 - session.request.gap if motion is not None else 1.0)
     session.report(sum(leaf.lower < wanted for leaf in root.leaves), search.nodes)
 
@@ -108,18 +110,34 @@ ANY_CURVE = Certifier("every C1 motion", lambda _: True, missing, _prove, subjec
 """Takes every curve, since of a curve only the velocities at its two ends count."""
 
 
-def _first_motion(exact: ExactProblem, asked: FreeQuestion, seed: int) -> Motion | None:
+def _given_motion(session: Session, asked: FreeQuestion) -> Motion | None:
+    """The answer of the run that this one goes on from, proved there."""
+    durations, speeds = session.answer or (None, None)
+    if durations is None or speeds is None:
+        return None
+    return durations, tuple(tuple(row[j] for j in asked.joints) for row in speeds)
+
+
+def _first_motion(session: Session, asked: FreeQuestion) -> Motion | None:
     """The best motion that the local solver finds, proved."""
+    exact = session.exact
     alone = replace(
         exact,
         limits=tuple((v, a, None) for v, a, _ in exact.limits),
         position_lower=(None,) * len(exact.joints),
         position_upper=(None,) * len(exact.joints),
     )
-    known = estimate_any_curve(float_problem(alone), seed=seed)
+    known = estimate_any_curve(float_problem(alone), seed=session.request.seed)
     if known.durations is None or known.nodal_velocities is None:
         return None
     return prove_motion(asked, known.durations, known.nodal_velocities[:, list(asked.joints)])
+
+
+def _shorter(one: Motion | None, other: Motion | None) -> Motion | None:
+    """The motion that takes less time; the first of two that take the same."""
+    if one is None or other is None:
+        return one or other
+    return other if sum(other[0]) < sum(one[0]) else one
 
 
 def _local_motion(asked: FreeQuestion, durations: Array) -> Motion | None:
@@ -156,11 +174,10 @@ def _floats(asked: FreeQuestion, motion: Motion | None) -> tuple[Array, Array]:
 
 
 def _all_speeds(
-    exact: ExactProblem, search: Search, answer: Motion | None
-) -> tuple[tuple[Fraction, ...], ...] | None:
-    if answer is None:
-        return None
-    place = {j: n for n, j in enumerate(search.asked.joints)}
+    exact: ExactProblem, asked: FreeQuestion, answer: Motion
+) -> tuple[tuple[Fraction, ...], ...]:
+    """Speeds of every joint at the way-points: a joint that does not matter stands still."""
+    place = {j: n for n, j in enumerate(asked.joints)}
     every = range(len(exact.joints))
     return tuple(
         tuple(row[place[j]] if j in place else Fraction(0) for j in every) for row in answer[1]

@@ -84,6 +84,8 @@ def free_bound(search: Search, root: Node, total: Fraction) -> FreeBound:
 def restored(search: Search, document: dict[str, Any], target: float) -> Node:
     """The boxes of a stopped run, bounded anew; of its rows only the parameters are used.
 
+    Under a lower cap the sides of the boxes end earlier: a part beyond them is left out.
+
     Raises
     ------
     TrajgapError
@@ -94,13 +96,24 @@ def restored(search: Search, document: dict[str, Any], target: float) -> Node:
     try:
         rows = np.array([_row(search, row) for row in document["rows"]], dtype=np.int64)
         root = search.root(durations, speeds, -np.inf)
-        stack, divided = [root], []
+        stack: list[Node | None] = [root]
+        divided: list[Node] = []
+        fallen = search.cap < number(document["cap"])
         for tag, *data in document["tree"]:
             node = stack.pop()
             if tag == CUT:
-                cut = (int(data[0]), number(data[1]))
-                stack += reversed(search.halves(node, *cut, -np.inf))
-                divided.append(node)
+                k, at = int(data[0]), number(data[1])
+                if not 0 <= k < len(durations):
+                    raise ValueError("a cut of a segment that is not there")
+                if node is None:
+                    stack += [None, None]
+                elif fallen and at >= node.box[k][1]:
+                    stack += [None, node]
+                else:
+                    stack += reversed(search.halves(node, k, at, -np.inf))
+                    divided.append(node)
+                continue
+            if node is None:
                 continue
             used = rows.reshape(-1, 7)[[int(n) for n in data[::2]]]
             node.carried = np.unique(np.concatenate([node.carried, used]), axis=0)

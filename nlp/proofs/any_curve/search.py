@@ -95,12 +95,15 @@ class Search:
     asked : FreeQuestion
     cap : Fraction
         Totals below it are looked at, s.
+    clock : callable
+        Called before every box; stops the search by raising.
     """
 
     asked: FreeQuestion
     cap: Fraction
     nodes: int = 0
     looks: int = 8
+    clock: Callable[[], None] = lambda: None
     speeds: tuple[Fraction, ...] = field(init=False)
     scaled: Floats = field(init=False)
 
@@ -132,6 +135,7 @@ class Search:
         inherited : Node or None
             The box that this one is a part of: its weights serve if no better ones are found.
         """
+        self.clock()
         self.nodes += 1
         scaled, unit = self.scaled, self.scaled.time
         carried = carried[[box[k][0] > 0 or kind != BRAKE for kind, k in carried[:, :2]]]

@@ -63,8 +63,9 @@ class _Watch:
 
     def look(self, search: Search) -> None:
         """Stop when time is up, and report."""
-        self.session.check_clock()
         tree = Tree(search.prover, search.root, search.lower)
+        self.session.weigh(search.worked, lambda: tree)
+        self.session.check_clock()
         self.session.report(len(search.heap), self.nodes + search.boxes, tree.seconds)
 
     def improve(self, system: CubicSystem, point: Array) -> None:
@@ -94,7 +95,9 @@ class _Stage:
 def _prove(session: Session) -> bool:
     watch = _Watch(session)
     # The steps that a state proposes are proved on the way, or it is refused.
-    pending = session.taken_up(lambda document: Tree(*replayed(session.exact, document)))
+    pending = session.taken_up(
+        lambda document: Tree(*replayed(session.exact, document, watch.clock))
+    )
     if pending is not None:
         session.keep(pending.seconds, pending)
         session.proposals = replace(pending, unfinished=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,9 @@ _LARGEST = 2**26
 """Of the integer weights in a state: up to there `proof.lagrangian` adds them up exactly."""
 
 
-def replayed(exact: ExactProblem, document: dict[str, Any]) -> tuple[Prover, Box, int]:
+def replayed(
+    exact: ExactProblem, document: dict[str, Any], clock: Callable[[], None]
+) -> tuple[Prover, Box, int]:
     """The tree of a document, with what it proves in ticks.
 
     Parameters
@@ -25,6 +28,8 @@ def replayed(exact: ExactProblem, document: dict[str, Any]) -> tuple[Prover, Box
     exact : ExactProblem
     document : dict
         As `cubic_tree.proof_document` writes it; nothing in it is trusted.
+    clock : callable
+        Called before every step; ends the replay by raising.
 
     Returns
     -------
@@ -50,6 +55,7 @@ def replayed(exact: ExactProblem, document: dict[str, Any]) -> tuple[Prover, Box
     root = prover.root()
     stack = [root]
     for node in document["tree"]:
+        clock()
         _need(bool(stack) and isinstance(node, list) and bool(node), "the tree")
         box, tag = stack.pop(), node[0]
         if box.closed:

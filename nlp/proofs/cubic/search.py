@@ -52,6 +52,7 @@ class Search:
         self.relaxation = Relaxation(prover.system, self.rows, prover.total)
         self._order = itertools.count()
         self.boxes = 0
+        self._given = sum(1 for _ in root.worked())
         self.heap = [(box.floor, next(self._order), box) for box in root.leaves()]
         heapq.heapify(self.heap)
 
@@ -59,6 +60,11 @@ class Search:
     def lower(self) -> int:
         """What is proved, in ticks."""
         return min((box.floor for box in self.root.leaves()), default=self.prover.cap)
+
+    @property
+    def worked(self) -> int:
+        """Boxes of the tree that something was done to."""
+        return self._given + self.boxes
 
     def until(self, goal: Callable[[], int], restart: int = 0) -> bool:
         """Search until ``goal()`` ticks are proved, or the goal fell below ``restart``.

@@ -71,6 +71,15 @@ class Box:
             elif not box.closed:
                 yield box
 
+    def worked(self) -> Iterator[Box]:
+        """Boxes that something was done to, itself included."""
+        stack = [self]
+        while stack:
+            box = stack.pop()
+            stack += box.children
+            if box.steps:
+                yield box
+
 
 class Prover:
     """Carries out steps, each only if it is proved; the total is below ``cap`` ticks."""

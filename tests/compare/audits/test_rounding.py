@@ -37,7 +37,7 @@ from trajgap.problem import (
     rest_to_rest,
     three_five_three,
 )
-from trajgap.problem.cases.load import load_case
+from trajgap.problem.cases.load import load_case, parse_case
 from trajgap.problem.curves.condition import ConditionKind
 
 MOVING_ENDS = piecewise((4, 3, 4), 2, ((1, 0.3), (2, -0.7)))
@@ -688,3 +688,26 @@ def test_nothing_limited_is_kept_by_every_duration() -> None:
     assert judge_rounding(free, below).verdict is Rounding.BREAKS
     around = RoundingBox(np.array([0.49, 0.6]), np.array([0.48, 0.59]), np.array([0.51, 0.61]))
     assert judge_rounding(free, around).verdict in (Rounding.CONSISTENT, Rounding.UNDECIDED)
+
+
+def test_a_motion_whose_limited_derivative_vanishes_is_not_searched() -> None:
+    """Two way-points of a timed uniform cubic B-spline: a straight line, whose jerk is 0."""
+    case = parse_case(
+        """
+format = 1
+id = "line"
+title = "a straight line"
+source = { year = 2024 }
+robot = { name = "arm", joints = ["1"] }
+units = { position = "deg", jerk = "deg/s^3", time = "s" }
+waypoints = { where = "Table 1", joint_rows = [[23.0138, -31.7772]] }
+limits = { jerk = 302.867 }
+interpolant = { family = "uniform-cubic-b-spline", time = "timed" }
+""",
+        "line.toml",
+    )
+    problem = case.problem()
+    times = np.array([1.7282e-05])
+    points = RoundingBox(problem.waypoints, problem.waypoints - 1e-6, problem.waypoints + 1e-6)
+    found = judge_rounding(problem, RoundingBox(times, times - 5e-10, times + 5e-10), points)
+    assert found.verdict is not Rounding.BREAKS

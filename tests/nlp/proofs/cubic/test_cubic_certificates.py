@@ -449,6 +449,9 @@ def test_a_stopped_run_goes_on_where_it_stopped() -> None:
 
 
 def test_an_altered_state_is_refused() -> None:
+    def stop(_: Progress) -> None:
+        raise KeyboardInterrupt
+
     document = json.loads(json.dumps(state_document(interrupted(12))))
     rng = np.random.default_rng(0)
     for part, key in (("proposals", "tree"), ("proposals", "root"), ("proof", "tree")):
@@ -458,7 +461,7 @@ def test_an_altered_state_is_refused() -> None:
             wrong = json.loads(json.dumps(document))
             put({"proof": wrong[part]}, path, 2**27 + int(rng.integers(0, 2**20)))
             try:
-                found = certify(base_problem(), gap=1e-3, resume=wrong, seconds=0.0)
+                found = certify(base_problem(), gap=1e-3, resume=wrong, report=stop)
             except TrajgapError as error:
                 refused += "resume" in str(error)
                 continue
@@ -636,3 +639,32 @@ def test_the_example_s_certificate_is_fresh_and_proves() -> None:
     assert [float(x) for x in printed] == pytest.approx(
         [float(verdict.lower), float(verdict.upper)], abs=6e-5
     )
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_ranges_of_a_span_that_almost_vanishes_are_the_same_on_both_sides(seed: int) -> None:
+    # Coincident way-points and a velocity limit alone: nothing keeps the span from 0.
+    rng = np.random.default_rng([44, seed])
+    q = np.array([[-0.3], [-0.3], [0.8], [0.4]]) if seed % 2 else np.array([[-0.3], [0.8], [0.8]])
+    first = seed % 2 == 1
+    problem = Problem(q, Limits([1.0]), cubic_spline_virtual(len(q)))
+    prover, cubic = both(problem, 11 * TICKS)
+    spans, root = prover.system.spans, prover.root()
+    y = rng.uniform(1.0, 3.0, prover.system.free)
+    k, h = (0, spans) if first else (spans - 1, spans + 1)
+    y[k] = rng.uniform(1e-6, 4e-6)
+    y[spans], y[spans + 1] = 0.4 * y[0], 0.6 * y[spans - 1]
+    y[h] = 0.7 * y[k]
+    root.low = [int(z * (1 - 1e-3) * TICKS) for z in y]
+    root.high = [int(z * (1 + 1e-3) * TICKS) + 1 for z in y]
+    prover.trim(root)
+    side = prover.side(root)
+    found = narrowed(prover.system, side, *a_priori(prover.system, side, prover.total))
+    assert found is not None
+    box = Box(cubic, list(root.low), list(root.high), [[None] * cubic.size], 0)
+    box.narrow(Clock(60.0))
+    for v, bounds in enumerate(box.x[0]):
+        assert bounds is not None
+        slack = 1e-9 * (1.0 + abs(found[1][v, 0]))
+        assert float(bounds[0]) >= found[0][v, 0] - slack
+        assert float(bounds[1]) <= found[1][v, 0] + slack
