@@ -125,8 +125,14 @@ def estimate_any_curve(
     totals: tuple[float, ...] = ()
     count = 0
     velocities = np.full(problem.waypoints.shape, np.nan)
-    if bounded.any():
-        moving = ~((question.steps == 0).all(axis=1) & (question.lower == 0))
+    moving = ~((question.steps == 0).all(axis=1) & (question.lower == 0))
+    first, last = question.ends
+    if bounded.any() and not moving.any():
+        if first is not None and last is not None and first != last:
+            still = "nothing moves between the way-points, but the two end velocities differ"
+            return AnyCurveEstimate(None, why=still)
+        velocities[:, np.flatnonzero(matter)[bounded]] = first or last or 0.0
+    elif bounded.any():
         core = replace(
             question,
             steps=question.steps[moving][:, bounded],

@@ -430,6 +430,19 @@ def test_nothing_moves() -> None:
     assert estimate_any_curve(posed([0.4, 0.4, 0.4], 1.0, 2.0)).why == "nothing moves"
 
 
+@pytest.mark.parametrize(("first", "last"), [(0.5, 0.5), (0.5, -0.3)])
+def test_nothing_moves_but_the_ends_are_passed_with_a_velocity(first: float, last: float) -> None:
+    """Passed in no time at one velocity; with two the joint would have to go out and come back."""
+    curve = Interpolant((3,), (), (((1, first),), ((1, last),)))
+    found = estimate_any_curve(Problem([[0.2], [0.2]], Limits(5.0, 4.0), curve))
+    if first == last:
+        assert found.total_time == 0.0
+        assert found.nodal_velocities[:, 0] == pytest.approx([first, first])
+    else:
+        assert found.total_time is None
+        assert found.why.endswith("the two end velocities differ")
+
+
 def test_too_little_time() -> None:
     found = estimate_any_curve(posed([0.0, 1.0, 0.5], 2.0, 8.0, duration_upper=0.45))
     assert found.why == "segment 1 cannot be done within its upper bound"
