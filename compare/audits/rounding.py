@@ -299,3 +299,13 @@ def _descend(
         moved = np.clip(x + solved[0] * span, low, high)
         trial = Point(moved[:n], moved[n:].reshape(shape))
     return point, False
+
+
+def or_cut_off(box: RoundingBox) -> RoundingBox:
+    """The box widened by the inputs whose further digits were cut off instead of rounded."""
+    up, down = 2.0 * (box.upper - box.value), 2.0 * (box.value - box.lower)
+    # A little more than one unit of the last digit, whose own value is rounded.
+    wide = 1.0 + 1e-9
+    lower = np.where(box.value > 0, box.lower, box.value - down * wide)
+    upper = np.where(box.value < 0, box.upper, box.value + up * wide)
+    return RoundingBox(box.value, np.minimum(lower, box.lower), np.maximum(upper, box.upper))

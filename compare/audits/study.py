@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from copy import copy
-from dataclasses import fields, replace
-from enum import StrEnum
+from dataclasses import replace
 from typing import Any, TypeVar, cast
 
 import numpy as np
@@ -55,7 +54,8 @@ from ...problem.cases import (
 )
 from .instances import InstancesResult, examined, readings_of
 from .intervals import CERTIFY_SECONDS, Intervals
-from .rounding import RoundingBox, RoundingVerdict, judge_rounding
+from .replay_settings import LISTED, spread_settings
+from .rounding import RoundingBox, RoundingVerdict, judge_rounding, or_cut_off
 
 T = TypeVar("T")
 Pair = tuple[str, str]
@@ -64,15 +64,16 @@ Replays = tuple[Run, ...] | tuple[JointRuns, ...]
 """Runs of one algorithm, one for each seed: of all joints, or of each joint by itself."""
 
 
-SEEDS = 30
-"""Seeds of a replay by default: enough for a median and its spread, a minute or so of one core."""
+SEEDS = 100
+"""Seeds of a replay by default: independent runs enough for a probability to a few per cent."""
 RELAXED_SECONDS = 15.0
 """After which no step of the search over the relaxed family is begun: it is information beside the
 claims, and one problem in some must not take most of an audit."""
 OPTIMUM_SECONDS = 60.0
 """After which no start of the search for an optimum is begun; usual problems take a second."""
-VARIANT_SEEDS = 6
-"""Seeds under each changed choice, of which there are many: enough to see a median move."""
+SPREAD_SEEDS = 4
+"""Seeds under each of the spread settings, of which there are two dozen: enough to see a median
+move across them."""
 
 
 class Study:
@@ -350,7 +351,7 @@ class Study:
         durations = RoundingBox(printed.value, printed.lower, printed.upper)
         waypoints = RoundingBox(problem.waypoints, *self._box_columns(problem, pid, rid))
         if cut:
-            durations, waypoints = _or_cut_off(durations), _or_cut_off(waypoints)
+            durations, waypoints = or_cut_off(durations), or_cut_off(waypoints)
         return judge_rounding(problem, durations, waypoints)
 
     def claim_total(self, claim: Claim, rid: str) -> tuple[str, tuple[float, float]] | None:
@@ -413,43 +414,32 @@ class Study:
             return run_many_per_joint(algorithm, problem, range(seeds), self.workers)
         return run_many(algorithm, problem, range(seeds), self.workers)
 
-    def variants(self, algorithm_id: str) -> dict[str, Algorithm[Any]]:
-        """The algorithm under the listed choices, and with each open enumerated choice changed.
+    def settings(self, algorithm_id: str) -> dict[str, Algorithm[Any]]:
+        """The algorithm as listed, and under settings spread over all that the paper leaves open.
 
-        A choice is open if the paper does not print it; one is changed at a time.
+        `spread_settings` says how; empty where the algorithm's kind is not implemented.
         """
         algorithm = self.algorithm(algorithm_id)
         if algorithm is None:
             return {}
         block = next(a for a in self.case.algorithms if a.id == algorithm_id)
-        found: dict[str, Algorithm[Any]] = {"as listed": algorithm}
-        for one in fields(cast(Any, algorithm)):
-            current = getattr(algorithm, one.name)
-            if not isinstance(current, StrEnum) or one.name in block.settings:
-                continue
-            for option in type(current):
-                if option is not current:
-                    changed = replace(cast(Any, algorithm), **{one.name: option})
-                    found[f"{one.name} = {option}"] = cast(Algorithm[Any], changed)
-        return found
+        return spread_settings(algorithm, block.settings)
 
-    def variant_totals(self, algorithm_id: str, pid: str, rid: str) -> dict[str, Array]:
-        """Reported totals of each variant over its seeds, s; empty as `runs`."""
+    def spread_runs(self, algorithm_id: str, pid: str, rid: str) -> dict[str, Replays]:
+        """Replays under each of `settings`, fewer where it is not the listed one; as `runs`."""
         if self.unreplayed(algorithm_id, pid, rid) is not None:
             return {}
 
-        def compute() -> dict[str, Array]:
-            totals: dict[str, Array] = {}
-            for name, algorithm in self.variants(algorithm_id).items():
-                if name == "as listed":
-                    runs = self.runs(algorithm_id, pid, rid)
-                else:
-                    few = min(VARIANT_SEEDS, self.seeds)
-                    runs = self._replay(algorithm, f"{algorithm_id}, {name}", pid, rid, few)
-                totals[name] = np.array([r.reported_time for r in runs])
-            return totals
+        def compute() -> dict[str, Replays]:
+            few = min(SPREAD_SEEDS, self.seeds)
+            return {
+                name: self.runs(algorithm_id, pid, rid)
+                if name == LISTED
+                else self._replay(algorithm, f"{algorithm_id}, {name}", pid, rid, few)
+                for name, algorithm in self.settings(algorithm_id).items()
+            }
 
-        return self._once(("variants", algorithm_id, pid, rid), compute)
+        return self._once(("spread", algorithm_id, pid, rid), compute)
 
     @property
     def instance_blocks(self) -> tuple[InstancesBlock, ...]:
@@ -479,13 +469,3 @@ class Study:
             return examined(self, block, lambda done: self._progress(f"{what}, {done}"))
 
         return self._once(("instances", block.id), compute)
-
-
-def _or_cut_off(box: RoundingBox) -> RoundingBox:
-    """The box widened by the inputs whose further digits were cut off instead of rounded."""
-    up, down = 2.0 * (box.upper - box.value), 2.0 * (box.value - box.lower)
-    # A little more than one unit of the last digit, whose own value is rounded.
-    wide = 1.0 + 1e-9
-    lower = np.where(box.value > 0, box.lower, box.value - down * wide)
-    upper = np.where(box.value < 0, box.upper, box.value + up * wide)
-    return RoundingBox(box.value, np.minimum(lower, box.lower), np.maximum(upper, box.upper))

@@ -259,7 +259,7 @@ def audit(
     ] = None,
     problem: ProblemId = None,
     reading: ReadingId = None,
-    seeds: Annotated[int, typer.Option(min=2, max=MOST, help="Seeds of each replay.")] = 30,
+    seeds: Annotated[int, typer.Option(min=2, max=MOST, help="Seeds of each replay.")] = 100,
     workers: Annotated[
         int,
         typer.Option(

@@ -1,11 +1,21 @@
 from .optimality_gap import gap, reference_of
-from .statistics import SETTLED, settled_at, share_of_luck, share_of_pairs, spread
+from .statistics import (
+    SETTLED,
+    Spread,
+    settled_at,
+    share_interval,
+    share_of_luck,
+    share_of_pairs,
+    spread,
+)
 
 __all__ = [
     "SETTLED",
+    "Spread",
     "gap",
     "reference_of",
     "settled_at",
+    "share_interval",
     "share_of_luck",
     "share_of_pairs",
     "spread",

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import bootstrap
 
 from ...problem import Array
 
@@ -75,6 +76,36 @@ def share_of_pairs(slower: Array, faster: Array, reduction: float) -> float:
 def share_of_luck(totals: Array, reduction: float) -> float:
     """The same for two different runs of one algorithm: what luck alone shows."""
     return _share(totals, totals, reduction, ~np.eye(totals.size, dtype=bool))
+
+
+def share_interval(slower: Array, faster: Array, reduction: float) -> tuple[float, float]:
+    """95 % interval of `share_of_pairs`, by resampling the runs of both algorithms.
+
+    Pairs of the same runs depend on each other, so that runs are drawn and not pairs. Percentiles
+    of 1,000 samples, with a fixed seed.
+
+    Parameters
+    ----------
+    slower, faster : ndarray
+        Totals, s; at least two each.
+    reduction : float
+
+    Returns
+    -------
+    (float, float)
+        nan if there is no pair of finite totals.
+    """
+    if not (np.isfinite(slower).any() and np.isfinite(faster).any()):
+        return float("nan"), float("nan")
+    found = bootstrap(
+        (slower, faster),
+        lambda a, b: share_of_pairs(a, b, reduction),
+        n_resamples=1000,
+        vectorized=False,
+        method="percentile",
+        rng=0,
+    ).confidence_interval
+    return float(found.low), float(found.high)
 
 
 def _share(

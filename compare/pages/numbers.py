@@ -258,13 +258,13 @@ def sensitivities(one: CaseAudit) -> Section:
 
 
 def replay_rows(study: Study, pid: str) -> list[tuple[Cell, ...]]:
-    """Totals of every algorithm over its seeds, under the listed choices and each one changed."""
+    """Totals of every algorithm over its seeds, under the listed choices and spread settings."""
     rid = study.main_reading
     reference = reference_of(study.optimum(pid, rid))
     rows = []
     for algorithm in study.case.algorithms:
-        for name, totals in study.variant_totals(algorithm.id, pid, rid).items():
-            s = spread(totals)
+        for name, runs in study.spread_runs(algorithm.id, pid, rid).items():
+            s = spread(np.array([r.reported_time for r in runs]))
             known = np.isfinite(s.median) and reference is not None
             away = gap(s.median, reference).percent if known and reference is not None else None
             rows.append(

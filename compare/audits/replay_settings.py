@@ -1,0 +1,96 @@
+"""The settings under which an algorithm is replayed: as listed, and spread over what is open."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import fields, replace
+from enum import StrEnum
+from typing import Any, cast
+
+from scipy.stats import qmc
+
+from ...heuristics import Algorithm
+from ...problem import TrajgapError
+
+LISTED = "as listed"
+"""Name of the settings that the case lists."""
+DESIGN = 24
+"""Settings drawn over everything open at once: each open number in 24 different places."""
+_OPEN_NUMBERS = {
+    "inertia": (0.4, 1.0),
+    "inertia_max": (0.7, 1.0),
+    "inertia_min": (0.2, 0.6),
+    "c1": (1.0, 2.5),
+    "c2": (1.0, 2.5),
+    "particles": (20, 60),
+    "population": (20, 80),
+    "whales": (20, 60),
+    "velocity_max": (0.1, 1.0),
+    "mutation_scale": (0.25, 2.0),
+    "crossover_rate": (0.6, 0.95),
+    "mutation_rate": (0.01, 0.2),
+    "mutation_reach": (0.05, 0.3),
+    "elite": (0, 2),
+    "s": (-0.5, 1.0),
+    "spiral": (0.5, 2.0),
+}
+"""Ranges of numbers that papers leave unprinted, as textbooks and the field's software use them.
+The number of iterations is not among them: it is the budget."""
+
+
+def spread_settings(
+    algorithm: Algorithm[Any], printed: Collection[str]
+) -> dict[str, Algorithm[Any]]:
+    """An algorithm under settings that fill the space of what a paper leaves open.
+
+    Words and numbers are varied together, by a Latin hypercube with a fixed seed: the same
+    settings for the same algorithm, whatever else is computed.
+
+    Parameters
+    ----------
+    algorithm : Algorithm
+        Under the listed choices.
+    printed : collection of str
+        Names of the settings that the paper prints: these are held.
+
+    Returns
+    -------
+    dict
+        What is set, in words, to the algorithm under it; first the listed choices.
+    """
+    found: dict[str, Algorithm[Any]] = {LISTED: algorithm}
+    open_: list[tuple[str, Any]] = []
+    for one in fields(cast(Any, algorithm)):
+        current = getattr(algorithm, one.name)
+        if one.name in printed:
+            continue
+        if isinstance(current, StrEnum):
+            open_.append((one.name, tuple(type(current))))
+        elif one.name in _OPEN_NUMBERS:
+            open_.append((one.name, _OPEN_NUMBERS[one.name]))
+    if not open_:
+        return found
+    for row in qmc.LatinHypercube(len(open_), rng=0).random(DESIGN):
+        changes = {
+            name: _drawn(getattr(algorithm, name), of, share)
+            for (name, of), share in zip(open_, row, strict=True)
+        }
+        try:
+            changed = replace(cast(Any, algorithm), **changes)
+        except TrajgapError:
+            continue  # these values exclude each other, such as a least weight above the largest
+        said = ", ".join(f"{name} = {_shown(value)}" for name, value in changes.items())
+        found[said] = cast(Algorithm[Any], changed)
+    return found
+
+
+def _drawn(current: Any, of: tuple[Any, ...], share: float) -> Any:
+    if isinstance(current, StrEnum):
+        return of[int(share * len(of))]
+    low, high = of
+    value = low + share * (high - low)
+    return round(value) if isinstance(current, int) else round(value, 3)
+
+
+def _shown(value: Any) -> str:
+    return str(value) if isinstance(value, StrEnum) else f"{value:g}"

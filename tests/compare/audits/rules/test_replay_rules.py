@@ -1,0 +1,78 @@
+"""What replays say: probabilities with their intervals, and settings, never a vote."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from support.studies import hurried, shipped
+from trajgap.compare.audits.replay_settings import DESIGN, LISTED, spread_settings
+from trajgap.compare.audits.rules.replays import judge_replays
+from trajgap.compare.audits.study import Study
+from trajgap.compare.documents import ClaimVerdict, Severity
+from trajgap.compare.gaps import share_interval, share_of_pairs
+from trajgap.heuristics import GA, PSO
+
+
+def test_settings_fill_the_range_of_every_open_number() -> None:
+    """A Latin hypercube: each of the equal parts of a range holds one value of it."""
+    found = spread_settings(PSO(), ("particles", "c1", "c2"))
+    assert next(iter(found)) == LISTED
+    drawn = [one for name, one in found.items() if name != LISTED]
+    assert len(drawn) == DESIGN
+    parts = [int((one.inertia - 0.4) / 0.6 * DESIGN - 1e-9) for one in drawn]
+    assert sorted(parts) == pytest.approx(range(DESIGN), abs=1)
+    assert {one.particles for one in drawn} == {30}
+    rules = {one.velocity_rule for one in drawn}
+    assert rules == set(type(PSO().velocity_rule))
+
+
+def test_the_same_settings_every_time_and_the_printed_ones_held() -> None:
+    one, other = (spread_settings(GA(), ("population", "elite")) for _ in range(2))
+    assert list(one) == list(other)
+    assert {a.population for a in one.values()} == {40}
+    assert all(isinstance(a.elite, int) and a.elite == 0 for a in one.values())
+    assert all("mutation_rate = " in name for name in one if name != LISTED)
+
+
+def test_nothing_open_leaves_the_listed_settings() -> None:
+    printed = set(PSO.__dataclass_fields__)
+    assert list(spread_settings(PSO(), printed)) == [LISTED]
+
+
+def test_the_interval_of_a_probability_is_that_of_independent_runs() -> None:
+    """Against many fresh samples of the same size: the interval holds about 95 % of their truth."""
+    generator = np.random.default_rng(3)
+    truth = share_of_pairs(generator.normal(10, 1, 4000), generator.normal(9.5, 1, 4000), 0.0)
+    held = 0
+    for _ in range(60):
+        slower, faster = generator.normal(10, 1, 40), generator.normal(9.5, 1, 40)
+        low, high = share_interval(slower, faster, 0.0)
+        assert low <= share_of_pairs(slower, faster, 0.0) <= high
+        held += low <= truth <= high
+    assert held >= 50
+    assert np.isnan(share_interval(np.array([np.inf, np.inf]), np.ones(2), 0.1)).all()
+
+
+def test_replays_inform_and_judge_nothing() -> None:
+    case = hurried("puma560-mnam-pso-353")
+    study = Study(case, seeds=2, certify_seconds=0)
+    found = [f for f in judge_replays(study) if f.rule.startswith("TG40")]
+    assert {f.rule for f in found} == {"TG401", "TG402", "TG403"}
+    for f in found:
+        assert (f.severity, f.verdict) == (Severity.INFO, ClaimVerdict.NOT_CHECKABLE)
+        assert not f.decides
+        assert "reproduced" not in f.message
+    (improvement,) = [f for f in found if f.rule == "TG401"]
+    assert "95 % interval" in improvement.message
+    assert "2 independent runs each" in improvement.message
+    (convergence,) = [f for f in found if f.rule == "TG403"]
+    assert "within 0.1 %" in convergence.message
+    assert "within 0.5 %" in convergence.message
+
+
+def test_a_total_that_some_setting_reaches_names_that_setting() -> None:
+    """With ω = 1 the standard swarm of the PUMA paper ends near the printed 3.528 s."""
+    study = shipped("puma560-mnam-pso-353")
+    (said,) = [f for f in judge_replays(study) if f.rule == "TG402" and f.claim == "pso-longest"]
+    assert "inertia = " in said.message
+    assert "nearest to the printed total is" in said.message
