@@ -71,6 +71,9 @@ def _improvement(study: Study, claim: ImprovementClaim) -> Iterator[Finding]:
         slower, faster = (t[LISTED] for t in totals)
         shows = share_of_pairs(slower, faster, least)
         low, high = share_interval(slower, faster, least)
+        # Resampling the same runs shows no event that none of them shows.
+        sure = f"95 % interval {_percent(low)} to {_percent(high)}"
+        sure = f"in none of the {slower.size * faster.size} pairs" if shows == 0 else sure
         luck = share_of_luck(slower, least)
         each = {
             (a, b): share_of_pairs(x, y, least)
@@ -82,8 +85,8 @@ def _improvement(study: Study, claim: ImprovementClaim) -> Iterator[Finding]:
             f"In {study.seeds} independent runs each, {names[0]} reaches {spread(slower)} and "
             f"{names[1]} {spread(faster)} under the listed choices. One run of {names[1]} is "
             f"shorter than one of {names[0]} by at least {100 * least:.4g} % with probability "
-            f"{_percent(shows)} (95 % interval {_percent(low)} to {_percent(high)}); one run of "
-            f"{names[0]} than another of its own with {_percent(luck)}."
+            f"{_percent(shows)} ({sure}); one run of {names[0]} than another of its own with "
+            f"{_percent(luck)}."
         )
         if len(each) > 1:
             message += (
