@@ -23,6 +23,8 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
+_LIMIT = "Limit of every joint, or one for each with commas between."
+"""Help of the three options of `new` that take limits."""
 _ENDS = """\b
 Exit codes:
   0    done
@@ -326,11 +328,11 @@ def new(
         ),
     ],
     position_unit: Annotated[str | None, typer.Option(metavar="rad|deg")] = None,
-    velocity: Annotated[str | None, typer.Option(help="Limit of every joint.")] = None,
+    velocity: Annotated[str | None, typer.Option(help=_LIMIT)] = None,
     velocity_unit: Annotated[str | None, typer.Option(metavar="rad/s|deg/s")] = None,
-    acceleration: Annotated[str | None, typer.Option(help="Limit of every joint.")] = None,
+    acceleration: Annotated[str | None, typer.Option(help=_LIMIT)] = None,
     acceleration_unit: Annotated[str | None, typer.Option(metavar="rad/s^2|deg/s^2")] = None,
-    jerk: Annotated[str | None, typer.Option(help="Limit of every joint.")] = None,
+    jerk: Annotated[str | None, typer.Option(help=_LIMIT)] = None,
     jerk_unit: Annotated[str | None, typer.Option(metavar="rad/s^3|deg/s^3")] = None,
     time_unit: Annotated[str | None, typer.Option(metavar="s|ms")] = None,
     case_id: Annotated[
@@ -339,9 +341,17 @@ def new(
     family: Annotated[
         str | None,
         typer.Option(
-            help="Interpolant.", show_default="3-5-3 for four way-points, else cubic-spline-virtual"
+            help="Curve, as case files or the literature name it: 3-5-3, 4-3-4, natural-cubic, "
+            "cubic-b-spline, quintic-b-spline, quintic-polynomials...",
+            show_default="3-5-3 for four way-points, else a cubic spline",
         ),
     ] = None,
+    degree: Annotated[int | None, typer.Option(help="Of a curve that needs one.")] = None,
+    durations: Annotated[
+        str | None,
+        typer.Option(metavar="H1,H2,...", help="Printed durations of the segments: a claim."),
+    ] = None,
+    total: Annotated[str | None, typer.Option(help="Printed total time: a claim.")] = None,
 ) -> int:
     """Start a case file from a table of way-points; asks for units that are not given."""
     from .scaffolding import new_case
@@ -354,7 +364,7 @@ def new(
         "time": time_unit,
     }
     limits = {"velocity": velocity, "acceleration": acceleration, "jerk": jerk}
-    new_case(out, table, units, limits, case_id, family)
+    new_case(out, table, units, limits, case_id, family, degree, durations, total)
     return 0
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import sys
 from collections.abc import Mapping
 from pathlib import Path
@@ -17,6 +18,9 @@ def new_case(
     limits: Mapping[str, str | None],
     case_id: str | None,
     family: str | None,
+    degree: int | None,
+    durations: str | None,
+    total: str | None,
 ) -> None:
     """Write a case file for a table of way-points.
 
@@ -29,8 +33,8 @@ def new_case(
     units : mapping
         Unit of "position", "velocity", "acceleration", "jerk", "time"; None where not given.
     limits : mapping
-        Limit of all joints on "velocity", "acceleration", "jerk"; None where not given.
-    case_id, family : str, optional
+        Limits on "velocity", "acceleration", "jerk"; None where not given.
+    case_id, family, degree, durations, total : optional
         As in `scaffold`.
 
     Raises
@@ -43,12 +47,26 @@ def new_case(
         given = {name: unit for name, unit in units.items() if unit is not None}
         # A faulty table should be told before anything is asked.
         guess = {name: CHOICES[name][0] for name in needed} | given
-        scaffold(table, guess, case_id=case_id, family=family, **limits)
+
+        def written(units: Mapping[str, str]) -> str:
+            return scaffold(
+                table,
+                units,
+                case_id=case_id,
+                family=family,
+                degree=degree,
+                durations=durations,
+                total=total,
+                **limits,
+            )
+
+        written(guess)
         for name in (*needed, "time"):
             if name not in given:
                 given[name] = _ask(name, str(table))
-        write(scaffold(table, given, case_id=case_id, family=family, **limits))
-    say(f"written: {out}\n")
+        write(written(given))
+    then = "judges what is claimed" if durations or total else "once claims are filled in"
+    say(f"written: {out}\nnext: trajgap audit {shlex.quote(str(out))}  # {then}\n")
 
 
 def _ask(quantity: str, table: str) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import cast
 
@@ -13,10 +13,60 @@ from ..errors import CaseError, TrajgapError
 from ..printed import Printed
 from ..textfile import read_text
 from ..units import CHOICES, Quantity, check_unit
+from .declaration import FAMILIES
 from .load import parse_case
 
 _LABEL_HEADERS = ("", "waypoint", "way-point", "point", "label", "name")
 """Headers, in lower case, of a first column that holds names and not angles."""
+
+
+LITERATURE: dict[str, tuple[str, dict[str, object]]] = {
+    "natural-cubic": ("cubic-spline", {"end_orders": [2]}),
+    "clamped-cubic": ("cubic-spline", {"end_orders": [1]}),
+    "cubic-b-spline": ("cubic-spline-virtual", {}),
+    "quintic-b-spline": ("quintic-spline", {}),
+    "3-3-3": ("polynomials", {"degrees": [3, 3, 3], "end_orders": [1]}),
+    "4-3-4": ("polynomials", {"degrees": [4, 3, 4]}),
+    "cubic-polynomials": ("rest-to-rest", {"degree": 3}),
+    "quintic-polynomials": ("rest-to-rest", {"degree": 5}),
+    "septic-polynomials": ("rest-to-rest", {"degree": 7}),
+}
+"""Names that papers give to curves, and how a case file declares them. An interpolating cubic or
+quintic B-spline through way-points is a C2 cubic or C4 quintic spline at rest at both ends."""
+_EXAMPLES = (
+    (
+        "“The motion keeps its limits.”",
+        '[[claims]]\nid = "limits-kept"\nquantity = "statement"\nwhere = "section 4"\n'
+        'text = "The motion keeps its limits."\nchecks = "within_limits"\nof = ["{of}"]',
+    ),
+    (
+        "“The motion is time-optimal.”",
+        '[[claims]]\nid = "time-optimal"\nquantity = "statement"\nwhere = "abstract"\n'
+        'text = "The motion is time-optimal."\nchecks = "optimal"\nof = ["{of}"]',
+    ),
+    (
+        "“Velocity and acceleration are continuous.”",
+        '[[claims]]\nid = "smooth"\nquantity = "statement"\nwhere = "section 4"\n'
+        'text = "Velocity and acceleration are continuous."\nchecks = "continuous"\n'
+        'of = ["{of}"]',
+    ),
+    (
+        "A total time printed by itself, such as in the abstract.",
+        '[[claims]]\nid = "abstract-total"\nquantity = "total_time"\nwhere = "abstract"\n'
+        'value = "3.528"',
+    ),
+    (
+        "“10.9 % shorter than the standard algorithm.”",
+        '[[claims]]\nid = "improvement"\nquantity = "improvement"\nwhere = "abstract"\n'
+        'slower = "ID OF THE LONGER TOTAL"\nfaster = "{of}"\npercent = "10.9"',
+    ),
+    (
+        "The largest acceleration, as a table or a figure prints it.",
+        '[[claims]]\nid = "peak"\nquantity = "peak"\nwhere = "Table 3"\n'
+        'derivative = "acceleration"\nvalue = "7.98"\njoint = "JOINT"',
+    ),
+)
+"""A claim of each usual kind: the sentence in a paper, and the block that states it."""
 
 
 def scaffold(
@@ -25,9 +75,12 @@ def scaffold(
     *,
     case_id: str | None = None,
     family: str | None = None,
+    degree: int | None = None,
     velocity: str | None = None,
     acceleration: str | None = None,
     jerk: str | None = None,
+    durations: str | None = None,
+    total: str | None = None,
 ) -> str:
     """Write a case file for a table of way-points.
 
@@ -42,10 +95,16 @@ def scaffold(
     case_id : str, optional
         Id of the case; the file's name by default.
     family : str, optional
-        Interpolant; by default 3-5-3 for four way-points, else the cubic spline with two virtual
-        way-points.
+        Interpolant, by a name of case files or one of `LITERATURE`. By default 3-5-3 for four
+        way-points; else the cubic spline with two virtual way-points, or without a jerk limit,
+        which it needs to have a shortest motion, the one at rest at both ends.
+    degree : int, optional
+        Of families that need one, such as rest-to-rest.
     velocity, acceleration, jerk : str, optional
-        Limit of every joint, meant exactly.
+        Limit of every joint, or one for each, with commas between; meant exactly.
+    durations, total : str, optional
+        Printed durations of the segments, with commas between, and printed total time: each
+        becomes a claim, with its digits as given.
 
     Returns
     -------
@@ -60,15 +119,24 @@ def scaffold(
     path = Path(csv_path)
     name = str(csv_path)
     limits = {"velocity": velocity, "acceleration": acceleration, "jerk": jerk}
-    given = {key: number for key, number in limits.items() if number is not None}
+    given = {key: _listed(number) for key, number in limits.items() if number is not None}
     checked = _units(name, units, given)
     header, rows = _table(name, read_text(path))
     labelled = header[0].strip().lower() in _LABEL_HEADERS
     joints = header[1:] if labelled else header
     labels = [row[0] for row in rows] if labelled else [str(k + 1) for k in range(len(rows))]
     numbers = [row[1:] if labelled else row for row in rows]
-    for key, number in given.items():
-        _digits(name, key, number)
+    for key, each in given.items():
+        if len(each) not in (1, len(joints)):
+            many = f"lists {len(each)} numbers for {len(joints)} joints"
+            raise CaseError(name, key, f"{many}; give one for all, or one each")
+        for number in each:
+            _digits(name, key, number)
+    claimed = {"durations": _listed(durations or ""), "total": _listed(total or "")}
+    for key, each in claimed.items():
+        for number in each:
+            _digits(name, key, number)
+    curve = _curve(name, family, degree, len(rows), "jerk" in given)
     identity = case_id if case_id is not None else _identity(path.stem)
     text = _text(
         identity,
@@ -78,13 +146,69 @@ def scaffold(
         numbers,
         checked,
         given,
-        family or ("3-5-3" if len(rows) == 4 else "cubic-spline-virtual"),
+        curve,
+        _claims(claimed["durations"], claimed["total"]),
     )
     parse_case(text, name)
     return text
 
 
-def _units(name: str, units: Mapping[str, str], limits: Mapping[str, str]) -> dict[str, str]:
+def _listed(numbers: str) -> list[str]:
+    """Numbers with commas between."""
+    return [one.strip() for one in numbers.split(",")] if numbers.strip() else []
+
+
+def _curve(name: str, family: str | None, degree: int | None, points: int, jerk: bool) -> list[str]:
+    """Lines of the block that declares the curve, with the reason for it."""
+    why, keys = "as given", dict[str, object]()
+    if family is None and points == 4:
+        family, why = "3-5-3", "usual for four way-points; change it to what the paper says"
+    elif family is None and jerk:
+        family, why = "cubic-spline-virtual", "C2 cubics at rest at both ends; change it if needed"
+    elif family is None:
+        family = "cubic-spline"
+        why = "cubic-spline-virtual has no shortest motion without a jerk limit; add one to use it"
+    elif family in LITERATURE:
+        why = f"what papers call {family}"
+        family, keys = LITERATURE[family]
+    if family not in FAMILIES:
+        known = ", ".join((*FAMILIES, *LITERATURE))
+        raise CaseError(name, "family", f"{family!r} is not known; use one of {known}")
+    if degree is not None:
+        keys = {**keys, "degree": degree}
+    lines = [f"family = {_quoted(family)}  # {why}"]
+    return lines + [f"{key} = {json.dumps(value)}" for key, value in keys.items()]
+
+
+def _claims(durations: Sequence[str], total: Sequence[str]) -> list[str]:
+    """Lines of the claims that are given, and of every other kind as comments to fill in."""
+    lines = []
+    if durations:
+        lines += [
+            "[[claims]]",
+            'id = "durations"',
+            'quantity = "durations"',
+            'where = "Table 2"  # where the paper prints them',
+            f"durations = [{', '.join(map(_quoted, durations))}]",
+            *([f"total = {_quoted(total[0])}"] if total else []),
+            "",
+        ]
+    elif total:
+        lines += [
+            "[[claims]]",
+            'id = "total"',
+            'quantity = "total_time"',
+            'where = "abstract"  # where the paper prints it',
+            f"value = {_quoted(total[0])}",
+            "",
+        ]
+    of = "durations" if durations or not total else "total"
+    for title, claim in _EXAMPLES:
+        lines += [f"# {title}", *(f"# {line}" for line in claim.format(of=of).splitlines()), ""]
+    return lines
+
+
+def _units(name: str, units: Mapping[str, str], limits: Iterable[str]) -> dict[str, str]:
     for key in units:
         if key not in CHOICES:
             raise CaseError(name, f"units.{key}", f"no such quantity; known: {', '.join(CHOICES)}")
@@ -177,8 +301,9 @@ def _text(
     labels: Sequence[str],
     numbers: Sequence[Sequence[str]],
     units: Mapping[str, str],
-    limits: Mapping[str, str],
-    family: str,
+    limits: Mapping[str, Sequence[str]],
+    curve: Sequence[str],
+    claims: Sequence[str],
 ) -> str:
     rows = [f"  [{', '.join(map(_quoted, row))}],  # {_comment(labels[k])}"
             for k, row in enumerate(numbers)]  # fmt: skip
@@ -187,7 +312,7 @@ def _text(
         for key, choices in CHOICES.items()
     ]
     limit_lines = [
-        f"{key} = {Printed(limits[key]).decimal}" if key in limits else f"# {key} = 6"
+        f"{key} = {_numbers(limits[key])}" if key in limits else f"# {key} = 6"
         for key in ("velocity", "acceleration", "jerk")
     ]
     parts = [
@@ -223,18 +348,13 @@ def _text(
         "[limits]  # one for all joints, or a list with one per joint; absent means none",
         *limit_lines,
         "",
-        "[interpolant]  # 3-5-3, polynomials, cubic-spline, quintic-spline, cubic-spline-virtual,",
-        f"family = {_quoted(family)}  # or rest-to-rest",
+        f"[interpolant]  # {', '.join(FAMILIES)}",
+        *curve,
         "",
         "[durations]",
         "lower = 0  # 0 means positive",
         "",
-        "# [[claims]]",
-        '# id = "total"',
-        '# quantity = "total_time"',
-        '# where = "abstract"',
-        '# value = "3.528"',
-        "",
+        *claims,
         "# [[assumptions]]",
         '# id = "limits-everywhere"',
         '# text = "What the paper leaves open."',
@@ -242,6 +362,11 @@ def _text(
         "",
     ]
     return "\n".join(parts)
+
+
+def _numbers(texts: Sequence[str]) -> str:
+    each = [str(Printed(text).decimal) for text in texts]
+    return each[0] if len(each) == 1 else f"[{', '.join(each)}]"
 
 
 def _comment(label: str) -> str:

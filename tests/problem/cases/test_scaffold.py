@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from trajgap.problem.cases.load import parse_case
-from trajgap.problem.cases.scaffolding import scaffold
+from trajgap.problem.cases.scaffolding import LITERATURE, scaffold
 from trajgap.problem.errors import CaseError
 
 RAD = {"position": "rad", "velocity": "rad/s", "acceleration": "rad/s^2"}
@@ -45,7 +45,7 @@ def test_a_plain_table_in_degrees(table):
     case = parse_case(scaffold(path, {"position": "deg", "time": "ms"}, case_id="mine"), "x")
     assert case.id == "mine"
     np.testing.assert_allclose(case.problem().waypoints[1], np.deg2rad([40, 50, 60]), rtol=1e-15)
-    assert case.problem().curve.virtual == (1, 2)
+    assert case.problem().curve.degrees == (3,)
 
 
 def test_the_family_can_be_chosen(table):
@@ -159,3 +159,78 @@ def test_options_that_are_refused(table, units, options, reason):
 def test_a_missing_table(tmp_path):
     with pytest.raises(CaseError, match=r"none\.csv: no such file; check the path"):
         scaffold(tmp_path / "none.csv", RAD)
+
+
+def points(count):
+    return "1,2\n" + "".join(f"0.{k}1,{k % 3}.5\n" for k in range(count))
+
+
+@pytest.mark.parametrize("name", LITERATURE)
+def test_every_name_of_the_literature_declares_a_curve(table, name):
+    text = scaffold(table(points(4)), RAD, family=name, velocity="6", acceleration="8")
+    assert f"# what papers call {name}" in text
+    assert parse_case(text, "x").problem().curve.segments >= 3
+
+
+def test_what_papers_call_curves_has_their_degrees_and_ends(table):
+    path = table(points(4))
+
+    def curve(name):
+        return parse_case(scaffold(path, RAD, family=name), "x").problem().curve
+
+    assert curve("4-3-4").degrees == (4, 3, 4)
+    assert curve("quintic-b-spline").degrees == (5, 5, 5)
+    assert curve("septic-polynomials").degrees == (7, 7, 7)
+    assert curve("natural-cubic").prescribed == (((2, 0.0),), (), (), ((2, 0.0),))
+    assert curve("clamped-cubic").prescribed == (((1, 0.0),), (), (), ((1, 0.0),))
+
+
+def test_a_default_without_a_shortest_motion_is_not_one(table):
+    path = table(points(5))
+    assert 'family = "cubic-spline-virtual"' in scaffold(path, RAD | {"jerk": "rad/s^3"}, jerk="9")
+    text = scaffold(path, RAD, acceleration="8")
+    assert 'family = "cubic-spline"  # cubic-spline-virtual has no shortest motion' in text
+
+
+def test_limits_of_each_joint_and_printed_times_are_taken_as_given(table):
+    text = scaffold(
+        table(points(4)),
+        RAD,
+        velocity="6, 5.50",
+        durations="0.910, 1.35,1.10",
+        total="3.36",
+    )
+    case = parse_case(text, "x")
+    np.testing.assert_array_equal(case.problem().limits.velocity, [6, 5.5])
+    (claim,) = case.claims
+    assert [d.text for d in claim.durations] == ["0.910", "1.35", "1.10"]
+    assert claim.total.text == "3.36"
+    (alone,) = parse_case(scaffold(table(points(4)), RAD, total="3.36"), "x").claims
+    assert (alone.quantity, alone.value.text) == ("total_time", "3.36")
+
+
+def test_every_commented_claim_loads_once_its_blanks_are_filled_in(table):
+    text = scaffold(table(points(4)), RAD, acceleration="8", durations="1,2,3", total="6")
+    blocks = [b for b in text.split("\n\n") if "# [[claims]]" in b]
+    assert len(blocks) == 6
+    for block in blocks:
+        lines = [line[2:] for line in block.splitlines()[1:]]
+        filled = "\n".join(lines).replace("JOINT", "1").replace("ID OF THE LONGER TOTAL", "slow")
+        slow = '\n[[claims]]\nid = "slow"\nquantity = "total_time"\nwhere = "x"\nvalue = "9"\n'
+        assert parse_case(f"{text}\n{filled}\n{slow}", "x").claims
+
+
+@pytest.mark.parametrize(
+    ("options", "reason"),
+    [
+        ({"velocity": "1,2,3"}, "velocity: lists 3 numbers for 2 joints; give one for all, or one"),
+        ({"durations": "1,x,2"}, "durations: 'x' is not a finite decimal number"),
+        ({"family": "bezier"}, "family: 'bezier' is not known; use one of 3-5-3"),
+        ({"family": "rest-to-rest"}, "interpolant.degree: is missing"),
+    ],
+)
+def test_new_options_that_are_refused(table, options, reason):
+    path = table(points(4))
+    with pytest.raises(CaseError) as caught:
+        scaffold(path, RAD, **options)
+    assert str(caught.value).startswith(f"{path}: {reason}")
