@@ -173,7 +173,7 @@ def _curve(name: str, family: str | None, degree: int | None, points: int, jerk:
         family, keys = LITERATURE[family]
     if family not in FAMILIES:
         known = ", ".join((*FAMILIES, *LITERATURE))
-        raise CaseError(name, "family", f"{family!r} is not known; use one of {known}")
+        raise CaseError(name, "interpolant.family", f"{family!r} is not known; use one of {known}")
     if degree is not None:
         keys = {**keys, "degree": degree}
     lines = [f"family = {_quoted(family)}  # {why}"]

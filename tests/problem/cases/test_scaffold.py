@@ -225,7 +225,7 @@ def test_every_commented_claim_loads_once_its_blanks_are_filled_in(table):
     [
         ({"velocity": "1,2,3"}, "velocity: lists 3 numbers for 2 joints; give one for all, or one"),
         ({"durations": "1,x,2"}, "durations: 'x' is not a finite decimal number"),
-        ({"family": "bezier"}, "family: 'bezier' is not known; use one of 3-5-3"),
+        ({"family": "bezier"}, "interpolant.family: 'bezier' is not known; use one of 3-5-3"),
         ({"family": "rest-to-rest"}, "interpolant.degree: is missing"),
     ],
 )
