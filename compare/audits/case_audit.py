@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from datetime import date
 from functools import cached_property
 from pathlib import Path
 
@@ -19,12 +20,15 @@ from ..documents import (
     ReadingsSummary,
     Scope,
     Severity,
+    VerdictCard,
     Waterfall,
     known,
 )
+from .card import verdict_card
 from .causes import find_causes, with_caveats
 from .instances import examined_entry
 from .judging import judge, weigh
+from .provenance import provenance
 from .readings import readings_summary
 from .rules import (
     judge_counts,
@@ -38,6 +42,7 @@ from .rules import (
     judge_vertices,
     list_open_points,
 )
+from .stated import stated_claims, stated_source
 from .study import SEEDS, Study
 from .waterfall import waterfalls
 
@@ -72,6 +77,16 @@ class CaseAudit:
     causes: tuple[Cause, ...] = ()
     """What speaks against something printed, each once; the gravest first."""
 
+    day: date | None = None
+    """Of the audit; that on which its document is made if None."""
+
+    @cached_property
+    def card(self) -> VerdictCard:
+        """The verdict in at most 80 words."""
+        return verdict_card(
+            self.study, self.judgements, self.findings, self.causes, self.waterfalls
+        )
+
     @property
     def errors(self) -> int:
         """Number of causes of severity error."""
@@ -84,13 +99,17 @@ class CaseAudit:
         return AuditedCase(
             case=self.case.id,
             title=self.case.title,
+            source=stated_source(self.case),
+            card=self.card,
             errors=self.errors,
             causes=self.causes,
+            claims=stated_claims(self.case),
             findings=self.findings,
             verdicts=self.judgements,
             waterfalls=self.waterfalls,
             readings=known(self.readings, "the case has one reading"),
             families=tuple(examined_entry(self.study.instances(b)) for b in blocks),
+            provenance=provenance(self.study, self.day),
         )
 
     def __str__(self) -> str:

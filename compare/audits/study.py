@@ -92,6 +92,8 @@ class Study:
         self.selected: tuple[Pair, ...] = tuple(selected)
         self.readings: tuple[str, ...] = tuple(dict.fromkeys(rid for _, rid in selected))
         self.pairs: tuple[Pair, ...] = tuple(p for p in selected if case.statement(*p).complete)
+        self.chosen = {"problem": problem, "reading": reading}
+        """What the study was kept to; None where it was not."""
         self._progress = progress or (lambda _: None)
         self._kept: dict[tuple[Any, ...], Any] = {}
 

@@ -1,5 +1,13 @@
 from .certifiers import certify, covered
-from .document import certificate, certificate_text, fits, shipped, unlike, write_certificate
+from .document import (
+    certificate,
+    certificate_text,
+    fits,
+    shipped,
+    shipped_file,
+    unlike,
+    write_certificate,
+)
 from .evidence import Interval, proved, stated_exactly, with_certificate, with_certificates
 from .exact import ExactProblem, decimal, exact_problem, printed_problem
 from .outcome import Certified, Outcome, Progress
@@ -23,6 +31,7 @@ __all__ = [
     "proved",
     "read_state",
     "shipped",
+    "shipped_file",
     "state_document",
     "stated_exactly",
     "unlike",

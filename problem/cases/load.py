@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from hashlib import sha256
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -10,7 +12,7 @@ from pydantic import ValidationError
 
 from ..errors import CaseError
 from ..fields import nearest
-from ..textfile import parse_toml, read_text
+from ..textfile import parse_toml, read_hashed
 from .case import Case
 from .faults import first_fault
 from .references import check_claims, check_kinematics, check_references
@@ -51,14 +53,16 @@ def load_case(source: str | Path) -> Case:
     """
     known = published_ids()
     if isinstance(source, str) and source in known:
-        text = files(_PUBLISHED).joinpath(f"{source}.toml").read_text("utf-8")
-        return parse_case(text, source)
+        data = files(_PUBLISHED).joinpath(f"{source}.toml").read_bytes()
+        text, digest = data.decode("utf-8"), sha256(data).hexdigest()
+        return replace(parse_case(text, source), sha256=digest)
     path = Path(source)
     if not path.suffix and not path.exists():
         raise CaseError(
             str(source), "", f"neither a published case nor a file; {nearest(str(source), known)}"
         )
-    return parse_case(read_text(path), str(source))
+    text, digest = read_hashed(path)
+    return replace(parse_case(text, str(source)), sha256=digest)
 
 
 def parse_case(text: str, file: str) -> Case:

@@ -1,5 +1,5 @@
 from .condition_count import judge_counts
-from .continuous_time import judge_motions
+from .continuous_time import judge_motions, said_to_keep
 from .distances import judge_distances
 from .on_instances import HANDLED, attributed, judge_instances, placed
 from .open_points import list_open_points
@@ -24,5 +24,6 @@ __all__ = [
     "judge_vertices",
     "list_open_points",
     "placed",
+    "said_to_keep",
     "vertices",
 ]
