@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 from ...problem import Case
 from ...problem.cases import AnyClaim, DurationsClaim, ImprovementClaim, MaximumClaim
-from ..documents import Cause, Finding
+from ..documents import Cause, Finding, Severity
 from .explanations import TABLES
-from .stated import place
+from .stated import place, spoken
 
 _LONGEST = 24
 """Words of a claim's text that a sentence may quote; a longer one is called by its place."""
@@ -34,7 +34,10 @@ def plainly(case: Case, cause: Cause, findings: Sequence[Finding]) -> str:
     if head is not None and head.root.startswith(f"{TABLES} "):
         return _tables_alike(case, cause, head.root.split(" ")[1:])
     if claim is None or head is None:
-        return cause.says.split(". ")[0].rstrip(".") + "."
+        return spoken(case, cause.says.split(". ")[0].rstrip(".") + ".")
+    if cause.severity is not Severity.ERROR and cause.rule != "TG201":
+        # A warning proves nothing: it is told in its own words.
+        return spoken(case, cause.says)
     where = place(claim)
     printed, computed = head.printed or "", head.computed or ""
     sentence = {

@@ -80,10 +80,13 @@ class CaseAudit:
     day: date | None = None
     """Of the audit; that on which its document is made if None."""
 
+    made: VerdictCard | None = None
+    """The card, where it was made by hand; otherwise `card` makes it."""
+
     @cached_property
     def card(self) -> VerdictCard:
         """The verdict in at most 80 words."""
-        return verdict_card(
+        return self.made or verdict_card(
             self.study, self.judgements, self.findings, self.causes, self.waterfalls
         )
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from ...problem import Case
 from ...problem.cases import (
     AnyClaim,
@@ -69,8 +71,26 @@ def printed(case: Case, claim: AnyClaim) -> str:
     return ""
 
 
+def spoken(case: Case, text: str) -> str:
+    """A message in which claims are called by their places instead of their ids.
+
+    An id that is a word of its own is replaced only where a problem stands behind it in brackets.
+    """
+    places = {claim.id: place(claim) for claim in case.claims}
+    problems = "|".join(re.escape(p.id) for p in case.problems)
+    for one, where in sorted(places.items(), key=lambda pair: -len(pair[0])):
+        literal = where.replace("\\", "\\\\")
+        known = rf"(?<![\w-]){re.escape(one)}"
+        text = re.sub(rf"{known} \((?:{problems})\)", literal, text)
+        if "-" in one:
+            text = re.sub(rf"{known}(?![\w-])", literal, text)
+    return text
+
+
 def place(claim: AnyClaim) -> str:
     """Where a claim stands, as short as it can be found: the first place that it names."""
     first = claim.where.split(";")[0].strip()
+    if first.startswith("abstract"):
+        return "the abstract"
     head = first.split(", above")[0].split(", below")[0].split(" and ")[0]
     return ", ".join(head.split(", ")[:2])

@@ -46,9 +46,9 @@ def exhibits_of_motion(study: Study) -> list[Section]:
     list of Section
     """
     sections = (
-        Section("jumps", "Jumps of the velocity", tuple(_jumps(study))),
-        Section("control-polygon", "Control polygon", tuple(_polygons(study))),
-        Section("workspace", "Workspace of the robot", tuple(_workspaces(study))),
+        Section("jumps", "Jumps of the velocity", tuple(_jumps(study)), folded=True),
+        Section("control-polygon", "Control polygon", tuple(_polygons(study)), folded=True),
+        Section("workspace", "Workspace of the robot", tuple(_workspaces(study)), folded=True),
     )
     return [section for section in sections if section.blocks]
 
@@ -56,7 +56,8 @@ def exhibits_of_motion(study: Study) -> list[Section]:
 def exhibits_of_search(study: Study) -> list[Section]:
     """Section with the initial population of the tent map; none where no algorithm has one."""
     blocks = tuple(_tents(study))
-    return [Section("tent-map", "The tent map in double precision", blocks)] if blocks else []
+    title = "The tent map in double precision"
+    return [Section("tent-map", title, blocks, folded=True)] if blocks else []
 
 
 def _drawn(name: str, picture: Picture, caption: str) -> Drawn:

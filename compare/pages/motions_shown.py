@@ -16,11 +16,6 @@ from .blocks import Block, Drawn, Folded, Grid, Prose, Section
 from .numbers import REPLAY_COLUMNS, replay_rows
 
 
-def _nothing(one: CaseAudit) -> tuple[Block, ...]:
-    """What a section without pictures says: nothing at all where no problem is posed."""
-    return (Prose("None."),) if one.study.posed else ()
-
-
 def motions(one: CaseAudit) -> Section:
     """Angle, velocity and acceleration of every printed set of durations, and of the optimum."""
     blocks: list[Block] = []
@@ -38,7 +33,7 @@ def motions(one: CaseAudit) -> Section:
                 nodal=solution.nodal,
             )
             blocks.append(_drawn(file_name("optimum", pid), picture, f"Reading {rid}."))
-    return Section("motions", "Motions, with limits and peaks", tuple(blocks) or _nothing(one))
+    return Section("motions", "Motions, with limits and peaks", tuple(blocks), folded=True)
 
 
 def _drawn(name: str, picture: Picture, caption: str) -> Drawn:
@@ -75,7 +70,7 @@ def _printed_motions(study: Study, pid: str, rid: str) -> Iterator[Block]:
             study.case.claim_durations(first, rid).value,
             title=title,
             check=study.claim_check(first, pid, rid),
-            note=f"over all that prints alike: {rounding}",
+            note=f"for every value that rounds to the digits: {rounding}",
         )
         where = "; ".join(c.where for c in claims)
         yield _drawn(file_name("motion", pid, first.id), picture, f"{where}. Reading {rid}.")
@@ -113,11 +108,12 @@ def _joint_by_joint(
         problem,
         durations,
         title=f"Printed durations of each joint by itself: {tables}",
-        note=f"over all that prints alike: {words}",
+        note=f"for every value that rounds to the digits: {words}",
     )
     each = "; ".join(f"{c.id}: {v}" for c, v in zip(claims, verdicts, strict=True))
     caption = (
-        "Each joint with its own durations, at the printed digits. Over all that prints alike: "
+        "Each joint with its own durations, at the printed digits. For every value that rounds to "
+        "the printed digits: "
         f"{each}. Reading {rid}."
     )
     return _drawn(file_name("motion", pid, "joints", str(claims[0].table)), picture, caption)
@@ -151,9 +147,8 @@ def searches(one: CaseAudit) -> Section:
         "refuted.",
         "note",
     )
-    return Section(
-        "searches", "Replays of the algorithms", (lead, *blocks) if blocks else _nothing(one)
-    )
+    shown = (lead, *blocks) if blocks else ()
+    return Section("searches", "Replays of the algorithms", shown, folded=True)
 
 
 def _runs(study: Study, pid: str) -> dict[str, Runs]:
@@ -264,7 +259,8 @@ def landscapes(one: CaseAudit) -> Section:
             break
         if single:
             blocks.append(Folded(f"Each joint by itself, {pid}", tuple(single)))
-    return Section("landscapes", "Landscapes of the total time", tuple(blocks) or _nothing(one))
+    shown = tuple(blocks) if any(not isinstance(b, Prose) for b in blocks) else ()
+    return Section("landscapes", "Landscapes of the total time", shown, folded=True)
 
 
 def _landscape(

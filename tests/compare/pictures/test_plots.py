@@ -357,9 +357,13 @@ def test_the_waterfall_writes_every_value_and_every_reason(pictures: dict[str, P
     for step in STEPS:
         assert (step.note if isinstance(step.time, Why) else seconds(step)) in text
     assert "1.9000 s (1.8950 to 1.9050)" in text
-    assert "−0.4000 s" in text
-    assert "−19.0 %" in text
-    assert "+10.5 %" in text
+    # The first step, 1.9 s, beside 2.1 s, 1.5 s and 0.012 s.
+    assert "−0.2000 s" in text
+    assert "−9.5 %" in text
+    assert "+0.4000 s" in text
+    assert "+26.7 %" in text
+    assert "158.3 ×" in text
+    assert text.count("first step beside it") == 1
 
 
 def test_evidence_is_told_by_hatching(pictures: dict[str, Picture]) -> None:
