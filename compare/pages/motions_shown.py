@@ -10,7 +10,7 @@ from ...heuristics import JointRuns
 from ...nlp import Solution, weakest
 from ...problem import Array, Problem, TrajgapError, file_name
 from ...problem.cases import AnyClaim, DurationsClaim, MaximumClaim, TotalTimeClaim
-from ..audits import CaseAudit, Study
+from ..audits import CaseAudit, Study, place
 from ..pictures import Picture, Runs, convergence, endings, landscape, motion_picture, svg
 from .blocks import Block, Drawn, Folded, Grid, Prose, Section
 from .numbers import REPLAY_COLUMNS, replay_rows
@@ -60,7 +60,7 @@ def _printed_motions(study: Study, pid: str, rid: str) -> Iterator[Block]:
         first = claims[0]
         problem = study.problem(pid, rid)
         rounding = study.claim_rounding(first, pid, rid).verdict
-        title = f"Printed durations of {', '.join(c.id for c in claims)}"
+        title = f"Printed durations: {'; '.join(dict.fromkeys(place(c) for c in claims))}"
         worst = study.claim_check(first, pid, rid).worst
         if worst is not None and worst.quantity == "curve":
             yield Prose(f"{title} define no curve. Reading {rid}.", "note")

@@ -248,7 +248,7 @@ def _reproduced(one: CaseAudit) -> Section:
         ("tolerances", f"{TOLERANCE:g} relative excess that still keeps a limit; "
          f"{KKT_TOLERANCE:g} KKT residual of an optimum; totals within {SAME:g} count as the same"),
     ]  # fmt: skip
-    proved = tuple((c.file, f"SHA-256 {c.sha256}; proves {c.subject}") for c in made.certificates)
+    proved = tuple((c.file, f"SHA-256 {c.sha256}; about {c.subject}") for c in made.certificates)
     blocks: list[Block] = [Prose(made.citation, "source"), Terms(tuple(pairs))]
     if proved:
         blocks.append(Folded(f"{len(proved)} certificates, proved again", (Terms(proved),)))

@@ -1,17 +1,17 @@
 """The verdict card: at most 80 words, plain, built from the claims' own texts and places."""
 
 import pytest
-from support.studies import audited
+from support.studies import EVERY, audited_alone
 from trajgap.compare.audits.card import verdict_card
 from trajgap.compare.audits.case_audit import audit_case
 from trajgap.compare.audits.study import Study
 from trajgap.compare.documents import CARD_WORDS, Cause, Explanation, Severity, Why
-from trajgap.problem import parse_case, published_ids
+from trajgap.problem import parse_case
 
 
-@pytest.mark.parametrize("case_id", published_ids())
+@pytest.mark.parametrize("case_id", EVERY)
 def test_a_card_has_at_most_eighty_words_and_no_ids(case_id):
-    one = audited(case_id)
+    one = audited_alone(case_id)
     card = one.card
     assert 0 < card.words == len(" ".join(card.sentences).split()) <= CARD_WORDS == 80
     ids = [c.id for c in one.case.claims if "-" in c.id and not c.id.replace("-", "").isdigit()]
@@ -19,7 +19,7 @@ def test_a_card_has_at_most_eighty_words_and_no_ids(case_id):
 
 
 def test_the_palletisers_card():
-    card = audited("irb460-pso-353").card
+    card = audited_alone("irb460-pso-353").card
     assert card.limits == "Whether the limits are kept depends on the reading: kept under 1 of 2."
     # 1.869/1.817473 and 1.6041/1.321799 by hand.
     assert card.optimum == (
@@ -34,7 +34,7 @@ def test_the_palletisers_card():
 
 
 def test_tables_alike_stand_on_the_card_with_the_claim_that_falls():
-    card = audited("puma560-mnam-pso-353").card
+    card = audited_alone("puma560-mnam-pso-353").card
     assert "3.528 s is 7.0 % above the proven optimum 3.2967 s" in card.optimum
     assert (
         "Tables 2 and 3 agree in all 28 numbers, so the claimed 10.9 % cannot follow from them."
@@ -43,14 +43,14 @@ def test_tables_alike_stand_on_the_card_with_the_claim_that_falls():
 
 
 def test_without_way_points_the_card_says_what_is_not_checkable():
-    card = audited("z1-woa-bspline").card
+    card = audited_alone("z1-woa-bspline").card
     assert "not checkable" in card.limits
     assert "no way-points are printed" in card.limits
     assert "not checkable" in card.optimum
 
 
 def test_many_errors_are_counted_where_the_words_end():
-    one = audited("irb460-pso-353")
+    one = audited_alone("irb460-pso-353")
     explanation = Explanation(change="Two columns may be swapped.", effect="Then all is well.")
     many = [
         Cause(

@@ -5,7 +5,7 @@ import re
 from dataclasses import replace
 
 import pytest
-from support.studies import audited
+from support.studies import EVERY, audited_alone
 from trajgap.compare.audits.case_audit import CaseAudit, audit
 from trajgap.compare.audits.study import Study
 from trajgap.compare.documents import Step, Waterfall, Why
@@ -14,7 +14,7 @@ from trajgap.compare.pages.markdown_text import markdown
 from trajgap.compare.pages.numbers import where_time_goes
 from trajgap.compare.pages.writer import _TEMPLATES, _environment, case_page
 from trajgap.nlp import Evidence
-from trajgap.problem import load_case, published_ids
+from trajgap.problem import load_case
 
 
 def test_many_readings_share_a_table_and_few_have_pictures() -> None:
@@ -111,9 +111,9 @@ def test_what_is_folded_is_not_counted() -> None:
     ]
 
 
-@pytest.mark.parametrize("case_id", published_ids())
+@pytest.mark.parametrize("case_id", EVERY)
 def test_pages_of_the_papers_are_short_before_anything_is_unfolded(case_id: str) -> None:
-    page = case_page(audited(case_id))
+    page = case_page(audited_alone(case_id))
     environment = _environment()
     style = (_TEMPLATES / "style.css").read_text(encoding="utf-8")
     text = environment.get_template("case.html").render(page=page, style=style)
