@@ -25,6 +25,7 @@ from ..pictures import (
 )
 from .blocks import Block, Drawn, Folded, Grid, Section, number, text
 from .motions_shown import whole_claims
+from .units import both_units
 
 _SAMPLES = 20_000
 """Positions of the workspace that its bounding box is taken from, as by default in case files."""
@@ -100,12 +101,13 @@ def _jumps_of(
         "readings. Limits are judged apart from jumps, inside the segments."
     )
     yield _drawn(file_name("jumps", pid, first.id), picture, caption)
+    statement = study.case.statement(pid, rid)
     rows = tuple(
         (
             text(jump.joint),
             number(jump.break_index),
             number(f"{jump.time:.3f} s"),
-            number(f"{jump.size:+.6g} rad/s"),
+            number(both_units(statement, "velocity", [jump.size], "+.6g")),
         )
         for jump in velocity_jumps(problem, durations)
     )

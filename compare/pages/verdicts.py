@@ -5,10 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
+import numpy as np
+
 from ...problem import QUANTITIES, Coupling, Problem, file_name
+from ...problem.cases import Statement
 from ..audits import CaseAudit, Study
-from ..documents import RULES, UNITS, Finding, Severity, Why
+from ..documents import RULES, Finding, Severity, Why
 from .blocks import Block, Cell, Folded, Grid, Prose, Section, Terms, text, word
+from .units import both_units
 
 _TITLES = {rule.id: rule.title for rule in RULES}
 """What each rule looks at, by its id."""
@@ -39,7 +43,7 @@ def _problems(study: Study) -> Grid:
                 text(rid),
                 text(f"{len(p.joints)} × {p.waypoints.shape[0]}"),
                 text(p.curve.name),
-                text(_limits(p)),
+                text(_limits(p, study.case.statement(pid, rid))),
                 text(_bounds(p)),
                 text(how),
             )
@@ -56,14 +60,14 @@ def _problems(study: Study) -> Grid:
     return Grid(names, tuple(rows), "Problems posed, in radians and seconds")
 
 
-def _limits(problem: Problem) -> str:
+def _limits(problem: Problem, statement: Statement) -> str:
     parts = []
     for name in QUANTITIES:
         values = getattr(problem.limits, name)
-        shown = dict.fromkeys(f"{v:.6g}" for v in values)
-        if list(shown) != ["inf"]:
-            every = list(shown) if len(shown) == 1 else [f"{v:.6g}" for v in values]
-            parts.append(f"{name} {', '.join(every)} {UNITS[name]}")
+        alike = len({f"{v:.6g}" for v in values}) == 1
+        if not (alike and np.isinf(values[0])):
+            every = values[:1] if alike else values
+            parts.append(f"{name} {both_units(statement, name, every, '.6g')}")
     if problem.limits.limits_position:
         parts.append("position")
     return "\n".join(parts) or "none"
