@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from decimal import Decimal
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +32,25 @@ def read_text(path: Path) -> str:
     CaseError
         If the file is missing, not a regular file, larger than 5 MB, empty, or not UTF-8 text.
     """
+    return read_hashed(path)[0]
+
+
+def read_hashed(path: Path) -> tuple[str, str]:
+    """As `read_text`, with the SHA-256 of the file's bytes.
+
+    Parameters
+    ----------
+    path : Path
+
+    Returns
+    -------
+    text, digest : str
+
+    Raises
+    ------
+    CaseError
+        As `read_text`.
+    """
     name = str(path)
     data = read_regular(path, LARGEST_BYTES, "keep only the case itself")
     if b"\0" in data:
@@ -42,7 +62,7 @@ def read_text(path: Path) -> str:
         raise CaseError(name, f"line {line}", "is not UTF-8 text; save the file as UTF-8") from None
     if not text.strip():
         raise CaseError(name, "", "is empty; `trajgap new` writes a file to start from")
-    return text.replace("\r\n", "\n").replace("\r", "\n")
+    return text.replace("\r\n", "\n").replace("\r", "\n"), sha256(data).hexdigest()
 
 
 def parse_toml(text: str, file: str) -> dict[str, Any]:

@@ -1,7 +1,10 @@
+from .card_errors import plainly
 from .case_audit import AuditReport, CaseAudit, audit
+from .provenance import package_version
 from .reading_words import named, segments
 from .rounding import Point, RoundingBox, RoundingVerdict, judge_rounding
 from .rules import RULES
+from .stated import claim_text, place, printed, spoken
 from .study import Study
 from .waterfall import waterfalls
 
@@ -14,8 +17,14 @@ __all__ = [
     "RoundingVerdict",
     "Study",
     "audit",
+    "claim_text",
     "judge_rounding",
     "named",
+    "package_version",
+    "place",
+    "plainly",
+    "printed",
     "segments",
+    "spoken",
     "waterfalls",
 ]

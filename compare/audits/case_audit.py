@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from datetime import date
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -22,15 +23,19 @@ from ..documents import (
     ReadingsSummary,
     Scope,
     Severity,
+    VerdictCard,
     Waterfall,
     known,
 )
+from .card import verdict_card
 from .causes import find_causes, with_caveats
 from .instances import examined_entry
 from .intervals import CERTIFY_SECONDS
 from .judging import judge, weigh
+from .provenance import provenance
 from .readings import readings_summary
 from .rules import GROUPS, NOT_COMPUTED
+from .stated import stated_claims, stated_source
 from .study import SEEDS, Pair, Study
 from .waterfall import waterfalls
 
@@ -55,6 +60,19 @@ class CaseAudit:
     causes: tuple[Cause, ...] = ()
     """What speaks against something printed, each once; the gravest first."""
 
+    day: date | None = None
+    """Of the audit; that on which its document is made if None."""
+
+    made: VerdictCard | None = None
+    """The card, where it was made by hand; otherwise `card` makes it."""
+
+    @cached_property
+    def card(self) -> VerdictCard:
+        """The verdict in at most 80 words."""
+        return self.made or verdict_card(
+            self.study, self.judgements, self.findings, self.causes, self.waterfalls
+        )
+
     @property
     def errors(self) -> int:
         """Number of causes of severity error."""
@@ -67,14 +85,18 @@ class CaseAudit:
         return AuditedCase(
             case=self.case.id,
             title=self.case.title,
+            source=stated_source(self.case),
+            card=self.card,
             errors=self.errors,
             causes=self.causes,
+            claims=stated_claims(self.case),
             findings=self.findings,
             verdicts=self.judgements,
             waterfalls=self.waterfalls,
             readings=known(self.readings, "the case has one reading"),
             left_out=tuple(self.study.intervals.left_out),
             families=tuple(examined_entry(self.study.instances(b)) for b in blocks),
+            provenance=provenance(self.study, self.day),
         )
 
     def __str__(self) -> str:

@@ -11,6 +11,10 @@ from .study import Study
 
 _AGAINST = (Severity.ERROR, Severity.WARNING)
 """What a cause may weigh; what only informs has none."""
+JUMPING = "on a curve whose velocity jumps"
+"""How the caveat begins that a motion's velocity jumps; the card looks for it."""
+DOUBTED = "rests on numbers that others in print contradict"
+"""How the caveat begins that printed numbers contradict each other; the card looks for it."""
 
 
 def find_causes(study: Study, findings: Iterable[Finding]) -> tuple[Cause, ...]:
@@ -107,13 +111,13 @@ def _caveats(study: Study, judgement: Judgement, against: dict[str, set[str]]) -
     jumping = [r for r in held if _jumps(study, claim, r)]
     if jumping:
         count = "" if len(judgement.readings) == 1 else f" ({len(jumping)} of {len(held)} readings)"
-        yield f"on a curve whose velocity jumps{count}"
+        yield f"{JUMPING}{count}"
     rests = {claim.id, *_rests_on(claim)}
     if judgement.verdict is ClaimVerdict.INCONSISTENT:
         return
     for message, sides in against.items():
         if rests & sides:
-            yield f"rests on numbers that others in print contradict: {message}"
+            yield f"{DOUBTED}: {message}"
 
 
 def _rests_on(claim: AnyClaim) -> tuple[str, ...]:

@@ -119,6 +119,8 @@ class Study:
         self.pairs: tuple[Pair, ...] = tuple(p for p in selected if case.statement(*p).complete)
         default = case.default_reading.id
         self.main_reading = default if default in self.readings else self.readings[0]
+        self.chosen = {"problem": problem, "reading": reading}
+        """What the study was kept to; None where it was not."""
         self._progress = progress or (lambda _: None)
         self._kept: dict[tuple[Any, ...], Any] = {}
         self.intervals = Intervals(certificates, certify_seconds, self._progress)

@@ -13,13 +13,13 @@ from ...problem import published_ids
 from ..audits import Study
 from ..documents import (
     AuditDocument,
-    Finding,
+    AuditedCase,
+    ClaimVerdict,
     Judgement,
     Scope,
-    Severity,
     Step,
     Waterfall,
-    Why,
+    more_errors,
 )
 from .certifying import read_certificates
 from .input import read_cases
@@ -78,63 +78,59 @@ def audit_cases(
 
 
 def audited(document: AuditDocument) -> list[RenderableType]:
-    """Summary of the `audit` document."""
+    """Summary of the `audit` document: for each case the card, claims, causes, where time goes."""
     parts: list[RenderableType] = []
     for case in document.cases:
+        parts += [line(case.title, "bold"), line(case.case, "dim"), line("")]
+        card = case.card
+        against = {*card.errors, *([more_errors(card.more)] if card.more else [])}
+        parts += [line(said, "bold red" if said in against else "") for said in card.sentences]
         counts = Counter(v.verdict for v in case.verdicts)
-        said = ", ".join(f"{count} {verdict}" for verdict, count in counts.items())
-        parts.append(line(f"{case.case}: {len(case.verdicts)} claims; {said}", "bold"))
-        rows = [(v.claim, v.verdict, _under(v), v.evidence, v.why) for v in case.verdicts]
-        parts.append(Columns(("claim", "verdict", "readings", "reference", "…why"), rows))
-        parts += _time_goes(case.waterfalls)
-        if not isinstance(case.readings, Why):
-            parts += [line(one) for one in (*case.readings.answers, "")]
-        parts += [line(said) for said in _said_once(case.findings, Severity.ERROR)]
-        warned = _places(case.findings, Severity.WARNING)
-        parts += [line(f"warnings: {', '.join(warned)}", "dim")] if warned else []
+        said = ", ".join(f"{counts[word]} {word}" for word in ClaimVerdict if counts[word])
+        parts += [line(""), line(f"{len(case.verdicts)} claims: {said or 'none to judge'}")]
+        stated = {one.claim: one for one in case.claims}
+        rows = [
+            (v.verdict, _under(v), f"{stated[v.claim].text} ({stated[v.claim].where})")
+            for v in sorted(case.verdicts, key=lambda v: _ORDER.index(v.verdict))
+        ]
+        if rows:
+            parts.append(Columns(("verdict", "readings", "~claim and its place"), rows))
+        parts += [line(one) for one in _causes(case)]
+        parts += [line(""), *_time_goes(case.waterfalls)]
         parts += [line(f"not certified: {one}", "dim") for one in case.left_out]
-        parts.append(line(""))
     return parts
 
 
+_ORDER = (
+    ClaimVerdict.REFUTED,
+    ClaimVerdict.INCONSISTENT,
+    ClaimVerdict.DEPENDS,
+    ClaimVerdict.SUPPORTED,
+    ClaimVerdict.NOT_CHECKABLE,
+)
+"""Claims in the table: what speaks against them first."""
+
+
 def _under(judgement: Judgement) -> str:
-    """Under how many readings a verdict holds."""
+    """Under how many readings a verdict holds; where it depends on them, how many support it."""
     readings = list(judgement.readings.values())
+    if judgement.verdict is ClaimVerdict.DEPENDS:
+        return f"supported {readings.count(ClaimVerdict.SUPPORTED)} of {len(readings)}"
     if judgement.scope is not Scope.SOME or not readings:
         return str(judgement.scope)
     return f"{readings.count(judgement.verdict)} of {len(readings)}"
 
 
-def _said_once(findings: Sequence[Finding], severity: Severity) -> list[str]:
-    """Findings that say the same in other numbers as one line, with the number of readings."""
-    groups: dict[tuple[str, ...], list[Finding]] = {}
-    for f in findings:
-        if f.severity is severity:
-            groups.setdefault((f.rule, f.claim or "", f.verdict, f.kind), []).append(f)
-    lines = []
-    for (rule, claim, *_), own in groups.items():
-        where = f"{severity} {rule} {claim}".rstrip()
-        readings = list(dict.fromkeys(f.reading for f in own if f.reading))
-        messages = list(dict.fromkeys(f.message for f in own))
-        if len(readings) < 2:
-            lines += [f"{where}: {message}" for message in messages]
-            continue
-        shown = "" if len(messages) == 1 else f"; as follows under {readings[0]}"
-        lines.append(f"{where} ({len(readings)} readings{shown}): {messages[0]}")
-    return lines
-
-
-def _places(findings: Sequence[Finding], severity: Severity) -> list[str]:
-    """Rule and claim of the findings, with the number of readings."""
-    groups: dict[str, set[str]] = {}
-    for f in findings:
-        if f.severity is severity:
-            where = f"{f.rule} {f.claim or ''}".rstrip()
-            groups.setdefault(where, set()).update([f.reading] if f.reading else [])
-    return [
-        where + (f" ({len(readings)} readings)" if len(readings) > 1 else "")
-        for where, readings in groups.items()
-    ]
+def _causes(case: AuditedCase) -> list[str]:
+    """Errors and warnings, one line each with the rule; the pages and --json have the rest."""
+    places = {one.claim: one.where for one in case.claims}
+    found = []
+    for cause in case.causes:
+        where = f"{places[cause.claim]}: " if cause.claim else ""
+        under = f" [{len(cause.readings)} readings]" if len(cause.readings) > 1 else ""
+        first = cause.says.split(". ")[0].rstrip(".")
+        found.append(f"{cause.severity} {cause.rule}{under} {where}{first}.")
+    return found
 
 
 def _time_goes(waterfalls: Sequence[Waterfall]) -> list[RenderableType]:

@@ -195,11 +195,11 @@ def check_folder(path: Path, cases: Sequence[Case]) -> None:
         If the folder holds anything but an earlier report or cannot be written, or if the id of
         a case is the name of another page.
     """
-    from ..pages import MARK, foreign
+    from ..pages import RESERVED, foreign
 
     name = str(path)
     for case in cases:
-        if case.id in ("index", Path(MARK).stem):
+        if case.id in RESERVED:
             raise CaseError(case.file, "id", f"{case.id!r} is the name of another page; rename it")
     with _writing(name, "--out"):
         recover_folder(path)

@@ -29,6 +29,7 @@ _STYLES = {
     "feasible": "yellow",
     "not_attained": "yellow",
     "inconsistent": "yellow",
+    "depends on the reading": "yellow",
     "warning": "yellow",
     "breaks": "red",
     "infeasible": "red",

@@ -1,4 +1,5 @@
 from .audited import AuditDocument, AuditedCase
+from .card import CARD_WORDS, VerdictCard, count_words, more_errors
 from .case_shown import ShowDocument, show_document
 from .cause import Cause, Consequence, Explanation
 from .certified import CertifiedResult, CertifyDocument, certify_result
@@ -25,8 +26,10 @@ from .instances import (
     Totals,
 )
 from .listed import CasesDocument, ListedCase, cases_document
+from .provenance import Provenance, UsedCertificate
 from .side_by_side import Excess, Fit, ReadingOutcome, ReadingsSummary, Tally
 from .solved import ActiveLimit, Answer, SolvedJoint, SolveDocument, SolveResult, solve_result
+from .stated import StatedClaim, StatedSource
 from .verified import (
     UNNAMED,
     AskedQuestion,
@@ -60,6 +63,7 @@ from .vocabulary import (
 from .waterfall import EXACT, Step, Waterfall
 
 __all__ = [
+    "CARD_WORDS",
     "DOCUMENTS",
     "EXACT",
     "SCHEMA",
@@ -107,6 +111,7 @@ __all__ = [
     "OrWhy",
     "PassingPoint",
     "Procedure",
+    "Provenance",
     "ReadingOutcome",
     "ReadingsSummary",
     "Real",
@@ -121,10 +126,14 @@ __all__ = [
     "SolveDocument",
     "SolveResult",
     "SolvedJoint",
+    "StatedClaim",
+    "StatedSource",
     "Step",
     "Tally",
     "Totals",
     "Uncovered",
+    "UsedCertificate",
+    "VerdictCard",
     "VerifiedFile",
     "VerifyDocument",
     "Waterfall",
@@ -134,12 +143,14 @@ __all__ = [
     "Worth",
     "cases_document",
     "certify_result",
+    "count_words",
     "filled",
     "given",
     "json_text",
     "known",
     "meaning",
     "meanings",
+    "more_errors",
     "output_schema",
     "reason",
     "schema_text",

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from .card import VerdictCard
 from .cause import Cause
 from .entry import Count, Document, Entry, OrWhy
 from .finding import Finding, Judgement
 from .instances import ExaminedInstances
+from .provenance import Provenance
 from .side_by_side import ReadingsSummary
+from .stated import StatedClaim, StatedSource
 from .waterfall import Waterfall
 
 
@@ -15,10 +18,14 @@ class AuditedCase(Entry):
 
     case: str
     title: str
+    source: StatedSource
+    card: VerdictCard
     errors: Count
     """How many causes have severity error."""
     causes: tuple[Cause, ...]
     """What speaks against something printed, each once; the gravest first."""
+    claims: tuple[StatedClaim, ...]
+    """What the paper states; the other keys name a claim by its id."""
     findings: tuple[Finding, ...]
     verdicts: tuple[Judgement, ...]
     """On every claim."""
@@ -30,6 +37,7 @@ class AuditedCase(Entry):
     """What the time budget left uncertified."""
     families: tuple[ExaminedInstances, ...]
     """Relative claims on instances drawn from the robot's workspace."""
+    provenance: Provenance
 
 
 class AuditDocument(Document):

@@ -87,10 +87,10 @@ class Rounding(StrEnum):
     KEEPS = "keeps"
     """The printed point itself keeps every limit for all t."""
     CONSISTENT = "consistent"
-    """Some input that prints alike keeps every limit, and it is exhibited."""
+    """Some value that rounds to the printed digits keeps every limit, and it is shown."""
     BREAKS = "breaks"
-    """No input that prints alike keeps every limit: a rigorous lower bound of the worst ratio over
-    the whole rounding box exceeds 1."""
+    """No value that rounds to the printed digits keeps every limit: a rigorous lower bound of the
+    worst ratio over all of them exceeds 1."""
     UNDECIDED = "undecided"
     """Neither was shown."""
 

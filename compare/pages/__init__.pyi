@@ -1,3 +1,3 @@
-from .writer import MARK, foreign, write_report
+from .writer import MARK, RESERVED, foreign, write_report
 
-__all__ = ["MARK", "foreign", "write_report"]
+__all__ = ["MARK", "RESERVED", "foreign", "write_report"]

@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from html import unescape
 from typing import ClassVar, TypeAlias
+from urllib.parse import quote
 
 from ...problem import file_name
+
+GLOSSARY = "glossary.html"
+"""The page that explains every word, once for a report."""
 
 
 @dataclass(frozen=True)
@@ -99,7 +105,97 @@ class Drawn:
     document: str
     title: str
     caption: str = ""
+    inside: bool = False
+    """Whether it stands in the page itself; others are fetched when they are unfolded."""
     kind: ClassVar[str] = "drawn"
+
+    @property
+    def description(self) -> str:
+        """What the picture shows, in words, for those who cannot see it."""
+        found = re.search(r"<desc[^>]*>(.*?)</desc>", self.document, re.DOTALL)
+        return unescape(found[1]) if found else self.title
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height in pixels, so that the page does not move when it appears."""
+        found = re.search(r'viewBox="0 0 ([0-9.]+) ([0-9.]+)"', self.document)
+        width, height = (float(found[1]), float(found[2])) if found else (4.0, 3.0)
+        return round(width * 4 / 3), round(height * 4 / 3)
+
+
+@dataclass(frozen=True)
+class CardShown:
+    """The verdict card, with the picture beside it.
+
+    Attributes
+    ----------
+    lines : tuple of str
+        Limits, optimum, improvement.
+    errors : tuple of str
+    beside : str
+        The most charitable explanation; empty for none.
+    drawn : Drawn or None
+    """
+
+    lines: tuple[str, ...]
+    errors: tuple[str, ...]
+    beside: str = ""
+    drawn: Drawn | None = None
+    kind: ClassVar[str] = "card"
+
+
+@dataclass(frozen=True)
+class Claimed:
+    """One claim: its words, place and digits, the verdict, and why.
+
+    Attributes
+    ----------
+    text, where, printed : str
+    verdict : Cell
+    holds : str
+        Under which readings, and what the verdict rests on.
+    why : tuple of str
+    more : tuple of str
+        The rest of the reasons, for a fold.
+    caveats : tuple of str
+    anchor : str
+        Name under which others point here.
+    id : str
+        Of the claim in the case file.
+    """
+
+    text: str
+    where: str
+    printed: str
+    verdict: Cell
+    holds: str
+    why: tuple[str, ...]
+    more: tuple[str, ...]
+    caveats: tuple[str, ...]
+    anchor: str
+    id: str
+    kind: ClassVar[str] = "claimed"
+
+
+@dataclass(frozen=True)
+class Behind:
+    """What lies behind findings: one cause, what would explain it, and what follows.
+
+    Attributes
+    ----------
+    weight : Cell
+        Its severity.
+    says : str
+    explanations : tuple of str
+    follows : tuple of Cell
+        Claims that fall with it, as links.
+    """
+
+    weight: Cell
+    says: str
+    explanations: tuple[str, ...]
+    follows: tuple[Cell, ...]
+    kind: ClassVar[str] = "behind"
 
 
 @dataclass(frozen=True)
@@ -107,13 +203,13 @@ class Folded:
     """Blocks that the reader may open."""
 
     title: str
-    blocks: tuple[Plain, ...]
+    blocks: tuple[Block, ...]
     kind: ClassVar[str] = "folded"
 
 
 Plain: TypeAlias = Prose | Grid | Terms | Drawn
 """What may stand anywhere."""
-Block: TypeAlias = Plain | Folded
+Block: TypeAlias = Plain | CardShown | Claimed | Behind | Folded
 """What a section holds."""
 
 
@@ -124,6 +220,8 @@ class Section:
     id: str
     title: str
     blocks: tuple[Block, ...]
+    folded: bool = False
+    """Whether the reader opens it."""
 
 
 @dataclass(frozen=True)
@@ -133,6 +231,10 @@ class Page:
     id: str
     title: str
     sections: tuple[Section, ...]
+    trail: str = ""
+    """Who printed it, when it was audited, and with what."""
+    doi: str = ""
+    """Of the paper; empty where it is not named."""
 
     @property
     def filled(self) -> Page:
@@ -151,12 +253,31 @@ class Page:
     @property
     def pictures(self) -> tuple[Drawn, ...]:
         """All pictures, folded or not, in order."""
-        found: list[Drawn] = []
-        for section in self.sections:
-            for block in section.blocks:
-                inner: Sequence[Block] = block.blocks if isinstance(block, Folded) else (block,)
-                found += [one for one in inner if isinstance(one, Drawn)]
-        return tuple(found)
+        return tuple(one for section in self.sections for one in _drawn(section.blocks))
+
+    @property
+    def doi_link(self) -> str:
+        """Address of the paper; empty where the DOI is none."""
+        return f"https://doi.org/{quote(self.doi, '/')}" if _DOI.fullmatch(self.doi) else ""
+
+
+_DOI = re.compile(r"10\.[0-9]{4,9}/[^\s<>\"]+")
+"""A DOI, as far as it can be told; other text is shown and leads nowhere."""
+
+
+def _drawn(blocks: Sequence[Block]) -> Iterator[Drawn]:
+    for block in blocks:
+        if isinstance(block, Drawn):
+            yield block
+        elif isinstance(block, CardShown) and block.drawn is not None:
+            yield block.drawn
+        elif isinstance(block, Folded):
+            yield from _drawn(block.blocks)
+
+
+def link(target: str) -> str:
+    """Where a cell's target leads: words to the report's glossary, others within the page."""
+    return f"{GLOSSARY}#{target}" if target.startswith("word-") else f"#{target}"
 
 
 def text(value: object) -> Cell:
@@ -170,7 +291,7 @@ def number(value: object) -> Cell:
 
 
 def word(value: str) -> Cell:
-    """Cell of a word from the vocabulary, linked to its meaning at the page's end."""
+    """Cell of a word from the vocabulary, linked to its meaning in the glossary."""
     return Cell(value, mark=slug(value), target=f"word-{slug(value)}")
 
 

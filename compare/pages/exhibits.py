@@ -25,6 +25,7 @@ from ..pictures import (
 )
 from .blocks import Block, Drawn, Folded, Grid, Section, number, text
 from .motions_shown import whole_claims
+from .units import both_units
 
 _SAMPLES = 20_000
 """Positions of the workspace that its bounding box is taken from, as by default in case files."""
@@ -46,9 +47,9 @@ def exhibits_of_motion(study: Study) -> list[Section]:
     list of Section
     """
     sections = (
-        Section("jumps", "Jumps of the velocity", tuple(_jumps(study))),
-        Section("control-polygon", "Control polygon", tuple(_polygons(study))),
-        Section("workspace", "Workspace of the robot", tuple(_workspaces(study))),
+        Section("jumps", "Jumps of the velocity", tuple(_jumps(study)), folded=True),
+        Section("control-polygon", "Control polygon", tuple(_polygons(study)), folded=True),
+        Section("workspace", "Workspace of the robot", tuple(_workspaces(study)), folded=True),
     )
     return [section for section in sections if section.blocks]
 
@@ -56,7 +57,8 @@ def exhibits_of_motion(study: Study) -> list[Section]:
 def exhibits_of_search(study: Study) -> list[Section]:
     """Section with the initial population of the tent map; none where no algorithm has one."""
     blocks = tuple(_tents(study))
-    return [Section("tent-map", "The tent map in double precision", blocks)] if blocks else []
+    title = "The tent map in double precision"
+    return [Section("tent-map", title, blocks, folded=True)] if blocks else []
 
 
 def _drawn(name: str, picture: Picture, caption: str) -> Drawn:
@@ -101,12 +103,13 @@ def _jumps_of(
         "readings. Limits are judged apart from jumps, inside the segments."
     )
     yield _drawn(file_name("jumps", pid, first.id), picture, caption)
+    statement = study.case.statement(pid, rid)
     rows = tuple(
         (
             text(jump.joint),
             number(jump.break_index),
             number(f"{jump.time:.3f} s"),
-            number(f"{jump.size:+.6g} rad/s"),
+            number(both_units(statement, "velocity", [jump.size], "+.6g")),
         )
         for jump in velocity_jumps(problem, durations)
     )

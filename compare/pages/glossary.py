@@ -19,18 +19,21 @@ from ..documents import (
     meaning,
     meanings,
 )
-from .blocks import Block, Folded, Prose, Section, Terms
+from .blocks import Block, Prose, Section, Terms
 
 SCOPES = f"{', '.join(Scope)} readings"
 """The term that explains how many readings agree."""
 
 
 def glossary() -> Section:
-    """The last but one section of every page: the vocabulary, and the rules by their ids."""
+    """The one section of the report's glossary: the vocabulary, and the rules by their ids."""
     # A word of two enumerations is explained once, by the first.
     groups: tuple[tuple[str, Mapping[str, str]], ...] = (
         ("On a claim", meanings(ClaimVerdict) | {SCOPES: meaning(Scope)}),
-        ("On printed durations, over everything that prints alike", meanings(Rounding)),
+        (
+            "On printed durations",
+            meanings(Rounding),
+        ),
         ("On one motion", meanings(Verdict)),
         ("On a reference value", meanings(Evidence)),
         ("On a distance", meanings(GapKind) | TIMES),
@@ -50,5 +53,5 @@ def glossary() -> Section:
         explained.update(words)
         blocks += [Prose(title, "heading"), Terms(pairs, anchored=True)]
     rules = tuple((rule.id, rule.title + ".") for rule in RULES)
-    blocks.append(Folded("Rules by their permanent ids", (Terms(rules, anchored=True),)))
+    blocks += [Prose("Rules by their permanent ids", "heading"), Terms(rules, anchored=True)]
     return Section("how-to-read", "How to read a verdict", tuple(blocks))

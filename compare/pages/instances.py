@@ -31,7 +31,8 @@ def other_instances(one: CaseAudit) -> tuple[Section, ...]:
         blocks += _examined(one.study, one.study.instances(declared), examined)
     if not blocks:
         return ()
-    return (Section("families", "The comparison on other instances", tuple(blocks)),)
+    title = "The comparison on other instances"
+    return (Section("families", title, tuple(blocks), folded=True),)
 
 
 def _examined(study: Study, result: InstancesResult, examined: ExaminedInstances) -> list[Block]:

@@ -5,7 +5,18 @@ from __future__ import annotations
 import re
 
 from ...problem import visible
-from .blocks import Block, Drawn, Folded, Grid, Page, Prose, Terms
+from .blocks import (
+    Behind,
+    Block,
+    CardShown,
+    Claimed,
+    Drawn,
+    Folded,
+    Grid,
+    Page,
+    Prose,
+    Terms,
+)
 
 _SPECIAL = re.compile(r"([\\`*_\[\]<>#|~$&])")
 """Characters that may begin markup anywhere."""
@@ -25,7 +36,9 @@ def markdown(page: Page) -> str:
     str
         GitHub-flavoured Markdown, in which text from case files is plain text.
     """
-    parts = [f"# {plain(page.title)}"]
+    parts = [f"# {plain(page.title)}", plain(page.trail)]
+    if page.doi_link:
+        parts.append(f"[{plain(page.doi)}]({page.doi_link})")
     for section in page.sections:
         parts.append(f"## {plain(section.title)}")
         parts += [_block(page, block) for block in section.blocks]
@@ -49,7 +62,24 @@ def _block(page: Page, block: Block) -> str:
     if isinstance(block, Folded):
         inner = [_block(page, one) for one in block.blocks]
         return "\n\n".join([f"### {plain(block.title)}", *inner])
+    if isinstance(block, CardShown):
+        lines = (*block.lines, *block.errors, *([block.beside] if block.beside else []))
+        card = "\n".join(f"- {_line(line)}" for line in lines)
+        return card if block.drawn is None else f"{card}\n\n{_block(page, block.drawn)}"
+    if isinstance(block, Claimed):
+        return _claimed(block)
+    if isinstance(block, Behind):
+        lines = (*block.explanations, *(f"Rests on it: {cell.text}" for cell in block.follows))
+        head = f"- **{plain(block.weight.text)}**: {_line(block.says)}"
+        return "\n".join([head, *(f"  - {_line(line)}" for line in lines)])
     return _grid(block)
+
+
+def _claimed(block: Claimed) -> str:
+    place = "; ".join(x for x in (block.where, block.printed, block.holds) if x)
+    head = f"- **{plain(block.verdict.text)}**: {_line(block.text)} ({_line(place)})"
+    reasons = (*block.why, *block.more, *block.caveats)
+    return "\n".join([head, *(f"  - {_line(reason)}" for reason in reasons)])
 
 
 def _grid(grid: Grid) -> str:

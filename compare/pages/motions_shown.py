@@ -10,15 +10,10 @@ from ...heuristics import JointRuns
 from ...nlp import Solution, weakest
 from ...problem import Array, Problem, TrajgapError, file_name
 from ...problem.cases import AnyClaim, DurationsClaim, MaximumClaim, TotalTimeClaim
-from ..audits import CaseAudit, Study
+from ..audits import CaseAudit, Study, place
 from ..pictures import Picture, Runs, convergence, endings, landscape, motion_picture, svg
 from .blocks import Block, Drawn, Folded, Grid, Prose, Section
 from .numbers import REPLAY_COLUMNS, replay_rows
-
-
-def _nothing(one: CaseAudit) -> tuple[Block, ...]:
-    """What a section without pictures says: nothing at all where no problem is posed."""
-    return (Prose("None."),) if one.study.posed else ()
 
 
 def motions(one: CaseAudit) -> Section:
@@ -38,7 +33,7 @@ def motions(one: CaseAudit) -> Section:
                 nodal=solution.nodal,
             )
             blocks.append(_drawn(file_name("optimum", pid), picture, f"Reading {rid}."))
-    return Section("motions", "Motions, with limits and peaks", tuple(blocks) or _nothing(one))
+    return Section("motions", "Motions, with limits and peaks", tuple(blocks), folded=True)
 
 
 def _drawn(name: str, picture: Picture, caption: str) -> Drawn:
@@ -64,7 +59,7 @@ def _printed_motions(study: Study, pid: str, rid: str) -> Iterator[Block]:
     for claims in alike.values():
         first = claims[0]
         problem = study.problem(pid, rid)
-        title = f"Printed durations of {', '.join(c.id for c in claims)}"
+        title = f"Printed durations: {'; '.join(dict.fromkeys(place(c) for c in claims))}"
         unmoved = study.unmoved(first, pid, rid)
         if unmoved is not None:
             yield Prose(f"{title} are not drawn: {unmoved}. Reading {rid}.", "note")
@@ -79,7 +74,7 @@ def _printed_motions(study: Study, pid: str, rid: str) -> Iterator[Block]:
             study.case.claim_durations(first, rid).value,
             title=title,
             check=study.claim_check(first, pid, rid),
-            note=f"over all that prints alike: {rounding}",
+            note=f"for every value that rounds to the digits: {rounding}",
         )
         where = "; ".join(c.where for c in claims)
         yield _drawn(file_name("motion", pid, first.id), picture, f"{where}. Reading {rid}.")
@@ -118,11 +113,12 @@ def _joint_by_joint(
         problem,
         durations,
         title=f"Printed durations of each joint by itself: {tables}",
-        note=f"over all that prints alike: {words}",
+        note=f"for every value that rounds to the digits: {words}",
     )
     each = "; ".join(f"{c.id}: {v}" for c, v in zip(claims, verdicts, strict=True))
     caption = (
-        "Each joint with its own durations, at the printed digits. Over all that prints alike: "
+        "Each joint with its own durations, at the printed digits. For every value that rounds to "
+        "the printed digits: "
         f"{each}. Reading {rid}."
     )
     return _drawn(file_name("motion", pid, "joints", str(claims[0].table)), picture, caption)
@@ -156,9 +152,8 @@ def searches(one: CaseAudit) -> Section:
         "refuted.",
         "note",
     )
-    return Section(
-        "searches", "Replays of the algorithms", (lead, *blocks) if blocks else _nothing(one)
-    )
+    shown = (lead, *blocks) if blocks else ()
+    return Section("searches", "Replays of the algorithms", shown, folded=True)
 
 
 def _runs(study: Study, pid: str) -> dict[str, Runs]:
@@ -269,7 +264,8 @@ def landscapes(one: CaseAudit) -> Section:
             break
         if single:
             blocks.append(Folded(f"Each joint by itself, {pid}", tuple(single)))
-    return Section("landscapes", "Landscapes of the total time", tuple(blocks) or _nothing(one))
+    shown = tuple(blocks) if any(not isinstance(b, Prose) for b in blocks) else ()
+    return Section("landscapes", "Landscapes of the total time", shown, folded=True)
 
 
 def _landscape(

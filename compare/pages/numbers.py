@@ -34,12 +34,31 @@ from .blocks import (
 
 _ON_A_LINE = 2
 """Durations on each line of a cell: nine on one would push the table off the page."""
+_MANY = 10
+"""Distance, as a share, beyond which a multiple says more than a percentage."""
 _FEW = 3
 """Other readings of a problem that still get a picture each."""
 
 
+def first_waterfall(one: CaseAudit) -> Waterfall | None:
+    """That of the first problem under the default reading, which stands beside the card."""
+    main = one.study.main_reading
+    return next((w for w in one.waterfalls if w.reading == main), None)
+
+
+def card_picture(one: CaseAudit) -> Drawn | None:
+    """Where the time goes, small: the first problem under the default reading."""
+    waterfall = first_waterfall(one)
+    if waterfall is None:
+        return None
+    several = len({w.problem for w in one.waterfalls}) > 1
+    title = f"Where the time goes{f', {waterfall.problem}' if several else ''}"
+    picture = waterfall_picture(waterfall, title=title, narrow=True)
+    return Drawn("time", svg(picture), title, inside=True)
+
+
 def where_time_goes(one: CaseAudit) -> Section:
-    """Waterfall pictures and tables of the default reading; the others folded, or in a table."""
+    """Distances under the default reading; pictures and steps of all readings folded."""
     main = one.study.main_reading
     blocks: list[Block] = []
     for pid in dict.fromkeys(w.problem for w in one.waterfalls):
@@ -48,12 +67,34 @@ def where_time_goes(one: CaseAudit) -> Section:
         for waterfall in own:
             shown = f"{pid}, {waterfall.reading}"
             if waterfall.reading == main:
-                blocks += _drawn(waterfall)
+                blocks.append(_distances(waterfall))
+                blocks.append(Folded(f"Picture and notes: {shown}", _drawn(waterfall)))
             elif len(others) <= _FEW:
                 blocks.append(Folded(f"Other reading: {shown}", _drawn(waterfall)))
         if len(others) > _FEW:
-            blocks.append(_side_by_side(pid, others))
-    return Section("waterfall", "Where the time goes", tuple(blocks))
+            title = f"Other readings of {pid}, step by step"
+            blocks.append(Folded(title, (_side_by_side(pid, others),)))
+    return Section("waterfall", "Distance from the optimum", tuple(blocks))
+
+
+def _distances(waterfall: Waterfall) -> Grid:
+    """Each step in seconds, and how far the first one lies above it."""
+    first = next((s.time for s in waterfall.steps if not isinstance(s.time, Why)), None)
+    rows = tuple(
+        (text(s.name), number(interval(s)), number(_above(first, s)), word(s.evidence))
+        for s in waterfall.steps
+        if not isinstance(s.time, Why)
+    )
+    caption = f"{waterfall.problem}, {waterfall.reading}"
+    return Grid(("step", "total", "first step beside it", "evidence"), rows, caption).filled
+
+
+def _above(first: float | None, step: Step) -> str | None:
+    if first is None or isinstance(step.time, Why) or step.time <= 0 or first == step.time:
+        return None
+    if first / step.time > 1 + _MANY:
+        return f"{first / step.time:.1f} times"
+    return f"{100 * (first / step.time - 1):+.1f} %"
 
 
 def _drawn(waterfall: Waterfall) -> tuple[Plain, ...]:
@@ -156,7 +197,7 @@ def optima(one: CaseAudit) -> Section:
         for why, found in without.items()
     ]
     names = ("problem", "reading", "formulation", *_ANSWER)
-    return Section("optima", _OPTIMA, (Grid(names, tuple(rows)), *notes, *blocks))
+    return Section("optima", _OPTIMA, (Grid(names, tuple(rows)), *notes, *blocks), folded=True)
 
 
 def _by_joint(study: Study, pid: str, rid: str) -> bool:
@@ -251,7 +292,7 @@ def sensitivities(one: CaseAudit) -> Section:
     )
     names = ("problem", "reading", "limit of", "quantity", "peaks at it", "changes the total", "by")
     body: Block = Grid(names, tuple(rows)) if rows else Prose("No limit is reached.")
-    return Section("sensitivities", title, (note, body))
+    return Section("sensitivities", title, (note, body), folded=True)
 
 
 # --- replays --------------------------------------------------------------------------------------

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from ...problem import Case
 from ...problem.curves import ClampedBSpline, Parameters, clamped_readings
-from ..audits import CaseAudit, segments
+from ..audits import CaseAudit, place, segments, spoken
 from ..documents import ReadingOutcome, ReadingsSummary, Why
 from .blocks import (
     Block,
@@ -21,18 +21,25 @@ from .blocks import (
     word,
 )
 
+_FEW = 4
+"""Rows of a table that stand in the open; a longer one is folded."""
+
 
 def side_by_side(one: CaseAudit) -> Section:
     """What each reading makes of the printed answers, and what holds whatever the reading."""
     blocks: list[Block] = []
     summary = one.readings
-    if summary is None:
-        blocks.append(Prose("The case has one reading."))
-    else:
-        blocks += [Prose(sentence) for sentence in (*summary.answers, *summary.holding)]
-        blocks += _outcomes(one, summary) if summary.outcomes else [_unposed(one)]
+    if summary is not None:
+        tables = _outcomes(one, summary) if summary.outcomes else [_unposed(one)]
+        rows = sum(len(t.rows) for t in tables if isinstance(t, Grid))
+        title = f"{len(summary.admissible)} readings side by side"
+        if rows > _FEW:
+            blocks += [Prose(spoken(one.case, said)) for said in summary.answers]
+            blocks.append(Folded(title, tuple(tables)))
+        else:
+            blocks += [*(Prose(spoken(one.case, said)) for said in summary.answers[-1:]), *tables]
     blocks += _determined(one.case)
-    return Section("side-by-side", "The readings side by side", tuple(blocks))
+    return Section("side-by-side", "What depends on the reading", tuple(blocks))
 
 
 def _outcomes(one: CaseAudit, summary: ReadingsSummary) -> list[Block]:
@@ -45,11 +52,13 @@ def _outcomes(one: CaseAudit, summary: ReadingsSummary) -> list[Block]:
     grids: list[Block] = []
     for (claim, problem), own in printed.items():
         rows = tuple(_row(outcome, default) for outcome in own)
-        grids.append(Grid(names, rows, f"{claim} ({problem})" if claim else problem).filled)
+        where = place(one.case.claim(claim)) if claim else problem
+        grids.append(Grid(names, rows, where).filled)
     note = (
-        "Limits are judged over everything that prints alike, digits rounded or cut off; jumps and "
-        "the segments over a limit are those of the printed point. × to limits: all durations "
-        "times this just reach the limits, jumps apart. The printed total is beside the optimum."
+        "Limits are judged for every value that rounds, or is cut off, to the printed digits; "
+        "jumps and the segments over a limit are those of the printed point. × to limits: all "
+        "durations times this just reach the limits, jumps apart. The printed total is "
+        "beside the optimum."
     )
     return [*grids, Prose(note, "note")]
 

@@ -1,144 +1,35 @@
-"""The judging half of a report page: what was audited, the verdicts, and the findings."""
+"""What a report page was made from: problems, findings, readings, assumptions."""
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable
 from dataclasses import replace
 
-from ...nlp import Evidence
-from ...problem import QUANTITIES, Case, Coupling, Problem, file_name
-from ...problem.cases import (
-    AnyClaim,
-    ConditionsClaim,
-    ConvergenceClaim,
-    DurationsClaim,
-    ImprovementClaim,
-    MaximumClaim,
-    PeakClaim,
-    TotalTimeClaim,
-)
-from ..audits import RULES, CaseAudit, Study, named
-from ..audits.rules import placed
-from ..documents import (
-    UNITS,
-    ClaimVerdict,
-    Finding,
-    Gap,
-    Judgement,
-    Scope,
-    Severity,
-    Waterfall,
-    Why,
-)
-from ..pictures import seconds as interval
-from .blocks import Block, Cell, Folded, Grid, Prose, Section, Terms, slug, text, word
-from .glossary import SCOPES
+import numpy as np
 
-_DECIDED = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT, ClaimVerdict.SUPPORTED)
-"""Verdicts that say something of a claim, those against it first."""
-_FEW = 4
-"""Problems and readings that stand in the open."""
+from ...problem import QUANTITIES, Coupling, Problem, file_name
+from ...problem.cases import Statement
+from ..audits import RULES, CaseAudit, Study
+from ..documents import Finding, Severity, Why
+from .blocks import Block, Cell, Folded, Grid, Prose, Section, Terms, text, word
+from .units import both_units
+
 _TITLES = {rule.id: rule.title for rule in RULES}
 """What each rule looks at, by its id."""
 
 
-def audited(one: CaseAudit) -> Section:
-    """What was audited, and the verdict in one paragraph."""
-    case, source = one.case, one.case.source
-    printed = ", ".join(
-        str(p) for p in (source.authors, source.title, source.journal, source.year) if p
-    )
+def posed(one: CaseAudit) -> Section:
+    """The problems that the paper poses, as they were computed."""
+    grid = _problems(one.study)
+    case = one.case
     facts = [
-        ("source", printed or "not named in the text"),
-        ("DOI", source.doi),
-        ("note on the text", source.note),
+        ("note on the text", case.source.note),
         ("robot", case.robot.name),
         ("joints", ", ".join(case.robot.joints)),
     ]
-    blocks: list[Block] = [Prose(summary(one), "lead"), Terms(tuple(f for f in facts if f[1]))]
-    posed = _problems(one.study)
-    title = f"{len(posed.rows)} problems posed"
-    blocks.append(Folded(title, (posed,)) if len(posed.rows) > _FEW else posed)
-    return Section("audited", "What was audited", tuple(blocks))
-
-
-def summary(one: CaseAudit) -> str:
-    """The verdict on a case in one paragraph."""
-    counts = Counter(j.verdict for j in one.judgements)
-    said = ", ".join(f"{counts[v]} {v}" for v in ClaimVerdict if counts[v])
-    sentences = [f"{_count(len(one.judgements), 'claim')}: {said or 'none to judge'}."]
-    sentences += _against(one)
-    sentences += _errors(one)
-    sentences += [placed(one.study.instances(block)) for block in one.study.instance_blocks]
-    for waterfall in one.waterfalls:
-        if waterfall.reading == one.study.main_reading:
-            sentences += _down(one, waterfall)
-    return " ".join(sentences)
-
-
-def _count(size: int, noun: str) -> str:
-    return f"{size} {noun}{'' if size == 1 else 's'}"
-
-
-def _against(one: CaseAudit) -> Iterable[str]:
-    """What speaks against claims: under every admissible reading, then under some of them."""
-    against = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT)
-    for verdict in against:
-        every = [j.claim for j in one.judgements if j.verdict is verdict and j.scope is Scope.ALL]
-        if every:
-            yield f"{verdict.capitalize()}: {', '.join(every)}."
-    alike: dict[tuple[tuple[str, ClaimVerdict], ...], list[str]] = {}
-    for j in one.judgements:
-        if j.scope is not Scope.ALL and any(v in against for v in j.readings.values()):
-            alike.setdefault(tuple(j.readings.items()), []).append(j.claim)
-    for readings, claims in alike.items():
-        under: dict[ClaimVerdict, list[str]] = {}
-        for reading, verdict in readings:
-            under.setdefault(verdict, []).append(reading)
-        said = ", ".join(f"{v} under {_which(under[v])}" for v in ClaimVerdict if v in under)
-        yield f"Of {len(readings)} readings: {', '.join(claims)} {said}."
-
-
-def _errors(one: CaseAudit) -> Iterable[str]:
-    """Rules whose findings are errors, with the claim; readings count as one."""
-    places: dict[str, set[str]] = {}
-    for f in one.findings:
-        if f.severity is Severity.ERROR:
-            place = f"{f.rule} on {f.claim}" if f.claim else f.rule
-            places.setdefault(place, set()).update([f.reading] if f.reading else [])
-    shown = [
-        place + (f" under {len(readings)} readings" if len(readings) > 1 else "")
-        for place, readings in places.items()
-    ]
-    if shown:
-        yield f"A proof speaks against something printed: {', '.join(shown)}."
-
-
-def _which(readings: list[str]) -> str:
-    return readings[0] if len(readings) == 1 else str(len(readings))
-
-
-def _down(one: CaseAudit, waterfall: Waterfall) -> Iterable[str]:
-    about = waterfall.problem, waterfall.reading
-    solution = one.study.optimum(*about)
-    where = f"Under {', '.join(about)}"
-    if solution.durations is None:
-        yield f"{where}: {solution.status}{f', {solution.why}' if solution.why else ''}."
-        return
-    yield f"{where}, the {solution.evidence} shortest time of the printed curve family is " + (
-        f"{solution.total_time:.6f} s."
-    )
-    for f in one.findings:
-        beside = (f.claim, f.problem, f.reading) == (waterfall.claim, *about)
-        if beside and isinstance(f.gap, Gap) and f.rule in ("TG302", "TG303"):
-            yield f"The printed {f.printed} has the {f.gap.kind} {f.gap.percent}."
-            break
-    known = [s for s in waterfall.steps if not isinstance(s.time, Why)]
-    if known and known[-1].evidence is not Evidence.NONE:
-        last = known[-1]
-        shown = f"{interval(last)} ({last.note})"
-        yield f"With {last.name} the {last.evidence} shortest time is {shown}."
+    blocks: tuple[Block, ...] = (Terms(tuple(f for f in facts if f[1])),)
+    blocks += (grid,) if grid.rows else ()
+    return Section("audited", "What was audited", blocks, folded=True)
 
 
 def _problems(study: Study) -> Grid:
@@ -152,7 +43,7 @@ def _problems(study: Study) -> Grid:
                 text(rid),
                 text(f"{len(p.joints)} × {p.waypoints.shape[0]}"),
                 text(p.curve.name),
-                text(_limits(p)),
+                text(_limits(p, study.case.statement(pid, rid))),
                 text(_bounds(p)),
                 text(how),
             )
@@ -169,14 +60,14 @@ def _problems(study: Study) -> Grid:
     return Grid(names, tuple(rows), "Problems posed, in radians and seconds")
 
 
-def _limits(problem: Problem) -> str:
+def _limits(problem: Problem, statement: Statement) -> str:
     parts = []
     for name in QUANTITIES:
         values = getattr(problem.limits, name)
-        shown = dict.fromkeys(f"{v:.6g}" for v in values)
-        if list(shown) != ["inf"]:
-            every = list(shown) if len(shown) == 1 else [f"{v:.6g}" for v in values]
-            parts.append(f"{name} {', '.join(every)} {UNITS[name]}")
+        alike = len({f"{v:.6g}" for v in values}) == 1
+        if not (alike and np.isinf(values[0])):
+            every = values[:1] if alike else values
+            parts.append(f"{name} {both_units(statement, name, every, '.6g')}")
     if problem.limits.limits_position:
         parts.append("position")
     return "\n".join(parts) or "none"
@@ -189,97 +80,6 @@ def _bounds(problem: Problem) -> str:
     return text + (f", at most {', '.join(high)} s" if high != ["inf"] else "")
 
 
-# --- claims ---------------------------------------------------------------------------------------
-
-
-def claim_table(one: CaseAudit) -> Section:
-    """The verdict on every claim, in the order of the case file."""
-    rows = []
-    for judgement in one.judgements:
-        claim = one.case.claim(judgement.claim)
-        rows.append(
-            (
-                Cell(f"{claim_text(claim)}\n[{claim.id}]", anchor=file_name("claim", claim.id)),
-                text(claim.where),
-                text(printed(one.case, claim)),
-                word(judgement.verdict),
-                _readings(judgement),
-                word(judgement.evidence),
-                text(_why(one, judgement)),
-            )
-        )
-    names = ("claim", "where", "printed", "verdict", "readings", "reference", "why")
-    readings = f"{_count(len(one.study.readings), 'reading')}: {named(one.study.readings, _FEW)}"
-    note = Prose(f"{readings}. Words are explained at the end of the page.", "note")
-    return Section(
-        "verdicts", "Verdicts on the claims", (note, Grid(names, tuple(rows), prose=True))
-    )
-
-
-def claim_text(claim: AnyClaim) -> str:
-    """What a claim says: its own words, or its kind and place."""
-    if claim.text:
-        return claim.text
-    kinds = {"durations": "Segment durations", "maximum": "Longest segment durations"}
-    said = kinds.get(claim.quantity, claim.quantity.replace("_", " ").capitalize())
-    said += f" of joint {claim.joint}" if claim.joint else ""
-    return said + (f", {claim.algorithm}" if claim.algorithm else "") + "."
-
-
-def printed(case: Case, claim: AnyClaim) -> str:
-    """The digits that a claim prints, with their unit."""
-    units = case.document.units
-    time = f" {units.time}" if units.time else ""
-    if isinstance(claim, DurationsClaim | MaximumClaim):
-        shown = ", ".join(map(str, claim.durations)) + time
-        return shown + (f"; total {claim.total}{time}" if claim.total is not None else "")
-    if isinstance(claim, TotalTimeClaim):
-        return f"{claim.value}{time}"
-    if isinstance(claim, ImprovementClaim):
-        parts = [f"{claim.percent} %"] if claim.percent is not None else []
-        return "; ".join(parts + ([f"{claim.seconds}{time}"] if claim.seconds is not None else []))
-    if isinstance(claim, PeakClaim):
-        return f"{claim.value} {getattr(units, claim.derivative) or ''}".strip()
-    if isinstance(claim, ConvergenceClaim):
-        return f"{claim.iterations} iterations"
-    if isinstance(claim, ConditionsClaim) and claim.count is not None:
-        return f"{claim.count} conditions"
-    return ""
-
-
-def _readings(judgement: Judgement) -> Cell:
-    """Under how many readings the verdict holds; where they differ, those of each verdict."""
-    lines = [str(judgement.scope)]
-    if judgement.scope is Scope.SOME:
-        under: dict[ClaimVerdict, list[str]] = {}
-        for reading, verdict in judgement.readings.items():
-            under.setdefault(verdict, []).append(reading)
-        lines += [f"{verdict} under {_which(r)}" for verdict, r in under.items()]
-    return Cell("\n".join(lines), target=f"word-{slug(SCOPES)}")
-
-
-def _why(one: CaseAudit, judgement: Judgement) -> str:
-    """What decides: findings that say the same in other numbers share a line."""
-    lines: dict[tuple[str, ...], list[Finding]] = {}
-    for f in one.findings:
-        if f.claim == judgement.claim and f.decides and f.verdict in _DECIDED:
-            lines.setdefault((f.rule, f.verdict, f.kind), []).append(f)
-    if not lines:
-        return judgement.why
-    shown = []
-    for (rule, *_), own in sorted(
-        lines.items(), key=lambda line: line[1][0].verdict is not judgement.verdict
-    ):
-        messages = list(dict.fromkeys(f.message for f in own))
-        readings = list(dict.fromkeys(f.reading for f in own if f.reading))
-        every = not readings or len(readings) == len(one.study.readings)
-        where = "" if every and len(messages) == 1 else f" ({named(readings)})"
-        others = _count(len(messages) - 1, "more finding")
-        more = f" In other numbers: {others}." if len(messages) > 1 else ""
-        shown.append(f"{rule}{where}: {messages[0]}{more}")
-    return "\n".join(shown)
-
-
 # --- findings -------------------------------------------------------------------------------------
 
 
@@ -289,15 +89,14 @@ def findings(one: CaseAudit) -> Section:
     for severity in Severity:
         own = [f for f in one.findings if f.severity is severity]
         if not own:
-            blocks.append(Prose(f"No finding of severity {severity}."))
             continue
-        title = f"Severity {severity}: {_count(len(own), 'finding')}"
+        title = f"Severity {severity}: {len(own)} finding{'' if len(own) == 1 else 's'}"
         grid = _finding_grid(own, len(one.study.readings))
         if severity is Severity.INFO:
             blocks.append(Folded(title, (grid,)))
         else:
             blocks += [Prose(title, "heading"), grid]
-    return Section("findings", "Findings", tuple(blocks))
+    return Section("findings", "Every finding, rule by rule", tuple(blocks), folded=True)
 
 
 def _finding_grid(found: list[Finding], readings: int) -> Grid:
@@ -355,21 +154,25 @@ def foundations(one: CaseAudit) -> list[Section]:
         for a in case.algorithms
         if a.open
     ]
-    nothing = Prose("None.")
+    choices = (Grid(("name", "left open", "chosen", "affects"), assumed),) if assumed else ()
     return [
-        Section("readings", "Readings and why they are admissible", (Terms(readings),)),
+        Section(
+            "readings",
+            "Readings and why they are admissible",
+            (Terms(readings),) if len(readings) > 1 else (),
+            folded=True,
+        ),
         Section(
             "assumptions",
-            "Assumptions: what the text leaves open, and what was chosen",
-            (
-                Grid(("name", "left open", "chosen", "affects"), assumed) if assumed else nothing,
-                *opened,
-            ),
+            "What the text leaves open, and what was chosen",
+            (*choices, *opened),
+            folded=True,
         ),
         Section(
             "not-checkable",
             "Not checkable from the text",
-            (Grid(("where", "what", "why"), lost) if lost else nothing,),
+            (Grid(("where", "what", "why"), lost),) if lost else (),
+            folded=True,
         ),
     ]
 

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import os
-import sys
 from collections import Counter
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
@@ -24,18 +22,19 @@ from ...problem import (
     replace_folder,
     visible,
 )
-from ..audits import AuditReport, CaseAudit
-from ..documents import AuditDocument, ClaimVerdict, json_text
-from ..pictures import embedded
+from ..audits import AuditReport, CaseAudit, package_version
+from ..documents import AuditDocument, ClaimVerdict, Why, json_text, more_errors
+from ..pictures import embedded, themed
 from . import motions_shown as report_pictures
-from .blocks import Page, Prose, Section, Terms, slug
+from .blocks import GLOSSARY, Block, CardShown, Folded, Page, Prose, Section, Terms, link, slug
+from .claims import against, folded_claims
 from .exhibits import exhibits_of_motion, exhibits_of_search
 from .glossary import glossary
 from .instances import other_instances
 from .markdown_text import markdown
-from .numbers import optima, sensitivities, where_time_goes
+from .numbers import card_picture, optima, sensitivities, where_time_goes
 from .readings import side_by_side
-from .verdicts import audited, claim_table, findings, foundations, summary
+from .verdicts import findings, foundations, posed
 
 MARK = "audit.json"
 """The file by which the folder of an earlier report is known."""
@@ -43,19 +42,10 @@ _LARGEST_MARK = 1_000_000_000
 """Bytes that are read to know an earlier report: hundreds of times the largest one shipped."""
 _INDEX = "index.html"
 """The page that leads to those of the cases."""
+RESERVED = (Path(_INDEX).stem, Path(MARK).stem, Path(GLOSSARY).stem)
+"""Names of pages of the report itself, which no case can take."""
 _TEMPLATES = Path(__file__).parent / "templates"
 """Where the pages' templates and style lie, as package data."""
-_LIBRARIES = (
-    "casadi",
-    "jinja2",
-    "matplotlib",
-    "numba",
-    "numpy",
-    "pydantic",
-    "scipy",
-    "toppra",
-)
-"""Libraries whose versions can move a digit or a pixel."""
 
 
 class _MarkedCase(BaseModel):
@@ -77,8 +67,9 @@ def write_report(report: AuditReport, out: Path) -> None:
     report : AuditReport
     out : Path
         A new or an empty folder, or one with an earlier report, which is replaced. It gets
-        ``index.html`` and ``audit.json``, and for each case ``CASE.html``, ``CASE.md``,
-        ``CASE.json`` and ``pictures/CASE-*.svg``; CASE is its id, or what `file_name` makes of it.
+        ``index.html``, ``glossary.html`` and ``audit.json``, and for each case ``CASE.html``,
+        ``CASE.md``, ``CASE.json`` and ``pictures/CASE-*.svg``; CASE is its id, or what `file_name`
+        makes of it.
 
     Raises
     ------
@@ -90,7 +81,7 @@ def write_report(report: AuditReport, out: Path) -> None:
     for name in names:
         if names.count(name) > 1:
             raise TrajgapError(f"{out}: two cases are called {name!r}; give each an id of its own")
-        if name in (Path(_INDEX).stem, Path(MARK).stem):
+        if name in RESERVED:
             raise TrajgapError(f"{out}: a case cannot be called {name!r}; rename it")
     try:
         recover_folder(out)
@@ -122,7 +113,12 @@ def foreign(out: Path) -> str | None:
         return MARK
     cases = [one.case for one in mark.cases]
     pages = [file_name(case) for case in cases]
-    known = {_INDEX, MARK, *(f"{page}.{end}" for page in pages for end in ("html", "md", "json"))}
+    known = {
+        _INDEX,
+        GLOSSARY,
+        MARK,
+        *(f"{page}.{end}" for page in pages for end in ("html", "md", "json")),
+    }
     drawn = tuple(f"pictures/{f'{case}-'[:LONGEST_NAME]}" for case in cases)
     for name in there:
         if name not in known and not (name.startswith(drawn) and name.endswith(".svg")):
@@ -142,14 +138,16 @@ def _files(report: AuditReport) -> dict[str, str]:
         files[f"{name}.md"] = markdown(page)
         files[f"{name}.json"] = json_text(AuditDocument(cases=(one.document,)))
         for picture in page.pictures:
-            files[page.picture(picture)] = picture.document
+            files[page.picture(picture)] = themed(picture.document)
     index = environment.get_template(_INDEX)
     files[_INDEX] = index.render(
         rows=[_row(one) for one in report.cases],
         verdicts=[str(v) for v in ClaimVerdict],
-        version=_version("trajgap"),
+        version=package_version("trajgap"),
         style=style,
     )
+    words = Page("glossary", "How to read a verdict", (glossary(),))
+    files[GLOSSARY] = environment.get_template("case.html").render(page=words, style=style)
     files[MARK] = json_text(document)
     return files
 
@@ -160,7 +158,7 @@ def _row(one: CaseAudit) -> dict[str, Any]:
         "id": one.case.id,
         "file": file_name(one.case.id),
         "title": one.case.title,
-        "summary": summary(one),
+        "card": one.card,
         "claims": len(one.judgements),
         "counts": counts,
         "errors": one.errors,
@@ -178,15 +176,24 @@ def case_page(one: CaseAudit) -> Page:
     -------
     Page
     """
+    source, made = one.document.source, one.document.provenance
+    printed = ", ".join(
+        str(p)
+        for p in (source.authors, source.title, source.journal, source.year)
+        if p and not isinstance(p, Why)
+    )
+    audited = f"Audited {made.date} with trajgap {made.trajgap}"
     return Page(
         one.case.id,
         one.case.title,
         (
-            audited(one),
-            claim_table(one),
-            side_by_side(one),
+            _card(one),
+            against(one),
             where_time_goes(one),
-            *other_instances(one),
+            side_by_side(one),
+            _not_computed(one),
+            *folded_claims(one),
+            posed(one),
             findings(one),
             optima(one),
             sensitivities(one),
@@ -194,13 +201,24 @@ def case_page(one: CaseAudit) -> Page:
             *exhibits_of_motion(one.study),
             report_pictures.searches(one),
             *exhibits_of_search(one.study),
+            *other_instances(one),
             report_pictures.landscapes(one),
-            _not_computed(one),
             *foundations(one),
-            glossary(),
             _reproduced(one),
         ),
+        trail=f"{printed or 'Source not named in the text'}. {audited}.",
+        doi=source.doi,
     ).filled
+
+
+def _card(one: CaseAudit) -> Section:
+    card = one.card
+    lines = [card.limits, card.optimum]
+    lines += [card.improvement] if isinstance(card.improvement, str) else []
+    errors = (*card.errors, *([more_errors(card.more)] if card.more else []))
+    beside = card.explanation if isinstance(card.explanation, str) else ""
+    shown = CardShown(tuple(lines), errors, beside, card_picture(one))
+    return Section("card", "Verdict", (shown,))
 
 
 def _not_computed(one: CaseAudit) -> Section:
@@ -215,25 +233,27 @@ def _not_computed(one: CaseAudit) -> Section:
     return Section("not-computed", "Not computed", (said,))
 
 
-def _version(package: str) -> str:
-    try:
-        return version(package)
-    except PackageNotFoundError:
-        return "not installed"
-
-
 def _reproduced(one: CaseAudit) -> Section:
-    python = ".".join(str(x) for x in sys.version_info[:3])
-    libraries = ", ".join(f"{name} {_version(name)}" for name in _LIBRARIES)
-    pairs = (
-        ("trajgap", _version("trajgap")),
-        ("libraries", f"Python {python}, {libraries}"),
-        ("seeds", f"0 to {one.study.seeds - 1} for every replay"),
+    made = one.document.provenance
+    versions = ", ".join(f"{name} {version}" for name, version in made.libraries.items())
+    pairs = [
+        ("made again by", made.command),
+        ("date", made.date),
+        ("trajgap", made.trajgap),
+        ("commit", str(made.commit)),
+        ("case file, SHA-256", str(made.case_sha256)),
+        ("libraries", versions),
+        ("seeds", f"0 to {made.seeds - 1} for every replay"),
         ("starts", f"{STARTS} starts of every solve, first seed 0"),
         ("tolerances", f"{TOLERANCE:g} relative excess that still keeps a limit; "
          f"{KKT_TOLERANCE:g} KKT residual of an optimum; totals within {SAME:g} count as the same"),
-    )  # fmt: skip
-    return Section("reproducibility", "To compute this again", (Terms(pairs),))
+    ]  # fmt: skip
+    proved = tuple((c.file, f"SHA-256 {c.sha256}; about {c.subject}") for c in made.certificates)
+    blocks: list[Block] = [Prose(made.citation, "source"), Terms(tuple(pairs))]
+    if proved:
+        blocks.append(Folded(f"{len(proved)} certificates, proved again", (Terms(proved),)))
+    title = "Cite this audit, and make it again"
+    return Section("reproducibility", title, tuple(blocks), folded=True)
 
 
 def _environment() -> Environment:
@@ -247,6 +267,7 @@ def _environment() -> Environment:
         finalize=_visible,
     )
     environment.filters["slug"] = slug
+    environment.filters["link"] = link
     environment.filters["inline"] = lambda drawn: Markup(embedded(drawn.document, drawn.name))
     environment.filters["unescaped"] = Markup
     return environment

@@ -1,4 +1,4 @@
-from .drawing import Picture, embedded, svg
+from .drawing import DARK, THEME, Picture, embedded, svg, themed
 from .instances import instances_picture
 from .jumps import jump_picture, velocity_jumps
 from .motion import motion_picture
@@ -10,6 +10,8 @@ from .waterfall import seconds, waterfall_picture
 from .workspace import workspace_picture
 
 __all__ = [
+    "DARK",
+    "THEME",
     "Picture",
     "Runs",
     "convergence",
@@ -24,6 +26,7 @@ __all__ = [
     "svg",
     "tent_picture",
     "tent_scatter",
+    "themed",
     "velocity_jumps",
     "waterfall_picture",
     "workspace_picture",

@@ -44,6 +44,19 @@ THEME = {
     "red": RED,
 }
 """Colours that a page may replace, by the name of their CSS variable."""
+DARK = {
+    "ink": "#e6eaf0",
+    "muted": "#a3adba",
+    "grid": "#3a434f",
+    "paper": "#1a2027",
+    "blue": "#58b4f0",
+    "orange": "#f0b429",
+    "green": "#3fcf9f",
+    "purple": "#e3a1c6",
+    "sky": "#8fd0f7",
+    "red": "#ff6b81",
+}
+"""The same colours on a dark page, as its style has them."""
 Line = Literal["-", "--", "-.", ":"]
 """Line styles of matplotlib."""
 SERIES: tuple[tuple[str, Line], ...] = ((BLUE, "-"), (ORANGE, "--"), (GREEN, "-."), (PURPLE, ":"))
@@ -212,6 +225,27 @@ def svg(figure: Figure) -> str:
     tag = opening[0][:-1] + ' role="img" aria-labelledby="title desc">'
     words = f'<title id="title">{_xml(title)}</title>\n <desc id="desc">{_xml(description)}</desc>'
     return text[: opening.start()] + tag + f"\n {words}" + text[opening.end() :]
+
+
+def themed(document: str) -> str:
+    """An SVG file that follows a dark theme where it is shown by a browser.
+
+    Its own colours stay in place for every other program.
+
+    Parameters
+    ----------
+    document : str
+        What `svg` returned.
+    """
+    rules = "".join(
+        f'[style*="{what}: {colour}"]{{{what}:{DARK[name]} !important}}'
+        for name, colour in THEME.items()
+        for what in ("fill", "stroke")
+        if f"{what}: {colour}" in document
+    )
+    style = f"<style>@media (prefers-color-scheme: dark){{{rules}}}</style>"
+    end = document.index("</desc>") + len("</desc>")
+    return f"{document[:end]}\n {style}{document[end:]}"
 
 
 def embedded(document: str, prefix: str) -> str:

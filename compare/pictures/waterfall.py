@@ -23,8 +23,14 @@ from .drawing import (
     shown,
 )
 
-_COLUMNS = (("to the step above", -1, 1.23, 1.36), ("to the first step", 0, 1.55, 1.68))
-"""Heading, which earlier step, right edges of the seconds and the percent (bars end at 1)."""
+_HEADING = "first step beside it"
+"""Above the column that says how much longer the first step takes: one percentage per distance."""
+_EDGES = (1.2, 1.36)
+"""Right edges of the seconds and the percent in that column (bars end at 1)."""
+_MANY = 10
+"""Distance, as a share, beyond which a multiple says more than a percentage."""
+_NARROW = (1.34, 1.58)
+"""The same for half a page, where type is as large and bars are shorter."""
 _FILLS = {
     Evidence.CERTIFIED: {"facecolor": BLUE, "edgecolor": BLUE, "hatch": ""},
     Evidence.BEST_KNOWN: {"facecolor": PAPER, "edgecolor": BLUE, "hatch": "////"},
@@ -41,13 +47,15 @@ _WORDS = {
 """The same in words, for the legend and the description."""
 
 
-def waterfall_picture(waterfall: Waterfall, *, title: str) -> Picture:
+def waterfall_picture(waterfall: Waterfall, *, title: str, narrow: bool = False) -> Picture:
     """Bars from 0 with the seconds written on them, one per step.
 
     Parameters
     ----------
     waterfall : Waterfall
     title : str
+    narrow : bool
+        For half a page: without steps that have no value, and seconds without their interval.
 
     Returns
     -------
@@ -56,29 +64,32 @@ def waterfall_picture(waterfall: Waterfall, *, title: str) -> Picture:
         step without a value says why.
     """
     steps = waterfall.steps
+    if narrow:
+        steps = tuple(s for s in steps if not isinstance(s.time, Why)) or steps
+    edges = _NARROW if narrow else _EDGES
+    width = 6.2 if narrow else 9.6
     ends = [x for s in steps for x in (s.time, s.high) if not isinstance(x, Why)]
     top = max(ends, default=1.0) or 1.0
     description = "; ".join(f"{s.name}: {seconds(s)}, {_evidence(s)}" for s in steps)
     with drawing():
-        figure = Picture(title, description, 9.6, 1.1 + 0.5 * max(1, len(steps)))
+        figure = Picture(title, description, width, 1.1 + 0.5 * max(1, len(steps)))
         axes = figure.subplots()
         for row, step in enumerate(steps):
-            _bar(axes, row, step, top)
+            _bar(axes, row, step, top, narrow)
             axes.axhline(row + 0.5, color=GRID, linewidth=0.6, zorder=0)
             before = [s.time for s in steps[:row] if not isinstance(s.time, Why)]
             if not isinstance(step.time, Why) and before:
-                for _, which, *places in _COLUMNS:
-                    for place, text in zip(places, _change(step.time, before[which]), strict=True):
-                        axes.text(place * top, row, text, va="center", ha="right", fontsize=8)
-        axes.set_yticks(range(len(steps)), [shown(s.name, 30, 2) for s in steps])
+                for edge, text in zip(edges, _beside(before[0], step.time), strict=True):
+                    axes.text(edge * top, row, text, va="center", ha="right", fontsize=8)
+        axes.set_yticks(range(len(steps)), [shown(s.name, 24 if narrow else 30, 2) for s in steps])
         axes.tick_params(axis="y", length=0)
         axes.set_ylim(len(steps) - 0.4, -0.9)
-        axes.set_xlim(0, 1.7 * top)
+        axes.set_xlim(0, (edges[-1] + 0.02) * top)
         axes.spines[["left", "bottom"]].set_visible(False)
         axes.set_xticks([])
         axes.plot([0, 0], [-0.5, len(steps) - 0.5], color=MUTED, linewidth=0.8)
-        for text, _, _, place in _COLUMNS:
-            axes.text(place * top, -0.62, text, color=MUTED, fontsize=8, va="center", ha="right")
+        place = edges[-1] * top
+        axes.text(place, -0.62, _HEADING, color=MUTED, fontsize=8, va="center", ha="right")
         present = [e for e in Evidence if any(s.evidence is e and given(s.time) for s in steps)]
         axes.legend(
             [Patch(linewidth=0.9, **_fill(e)) for e in present],
@@ -125,7 +136,7 @@ def seconds(step: Step) -> str:
     return text
 
 
-def _bar(axes: Axes, row: int, step: Step, top: float) -> None:
+def _bar(axes: Axes, row: int, step: Step, top: float, narrow: bool) -> None:
     if isinstance(step.time, Why):
         note = shown(step.note or "not computed", 100, 2)
         axes.text(0.015 * top, row, note, color=MUTED, fontsize=8, style="italic", va="center")
@@ -140,7 +151,7 @@ def _bar(axes: Axes, row: int, step: Step, top: float) -> None:
     axes.text(
         0.015 * top if step.time > 0.5 * top else end + 0.015 * top,
         row,
-        seconds(step),
+        seconds(step).split(" (")[0] if narrow else seconds(step),
         va="center",
         weight="bold",
         zorder=5,
@@ -148,10 +159,16 @@ def _bar(axes: Axes, row: int, step: Step, top: float) -> None:
     )
 
 
-def _change(time: float, base: float) -> tuple[str, str]:
-    if abs(time - base) <= 5e-5 * min(1.0, base):
+def _beside(first: float, time: float) -> tuple[str, str]:
+    """How much longer the first step takes than another one, in seconds and in percent of it."""
+    if abs(first - time) <= 5e-5 * min(1.0, time):
         return "0 s", "0 %"
     # A step of 0 s, where nothing limits the total, has no multiples.
-    share = f"{100 * (time / base - 1):+.1f} %" if base > 0 else ""
-    texts = f"{time - base:+.4f} s", share
-    return texts[0].replace("-", "−"), texts[1].replace("-", "−")
+    share = first / time - 1 if time > 0 else None
+    if share is None:
+        shown = ""
+    elif share > _MANY:
+        shown = f"{1 + share:.1f} ×"
+    else:
+        shown = f"{100 * share:+.1f} %"
+    return f"{first - time:+.4f} s".replace("-", "−"), shown.replace("-", "−")

@@ -1,5 +1,13 @@
 from .certifiers import certify, covered
-from .document import certificate, certificate_text, fits, shipped, unlike, write_certificate
+from .document import (
+    certificate,
+    certificate_text,
+    fits,
+    shipped,
+    shipped_file,
+    unlike,
+    write_certificate,
+)
 from .evidence import (
     Interval,
     interval_of,
@@ -32,6 +40,7 @@ __all__ = [
     "proved",
     "read_state",
     "shipped",
+    "shipped_file",
     "state_document",
     "stated_exactly",
     "unlike",

@@ -208,18 +208,32 @@ def shipped(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> dict[
     -------
     dict or None
     """
+    place = _place(problem, subject)
+    return None if place is None else copy.deepcopy(_all_shipped()[place])
+
+
+def shipped_file(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> Path | None:
+    """File of the certificate that `shipped` returns; None where there is none."""
+    place = _place(problem, subject)
+    return None if place is None else _shipped_paths()[place]
+
+
+def _place(problem: ExactProblem, subject: Subject) -> int | None:
     wanted = question(problem_document(problem), subject)
-    for document in _all_shipped():
+    for place, document in enumerate(_all_shipped()):
         same = document["claim"]["subject"] == subject
         if same and question(document["problem"], subject) == wanted:
-            return copy.deepcopy(document)
+            return place
     return None
+
+
+def _shipped_paths() -> tuple[Path, ...]:
+    return tuple(sorted(shipped_folder().glob("*.json")))
 
 
 @lru_cache(maxsize=1)
 def _all_shipped() -> tuple[dict[str, Any], ...]:
-    paths = sorted(shipped_folder().glob("*.json"))
-    return tuple(json.loads(path.read_text("utf-8")) for path in paths)
+    return tuple(json.loads(path.read_text("utf-8")) for path in _shipped_paths())
 
 
 def question(problem: dict[str, Any], subject: Subject = Subject.DECLARED) -> dict[str, Any]:

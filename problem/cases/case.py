@@ -60,10 +60,13 @@ class Case:
         The file's content, validated.
     file : str
         What it was loaded from, for messages.
+    sha256 : str or None
+        Of the file's bytes; None where the case was not read from a file.
     """
 
     document: CaseFile
     file: str
+    sha256: str | None = None
 
     @property
     def id(self) -> str:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from hashlib import sha256
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path
 
 from ..errors import CaseError
 from ..fields import nearest
-from ..textfile import read_text
+from ..textfile import read_hashed
 
 _ENDING = ".toml"
 """Of every shipped data file: people write and read them."""
@@ -39,7 +40,11 @@ class Shipped:
         return files(self.package).joinpath(f"{id}{_ENDING}")
 
     def text(self, source: str | Path) -> str:
-        """Text of a shipped file by its id, or of another by its path.
+        """Text of a shipped file by its id, or of another by its path; raises as `hashed`."""
+        return self.hashed(source)[0]
+
+    def hashed(self, source: str | Path) -> tuple[str, str]:
+        """The same, with the SHA-256 of the file's bytes.
 
         Raises
         ------
@@ -48,12 +53,13 @@ class Shipped:
         """
         known = self.ids()
         if isinstance(source, str) and source in known:
-            return self.file(source).read_text("utf-8")
+            data = self.file(source).read_bytes()
+            return data.decode("utf-8"), sha256(data).hexdigest()
         path = Path(source)
         if not path.suffix and not path.exists():
             name = str(source)
             raise CaseError(name, "", f"neither a {self.kind} nor a file; {nearest(name, known)}")
-        return read_text(path)
+        return read_hashed(path)
 
 
 PUBLISHED = Shipped("trajgap.problem.published", "published case")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -43,7 +44,8 @@ def load_case(source: str | Path) -> Case:
         If there is no such case or file, or anything in it is wrong: one line naming the file,
         the field and how to fix it.
     """
-    return parse_case(PUBLISHED.text(source), str(source))
+    text, digest = PUBLISHED.hashed(source)
+    return replace(parse_case(text, str(source)), sha256=digest)
 
 
 def parse_case(text: str, file: str) -> Case:

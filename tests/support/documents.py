@@ -11,14 +11,18 @@ from trajgap.compare.audits.case_audit import AuditReport, CaseAudit
 from trajgap.compare.audits.study import Study
 from trajgap.compare.documents import (
     Basis,
+    Cause,
     ClaimVerdict,
+    Consequence,
     Document,
+    Explanation,
     Finding,
     Judgement,
     Reference,
     Scope,
     Severity,
     Step,
+    VerdictCard,
     Waterfall,
     Why,
     json_text,
@@ -111,5 +115,30 @@ def report() -> AuditReport:
         readings={},
     )
     fall = Waterfall(problem="limit-80", reading="waypoints-rad", claim=None, steps=steps)
-    one = CaseAudit(case, Study(case, seeds=2), (finding, proof), (judgement,), (fall,))
+    cause = Cause(
+        severity=Severity.ERROR,
+        rule="TG302",
+        claim="durations-80",
+        says="text",
+        readings=("waypoints-rad",),
+        explanations=(Explanation(change="Printed twice.", effect="Then all is well."),),
+        consequences=(Consequence(rule="TG301", claim="time-optimal", says="more"),),
+    )
+    card = VerdictCard(
+        limits="The printed durations keep the limits.",
+        optimum="Under the default of 2 readings, 1.869 s is 2.8 % above the proven optimum.",
+        improvement=Why("no improvement is claimed"),
+        errors=("One sentence.",),
+        more=3,
+        explanation="Printed twice.",
+    )
+    one = CaseAudit(
+        case,
+        Study(case, seeds=2),
+        (finding, proof),
+        (judgement,),
+        (fall,),
+        causes=(cause,),
+        made=card,
+    )
     return AuditReport((one,))

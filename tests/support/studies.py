@@ -6,14 +6,16 @@ computing twice builds its own with `Study`.
 
 import pickle
 import tomllib
+from dataclasses import replace
 from decimal import Decimal
 from functools import cache
 from importlib.resources import files
 
+import pytest
 from trajgap.compare.audits.case_audit import CaseAudit, audit_case
 from trajgap.compare.audits.study import Study
 from trajgap.nlp import PerJointSolution, Solution, stated_exactly
-from trajgap.problem import Case, parse_case
+from trajgap.problem import Case, parse_case, published_ids
 from trajgap.problem.cases.load import check_case
 
 # A spread needs two seeds; more show nothing further in a test.
@@ -75,7 +77,8 @@ def hurried(case_id: str) -> Case:
     """The case with replays of three iterations, for tests that are not about what they find."""
     raw = tomllib.loads(source(case_id), parse_float=Decimal)
     for algorithm in raw["algorithms"]:
-        algorithm["settings"]["iterations"] = 3
+        stated = "chosen" if "iterations" in algorithm.get("chosen", {}) else "settings"
+        algorithm[stated]["iterations"] = 3
     return check_case(raw, f"{case_id}.toml")
 
 
@@ -83,3 +86,20 @@ def hurried(case_id: str) -> Case:
 def audited(case_id: str) -> CaseAudit:
     """The audit of a case, with hurried replays."""
     return audit_case(Reworded(hurried(case_id), shipped(case_id)))
+
+
+@cache
+def audited_alone(case_id: str) -> CaseAudit:
+    """The audit of a case without families of instances, which take minutes."""
+    case = hurried(case_id)
+    alone = replace(case, document=case.document.model_copy(update={"families": ()}))
+    return audit_case(Reworded(alone, shipped(case_id)))
+
+
+QUICKLY = ("irb460-pso-353", "puma560-mnam-pso-353", "z1-woa-bspline")
+"""Shipped cases whose audit by `audited_alone` takes well under a minute on an idle core."""
+EVERY = [
+    case_id if case_id in QUICKLY else pytest.param(case_id, marks=pytest.mark.slow)
+    for case_id in published_ids()
+]
+"""Every shipped case, as parameters of a test."""

@@ -1,3 +1,4 @@
+from .continuous_time import said_to_keep
 from .on_instances import HANDLED, attributed, placed
 from .printed_vertices import Vertex, vertices
 from .registry import GROUPS, NOT_COMPUTED, RULES
@@ -10,5 +11,6 @@ __all__ = [
     "Vertex",
     "attributed",
     "placed",
+    "said_to_keep",
     "vertices",
 ]

@@ -204,7 +204,9 @@ def test_audit_writes_pages(run: Run, stand_in: dict[str, Any]) -> None:
     assert stand_in["seeds"] == 30
     assert stand_in["workers"] >= 1
     assert "refuted" in out
-    assert "error TG302 durations-80: text" in out
+    assert "error TG302 Table 4, column 80 °/s: text" in out
+    # The card comes first, then the claims by their texts.
+    assert out.index("Under the default") < out.index("Optimal durations of joint 5 under 80 °/s.")
     assert out.endswith(f"pages: {Path('trajgap-audit') / 'index.html'}\n")
     assert [p.name for p in Path("trajgap-audit").iterdir()] == ["index.html"]
 

@@ -148,7 +148,8 @@ def test_pages_of_cases_with_long_ids(tmp_path: Path) -> None:
         assert len(case_page(audit(case, seeds=2).cases[0]).file) < 130
     report = AuditReport(tuple(audit(case, seeds=2).cases[0] for case in cases))
     write_report(report, tmp_path / "out")
-    assert len(list((tmp_path / "out").glob("*.html"))) == 3
+    # Two cases, the index and the glossary.
+    assert len(list((tmp_path / "out").glob("*.html"))) == 4
     index = (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
     for target in re.findall(r'href="([^"#]+)"', index):
         assert (tmp_path / "out" / target).is_file()

@@ -1,12 +1,15 @@
 """What a page does with many readings, with none posed, and with sections that hold nothing."""
 
+import html.parser
 import re
 from dataclasses import replace
 
+import pytest
+from support.studies import EVERY, audited_alone
 from trajgap.compare.audits.case_audit import CaseAudit, audit
 from trajgap.compare.audits.study import Study
 from trajgap.compare.documents import Step, Waterfall, Why
-from trajgap.compare.pages.blocks import Cell, Grid, Page, Prose, Section
+from trajgap.compare.pages.blocks import Cell, Folded, Grid, Page, Prose, Section
 from trajgap.compare.pages.markdown_text import markdown
 from trajgap.compare.pages.numbers import where_time_goes
 from trajgap.compare.pages.writer import _TEMPLATES, _environment, case_page
@@ -27,7 +30,8 @@ def test_many_readings_share_a_table_and_few_have_pictures() -> None:
         more = [first.model_copy(update={"reading": f"reading-{k}"}) for k in range(others)]
         section = where_time_goes(replace(one, waterfalls=(first, *more)))
         drawn = Page("p", "t", (section,)).pictures
-        tables = [b for b in section.blocks if isinstance(b, Grid) and b.columns[0] == "reading"]
+        inner = [b for fold in section.blocks if isinstance(fold, Folded) for b in fold.blocks]
+        tables = [b for b in inner if isinstance(b, Grid) and b.columns[0] == "reading"]
         assert len(drawn) == (4 if others == 3 else 1)
         assert [len(t.rows) for t in tables] == ([] if others == 3 else [5])
     known = [s for s in first.steps if not isinstance(s.time, Why)]
@@ -63,3 +67,60 @@ def test_long_tables_of_readings_scroll_in_a_box_and_print_whole() -> None:
     assert re.findall(r'<div class="(scroll[^"]*)"', html_page) == ["scroll tall", "scroll"]
     style = (_TEMPLATES / "style.css").read_text(encoding="utf-8")
     assert "max-height: none" in style.split("@media print")[1]
+
+
+MOST_BYTES = 600_000
+"""Of one page, its pictures apart."""
+MOST_WORDS = 1_000
+"""Of one page before anything is unfolded."""
+
+
+class Open(html.parser.HTMLParser):
+    """Words of a page outside everything that is folded, styled or drawn."""
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.text: list[str] = []
+        self.hidden: list[str] = []
+        self.feed(page)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        if tag in ("svg", "style", "details", "title"):
+            self.hidden.append(tag)
+        if tag == "summary" and self.hidden.count("details") == 1:
+            self.hidden.remove("details")
+
+    def handle_endtag(self, tag: str) -> None:
+        if tag == "summary" and "details" not in self.hidden:
+            self.hidden.append("details")
+        elif tag in self.hidden:
+            self.hidden.remove(tag)
+
+    def handle_data(self, data: str) -> None:
+        if not self.hidden:
+            self.text.append(data)
+
+
+def test_what_is_folded_is_not_counted() -> None:
+    page = "<p>one two</p><details><summary>three</summary>four<details><summary>five</summary>"
+    assert " ".join(Open(f"{page}six</details></details>seven").text).split() == [
+        "one",
+        "two",
+        "three",
+        "seven",
+    ]
+
+
+@pytest.mark.parametrize("case_id", EVERY)
+def test_pages_of_the_papers_are_short_before_anything_is_unfolded(case_id: str) -> None:
+    page = case_page(audited_alone(case_id))
+    environment = _environment()
+    style = (_TEMPLATES / "style.css").read_text(encoding="utf-8")
+    text = environment.get_template("case.html").render(page=page, style=style)
+    assert len(text.encode()) <= MOST_BYTES
+    words = " ".join(Open(text).text).split()
+    assert 150 < len(words) <= MOST_WORDS
+    assert "None." not in words
+    assert not re.search(r"<tbody>\s*</tbody>", text)
+    # Pictures are fetched when they are unfolded: one alone stands in the page.
+    assert text.count("<svg ") <= 1

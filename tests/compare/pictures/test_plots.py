@@ -11,8 +11,19 @@ import matplotlib
 import numpy as np
 import pytest
 from matplotlib.text import Text
+from support.checkout import ROOT
 from trajgap.compare.documents import Step, Waterfall, Why
-from trajgap.compare.pictures.drawing import THEME, Picture, drawing, embedded, finish, shown, svg
+from trajgap.compare.pictures.drawing import (
+    DARK,
+    THEME,
+    Picture,
+    drawing,
+    embedded,
+    finish,
+    shown,
+    svg,
+    themed,
+)
 from trajgap.compare.pictures.motion import beyond, motion_picture
 from trajgap.compare.pictures.searches import convergence, endings
 from trajgap.compare.pictures.totals_map import landscape, tight_total
@@ -357,9 +368,13 @@ def test_the_waterfall_writes_every_value_and_every_reason(pictures: dict[str, P
     for step in STEPS:
         assert (step.note if isinstance(step.time, Why) else seconds(step)) in text
     assert "1.9000 s (1.8950 to 1.9050)" in text
-    assert "−0.4000 s" in text
-    assert "−19.0 %" in text
-    assert "+10.5 %" in text
+    # The first step, 1.9 s, beside 2.1 s, 1.5 s and 0.012 s.
+    assert "−0.2000 s" in text
+    assert "−9.5 %" in text
+    assert "+0.4000 s" in text
+    assert "+26.7 %" in text
+    assert "158.3 ×" in text
+    assert text.count("first step beside it") == 1
 
 
 def test_evidence_is_told_by_hatching(pictures: dict[str, Picture]) -> None:
@@ -523,3 +538,23 @@ def test_the_landscape_says_what_it_cannot_draw(problem: Problem, optimum: Solut
     nothing = Solution(problem, Status.INFEASIBLE, "a limit is 0")
     with pytest.raises(TrajgapError, match="has no optimum to compare with"):
         landscape(problem, nothing, [], {}, title="None")
+
+
+# --- themes ---------------------------------------------------------------------------------------
+
+
+def test_the_dark_colours_are_those_of_the_pages() -> None:
+    style = (ROOT / "compare/pages/templates/style.css").read_text(encoding="utf-8")
+    dark = style.split("prefers-color-scheme: dark")[1].split("}")[0]
+    for name, colour in DARK.items():
+        assert f"--{name}: {colour};" in dark
+    assert DARK.keys() == THEME.keys()
+
+
+def test_a_themed_file_keeps_its_own_colours(pictures: dict[str, Picture]) -> None:
+    plain = svg(pictures["waterfall"])
+    text = themed(plain)
+    ElementTree.fromstring(text)
+    (style,) = re.findall(r"<style>@media[^<]*</style>", text)
+    assert text.replace(f"\n {style}", "") == plain
+    assert f'[style*="fill: {THEME["ink"]}"]{{fill:{DARK["ink"]} !important}}' in style

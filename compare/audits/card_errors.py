@@ -1,0 +1,101 @@
+"""Errors of an audit as one plain sentence each, built from the claims' own words and places."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ...problem import Case
+from ...problem.cases import AnyClaim, DurationsClaim, ImprovementClaim, MaximumClaim
+from ..documents import Cause, Finding, Severity
+from .explanations import TABLES
+from .stated import place, spoken
+
+_LONGEST = 24
+"""Words of a claim's text that a sentence may quote; a longer one is called by its place."""
+
+
+def plainly(case: Case, cause: Cause, findings: Sequence[Finding]) -> str:
+    """A cause as one plain sentence.
+
+    Parameters
+    ----------
+    case : Case
+    cause : Cause
+    findings : sequence of Finding
+        Those of the audit, among them the first of the cause.
+
+    Returns
+    -------
+    str
+        By claims' texts and places, never by ids.
+    """
+    head = next((f for f in findings if (f.rule, f.message) == (cause.rule, cause.says)), None)
+    claim = case.claim(cause.claim) if cause.claim else None
+    if head is not None and head.root.startswith(f"{TABLES} "):
+        return _tables_alike(case, cause, head.root.split(" ")[1:])
+    if claim is None or head is None:
+        return spoken(case, cause.says.split(". ")[0].rstrip(".") + ".")
+    if cause.severity is not Severity.ERROR and cause.rule != "TG201":
+        # A warning proves nothing: it is told in its own words.
+        return spoken(case, cause.says)
+    where = place(claim)
+    printed, computed = head.printed or "", head.computed or ""
+    sentence = {
+        "TG101": f"In {where} the parts add up to {computed}, not {printed}",
+        "TG102": f"The longest durations in {where} are not those of its rows",
+        "TG103": f"From the printed totals {_claimed(claim)} would be {computed}, not {printed}",
+        "TG105": f"{place(claim)} prints {printed} for the total that a table gives as {computed}",
+        "TG107": f"The conditions in {where} cannot all hold: {computed}",
+        "TG201": f"The durations in {where} break a limit",
+        "TG202": f"The motion of {where} is not continuous",
+        "TG203": f"The peak in {where} is not that of the printed durations",
+        "TG205": f"Control vertices in {where} do not follow from the way-points",
+        "TG301": "By the scaling of time with the velocity limit, the two printed results cannot "
+        "both be shortest",
+        "TG302": f"Called optimal in {where}, but a checked motion within the limits is shorter",
+        "TG601": "Printed joint angles and positions do not fit the printed robot",
+    }.get(cause.rule)
+    if cause.rule == "TG103" and not computed:
+        sentence = f"Of {printed}, {where} calls the longer total the better one"
+    return f"{_capital(sentence or _contradicted(claim))}."
+
+
+def _tables_alike(case: Case, cause: Cause, tables: Sequence[str]) -> str:
+    names = {t.id: t.where for t in case.tables}
+    shown = _joined([names.get(one, one) for one in tables])
+    numbers = sum(
+        len(c.durations) + (c.total is not None)
+        for c in case.table_claims(tables[0])
+        if isinstance(c, DurationsClaim | MaximumClaim)
+    )
+    said = f"{shown} agree in all {numbers} numbers"
+    hit = [case.claim(one.claim) for one in cause.consequences if one.claim]
+    counted = [c for c in hit if isinstance(c, ImprovementClaim) and c.percent is not None]
+    if counted:
+        return f"{said}, so the claimed {counted[0].percent} % cannot follow from them."
+    return f"{said}, though they are said to differ."
+
+
+def _joined(places: Sequence[str]) -> str:
+    """Places in one phrase: "Table 2" and "Table 3" are "Tables 2 and 3"."""
+    heads = [p.partition(" ") for p in places]
+    if len({h for h, _, _ in heads}) == 1 and all(tail for _, _, tail in heads):
+        return f"{heads[0][0]}s {' and '.join(tail for _, _, tail in heads)}"
+    return " and ".join(places)
+
+
+def _claimed(claim: AnyClaim) -> str:
+    if isinstance(claim, ImprovementClaim) and claim.percent is not None:
+        return "the reduction"
+    return "the saving"
+
+
+def _contradicted(claim: AnyClaim) -> str:
+    text = claim.text.rstrip(".")
+    if text and len(text.split()) <= _LONGEST:
+        return f"A proof contradicts “{text}” ({place(claim)})"
+    return f"A proof contradicts {place(claim)}"
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]

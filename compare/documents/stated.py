@@ -1,0 +1,31 @@
+"""What a paper states, beside what an audit says of it, so that an audit stands alone."""
+
+from __future__ import annotations
+
+from .entry import Entry, OrWhy
+
+
+class StatedClaim(Entry):
+    """One claim: its words, its place in the paper, its digits."""
+
+    claim: str
+    """Its id, which findings, verdicts and causes name."""
+    quantity: str
+    """What kind of claim it is."""
+    text: str
+    """What the paper says, in our words."""
+    where: str
+    """Place in the paper: section, table, row."""
+    printed: str
+    """The printed digits with their unit; empty where it prints none."""
+
+
+class StatedSource(Entry):
+    """Where the numbers were printed; an empty text is not named in the case file."""
+
+    authors: str
+    title: str
+    journal: str
+    year: OrWhy[int]
+    doi: str
+    note: str

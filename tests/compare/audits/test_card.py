@@ -1,0 +1,116 @@
+"""The verdict card: at most 80 words, plain, built from the claims' own texts and places."""
+
+import pytest
+from support.studies import EVERY, audited_alone
+from trajgap.compare.audits.card import verdict_card
+from trajgap.compare.audits.case_audit import audit_case
+from trajgap.compare.audits.study import Study
+from trajgap.compare.documents import CARD_WORDS, Cause, Explanation, Severity, Why
+from trajgap.problem import parse_case
+
+
+@pytest.mark.parametrize("case_id", EVERY)
+def test_a_card_has_at_most_eighty_words_and_no_ids(case_id):
+    one = audited_alone(case_id)
+    card = one.card
+    assert 0 < card.words == len(" ".join(card.sentences).split()) <= CARD_WORDS == 80
+    ids = [c.id for c in one.case.claims if "-" in c.id and not c.id.replace("-", "").isdigit()]
+    assert not [i for i in ids if i in " ".join(card.sentences)]
+
+
+def test_the_palletisers_card():
+    card = audited_alone("irb460-pso-353").card
+    assert card.limits == "Whether the limits are kept depends on the reading: kept under 1 of 2."
+    # 1.869/1.817473 and 1.6041/1.321799 by hand.
+    assert card.optimum == (
+        "Under the default of 2 readings, 1.869 s and 1.6041 s are 2.8 % and 21.4 % above the "
+        "proven optima 1.8175 s and 1.3218 s."
+    )
+    assert card.improvement == Why("no improvement is claimed")
+    assert card.errors[0] == (
+        "The conditions in section 4.2 cannot all hold: 18 conditions on 14 coefficients."
+    )
+    assert card.more == 0
+
+
+def test_tables_alike_stand_on_the_card_with_the_claim_that_falls():
+    card = audited_alone("puma560-mnam-pso-353").card
+    assert "3.528 s is 7.0 % above the proven optimum 3.2967 s" in card.optimum
+    assert (
+        "Tables 2 and 3 agree in all 28 numbers, so the claimed 10.9 % cannot follow from them."
+        in card.errors
+    )
+
+
+def test_without_way_points_the_card_says_what_is_not_checkable():
+    card = audited_alone("z1-woa-bspline").card
+    assert "not checkable" in card.limits
+    assert "no way-points are printed" in card.limits
+    assert "not checkable" in card.optimum
+
+
+def test_many_errors_are_counted_where_the_words_end():
+    one = audited_alone("irb460-pso-353")
+    explanation = Explanation(change="Two columns may be swapped.", effect="Then all is well.")
+    many = [
+        Cause(
+            severity=Severity.ERROR,
+            rule="TG107",
+            claim=None,
+            says=f"In row {k} the printed number is not what the numbers beside it allow. More.",
+            readings=(),
+            explanations=(explanation,),
+            consequences=(),
+        )
+        for k in range(40)
+    ]
+    card = verdict_card(one.study, one.judgements, one.findings, many, one.waterfalls)
+    assert card.words <= CARD_WORDS
+    assert card.errors
+    assert card.errors[0] == "In row 0 the printed number is not what the numbers beside it allow."
+    assert len(card.errors) + card.more == 40
+    assert f"{card.more} more errors stand below." in card.sentences
+
+
+LONG = """
+format = 1
+id = "long"
+title = "Generated, with many long names"
+[source]
+note = "Made up."
+[robot]
+name = "One joint"
+joints = ["1"]
+[units]
+position = "rad"
+velocity = "rad/s"
+time = "s"
+[waypoints]
+joint_rows = [["0.00", "1.00", "0.50", "2.00"]]
+[limits]
+velocity = "1.0"
+[interpolant]
+family = "3-5-3"
+"""
+
+
+def test_the_card_of_a_generated_case_with_many_claims_stays_short():
+    where = "a section with a very long name that goes on and on, " * 6
+    claims = "".join(
+        f"""
+[[claims]]
+id = "row-{k}"
+quantity = "durations"
+where = "{where} row {k}"
+text = "{"many words " * 30}"
+durations = ["0.10", "0.20", "0.30"]
+total = "{k}.99"
+"""
+        for k in range(1, 9)
+    )
+    one = audit_case(Study(parse_case(LONG + claims, "long.toml"), seeds=2))
+    card = one.card
+    assert sum(c.severity is Severity.ERROR for c in one.causes) >= 9
+    assert card.words <= CARD_WORDS
+    assert card.limits.startswith("The printed durations break a limit")
+    assert card.more > 0
