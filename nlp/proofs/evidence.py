@@ -18,6 +18,7 @@ from ..optimum import PerJointSolution, Solution, solve
 from .certifiers import certify, covered, instant
 from .document import certificate, fits, shipped
 from .exact import ExactProblem, printed_problem
+from .judged import unstated
 
 WIDEST = Fraction(1, 100)
 """Relative width from which an interval is too wide to call the optimum certified."""
@@ -62,6 +63,8 @@ def proved(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> Interv
         None without a certificate of exactly this problem, or if it does not prove its claim
         or leaves an interval wider than `WIDEST`.
     """
+    if unstated(problem) is not None:
+        return None
     document = shipped(problem, subject)
     if document is None and subject is Subject.DECLARED and covered(problem) is None:
         if not instant(problem):
@@ -97,7 +100,7 @@ def interval_of(
         None if it is about another problem, proves nothing, or leaves an interval wider than
         `WIDEST`.
     """
-    if not fits(document, problem, subject):
+    if unstated(problem) is not None or not fits(document, problem, subject):
         return None
     return _narrow(document, verdict or verify_certificate(document))
 

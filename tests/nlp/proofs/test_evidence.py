@@ -32,6 +32,7 @@ from trajgap.nlp import (
     with_certificate,
     with_certificates,
 )
+from trajgap.nlp.proofs import interval_of, stated_exactly
 from trajgap.nlp.proofs.evidence import WIDEST
 from trajgap.nlp.proofs.exact import exact_problem, printed_problem
 from trajgap.problem import (
@@ -39,6 +40,7 @@ from trajgap.problem import (
     Problem,
     cubic_spline,
     load_case,
+    parse_case,
     rest_to_rest,
     three_five_three,
 )
@@ -292,3 +294,32 @@ def test_what_is_proved_of_any_curve_is_called_certified_under_every_reading() -
 def test_only_a_proof_sets_a_lower_bound() -> None:
     problem = Problem(np.array([[0.0], [1.0], [0.5], [1.5]]), Limits(1.0), three_five_three())
     assert solve(problem).lower_bound is None
+
+
+def test_a_problem_that_no_certificate_can_state_is_not_certified() -> None:
+    """1e-300 has more digits than a certificate may write."""
+    case = parse_case(
+        """
+format = 1
+id = "tiny"
+title = "a way-point of 1e-300 rad"
+source = { year = 2024 }
+robot = { name = "arm", joints = ["1"] }
+units = { position = "rad", velocity = "rad/s", time = "s" }
+waypoints = { where = "Table 1", joint_rows = [["1e-300", "0.4", "0.9"]] }
+limits = { velocity = 2 }
+interpolant = { family = "cubic-spline" }
+""",
+        "tiny.toml",
+    )
+    exact = stated_exactly(case.statement())
+    assert exact is not None
+    assert proved(exact) is None
+    other = stated_exactly(load_case("irb460-pso-353").statement("limit-80"))
+    assert other is not None
+    document = shipped(other)
+    assert document is not None
+    assert interval_of(document, exact) is None
+    found = interval_of(document, other)
+    assert found is not None
+    assert found.upper is not None
