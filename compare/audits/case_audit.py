@@ -30,11 +30,15 @@ from .rules import (
     judge_counts,
     judge_digits,
     judge_distances,
+    judge_improvements,
     judge_instances,
     judge_kinematics,
     judge_motions,
+    judge_peaks,
+    judge_places,
     judge_replays,
     judge_scaling,
+    judge_tables,
     judge_vertices,
     list_open_points,
 )
@@ -43,8 +47,12 @@ from .waterfall import waterfalls
 
 _GROUPS = (
     judge_digits,
+    judge_improvements,
+    judge_tables,
     judge_counts,
     judge_motions,
+    judge_peaks,
+    judge_places,
     judge_vertices,
     judge_scaling,
     judge_distances,
@@ -54,7 +62,13 @@ _GROUPS = (
     judge_kinematics,
 )
 """The rules, in the order in which their findings of one severity and id stand."""
-_WITHOUT_WAYPOINTS = (judge_digits, judge_instances, list_open_points)
+_WITHOUT_WAYPOINTS = (
+    judge_digits,
+    judge_improvements,
+    judge_tables,
+    judge_instances,
+    list_open_points,
+)
 """Those of them that say something while the way-points are missing."""
 
 

@@ -87,10 +87,10 @@ class Rounding(StrEnum):
     KEEPS = "keeps"
     """The printed point itself keeps every limit for all t."""
     CONSISTENT = "consistent"
-    """Some input that prints alike keeps every limit, and it is exhibited."""
+    """Some values that round to the printed digits keep every limit, and they are exhibited."""
     BREAKS = "breaks"
-    """No input that prints alike keeps every limit: a rigorous lower bound of the worst ratio over
-    the whole rounding box exceeds 1."""
+    """A limit is broken for every value that rounds to the printed digits: a rigorous lower bound
+    of the worst ratio over the whole rounding box exceeds 1."""
     UNDECIDED = "undecided"
     """Neither was shown."""
 
@@ -277,12 +277,15 @@ RULES = (
     Rule("TG105", "Two places that print the same total agree"),
     Rule("TG106", "Unrelated columns do not repeat each other's digits"),
     Rule("TG107", "The conditions stated fit the number of coefficients"),
+    Rule("TG108", "Printed numbers fit their own row, column or table best"),
+    Rule("TG109", "As many durations are printed as there are segments"),
     Rule("TG201", "Printed durations keep the limits for all t, over the rounding box"),
     Rule("TG202", "Position, velocity and acceleration are continuous"),
     Rule("TG203", "Printed peaks are those of the printed durations"),
     Rule("TG204", "The limits are used up by the printed durations"),
     Rule("TG205", "Printed control vertices follow from the printed way-points"),
     Rule("TG206", "Acceleration jumps where it is said to"),
+    Rule("TG207", "The motion is at rest where it is said to be"),
     Rule("TG301", "Totals of one path under two velocity limits obey the scaling law"),
     Rule("TG302", "A printed total beside the optimum of its own formulation"),
     Rule("TG303", "A printed total beside the optimum with shared durations"),

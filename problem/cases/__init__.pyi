@@ -10,10 +10,12 @@ from .claim import (
     MaximumClaim,
     PeakClaim,
     StatementClaim,
+    TimeClaim,
     TotalTimeClaim,
 )
 from .instances import InstancesBlock, instance_waypoints
 from .load import load_case, parse_case, published_ids
+from .references import motions_of_peak
 from .robot_file import load_robot, robot_ids
 from .scaffolding import scaffold
 from .schema import (
@@ -29,7 +31,7 @@ from .schema import (
     Table,
     case_schema,
 )
-from .statement import Statement
+from .statement import Digits, Statement
 
 __all__ = [
     "AlgorithmBlock",
@@ -42,6 +44,7 @@ __all__ = [
     "ConditionsClaim",
     "ControlVerticesClaim",
     "ConvergenceClaim",
+    "Digits",
     "DurationBox",
     "DurationsClaim",
     "ImprovementClaim",
@@ -56,11 +59,13 @@ __all__ = [
     "Statement",
     "StatementClaim",
     "Table",
+    "TimeClaim",
     "TotalTimeClaim",
     "case_schema",
     "instance_waypoints",
     "load_case",
     "load_robot",
+    "motions_of_peak",
     "parse_case",
     "published_ids",
     "robot_ids",
