@@ -52,7 +52,8 @@ from ...problem.cases import (
     TotalTimeClaim,
 )
 from .instances import InstancesResult, examined, readings_of
-from .rounding import RoundingBox, RoundingVerdict, excludes_total, judge_rounding, same_limits
+from .rounding import RoundingBox, RoundingVerdict, judge_rounding
+from .total_bound import excludes_total
 
 T = TypeVar("T")
 Pair = tuple[str, str]
@@ -315,12 +316,6 @@ class Study:
         return judge_rounding(
             problem, durations, waypoints, loosest=self.claim_problem(claim, pid, rid, loosest)
         )
-
-    def exact_limits(self, claim: Claim, pid: str, rid: str) -> bool:
-        """Whether limits and bounds on durations are the same for all that their digits say."""
-        printed = self.claim_problem(claim, pid, rid)
-        loosest = self.claim_problem(claim, pid, rid, Digits.LOOSEST)
-        return same_limits(printed, loosest)
 
     def waypoint_box(self, problem: Problem, pid: str, rid: str) -> RoundingBox:
         """The way-points of ``problem``, all of its joints or one, and what rounds to them."""

@@ -11,6 +11,7 @@ from ....nlp import Evidence, Solution, Status, weakest
 from ....problem import Coupling
 from ....problem.cases import (
     AnyClaim,
+    Digits,
     DurationsClaim,
     MaximumClaim,
     StatementClaim,
@@ -30,6 +31,7 @@ from ...documents import (
 )
 from ...gaps import gap, reference_of
 from ..explanations import LIMITS, OPTIMAL
+from ..rounding import same_limits
 from ..study import Study
 from .continuous_time import broken
 from .wording import called
@@ -298,7 +300,8 @@ def _below_certified(
         return None
     problem = study.claim_problem(claim, pid, rid)
     box = study.waypoint_box(problem, pid, rid)
-    if not (np.array_equal(box.lower, box.upper) and study.exact_limits(claim, pid, rid)):
+    exact = same_limits(problem, study.claim_problem(claim, pid, rid, Digits.LOOSEST))
+    if not (exact and np.array_equal(box.lower, box.upper)):
         return None
     return f"The printed total lies below the certified lower bound {bound:.6f} s."
 

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import cast
 
 from ....problem import from_si
 from ....problem.cases import AnyClaim
-from ....problem.units import Quantity
 from ...documents import UNITS
 from ..study import Study
 
@@ -50,7 +48,7 @@ def in_units(study: Study, pid: str, rid: str, quantity: str, value: float) -> f
     """
     if quantity == "duration":
         quantity = "time"
-    unit = getattr(study.case.statement(pid, rid).units, cast(Quantity, quantity), None)
+    unit = getattr(study.case.statement(pid, rid).units, quantity, None)
     return value if unit is None else from_si(value, unit)
 
 

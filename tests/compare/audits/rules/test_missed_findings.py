@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 from support.findings import said_of, study_of
 from support.one_joint import HEAD
-from trajgap.compare.audits.rounding import RoundingBox, excludes_total
+from trajgap.compare import audit
+from trajgap.compare.audits.rounding import RoundingBox
 from trajgap.compare.audits.rules import (
     judge_counts,
     judge_digits,
@@ -16,6 +17,7 @@ from trajgap.compare.audits.rules import (
     judge_tables,
 )
 from trajgap.compare.audits.rules.condition_count import meets
+from trajgap.compare.audits.total_bound import excludes_total
 from trajgap.compare.documents import ClaimVerdict, Severity
 from trajgap.nlp import solve
 from trajgap.problem import Limits, Problem, parse_case, rest_to_rest, three_five_three
@@ -332,3 +334,35 @@ def test_the_paper_s_own_units_are_spoken() -> None:
     (found,) = said_of(study_of(text), judge_motions, "d", "TG201")
     assert "velocity 225 against 110 °/s" in found.message
     parse_case(text, "made-up.toml")
+
+
+ODD = """
+[[claims]]
+id = "rival"
+quantity = "durations"
+where = "Table 9"
+other_curve = "straight lines"
+durations = ["0.3", "0.4", "0.5"]
+[[claims]]
+id = "short"
+quantity = "durations"
+where = "Table 8"
+durations = ["0.9", "0.4"]
+[[claims]]
+id = "start"
+quantity = "durations"
+where = "Table 7"
+state = "before"
+durations = ["2.00"]
+"""
+
+
+def test_an_audit_of_odd_tables_ends() -> None:
+    """Durations of another curve and of another number pass through everything that is computed."""
+    text = one_joint("0, 1", "1.9", "0.99", "optimal", ODD)
+    one = audit(parse_case(text, "made-up.toml"), seeds=2).cases[0]
+    by = {j.claim: j.verdict for j in one.judgements}
+    assert by["rival"] is ClaimVerdict.NOT_CHECKABLE
+    assert by["short"] is ClaimVerdict.INCONSISTENT
+    assert [w.claim for w in one.waterfalls] == ["d"]
+    assert one.errors == 0
