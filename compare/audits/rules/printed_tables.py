@@ -181,8 +181,10 @@ def _stated_as(study: Study, claim: TotalTimeClaim) -> tuple[Sequence[AnyClaim],
     ]
     named = [c for c in alike if claim.algorithm is not None and c.algorithm == claim.algorithm]
     longest = [c for c in named if isinstance(c, MaximumClaim)]
+    if longest:
+        return longest, True
     if named:
-        return longest or named, True
+        return [c for c in named if not isinstance(c, TotalTimeClaim)] or named, False
     # Where no algorithm tells, one set of durations is meant if there is only one.
     tables = [c for c in alike if not isinstance(c, TotalTimeClaim)]
     single = len(tables) == 1 and None in (tables[0].algorithm, claim.algorithm)
@@ -218,7 +220,8 @@ def _same_total(study: Study) -> Iterator[Finding]:
         message = f"{claim.where} prints {printed} and {other.where} prints {shown} for the same "
         message += f"total{whose}."
         verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
-        if not agreeing and len(found) > 1:
+        # Two totals by themselves may be a mean and a best: nothing says that they are one.
+        if not agreeing and (len(found) > 1 or isinstance(other, TotalTimeClaim)):
             verdict = ClaimVerdict.NOT_CHECKABLE
             places = "; ".join(f"{c.where}: {_total_shown(study, c)[0]}" for c in found)
             message = (

@@ -123,6 +123,38 @@ def test_a_total_that_may_be_either_of_two_is_not_accused() -> None:
     assert "none of the totals printed elsewhere" in found.message
 
 
+MEAN = """
+[[claims]]
+id = "best"
+quantity = "total_time"
+where = "abstract"
+algorithm = "x"
+value = "0.990"
+[[claims]]
+id = "mean"
+quantity = "total_time"
+where = "Table 6, mean of 30 runs"
+algorithm = "x"
+value = "1.052"
+[[algorithms]]
+id = "x"
+name = "x"
+kind = "x"
+"""
+
+
+def test_a_mean_and_a_best_total_contradict_nothing() -> None:
+    text = one_joint("0, 1", "1.9", "0.990", "optimal", MEAN)
+    text = text.replace('where = "Table 2"\n', 'where = "Table 2"\nproblem = "other"\n', 1)
+    text = text.replace(
+        "[[claims]]", '[[problems]]\nid = "main"\n[[problems]]\nid = "other"\n[[claims]]', 1
+    )
+    text = text.replace('quantity = "total_time"\n', 'quantity = "total_time"\nproblem = "main"\n')
+    for claim in ("best", "mean"):
+        (found,) = said_of(study_of(text), judge_tables, claim, "TG105")
+        assert (found.verdict, found.severity) == (ClaimVerdict.NOT_CHECKABLE, Severity.INFO)
+
+
 REST = """
 [[claims]]
 id = "rest"
