@@ -23,7 +23,6 @@ from ...documents import (
     ClaimVerdict,
     Finding,
     Gap,
-    GapKind,
     Reference,
     Rounding,
     Severity,
@@ -93,8 +92,8 @@ def _distance(
     distance = gap(interval, reference, feasible=kept)
     which = "with shared durations" if shared or claim.joint is None else f"of joint {claim.joint}"
     message = (
-        f"Printed {shown}; {reference.evidence} optimum {which} {reference.upper:.6f} s"
-        f"{_bounded(reference)}: {_named(distance)}."
+        f"Printed {shown} {_set_beside(distance)} the {reference.evidence} optimum {which}, "
+        f"{reference.upper:.6f} s{_bounded(reference)}."
     )
     if not isinstance(claim, TotalTimeClaim):
         verdict = study.claim_check(claim, pid, rid)
@@ -178,11 +177,16 @@ def _bounded(reference: Reference) -> str:
     return f" (proved, gap {width:.1e})"
 
 
-def _named(distance: Gap) -> str:
+def _set_beside(distance: Gap) -> str:
+    """How a printed total lies beside a reference, as the verb of a sentence."""
+    low, high = 100 * distance.lowest, 100 * distance.highest
     if distance.many_times:
-        return distance.percent
-    name = "gap" if distance.kind is GapKind.OPTIMALITY else str(distance.kind)
-    return f"{name} {distance.percent}"
+        return f"is {1 + distance.lowest:.4g} times"
+    if low <= 0 <= high:
+        return "agrees within its rounding with"
+    ends = [f"{x:.3g}" for x in sorted((abs(low), abs(high)))]
+    share = ends[1] if ends[0] == ends[1] else f"{ends[0]} to {ends[1]}"
+    return f"is {share} % {'longer' if low > 0 else 'shorter'} than"
 
 
 def _beside_procedure(
@@ -257,11 +261,11 @@ def _weigh(study: Study, claim: AnyClaim, pid: str, rid: str, sides: _Sides) -> 
     if interval[0] <= solution.best <= interval[1]:
         sides.agreeing.append(name)
         return
-    distance = gap(interval, _reference(solution), feasible=False).percent
-    side = "above" if interval[0] > solution.best else "below"
+    distance = gap(interval, _reference(solution), feasible=False)
     sides.open.append(
-        f"{name}: printed {shown}, {side} the {solution.evidence} optimum {solution.best:.6f} s "
-        f"({distance}), which no proof for all values that round to the printed digits decides"
+        f"{name}: printed {shown} {_set_beside(distance)} the {solution.evidence} optimum "
+        f"{solution.best:.6f} s, and no proof for all values that round to the printed digits "
+        "decides whether that is more than rounding explains"
     )
 
 
@@ -376,5 +380,6 @@ def _shorter(
     kind = "a checked motion, whose velocity may jump at the via-points under this reading,"
     return (
         f"{called(claim)} ({pid}): printed {shown}; {kind if jumps else 'a checked motion'} takes "
-        f"{reached:.6f} s for every value that rounds to the printed digits ({_named(distance)})"
+        f"{reached:.6f} s for every value that rounds to the printed digits (the printed total "
+        f"{_set_beside(distance)} that)"
     )
