@@ -268,7 +268,7 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             for pid, reading in study.claim_pairs(other):
                 if reading == rid:
                     judged += 1
-                    jumps += list(study.claim_check(other, pid, rid).jumps)
+                    jumps += [(pid, jump) for jump in study.claim_check(other, pid, rid).jumps]
         if not judged:
             continue
         message = (
@@ -277,12 +277,13 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
         )
         verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
         if jumps:
-            top = max(jumps, key=lambda j: abs(j.size))
-            names = ("position", "velocity", "acceleration")
+            where, top = max(jumps, key=lambda one: abs(one[1].size))
+            name = ("position", "velocity", "acceleration")[top.order]
+            size = in_units(study, where, rid, name, top.size)
             verdict, severity = ClaimVerdict.INCONSISTENT, Severity.WARNING
             message = (
-                f"discontinuous: {len(jumps)} jumps, the largest in {names[top.order]} of joint "
-                f"{top.joint} at t = {top.time:.6g} s by {top.size:.6g}."
+                f"discontinuous: {len(jumps)} jumps, the largest in {name} of joint {top.joint} "
+                f"at t = {top.time:.6g} s by {size:.6g} {unit_shown(study, where, rid, name)}."
             )
         yield Finding(
             rule="TG202",
@@ -304,16 +305,19 @@ def _said_to_jump(study: Study, claim: StatementClaim) -> Iterator[Finding]:
                 if reading == rid:
                     judged += 1
                     found = study.claim_check(other, pid, rid).jumps
-                    jumps += [j for j in found if j.order == 2 and claim.joint in (None, j.joint)]
+                    own = [j for j in found if j.order == 2 and claim.joint in (None, j.joint)]
+                    jumps += [(pid, jump) for jump in own]
         if not judged:
             continue
         whose = "" if claim.joint is None else f" of joint {claim.joint}"
         if jumps:
-            top = max(jumps, key=lambda j: abs(j.size))
+            where, top = max(jumps, key=lambda one: abs(one[1].size))
+            size = in_units(study, where, rid, "acceleration", top.size)
             verdict = ClaimVerdict.SUPPORTED
             message = (
                 f"Under this reading the acceleration{whose} jumps at {len(jumps)} breaks, most at "
-                f"t = {top.time:.6g} s by {top.size:.6g} rad/s²."
+                f"t = {top.time:.6g} s by {size:.6g} "
+                f"{unit_shown(study, where, rid, 'acceleration')}."
             )
         else:
             verdict = ClaimVerdict.NOT_CHECKABLE
