@@ -78,7 +78,7 @@ from .robots import (
     sample_workspace,
     waypoint_sequences,
 )
-from .units import CHOICES, Measured, Scale, scale, to_si
+from .units import CHOICES, Measured, Scale, from_si, scale, to_si
 
 __all__ = [
     "CHOICES",
@@ -143,6 +143,7 @@ __all__ = [
     "file_name",
     "fit",
     "forward_kinematics",
+    "from_si",
     "geometric_jacobian",
     "inverse_kinematics",
     "jtraj",

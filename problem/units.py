@@ -131,6 +131,10 @@ def check_unit(unit: object, quantity: Quantity) -> str:
     raise TrajgapError(f"unknown unit {unit!r} for {quantity}; {fix}")
 
 
+_CUT_SLACK = 1.0 + 1e-9
+"""Factor by which doubled half-digits are widened, far above their rounding to floats."""
+
+
 @dataclass(frozen=True)
 class Measured:
     """A printed number in radians and seconds: its value and the interval it stands for.
@@ -142,6 +146,17 @@ class Measured:
     value: float
     lower: float
     upper: float
+
+    def cut_off(self) -> Measured:
+        """The interval widened by every value whose further digits were cut off, not rounded."""
+        # A little more than one unit of the last digit, whose own value is rounded.
+        down_to = self.value - 2.0 * (self.value - self.lower) * _CUT_SLACK
+        up_to = self.value + 2.0 * (self.upper - self.value) * _CUT_SLACK
+        return Measured(
+            self.value,
+            self.lower if self.value > 0 else min(self.lower, down_to),
+            self.upper if self.value < 0 else max(self.upper, up_to),
+        )
 
 
 def to_si(number: Printed, unit: str) -> Measured:

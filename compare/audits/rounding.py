@@ -1,4 +1,4 @@
-"""A printed solution judged over the box of all durations and way-points that print alike."""
+"""A printed solution judged for every value that rounds to the printed digits."""
 
 from __future__ import annotations
 
@@ -31,11 +31,13 @@ _MOST_STEPS = 12
 """Linear programs of one descent; those that find a passing point need fewer than 5."""
 _MOST_ROWS = 300
 """Peaks that one linear program holds: more of them change its answer no further."""
+_CUT_SLACK = 1.0 + 1e-9
+"""Factor by which a whole unit of the last digit is widened, far above its rounding to floats."""
 
 
 @dataclass(frozen=True, eq=False)
 class RoundingBox:
-    """Printed numbers, and the bounds of all that print alike.
+    """Printed numbers, and the bounds of all that round to them.
 
     Parameters
     ----------
@@ -75,6 +77,13 @@ class RoundingBox:
         step = np.where(self.upper - self.lower > 4.0 * step, step, 0.0)
         return self.lower + step, self.upper - step
 
+    def or_cut_off(self) -> RoundingBox:
+        """The box widened by the inputs whose further digits were cut off instead of rounded."""
+        up, down = 2.0 * (self.upper - self.value), 2.0 * (self.value - self.lower)
+        lower = np.where(self.value > 0, self.lower, self.value - down * _CUT_SLACK)
+        upper = np.where(self.value < 0, self.upper, self.value + up * _CUT_SLACK)
+        return RoundingBox(self.value, np.minimum(lower, self.lower), np.maximum(upper, self.upper))
+
 
 @dataclass(frozen=True, eq=False)
 class Point:
@@ -111,20 +120,24 @@ def judge_rounding(
     durations: RoundingBox,
     waypoints: RoundingBox | None = None,
     tolerance: float = TOLERANCE,
+    loosest: Problem | None = None,
 ) -> RoundingVerdict:
-    """Judge a printed solution over every input that prints alike.
+    """Judge a printed solution over every value that rounds to the printed digits.
 
     Parameters
     ----------
     problem : Problem
         All its joints share the durations; take `Problem.joint` for the row of one joint. Its
-        limits and duration bounds are taken as exact.
+        limits and duration bounds are those printed.
     durations : RoundingBox, shape (segments,)
         s.
     waypoints : RoundingBox, shape (way-points, joints), optional
         rad, in place of the problem's own; those, exactly, by default.
     tolerance : float
         Relative excess over a limit that still counts as keeping it, as in `check`.
+    loosest : Problem, optional
+        The same question with every limit and bound on durations where its printed digits allow
+        most; by default they are exact.
 
     Returns
     -------
@@ -142,6 +155,31 @@ def judge_rounding(
     rounding can upset (`bound` and `interval`). A velocity that jumps is no excess over a limit:
     where nothing else is wrong, the answer is `undecided`.
     """
+    found = _judge(problem, durations, waypoints, tolerance)
+    exact = loosest is None or same_limits(problem, loosest)
+    if loosest is None or exact or found.verdict in (Rounding.KEEPS, Rounding.CONSISTENT):
+        return found
+    wide = _judge(loosest, durations, waypoints, tolerance)
+    kept = wide.verdict in (Rounding.KEEPS, Rounding.CONSISTENT)
+    verdict = Rounding.CONSISTENT if kept else wide.verdict
+    return replace(wide, verdict=verdict, worst_at_print=found.worst_at_print)
+
+
+def same_limits(one: Problem, other: Problem) -> bool:
+    """Whether two problems have equal limits and bounds on the durations."""
+    a, b = one.limits, other.limits
+    return (
+        np.array_equal(a.derivatives, b.derivatives)
+        and np.array_equal(a.position_lower, b.position_lower)
+        and np.array_equal(a.position_upper, b.position_upper)
+        and np.array_equal(one.duration_lower, other.duration_lower)
+        and np.array_equal(one.duration_upper, other.duration_upper)
+    )
+
+
+def _judge(
+    problem: Problem, durations: RoundingBox, waypoints: RoundingBox | None, tolerance: float
+) -> RoundingVerdict:
     q = RoundingBox.exact(problem.waypoints) if waypoints is None else waypoints
     if q.value.shape != problem.waypoints.shape:
         raise TrajgapError(
@@ -299,13 +337,3 @@ def _descend(
         moved = np.clip(x + solved[0] * span, low, high)
         trial = Point(moved[:n], moved[n:].reshape(shape))
     return point, False
-
-
-def or_cut_off(box: RoundingBox) -> RoundingBox:
-    """The box widened by the inputs whose further digits were cut off instead of rounded."""
-    up, down = 2.0 * (box.upper - box.value), 2.0 * (box.value - box.lower)
-    # A little more than one unit of the last digit, whose own value is rounded.
-    wide = 1.0 + 1e-9
-    lower = np.where(box.value > 0, box.lower, box.value - down * wide)
-    upper = np.where(box.value < 0, box.upper, box.value + up * wide)
-    return RoundingBox(box.value, np.minimum(lower, box.lower), np.maximum(upper, box.upper))

@@ -63,7 +63,8 @@ def printed(case: Case, claim: AnyClaim) -> str:
         parts = [f"{claim.percent} %"] if claim.percent is not None else []
         return "; ".join(parts + ([f"{claim.seconds}{time}"] if claim.seconds is not None else []))
     if isinstance(claim, PeakClaim):
-        return f"{claim.value} {getattr(units, claim.derivative) or ''}".strip()
+        digits = ", ".join(map(str, claim.printed))
+        return f"{digits} {getattr(units, claim.derivative) or ''}".strip()
     if isinstance(claim, ConvergenceClaim):
         return f"{claim.iterations} iterations"
     if isinstance(claim, ConditionsClaim) and claim.count is not None:

@@ -47,15 +47,18 @@ from ...problem import (
 from ...problem.cases import (
     AnyClaim,
     Claim,
+    Digits,
     DurationsClaim,
     InstancesBlock,
     MaximumClaim,
+    TimeClaim,
     TotalTimeClaim,
 )
 from .instances import InstancesResult, examined, readings_of
 from .intervals import CERTIFY_SECONDS, Intervals
 from .replay_settings import LISTED, spread_settings
-from .rounding import RoundingBox, RoundingVerdict, judge_rounding, or_cut_off
+from .rounding import RoundingBox, RoundingVerdict, judge_rounding
+from .total_bound import excludes_total
 
 T = TypeVar("T")
 Pair = tuple[str, str]
@@ -159,6 +162,11 @@ class Study:
         """Problem of the case, with its coupling."""
         return self._once(("problem", pid, rid), lambda: self.case.problem(pid, rid))
 
+    @property
+    def time_unit(self) -> str:
+        """The unit that times are printed in."""
+        return self.case.statement().units.time or "s"
+
     def optimum(self, pid: str, rid: str, joint: str | None = None) -> Solution:
         """Best known answer with shared durations, of all joints or of one; certified if proved."""
 
@@ -191,7 +199,7 @@ class Study:
         alone = joint if len(problem.joints) > 1 else None
         found: list[Array] = []
         for claim in self.case.claims:
-            if not isinstance(claim, DurationsClaim) or claim.problem not in (None, pid):
+            if not isinstance(claim, DurationsClaim) or not self.fits(claim, pid, rid):
                 continue
             if claim.joint == joint or (alone is None and claim.joint in problem.joints[:1]):
                 found.append(self.case.claim_durations(claim, rid).value)
@@ -273,33 +281,53 @@ class Study:
         return self._once(("relaxed", pid, rid), compute)
 
     def claim_pairs(self, claim: Claim) -> Iterator[Pair]:
-        """Problems and readings that a claim speaks about."""
-        return (pair for pair in self.pairs if claim.problem in (None, pair[0]))
+        """Problems and readings that a claim speaks about; none where it fits none of them."""
+        return (pair for pair in self.pairs if self.fits(claim, *pair))
+
+    def fits(self, claim: Claim, pid: str, rid: str) -> bool:
+        """Whether a claim is about a problem, its curve, and as many durations as it has."""
+        if claim.problem not in (None, pid):
+            return False
+        if isinstance(claim, TimeClaim) and claim.other_curve is not None:
+            return False
+        printed = self.case.printed_durations(claim)
+        return not printed or len(printed) == self.problem(pid, rid).segments
 
     @staticmethod
     def has_durations(claim: Claim) -> bool:
         """Whether a claim prints durations, so that a motion can be built from it."""
         return isinstance(claim, DurationsClaim | MaximumClaim)
 
-    def claim_problem(self, claim: Claim, pid: str, rid: str) -> Problem:
+    def claim_problem(
+        self, claim: Claim, pid: str, rid: str, digits: Digits = Digits.PRINTED
+    ) -> Problem:
         """The problem a claim's durations belong to: one joint's, or that of all joints."""
         problem = self.problem(pid, rid)
+        if digits is not Digits.PRINTED:
+            problem = self._once(
+                ("problem", pid, rid, digits), lambda: self.case.problem_at(digits, pid, rid)
+            )
         if claim.joint is None or claim.joint not in problem.joints:
             return problem
         return problem.joint(problem.joints.index(claim.joint))
 
     def _box_columns(self, problem: Problem, pid: str, rid: str) -> tuple[Array, Array]:
-        """Bounds of the way-points that print alike, for the joints of ``problem``."""
+        """Bounds of the way-points that round to the digits, for the joints of ``problem``."""
         lower, upper = self.case.waypoint_box(pid, rid)
         labels = self.problem(pid, rid).joints
         columns = [labels.index(label) for label in problem.joints]
         return lower[:, columns], upper[:, columns]
 
-    def reachable(self, problem: Problem, durations: Array, pid: str, rid: str) -> float | None:
-        """A total (s) that some stretch of ``durations`` keeps whatever the way-points round from.
+    def reachable(self, claim: Claim, durations: Array, pid: str, rid: str) -> float | None:
+        """A total (s) that some stretch of ``durations`` keeps whatever the digits stand for.
 
-        None if there is no such stretch, or if durations alone define no motion.
+        It holds for every way-point and every limit that rounds to the printed digits; None if
+        there is no such stretch, or if durations alone define no motion.
         """
+        try:
+            problem = self.claim_problem(claim, pid, rid, Digits.TIGHTEST)
+        except CaseError:  # the tightest ranges are empty
+            return None
         if problem.curve.free:
             return None
         return reachable_total(problem, durations, *self._box_columns(problem, pid, rid))
@@ -351,10 +379,35 @@ class Study:
         problem = self._determined(claim, pid, rid)
         printed = self.case.claim_durations(claim, rid)
         durations = RoundingBox(printed.value, printed.lower, printed.upper)
-        waypoints = RoundingBox(problem.waypoints, *self._box_columns(problem, pid, rid))
+        waypoints = self.waypoint_box(problem, pid, rid)
         if cut:
-            durations, waypoints = or_cut_off(durations), or_cut_off(waypoints)
-        return judge_rounding(problem, durations, waypoints)
+            durations, waypoints = durations.or_cut_off(), waypoints.or_cut_off()
+        loosest = Digits.LOOSEST_CUT if cut else Digits.LOOSEST
+        return judge_rounding(
+            problem, durations, waypoints, loosest=self.claim_problem(claim, pid, rid, loosest)
+        )
+
+    def waypoint_box(self, problem: Problem, pid: str, rid: str) -> RoundingBox:
+        """The way-points of ``problem``, all of its joints or one, and what rounds to them."""
+        return RoundingBox(problem.waypoints, *self._box_columns(problem, pid, rid))
+
+    def excluded_total(self, claim: Claim, pid: str, rid: str) -> bool:
+        """Whether no motion within the limits takes a claim's total or less.
+
+        Proved for every value that rounds to the printed digits or is cut off to them.
+        """
+
+        def compute() -> bool:
+            total = self.claim_total(claim, rid)
+            if total is None:
+                return False
+            self._progress(f"{self.case.id}: total of {claim.id}, {rid}")
+            problem = self.claim_problem(claim, pid, rid, Digits.LOOSEST_CUT)
+            waypoints = self.waypoint_box(problem, pid, rid).or_cut_off()
+            low, high = total[1]
+            return excludes_total(problem, high + (high - low), waypoints)
+
+        return self._once(("excluded", claim.id, pid, rid), compute)
 
     def claim_total(self, claim: Claim, rid: str) -> tuple[str, tuple[float, float]] | None:
         """A claim's total as printed (or as summed), and its interval in seconds."""
@@ -362,14 +415,18 @@ class Study:
             box = self.case.claim_durations(claim, rid)
             summed = (float(box.lower.sum()), float(box.upper.sum()))
             if claim.total is None:
-                return f"{float(box.value.sum()):.10g} s (sum of the printed durations)", summed
+                plain = sum(number.decimal for number in self.case.printed_durations(claim))
+                return f"{plain} {self.time_unit} (sum of the printed durations)", summed
             total = self.case.measured(claim.total, "time", claim.problem, rid)
             both = (max(summed[0], total.lower), min(summed[1], total.upper))
-            return f"{claim.total} s", both if both[0] <= both[1] else (total.lower, total.upper)
+            return f"{claim.total} {self.time_unit}", both if both[0] <= both[1] else (
+                total.lower,
+                total.upper,
+            )
         if not isinstance(claim, TotalTimeClaim):
             return None
         total = self.case.measured(claim.value, "time", claim.problem, rid)
-        return f"{claim.value} s", (total.lower, total.upper)
+        return f"{claim.value} {self.time_unit}", (total.lower, total.upper)
 
     def algorithm(self, algorithm_id: str) -> Algorithm[Any] | None:
         """The case's algorithm, or None if its kind is not implemented."""

@@ -23,15 +23,16 @@ def waterfalls(study: Study) -> tuple[Waterfall, ...]:
 
 
 def _starting_claim(study: Study, pid: str) -> AnyClaim | None:
-    """The last printed set of durations for all joints of the problem."""
+    """The last printed set of durations for all joints, of the state before only if no other."""
     whole = [
         c
         for c in study.case.claims
         if isinstance(c, DurationsClaim | MaximumClaim)
-        and c.problem in (None, pid)
+        and study.fits(c, pid, study.main_reading)
         and (c.joint is None or len(study.problem(pid, study.main_reading).joints) == 1)
     ]
-    return whole[-1] if whole else None
+    answers = [c for c in whole if c.state != "before"] or whole
+    return answers[-1] if answers else None
 
 
 def _known(name: str, solution: Solution, note: str = "") -> Step:

@@ -65,8 +65,10 @@ def _stated(claim: AnyClaim) -> str:
         case DurationsClaim() | MaximumClaim():
             total = "" if claim.total is None else f", total {claim.total}"
             return " ".join(map(str, claim.durations)) + total
-        case TotalTimeClaim() | PeakClaim():
+        case TotalTimeClaim():
             return str(claim.value)
+        case PeakClaim():
+            return " ".join(map(str, claim.printed))
         case ImprovementClaim(percent=percent) if percent is not None:
             return f"{percent} %"
         case ImprovementClaim(seconds=seconds) if seconds is not None:

@@ -87,10 +87,10 @@ class Rounding(StrEnum):
     KEEPS = "keeps"
     """The printed point itself keeps every limit for all t."""
     CONSISTENT = "consistent"
-    """Some value that rounds to the printed digits keeps every limit, and it is shown."""
+    """Some values that round to the printed digits keep every limit, and they are exhibited."""
     BREAKS = "breaks"
-    """No value that rounds to the printed digits keeps every limit: a rigorous lower bound of the
-    worst ratio over all of them exceeds 1."""
+    """A limit is broken for every value that rounds to the printed digits: a rigorous lower bound
+    of the worst ratio over the whole rounding box exceeds 1."""
     UNDECIDED = "undecided"
     """Neither was shown."""
 

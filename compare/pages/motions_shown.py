@@ -47,7 +47,7 @@ def whole_claims(study: Study, pid: str) -> list[DurationsClaim | MaximumClaim]:
         c
         for c in study.case.claims
         if isinstance(c, DurationsClaim | MaximumClaim)
-        and c.problem in (None, pid)
+        and study.fits(c, pid, study.main_reading)
         and (c.joint is None or len(joints) == 1)
     ]
 
@@ -93,7 +93,7 @@ def _tables_by_joint(study: Study, pid: str) -> dict[str, list[DurationsClaim]]:
         rows = {
             c.joint: c
             for c in study.case.table_claims(table.id)
-            if isinstance(c, DurationsClaim) and c.problem in (None, pid)
+            if isinstance(c, DurationsClaim) and study.fits(c, pid, study.main_reading)
         }
         if all(label in rows for label in joints):
             claims = [rows[label] for label in joints]

@@ -212,7 +212,7 @@ def _joints(study: Study, pid: str, rid: str) -> Iterator[Block]:
         claims = [
             c
             for c in study.case.claims
-            if isinstance(c, DurationsClaim) and c.joint == label and c.problem in (None, pid)
+            if isinstance(c, DurationsClaim) and c.joint == label and study.fits(c, pid, rid)
         ]
         shown: dict[str, list[str]] = {}
         gaps = []

@@ -10,11 +10,13 @@ from .claim import (
     MaximumClaim,
     PeakClaim,
     StatementClaim,
+    TimeClaim,
     TotalTimeClaim,
 )
 from .data_files import PUBLISHED
 from .instances import InstancesBlock, instance_waypoints
 from .load import load_case, parse_case, published_ids
+from .references import motions_of_peak
 from .robot_file import load_robot, robot_ids
 from .scaffolding import scaffold
 from .schema import (
@@ -30,7 +32,7 @@ from .schema import (
     Table,
     case_schema,
 )
-from .statement import Statement
+from .statement import Digits, Statement
 
 __all__ = [
     "PUBLISHED",
@@ -44,6 +46,7 @@ __all__ = [
     "ConditionsClaim",
     "ControlVerticesClaim",
     "ConvergenceClaim",
+    "Digits",
     "DurationBox",
     "DurationsClaim",
     "ImprovementClaim",
@@ -58,11 +61,13 @@ __all__ = [
     "Statement",
     "StatementClaim",
     "Table",
+    "TimeClaim",
     "TotalTimeClaim",
     "case_schema",
     "instance_waypoints",
     "load_case",
     "load_robot",
+    "motions_of_peak",
     "parse_case",
     "published_ids",
     "robot_ids",

@@ -30,7 +30,7 @@ from .schema import (
     Source,
     Table,
 )
-from .statement import Statement, overlaid
+from .statement import Digits, Statement, overlaid
 
 _ONLY_PROBLEM = ProblemBlock(id="main")
 """Stands for the one problem of a file that lists none; its id is what `--problem` then takes."""
@@ -40,7 +40,7 @@ _ONLY_READING = Reading(id="as-printed", why="the numbers and units as printed",
 
 @dataclass(frozen=True)
 class DurationBox:
-    """Claimed durations in seconds: as printed, and the box of all that print alike.
+    """Claimed durations in seconds: as printed, and the box of all that round to them.
 
     Each array has shape (segments,).
     """
@@ -281,10 +281,35 @@ class Case:
             raise CaseError(self.file, "coupling", f"unknown coupling {coupling!r}; use {known}")
         return replace(problem, coupling=Coupling(coupling))
 
+    def problem_at(
+        self, digits: Digits, problem_id: str | None = None, reading_id: str | None = None
+    ) -> Problem:
+        """Problem whose limits and bounds take one end of what their printed digits stand for.
+
+        A limit given as a bare number is exact, and the same at either end.
+
+        Parameters
+        ----------
+        digits : Digits
+        problem_id, reading_id : str, optional
+            As in `problem`.
+
+        Returns
+        -------
+        Problem
+            Through the way-points as printed.
+
+        Raises
+        ------
+        CaseError
+            If the numbers don't fit together there, such as a range that is empty at its tightest.
+        """
+        return self.statement(problem_id, reading_id).problem(digits)
+
     def waypoint_box(
         self, problem_id: str | None = None, reading_id: str | None = None
     ) -> tuple[Array, Array]:
-        """Bounds on the way-points that print alike.
+        """Bounds on the way-points that round to the printed digits.
 
         Parameters
         ----------

@@ -7,6 +7,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Discriminator, Field, StrictInt, model_validator
 
 from ..fields import Id, Length, Number, PrintedRows, Strict, Text, fault
+from ..printed import Printed
 from ..problem import Coupling
 
 
@@ -33,7 +34,16 @@ class Claim(Strict):
     """Further tables that the claim speaks about."""
 
 
-class DurationsClaim(Claim):
+class TimeClaim(Claim):
+    """What claims of a time have in common."""
+
+    state: Literal["before"] | None = None
+    """"before" for the state before an optimisation, of which no limit or optimum is claimed."""
+    other_curve: Text | None = None
+    """Name of the curve that it belongs to, where that is not the problem's own."""
+
+
+class DurationsClaim(TimeClaim):
     """Segment durations, and their total where it is printed."""
 
     quantity: Literal["durations"]
@@ -43,7 +53,7 @@ class DurationsClaim(Claim):
     """Printed total."""
 
 
-class MaximumClaim(Claim):
+class MaximumClaim(TimeClaim):
     """The longest of several claims' durations, segment by segment."""
 
     quantity: Literal["maximum"]
@@ -55,10 +65,12 @@ class MaximumClaim(Claim):
     """Printed total."""
 
 
-class TotalTimeClaim(Claim):
+class TotalTimeClaim(TimeClaim):
     """A total time printed by itself."""
 
     quantity: Literal["total_time"]
+    of: Id | None = None
+    """The claim of durations whose total it states, where that is printed elsewhere."""
     value: Length
     """Total time."""
 
@@ -72,7 +84,9 @@ class ImprovementClaim(Claim):
     faster: Id
     """The claim that states the shorter total."""
     percent: Number | None = None
-    """Reduction in percent of the longer total."""
+    """Reduction in percent of `base`."""
+    base: Literal["slower", "faster"] | None = None
+    """What the percentage is a share of; either total where the text leaves it open."""
     seconds: Number | None = None
     """Reduction in the unit of time of the file."""
 
@@ -80,17 +94,36 @@ class ImprovementClaim(Claim):
     def _two_claims(self) -> Self:
         if self.slower == self.faster:
             raise fault(".faster", "is the same claim as slower; name two claims")
+        if self.base is not None and self.percent is None:
+            raise fault(".base", "goes with percent; add it, or leave this out")
         return self
 
 
 class PeakClaim(Claim):
-    """The largest absolute value of a derivative."""
+    """The largest absolute value of a derivative: one number, or one for each joint."""
 
     quantity: Literal["peak"]
+    of: Id | None = None
+    """The claim of durations whose motion it describes; the only one that fits if absent."""
     derivative: Literal["velocity", "acceleration", "jerk"]
     """Which derivative."""
-    value: Length
+    value: Length | None = None
     """Largest absolute value, in the file's unit of that derivative."""
+    values: Annotated[tuple[Length, ...], Field(min_length=1)] | None = None
+    """The same of each joint, in the order of the robot's joints."""
+
+    @model_validator(mode="after")
+    def _one_or_each(self) -> Self:
+        if (self.value is None) == (self.values is None):
+            raise fault(".value", "or values is needed, and not both; give one of them")
+        if self.values is not None and self.joint is not None:
+            raise fault(".joint", "does not go with values, one per joint; leave it out")
+        return self
+
+    @property
+    def printed(self) -> tuple[Printed, ...]:
+        """Its numbers, one or one for each joint."""
+        return self.values or (() if self.value is None else (self.value,))
 
 
 class ConvergenceClaim(Claim):
@@ -115,6 +148,8 @@ class ConditionsClaim(Claim):
     """Highest derivative said to be continuous at the via-points."""
     count: Length | None = None
     """Number of conditions, where it is printed."""
+    of: tuple[Id, ...] = ()
+    """Claims of durations on whose motion the rest is evaluated; those of its problem if empty."""
 
 
 class ControlVerticesClaim(Claim):
@@ -132,8 +167,9 @@ class StatementClaim(Claim):
     """A claim in words."""
 
     quantity: Literal["statement"]
-    checks: Literal["within_limits", "continuous", "jumps", "optimal", "none"]
-    """How it can be checked on the claims named in ``of``; "jumps" says that acceleration does."""
+    checks: Literal["within_limits", "continuous", "jumps", "at_rest", "optimal", "none"]
+    """How it can be checked on the claims named in ``of``; "jumps" says that acceleration does,
+    "at_rest" that velocity is 0 at both ends."""
     of: tuple[Id, ...] = ()
     """The claims whose durations it speaks about."""
     not_checkable: str | None = None

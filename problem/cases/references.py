@@ -10,6 +10,7 @@ from ..robots import Chain
 from .claim import (
     AnyClaim,
     Claim,
+    ConditionsClaim,
     ControlVerticesClaim,
     DurationsClaim,
     ImprovementClaim,
@@ -123,8 +124,10 @@ def _unique(file: str, kind: str, blocks: Iterable[object]) -> list[str]:
 def _claim_references(claim: Claim) -> list[tuple[str, str]]:
     if isinstance(claim, ImprovementClaim):
         return [("slower", claim.slower), ("faster", claim.faster)]
-    if isinstance(claim, MaximumClaim | StatementClaim):
+    if isinstance(claim, MaximumClaim | StatementClaim | ConditionsClaim):
         return [(f"of[{position}]", name) for position, name in enumerate(claim.of)]
+    if isinstance(claim, PeakClaim | TotalTimeClaim) and claim.of is not None:
+        return [("of", claim.of)]
     return []
 
 
@@ -132,10 +135,13 @@ def _check_kinds(document: CaseFile, file: str) -> None:
     by_id = {claim.id: claim for claim in document.claims}
     totals = (DurationsClaim, MaximumClaim, TotalTimeClaim)
     for index, claim in enumerate(document.claims):
-        wanted = totals if isinstance(claim, ImprovementClaim) else totals[:2]
+        any_time = isinstance(claim, ImprovementClaim) or (
+            isinstance(claim, StatementClaim) and claim.checks in ("optimal", "within_limits")
+        )
+        wanted = totals if any_time else totals[:2]
         for field, name in _claim_references(claim):
             if not isinstance(by_id[name], wanted):
-                what = "a time" if isinstance(claim, ImprovementClaim) else "durations"
+                what = "a time" if any_time else "durations"
                 raise CaseError(
                     file,
                     f"claims[{index}].{field}",
@@ -182,8 +188,8 @@ def check_claims(
     Raises
     ------
     CaseError
-        If a claim states another number of durations than there are segments, or names a joint
-        that takes no part, or a number lies outside the magnitudes that are computed with.
+        If a claim names a joint that takes no part, leaves open which motion a peak belongs to,
+        or gives a number outside the magnitudes that are computed with.
     """
     for index, claim in enumerate(document.claims):
         statement = statement_of(claim)
@@ -195,12 +201,6 @@ def check_claims(
                     f"joint {claim.joint!r} takes no part; the problem has {', '.join(labels)}",
                 )
         if isinstance(claim, DurationsClaim | MaximumClaim):
-            segments = statement.curve().segments
-            if len(claim.durations) != segments:
-                raise statement.fail(
-                    f"claims[{index}].durations",
-                    f"{len(claim.durations)} values for {segments} segments; give one each",
-                )
             for segment, duration in enumerate(claim.durations):
                 field = f"claims[{index}].durations[{segment}]"
                 if duration.fraction == 0:
@@ -211,9 +211,59 @@ def check_claims(
         if isinstance(claim, TotalTimeClaim):
             statement.si(claim.value, "time", f"claims[{index}].value")
         if isinstance(claim, PeakClaim):
-            statement.si(claim.value, claim.derivative, f"claims[{index}].value")
+            _check_peak(document, claim, statement, f"claims[{index}]")
         if isinstance(claim, ControlVerticesClaim):
             _check_vertices(claim, statement, f"claims[{index}].joint_rows")
+
+
+def motions_of_peak(claims: Iterable[AnyClaim], peak: PeakClaim) -> list[AnyClaim]:
+    """The claims of durations whose motion a peak may describe: the one named, or all that fit.
+
+    Parameters
+    ----------
+    claims : iterable of AnyClaim
+        Of the file.
+    peak : PeakClaim
+
+    Returns
+    -------
+    list of AnyClaim
+    """
+    motions = [c for c in claims if isinstance(c, DurationsClaim | MaximumClaim)]
+    if peak.of is not None:
+        return [c for c in motions if c.id == peak.of]
+    return [
+        c
+        for c in motions
+        if (peak.algorithm is None or c.algorithm == peak.algorithm)
+        and c.problem == peak.problem
+        and c.joint in (None, peak.joint)
+        and c.other_curve is None
+    ]
+
+
+def _check_peak(document: CaseFile, claim: PeakClaim, statement: Statement, at: str) -> None:
+    for position, number in enumerate(claim.printed):
+        field = f"{at}.value" if claim.values is None else f"{at}.values[{position}]"
+        statement.si(number, claim.derivative, field)
+    joints = len(statement.labels)
+    if claim.values is not None and len(claim.values) != joints:
+        raise statement.fail(
+            f"{at}.values", f"{len(claim.values)} values for {joints} joints; give one each"
+        )
+    meant = motions_of_peak(document.claims, claim)
+    for motion in meant:
+        if motion.problem != claim.problem:
+            raise statement.fail(
+                f"{at}.of", f"{motion.id!r} is about another problem; name a motion of this one"
+            )
+    if len(meant) > 1:
+        names = ", ".join(repr(c.id) for c in meant[:-1])
+        raise statement.fail(
+            f"{at}.of",
+            f"is missing, and the peak may be that of {names} or {meant[-1].id!r}; "
+            f'name the motion, such as of = "{meant[0].id}"',
+        )
 
 
 def _check_vertices(claim: ControlVerticesClaim, statement: Statement, field: str) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import StrEnum
 from typing import TypeVar
 
 import numpy as np
@@ -37,6 +38,19 @@ _LARGEST = 1e12
 """Largest number of a case file, rad and s: squares and quotients stay far from overflow."""
 _LOWER = "durations.lower"
 """The field whose value may be as near 0 as it likes: a lower bound of 0 says "positive"."""
+
+
+class Digits(StrEnum):
+    """Which of the values that their printed digits stand for the limits and bounds take."""
+
+    PRINTED = "printed"
+    """The digits themselves."""
+    TIGHTEST = "tightest"
+    """Of all values that round to the digits those that allow least."""
+    LOOSEST = "loosest"
+    """Of all values that round to the digits those that allow most."""
+    LOOSEST_CUT = "loosest, cut off"
+    """The same, of all values whose digits were rounded or cut off."""
 
 
 @dataclass(frozen=True)
@@ -173,15 +187,20 @@ class Statement:
         number = values[self.declaration.orders.index(order)]
         return 0.0 if number.fraction == 0 else self.si(number, _DERIVATIVES[order - 1]).value
 
-    def problem(self) -> Problem:
+    def problem(self, digits: Digits = Digits.PRINTED) -> Problem:
         """Problem in radians and seconds.
+
+        Parameters
+        ----------
+        digits : Digits
+            Which values limits and bounds on durations take; the way-points are as printed.
 
         Raises
         ------
         CaseError
             If the numbers don't fit together, or the way-points are not printed.
         """
-        data = self.data()
+        data = self.data(digits)
         return self._at(data, np.array([[angle.value for angle in row] for row in self.points()]))
 
     def problem_at(self, waypoints: Array) -> Problem:
@@ -219,8 +238,13 @@ class Statement:
         except TrajgapError as error:
             raise self.fail("", str(error)) from None
 
-    def data(self) -> Data:
+    def data(self, digits: Digits = Digits.PRINTED) -> Data:
         """All but the way-points: curve, limits, and bounds on the durations, rad and s.
+
+        Parameters
+        ----------
+        digits : Digits
+            Which values limits and bounds take.
 
         Raises
         ------
@@ -229,8 +253,10 @@ class Statement:
         """
         curve = self.curve()
         segments = curve.segments
-        lower = self._each("durations", "lower", "time", segments, "segment", 0.0)
-        upper = self._each("durations", "upper", "time", segments, "segment", np.inf)
+        durations = self._each("durations", "lower", "time", segments, "segment", 0.0)
+        lower = np.maximum(_end(durations, digits, upper=False), 0.0)
+        durations = self._each("durations", "upper", "time", segments, "segment", np.inf)
+        upper = _end(durations, digits, upper=True)
         if (lower > upper).any():
             at = int(np.argmax(lower > upper))
             raise self.fail(
@@ -239,44 +265,52 @@ class Statement:
             )
         if (upper == 0).any():
             raise self.fail("durations.upper", "is 0; a duration is positive, give more")
-        position_lower = self._limit("position_lower", "position", -np.inf)
-        position_upper = self._limit("position_upper", "position", np.inf)
+        position_lower = self._limit("position_lower", "position", digits)
+        position_upper = self._limit("position_upper", "position", digits)
         if (position_lower > position_upper).any():
             raise self.fail(
                 "limits.position_lower", "lies above limits.position_upper; exchange them"
             )
         limits = Limits(
-            velocity=self._limit("velocity", "velocity"),
-            acceleration=self._limit("acceleration", "acceleration"),
-            jerk=self._limit("jerk", "jerk"),
+            velocity=np.maximum(self._limit("velocity", "velocity", digits), 0.0),
+            acceleration=np.maximum(self._limit("acceleration", "acceleration", digits), 0.0),
+            jerk=np.maximum(self._limit("jerk", "jerk", digits), 0.0),
             position_lower=position_lower,
             position_upper=position_upper,
         )
         return curve, limits, lower, upper
 
-    def _limit(self, name: str, quantity: Quantity, default: float = np.inf) -> Array:
+    def _limit(self, name: str, quantity: Quantity, digits: Digits) -> Array:
+        default = -np.inf if name == "position_lower" else np.inf
         every = self._each("limits", name, quantity, len(self.labels), "joint", default)
-        return every[list(self.joints)]
+        return _end([every[j] for j in self.joints], digits, upper=name != "position_lower")
 
     def _each(
         self, block: str, name: str, quantity: Quantity, count: int, item: str, default: float
-    ) -> Array:
+    ) -> list[Measured]:
         given: Sequence[Printed | None] | Printed | None = getattr(getattr(self, block), name)
+        none = Measured(default, default, default)
         if given is None:
-            return np.full(count, default)
+            return [none] * count
         if isinstance(given, Printed):
-            return np.full(count, self.si(given, quantity, f"{block}.{name}").value)
+            return [self.si(given, quantity, f"{block}.{name}")] * count
         if len(given) != count:
             raise self.fail(
                 f"{block}.{name}",
                 f"{len(given)} values for {count} {item}s; give one for all, or one each",
             )
-        return np.array(
-            [
-                default if one is None else self.si(one, quantity, f"{block}.{name}").value
-                for one in given
-            ]
-        )
+        return [none if one is None else self.si(one, quantity, f"{block}.{name}") for one in given]
+
+
+def _end(numbers: Sequence[Measured], digits: Digits, upper: bool) -> Array:
+    """The end of each number's interval that allows most, or least."""
+    if digits is Digits.PRINTED:
+        return np.array([n.value for n in numbers])
+    if digits is Digits.LOOSEST_CUT:
+        numbers = [n.cut_off() if np.isfinite(n.value) else n for n in numbers]
+    if upper is (digits is Digits.TIGHTEST):
+        return np.array([n.lower for n in numbers])
+    return np.array([n.upper for n in numbers])
 
 
 def overlaid(document: CaseFile, file: str, problem: ProblemBlock, reading: Reading) -> Statement:

@@ -23,7 +23,7 @@ SEARCHES: dict[str, dict[str, Any]] = {
     "improved-ga": {"population": 8, "iterations": 4},
 }
 """Smallest settings of each algorithm that a case may replay."""
-_WORDS = ("within_limits", "continuous", "jumps", "optimal", "none")
+_WORDS = ("within_limits", "continuous", "jumps", "at_rest", "optimal", "none")
 _STRANGE = ("joint 1", "θ₁", "a.b", "x" * 40, "1-2", "J\u00e9", "关节", "q/1", "l'axe", '"')
 """Labels that are allowed and awkward."""
 
@@ -187,7 +187,9 @@ def _claim(
             return {"slower": "d-2", "faster": "d-1", "percent": "9.1"}
         case "peak":
             key = str(rng.choice(DERIVATIVES))
-            return {"derivative": key, "value": f"{10 ** rng.uniform(-1, 2):.3g}"}
+            value = f"{10 ** rng.uniform(-1, 2):.3g}"
+            own = {"of": "d-1", "derivative": key}
+            return own | ({"value": value} if rng.random() < 0.5 else {"values": [value] * joints})
         case "convergence":
             return {"iterations": Bare("30")}
         case "control_vertices":

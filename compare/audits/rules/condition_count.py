@@ -1,21 +1,35 @@
-"""TG107: stated conditions counted against the number of coefficients."""
+"""TG107 and TG207: stated conditions, counted and evaluated on the printed motions."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+from math import perm
 
 import numpy as np
 
-from ....problem.cases import ConditionsClaim
+from ....problem import QUANTITIES, fit
+from ....problem.cases import AnyClaim, ConditionsClaim, StatementClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..study import Study
+from .peaks import has_curve, largest
+from .wording import called, in_units, unit_shown
+
+_REST = 0.01
+"""Share of a derivative's peak up to which its value at an end counts as 0: rounding of the printed
+digits moves it by less."""
 
 
 def judge_counts(study: Study) -> Iterator[Finding]:
-    """Count what each statement about boundary conditions asks for."""
+    """Findings of TG107 and TG207."""
     for claim in study.claims:
         if isinstance(claim, ConditionsClaim):
-            yield _counted(study, claim)
+            counted = _counted(study, claim)
+            yield counted
+            if counted.verdict is not ClaimVerdict.REFUTED:
+                yield from _at_rest(study, claim, claim.of, claim.orders)
+        elif isinstance(claim, StatementClaim) and claim.checks == "at_rest":
+            yield from _at_rest(study, claim, claim.of, (1,))
 
 
 def conditions(claim: ConditionsClaim) -> int:
@@ -44,17 +58,15 @@ def _counted(study: Study, claim: ConditionsClaim) -> Finding:
     if claim.count is not None and claim.count.fraction != wanted:
         verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
         message = f"{degrees} polynomials: {computed} per joint, where {printed} is printed."
+    elif impossible := _impossible_segments(study, claim):
+        verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
+        message = (
+            f"{degrees} polynomials: {computed} per joint. No polynomial of that degree meets "
+            f"them in segment {', '.join(map(str, impossible))}, where the way-points differ."
+        )
     elif wanted > available:
-        impossible = _impossible_segments(study, claim)
-        if impossible:
-            verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
-            message = (
-                f"{degrees} polynomials: {computed} per joint. No polynomial of that degree meets "
-                f"them in segment {', '.join(map(str, impossible))}, where the way-points differ."
-            )
-        else:
-            verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.WARNING
-            message += " They can hold together only for special way-points."
+        verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.WARNING
+        message += " They can hold together only for special way-points."
     return Finding(
         rule="TG107",
         severity=severity,
@@ -68,21 +80,125 @@ def _counted(study: Study, claim: ConditionsClaim) -> Finding:
 
 
 def _impossible_segments(study: Study, claim: ConditionsClaim) -> list[int]:
-    """Segments (from 1) between different way-points whose end conditions exceed their degree.
+    """Segments (from 1) on which no polynomial of the degree meets what is said of its ends.
 
-    A polynomial of degree d on a segment at rest at both ends in r derivatives meets 2 + 2r
-    Hermite conditions, which are independent; with d + 1 < 2 + 2r coefficients they hold only
-    for a constant.
+    Of each segment alone: it passes two way-points that differ for every value that rounds to their
+    digits, and the derivatives vanish at the ends where the statement says so. The duration only
+    scales these equations, so that they are decided in rational numbers, once for all durations.
     """
     found = set()
-    for pid in study.problems:
-        points = study.problem(pid, study.main_reading).waypoints
-        if points.shape[0] != len(claim.degrees) + 1:
+    for pid, rid in study.pairs:
+        if claim.problem not in (None, pid) or rid != study.main_reading:
             continue
-        moves = np.abs(np.diff(points, axis=0)).max(axis=1) > 0
-        orders = set(claim.orders) == set(range(1, len(claim.orders) + 1))
+        lower, upper = study.case.waypoint_box(pid, rid)
+        if len(lower) != len(claim.degrees) + 1:
+            continue
+        apart = (lower[1:] > upper[:-1]) | (upper[1:] < lower[:-1])
+        last = len(claim.degrees) - 1
         for k, degree in enumerate(claim.degrees):
-            rests = 2 if claim.rest_at == "all" else 0
-            if rests and orders and moves[k] and degree + 1 < 2 + rests * len(claim.orders):
+            everywhere = claim.rest_at == "all"
+            start = claim.orders if everywhere or k == 0 else ()
+            end = claim.orders if everywhere or k == last else ()
+            if apart[k].any() and not meets(degree, start, end):
                 found.add(k + 1)
     return sorted(found)
+
+
+def meets(degree: int, start: Sequence[int], end: Sequence[int]) -> bool:
+    """Whether some polynomial moves from 0 to 1 while given derivatives vanish at its ends.
+
+    Parameters
+    ----------
+    degree : int
+    start, end : sequence of int
+        Orders of the derivatives that vanish at 0 and at 1.
+
+    Returns
+    -------
+    bool
+    """
+    rows = [[_slope(power, 0, 0) for power in range(degree + 1)] + [Fraction(0)]]
+    rows.append([_slope(power, 0, 1) for power in range(degree + 1)] + [Fraction(1)])
+    for at, orders in ((0, start), (1, end)):
+        rows += [
+            [_slope(power, order, at) for power in range(degree + 1)] + [Fraction(0)]
+            for order in orders
+        ]
+    for column in range(degree + 1):
+        pivot = next((row for row in rows if row[column] != 0), None)
+        if pivot is None:
+            continue
+        rows.remove(pivot)
+        rows = [
+            [a - b * row[column] / pivot[column] for a, b in zip(row, pivot, strict=True)]
+            for row in rows
+        ]
+    # What is left says 0 = 0, or 0 = something.
+    return all(row[-1] == 0 for row in rows)
+
+
+def _slope(power: int, order: int, at: int) -> Fraction:
+    """Derivative of a monomial at 0 or 1."""
+    if order > power or (at == 0 and power != order):
+        return Fraction(0)
+    return Fraction(perm(power, order))
+
+
+def _at_rest(
+    study: Study, claim: AnyClaim, of: Sequence[str], orders: Sequence[int]
+) -> Iterator[Finding]:
+    """Evaluate the derivatives that are said to vanish, at both ends of printed motions."""
+    named = [study.case.claim(i) for i in of]
+    motions = named or [c for c in study.case.claims if study.has_durations(c)]
+    for rid in study.readings:
+        moving, judged = [], 0
+        for motion in motions:
+            for pid, reading in study.claim_pairs(motion):
+                ours = reading == rid and claim.problem in (None, pid)
+                if not ours or not has_curve(study, motion, pid, rid):
+                    continue
+                judged += 1
+                moving += [
+                    f"{called(motion)} ({pid}): {said}"
+                    for said in _moving(study, motion, pid, rid, orders)
+                ]
+        if not judged:
+            continue
+        names = ", ".join(QUANTITIES[r - 1] for r in orders if r <= len(QUANTITIES))
+        yield Finding(
+            rule="TG207",
+            severity=Severity.WARNING if moving else Severity.INFO,
+            verdict=ClaimVerdict.INCONSISTENT if moving else ClaimVerdict.SUPPORTED,
+            basis=Basis.CHECK,
+            claim=claim.id,
+            reading=rid,
+            message="Said to be at rest at both ends, and not so on the stated curve: "
+            f"{'; '.join(moving)}."
+            if moving
+            else f"On the stated curve {names} vanish at both ends of {judged} printed motion(s).",
+        )
+
+
+def _moving(
+    study: Study, motion: AnyClaim, pid: str, rid: str, orders: Sequence[int]
+) -> Iterator[str]:
+    """The largest derivative of each order that does not vanish at an end."""
+    problem = study.claim_problem(motion, pid, rid)
+    durations = study.case.claim_durations(motion, rid).value
+    trajectory = fit(problem.curve, problem.waypoints, durations)
+    for order in orders:
+        if order > len(QUANTITIES):
+            continue
+        quantity = QUANTITIES[order - 1]
+        tops = [abs(top.value) for top in largest(study, motion, pid, rid, order)]
+        ends = np.abs(trajectory(np.array([0.0, trajectory.total_time]), order))
+        over = np.where(ends > _REST * np.array(tops), ends, 0.0)
+        if not over.any():
+            continue
+        end, joint = np.unravel_index(int(np.argmax(over)), over.shape)
+        value = in_units(study, pid, rid, quantity, float(over[end, joint]))
+        where = "starts" if end == 0 else "ends"
+        yield (
+            f"joint {problem.joints[int(joint)]} {where} with a {quantity} of {value:.4g} "
+            f"{unit_shown(study, pid, rid, quantity)}"
+        )

@@ -1,4 +1,4 @@
-"""TG201 to TG204: printed durations rebuilt and judged in continuous time."""
+"""TG201, TG202, TG204 and TG206: printed durations rebuilt and judged in continuous time."""
 
 from __future__ import annotations
 
@@ -7,17 +7,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ....problem import QUANTITIES, Extremum, Verdict, extrema, fit, peak_gradients
+from ....problem import QUANTITIES, Verdict
 from ....problem.cases import (
     AnyClaim,
     DurationsClaim,
+    ImprovementClaim,
     MaximumClaim,
-    PeakClaim,
     StatementClaim,
+    TimeClaim,
+    TotalTimeClaim,
 )
-from ...documents import UNITS, Basis, ClaimVerdict, Finding, Rounding, Severity
+from ...documents import Basis, ClaimVerdict, Finding, Rounding, Severity
 from ..explanations import LIMITS
 from ..study import Study
+from .peaks import box_reach, has_curve, largest
+from .wording import all_called, called, in_units, unit_shown
 
 
 @dataclass(frozen=True)
@@ -42,7 +46,7 @@ _NARROW = 0.01
 
 
 def judge_motions(study: Study) -> Iterator[Finding]:
-    """Findings of TG201 to TG204."""
+    """Findings of TG201, TG202, TG204 and TG206."""
     for claim in study.claims:
         if isinstance(claim, DurationsClaim | MaximumClaim):
             yield from _limits(study, claim)
@@ -54,13 +58,12 @@ def judge_motions(study: Study) -> Iterator[Finding]:
             yield from _continuity(study, claim)
         elif isinstance(claim, StatementClaim) and claim.checks == "jumps":
             yield from _said_to_jump(study, claim)
-        elif isinstance(claim, PeakClaim):
-            yield from _peak(study, claim)
 
 
-def _durations_text(claim: AnyClaim) -> str:
-    durations = claim.durations if isinstance(claim, DurationsClaim | MaximumClaim) else ()
-    return ", ".join(str(d) for d in durations)
+def durations_text(study: Study, claim: AnyClaim) -> str:
+    """The printed durations with their unit."""
+    durations = ", ".join(map(str, study.case.printed_durations(claim)))
+    return f"{durations} {study.time_unit}"
 
 
 def _ratio(study: Study, claim: AnyClaim, pid: str, rid: str) -> str:
@@ -70,18 +73,23 @@ def _ratio(study: Study, claim: AnyClaim, pid: str, rid: str) -> str:
     if worst.quantity == "curve":
         return "the printed durations define no curve"
     where = f"joint {worst.joint} " if worst.joint is not None else f"segment {worst.segment + 1} "
-    unit = "s" if worst.quantity == "duration" else UNITS[worst.quantity]
-    return f"{where}{worst.quantity} {abs(worst.value):.6g} against {worst.limit:.6g} {unit}"
+    unit = unit_shown(study, pid, rid, worst.quantity)
+    value = in_units(study, pid, rid, worst.quantity, abs(worst.value))
+    limit = in_units(study, pid, rid, worst.quantity, worst.limit)
+    return f"{where}{worst.quantity} {value:.6g} against {limit:.6g} {unit}"
 
 
 def _judged(study: Study, claim: AnyClaim, pid: str, rid: str) -> _Judged:
+    if isinstance(claim, TotalTimeClaim):
+        return _judged_total(study, claim, pid, rid)
     rounding = study.claim_rounding(claim, pid, rid)
     verdict, severity = _VERDICTS[rounding.verdict]
     at_print = _ratio(study, claim, pid, rid)
     explained = {
         Rounding.KEEPS: "The printed point keeps every limit for all t",
-        Rounding.CONSISTENT: "Some input that prints alike keeps every limit for all t",
-        Rounding.BREAKS: "Every input that prints alike breaks a limit",
+        Rounding.CONSISTENT: "Some values that round to the printed digits keep every limit for "
+        "all t",
+        Rounding.BREAKS: "A limit is broken for every value that rounds to the printed digits",
         Rounding.UNDECIDED: "The printed digits do not decide whether the limits are kept",
     }[rounding.verdict]
     kind = str(rounding.verdict)
@@ -104,13 +112,32 @@ def _judged(study: Study, claim: AnyClaim, pid: str, rid: str) -> _Judged:
             verdict = ClaimVerdict.SUPPORTED if kept else ClaimVerdict.NOT_CHECKABLE
             message += f" With digits cut off instead of rounded: {cut}."
             return _Judged(verdict, Severity.WARNING, message, kind)
-        message += " So does every input with digits cut off instead of rounded."
+        message += " The same holds with digits cut off instead of rounded."
     return _Judged(verdict, severity, message, kind)
 
 
+def _judged_total(study: Study, claim: TotalTimeClaim, pid: str, rid: str) -> _Judged:
+    """A total without its durations: refuted where no motion that short keeps the limits."""
+    printed = f"{claim.value} {study.time_unit}"
+    if study.excluded_total(claim, pid, rid):
+        message = (
+            f"No motion within the limits takes {printed} or less, for every value that rounds to "
+            "the printed digits or is cut off to them."
+        )
+        return _Judged(ClaimVerdict.REFUTED, Severity.ERROR, message, "total excluded")
+    message = (
+        f"Only the total is printed, {printed}, and no durations: whether its motion keeps the "
+        "limits cannot be computed. That none of that length does was not shown."
+    )
+    return _Judged(ClaimVerdict.NOT_CHECKABLE, Severity.INFO, message, "total open")
+
+
 def broken(study: Study, claim: AnyClaim, pid: str, rid: str) -> str | None:
-    """What shows that every input printing alike, rounded or cut off, breaks a limit; or None."""
-    if not isinstance(claim, DurationsClaim | MaximumClaim):
+    """What shows that a limit is broken, for all values rounded or cut off to the digits; or None.
+
+    For a total without its durations: that no motion so short keeps the limits.
+    """
+    if not isinstance(claim, TimeClaim):
         return None
     if study.unmoved(claim, pid, rid) is not None:
         return None
@@ -121,15 +148,23 @@ def broken(study: Study, claim: AnyClaim, pid: str, rid: str) -> str | None:
 def said_to_keep(study: Study, claim: AnyClaim) -> bool:
     """Whether durations are meant as an answer within the limits.
 
-    They are if an algorithm found them, or a statement about limits or optimality names them; a
-    paper that says of other durations that they keep the limits says nothing of these.
+    They are if a statement about limits or optimality names them, or an algorithm found them and
+    they are not the state before an optimisation. Where no statement names any durations, they are
+    too, unless they are what an improvement starts from.
     """
     about = [
         c.of
         for c in study.case.claims
         if isinstance(c, StatementClaim) and c.checks in ("within_limits", "optimal")
     ]
-    return claim.algorithm is not None or not about or any(claim.id in named for named in about)
+    if any(claim.id in named for named in about):
+        return True
+    if isinstance(claim, TimeClaim) and claim.state == "before":
+        return False
+    improved = any(
+        isinstance(c, ImprovementClaim) and c.slower == claim.id for c in study.case.claims
+    )
+    return claim.algorithm is not None or not (about or improved)
 
 
 def _limits(study: Study, claim: AnyClaim) -> Iterator[Finding]:
@@ -145,7 +180,7 @@ def _limits(study: Study, claim: AnyClaim) -> Iterator[Finding]:
             claim=claim.id,
             problem=pid,
             reading=rid,
-            printed=f"{_durations_text(claim)} s",
+            printed=durations_text(study, claim),
             computed=_ratio(study, claim, pid, rid),
             message=judged.message + unsaid,
             decides=said,
@@ -162,18 +197,20 @@ def _jumps(study: Study, claim: AnyClaim) -> Iterator[Finding]:
         if not velocity:
             continue
         top = max(velocity, key=lambda jump: abs(jump.size))
+        unit = unit_shown(study, pid, rid, "velocity")
+        size = f"{abs(in_units(study, pid, rid, 'velocity', top.size)):.6g} {unit}"
         yield Finding(
             rule="TG202",
             basis=Basis.CHECK,
             claim=claim.id,
             problem=pid,
             reading=rid,
-            printed=f"{_durations_text(claim)} s",
-            computed=f"{len(velocity)} jumps of velocity, up to {abs(top.size):.6g} rad/s",
+            printed=durations_text(study, claim),
+            computed=f"{len(velocity)} jumps of velocity, up to {size}",
             message=(
                 f"discontinuous under this reading: the velocity jumps {len(velocity)} times at "
-                f"the via-points, most in joint {top.joint} at t = {top.time:.6g} s by "
-                f"{top.size:.6g} rad/s. Limits are judged apart from jumps."
+                f"the via-points, most in joint {top.joint} at t = {top.time:.6g} s by {size}. "
+                "Limits are judged apart from jumps."
             ),
             decides=False,
         )
@@ -193,25 +230,25 @@ def _limits_statement(study: Study, claim: StatementClaim) -> Iterator[Finding]:
         breaking = [one for one in judged if one[2].verdict is ClaimVerdict.REFUTED]
         if breaking:
             verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
-            message = " ".join(f"{c.id} ({pid}): {one.message}" for c, pid, one in breaking)
+            message = " ".join(f"{called(c)} ({pid}): {one.message}" for c, pid, one in breaking)
         elif all(one.verdict is ClaimVerdict.SUPPORTED for _, _, one in judged):
             verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
-            every = ", ".join(dict.fromkeys(c.id for c, _, _ in judged))
+            every = all_called(c for c, _, _ in judged)
             message = (
                 f"Every printed set of durations ({every}) keeps the limits for all t, or some "
-                "input that prints alike does."
+                "values that round to its digits do."
             )
         else:
             verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
             undecided = [one for one in judged if one[2].verdict is ClaimVerdict.NOT_CHECKABLE]
-            names = ", ".join(c.id for c, _, _ in undecided)
-            message = f"The printed digits do not decide {names}."
-            jumping = [
-                f"{c.id} ({pid}): {one.message}"
+            names = all_called(c for c, _, _ in undecided)
+            message = f"The printed digits do not decide whether the limits are kept: {names}."
+            why = [
+                f"{called(c)} ({pid}): {one.message}"
                 for c, pid, one in undecided
-                if study.claim_check(c, pid, rid).verdict is Verdict.DISCONTINUOUS
+                if one.kind in (str(Verdict.DISCONTINUOUS), "total open")
             ]
-            message = " ".join(jumping) or message
+            message = " ".join(why) or message
         yield Finding(
             rule="TG201",
             severity=severity,
@@ -233,7 +270,7 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             for pid, reading in study.claim_pairs(other):
                 if reading == rid:
                     judged += 1
-                    jumps += list(study.claim_check(other, pid, rid).jumps)
+                    jumps += [(pid, jump) for jump in study.claim_check(other, pid, rid).jumps]
         if not judged:
             continue
         message = (
@@ -242,12 +279,13 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
         )
         verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
         if jumps:
-            top = max(jumps, key=lambda j: abs(j.size))
-            names = ("position", "velocity", "acceleration")
+            where, top = max(jumps, key=lambda one: abs(one[1].size))
+            name = ("position", "velocity", "acceleration")[top.order]
+            size = in_units(study, where, rid, name, top.size)
             verdict, severity = ClaimVerdict.INCONSISTENT, Severity.WARNING
             message = (
-                f"discontinuous: {len(jumps)} jumps, the largest in {names[top.order]} of joint "
-                f"{top.joint} at t = {top.time:.6g} s by {top.size:.6g}."
+                f"discontinuous: {len(jumps)} jumps, the largest in {name} of joint {top.joint} "
+                f"at t = {top.time:.6g} s by {size:.6g} {unit_shown(study, where, rid, name)}."
             )
         yield Finding(
             rule="TG202",
@@ -269,16 +307,19 @@ def _said_to_jump(study: Study, claim: StatementClaim) -> Iterator[Finding]:
                 if reading == rid:
                     judged += 1
                     found = study.claim_check(other, pid, rid).jumps
-                    jumps += [j for j in found if j.order == 2 and claim.joint in (None, j.joint)]
+                    own = [j for j in found if j.order == 2 and claim.joint in (None, j.joint)]
+                    jumps += [(pid, jump) for jump in own]
         if not judged:
             continue
         whose = "" if claim.joint is None else f" of joint {claim.joint}"
         if jumps:
-            top = max(jumps, key=lambda j: abs(j.size))
+            where, top = max(jumps, key=lambda one: abs(one[1].size))
+            size = in_units(study, where, rid, "acceleration", top.size)
             verdict = ClaimVerdict.SUPPORTED
             message = (
                 f"Under this reading the acceleration{whose} jumps at {len(jumps)} breaks, most at "
-                f"t = {top.time:.6g} s by {top.size:.6g} rad/s²."
+                f"t = {top.time:.6g} s by {size:.6g} "
+                f"{unit_shown(study, where, rid, 'acceleration')}."
             )
         else:
             verdict = ClaimVerdict.NOT_CHECKABLE
@@ -296,52 +337,27 @@ def _said_to_jump(study: Study, claim: StatementClaim) -> Iterator[Finding]:
         )
 
 
-def _box_reach(study: Study, claim: AnyClaim, pid: str, rid: str, point: Extremum) -> float:
-    """First-order change of an extremum over the rounding box."""
-    problem = study.claim_problem(claim, pid, rid)
-    box = study.case.claim_durations(claim, rid)
-    lower, upper = study.case.waypoint_box(pid, rid)
-    joint = study.problem(pid, rid).joints.index(problem.joints[point.joint])
-    g = peak_gradients(problem, box.value, [point])
-    by_time = np.abs(g.durations[0]) @ (box.upper - box.lower) / 2
-    by_angle = np.abs(g.waypoints[0]) @ (upper[:, joint] - lower[:, joint]) / 2
-    return float(by_time + by_angle)
-
-
-def _largest(study: Study, claim: AnyClaim, pid: str, rid: str, order: int) -> list[Extremum]:
-    """Largest extremum of each joint of the claim's problem, at the printed point."""
-    problem = study.claim_problem(claim, pid, rid)
-    durations = study.case.claim_durations(claim, rid).value
-    trajectory = fit(problem.curve, problem.waypoints, durations)
-    return [
-        max(extrema(trajectory, j, order), key=lambda e: abs(e.value))
-        for j in range(len(problem.joints))
-    ]
-
-
-def _has_curve(study: Study, claim: AnyClaim, pid: str, rid: str) -> bool:
-    """Whether the printed durations define a curve under a reading."""
-    worst = study.claim_check(claim, pid, rid).worst
-    return worst is None or worst.quantity != "curve"
-
-
 def _used_up(study: Study, claim: AnyClaim) -> Iterator[Finding]:
     for pid, rid in study.claim_pairs(claim):
-        if not _has_curve(study, claim, pid, rid):
+        if not has_curve(study, claim, pid, rid):
             continue
         problem = study.claim_problem(claim, pid, rid)
         tight = []
         for r, quantity in enumerate(QUANTITIES, start=1):
             limits = problem.limits.derivatives[:, r - 1]
-            for top in _largest(study, claim, pid, rid, r):
+            for top in largest(study, claim, pid, rid, r):
                 limit = float(limits[top.joint])
                 if not np.isfinite(limit):
                     continue
-                reach = _box_reach(study, claim, pid, rid, top)
+                reach = box_reach(study, claim, pid, rid, top)
                 if abs(abs(top.value) - limit) <= reach <= _NARROW * limit:
+                    value, around, bound = (
+                        in_units(study, pid, rid, quantity, x)
+                        for x in (abs(top.value), reach, limit)
+                    )
                     tight.append(
-                        f"joint {problem.joints[top.joint]} {quantity} {abs(top.value):.6g} "
-                        f"± {reach:.1g} at its limit {limit:.6g} {UNITS[quantity]}"
+                        f"joint {problem.joints[top.joint]} {quantity} {value:.6g} ± {around:.1g} "
+                        f"at its limit {bound:.6g} {unit_shown(study, pid, rid, quantity)}"
                     )
         if tight:
             yield Finding(
@@ -351,51 +367,10 @@ def _used_up(study: Study, claim: AnyClaim) -> Iterator[Finding]:
                 claim=claim.id,
                 problem=pid,
                 reading=rid,
-                printed=f"{_durations_text(claim)} s",
+                printed=durations_text(study, claim),
                 computed="; ".join(tight),
                 message="To first order in the rounding of the printed inputs, a limit is reached: "
                 + "; ".join(tight)
                 + ".",
                 decides=False,
-            )
-
-
-def _peak(study: Study, claim: PeakClaim) -> Iterator[Finding]:
-    sources = [
-        c
-        for c in study.case.claims
-        if isinstance(c, DurationsClaim | MaximumClaim)
-        and c.algorithm == claim.algorithm
-        and c.problem == claim.problem
-        and c.joint in (None, claim.joint)
-    ]
-    order = QUANTITIES.index(claim.derivative) + 1
-    for pid, rid in study.claim_pairs(claim):
-        for source in (s for s in sources[:1] if _has_curve(study, s, pid, rid)):
-            problem = study.claim_problem(source, pid, rid)
-            tops = _largest(study, source, pid, rid, order)
-            if claim.joint is not None and claim.joint in problem.joints:
-                tops = [tops[problem.joints.index(claim.joint)]]
-            top = max(tops, key=lambda e: abs(e.value))
-            reach = _box_reach(study, source, pid, rid, top)
-            printed = study.case.measured(claim.value, claim.derivative, pid, rid)
-            near = printed.lower - reach <= abs(top.value) <= printed.upper + reach
-            unit = UNITS[claim.derivative]
-            yield Finding(
-                rule="TG203",
-                severity=Severity.INFO if near else Severity.WARNING,
-                verdict=ClaimVerdict.SUPPORTED if near else ClaimVerdict.INCONSISTENT,
-                basis=Basis.CHECK,
-                claim=claim.id,
-                problem=pid,
-                reading=rid,
-                printed=f"{claim.value}",
-                computed=f"{abs(top.value):.6g} ± {reach:.1g} {unit}",
-                message=(
-                    f"The printed durations of {source.id} have the peak {abs(top.value):.6g} "
-                    f"± {reach:.1g} {unit} (first order in the rounding of the inputs); printed "
-                    f"is {claim.value}."
-                ),
-                root="" if near else f"peaks of {source.id}",
-                between=() if near else (claim.id, source.id),
             )

@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
 
 from ....nlp import Evidence, Solution, Status, weakest
 from ....problem import Coupling
 from ....problem.cases import (
     AnyClaim,
+    Digits,
     DurationsClaim,
     MaximumClaim,
     StatementClaim,
+    TimeClaim,
     TotalTimeClaim,
 )
 from ...documents import (
@@ -18,7 +23,6 @@ from ...documents import (
     ClaimVerdict,
     Finding,
     Gap,
-    GapKind,
     Reference,
     Rounding,
     Severity,
@@ -26,8 +30,10 @@ from ...documents import (
 )
 from ...gaps import gap, reference_of
 from ..explanations import LIMITS, OPTIMAL
+from ..rounding import same_limits
 from ..study import Study
 from .continuous_time import broken
+from .wording import called
 
 _BELOW = (
     " The whole printed interval lies below the best known total. That value is not a proven "
@@ -86,8 +92,8 @@ def _distance(
     distance = gap(interval, reference, feasible=kept)
     which = "with shared durations" if shared or claim.joint is None else f"of joint {claim.joint}"
     message = (
-        f"Printed {shown}; {reference.evidence} optimum {which} {reference.upper:.6f} s"
-        f"{_bounded(reference)}: {_named(distance)}."
+        f"Printed {shown} {_set_beside(distance)} the {reference.evidence} optimum {which}, "
+        f"{reference.upper:.6f} s{_bounded(reference)}."
     )
     if not isinstance(claim, TotalTimeClaim) and study.unmoved(claim, pid, rid) is None:
         verdict = study.claim_check(claim, pid, rid)
@@ -98,18 +104,19 @@ def _distance(
                 f"({repaired.percent})."
             )
     severity = Severity.INFO
-    if distance.highest < 0 and broken(study, claim, pid, rid) is not None:
-        message += (
-            f" Below the {reference.evidence} total, which keeps the limits; these durations do "
-            "not."
-        )
-    elif distance.highest < 0:
-        severity = Severity.WARNING
-        message += _BELOW if isinstance(reference.lower, Why) else _BELOW_BOUND
+    if distance.highest < 0:
+        explained = _below(study, claim, pid, rid, solution, interval)
+        if explained is not None:
+            message += explained
+        else:
+            before = isinstance(claim, TimeClaim) and claim.state == "before"
+            severity = Severity.INFO if before else Severity.WARNING
+            message += _BELOW if isinstance(reference.lower, Why) else _BELOW_BOUND
+    agrees = kept and interval[0] <= solution.best <= interval[1]
     return Finding(
         rule="TG303" if shared else "TG302",
         severity=severity,
-        verdict=ClaimVerdict.SUPPORTED if kept else ClaimVerdict.NOT_CHECKABLE,
+        verdict=ClaimVerdict.SUPPORTED if agrees else ClaimVerdict.NOT_CHECKABLE,
         evidence=solution.evidence,
         basis=Basis.OPTIMUM,
         claim=claim.id,
@@ -123,6 +130,46 @@ def _distance(
     )
 
 
+def _below(
+    study: Study,
+    claim: AnyClaim,
+    pid: str,
+    rid: str,
+    solution: Solution,
+    interval: tuple[float, float],
+) -> str | None:
+    """Why a total may lie below the optimum of the problem as printed, if something explains it."""
+    timed = not isinstance(claim, TotalTimeClaim)
+    if timed and study.claim_rounding(claim, pid, rid).verdict is Rounding.CONSISTENT:
+        return (
+            " The rounding of the printed digits explains it: some values that round to them keep "
+            "every limit with these durations."
+        )
+    if timed and broken(study, claim, pid, rid) is not None:
+        return (
+            f" Below the {solution.evidence} total, which keeps the limits; these durations do not."
+        )
+    share = _spread(study, claim, pid, rid, solution)
+    if share is not None and interval[1] >= solution.best * (1.0 - share):
+        return (
+            " To first order the rounding of way-points and limits explains it: they move the "
+            f"optimum by up to {100 * share:.2g} %."
+        )
+    return None
+
+
+def _spread(study: Study, claim: AnyClaim, pid: str, rid: str, solution: Solution) -> float | None:
+    """Share by which the rounding of way-points and limits moves the optimum, to first order.
+
+    That the optimum is at most so much longer for any of them is proved; that it is at most so
+    much shorter is its mirror image.
+    """
+    if solution.durations is None or not solution.best > 0:
+        return None
+    reached = study.reachable(claim, solution.durations, pid, rid)
+    return None if reached is None else max(reached / solution.best - 1.0, 0.0)
+
+
 def _bounded(reference: Reference) -> str:
     if isinstance(reference.lower, Why):
         return ""
@@ -130,11 +177,16 @@ def _bounded(reference: Reference) -> str:
     return f" (proved, gap {width:.1e})"
 
 
-def _named(distance: Gap) -> str:
+def _set_beside(distance: Gap) -> str:
+    """How a printed total lies beside a reference, as the verb of a sentence."""
+    low, high = 100 * distance.lowest, 100 * distance.highest
     if distance.many_times:
-        return distance.percent
-    name = "gap" if distance.kind is GapKind.OPTIMALITY else str(distance.kind)
-    return f"{name} {distance.percent}"
+        return f"is {1 + distance.lowest:.4g} times"
+    if low <= 0 <= high:
+        return "agrees within its rounding with"
+    ends = [f"{x:.3g}" for x in sorted((abs(low), abs(high)))]
+    share = ends[1] if ends[0] == ends[1] else f"{ends[0]} to {ends[1]}"
+    return f"is {share} % {'longer' if low > 0 else 'shorter'} than"
 
 
 def _beside_procedure(
@@ -169,50 +221,113 @@ def _beside_procedure(
     )
 
 
+@dataclass
+class _Sides:
+    """What speaks for and against a statement that totals are optimal, under one reading."""
+
+    longer: list[str] = field(default_factory=list)
+    breaking: list[str] = field(default_factory=list)
+    roots: list[str] = field(default_factory=list)
+    agreeing: list[str] = field(default_factory=list)
+    open: list[str] = field(default_factory=list)
+    evidence: list[Evidence] = field(default_factory=list)
+
+
+def _weigh(study: Study, claim: AnyClaim, pid: str, rid: str, sides: _Sides) -> None:
+    """Set one printed total beside the optimum of its problem."""
+    total = study.claim_total(claim, rid)
+    if total is None:
+        return
+    shown, interval = total
+    name = f"{called(claim)} ({pid})"
+    solution = study.claim_optimum(claim, pid, rid)
+    shorter = _shorter(study, claim, pid, rid, solution, total)
+    if shorter is not None:
+        sides.longer.append(shorter)
+        return
+    known = solution.durations is not None and solution.status is not Status.NOT_ATTAINED
+    # Whether a bare total is too short takes a proof, which is tried only where it may succeed.
+    bare = isinstance(claim, TotalTimeClaim) and known and interval[1] >= solution.best
+    proof = None if bare else broken(study, claim, pid, rid)
+    below = _below_certified(study, claim, pid, rid, solution, interval)
+    if proof is not None or below is not None:
+        sides.breaking.append(f"{name}: {proof or below}")
+        sides.roots.append(f"{LIMITS} {claim.id}")
+        return
+    if not known:
+        sides.open.append(f"{name}: {_no_optimum(solution)}")
+        return
+    sides.evidence.append(solution.evidence)
+    if interval[0] <= solution.best <= interval[1]:
+        sides.agreeing.append(name)
+        return
+    distance = gap(interval, _reference(solution), feasible=False)
+    sides.open.append(
+        f"{name}: printed {shown} {_set_beside(distance)} the {solution.evidence} optimum "
+        f"{solution.best:.6f} s, and no proof for all values that round to the printed digits "
+        "decides whether that is more than rounding explains"
+    )
+
+
+def _reference(solution: Solution) -> Reference:
+    """The reference interval of a solution that has a positive time."""
+    reference = reference_of(solution)
+    assert reference is not None
+    return reference
+
+
+def _no_optimum(solution: Solution) -> str:
+    """Why there is no optimum to set a total beside."""
+    why = f": {solution.why}" if solution.why else ""
+    if solution.status is Status.NOT_ATTAINED:
+        limits = solution.problem.limits
+        free = not np.isfinite(limits.derivatives).any()
+        reason = "no limit is printed, and " if free else ""
+        return f"{reason}no motion is the shortest, the total only approaches an infimum{why}"
+    if solution.status is Status.INFEASIBLE:
+        return f"at the printed way-points no durations keep the limits{why}"
+    return f"no optimum was found ({solution.status}{why})"
+
+
+def _below_certified(
+    study: Study,
+    claim: AnyClaim,
+    pid: str,
+    rid: str,
+    solution: Solution,
+    interval: tuple[float, float],
+) -> str | None:
+    """That a total lies below a certified bound, which speaks only where the problem is exact."""
+    bound = solution.lower_bound
+    low, high = interval
+    if bound is None or high + (high - low) >= bound:
+        return None
+    problem = study.claim_problem(claim, pid, rid)
+    box = study.waypoint_box(problem, pid, rid)
+    exact = same_limits(problem, study.claim_problem(claim, pid, rid, Digits.LOOSEST))
+    if not (exact and np.array_equal(box.lower, box.upper)):
+        return None
+    return f"The printed total lies below the certified lower bound {bound:.6f} s."
+
+
 def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Finding]:
     """Refuted by a feasible shorter answer, or by durations that no rounding lets keep the limits.
 
-    Shorter means: for every way-point that prints alike, the same checked durations, stretched as
-    far as those way-points may need, take less than the low end of the printed total. The shortest
-    answer within the limits is within the limits, so that durations which break them are not it.
+    Shorter means: for every way-point and limit that rounds to the printed digits, the same checked
+    durations, stretched as far as those may need, take less than the low end of the printed total.
+    The shortest answer within the limits is within the limits, so that durations which break them
+    are not it.
     """
     for rid in study.readings:
-        longer, breaking, judged, open_ = [], [], 0, 0
-        roots: list[str] = []
-        failed: list[str] = []
-        evidence: list[Evidence] = []
+        sides = _Sides()
         for claim in (study.case.claim(i) for i in statement.of):
             for pid, reading in study.claim_pairs(claim):
-                total = study.claim_total(claim, rid)
-                solution = study.claim_optimum(claim, pid, rid) if reading == rid else None
-                if solution is not None and solution.status is Status.FAILED:
-                    failed.append(f"{claim.id} ({pid}): {solution.why or solution.status}")
-                if total is None or solution is None or solution.durations is None:
-                    continue
-                judged += 1
-                evidence.append(solution.evidence)
-                interval = total[1]
-                shorter = _shorter(study, claim, pid, rid, solution, total)
-                proof = broken(study, claim, pid, rid)
-                best = solution.best
-                if shorter is not None:
-                    longer.append(shorter)
-                elif proof is not None:
-                    breaking.append(f"{claim.id} ({pid}): {proof}")
-                    roots.append(f"{LIMITS} {claim.id}")
-                elif not interval[0] <= best <= interval[1]:
-                    open_ += 1
-        if not judged and failed:
-            yield Finding(
-                rule="TG302",
-                basis=Basis.OPTIMUM,
-                claim=statement.id,
-                reading=rid,
-                message=f"No optimum to compare with: {'; '.join(failed)}.",
-            )
-        if not judged:
+                if reading == rid:
+                    _weigh(study, claim, pid, rid, sides)
+        if not (sides.longer or sides.breaking or sides.agreeing or sides.open):
             continue
-        known = weakest(evidence)
+        known = weakest(sides.evidence)
+        longer, breaking = sides.longer, sides.breaking
         if longer or breaking:
             # What refutes is a motion or a broken limit: no optimum, known or certified, is needed.
             known = Evidence.NONE
@@ -220,12 +335,9 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
             said = [f"Not the shortest: {'; '.join(longer)}."] if longer else []
             said += [f"Not an answer within the limits: {' '.join(breaking)}"] if breaking else []
             message = " ".join(said)
-        elif open_:
+        elif sides.open:
             verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
-            message = (
-                f"{open_} of {judged} printed totals differ from the {known} optimum by no "
-                "more than the rounding of the inputs explains, or lie below it."
-            )
+            message = f"Not decided: {'; '.join(sides.open)}."
         else:
             verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
             message = f"Every printed total agrees with the {known} optimum."
@@ -240,7 +352,7 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
             message=message,
             kind="longer" if longer else "breaks" if breaking else str(known),
             root=f"{OPTIMAL} {statement.id}" if longer else "",
-            follows=() if longer else tuple(roots),
+            follows=() if longer else tuple(sides.roots),
         )
 
 
@@ -252,17 +364,22 @@ def _shorter(
     solution: Solution,
     total: tuple[str, tuple[float, float]],
 ) -> str | None:
-    """A checked motion that is shorter whatever the way-points round from, if there is one."""
-    assert solution.durations is not None
+    """A checked motion that is shorter whatever the digits stand for, if there is one.
+
+    Where the solver proves that no motion is the shortest, none is set beside a printed total: that
+    every motion can be shortened refutes no number.
+    """
+    if solution.durations is None or solution.status is Status.NOT_ATTAINED:
+        return None
     shown, interval = total
-    problem = study.claim_problem(claim, pid, rid)
-    reached = study.reachable(problem, solution.durations, pid, rid)
+    reached = study.reachable(claim, solution.durations, pid, rid)
     if reached is None or interval[0] <= reached:
         return None
     distance = gap(interval, Reference(upper=reached), feasible=_kept(study, claim, pid, rid))
     jumps = solution.check is not None and any(j.order == 1 for j in solution.check.jumps)
     kind = "a checked motion, whose velocity may jump at the via-points under this reading,"
     return (
-        f"{claim.id} ({pid}): printed {shown}; {kind if jumps else 'a checked motion'} takes "
-        f"{reached:.6f} s for every way-point that prints alike ({_named(distance)})"
+        f"{called(claim)} ({pid}): printed {shown}; {kind if jumps else 'a checked motion'} takes "
+        f"{reached:.6f} s for every value that rounds to the printed digits (the printed total "
+        f"{_set_beside(distance)} that)"
     )

@@ -24,7 +24,8 @@ def list_open_points(study: Study) -> Iterator[Finding]:
 def _without_waypoints(study: Study) -> Iterator[Finding]:
     """What cannot be said of claims while the way-points are missing."""
     for claim in study.claims:
-        if isinstance(claim, StatementClaim | ImprovementClaim):
+        said = isinstance(claim, StatementClaim) and bool(claim.not_checkable)
+        if said or isinstance(claim, ImprovementClaim):
             continue
         why = (study.case.statement(claim.problem).waypoints.not_printed or "").removesuffix(".")
         what = "An absolute time" if isinstance(claim, TotalTimeClaim) else "This"

@@ -43,7 +43,7 @@ class Vertex:
 
     @property
     def inside(self) -> bool:
-        """Whether some way-points that print alike give a vertex that prints as this one."""
+        """Whether some way-points that round to the digits give a vertex that rounds to its own."""
         return meet(self.printed.interval, self.allowed)
 
     @property

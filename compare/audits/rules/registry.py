@@ -10,10 +10,14 @@ from ..study import Study
 from .condition_count import judge_counts
 from .continuous_time import judge_motions
 from .distances import judge_distances
+from .improvements import judge_improvements
 from .on_instances import judge_instances
 from .open_points import list_open_points
+from .other_places import judge_places
+from .peaks import judge_peaks
 from .printed_chain import judge_kinematics
 from .printed_digits import judge_digits
+from .printed_tables import judge_tables
 from .printed_vertices import judge_vertices
 from .replays import judge_replays
 from .scaling_law import judge_scaling
@@ -44,24 +48,42 @@ GROUPS = (
         {
             "TG101": "A printed total is the sum of its printed parts",
             "TG102": "Printed longest durations are the longest of the printed rows",
-            "TG103": "A printed improvement follows from the printed totals",
-            "TG104": "Tables under different names print different digits",
-            "TG105": "Two places that print the same total agree",
             "TG106": "Unrelated columns do not repeat each other's digits",
+            "TG109": "As many durations are printed as there are segments",
         },
         without_waypoints=True,
     ),
-    RuleGroup(judge_counts, {"TG107": "The conditions stated fit the number of coefficients"}),
+    RuleGroup(
+        judge_improvements,
+        {"TG103": "A printed improvement follows from the printed totals"},
+        without_waypoints=True,
+    ),
+    RuleGroup(
+        judge_tables,
+        {
+            "TG104": "Tables under different names print different digits",
+            "TG105": "Two places that print the same total agree",
+        },
+        without_waypoints=True,
+    ),
+    RuleGroup(
+        judge_counts,
+        {
+            "TG107": "The conditions stated fit the number of coefficients",
+            "TG207": "The motion is at rest where it is said to be",
+        },
+    ),
     RuleGroup(
         judge_motions,
         {
             "TG201": "Printed durations keep the limits for all t, over the rounding box",
             "TG202": "Position, velocity and acceleration are continuous",
-            "TG203": "Printed peaks are those of the printed durations",
             "TG204": "The limits are used up by the printed durations",
             "TG206": "Acceleration jumps where it is said to",
         },
     ),
+    RuleGroup(judge_peaks, {"TG203": "Printed peaks are those of the printed durations"}),
+    RuleGroup(judge_places, {"TG108": "Printed numbers fit their own row, column or table best"}),
     RuleGroup(
         judge_vertices,
         {"TG205": "Printed control vertices follow from the printed way-points"},

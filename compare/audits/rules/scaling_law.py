@@ -7,12 +7,13 @@ from itertools import permutations
 
 import numpy as np
 
-from ....problem import Problem
-from ....problem.cases import AnyClaim, DurationsClaim, MaximumClaim, StatementClaim
+from ....problem import CaseError, Problem
+from ....problem.cases import AnyClaim, Digits, DurationsClaim, MaximumClaim, StatementClaim
 from ...documents import Basis, ClaimVerdict, Finding, Reference, Severity
 from ...gaps import gap
 from ..explanations import OPTIMAL
 from ..study import Study
+from .wording import called
 
 
 def judge_scaling(study: Study) -> Iterator[Finding]:
@@ -72,12 +73,16 @@ def _stretched(
     ]
     if not pairs[0] or not pairs[1]:
         return
-    one = study.claim_problem(source, pairs[0][0], rid)
-    other = study.claim_problem(target, pairs[1][0], rid)
+    try:
+        # Where the digits of the limits allow least, so that it holds for all that round to them.
+        one = study.claim_problem(source, pairs[0][0], rid, Digits.TIGHTEST)
+        other = study.claim_problem(target, pairs[1][0], rid, Digits.TIGHTEST)
+    except CaseError:
+        return
     factor = velocity_factor(one, other)
     total = study.claim_total(target, rid)
     durations = study.case.claim_durations(source, rid).value
-    feasible = study.reachable(one, durations, pairs[0][0], rid)
+    feasible = study.reachable(source, durations, pairs[0][0], rid)
     if factor is None or total is None or feasible is None:
         return
     reachable = feasible * factor
@@ -85,9 +90,12 @@ def _stretched(
     if low <= reachable * (1 + 1e-9):
         return
     distance = gap((low, high), Reference(upper=reachable), feasible=False)
+    summed = float(durations.sum())
     message = (
-        f"The durations of {source.id}, stretched by {factor:.6g}, keep the limit of "
-        f"{target.id} and take {reachable:.6g} s; printed for {target.id} is {shown}, "
+        f"The durations printed for {called(source)} ({pairs[0][0]}) sum to {summed:.6g} s; times "
+        f"{factor:.6g}, the ratio of the two limits, that is {summed * factor:.6g} s, and with the "
+        f"rounding of way-points, limits and durations allowed for {reachable:.6g} s. So stretched "
+        f"they keep the limit of {called(target)} ({pairs[1][0]}), for which {shown} is printed, "
         f"{distance.percent} from there. With velocity limits only, shortest time times "
         "limit is a constant, so the two printed results cannot both be shortest."
     )

@@ -12,6 +12,7 @@ from support.studies import changed, shipped, source
 from trajgap.compare.audits.rounding import RoundingBox, judge_rounding
 from trajgap.compare.audits.rules.continuous_time import judge_motions
 from trajgap.compare.audits.rules.distances import judge_distances
+from trajgap.compare.audits.rules.improvements import judge_improvements
 from trajgap.compare.audits.rules.open_points import list_open_points
 from trajgap.compare.audits.rules.printed_digits import judge_digits
 from trajgap.compare.audits.rules.printed_vertices import judge_vertices, vertices
@@ -241,7 +242,7 @@ def test_the_printed_durations_are_optimal_under_no_reading() -> None:
     found = {f.reading: f for f in of(judge_distances(shipped(POLISH)), "TG302", "time-optimal")}
     assert len(found) == 16
     assert {f.verdict for f in found.values()} == {ClaimVerdict.REFUTED}
-    shorter = {rid for rid, f in found.items() if f.message.startswith("Not the shortest: after")}
+    shorter = {rid for rid, f in found.items() if f.message.startswith("Not the shortest: Table 4")}
     # Angles in radians under limits in degrees: the printed total lies below the optimum.
     assert {rid.rpartition("-")[0] for rid in found.keys() - shorter} == {
         "angles-rad-v-rad-a-deg",
@@ -249,7 +250,7 @@ def test_the_printed_durations_are_optimal_under_no_reading() -> None:
         "angles-rad-v-deg-a-deg",
     }
     for rid in found.keys() - shorter:
-        assert found[rid].message.startswith("Not an answer within the limits: after")
+        assert found[rid].message.startswith("Not an answer within the limits: Table 4")
         assert found[rid].basis is Basis.ENCLOSURE
     for rid in shorter:
         jumps = "whose velocity may jump at the via-points" in found[rid].message
@@ -273,7 +274,7 @@ def test_acceleration_said_to_jump_does_in_the_reading_that_stretches() -> None:
 
 
 def test_totals_and_the_saving_follow_from_the_digits() -> None:
-    found = list(judge_digits(shipped(POLISH)))
+    found = [*judge_digits(shipped(POLISH)), *judge_improvements(shipped(POLISH))]
     assert {f.claim: f.verdict for f in found if f.rule in ("TG101", "TG103")} == dict.fromkeys(
         ("before", "after", "improvement"), ClaimVerdict.SUPPORTED
     )
@@ -292,7 +293,7 @@ def test_a_case_without_waypoints_says_of_each_time_why_it_is_not_checkable() ->
         assert "cannot be computed without the way-points: the text gives" in finding.message
     assert not of(found, "TG501", "improvement")
     assert not list(judge_vertices(study))
-    (improvement,) = of(judge_digits(study), "TG103", "improvement")
+    (improvement,) = of(judge_improvements(study), "TG103", "improvement")
     assert improvement.verdict is ClaimVerdict.NOT_CHECKABLE
 
 

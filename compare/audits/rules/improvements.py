@@ -1,0 +1,172 @@
+"""TG103: a printed improvement beside the printed totals that it compares."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+
+from ....problem import Interval, Printed
+from ....problem.cases import (
+    AnyClaim,
+    ImprovementClaim,
+    MaximumClaim,
+)
+from ...documents import Basis, ClaimVerdict, Finding, Severity
+from ..study import Study
+from .printed_digits import compared, hull, meet, shown, span
+from .printed_tables import doubted, printed_total
+
+_SHARE_OF = {"slower": "the longer total", "faster": "the shorter total"}
+"""What a percentage may be a share of; of the longer total, if either fits."""
+
+
+def judge_improvements(study: Study) -> Iterator[Finding]:
+    """Findings of TG103."""
+    for claim in study.claims:
+        if not isinstance(claim, ImprovementClaim):
+            continue
+        slower_claim, faster_claim = (study.case.claim(i) for i in (claim.slower, claim.faster))
+        slower, faster = printed_total(slower_claim), printed_total(faster_claim)
+        if slower is None or faster is None or slower.interval.lower <= 0:
+            continue
+        between = f"{slower} and {faster} {study.time_unit}"
+        what = f"The reduction between the printed totals {between}"
+        root = f"improvement {claim.id}"
+        seconds = _difference(slower.interval, faster.interval)
+        if claim.percent is not None:
+            yield _percentage(claim, claim.percent, slower, faster, what, root)
+        if claim.seconds is not None:
+            cut = _difference(slower.truncated, faster.truncated)
+            unit = study.time_unit
+            yield compared("TG103", claim, claim.seconds, seconds, cut, what, unit, root)
+        if claim.percent is None and claim.seconds is None:
+            yield _unquantified(study, claim, slower, faster, seconds)
+        tables = [_table_total(study, c.algorithm, c.problem) for c in (slower_claim, faster_claim)]
+        totals = [printed_total(t) for t in tables if t is not None]
+        if claim.percent is not None and len(totals) == 2 and None not in totals:
+            yield from _against_tables(study, claim, claim.percent, tables, totals)
+
+
+def _table_total(study: Study, algorithm: str | None, problem: str | None) -> AnyClaim | None:
+    """The claim that prints an algorithm's total for all joints in a table."""
+    for claim in study.case.claims:
+        same = claim.algorithm == algorithm and claim.problem == problem
+        if isinstance(claim, MaximumClaim) and same and claim.total is not None:
+            return claim
+    return None
+
+
+def _difference(slower: Interval, faster: Interval) -> Interval:
+    return Interval(slower.lower - faster.upper, slower.upper - faster.lower)
+
+
+def _share(slower: Interval, faster: Interval, base: str) -> Interval:
+    """The reduction in percent of the slower or the faster of two intervals."""
+    if base == "slower":
+        low = 100 * (1 - faster.upper / slower.lower)
+        return Interval(low, 100 * (1 - faster.lower / slower.upper))
+    low = 100 * (slower.lower / faster.upper - 1)
+    return Interval(low, 100 * (slower.upper / faster.lower - 1))
+
+
+def _bases(claim: ImprovementClaim) -> tuple[str, ...]:
+    """What the percentage may be a share of: as stated, or both where the text leaves it open."""
+    return tuple(_SHARE_OF) if claim.base is None else (claim.base,)
+
+
+def _percentage(
+    claim: ImprovementClaim,
+    percent: Printed,
+    slower: Printed,
+    faster: Printed,
+    what: str,
+    root: str,
+) -> Finding:
+    """The percentage under each base that is admissible; the first that fits is taken."""
+    zero = Fraction(0)
+    bases = [b for b in _bases(claim) if b == "slower" or faster.truncated.lower > zero]
+    tried = []
+    for base in bases or ["slower"]:
+        share = f"{what}, as a share of {_SHARE_OF[base]},"
+        rounded = _share(slower.interval, faster.interval, base)
+        cut = _share(slower.truncated, faster.truncated, base)
+        tried.append(compared("TG103", claim, percent, rounded, cut, share, "%", root))
+    weights = list(Severity)
+    best = max(tried, key=lambda f: weights.index(f.severity))
+    others = [f for f in tried if f is not best]
+    if not others or (best is tried[0] and best.severity is Severity.INFO):
+        return best
+    if best.verdict is ClaimVerdict.REFUTED:
+        rest = f" As a share of {_SHARE_OF['faster']} it would be {others[0].computed}."
+    else:
+        rest = f" As a share of {_SHARE_OF['slower']} it would be {tried[0].computed}."
+        rest += " The text leaves open which is meant."
+    return best.model_copy(update={"message": best.message + rest})
+
+
+def _unquantified(
+    study: Study, claim: ImprovementClaim, slower: Printed, faster: Printed, seconds: Interval
+) -> Finding:
+    unit = study.time_unit
+    between = f"{slower} and {faster} {unit}"
+    if slower.text == faster.text:
+        message = (
+            f"The printed totals of the two algorithms are alike, {faster} {unit}: an improvement, "
+            f"if any, is below {shown(seconds.upper)} {unit}."
+        )
+        verdict, severity = ClaimVerdict.INCONSISTENT, Severity.WARNING
+    elif seconds.lower > 0 and not study.posed:
+        message = (
+            f"The printed totals are {between}, in the order that is claimed; neither can be "
+            "computed from the text."
+        )
+        verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
+    elif seconds.lower > 0:
+        message = f"The printed totals are {between}."
+        verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
+    elif hull(slower).upper < hull(faster).lower:
+        message = f"The printed totals are {between}: the one called better is the longer."
+        verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
+    else:
+        message = f"The printed totals {between} do not differ by more than their rounding."
+        verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
+    return Finding(
+        rule="TG103",
+        severity=severity,
+        verdict=verdict,
+        basis=Basis.DIGITS,
+        claim=claim.id,
+        printed=between,
+        message=message,
+        follows=doubted(study, [study.case.claim(i) for i in (claim.slower, claim.faster)]),
+    )
+
+
+def _against_tables(
+    study: Study,
+    claim: ImprovementClaim,
+    percent: Printed,
+    tables: Sequence[AnyClaim | None],
+    totals: Sequence[Printed | None],
+) -> Iterator[Finding]:
+    slower, faster = totals
+    assert slower is not None
+    assert faster is not None
+    found = [_share(hull(slower), hull(faster), base) for base in _bases(claim)]
+    if not found or any(meet(hull(percent), allowed) for allowed in found):
+        return
+    allowed = found[0]
+    where = " and ".join(t.where for t in tables if t is not None)
+    yield Finding(
+        rule="TG103",
+        severity=Severity.ERROR,
+        verdict=ClaimVerdict.INCONSISTENT,
+        basis=Basis.DIGITS,
+        claim=claim.id,
+        printed=f"{percent} %",
+        computed=f"{span(allowed, 3)} %",
+        message=f"From the totals printed in the tables ({where}: {slower} and {faster}) the "
+        f"reduction is {span(allowed, 3)} %, not {percent} %.",
+        follows=doubted(study, [t for t in tables if t is not None]),
+        between=(claim.id, *(t.id for t in tables if t is not None)),
+    )

@@ -1,0 +1,132 @@
+"""TG108: printed numbers that fit another row, column or table better than their own."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations
+from math import inf, isfinite, log
+
+from ....problem import check
+from ....problem.cases import AnyClaim, DurationsClaim, PeakClaim, TimeClaim, motions_of_peak
+from ...documents import Basis, Finding
+from ..study import Study
+from .continuous_time import broken
+from .peaks import FITS, beside, peak_numbers
+from .printed_tables import doubted
+from .wording import called
+
+_FEWEST = 3
+"""Durations that two rows need in common before equal digits are worth a word."""
+_CLOSE = 0.01
+"""Share by which a row may miss the limits of another and still be said to fit it."""
+
+
+def judge_places(study: Study) -> Iterator[Finding]:
+    """Findings of TG108, which inform and decide nothing."""
+    for claim in study.claims:
+        if isinstance(claim, PeakClaim):
+            for motion in motions_of_peak(study.case.claims, claim):
+                yield from _peaks_elsewhere(study, claim, motion)
+        elif isinstance(claim, DurationsClaim) and claim.joint is not None:
+            yield from _row_elsewhere(study, claim)
+    yield from _equal_rows(study)
+
+
+def _peaks_elsewhere(study: Study, claim: PeakClaim, own: AnyClaim) -> Iterator[Finding]:
+    motions = [c for c in study.case.claims if study.has_durations(c)]
+    for pid, rid in study.claim_pairs(own):
+        joints = study.problem(pid, rid).joints
+        said = []
+        for joint, number in peak_numbers(study, claim):
+            mine = beside(study, claim, number, own, joint, pid, rid)
+            if mine is None or mine.kind in FITS:
+                continue
+            found = []
+            for motion in motions:
+                if not study.fits(motion, pid, rid):
+                    continue
+                for other in joints if joint is not None else (None,):
+                    if (motion.id, other) == (own.id, joint):
+                        continue
+                    there = beside(study, claim, number, motion, other, pid, rid)
+                    if there is not None and there.kind in FITS:
+                        found.append((abs(there.distance), motion, other))
+            if found:
+                distance, motion, other = min(found, key=lambda one: one[0])
+                row = "" if other is None else f", joint {other}"
+                said.append(
+                    f"{number} lies {100 * mine.distance:+.2g} % from the peak of its own motion "
+                    f"and {100 * distance:.2g} % from that of {called(motion)}{row}"
+                )
+        if said:
+            yield Finding(
+                rule="TG108",
+                basis=Basis.CHECK,
+                claim=claim.id,
+                problem=pid,
+                reading=rid,
+                printed=", ".join(map(str, claim.printed)),
+                message="Printed peaks fit another place better than their own, as if numbers "
+                f"had been exchanged in print: {'; '.join(said)}.",
+                decides=False,
+            )
+
+
+def _row_elsewhere(study: Study, claim: DurationsClaim) -> Iterator[Finding]:
+    """A joint's durations that break its limits and just use up those of another joint."""
+    for pid, rid in study.claim_pairs(claim):
+        problem = study.problem(pid, rid)
+        if claim.joint not in problem.joints or len(problem.joints) == 1:
+            continue
+        if broken(study, claim, pid, rid) is None:
+            continue
+        durations = study.case.claim_durations(claim, rid).value
+        own = _misses(study.claim_check(claim, pid, rid).stretch)
+        best, joint = min(
+            (_misses(check(problem.joint(j), durations).stretch), label)
+            for j, label in enumerate(problem.joints)
+            if label != claim.joint
+        )
+        if best <= _CLOSE:
+            yield Finding(
+                rule="TG108",
+                basis=Basis.CHECK,
+                claim=claim.id,
+                problem=pid,
+                reading=rid,
+                message=f"The durations printed for joint {claim.joint} ({called(claim)}) would "
+                f"have to be stretched by {100 * own:.2g} % for its own limits and fit those of "
+                f"joint {joint} within {100 * best:.2g} %, as if rows had been exchanged in print.",
+                decides=False,
+            )
+
+
+def _misses(stretch: float) -> float:
+    """How far a motion is from just reaching its limits, up or down."""
+    return abs(log(stretch)) if isfinite(stretch) and stretch > 0 else inf
+
+
+def _equal_rows(study: Study) -> Iterator[Finding]:
+    """Equal durations under two names that are not part of whole tables alike."""
+    rows = [c for c in study.case.claims if isinstance(c, DurationsClaim)]
+    for first, second in combinations(rows, 2):
+        texts = [[d.text for d in c.durations] for c in (first, second)]
+        if len(texts[0]) < _FEWEST or texts[0] != texts[1] or len(set(texts[0])) == 1:
+            continue
+        if _named(first) == _named(second) or set(doubted(study, [first])) & set(
+            doubted(study, [second])
+        ):
+            continue
+        yield Finding(
+            rule="TG108",
+            basis=Basis.DIGITS,
+            claim=second.id,
+            printed=", ".join(texts[1]),
+            message=f"{called(first)} and {called(second)} print the same {len(texts[0])} "
+            "durations for different things, distance 0.",
+            decides=False,
+        )
+
+
+def _named(claim: TimeClaim) -> tuple[object, ...]:
+    return claim.algorithm, claim.problem, claim.joint, claim.state, claim.other_curve

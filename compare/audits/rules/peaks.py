@@ -1,0 +1,287 @@
+"""TG203: printed peaks beside the exact peaks of the motion that they describe."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import cached_property
+from math import pi
+
+import numpy as np
+
+from ....problem import QUANTITIES, Extremum, Printed, extrema, fit, peak_gradients
+from ....problem.cases import AnyClaim, PeakClaim, motions_of_peak
+from ...documents import Basis, ClaimVerdict, Finding, Severity
+from ..study import Study
+from .wording import called, in_units, unit_shown
+
+_SAMPLES = 50
+"""Samples of a motion at the coarsest: fewer would show corners in a printed figure."""
+_PHASES = 8
+"""Offsets at which those samples are tried: the worst of so many comes near the worst of all."""
+_FACTORS = {
+    180 / pi: "as °, rad printed, or the other way round",
+    1000.0: "as a thousandth of the unit",
+    100.0: "as a hundredth of the unit",
+    60.0: "as per minute instead of per second",
+    2 * pi: "as turns instead of radians",
+    30 / pi: "as turns per minute instead of radians per second",
+}
+"""Ratios between units that are mixed up, and what that would mean; their inverses count too."""
+_NEAR_FACTOR = 0.01
+"""Relative distance from such a ratio below which the unit is named as an explanation."""
+
+
+class Class(StrEnum):
+    """How a printed peak lies beside the exact one."""
+
+    ROUNDING = "rounding"
+    CUT_OFF = "cut off"
+    SAMPLING = "sampling"
+    UNIT = "other unit"
+    OFF = "off"
+
+
+FITS = (Class.ROUNDING, Class.CUT_OFF, Class.SAMPLING)
+"""The classes that accuse of nothing."""
+
+
+@dataclass(frozen=True, eq=False)
+class Beside:
+    """A printed peak beside the exact one of a motion.
+
+    Attributes
+    ----------
+    printed : Printed
+    lower, upper, cut_lower, cut_upper : float
+        What the digits stand for, rounded or cut off, in the SI unit.
+    exact : float
+        The exact peak, at the printed durations and way-points.
+    reach : float
+        Its first-order change over all values that round to the printed digits.
+    sampled : float
+        The least peak that coarse sampling of that motion finds.
+    """
+
+    printed: Printed
+    value: float
+    lower: float
+    upper: float
+    cut_lower: float
+    cut_upper: float
+    exact: float
+    reach: float
+    sampled: float
+
+    @property
+    def distance(self) -> float:
+        """Relative distance of the printed peak from the exact one."""
+        if self.exact == 0.0:
+            return 0.0 if self.value == 0.0 else np.inf
+        return (self.value - self.exact) / self.exact
+
+    @cached_property
+    def kind(self) -> Class:
+        """How the two lie beside each other, the most charitable first."""
+        low, high = self.exact - self.reach, self.exact + self.reach
+        if self.lower <= high and low <= self.upper:
+            return Class.ROUNDING
+        if self.cut_lower <= high and low <= self.cut_upper:
+            return Class.CUT_OFF
+        if self.sampled - self.reach <= self.cut_upper and self.value < self.exact:
+            return Class.SAMPLING
+        return Class.OFF if self.factor is None else Class.UNIT
+
+    @property
+    def factor(self) -> str | None:
+        """What a ratio near that of two units would mean, if it is near one."""
+        if not (self.exact > 0 and self.value > 0):
+            return None
+        ratio = self.value / self.exact
+        for factor, meaning in _FACTORS.items():
+            for one in (factor, 1 / factor):
+                if abs(ratio / one - 1) <= _NEAR_FACTOR:
+                    return f"{one:.6g}, {meaning}"
+        return None
+
+
+def box_reach(study: Study, claim: AnyClaim, pid: str, rid: str, point: Extremum) -> float:
+    """First-order change of an extremum over the rounding box."""
+    problem = study.claim_problem(claim, pid, rid)
+    box = study.case.claim_durations(claim, rid)
+    lower, upper = study.case.waypoint_box(pid, rid)
+    joint = study.problem(pid, rid).joints.index(problem.joints[point.joint])
+    g = peak_gradients(problem, box.value, [point])
+    by_time = np.abs(g.durations[0]) @ (box.upper - box.lower) / 2
+    by_angle = np.abs(g.waypoints[0]) @ (upper[:, joint] - lower[:, joint]) / 2
+    return float(by_time + by_angle)
+
+
+def largest(study: Study, claim: AnyClaim, pid: str, rid: str, order: int) -> list[Extremum]:
+    """Largest extremum of each joint of the claim's problem, at the printed point."""
+    problem = study.claim_problem(claim, pid, rid)
+    durations = study.case.claim_durations(claim, rid).value
+    trajectory = fit(problem.curve, problem.waypoints, durations)
+    return [
+        max(extrema(trajectory, j, order), key=lambda e: abs(e.value))
+        for j in range(len(problem.joints))
+    ]
+
+
+def has_curve(study: Study, claim: AnyClaim, pid: str, rid: str) -> bool:
+    """Whether the printed durations define a curve under a reading."""
+    worst = study.claim_check(claim, pid, rid).worst
+    return worst is None or worst.quantity != "curve"
+
+
+def beside(
+    study: Study,
+    claim: PeakClaim,
+    printed: Printed,
+    motion: AnyClaim,
+    joint: str | None,
+    pid: str,
+    rid: str,
+) -> Beside | None:
+    """A printed peak set beside the exact one of a motion.
+
+    Parameters
+    ----------
+    study : Study
+    claim : PeakClaim
+        Says which derivative.
+    printed : Printed
+        One of its numbers.
+    motion : AnyClaim
+        A claim of durations.
+    joint : str or None
+        Label of the joint; the largest over all joints if None.
+    pid, rid : str
+        Problem and reading.
+
+    Returns
+    -------
+    Beside or None
+        None where the joint is not in that motion, or it has no curve.
+    """
+    if not has_curve(study, motion, pid, rid):
+        return None
+    problem = study.claim_problem(motion, pid, rid)
+    if joint is not None and joint not in problem.joints:
+        return None
+    order = QUANTITIES.index(claim.derivative) + 1
+    tops = largest(study, motion, pid, rid, order)
+    if joint is not None:
+        tops = [tops[problem.joints.index(joint)]]
+    top = max(tops, key=lambda e: abs(e.value))
+    measured = study.case.measured(printed, claim.derivative, pid, rid)
+    cut = measured.cut_off()
+    return Beside(
+        printed,
+        measured.value,
+        measured.lower,
+        measured.upper,
+        cut.lower,
+        cut.upper,
+        abs(top.value),
+        box_reach(study, motion, pid, rid, top),
+        _sampled(study, motion, pid, rid, order, None if joint is None else top.joint),
+    )
+
+
+def _sampled(
+    study: Study, motion: AnyClaim, pid: str, rid: str, order: int, joint: int | None
+) -> float:
+    """The least peak found by evenly spaced samples, over the offsets that they may have."""
+    problem = study.claim_problem(motion, pid, rid)
+    durations = study.case.claim_durations(motion, rid).value
+    trajectory = fit(problem.curve, problem.waypoints, durations)
+    step = float(durations.sum()) / _SAMPLES
+    found = []
+    for phase in range(_PHASES):
+        times = (np.arange(_SAMPLES) + phase / _PHASES) * step
+        values = np.abs(trajectory(times, order))
+        found.append(float((values if joint is None else values[:, joint]).max()))
+    return min(found)
+
+
+def peak_numbers(study: Study, claim: PeakClaim) -> list[tuple[str | None, Printed]]:
+    """Each printed number of a peak claim with the joint that it belongs to."""
+    if claim.values is None:
+        return [(claim.joint, number) for number in claim.printed]
+    return list(zip(study.case.robot.joints, claim.values, strict=True))
+
+
+def judge_peaks(study: Study) -> Iterator[Finding]:
+    """Findings of TG203."""
+    for claim in study.claims:
+        if isinstance(claim, PeakClaim):
+            meant = motions_of_peak(study.case.claims, claim)
+            for motion in meant:
+                yield from _peaks(study, claim, motion)
+            if not meant:
+                yield Finding(
+                    rule="TG203",
+                    basis=Basis.TEXT,
+                    claim=claim.id,
+                    message="No durations are printed whose motion could have this peak.",
+                )
+
+
+def _peaks(study: Study, claim: PeakClaim, motion: AnyClaim) -> Iterator[Finding]:
+    for pid, rid in study.claim_pairs(motion):
+        if claim.problem not in (None, pid):
+            continue
+        taking_part = study.claim_problem(motion, pid, rid).joints
+        found = [
+            (joint, one)
+            for joint, number in peak_numbers(study, claim)
+            if joint is None or joint in taking_part
+            for one in (beside(study, claim, number, motion, joint, pid, rid),)
+            if one is not None
+        ]
+        if not found:
+            continue
+        wrong = [(joint, one) for joint, one in found if one.kind not in FITS]
+        said = [described(study, claim, joint, one, pid, rid) for joint, one in (wrong or found)]
+        yield Finding(
+            rule="TG203",
+            severity=Severity.WARNING if wrong else Severity.INFO,
+            verdict=ClaimVerdict.INCONSISTENT if wrong else ClaimVerdict.SUPPORTED,
+            basis=Basis.CHECK,
+            claim=claim.id,
+            problem=pid,
+            reading=rid,
+            printed=", ".join(map(str, claim.printed)),
+            computed="; ".join(_exact(study, claim, one, pid, rid) for _, one in found),
+            message=f"Of the printed durations ({called(motion)}): {'; '.join(said)}.",
+            kind=", ".join(dict.fromkeys(one.kind for _, one in wrong)),
+            root=f"peaks of {motion.id}" if wrong else "",
+            between=(claim.id, motion.id) if wrong else (),
+        )
+
+
+def _exact(study: Study, claim: PeakClaim, one: Beside, pid: str, rid: str) -> str:
+    value, reach = (in_units(study, pid, rid, claim.derivative, x) for x in (one.exact, one.reach))
+    return f"{value:.6g} ± {reach:.1g} {unit_shown(study, pid, rid, claim.derivative)}"
+
+
+def described(
+    study: Study, claim: PeakClaim, joint: str | None, one: Beside, pid: str, rid: str
+) -> str:
+    """One printed peak beside the exact one, with the class of their distance."""
+    whose = "" if joint is None else f"joint {joint}: "
+    exact = _exact(study, claim, one, pid, rid)
+    said = f"{whose}the exact peak of {claim.derivative} is {exact}, printed is {one.printed}"
+    away = f"{100 * one.distance:+.2g} %"
+    return (
+        said
+        + {
+            Class.ROUNDING: ", equal within the rounding of the printed digits",
+            Class.CUT_OFF: f" ({away}), as digits that are cut off instead of rounded give it",
+            Class.SAMPLING: f" ({away}), slightly below it, as sampling the motion gives it",
+            Class.UNIT: f" ({away}); their ratio is near {one.factor}",
+            Class.OFF: f" ({away}), off by more than rounding, cut-off or sampling explain",
+        }[one.kind]
+    )

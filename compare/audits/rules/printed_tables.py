@@ -1,0 +1,246 @@
+"""TG104 and TG105: tables that print alike, and one total that is printed in two places."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from fractions import Fraction
+from itertools import combinations
+
+from ....problem import Case, Interval, Printed
+from ....problem.cases import (
+    AnyClaim,
+    DurationsClaim,
+    ImprovementClaim,
+    MaximumClaim,
+    Table,
+    TotalTimeClaim,
+)
+from ...documents import Basis, ClaimVerdict, Finding, Severity
+from ..explanations import TABLES
+from ..study import Study
+from .printed_digits import hull, meet
+
+_FEWEST = 4
+"""Numbers that a table needs before two tables alike are worth a word."""
+
+
+def judge_tables(study: Study) -> Iterator[Finding]:
+    """Findings of TG104 and TG105."""
+    yield from _tables_alike(study)
+    yield from _same_total(study)
+
+
+def printed_total(claim: AnyClaim) -> Printed | None:
+    """The total that a claim prints, if it does.
+
+    Parameters
+    ----------
+    claim : AnyClaim
+
+    Returns
+    -------
+    Printed or None
+    """
+    if isinstance(claim, DurationsClaim | MaximumClaim):
+        return claim.total
+    return claim.value if isinstance(claim, TotalTimeClaim) else None
+
+
+def _alike(case: Case) -> Iterator[tuple[Table, Table]]:
+    """Tables of different algorithms whose numbers are the same, digit by digit."""
+    for first, second in combinations(case.tables, 2):
+        rows = [case.table_claims(t.id) for t in (first, second)]
+        if first.algorithm == second.algorithm or not rows[0] or len(rows[0]) != len(rows[1]):
+            continue
+        printed = [[_all_digits(claim) for claim in table] for table in rows]
+        if sum(len(row) for row in printed[0]) >= _FEWEST and printed[0] == printed[1]:
+            yield first, second
+
+
+def doubted(study: Study, claims: Iterable[AnyClaim]) -> tuple[str, ...]:
+    """Roots of the tables alike that print one of the claims.
+
+    Parameters
+    ----------
+    study : Study
+    claims : iterable of AnyClaim
+
+    Returns
+    -------
+    tuple of str
+    """
+    tables = {claim.table for claim in claims} - {None}
+    return tuple(
+        f"{TABLES} {first.id} {second.id}"
+        for first, second in _alike(study.case)
+        if tables & {first.id, second.id}
+    )
+
+
+def _apart(case: Case, first: Table, second: Table) -> bool:
+    """Whether the paper elsewhere prints that the results of two tables differ."""
+    for claim in case.claims:
+        if not isinstance(claim, ImprovementClaim):
+            continue
+        sides = [case.claim(i) for i in (claim.slower, claim.faster)]
+        if {side.algorithm for side in sides} != {first.algorithm, second.algorithm}:
+            continue
+        printed = [n for n in (claim.percent, claim.seconds) if n is not None]
+        if any(hull(number).lower > 0 for number in printed):
+            return True
+        slower, faster = (printed_total(side) for side in sides)
+        if slower is not None and faster is not None and not meet(hull(slower), hull(faster)):
+            return True
+    return False
+
+
+def _at_optimum(study: Study, claims: Iterable[AnyClaim]) -> str | None:
+    """A reading under which every printed total of claims is the optimum, within rounding."""
+    printed = list(claims)
+    rows: list[AnyClaim] = [c for c in printed if isinstance(c, DurationsClaim)]
+    rows = rows or [c for c in printed if isinstance(c, MaximumClaim)]
+    for rid in study.readings:
+        pairs = [(c, pid) for c in rows for pid, r in study.claim_pairs(c) if r == rid]
+        if {c.id for c, _ in pairs} == {c.id for c in rows} and all(
+            _is_optimum(study, c, pid, rid) for c, pid in pairs
+        ):
+            return rid
+    return None
+
+
+def _is_optimum(study: Study, claim: AnyClaim, pid: str, rid: str) -> bool:
+    total = study.claim_total(claim, rid)
+    solution = study.claim_optimum(claim, pid, rid)
+    if total is None or solution.durations is None or solution.infimum is not None:
+        return False
+    reached = study.reachable(claim, solution.durations, pid, rid)
+    spread = 0.0 if reached is None else max(reached - solution.best, 0.0)
+    low, high = total[1]
+    return low - spread <= solution.best <= high + spread
+
+
+def _tables_alike(study: Study) -> Iterator[Finding]:
+    case = study.case
+    for first, second in _alike(case):
+        rows = [case.table_claims(t.id) for t in (first, second)]
+        count = sum(len(_all_digits(claim)) for claim in rows[0])
+        apart = _apart(case, first, second)
+        optimal = None if apart else _at_optimum(study, rows[0])
+        message = (
+            f"{first.where} ({first.title}) and {second.where} ({second.title}) agree in all "
+            f"{count} numbers, digit by digit"
+        )
+        if apart:
+            message += "; elsewhere the two results differ."
+        elif optimal is not None:
+            message += (
+                ". Their totals are the optimum within the rounding of the digits (reading "
+                f"{optimal}), which explains it: two algorithms that both find it print the same."
+            )
+        else:
+            message += "."
+        yield Finding(
+            rule="TG104",
+            severity=Severity.ERROR if apart else Severity.INFO if optimal else Severity.WARNING,
+            verdict=ClaimVerdict.NOT_CHECKABLE if optimal else ClaimVerdict.INCONSISTENT,
+            basis=Basis.OPTIMUM if optimal else Basis.DIGITS,
+            message=message,
+            root=f"{TABLES} {first.id} {second.id}",
+            between=tuple(
+                c.id
+                for c in case.claims
+                if apart and {first.id, second.id} & {c.table, *c.printed_tables}
+            ),
+        )
+
+
+def _all_digits(claim: AnyClaim) -> tuple[str, ...]:
+    if isinstance(claim, DurationsClaim | MaximumClaim):
+        total = () if claim.total is None else (claim.total.text,)
+        return tuple(d.text for d in claim.durations) + total
+    return ()
+
+
+def _whose(study: Study, claim: AnyClaim) -> str | None:
+    """The joint of a claim; None for all joints, and for the only joint."""
+    return claim.joint if len(study.case.robot.joints) > 1 else None
+
+
+def _stated_as(study: Study, claim: TotalTimeClaim) -> tuple[Sequence[AnyClaim], bool]:
+    """Claims that print the same total, and whether the file says that they do."""
+    if claim.of is not None:
+        return [study.case.claim(claim.of)], True
+    about = claim.problem, claim.other_curve, claim.state
+    alike: list[AnyClaim] = [
+        c
+        for c in study.case.claims
+        if isinstance(c, DurationsClaim | MaximumClaim | TotalTimeClaim)
+        and c.id != claim.id
+        and (c.problem, c.other_curve, c.state) == about
+        and _whose(study, c) == _whose(study, claim)
+    ]
+    named = [c for c in alike if claim.algorithm is not None and c.algorithm == claim.algorithm]
+    longest = [c for c in named if isinstance(c, MaximumClaim)]
+    if longest:
+        return longest, True
+    if named:
+        return [c for c in named if not isinstance(c, TotalTimeClaim)] or named, False
+    # Where no algorithm tells, one set of durations is meant if there is only one.
+    tables = [c for c in alike if not isinstance(c, TotalTimeClaim)]
+    single = len(tables) == 1 and None in (tables[0].algorithm, claim.algorithm)
+    return (tables if single else []), False
+
+
+def _total_shown(study: Study, claim: AnyClaim) -> tuple[str, Interval]:
+    """A total as printed or as the sum of its parts, and what its digits allow."""
+    printed = printed_total(claim)
+    if printed is not None:
+        return f"{printed} {study.time_unit}", hull(printed)
+    parts = study.case.printed_durations(claim)
+    zero = Fraction(0)
+    allowed = Interval(
+        sum((hull(p).lower for p in parts), zero), sum((hull(p).upper for p in parts), zero)
+    )
+    return f"{sum(p.decimal for p in parts)} {study.time_unit} (sum of its durations)", allowed
+
+
+def _same_total(study: Study) -> Iterator[Finding]:
+    for claim in study.claims:
+        if not isinstance(claim, TotalTimeClaim):
+            continue
+        found, said = _stated_as(study, claim)
+        agreeing = [c for c in found if meet(hull(claim.value), _total_shown(study, c)[1])]
+        others = agreeing or found
+        if not others:
+            continue
+        other = others[0]
+        shown, _ = _total_shown(study, other)
+        printed = f"{claim.value} {study.time_unit}"
+        whose = "" if claim.algorithm is None else f" ({claim.algorithm})"
+        message = f"{claim.where} prints {printed} and {other.where} prints {shown} for the same "
+        message += f"total{whose}."
+        verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
+        # Two totals by themselves may be a mean and a best: nothing says that they are one.
+        if not agreeing and (len(found) > 1 or isinstance(other, TotalTimeClaim)):
+            verdict = ClaimVerdict.NOT_CHECKABLE
+            places = "; ".join(f"{c.where}: {_total_shown(study, c)[0]}" for c in found)
+            message = (
+                f"{claim.where} prints {printed}, which is none of the totals printed elsewhere "
+                f"({places}); the text does not say that it is one of them."
+            )
+        elif not agreeing:
+            verdict = ClaimVerdict.INCONSISTENT
+            severity = Severity.ERROR if said else Severity.WARNING
+        clash = verdict is ClaimVerdict.INCONSISTENT
+        yield Finding(
+            rule="TG105",
+            severity=severity,
+            verdict=verdict,
+            basis=Basis.DIGITS,
+            claim=claim.id,
+            printed=printed,
+            computed=shown,
+            message=message,
+            follows=doubted(study, [other]) if clash else (),
+            between=(claim.id, other.id) if clash else (),
+        )

@@ -1,0 +1,95 @@
+"""A proof that no motion within the limits takes so little time."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...nlp.enclosure import Ball, bound_ratio
+from ...problem import TOLERANCE, Array, Problem
+from .rounding import RoundingBox
+
+_MOST_SPLIT = 8
+"""Segments above which splitting boxes of durations cannot come to an end in time."""
+_FLOAT_SLACK = 1e-12
+"""Relative margin that outweighs the few roundings of sums and quotients of floats."""
+_MOST_BOXES = 400
+"""Boxes of durations after which the proof that excludes a total gives up; each takes
+milliseconds."""
+
+
+def excludes_total(
+    problem: Problem,
+    total: float,
+    waypoints: RoundingBox | None = None,
+    tolerance: float = TOLERANCE,
+) -> bool:
+    """Prove that no durations of a total or less keep the limits, for all way-points of a box.
+
+    Parameters
+    ----------
+    problem : Problem
+        With its limits and bounds on durations where they allow most.
+    total : float
+        s.
+    waypoints : RoundingBox, shape (way-points, joints), optional
+        rad; those of the problem, exactly, by default.
+    tolerance : float
+        Relative excess over a limit that still counts as keeping it, as in `check`.
+
+    Returns
+    -------
+    bool
+        True if it is proved; False says nothing.
+
+    Notes
+    -----
+    Branch and bound over the durations: the mean speed between way-points bounds each of them
+    from below, and each box either holds no durations so short or has a worst ratio above 1,
+    proved as for `breaks`.
+    """
+    q = RoundingBox.exact(problem.waypoints) if waypoints is None else waypoints
+    ball = Ball.between(q.lower, q.upper)
+    target = 1.0 + tolerance
+    low = _least_durations(problem, q) / target * (1.0 - _FLOAT_SLACK)
+    low = np.maximum(low, problem.duration_lower / target * (1.0 - _FLOAT_SLACK))
+    total *= 1.0 + _FLOAT_SLACK
+    if low.sum() > total:
+        return True
+    if not (low > 0.0).all() or problem.segments > _MOST_SPLIT:
+        return False
+    todo = [(low, np.minimum(total - (low.sum() - low), problem.duration_upper * target))]
+    for _ in range(_MOST_BOXES):
+        if not todo:
+            return True
+        least, most = todo.pop()
+        # No duration is longer than what the total leaves beside the least of all others.
+        most = np.minimum(most, total - (least.sum() - least))
+        if (most < least).any():
+            continue
+        bound = bound_ratio(problem, least, most, ball)
+        if bound.value > target:
+            continue
+        widths = most / least
+        k = int(np.argmax(widths))
+        if widths[k] <= 1.0 + 1e-6:
+            return False
+        cut = float(np.sqrt(least[k] * most[k]))
+        for side in (0, 1):
+            lower, upper = least.copy(), most.copy()
+            (upper if side == 0 else lower)[k] = cut
+            todo.append((lower, upper))
+    return not todo
+
+
+def _least_durations(problem: Problem, waypoints: RoundingBox) -> Array:
+    """Durations below which the mean speed between two way-points exceeds a velocity limit."""
+    least = np.zeros(problem.segments)
+    breaks = problem.curve.waypoint_breaks
+    speed = np.where(problem.limits.velocity > 0.0, problem.limits.velocity, np.inf)
+    for w in range(len(breaks) - 1):
+        if breaks[w + 1] - breaks[w] != 1:
+            continue
+        up = waypoints.lower[w + 1] - waypoints.upper[w]
+        down = waypoints.lower[w] - waypoints.upper[w + 1]
+        least[breaks[w]] = float((np.maximum(np.maximum(up, down), 0.0) / speed).max())
+    return least

@@ -1,0 +1,442 @@
+"""Sound papers that a careless rule accuses: none of it may come back."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from support.findings import said_of, study_of
+from support.one_joint import HEAD
+from trajgap.compare.audits.rules import (
+    judge_counts,
+    judge_digits,
+    judge_distances,
+    judge_improvements,
+    judge_motions,
+    judge_peaks,
+    judge_places,
+    judge_scaling,
+    judge_tables,
+)
+from trajgap.compare.documents import ClaimVerdict, Finding, Severity
+from trajgap.nlp import Status
+
+# A quintic from rest to rest over d rad in h s peaks at 15 d/(8 h) rad/s.
+PEAK = 15 / 8
+
+
+def one_joint(points: str, limit: str, time: str, checks: str, tail: str = "") -> str:
+    return HEAD.format(points=points, limit=limit, time=time, checks=checks) + tail
+
+
+def test_without_limits_no_motion_is_the_shortest_and_none_refutes() -> None:
+    study = study_of(one_joint('"0.1", "1.3"', "inf", "2.5", "optimal"))
+    assert study.optimum("main", "as-printed").status is Status.NOT_ATTAINED
+    (found,) = said_of(study, judge_distances, "s", "TG302")
+    assert (found.verdict, found.severity) == (ClaimVerdict.NOT_CHECKABLE, Severity.INFO)
+    assert "no limit is printed, and no motion is the shortest" in found.message
+
+
+@pytest.mark.parametrize(("limit", "verdict"), [('"3.14"', "supported"), ("3.14", "refuted")])
+def test_a_quoted_limit_stands_for_all_that_rounds_to_it(limit: str, verdict: str) -> None:
+    """0.5968 s is exactly what 1 rad takes under pi rad/s, and 0.05 % too short under 3.14."""
+    time = f"{PEAK / np.pi:.5f}"
+    study = study_of(one_joint("0, 1", limit, time, "within_limits"))
+    for claim in ("d", "s"):
+        (found,) = said_of(study, judge_motions, claim, "TG201")
+        assert found.verdict == verdict
+    bare = limit == "3.14"
+    statement = study_of(one_joint("0, 1", limit, time, "optimal"))
+    (found,) = said_of(statement, judge_distances, "s", "TG302")
+    assert found.verdict == ("refuted" if bare else "not checkable")
+
+
+def test_an_optimum_under_a_limit_that_was_rounded_up_is_not_too_long() -> None:
+    """Printed 3.2 for 3.15: the optimum 1.875/3.15 s is longer than what 3.2 allows."""
+    time = f"{PEAK / 3.15:.5f}"
+    study = study_of(one_joint("0, 1", '"3.2"', time, "optimal"))
+    (found,) = said_of(study, judge_distances, "s", "TG302")
+    assert found.verdict is ClaimVerdict.NOT_CHECKABLE
+    exact = study_of(one_joint("0, 1", "3.2", time, "optimal"))
+    (found,) = said_of(exact, judge_distances, "s", "TG302")
+    assert found.verdict is ClaimVerdict.REFUTED
+
+
+def test_quoted_bounds_on_durations_are_intervals() -> None:
+    bounds = '\n[durations]\nlower = {}\n[[claims]]\nid = "d"\n'
+    text = one_joint("0, 1", "9", "0.296", "within_limits")
+    quoted = text.replace('\n[[claims]]\nid = "d"\n', bounds.format('"0.3"'))
+    bare = text.replace('\n[[claims]]\nid = "d"\n', bounds.format("0.3"))
+    assert said_of(study_of(quoted), judge_motions, "d", "TG201")[0].verdict == "supported"
+    assert said_of(study_of(bare), judge_motions, "d", "TG201")[0].verdict == "refuted"
+
+
+BEFORE = """
+[[claims]]
+id = "better"
+quantity = "improvement"
+where = "abstract"
+slower = "start"
+faster = "d"
+[[claims]]
+id = "start"
+quantity = "durations"
+where = "Table 2"
+durations = ["0.50"]
+{state}
+"""
+
+
+@pytest.mark.parametrize("state", ['state = "before"\n', ""])
+def test_the_state_before_an_optimisation_breaks_no_limit(state: str) -> None:
+    """No statement claims a limit here, and what an improvement starts from is no answer."""
+    text = one_joint("0, 1", "1.9", "0.99", "optimal", BEFORE.format(state=state))
+    text = text.replace('checks = "optimal"\nof = ["d"]', 'checks = "none"\nnot_checkable = "a"')
+    study = study_of(text)
+    (found,) = said_of(study, judge_motions, "start", "TG201")
+    assert (found.severity, found.verdict) == (Severity.INFO, ClaimVerdict.NOT_CHECKABLE)
+    assert not found.decides
+    assert "A limit is broken" in found.message
+
+
+def test_the_state_before_is_accused_where_the_paper_says_that_it_keeps_the_limits() -> None:
+    text = one_joint("0, 1", "1.9", "0.99", "within_limits", BEFORE.format(state='state="before"'))
+    named = text.replace('of = ["d"]', 'of = ["d", "start"]')
+    (found,) = said_of(study_of(named), judge_motions, "start", "TG201")
+    assert found.verdict is ClaimVerdict.REFUTED
+
+
+TOTALS = """
+[[claims]]
+id = "slow"
+quantity = "total_time"
+where = "abstract"
+value = "{slow}"
+[[claims]]
+id = "fast"
+quantity = "total_time"
+where = "abstract"
+value = "{fast}"
+[[claims]]
+id = "gain"
+quantity = "improvement"
+where = "abstract"
+slower = "slow"
+faster = "fast"
+percent = "{percent}"
+{base}
+"""
+
+
+@pytest.mark.parametrize(
+    ("percent", "base", "verdict"),
+    [
+        ("3.7", "", "supported"),  # 2.80/2.70 - 1 = 3.70 %
+        ("3.6", "", "supported"),  # 1 - 2.70/2.80 = 3.57 %
+        ("3.7", 'base = "faster"', "supported"),
+        ("3.6", 'base = "slower"', "supported"),
+        ("4.5", "", "refuted"),
+    ],
+)
+def test_a_percentage_may_be_a_share_of_either_total(percent: str, base: str, verdict: str) -> None:
+    tail = TOTALS.format(slow="2.800", fast="2.700", percent=percent, base=base)
+    study = study_of(one_joint("0, 1", "1.9", "0.99", "optimal", tail))
+    (found,) = said_of(study, judge_improvements, "gain", "TG103")
+    assert found.verdict == verdict
+    if percent == "3.7" and not base:
+        assert "as a share of the shorter total" in found.message
+        assert "As a share of the longer total it would be" in found.message
+    if verdict == "refuted":
+        assert "of the longer total" in found.message
+        assert "As a share of the shorter total it would be" in found.message
+
+
+@pytest.mark.parametrize(("base", "percent"), [("slower", "3.7"), ("faster", "3.5")])
+def test_a_stated_base_is_the_only_one(base: str, percent: str) -> None:
+    tail = TOTALS.format(slow="2.8000", fast="2.7000", percent=percent, base=f'base = "{base}"')
+    study = study_of(one_joint("0, 1", "1.9", "0.99", "optimal", tail))
+    (found,) = said_of(study, judge_improvements, "gain", "TG103")
+    assert found.verdict is ClaimVerdict.REFUTED
+
+
+ALIKE = """
+[[algorithms]]
+id = "one"
+name = "first"
+kind = "pso"
+[[algorithms]]
+id = "two"
+name = "second"
+kind = "ga"
+[[tables]]
+id = "t1"
+where = "Table 2"
+title = "first"
+algorithm = "one"
+[[tables]]
+id = "t2"
+where = "Table 3"
+title = "second"
+algorithm = "two"
+[[claims]]
+id = "a"
+quantity = "durations"
+where = "Table 2"
+table = "t1"
+algorithm = "one"
+durations = [{durations}]
+total = "{total}"
+[[claims]]
+id = "b"
+quantity = "durations"
+where = "Table 3"
+table = "t2"
+algorithm = "two"
+durations = [{durations}]
+total = "{total}"
+{tail}
+"""
+GAIN = """
+[[claims]]
+id = "gain"
+quantity = "improvement"
+where = "abstract"
+slower = "a"
+faster = "b"
+percent = "4.2"
+"""
+# Steps of 1, 2 and 1.5 rad under 1.9 rad/s take 1.875 d/1.9 s each.
+STEPS = "0, 1, 3, 1.5"
+OPTIMAL = ('"0.987", "1.974", "1.480"', "4.441")
+LONGER = ('"1.087", "2.074", "1.580"', "4.741")
+
+
+@pytest.mark.parametrize(
+    ("printed", "tail", "severity", "verdict"),
+    [
+        (OPTIMAL, "", Severity.INFO, ClaimVerdict.NOT_CHECKABLE),
+        (LONGER, "", Severity.WARNING, ClaimVerdict.INCONSISTENT),
+        (OPTIMAL, GAIN, Severity.ERROR, ClaimVerdict.INCONSISTENT),
+    ],
+)
+def test_two_algorithms_that_print_the_optimum_print_alike(
+    printed: tuple[str, str], tail: str, severity: Severity, verdict: ClaimVerdict
+) -> None:
+    durations, total = printed
+    text = one_joint(STEPS, "1.9", "1", "optimal")
+    text = text[: text.index("[[claims]]")]
+    study = study_of(text + ALIKE.format(durations=durations, total=total, tail=tail))
+    (found,) = said_of(study, judge_tables, None, "TG104")
+    assert (found.severity, found.verdict) == (severity, verdict)
+    assert ("which explains it" in found.message) == (severity is Severity.INFO)
+
+
+RIVAL = """
+[[claims]]
+id = "rival"
+quantity = "total_time"
+where = "Table 4"
+value = "0.700"
+{curve}
+"""
+
+
+def test_a_rival_on_another_curve_stands_beside_no_optimum() -> None:
+    """1 rad under 1.9 rad/s takes a quintic 0.987 s, and a cubic 0.789 s."""
+    own = study_of(one_joint("0, 1", "1.9", "0.99", "optimal", RIVAL.format(curve="")))
+    (found,) = said_of(own, judge_distances, "rival", "TG302")
+    assert found.severity is Severity.WARNING
+    named = RIVAL.format(curve='other_curve = "straight lines"')
+    other = study_of(one_joint("0, 1", "1.9", "0.99", "optimal", named))
+    assert not [f for f in judge_distances(other) if f.claim == "rival"]
+
+
+PEAKS = """
+[[claims]]
+id = "p"
+quantity = "peak"
+where = "Table 5"
+of = "d"
+derivative = "velocity"
+value = "{value}"
+"""
+
+
+@pytest.mark.parametrize(
+    ("value", "verdict", "word"),
+    [
+        ("1.2500", "supported", "equal within the rounding"),
+        ("1.2492", "supported", "as sampling the motion gives it"),  # 50 samples: 1.2490
+        ("1.2489", "supported", "as sampling the motion gives it"),
+        ("1.2510", "inconsistent", "off by more than"),
+        ("1.200", "inconsistent", "off by more than"),
+        ("0.625", "inconsistent", "off by more than"),
+        ("71.6", "inconsistent", "ratio is near 57.2958"),
+        ("1250", "inconsistent", "ratio is near 1000"),
+        ("75.0", "inconsistent", "ratio is near 60"),
+    ],
+)
+def test_a_peak_is_judged_by_the_class_of_its_distance(value: str, verdict: str, word: str) -> None:
+    """2 rad in 3 s peak at 1.25 rad/s exactly."""
+    study = study_of(one_joint("0, 2", "1.9", "3.00000", "optimal", PEAKS.format(value=value)))
+    (found,) = said_of(study, judge_peaks, "p", "TG203")
+    assert found.verdict == verdict
+    assert word in found.message
+    assert found.severity is (Severity.WARNING if verdict == "inconsistent" else Severity.INFO)
+
+
+def test_digits_cut_off_are_no_other_peak() -> None:
+    """2 rad in 2.1 s peak at 1.78571 rad/s, cut off to 1.785."""
+    study = study_of(one_joint("0, 2", "1.9", "2.10000000", "optimal", PEAKS.format(value="1.785")))
+    (found,) = said_of(study, judge_peaks, "p", "TG203")
+    assert found.verdict is ClaimVerdict.SUPPORTED
+    assert "cut off instead of rounded" in found.message
+
+
+TOTAL = """
+[[claims]]
+id = "t"
+quantity = "total_time"
+where = "abstract"
+value = "{}"
+"""
+
+
+@pytest.mark.parametrize(
+    ("value", "severity"),
+    [("0.9800", Severity.INFO), ("0.9868", Severity.INFO), ("0.9500", Severity.WARNING)],
+)
+def test_no_warning_where_the_rounding_of_way_points_explains_it(
+    value: str, severity: Severity
+) -> None:
+    """Steps of 0.99 to 1.01 rad round to 0.00 and 1.00 and take 0.9770 to 0.9967 s."""
+    text = one_joint('"0.00", "1.00"', "1.9", "0.99", "optimal", TOTAL.format(value))
+    (found,) = said_of(study_of(text), judge_distances, "t", "TG302")
+    assert found.severity is severity
+    assert found.verdict is ClaimVerdict.NOT_CHECKABLE
+
+
+SOUND = """
+format = 1
+id = "sound"
+title = "what an honest paper prints"
+[source]
+year = 2024
+[robot]
+name = "arm"
+joints = ["1", "2"]
+[units]
+position = "deg"
+velocity = "deg/s"
+time = "ms"
+[waypoints]
+where = "Table 1"
+joint_rows = {rows}
+[limits]
+velocity = {limits}
+[interpolant]
+family = "rest-to-rest"
+degree = 5
+[[claims]]
+id = "d"
+quantity = "durations"
+where = "Table 2"
+durations = {durations}
+total = {total}
+[[claims]]
+id = "abstract"
+quantity = "total_time"
+where = "abstract"
+of = "d"
+value = {short}
+[[claims]]
+id = "before"
+quantity = "durations"
+where = "Table 2, before"
+state = "before"
+durations = ["100", "100", "100"]
+[[claims]]
+id = "gain"
+quantity = "improvement"
+where = "abstract"
+slower = "before"
+faster = "d"
+[[claims]]
+id = "peaks"
+quantity = "peak"
+where = "Table 3"
+of = "d"
+derivative = "velocity"
+values = {peaks}
+[[claims]]
+id = "limits"
+quantity = "statement"
+where = "conclusion"
+checks = "within_limits"
+of = ["d", "abstract"]
+[[claims]]
+id = "optimal"
+quantity = "statement"
+where = "conclusion"
+checks = "optimal"
+of = ["d", "abstract"]
+[[claims]]
+id = "rest"
+quantity = "statement"
+where = "section 2"
+checks = "at_rest"
+of = ["d"]
+"""
+RULES = (
+    judge_digits,
+    judge_improvements,
+    judge_tables,
+    judge_motions,
+    judge_peaks,
+    judge_places,
+    judge_counts,
+    judge_scaling,
+    judge_distances,
+)
+
+
+def sound(seed: int, factor: float) -> list[Finding]:
+    """What the rules find on optima of way-points and limits that are printed rounded."""
+    rng = np.random.default_rng(seed)
+    places = int(rng.integers(0, 3))
+    points = rng.uniform(-170, 170, (2, 4))
+    limits = rng.uniform(40, 200, 2)
+    steps = np.abs(np.diff(points, axis=1))
+    times = 1000 * factor * (PEAK * steps / limits[:, None]).max(axis=0)  # ms
+    peaks = (PEAK * steps / (times / 1000)).max(axis=1)
+
+    def digits(numbers: np.ndarray, n: int) -> str:
+        return "[" + ", ".join(f'"{x:.{n}f}"' for x in numbers) + "]"
+
+    text = SOUND.format(
+        rows="[" + ", ".join(digits(row, places) for row in points) + "]",
+        limits=digits(limits, places),
+        durations=digits(times, places),
+        total=f'"{times.sum():.{places}f}"',
+        short=f'"{times.sum():.0f}"',
+        peaks=digits(peaks, places),
+    )
+    study = study_of(text)
+    return [f for rule in RULES for f in rule(study)]
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_an_honest_paper_is_accused_of_nothing(seed: int) -> None:
+    found = sound(seed, 1.0)
+    against = [(f.rule, f.claim, f.message) for f in found if f.severity is not Severity.INFO]
+    assert against == []
+    words = {f.claim: f.verdict for f in found if f.decides and f.claim is not None}
+    assert words["peaks"] is ClaimVerdict.SUPPORTED
+    assert words["d"] is ClaimVerdict.SUPPORTED
+
+
+@pytest.mark.parametrize(
+    ("factor", "refuted"), [(0.9, {"d", "limits", "optimal"}), (1.1, {"optimal"})]
+)
+def test_the_same_paper_with_other_times_is_refuted(factor: float, refuted: set[str]) -> None:
+    found = sound(1, factor)
+    assert {f.claim for f in found if f.verdict is ClaimVerdict.REFUTED} == refuted

@@ -1,0 +1,402 @@
+"""What a careless rule misses, or supports without ground."""
+
+from __future__ import annotations
+
+import pytest
+from support.findings import said_of, study_of
+from support.one_joint import HEAD
+from trajgap.compare import audit
+from trajgap.compare.audits.rounding import RoundingBox
+from trajgap.compare.audits.rules import (
+    judge_counts,
+    judge_digits,
+    judge_distances,
+    judge_motions,
+    judge_peaks,
+    judge_places,
+    judge_tables,
+)
+from trajgap.compare.audits.rules.condition_count import meets
+from trajgap.compare.audits.total_bound import excludes_total
+from trajgap.compare.documents import ClaimVerdict, Severity
+from trajgap.nlp import solve
+from trajgap.problem import Limits, Problem, parse_case, rest_to_rest, three_five_three
+
+# A quintic from rest to rest over d rad in h s peaks at 15 d/(8 h) rad/s: 0.98684 s under 1.9.
+TOTAL = """
+[[claims]]
+id = "t"
+quantity = "total_time"
+where = "abstract"
+value = "{}"
+[[claims]]
+id = "said"
+quantity = "statement"
+where = "abstract"
+checks = "{}"
+of = ["t"]
+"""
+
+
+def one_joint(points: str, limit: str, time: str, checks: str, tail: str = "") -> str:
+    return HEAD.format(points=points, limit=limit, time=time, checks=checks) + tail
+
+
+@pytest.mark.parametrize(
+    ("points", "value", "checks", "verdict"),
+    [
+        ("0, 1", "5.35", "optimal", "refuted"),  # 442 % above
+        ("0, 1", "0.690", "optimal", "refuted"),  # 0.7 of it
+        ("0, 1", "0.987", "optimal", "supported"),
+        ("0, 1", "0.690", "within_limits", "refuted"),
+        ("0, 1", "0.986", "within_limits", "not checkable"),  # 0.98684 cut off
+        ("0, 1", "5.35", "within_limits", "not checkable"),
+        ('"0.00", "1.00"', "0.690", "optimal", "refuted"),
+        ('"0.00", "1.00"', "0.690", "within_limits", "refuted"),
+        ('"0.00", "1.00"', "0.975", "within_limits", "not checkable"),  # 0.99 rad takes 0.977 s
+        ('"0.00", "1.00"', "0.999", "optimal", "refuted"),
+        ('"0.00", "1.00"', "0.990", "optimal", "not checkable"),
+    ],
+)
+def test_a_bare_total_is_judged(points: str, value: str, checks: str, verdict: str) -> None:
+    study = study_of(one_joint(points, "1.9", "0.99", "optimal", TOTAL.format(value, checks)))
+    rule, id_ = {
+        "optimal": (judge_distances, "TG302"),
+        "within_limits": (judge_motions, "TG201"),
+    }[checks]
+    (found,) = said_of(study, rule, "said", id_)
+    assert found.verdict == verdict
+
+
+def test_no_total_is_excluded_that_a_motion_takes() -> None:
+    """Three pieces under a velocity limit: the proof holds well below the optimum, never at it."""
+    problem = Problem(
+        [[0.1], [0.9], [-0.3], [0.5]], Limits(velocity=1.7, joints=1), three_five_three()
+    )
+    best = solve(problem).total_time
+    assert excludes_total(problem, 0.4 * best)
+    assert not excludes_total(problem, best)
+    wide = RoundingBox(problem.waypoints, problem.waypoints - 0.05, problem.waypoints + 0.05)
+    assert excludes_total(problem, 0.3 * best, wide)
+    still = Problem([[0.0], [1.0]], Limits(acceleration=1.0, joints=1), rest_to_rest(1, 5))
+    assert not excludes_total(still, 0.01)  # no speed bounds a duration: nothing is proved
+
+
+ABSTRACT = """
+[[claims]]
+id = "t"
+quantity = "total_time"
+where = "abstract"
+{of}
+value = "{value}"
+"""
+
+
+@pytest.mark.parametrize(
+    ("value", "of", "verdict", "severity"),
+    [
+        ("0.990", "", ClaimVerdict.SUPPORTED, Severity.INFO),
+        ("0.909", "", ClaimVerdict.INCONSISTENT, Severity.WARNING),
+        ("0.909", 'of = "d"', ClaimVerdict.INCONSISTENT, Severity.ERROR),
+    ],
+)
+def test_a_total_that_differs_from_the_table_is_noticed(
+    value: str, of: str, verdict: ClaimVerdict, severity: Severity
+) -> None:
+    tail = ABSTRACT.format(value=value, of=of)
+    study = study_of(one_joint("0, 1", "1.9", "0.990", "optimal", tail))
+    (found,) = said_of(study, judge_tables, "t", "TG105")
+    assert (found.verdict, found.severity) == (verdict, severity)
+    assert "0.990 s (sum of its durations)" in found.message
+
+
+def test_a_total_that_may_be_either_of_two_is_not_accused() -> None:
+    tail = ABSTRACT.format(value="0.5", of='algorithm = "x"')
+    two = tail + '[[claims]]\nid = "e"\nquantity = "durations"\nwhere = "Table 3"\n'
+    two += (
+        'algorithm = "x"\ndurations = ["0.8"]\n[[algorithms]]\nid = "x"\nname = "x"\nkind = "x"\n'
+    )
+    text = one_joint("0, 1", "1.9", "0.99", "optimal", two)
+    text = text.replace('where = "Table 2"\n', 'where = "Table 2"\nalgorithm = "x"\n', 1)
+    (found,) = said_of(study_of(text), judge_tables, "t", "TG105")
+    assert (found.verdict, found.severity) == (ClaimVerdict.NOT_CHECKABLE, Severity.INFO)
+    assert "none of the totals printed elsewhere" in found.message
+
+
+MEAN = """
+[[claims]]
+id = "best"
+quantity = "total_time"
+where = "abstract"
+algorithm = "x"
+value = "0.990"
+[[claims]]
+id = "mean"
+quantity = "total_time"
+where = "Table 6, mean of 30 runs"
+algorithm = "x"
+value = "1.052"
+[[algorithms]]
+id = "x"
+name = "x"
+kind = "x"
+"""
+
+
+def test_a_mean_and_a_best_total_contradict_nothing() -> None:
+    text = one_joint("0, 1", "1.9", "0.990", "optimal", MEAN)
+    text = text.replace('where = "Table 2"\n', 'where = "Table 2"\nproblem = "other"\n', 1)
+    text = text.replace(
+        "[[claims]]", '[[problems]]\nid = "main"\n[[problems]]\nid = "other"\n[[claims]]', 1
+    )
+    text = text.replace('quantity = "total_time"\n', 'quantity = "total_time"\nproblem = "main"\n')
+    for claim in ("best", "mean"):
+        (found,) = said_of(study_of(text), judge_tables, claim, "TG105")
+        assert (found.verdict, found.severity) == (ClaimVerdict.NOT_CHECKABLE, Severity.INFO)
+
+
+REST = """
+[[claims]]
+id = "rest"
+quantity = "statement"
+where = "section 2"
+checks = "at_rest"
+of = ["d"]
+[[claims]]
+id = "ends"
+quantity = "conditions"
+where = "section 2"
+rest_at = "ends"
+orders = [1]
+degrees = [3, 3]
+"""
+
+
+@pytest.mark.parametrize(("orders", "verdict"), [("[1]", "supported"), ("[2]", "inconsistent")])
+def test_rest_at_the_ends_is_evaluated(orders: str, verdict: str) -> None:
+    """The natural cubic through 0, 60 and 0 degrees in 1 s each starts at 90 deg/s."""
+    text = one_joint("0, 60, 0", "120", "1.00", "optimal", REST)
+    text = text.replace('"rad"', '"deg"').replace('"rad/s"', '"deg/s"')
+    text = text.replace('durations = ["1.00"]', 'durations = ["1.00", "1.00"]')
+    text = text.replace(
+        'family = "rest-to-rest"\ndegree = 5', f'family = "cubic-spline"\nend_orders = {orders}'
+    )
+    study = study_of(text)
+    for claim in ("rest", "ends"):
+        (found,) = said_of(study, judge_counts, claim, "TG207")
+        assert found.verdict == verdict
+        assert ("a velocity of 90 °/s" in found.message) == (verdict == "inconsistent")
+
+
+@pytest.mark.parametrize(
+    ("degree", "start", "end", "possible"),
+    [
+        (3, (1, 2), (), True),
+        (3, (1, 2, 3), (), False),  # such a cubic is constant
+        (3, (), (3,), True),  # a parabola
+        (2, (), (2, 1), False),
+        (5, (1, 2), (1, 2), True),
+        (4, (1, 2), (1, 2), False),
+        (4, (2, 3), (2,), True),
+    ],
+)
+def test_ends_that_no_polynomial_meets(
+    degree: int, start: tuple[int, ...], end: tuple[int, ...], possible: bool
+) -> None:
+    assert meets(degree, start, end) is possible
+
+
+ZERO_JERK = """
+[[claims]]
+id = "ends"
+quantity = "conditions"
+where = "section 2"
+rest_at = "ends"
+orders = [1, 2, 3]
+degrees = [3]
+continuity = 2
+"""
+
+
+@pytest.mark.parametrize(
+    ("points", "verdict"),
+    [('"0.1", "0.9"', ClaimVerdict.REFUTED), ('"0.4", "0.5"', ClaimVerdict.NOT_CHECKABLE)],
+)
+def test_no_jerk_at_the_end_of_a_cubic_that_moves_is_impossible(
+    points: str, verdict: ClaimVerdict
+) -> None:
+    """0.4 and 0.5 may both round from 0.45: there the cubic may stand still."""
+    study = study_of(one_joint(points, "1.9", "2.0", "optimal", ZERO_JERK))
+    (found,) = said_of(study, judge_counts, "ends", "TG107")
+    assert found.verdict is verdict
+
+
+def test_a_broken_limit_refutes_without_an_optimum() -> None:
+    """At most 0.5 s are allowed, and 0.987 s are needed: no optimum, and 0.4 s break the limit."""
+    bounds = '\n[durations]\nupper = 0.5\n[[claims]]\nid = "d"\n'
+    text = one_joint("0, 1", "1.9", "0.40", "optimal").replace('\n[[claims]]\nid = "d"\n', bounds)
+    study = study_of(text)
+    assert study.optimum("main", "as-printed").durations is None
+    (found,) = said_of(study, judge_distances, "s", "TG302")
+    assert found.verdict is ClaimVerdict.REFUTED
+    loose = one_joint('"0", "1"', "1.9", "0.45", "optimal").replace(
+        '\n[[claims]]\nid = "d"\n', bounds
+    )
+    (found,) = said_of(study_of(loose), judge_distances, "s", "TG302")
+    assert found.verdict is ClaimVerdict.NOT_CHECKABLE
+    assert "at the printed way-points no durations keep the limits" in found.message
+
+
+def test_a_table_of_another_length_loads_and_is_the_finding() -> None:
+    text = one_joint("0, 1, 3", "1.9", "0.99", "optimal")
+    study = study_of(text)
+    (found,) = said_of(study, judge_digits, "d", "TG109")
+    assert (found.verdict, found.severity) == (ClaimVerdict.INCONSISTENT, Severity.WARNING)
+    assert "1 durations" in found.message
+    assert "has 2 segments" in found.message
+    assert not list(judge_motions(study))
+
+
+SUM = 'durations = ["0.9601", "1.2601"]\ntotal = "{}"'
+
+
+@pytest.mark.parametrize(
+    ("total", "word"),
+    [("2.2203", "is 2.2202 s digit by digit"), ("2.2202", "allows 2.2201 to 2.2203 s")],
+)
+def test_a_sum_at_the_edge_of_its_rounding_shows_the_plain_sum(total: str, word: str) -> None:
+    text = one_joint("0, 1, 3", "1.9", "x", "optimal").replace(
+        'durations = ["x"]', SUM.format(total)
+    )
+    (found,) = said_of(study_of(text), judge_digits, "d", "TG101")
+    assert found.verdict is ClaimVerdict.SUPPORTED
+    assert word in found.message
+
+
+EXCHANGED = """
+[[claims]]
+id = "before"
+quantity = "durations"
+where = "row before"
+state = "before"
+durations = ["2.5000"]
+[[claims]]
+id = "p"
+quantity = "peak"
+where = "row before, velocity"
+of = "{of}"
+derivative = "velocity"
+value = "{value}"
+"""
+
+
+@pytest.mark.parametrize(
+    ("of", "value", "fits"),
+    [("before", "1.2500", "Table 2"), ("d", "1.5000", "row before"), ("d", "1.7", None)],
+)
+def test_peaks_exchanged_between_rows_are_told(of: str, value: str, fits: str | None) -> None:
+    """2 rad in 3 s peak at 1.25 rad/s, in 2.5 s at 1.5 rad/s."""
+    tail = EXCHANGED.format(of=of, value=value)
+    study = study_of(one_joint("0, 2", "1.9", "3.0000", "optimal", tail))
+    (own,) = said_of(study, judge_peaks, "p", "TG203")
+    assert own.verdict is ClaimVerdict.INCONSISTENT
+    found = said_of(study, judge_places, "p", "TG108")
+    assert len(found) == (fits is not None)
+    for one in found:
+        assert (one.severity, one.decides) == (Severity.INFO, False)
+        assert f"from that of {fits}" in one.message
+
+
+def test_peaks_of_each_joint_stand_in_one_claim() -> None:
+    """Rest to rest by quintics in 2 s: 1.875/2 of the way."""
+    text = one_joint("0, 1], [0.5, 2.5", "9", "2.0000", "optimal", EXCHANGED)
+    text = text.replace('joints = ["1"]', 'joints = ["1", "2"]').format(of="d", value="x")
+    text = text.replace('value = "x"', 'values = ["0.9375", "1.8750"]')
+    (found,) = said_of(study_of(text), judge_peaks, "p", "TG203")
+    assert found.verdict is ClaimVerdict.SUPPORTED
+    swapped = text.replace('["0.9375", "1.8750"]', '["1.8750", "0.9375"]')
+    study = study_of(swapped)
+    (found,) = said_of(study, judge_peaks, "p", "TG203")
+    assert found.verdict is ClaimVerdict.INCONSISTENT
+    (told,) = said_of(study, judge_places, "p", "TG108")
+    assert "Table 2, joint 2" in told.message
+    assert "Table 2, joint 1" in told.message
+
+
+def test_equal_rows_under_two_names_are_told() -> None:
+    rows = "".join(
+        f'[[claims]]\nid = "r{j}"\nquantity = "durations"\nwhere = "row {j}"\njoint = "{j}"\n'
+        f'durations = ["0.91", "1.25", "{last}"]\n'
+        for j, last in (("1", "1.40"), ("2", "1.40"))
+    )
+    text = one_joint("0, 1, 2, 3], [0.5, 1, 2.5, 3", "9", "2", "optimal")
+    text = text[: text.index("[[claims]]")].replace('["1"]', '["1", "2"]')
+    (told,) = said_of(study_of(text + rows), judge_places, "r2", "TG108")
+    assert "row 1 and row 2 print the same 3 durations" in told.message
+    other = rows.replace('"1.40"', '"1.41"', 1)
+    assert not said_of(study_of(text + other), judge_places, "r2", "TG108")
+
+
+def test_a_row_that_fits_another_joint_is_told() -> None:
+    """Steps of 1 and 2 rad under 1.9 rad/s take 0.98684 and 1.97368 s; the rows are exchanged."""
+    rows = "".join(
+        f'[[claims]]\nid = "r{j}"\nquantity = "durations"\nwhere = "row {j}"\njoint = "{j}"\n'
+        f'algorithm = "x"\ndurations = ["{time}"]\n'
+        for j, time in (("1", "1.9737"), ("2", "0.9869"))
+    )
+    rows += '[[algorithms]]\nid = "x"\nname = "x"\nkind = "x"\n'
+    text = one_joint("0, 1], [0.5, 2.5", "1.9", "2", "optimal")
+    text = text[: text.index("[[claims]]")].replace('["1"]', '["1", "2"]')
+    study = study_of(text + rows)
+    (told,) = said_of(study, judge_places, "r2", "TG108")
+    assert "fit those of joint 1 within" in told.message
+    assert not said_of(study, judge_places, "r1", "TG108")
+
+
+def test_distances_support_nothing() -> None:
+    text = one_joint("0, 1", "1.9", "1.61", "within_limits")  # 63 % above
+    (found,) = said_of(study_of(text), judge_distances, "d", "TG302")
+    assert found.verdict is ClaimVerdict.NOT_CHECKABLE
+    assert "Printed 1.61 s (sum of the printed durations) is 62.6 to 63.7 % longer than the" in (
+        found.message
+    )
+
+
+def test_the_paper_s_own_units_are_spoken() -> None:
+    text = one_joint("0, 60", "110", "0.50", "within_limits")
+    text = text.replace('"rad"', '"deg"').replace('"rad/s"', '"deg/s"')
+    (found,) = said_of(study_of(text), judge_motions, "d", "TG201")
+    assert "velocity 225 against 110 °/s" in found.message
+    parse_case(text, "made-up.toml")
+
+
+ODD = """
+[[claims]]
+id = "rival"
+quantity = "durations"
+where = "Table 9"
+other_curve = "straight lines"
+durations = ["0.3", "0.4", "0.5"]
+[[claims]]
+id = "short"
+quantity = "durations"
+where = "Table 8"
+durations = ["0.9", "0.4"]
+[[claims]]
+id = "start"
+quantity = "durations"
+where = "Table 7"
+state = "before"
+durations = ["2.00"]
+"""
+
+
+def test_an_audit_of_odd_tables_ends() -> None:
+    """Durations of another curve and of another number pass through everything that is computed."""
+    text = one_joint("0, 1", "1.9", "0.99", "optimal", ODD)
+    one = audit(parse_case(text, "made-up.toml"), seeds=2).cases[0]
+    by = {j.claim: j.verdict for j in one.judgements}
+    assert by["rival"] is ClaimVerdict.NOT_CHECKABLE
+    assert by["short"] is ClaimVerdict.INCONSISTENT
+    assert [w.claim for w in one.waterfalls] == ["d"]
+    assert one.errors == 0
