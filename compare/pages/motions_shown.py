@@ -148,8 +148,8 @@ def searches(one: CaseAudit) -> Section:
         blocks.append(Folded(f"Spread over seeds and open choices, {pid}", (grid,)))
     lead = Prose(
         f"Each algorithm was run with seeds 0 to {study.seeds - 1} under the choices listed below, "
-        f"reading {rid}. A replay can say that something is not reproduced, never that it is "
-        "refuted.",
+        f"reading {rid}, and under settings spread over all that the text leaves open. Replays "
+        "inform and decide nothing.",
         "note",
     )
     shown = (lead, *blocks) if blocks else ()
@@ -167,8 +167,8 @@ def _convergence(study: Study, pid: str, rid: str, runs: dict[str, Runs]) -> Ite
     solutions = [study.optimum(pid, rid, label) for label in problem.joints] if by_joint else [
         study.optimum(pid, rid)
     ]  # fmt: skip
-    if any(s.durations is None for s in solutions):
-        return
+    if any(s.durations is None or not _time(s) > 0 for s in solutions):
+        return  # there is nothing, or nothing positive, that a gap could be a share of
     printed: dict[str, list[float]] = {}
     widths = [0.0]
     groups: dict[str, list[DurationsClaim | MaximumClaim]] = (

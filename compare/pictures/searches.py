@@ -81,6 +81,8 @@ def convergence(
         raise TrajgapError(
             f"convergence: {len(optima)} optima for {len(panels)} searched problems; give one each"
         )
+    if not min(optima) > 0:
+        raise TrajgapError("convergence: the optimum is 0 s, and no gap is a share of it")
     totals = {
         label: np.broadcast_to(np.asarray(value, dtype=np.float64), (len(panels),))
         for label, value in printed.items()

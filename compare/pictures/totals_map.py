@@ -86,6 +86,8 @@ def landscape(
     if optimum.durations is None:
         raise TrajgapError("landscape: the problem has no optimum to compare with")
     best = optimum.total_time if optimum.infimum is None else optimum.infimum
+    if not best > 0:
+        raise TrajgapError("landscape: the totals approach 0, and nothing is a share above that")
     points = [(label, _shares(h)) for label, h in printed]
     runs = {name: _shares(h) for name, h in ends.items()}
     centre = _shares(optimum.durations)

@@ -471,6 +471,8 @@ def test_convergence_needs_runs_and_one_optimum_for_each_problem(
         convergence({}, 1.0, {}, title="Runs")
     with pytest.raises(TrajgapError, match="1 optima for 2 searched problems; give one each"):
         convergence(joint_runs, 1.0, {}, title="Runs")
+    with pytest.raises(TrajgapError, match="no gap is a share of it"):
+        convergence(joint_runs, [0.0, 1.0], {}, title="Runs")
 
 
 def test_endings_show_every_run_and_reference(pictures: dict[str, Picture]) -> None:
@@ -538,6 +540,9 @@ def test_the_landscape_says_what_it_cannot_draw(problem: Problem, optimum: Solut
     nothing = Solution(problem, Status.INFEASIBLE, "a limit is 0")
     with pytest.raises(TrajgapError, match="has no optimum to compare with"):
         landscape(problem, nothing, [], {}, title="None")
+    vanishing = replace(optimum, infimum=0.0)
+    with pytest.raises(TrajgapError, match="the totals approach 0"):
+        landscape(problem, vanishing, [], {}, title="None")
 
 
 # --- themes ---------------------------------------------------------------------------------------
