@@ -7,7 +7,8 @@ import time
 
 import numpy as np
 
-from ...problem import Array, Check, Problem, Verdict, check
+from ...problem import Array, Problem, check
+from .decided import kept
 from .descent import Box, Descent, descend
 from .starts import SETTLED_SEGMENTS, equal_start
 from .tracking import Local
@@ -81,13 +82,6 @@ def ordinary(problem: Problem, basin: Basin) -> bool:
         and (h >= UNEQUAL * h.mean()).all()
         and (h < AT_BOUND * problem.duration_upper).all()
     )
-
-
-def kept(problem: Problem, verdict: Check) -> bool:
-    """Whether a motion counts as feasible: curves that always jump are judged by their limits."""
-    if problem.curve.piecewise is not None:
-        return verdict.verdict is Verdict.PASS
-    return verdict.limits is Verdict.PASS
 
 
 def as_local(problem: Problem, found: Descent) -> Local:

@@ -15,6 +15,7 @@ from ...problem import Array, Problem, TrajgapError, check, fit
 from ...problem.curves import coefficient_gradient, segment_peaks
 from .curve_formulation import compiled_curve, curve_structure
 from .curve_tracking import curve_multistart
+from .decided import decided, kept
 from .descent import restored
 from .exact_multistart import (
     UNEQUAL,
@@ -22,7 +23,6 @@ from .exact_multistart import (
     box_above,
     exact_search,
     exact_starts,
-    kept,
     made_up,
     ordinary,
     searchable,
@@ -175,6 +175,8 @@ def _solve_moving(problem: Problem, ask: _Ask) -> Solution:
         else:
             solution = _searched(problem, ask)
     solution = _with_known(problem, solution, ask)
+    if solution.durations is None:
+        solution = _stretched_start(problem, solution)
     return replace(solution, solve_seconds=time.perf_counter() - began - solution.build_seconds)
 
 
@@ -236,6 +238,8 @@ def _searched(problem: Problem, ask: _Ask, durations: Array | None = None) -> So
             more = anywhere(problem, ANYWHERE, ask.seed, floor)
             found += exact_search(problem, more, floor, ask.until)
             solution = judged(problem, found, floor, len(found))
+        if coarse is not None and solution.total_time > coarse.total_time * (1 + BETTER):
+            return coarse  # rounding costs more than the lower floor gains
         if solution.status is not Status.NOT_ATTAINED:
             return solution
         if coarse is not None:
@@ -266,6 +270,15 @@ def _after_restoration(problem: Problem, ask: _Ask, solution: Solution) -> Solut
     box = box_above(problem, floor)
     ends = [restored(problem, start, box).durations for start in starts]
     return _tracked(problem, replace(ask, initial=np.array(ends)))
+
+
+def _stretched_start(problem: Problem, solution: Solution) -> Solution:
+    """Equal durations, stretched until they pass, where no search found anything."""
+    found = decided(problem, equal_start(problem), first_nodal(problem))
+    if found is None:
+        return solution
+    answer = judged(problem, [found], _floor(problem, FLOORS[-1]), solution.starts)
+    return replace(answer, iterations=solution.iterations, build_seconds=solution.build_seconds)
 
 
 def _nearly_coincident(problem: Problem, solution: Solution, floor: Array) -> bool:

@@ -162,6 +162,7 @@ def test_a_known_motion_is_kept_where_the_solver_finds_nothing(
     monkeypatch.setattr(solver, "_tracked", lost)
     monkeypatch.setattr(solver, "_searched", lost)
     monkeypatch.setattr(solver, "_challenged", lambda one, *_: lost(one))
+    monkeypatch.setattr(solver, "_stretched_start", lambda one, *_: lost(one))
     assert solve(problem).status is Status.NONE_FOUND
     found = solve(problem, known=known)
     assert found.total_time <= known.sum()
