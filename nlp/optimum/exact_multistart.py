@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 import time
+from dataclasses import replace
 
 import numpy as np
 
-from ...problem import Array, Check, Problem, Verdict, check
+from ...problem import Array, Problem, check
+from .decided import kept
 from .descent import Box, Descent, descend
 from .starts import SETTLED_SEGMENTS, equal_start
 from .tracking import Local
@@ -24,6 +26,10 @@ WIDTH = 3.0
 """Log durations by which starts anywhere differ from the usual ones: a factor of 20."""
 AT_BOUND = 0.99
 """Share of an upper bound from which a duration counts as held by it."""
+RESUMPTIONS = 8
+"""Most descents that go on from the end of the best one: two or three suffice where any does."""
+WORTHWHILE = 1e-9
+"""Relative gain of a resumed descent from which the next one is tried."""
 
 
 def searchable(problem: Problem) -> bool:
@@ -83,13 +89,6 @@ def ordinary(problem: Problem, basin: Basin) -> bool:
     )
 
 
-def kept(problem: Problem, verdict: Check) -> bool:
-    """Whether a motion counts as feasible: curves that always jump are judged by their limits."""
-    if problem.curve.piecewise is not None:
-        return verdict.verdict is Verdict.PASS
-    return verdict.limits is Verdict.PASS
-
-
 def as_local(problem: Problem, found: Descent) -> Local:
     """The end of a descent, judged by the checker."""
     h = np.clip(found.durations, problem.duration_lower, problem.duration_upper)
@@ -113,6 +112,30 @@ def exact_search(
         if found and time.monotonic() > until:
             break
         found.append(as_local(problem, descend(problem, start, box)))
+    return _resumed(problem, found, box, until)
+
+
+def _resumed(problem: Problem, found: list[Local], box: Box, until: float) -> list[Local]:
+    """The ends of descents, the best one descended from again for as long as that gains.
+
+    A descent may stop short where its Hessian, made along a bent valley, fits no longer; from its
+    end a new one, with a new Hessian, goes on.
+    """
+    for _ in range(RESUMPTIONS):
+        best = min(
+            (i for i, local in enumerate(found) if local.feasible),
+            key=lambda i: found[i].total,
+            default=None,
+        )
+        if best is None or found[best].converged or time.monotonic() > until:
+            break
+        before = found[best]
+        after = as_local(problem, descend(problem, before.durations, box))
+        if not (after.feasible and after.total <= before.total):
+            break
+        found[best] = replace(after, iterations=before.iterations + after.iterations)
+        if after.total > before.total * (1.0 - WORTHWHILE):
+            break
     return found
 
 

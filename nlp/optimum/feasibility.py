@@ -162,7 +162,7 @@ def _too_sharp_a_turn(problem: Problem) -> str | None:
     )
 
 
-def _apart(problem: Problem) -> bool:
+def apart(problem: Problem) -> bool:
     """Whether each segment's curve depends on its own duration only, by a stretch."""
     curve = problem.curve.piecewise
     if curve is None:
@@ -180,7 +180,7 @@ def _each_segment_by_itself(problem: Problem) -> str | None:
 
     The path itself, and with it every position, does not depend on the durations.
     """
-    if not _apart(problem):
+    if not apart(problem):
         return None
     longest = np.array(problem.duration_upper)
     open_ = np.isinf(longest)

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ...problem import Array, Problem, Verdict, check
+from .decided import decided, kept
 from .optimality import kkt
 from .polish import polish
 from .solution import Solution, Status
@@ -16,8 +19,8 @@ KKT_TOLERANCE = 1e-8
 """Scaled KKT residual up to which an answer is called optimal: IPOPT's own usual tolerance."""
 POLISHED = 1e-11
 """KKT residual above which an answer is sharpened by Newton steps on its active set."""
-TRIED = 3
-"""Ends of descents, best first, of which the sharpest with the best total becomes the answer."""
+BLURRED = 1e-6
+"""Relative length by which rounding may set an optimum apart from the tight motion beside it."""
 
 
 def judged(problem: Problem, found: list[Local], floor: Array, starts: int) -> Solution:
@@ -37,6 +40,7 @@ def judged(problem: Problem, found: list[Local], floor: Array, starts: int) -> S
     Solution
     """
     iterations = sum(local.iterations for local in found)
+    found = [_past_rounding(problem, local) for local in found]
     feasible = [local for local in found if local.feasible]
     if not feasible:
         return Solution(
@@ -46,12 +50,25 @@ def judged(problem: Problem, found: list[Local], floor: Array, starts: int) -> S
             iterations=iterations,
         )
     best = min(feasible, key=lambda local: local.total)
-    durations, report = best.durations, kkt(problem, best.durations, best.nodal)
+    durations, nodal = best.tight or (best.durations, best.nodal)
+    report = kkt(problem, durations, nodal)
     if report.residual > POLISHED:
         durations, report = polish(problem, durations, report)
+    # Where rounding decides, the conditions hold at the tight motion, and a longer one passes.
+    passing, beyond = (durations, nodal), 0.0
+    if not kept(problem, check(problem, durations, nodal)):
+        inside = decided(problem, durations, nodal) or best
+        passing = (inside.durations, inside.nodal)
+        beyond = max(0.0, inside.total / float(durations.sum()) - 1.0)
+    durations, nodal = passing
     status = Status.OPTIMAL if report.residual <= KKT_TOLERANCE else Status.FEASIBLE
     why = None if status is Status.OPTIMAL else f"KKT residual {report.residual:.1e}"
-    verdict = check(problem, durations, best.nodal)
+    if beyond > BLURRED:
+        status = Status.FEASIBLE
+    if beyond > KKT_TOLERANCE:
+        note = f"longer by {beyond:.1e} (relative) than a tight motion, which rounding errors blur"
+        why = note if why is None else f"{why}; {note}"
+    verdict = check(problem, durations, nodal)
     if verdict.verdict is Verdict.DISCONTINUOUS:
         jumps = sum(jump.order < 2 for jump in verdict.jumps)
         note = f"limits kept inside the segments; {jumps} jumps of velocity between them"
@@ -66,7 +83,7 @@ def judged(problem: Problem, found: list[Local], floor: Array, starts: int) -> S
         status,
         why,
         durations=durations,
-        nodal=best.nodal,
+        nodal=nodal,
         check=verdict,
         kkt_residual=report.residual,
         active=report.active,
@@ -75,6 +92,18 @@ def judged(problem: Problem, found: list[Local], floor: Array, starts: int) -> S
         iterations=iterations,
         totals=tuple(local.total if local.feasible else float("inf") for local in found),
     )
+
+
+def _past_rounding(problem: Problem, local: Local) -> Local:
+    """The end of a search, moved inside limits that rounding errors blur, if that makes it pass."""
+    if local.feasible or not np.isfinite(local.durations).all() or not (local.durations > 0).all():
+        return local
+    if check(problem, local.durations, local.nodal).limits is not Verdict.UNDECIDED:
+        return local
+    found = decided(problem, local.durations, local.nodal)
+    if found is None:
+        return local
+    return replace(found, converged=local.converged, iterations=local.iterations)
 
 
 def stretchable(problem: Problem) -> bool:

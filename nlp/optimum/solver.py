@@ -11,10 +11,10 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...problem import Array, Problem, TrajgapError, check, fit
-from ...problem.curves import coefficient_gradient, segment_peaks
+from ...problem import Array, Problem, TrajgapError, check
 from .curve_formulation import compiled_curve, curve_structure
 from .curve_tracking import curve_multistart
+from .decided import decided, kept
 from .descent import restored
 from .exact_multistart import (
     UNEQUAL,
@@ -22,15 +22,13 @@ from .exact_multistart import (
     box_above,
     exact_search,
     exact_starts,
-    kept,
     made_up,
     ordinary,
     searchable,
 )
-from .feasibility import impossible
 from .formulation import Form
+from .idle import idle_segments, with_least_idle
 from .judgement import judged, stretchable
-from .optimality import kkt
 from .solution import Solution, Status
 from .starts import equal_start, first_nodal, screened_starts, settled
 from .tracking import (
@@ -44,6 +42,7 @@ from .tracking import (
     track,
     unpack,
 )
+from .unsearched import unsearched
 from .wide_search import Basin
 
 STARTS = 4
@@ -52,8 +51,6 @@ FLOORS = (1e-3, 1e-4)
 """Smallest durations tried, relative to the mean, where the case sets no lower bound."""
 DEEPER = (1e-6, 1e-8)
 """Further floors where way-points nearly coincide: the total may rise again below the others."""
-SHORT = 1e-2
-"""Share of the mean that an idle segment takes where rounding hides the limits at the floors."""
 ROUNDED = 2e-9
 """Relative gain of a known motion that counts: twice what the checker's tolerance gives away."""
 RESTORABLE = 200
@@ -110,9 +107,9 @@ def solve(
     TrajgapError
         If ``initial`` or ``known`` has the wrong shape.
     """
-    reason = impossible(problem)
-    if reason is not None:
-        return Solution(problem, Status.INFEASIBLE, reason)
+    answer = unsearched(problem)
+    if answer is not None:
+        return answer
     ask = _Ask(
         starts,
         seed,
@@ -175,6 +172,8 @@ def _solve_moving(problem: Problem, ask: _Ask) -> Solution:
         else:
             solution = _searched(problem, ask)
     solution = _with_known(problem, solution, ask)
+    if solution.durations is None:
+        solution = _stretched_start(problem, solution)
     return replace(solution, solve_seconds=time.perf_counter() - began - solution.build_seconds)
 
 
@@ -236,6 +235,8 @@ def _searched(problem: Problem, ask: _Ask, durations: Array | None = None) -> So
             more = anywhere(problem, ANYWHERE, ask.seed, floor)
             found += exact_search(problem, more, floor, ask.until)
             solution = judged(problem, found, floor, len(found))
+        if coarse is not None and solution.total_time > coarse.total_time * (1 + BETTER):
+            return coarse  # rounding costs more than the lower floor gains
         if solution.status is not Status.NOT_ATTAINED:
             return solution
         if coarse is not None:
@@ -266,6 +267,15 @@ def _after_restoration(problem: Problem, ask: _Ask, solution: Solution) -> Solut
     box = box_above(problem, floor)
     ends = [restored(problem, start, box).durations for start in starts]
     return _tracked(problem, replace(ask, initial=np.array(ends)))
+
+
+def _stretched_start(problem: Problem, solution: Solution) -> Solution:
+    """Equal durations, stretched until they pass, where no search found anything."""
+    found = decided(problem, equal_start(problem), first_nodal(problem))
+    if found is None:
+        return solution
+    answer = judged(problem, [found], _floor(problem, FLOORS[-1]), solution.starts)
+    return replace(answer, iterations=solution.iterations, build_seconds=solution.build_seconds)
 
 
 def _nearly_coincident(problem: Problem, solution: Solution, floor: Array) -> bool:
@@ -380,25 +390,6 @@ def _multistart(
     return found
 
 
-def idle_segments(problem: Problem) -> list[int]:
-    """Segments in which nothing moves and whose duration nothing else depends on."""
-    if problem.curve.free:
-        return []
-    if problem.curve.shape(problem.waypoints) is not None:
-        still = segment_peaks(problem.curve, problem.waypoints).max(axis=(1, 2)) == 0.0
-        return np.flatnonzero(still).tolist()
-    polynomials = problem.curve.piecewise
-    if polynomials is None:
-        return []
-    h = equal_start(problem)
-    trajectory = fit(problem.curve, problem.waypoints, h)
-    gradient = coefficient_gradient(polynomials, problem.waypoints, h).durations
-    size = 1e-12 * max(1.0, float(np.abs(trajectory.scaled).max()))
-    still = np.abs(trajectory.scaled[:, 1:]).max(axis=(1, 2)) <= size
-    apart = np.abs(gradient * h[:, None, None, None]).max(axis=(1, 2, 3)) <= size
-    return np.flatnonzero(still & apart).tolist()
-
-
 def _with_idle(problem: Problem, idle: list[int], ask: _Ask) -> Solution:
     """Solve with idle segments held at an ordinary duration, then give them their least one."""
     held = equal_start(problem)
@@ -414,34 +405,7 @@ def _with_idle(problem: Problem, idle: list[int], ask: _Ask) -> Solution:
         if solution.durations is None:
             return replace(solution, problem=problem)
         h = solution.durations.copy()
-    h[idle] = problem.duration_lower[idle]
-    vanishing = [k for k in idle if h[k] == 0]
-    infimum = float(h.sum()) if vanishing else None
-    for share in (FLOORS[-1], FLOORS[0], SHORT):
-        # Across very unequal durations the checker's bound on rounding may hide the limits.
-        h[vanishing] = share * held.mean()
-        if not vanishing or kept(problem, check(problem, h)):
-            break
-    report = kkt(problem, h)
-    answer = replace(
-        solution,
-        problem=problem,
-        durations=h,
-        check=check(problem, h),
-        kkt_residual=report.residual,
-        active=report.active,
-    )
-    if not vanishing:
-        return answer
-    names = ", ".join(str(k + 1) for k in vanishing)
-    return replace(
-        answer,
-        status=Status.NOT_ATTAINED,
-        why=f"nothing moves in segment {names}: the total falls as its duration goes to 0",
-        infimum=infimum,
-        kkt_residual=solution.kkt_residual,
-        active=solution.active,
-    )
+    return with_least_idle(problem, idle, held, replace(solution, durations=h))
 
 
 def _approached(

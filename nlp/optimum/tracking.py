@@ -281,6 +281,8 @@ class Local:
     converged: bool
     feasible: bool
     iterations: int
+    tight: tuple[Array, Array | None] | None = None
+    """What was moved inside its limits so that rounding errors do not decide, if anything was."""
 
 
 class Sized(Protocol):

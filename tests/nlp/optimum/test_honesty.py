@@ -15,7 +15,9 @@ from trajgap.compare import audit
 from trajgap.nlp import Solution, Status, solve, solve_per_joint
 from trajgap.nlp.optimum import feasibility, limit_rows
 from trajgap.nlp.optimum.descent import Box, descend, least_point, restored
+from trajgap.nlp.optimum.exact_multistart import box_above, exact_search
 from trajgap.nlp.optimum.limit_rows import exact_rows
+from trajgap.nlp.optimum.optimality import kkt
 from trajgap.problem import (
     Limits,
     Problem,
@@ -162,6 +164,7 @@ def test_a_known_motion_is_kept_where_the_solver_finds_nothing(
     monkeypatch.setattr(solver, "_tracked", lost)
     monkeypatch.setattr(solver, "_searched", lost)
     monkeypatch.setattr(solver, "_challenged", lambda one, *_: lost(one))
+    monkeypatch.setattr(solver, "_stretched_start", lambda one, *_: lost(one))
     assert solve(problem).status is Status.NONE_FOUND
     found = solve(problem, known=known)
     assert found.total_time <= known.sum()
@@ -337,6 +340,24 @@ def test_a_descent_starts_outside_the_limits_and_ends_within() -> None:
     assert ended.feasible
     assert ended.converged
     assert ended.durations.sum() == pytest.approx(6.776743, abs=1e-5)
+
+
+def test_a_descent_that_stops_short_is_resumed_to_an_optimum() -> None:
+    """Where two way-points lie 6.5e-5 apart on a joint that moves by 117: a long, bent valley."""
+    q = [125.1124355452457, 49.701619091550135, 8.531303616907653, 8.531368997670285, 69.5356475468]
+    limits = Limits(29297.233383318053, np.inf, 2.2881404609094945e08, 2.577467, 126.093, joints=1)
+    problem = Problem(np.array(q), limits, quintic_spline(4))
+    # Differential evolution and the simplex method end here.
+    brute = [1.6580513894836828e-2, 8.6926208312877434e-3, 1.2266477981631221e-7, 2.015083119108e-2]
+    assert check(problem, brute).verdict is Verdict.PASS
+    start = np.array([1.65774685e-2, 8.28750141e-3, 4.75276979e-5, 2.06754698e-2])
+    once = descend(problem, start, box_above(problem, np.zeros(4)))
+    assert not once.converged
+    (ended,) = exact_search(problem, start[None], np.zeros(4))
+    assert ended.converged
+    assert ended.feasible
+    assert ended.total < 0.993 * sum(brute)
+    assert kkt(problem, ended.durations).residual < 1e-8
 
 
 def benchmark() -> ModuleType:
