@@ -11,12 +11,14 @@ import numpy as np
 from attacks.attack import Attack, demand, keep
 from attacks.batch import form_of, searched
 from attacks.cases import Rng, alone, draw_asked, near_limits
-from attacks.curves import Array, Asked, NoCurve, excess
+from attacks.curves import Array, Asked, NoCurve, excess, peaks
 
 BEATEN = 1e-4
 """By how much, relative, a search must beat the optimum before that counts."""
 _FAMILIES = ("3-5-3", "polynomials", "cubic-spline", "quintic-spline", "rest-to-rest", "jtraj")
 """Families that the batch of `batch` knows: piecewise polynomials with breaks at way-points."""
+_JUMP = 1e-9
+"""Share of a joint's peak from which two sides of a via-point differ by more than rounding."""
 
 
 def _draw(rng: Rng, bounds: float, odd: float) -> Asked:
@@ -116,13 +118,19 @@ def degenerate(rng: Rng, folder: Path) -> str | None:
     return None if found is None else _judged(asked, answer, found)
 
 
+def _jumps(asked: Asked, h: Array) -> bool:
+    """Whether velocity jumps, or acceleration where jerk is limited: limits are not kept there."""
+    found = peaks(asked, h).jumps > _JUMP
+    return bool(found[:, 0].any() or (found[:, 1] & np.isfinite(asked.jerk)).any())
+
+
 def tight_bounds(rng: Rng, folder: Path) -> str | None:
     """Narrow bounds around durations that keep every limit: never infeasible."""
     drawn = _boxed(rng, _draw(rng, 0.0, 0.1))
     if drawn is None or form_of(drawn[0]) is None:
         return None
     asked, h = drawn
-    if not excess(asked, h)[1] <= 1:
+    if not excess(asked, h)[1] <= 1 or _jumps(asked, h):
         return None
     answer = _solved(asked, folder)
     keep(folder, durations=",".join(f"{x:.17g}" for x in h))
