@@ -436,7 +436,8 @@ class Study:
         try:
             return from_settings(block.kind, block.parameters)
         except TrajgapError as error:
-            raise TrajgapError(f"{self.case.file}: algorithms.{algorithm_id}: {error}") from None
+            why = str(error).removeprefix(f"{block.kind}: ")
+            raise TrajgapError(f"{self.case.file}: algorithms.{algorithm_id}: {why}") from None
 
     def unreplayed(self, algorithm_id: str, pid: str, rid: str) -> str | None:
         """Why an algorithm is not replayed on a problem, as a sentence; None if it is."""

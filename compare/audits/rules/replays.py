@@ -192,6 +192,16 @@ def _convergence(study: Study, claim: ConvergenceClaim) -> Iterator[Finding]:
             continue
         runs = study.spread_runs(claim.algorithm, pid, rid)
         if not runs:
+            yield Finding(
+                rule="TG403",
+                basis=Basis.REPLAY,
+                decides=False,
+                claim=claim.id,
+                problem=pid,
+                reading=rid,
+                printed=f"{claim.iterations} iterations",
+                message=study.unreplayed(claim.algorithm, pid, rid) or "",
+            )
             continue
         parts = []
         for tolerance in _TOLERANCES:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from trajgap.compare.audits import CaseAudit, Study, audit, case_audit
+from trajgap.compare.audits.rules.registry import RuleGroup
 from trajgap.compare.documents import ClaimVerdict, Finding, Why
 from trajgap.compare.pages import write_report
 from trajgap.problem import CaseError, ProcessError, TrajgapError, parse_case
@@ -107,7 +108,9 @@ def test_durations_of_a_curve_that_leaves_coefficients_free_define_no_motion(
     assert verdict(one, "by") is verdict(one, "shortest") is ClaimVerdict.NOT_CHECKABLE
     assert verdict(one, "d") is ClaimVerdict.SUPPORTED, "its total is the sum of its durations"
     distance = next(f for f in one.findings if f.rule == "TG302" and f.claim == "d")
-    assert distance.message.startswith("Printed 2.86 s; best known optimum with shared durations")
+    assert distance.message.startswith(
+        "Printed 2.86 s is 19.2 to 19.6 % longer than the best known"
+    )
     page = (tmp_path / "pages" / "partly.html").read_text("utf-8")
     assert "are not drawn: the curve (5-5-5 polynomials, C2) leaves 4" in page
 
@@ -115,7 +118,7 @@ def test_durations_of_a_curve_that_leaves_coefficients_free_define_no_motion(
 def test_a_curve_that_cannot_be_solved_leaves_the_digits_judged(tmp_path: Path) -> None:
     one = audited(tmp_path, UNSOLVED)
     about = next(f for f in one.findings if f.claim == "shortest")
-    assert about.message.startswith("No optimum to compare with: d (main): interpolant 5-5-5")
+    assert "no optimum was found (failed: interpolant 5-5-5 polynomials" in about.message
     assert [f.verdict for f in one.findings if f.rule == "TG101"] == [ClaimVerdict.SUPPORTED]
 
 
@@ -128,7 +131,7 @@ def broken_rule(study: Study):
 
 
 def test_one_claim_that_fails_takes_no_other_with_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(case_audit, "_GROUPS", (broken_rule,))
+    monkeypatch.setattr(case_audit, "GROUPS", (RuleGroup(broken_rule, {}),))
     case = parse_case(CASE.format(interpolant=SPLINE, limits=""), "partly.toml")
     one = case_audit.audit_case(Study(case, seeds=2))
     assert {(f.rule, f.claim, f.message) for f in one.findings} == {
@@ -150,7 +153,8 @@ def failing(error: TrajgapError):
 def test_what_fails_for_no_single_claim_is_said_all_the_same(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(case_audit, "_GROUPS", (failing(TrajgapError("only together.")),))
+    group = RuleGroup(failing(TrajgapError("only together.")), {})
+    monkeypatch.setattr(case_audit, "GROUPS", (group,))
     case = parse_case(CASE.format(interpolant=SPLINE, limits=""), "partly.toml")
     one = case_audit.audit_case(Study(case, seeds=2))
     assert [(f.claim, f.message) for f in one.findings] == [(None, "Not computed: only together.")]
@@ -162,7 +166,7 @@ def test_what_fails_for_no_single_claim_is_said_all_the_same(
 def test_bad_input_and_dead_processes_still_end_an_audit(
     error: TrajgapError, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(case_audit, "_GROUPS", (failing(error),))
+    monkeypatch.setattr(case_audit, "GROUPS", (RuleGroup(failing(error), {}),))
     case = parse_case(CASE.format(interpolant=SPLINE, limits=""), "partly.toml")
     with pytest.raises(type(error), match=r"is wrong|workers: gone"):
         case_audit.audit_case(Study(case, seeds=2))

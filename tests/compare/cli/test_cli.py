@@ -201,7 +201,7 @@ def test_audit_writes_pages(run: Run, stand_in: dict[str, Any]) -> None:
     code, out, err = run("audit")
     assert (code, err) == (0, "")
     assert stand_in["cases"] == list(published_ids())
-    assert stand_in["seeds"] == 30
+    assert stand_in["seeds"] == 100
     assert stand_in["workers"] >= 1
     assert "refuted" in out
     assert "error TG302 Table 4, column 80 °/s: text" in out
@@ -211,12 +211,29 @@ def test_audit_writes_pages(run: Run, stand_in: dict[str, Any]) -> None:
     assert [p.name for p in Path("trajgap-audit").iterdir()] == ["index.html"]
 
 
+@pytest.mark.parametrize(
+    ("folder", "why"),
+    [("nowhere", "is no folder; name the one with your files"), (".", "holds no trajgap-certif")],
+)
+def test_certificates_that_are_not_there_are_refused_before_computing(
+    run: Run, folder: str, why: str
+) -> None:
+    code, out, err = run("audit", IRB, "--certificates", folder)
+    assert (code, out) == (2, "")
+    assert err.startswith(f"trajgap: {folder}: --certificates: {why}")
+
+
 @pytest.mark.usefixtures("pages")
 def test_audit_passes_its_options_on(run: Run, stand_in: dict[str, Any]) -> None:
     options = ("--problem", "limit-80", "--reading", "waypoints-rad", "--seeds", "4")
-    code, _, err = run("audit", IRB, *options, "--workers", "2", "--out", "deep/er")
+    given = str(ROOT / "docs/examples")
+    more = ("--certify-seconds", "3", "--certificates", given)
+    code, _, err = run("audit", IRB, *options, *more, "--workers", "2", "--out", "deep/er")
     assert (code, err) == (0, "")
     del stand_in["progress"]
+    (certificate,) = stand_in.pop("certificates")
+    assert certificate["format"] == "trajgap-certificate-2"
+    assert stand_in.pop("certify_seconds") == 3
     assert stand_in == {
         "cases": [IRB],
         "problem": "limit-80",
