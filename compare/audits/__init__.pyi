@@ -4,7 +4,7 @@ from .provenance import package_version
 from .reading_words import named, segments
 from .rounding import Point, RoundingBox, RoundingVerdict, judge_rounding
 from .rules import RULES
-from .stated import claim_text, place, printed, spoken
+from .stated import claim_text, digits_of, place, spoken
 from .study import Study
 from .waterfall import waterfalls
 
@@ -18,12 +18,12 @@ __all__ = [
     "Study",
     "audit",
     "claim_text",
+    "digits_of",
     "judge_rounding",
     "named",
     "package_version",
     "place",
     "plainly",
-    "printed",
     "segments",
     "spoken",
     "waterfalls",

@@ -112,7 +112,7 @@ def _limits(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[str]
         for c in case.claims
         if isinstance(c, DurationsClaim | MaximumClaim) and said_to_keep(study, c)
     ]
-    asked = [c.id for c in about or sets]
+    asked = [c.id for c in about or sets if c.id in words]
     if not asked:
         return "No printed durations are said to keep limits.", set()
     under = {
@@ -264,7 +264,8 @@ def _totalled(study: Study, waterfall: Waterfall) -> AnyClaim | None:
 
 def _improvement(study: Study, words: Mapping[str, Judgement]) -> tuple[str | None, set[str]]:
     """Whether the claimed improvement follows, and the claims that the sentence speaks of."""
-    every = [c for c in study.case.claims if isinstance(c, ImprovementClaim)]
+    improved = (c for c in study.case.claims if isinstance(c, ImprovementClaim))
+    every = [c for c in improved if c.id in words]
     counted = [c for c in every if c.percent is not None or c.seconds is not None]
     claim = next(iter([*counted, *every]), None)
     if claim is None:

@@ -29,7 +29,7 @@ def stated_claims(case: Case) -> tuple[StatedClaim, ...]:
             quantity=claim.quantity,
             text=claim_text(claim),
             where=claim.where,
-            printed=printed(case, claim),
+            printed=digits_of(case, claim),
         )
         for claim in case.claims
     )
@@ -50,7 +50,7 @@ def claim_text(claim: AnyClaim) -> str:
     return said + (f", {claim.algorithm}" if claim.algorithm else "") + "."
 
 
-def printed(case: Case, claim: AnyClaim) -> str:
+def digits_of(case: Case, claim: AnyClaim) -> str:
     """The digits that a claim prints, with the paper's unit; empty where it prints none."""
     units = case.document.units
     time = f" {units.time}" if units.time else ""

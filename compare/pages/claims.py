@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from ...nlp import Evidence
 from ...problem import file_name
-from ..audits import CaseAudit, claim_text, named, place, plainly, printed, spoken
+from ..audits import CaseAudit, claim_text, digits_of, named, place, plainly, spoken
 from ..documents import Cause, ClaimVerdict, Finding, Judgement, Scope
 from .blocks import Behind, Block, Cell, Claimed, Prose, Section, slug, word
 
@@ -71,7 +71,7 @@ def claimed(one: CaseAudit, judgement: Judgement) -> Claimed:
     return Claimed(
         text=claim_text(claim),
         where=claim.where,
-        printed=printed(one.case, claim),
+        printed=digits_of(one.case, claim),
         verdict=word(judgement.verdict),
         holds=_holds(judgement),
         why=why,

@@ -115,7 +115,7 @@ def _toml(folder: Path) -> bool:
     return path.read_text("utf-8").endswith("\n")
 
 
-_AUDIT = ("audit", "case.toml", "--seeds", "2", "--out", "pages")
+_AUDIT = ("audit", "case.toml", "--seeds", "2", "--certify-seconds", "1", "--out", "pages")
 _NEW = ("new", "new.toml", "--from", "table.csv", "--position-unit", "rad", "--velocity", "2")
 _NEW_UNITS = ("--velocity-unit", "rad/s", "--time-unit", "s")
 _CERTIFY = ("solve", "case.toml", "--certify", "--certificates", "proofs", "--gap")

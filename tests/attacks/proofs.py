@@ -282,7 +282,7 @@ ATTACKS = (
         "nothing is proved that brute force refutes; no crash; within the time limit",
         certificates,
         share=4.0,
-        quick=12,
+        quick=4,
     ),
     Attack(
         "forged proofs",

@@ -106,7 +106,16 @@ def damaged_solve(rng: Rng, folder: Path) -> str:
     (folder / "case.toml").write_text(text, encoding="utf-8", newline="")
     arguments = ["solve", "case.toml", "--json"]
     if rng.random() < 0.3:
-        arguments = ["audit", "case.toml", "--seeds", "2", "--json", "--strict"]
+        arguments = [
+            "audit",
+            "case.toml",
+            "--seeds",
+            "2",
+            "--certify-seconds",
+            "1",
+            "--json",
+            "--strict",
+        ]
     ran = command(arguments, folder, _CPU[arguments[0]])
     well_ended(ran, (0, 1, 2), f"{arguments[0]} ({done})")
     if ran.code == 2:
@@ -163,7 +172,11 @@ def audited_case(rng: Rng, folder: Path) -> str:
     """A valid case file is audited; the pages hold together."""
     drawn = draw_case(rng, small=True)
     (folder / "case.toml").write_text(drawn.text, encoding="utf-8")
-    ran = command(["audit", "case.toml", "--seeds", "2", "--out", "pages"], folder, _CPU["audit"])
+    ran = command(
+        ["audit", "case.toml", "--seeds", "2", "--certify-seconds", "1", "--out", "pages"],
+        folder,
+        _CPU["audit"],
+    )
     if ran.code == 2 and "coincide, chord parameters" in ran.err:
         return "refused in one line"
     well_ended(ran, (0,), "audit")
@@ -218,7 +231,7 @@ def odd_paths(rng: Rng, folder: Path) -> str:
         ["show", name],
         ["check", name, "--durations", "1,1,1"],
         ["solve", name],
-        ["audit", name, "--seeds", "2", "--json"],
+        ["audit", name, "--seeds", "2", "--certify-seconds", "1", "--json"],
         ["verify", name],
         ["new", "out.toml", "--from", name, "--position-unit", "rad"],
         ["solve", "puma560-mnam-pso-353", *certify[2:]],

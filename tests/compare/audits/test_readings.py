@@ -22,10 +22,9 @@ from trajgap.compare.audits.study import Study
 from trajgap.compare.cli.auditing import audited
 from trajgap.compare.documents import (
     AuditDocument,
-    Basis,
+    Cause,
     ClaimVerdict,
     Excess,
-    Finding,
     Gap,
     GapKind,
     Judgement,
@@ -312,33 +311,34 @@ def test_the_terminal_says_once_what_many_readings_say() -> None:
     case = polish().document
     assert isinstance(case.readings, ReadingsSummary)
     readings = case.readings.admissible
-    error, warning, info = Severity
-    found = [
-        *(("TG302", error, "optimal", reading, f"Not shortest: {k}.5 s", "longer")
-          for k, reading in enumerate(readings[:3])),
-        ("TG302", error, "optimal", readings[3], "Not within the limits: a ratio of 3", "breaks"),
-        ("TG104", error, None, None, "Alike.", ""),
-        *(("TG201", warning, "kept", reading, "Breaks.", "") for reading in readings[:2]),
-        ("TG106", warning, None, None, "m", ""),
-        ("TG101", info, "kept", None, "fits", ""),
-    ]  # fmt: skip
-    keys = ("rule", "severity", "claim", "reading", "message", "kind")
-    findings = tuple(
-        Finding(basis=Basis.TEXT, **dict(zip(keys, one, strict=True))) for one in found
+    one, other = case.claims[:2]
+    nothing = {"explanations": (), "consequences": ()}
+    causes = (
+        Cause(
+            severity=Severity.ERROR,
+            rule="TG302",
+            claim=one.claim,
+            says="Not shortest: 0.5 s. More of it.",
+            readings=readings[:3],
+            **nothing,
+        ),
+        Cause(
+            severity=Severity.WARNING, rule="TG106", claim=None, says="m", readings=(), **nothing
+        ),
     )
-    document = AuditDocument(cases=(case.model_copy(update={"findings": findings}),))
+    held, mixed = (v.model_copy(update={"claim": c.claim}) for v, c in zip(
+        case.verdicts[:2], (one, other), strict=True))  # fmt: skip
+    mixed = mixed.model_copy(update={"verdict": ClaimVerdict.DEPENDS})
+    changed = case.model_copy(update={"causes": causes, "verdicts": (held, mixed)})
+    document = AuditDocument(cases=(changed,))
     lines = terminal(document)
     assert [line for line in lines if line.startswith(("error", "warning"))] == [
-        f"error TG302 optimal (3 readings; as follows under {readings[0]}): Not shortest: 0.5 s",
-        "error TG302 optimal: Not within the limits: a ratio of 3",
-        "error TG104: Alike.",
-        "warnings: TG201 kept (2 readings), TG106",
+        f"error TG302 [3 readings] {one.where}: Not shortest: 0.5 s.",
+        "warning TG106 m.",
     ]
-    found = answers(summary_of(polish()))
-    assert all(sentence in lines for sentence in found)
-    (row,) = [line for line in lines if line.startswith("y ")]
-    assert "1 of 16" in row
-    (row,) = [line for line in lines if line.startswith("x ")]
+    (row,) = [line for line in lines if line.startswith("depends on the reading ")]
+    assert "supported 1 of 16" in row
+    (row,) = [line for line in lines if line.startswith("supported ")]
     assert " all " in row
     assert max(map(len, terminal(document, 80))) <= 100
 

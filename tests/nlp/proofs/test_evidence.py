@@ -47,7 +47,7 @@ from trajgap.problem import (
 from trajgap.verify import Subject
 
 evidence_module = import_module("trajgap.nlp.proofs.evidence")
-waterfall_module = import_module("trajgap.compare.audits.waterfall")
+intervals_module = import_module("trajgap.compare.audits.intervals")
 certificate_module = import_module("trajgap.nlp.proofs.document")
 IRB, PUMA, GA = "irb460-pso-353", "puma560-mnam-pso-353", "irb1600-ga-cubic-bspline"
 PAIR = ("limit-80", "waypoints-rad")
@@ -56,12 +56,12 @@ VERDICTS = (ROOT / "docs" / "verdicts.md").read_text("utf-8")
 
 @pytest.fixture
 def without_certificates(monkeypatch: pytest.MonkeyPatch) -> None:
-    for module in (evidence_module, waterfall_module):
+    for module in (evidence_module, intervals_module):
         monkeypatch.setattr(module, "proved", lambda *_: None)
 
 
 def one_study() -> Study:
-    return Study(load_case(IRB), problem=PAIR[0], reading=PAIR[1])
+    return Study(load_case(IRB), problem=PAIR[0], reading=PAIR[1], certify_seconds=0)
 
 
 def said(study: Study) -> tuple[list[str], set[Evidence]]:
@@ -254,7 +254,7 @@ def test_a_bound_for_any_curve_stands_on_the_waterfall(
     def only_any(problem: ExactProblem, subject: Subject) -> Interval | None:
         return bound if subject is Subject.ANY else None
 
-    monkeypatch.setattr(waterfall_module, "proved", only_any)
+    monkeypatch.setattr(intervals_module, "proved", only_any)
     (fall,) = waterfalls(one_study())
     step = fall.steps[-1]
     # The nearest double lies above 2/5, and would be no lower bound.
@@ -278,7 +278,7 @@ def test_a_bound_for_any_curve_may_round_above_the_answer_and_no_more(
     lower = Fraction(found) * Fraction(1 + above)
     bound = Interval(lower, lower + Fraction(1, 10**9), None, False)
     monkeypatch.setattr(
-        waterfall_module, "proved", lambda _, subject: bound if subject is Subject.ANY else None
+        intervals_module, "proved", lambda _, subject: bound if subject is Subject.ANY else None
     )
     step = waterfalls(study)[0].steps[-1]
     assert (step.evidence is Evidence.CERTIFIED) == certified

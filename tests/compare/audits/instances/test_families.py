@@ -359,7 +359,8 @@ def test_reproduced_means_within_the_middle(printed: tuple[float, float], expect
 
 def test_the_printed_reduction_is_an_interval_of_the_digits() -> None:
     study = Study(load_case(WHALE), seeds=2)
-    low, high = printed_reduction(study, study.instance_blocks[0]) or (0, 0)
+    # The design itself: to say that it can be examined, `instance_blocks` would examine it.
+    low, high = printed_reduction(study, study.case.instances[0]) or (0, 0)
     assert low == pytest.approx(1 - 11.715 / 13.075, rel=1e-12)
     assert high == pytest.approx(1 - 11.705 / 13.085, rel=1e-12)
     printed = small(('slower = "old-total"', 'slower = "old-total"\npercent = "24.9"'))
@@ -498,7 +499,7 @@ def test_way_points_dropped_into_the_file_get_the_full_audit() -> None:
     for pid in one.study.problems:
         assert one.study.optimum(pid, "v-deg-a-deg").check is not None
     (limits,) = (j for j in one.judgements if j.claim == "limits-kept")
-    assert "no durations are printed" in limits.why
+    assert "and no durations: whether its motion keeps the limits" in limits.why
     assert [s.id for s in case_page(one).sections].count("families") == 1
 
 
@@ -508,7 +509,7 @@ def test_way_points_dropped_into_the_file_get_the_full_audit() -> None:
 def test_the_documented_digits_are_those_of_the_case_and_the_rule() -> None:
     page = (ROOT / "docs" / "families.md").read_text(encoding="utf-8")
     study = Study(load_case(WHALE), seeds=2)
-    (block,) = study.instance_blocks
+    (block,) = study.case.instances
     claim = study.case.claim(block.claim)
     for side, name in ((claim.slower, "quintic"), (claim.faster, "b-spline")):
         total = study.case.claim(side)

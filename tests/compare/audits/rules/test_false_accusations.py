@@ -6,17 +6,15 @@ import numpy as np
 import pytest
 from support.findings import said_of, study_of
 from support.one_joint import HEAD
-from trajgap.compare.audits.rules import (
-    judge_counts,
-    judge_digits,
-    judge_distances,
-    judge_improvements,
-    judge_motions,
-    judge_peaks,
-    judge_places,
-    judge_scaling,
-    judge_tables,
-)
+from trajgap.compare.audits.rules.condition_count import judge_counts
+from trajgap.compare.audits.rules.continuous_time import judge_motions
+from trajgap.compare.audits.rules.distances import judge_distances
+from trajgap.compare.audits.rules.improvements import judge_improvements
+from trajgap.compare.audits.rules.other_places import judge_places
+from trajgap.compare.audits.rules.peaks import judge_peaks
+from trajgap.compare.audits.rules.printed_digits import judge_digits
+from trajgap.compare.audits.rules.printed_tables import judge_tables
+from trajgap.compare.audits.rules.scaling_law import judge_scaling
 from trajgap.compare.documents import ClaimVerdict, Finding, Severity
 from trajgap.nlp import Status
 

@@ -7,16 +7,13 @@ from support.findings import said_of, study_of
 from support.one_joint import HEAD
 from trajgap.compare import audit
 from trajgap.compare.audits.rounding import RoundingBox
-from trajgap.compare.audits.rules import (
-    judge_counts,
-    judge_digits,
-    judge_distances,
-    judge_motions,
-    judge_peaks,
-    judge_places,
-    judge_tables,
-)
-from trajgap.compare.audits.rules.condition_count import meets
+from trajgap.compare.audits.rules.condition_count import judge_counts, meets
+from trajgap.compare.audits.rules.continuous_time import judge_motions
+from trajgap.compare.audits.rules.distances import judge_distances
+from trajgap.compare.audits.rules.other_places import judge_places
+from trajgap.compare.audits.rules.peaks import judge_peaks
+from trajgap.compare.audits.rules.printed_digits import judge_digits
+from trajgap.compare.audits.rules.printed_tables import judge_tables
 from trajgap.compare.audits.total_bound import excludes_total
 from trajgap.compare.documents import ClaimVerdict, Severity
 from trajgap.nlp import solve
