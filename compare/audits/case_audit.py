@@ -29,6 +29,7 @@ from ..documents import (
 )
 from .card import verdict_card
 from .causes import find_causes, with_caveats
+from .chosen_case import SEEDS, Pair
 from .instances import examined_entry
 from .intervals import CERTIFY_SECONDS
 from .judging import judge, weigh
@@ -36,7 +37,7 @@ from .provenance import provenance
 from .readings import readings_summary
 from .rules import GROUPS, NOT_COMPUTED
 from .stated import stated_claims, stated_source
-from .study import SEEDS, Pair, Study
+from .study import Study
 from .waterfall import waterfalls
 
 _Group = Callable[[Study], Iterator[Finding]]

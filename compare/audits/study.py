@@ -2,22 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from copy import copy
+from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any, TypeVar, cast
+from typing import cast
 
 import numpy as np
 
 from ...heuristics import (
-    KINDS,
-    Algorithm,
-    DeathPenalty,
     JointRuns,
-    Run,
-    from_settings,
-    run_many,
-    run_many_per_joint,
 )
 from ...nlp import (
     PerJointSolution,
@@ -32,7 +24,6 @@ from ...nlp import (
 from ...nlp.optimum import OPTIMUM_SLACK, free_values
 from ...problem import (
     Array,
-    Case,
     CaseError,
     Check,
     Coupling,
@@ -45,7 +36,6 @@ from ...problem import (
     reachable_total,
 )
 from ...problem.cases import (
-    AnyClaim,
     Claim,
     Digits,
     DurationsClaim,
@@ -54,113 +44,21 @@ from ...problem.cases import (
     TimeClaim,
     TotalTimeClaim,
 )
+from .chosen_case import Pair
 from .instances import InstancesResult, examined, readings_of
-from .intervals import CERTIFY_SECONDS, Intervals
-from .replay_settings import LISTED, spread_settings
+from .replayed_case import ReplayedCase, Replays
 from .rounding import RoundingBox, RoundingVerdict, judge_rounding
 from .total_bound import excludes_total
 
-T = TypeVar("T")
-Pair = tuple[str, str]
-"""Problem id and reading id."""
-Replays = tuple[Run, ...] | tuple[JointRuns, ...]
-"""Runs of one algorithm, one for each seed: of all joints, or of each joint by itself."""
-
-
-SEEDS = 100
-"""Seeds of a replay by default: independent runs enough for a probability to a few per cent."""
 RELAXED_SECONDS = 15.0
 """After which no step of the search over the relaxed family is begun: it is information beside the
 claims, and one problem in some must not take most of an audit."""
 OPTIMUM_SECONDS = 60.0
 """After which no start of the search for an optimum is begun; usual problems take a second."""
-SPREAD_SEEDS = 4
-"""Seeds under each of the spread settings, of which there are two dozen: enough to see a median
-move across them."""
 
 
-class Study:
-    """Lazily computed, cached results of one case.
-
-    Parameters
-    ----------
-    case : Case
-    seeds : int
-        Seeds of each replay, 0 to seeds − 1.
-    workers : int
-        Processes for the replays; the results do not depend on it.
-    problem, reading : str, optional
-        Keep to one problem or reading of the case.
-    progress : callable, optional
-        Called with a short text before anything that takes a while.
-    certify_seconds : float
-        For certifying optima that no certificate proves; 0 turns it off.
-    certificates : sequence of dict
-        Certificates beside the shipped ones; each is proved again before it counts.
-    """
-
-    def __init__(
-        self,
-        case: Case,
-        seeds: int = SEEDS,
-        workers: int = 1,
-        problem: str | None = None,
-        reading: str | None = None,
-        progress: Callable[[str], None] | None = None,
-        certify_seconds: float = CERTIFY_SECONDS,
-        certificates: Sequence[dict[str, Any]] = (),
-    ) -> None:
-        if seeds < 2:
-            raise TrajgapError(f"seeds: {seeds} show no spread; give 2 or more, 30 is customary")
-        self.case = case
-        self.claims: tuple[AnyClaim, ...] = tuple(case.claims)
-        self.seeds = seeds
-        self.workers = workers
-        selected = case.selections(problem, reading)
-        self.selected: tuple[Pair, ...] = tuple(selected)
-        self.readings: tuple[str, ...] = tuple(dict.fromkeys(rid for _, rid in selected))
-        self.pairs: tuple[Pair, ...] = tuple(p for p in selected if case.statement(*p).complete)
-        default = case.default_reading.id
-        self.main_reading = default if default in self.readings else self.readings[0]
-        self.chosen = {"problem": problem, "reading": reading}
-        """What the study was kept to; None where it was not."""
-        self._progress = progress or (lambda _: None)
-        self._kept: dict[tuple[Any, ...], Any] = {}
-        self.intervals = Intervals(certificates, certify_seconds, self._progress)
-
-    def _once(self, key: tuple[Any, ...], compute: Callable[[], T]) -> T:
-        if key not in self._kept:
-            try:
-                self._kept[key] = compute()
-            except TrajgapError as error:
-                self._kept[key] = error
-        found = self._kept[key]
-        if isinstance(found, TrajgapError):
-            raise found
-        return cast(T, found)
-
-    def only(self, claim: AnyClaim, pair: Pair | None = None) -> Study:
-        """The same study, asked about one claim alone, and about one problem and reading."""
-        view = copy(self)
-        view.claims = (claim,)
-        if pair is not None:
-            view.selected = view.pairs = (pair,)
-            view.readings = pair[1:]
-        return view
-
-    @property
-    def posed(self) -> bool:
-        """Whether way-points are printed, so that there are problems to solve."""
-        return bool(self.pairs)
-
-    @property
-    def problems(self) -> tuple[str, ...]:
-        """Ids of the problems that are posed, in order."""
-        return tuple(dict.fromkeys(pid for pid, _ in self.pairs))
-
-    def problem(self, pid: str, rid: str) -> Problem:
-        """Problem of the case, with its coupling."""
-        return self._once(("problem", pid, rid), lambda: self.case.problem(pid, rid))
+class Study(ReplayedCase):
+    """Lazily computed, cached results of one case; the parameters are those of `ChosenCase`."""
 
     @property
     def time_unit(self) -> str:
@@ -427,79 +325,6 @@ class Study:
             return None
         total = self.case.measured(claim.value, "time", claim.problem, rid)
         return f"{claim.value} {self.time_unit}", (total.lower, total.upper)
-
-    def algorithm(self, algorithm_id: str) -> Algorithm[Any] | None:
-        """The case's algorithm, or None if its kind is not implemented."""
-        block = next(a for a in self.case.algorithms if a.id == algorithm_id)
-        if block.kind not in KINDS:
-            return None
-        try:
-            return from_settings(block.kind, block.parameters)
-        except TrajgapError as error:
-            why = str(error).removeprefix(f"{block.kind}: ")
-            raise TrajgapError(f"{self.case.file}: algorithms.{algorithm_id}: {why}") from None
-
-    def unreplayed(self, algorithm_id: str, pid: str, rid: str) -> str | None:
-        """Why an algorithm is not replayed on a problem, as a sentence; None if it is."""
-        algorithm = self.algorithm(algorithm_id)
-        if algorithm is None:
-            return f"The algorithm {algorithm_id} is of a kind that is not implemented here."
-        problem = self.problem(pid, rid)
-        try:
-            # What judges the positions of every run says whether it can.
-            DeathPenalty(problem, algorithm.penalty)
-        except TrajgapError as error:
-            return f"The algorithm {algorithm_id} is not replayed: {error}."
-        return None
-
-    def runs(self, algorithm_id: str, pid: str, rid: str) -> Replays:
-        """Replays of an algorithm under the listed choices, one per seed; empty if there are none.
-
-        `unreplayed` says why.
-        """
-        algorithm = self.algorithm(algorithm_id)
-        if algorithm is None or self.unreplayed(algorithm_id, pid, rid) is not None:
-            return ()
-        return self._once(
-            ("runs", algorithm_id, pid, rid),
-            lambda: self._replay(algorithm, algorithm_id, pid, rid, self.seeds),
-        )
-
-    def _replay(
-        self, algorithm: Algorithm[Any], name: str, pid: str, rid: str, seeds: int
-    ) -> Replays:
-        problem = self.problem(pid, rid)
-        self._progress(f"{self.case.id}: {seeds} replays of {name}, {pid}, {rid}")
-        if problem.coupling is Coupling.PER_JOINT and len(problem.joints) > 1:
-            return run_many_per_joint(algorithm, problem, range(seeds), self.workers)
-        return run_many(algorithm, problem, range(seeds), self.workers)
-
-    def settings(self, algorithm_id: str) -> dict[str, Algorithm[Any]]:
-        """The algorithm as listed, and under settings spread over all that the paper leaves open.
-
-        `spread_settings` says how; empty where the algorithm's kind is not implemented.
-        """
-        algorithm = self.algorithm(algorithm_id)
-        if algorithm is None:
-            return {}
-        block = next(a for a in self.case.algorithms if a.id == algorithm_id)
-        return spread_settings(algorithm, block.settings)
-
-    def spread_runs(self, algorithm_id: str, pid: str, rid: str) -> dict[str, Replays]:
-        """Replays under each of `settings`, fewer where it is not the listed one; as `runs`."""
-        if self.unreplayed(algorithm_id, pid, rid) is not None:
-            return {}
-
-        def compute() -> dict[str, Replays]:
-            few = min(SPREAD_SEEDS, self.seeds)
-            return {
-                name: self.runs(algorithm_id, pid, rid)
-                if name == LISTED
-                else self._replay(algorithm, f"{algorithm_id}, {name}", pid, rid, few)
-                for name, algorithm in self.settings(algorithm_id).items()
-            }
-
-        return self._once(("spread", algorithm_id, pid, rid), compute)
 
     @property
     def instance_blocks(self) -> tuple[InstancesBlock, ...]:

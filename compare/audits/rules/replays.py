@@ -29,7 +29,8 @@ from ...gaps import (
     spread,
 )
 from ..replay_settings import LISTED
-from ..study import Replays, Study
+from ..replayed_case import Replays
+from ..study import Study
 
 _TOLERANCES = (SETTLED, 5 * SETTLED)
 """Shares of the final total within which a run counts as converged; a claim names none."""

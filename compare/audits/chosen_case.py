@@ -1,0 +1,102 @@
+"""What a study is made of: a case, what is chosen of it, and a place where results are kept."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from copy import copy
+from typing import Any, Self, TypeVar, cast
+
+from ...problem import Case, Problem, TrajgapError
+from ...problem.cases import AnyClaim
+from .intervals import CERTIFY_SECONDS, Intervals
+
+T = TypeVar("T")
+Pair = tuple[str, str]
+"""Problem id and reading id."""
+
+SEEDS = 100
+"""Seeds of a replay by default: independent runs enough for a probability to a few per cent."""
+
+
+class ChosenCase:
+    """A case, the problems and readings that are looked at, and what was computed of them.
+
+    Parameters
+    ----------
+    case : Case
+    seeds : int
+        Seeds of each replay, 0 to seeds − 1.
+    workers : int
+        Processes for the replays; the results do not depend on it.
+    problem, reading : str, optional
+        Keep to one problem or reading of the case.
+    progress : callable, optional
+        Called with a short text before anything that takes a while.
+    certify_seconds : float
+        For certifying optima that no certificate proves; 0 turns it off.
+    certificates : sequence of dict
+        Certificates beside the shipped ones; each is proved again before it counts.
+    """
+
+    def __init__(
+        self,
+        case: Case,
+        seeds: int = SEEDS,
+        workers: int = 1,
+        problem: str | None = None,
+        reading: str | None = None,
+        progress: Callable[[str], None] | None = None,
+        certify_seconds: float = CERTIFY_SECONDS,
+        certificates: Sequence[dict[str, Any]] = (),
+    ) -> None:
+        if seeds < 2:
+            raise TrajgapError(f"seeds: {seeds} show no spread; give 2 or more, 30 is customary")
+        self.case = case
+        self.claims: tuple[AnyClaim, ...] = tuple(case.claims)
+        self.seeds = seeds
+        self.workers = workers
+        selected = case.selections(problem, reading)
+        self.selected: tuple[Pair, ...] = tuple(selected)
+        self.readings: tuple[str, ...] = tuple(dict.fromkeys(rid for _, rid in selected))
+        self.pairs: tuple[Pair, ...] = tuple(p for p in selected if case.statement(*p).complete)
+        default = case.default_reading.id
+        self.main_reading = default if default in self.readings else self.readings[0]
+        self.chosen = {"problem": problem, "reading": reading}
+        """What the study was kept to; None where it was not."""
+        self._progress = progress or (lambda _: None)
+        self._kept: dict[tuple[Any, ...], Any] = {}
+        self.intervals = Intervals(certificates, certify_seconds, self._progress)
+
+    def _once(self, key: tuple[Any, ...], compute: Callable[[], T]) -> T:
+        if key not in self._kept:
+            try:
+                self._kept[key] = compute()
+            except TrajgapError as error:
+                self._kept[key] = error
+        found = self._kept[key]
+        if isinstance(found, TrajgapError):
+            raise found
+        return cast(T, found)
+
+    def only(self, claim: AnyClaim, pair: Pair | None = None) -> Self:
+        """The same study, asked about one claim alone, and about one problem and reading."""
+        view = copy(self)
+        view.claims = (claim,)
+        if pair is not None:
+            view.selected = view.pairs = (pair,)
+            view.readings = pair[1:]
+        return view
+
+    @property
+    def posed(self) -> bool:
+        """Whether way-points are printed, so that there are problems to solve."""
+        return bool(self.pairs)
+
+    @property
+    def problems(self) -> tuple[str, ...]:
+        """Ids of the problems that are posed, in order."""
+        return tuple(dict.fromkeys(pid for pid, _ in self.pairs))
+
+    def problem(self, pid: str, rid: str) -> Problem:
+        """Problem of the case, with its coupling."""
+        return self._once(("problem", pid, rid), lambda: self.case.problem(pid, rid))

@@ -1,0 +1,102 @@
+"""Replays of a case's algorithms, each computed once."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ...heuristics import (
+    KINDS,
+    Algorithm,
+    DeathPenalty,
+    JointRuns,
+    Run,
+    from_settings,
+    run_many,
+    run_many_per_joint,
+)
+from ...problem import Coupling, TrajgapError
+from .chosen_case import ChosenCase
+from .replay_settings import LISTED, spread_settings
+
+Replays = tuple[Run, ...] | tuple[JointRuns, ...]
+"""Runs of one algorithm, one for each seed: of all joints, or of each joint by itself."""
+SPREAD_SEEDS = 4
+"""Seeds under each of the spread settings, of which there are two dozen: enough to see a median
+move across them."""
+
+
+class ReplayedCase(ChosenCase):
+    """A case with the replays of its algorithms."""
+
+    def algorithm(self, algorithm_id: str) -> Algorithm[Any] | None:
+        """The case's algorithm, or None if its kind is not implemented."""
+        block = next(a for a in self.case.algorithms if a.id == algorithm_id)
+        if block.kind not in KINDS:
+            return None
+        try:
+            return from_settings(block.kind, block.parameters)
+        except TrajgapError as error:
+            why = str(error).removeprefix(f"{block.kind}: ")
+            raise TrajgapError(f"{self.case.file}: algorithms.{algorithm_id}: {why}") from None
+
+    def unreplayed(self, algorithm_id: str, pid: str, rid: str) -> str | None:
+        """Why an algorithm is not replayed on a problem, as a sentence; None if it is."""
+        algorithm = self.algorithm(algorithm_id)
+        if algorithm is None:
+            return f"The algorithm {algorithm_id} is of a kind that is not implemented here."
+        problem = self.problem(pid, rid)
+        try:
+            # What judges the positions of every run says whether it can.
+            DeathPenalty(problem, algorithm.penalty)
+        except TrajgapError as error:
+            return f"The algorithm {algorithm_id} is not replayed: {error}."
+        return None
+
+    def runs(self, algorithm_id: str, pid: str, rid: str) -> Replays:
+        """Replays of an algorithm under the listed choices, one per seed; empty if there are none.
+
+        `unreplayed` says why.
+        """
+        algorithm = self.algorithm(algorithm_id)
+        if algorithm is None or self.unreplayed(algorithm_id, pid, rid) is not None:
+            return ()
+        return self._once(
+            ("runs", algorithm_id, pid, rid),
+            lambda: self._replay(algorithm, algorithm_id, pid, rid, self.seeds),
+        )
+
+    def _replay(
+        self, algorithm: Algorithm[Any], name: str, pid: str, rid: str, seeds: int
+    ) -> Replays:
+        problem = self.problem(pid, rid)
+        self._progress(f"{self.case.id}: {seeds} replays of {name}, {pid}, {rid}")
+        if problem.coupling is Coupling.PER_JOINT and len(problem.joints) > 1:
+            return run_many_per_joint(algorithm, problem, range(seeds), self.workers)
+        return run_many(algorithm, problem, range(seeds), self.workers)
+
+    def settings(self, algorithm_id: str) -> dict[str, Algorithm[Any]]:
+        """The algorithm as listed, and under settings spread over all that the paper leaves open.
+
+        `spread_settings` says how; empty where the algorithm's kind is not implemented.
+        """
+        algorithm = self.algorithm(algorithm_id)
+        if algorithm is None:
+            return {}
+        block = next(a for a in self.case.algorithms if a.id == algorithm_id)
+        return spread_settings(algorithm, block.settings)
+
+    def spread_runs(self, algorithm_id: str, pid: str, rid: str) -> dict[str, Replays]:
+        """Replays under each of `settings`, fewer where it is not the listed one; as `runs`."""
+        if self.unreplayed(algorithm_id, pid, rid) is not None:
+            return {}
+
+        def compute() -> dict[str, Replays]:
+            few = min(SPREAD_SEEDS, self.seeds)
+            return {
+                name: self.runs(algorithm_id, pid, rid)
+                if name == LISTED
+                else self._replay(algorithm, f"{algorithm_id}, {name}", pid, rid, few)
+                for name, algorithm in self.settings(algorithm_id).items()
+            }
+
+        return self._once(("spread", algorithm_id, pid, rid), compute)
