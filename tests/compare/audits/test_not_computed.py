@@ -65,7 +65,7 @@ UNSOLVED = 'family = "polynomials"\ndegrees = [5, 5, 5]\nend_orders = [1]\nconti
 
 def audited(folder: Path, interpolant: str, limits: str = "") -> CaseAudit:
     case = parse_case(CASE.format(interpolant=interpolant, limits=limits), "partly.toml")
-    report = audit(case, seeds=2)
+    report = audit(case, seeds=2, certify_seconds=0)
     write_report(report, folder / "pages")
     return report.cases[0]
 
@@ -133,7 +133,7 @@ def broken_rule(study: Study):
 def test_one_claim_that_fails_takes_no_other_with_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(case_audit, "GROUPS", (RuleGroup(broken_rule, {}),))
     case = parse_case(CASE.format(interpolant=SPLINE, limits=""), "partly.toml")
-    one = case_audit.audit_case(Study(case, seeds=2))
+    one = case_audit.audit_case(Study(case, seeds=2, certify_seconds=0))
     assert {(f.rule, f.claim, f.message) for f in one.findings} == {
         ("TG101", "d", "seen"),
         ("TG101", "shortest", "seen"),
@@ -156,7 +156,7 @@ def test_what_fails_for_no_single_claim_is_said_all_the_same(
     group = RuleGroup(failing(TrajgapError("only together.")), {})
     monkeypatch.setattr(case_audit, "GROUPS", (group,))
     case = parse_case(CASE.format(interpolant=SPLINE, limits=""), "partly.toml")
-    one = case_audit.audit_case(Study(case, seeds=2))
+    one = case_audit.audit_case(Study(case, seeds=2, certify_seconds=0))
     assert [(f.claim, f.message) for f in one.findings] == [(None, "Not computed: only together.")]
 
 
@@ -169,10 +169,10 @@ def test_bad_input_and_dead_processes_still_end_an_audit(
     monkeypatch.setattr(case_audit, "GROUPS", (RuleGroup(failing(error), {}),))
     case = parse_case(CASE.format(interpolant=SPLINE, limits=""), "partly.toml")
     with pytest.raises(type(error), match=r"is wrong|workers: gone"):
-        case_audit.audit_case(Study(case, seeds=2))
+        case_audit.audit_case(Study(case, seeds=2, certify_seconds=0))
 
 
 def test_wrong_settings_of_an_algorithm_end_an_audit_before_it_begins() -> None:
     text = CASE.format(interpolant=SPLINE, limits="").replace("particles = 6", "particles = -6")
     with pytest.raises(TrajgapError, match=r"partly\.toml: algorithms\.pso: particles"):
-        audit(parse_case(text, "partly.toml"), seeds=2)
+        audit(parse_case(text, "partly.toml"), seeds=2, certify_seconds=0)

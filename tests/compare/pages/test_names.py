@@ -66,7 +66,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     text = text.replace('why = "x"', f'why = "{hidden}"').replace('"r"', f'"{hidden}"')
     other = DASH.replace('id = "dash"', 'id = "dash-waterfall"', 1)
     out = tmp_path_factory.mktemp("names") / "audit"
-    write_report(audit([parse_case(text, "f"), parse_case(other, "g")], seeds=2), out)
+    write_report(
+        audit([parse_case(text, "f"), parse_case(other, "g")], seeds=2, certify_seconds=0), out
+    )
     return out
 
 
@@ -145,8 +147,8 @@ def test_pages_of_cases_with_long_ids(tmp_path: Path) -> None:
     ids = ["a" * 250, "a" * 251]
     cases = [parse_case(DASH.replace('"dash"', f'"{name}"'), name) for name in ids]
     for case in cases:
-        assert len(case_page(audit(case, seeds=2).cases[0]).file) < 130
-    report = AuditReport(tuple(audit(case, seeds=2).cases[0] for case in cases))
+        assert len(case_page(audit(case, seeds=2, certify_seconds=0).cases[0]).file) < 130
+    report = AuditReport(tuple(audit(case, seeds=2, certify_seconds=0).cases[0] for case in cases))
     write_report(report, tmp_path / "out")
     # Two cases, the index and the glossary.
     assert len(list((tmp_path / "out").glob("*.html"))) == 4

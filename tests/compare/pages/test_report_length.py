@@ -25,7 +25,7 @@ def test_many_readings_share_a_table_and_few_have_pictures() -> None:
         Step.missing("retimed", "no acceleration is limited"),
     )
     first = Waterfall(problem="limit-80", reading=case.default_reading.id, claim=None, steps=steps)
-    one = CaseAudit(case, Study(case, seeds=2), (), (), (first,))
+    one = CaseAudit(case, Study(case, seeds=2, certify_seconds=0), (), (), (first,))
     for others in (3, 5):
         more = [first.model_copy(update={"reading": f"reading-{k}"}) for k in range(others)]
         section = where_time_goes(replace(one, waterfalls=(first, *more)))
@@ -49,7 +49,7 @@ def test_a_section_that_holds_nothing_is_left_out() -> None:
 def test_a_case_without_waypoints_says_once_what_is_not_computed() -> None:
     whale = load_case("z1-woa-bspline")
     alone = replace(whale, document=whale.document.model_copy(update={"families": ()}))
-    (one,) = audit(alone, seeds=2).cases
+    (one,) = audit(alone, seeds=2, certify_seconds=0).cases
     page = case_page(one)
     ids = [s.id for s in page.sections]
     assert "not-computed" in ids

@@ -120,7 +120,7 @@ def test_no_answer_is_worse_than_a_motion_that_passes(text: str, passes: list[fl
 
 
 def test_an_audit_never_calls_best_known_what_its_own_checks_undercut() -> None:
-    report = audit(case("claimed", NATURAL_NEAR, CLAIMS), seeds=2)
+    report = audit(case("claimed", NATURAL_NEAR, CLAIMS), seeds=2, certify_seconds=0)
     optimum = report.cases[0].study.optimum("main", "as-printed")
     assert optimum.best < 0.64009 + 0.00000125908
     relaxed = report.cases[0].study.relaxed("main", "as-printed")

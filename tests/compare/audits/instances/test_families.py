@@ -150,7 +150,7 @@ def small(*changes: tuple[str, str]) -> Case:
 
 
 def examined(*changes: tuple[str, str], workers: int = 1) -> InstancesResult:
-    study = Study(small(*changes), seeds=2, workers=workers)
+    study = Study(small(*changes), seeds=2, workers=workers, certify_seconds=0)
     return study.instances(study.instance_blocks[0])
 
 
@@ -194,7 +194,7 @@ def test_steps_of_the_end_are_measured_at_the_end() -> None:
 
 def test_a_step_that_nothing_reaches_is_named() -> None:
     case = small(('kind = "joint"', 'kind = "end"'), ("[0.3, 0.9]", "[5]"))
-    study = Study(case, seeds=2)
+    study = Study(case, seeds=2, certify_seconds=0)
     with pytest.raises(TrajgapError, match=r"^small\.toml: families\.drawn: step: none of the 50"):
         study.instances(study.instance_blocks[0])
 
@@ -358,18 +358,20 @@ def test_reproduced_means_within_the_middle(printed: tuple[float, float], expect
 
 
 def test_the_printed_reduction_is_an_interval_of_the_digits() -> None:
-    study = Study(load_case(WHALE), seeds=2)
+    study = Study(load_case(WHALE), seeds=2, certify_seconds=0)
     # The design itself: to say that it can be examined, `instance_blocks` would examine it.
     low, high = printed_reduction(study, study.case.instances[0]) or (0, 0)
     assert low == pytest.approx(1 - 11.715 / 13.075, rel=1e-12)
     assert high == pytest.approx(1 - 11.705 / 13.085, rel=1e-12)
     printed = small(('slower = "old-total"', 'slower = "old-total"\npercent = "24.9"'))
-    low, high = Study(printed, seeds=2).instances(printed.instances[0]).printed or (0, 0)
+    low, high = Study(printed, seeds=2, certify_seconds=0).instances(
+        printed.instances[0]
+    ).printed or (0, 0)
     assert (low, high) == (pytest.approx(0.2485), pytest.approx(0.2495))
 
 
 def test_findings_inform_and_decide_nothing() -> None:
-    study = Study(small(), seeds=2)
+    study = Study(small(), seeds=2, certify_seconds=0)
     found = list(judge_instances(study))
     assert [(f.claim, f.reading) for f in found] == [
         ("better", None), ("better", "as-printed"), ("better", "joined"), ("settles", None),
@@ -412,11 +414,11 @@ def test_without_a_pair_of_answers_the_words_say_so() -> None:
 
 
 def test_one_problem_or_reading_selects() -> None:
-    assert Study(small(), seeds=2, problem="spline").instance_blocks == ()
-    study = Study(small(), seeds=2, reading="joined")
+    assert Study(small(), seeds=2, problem="spline", certify_seconds=0).instance_blocks == ()
+    study = Study(small(), seeds=2, reading="joined", certify_seconds=0)
     assert study.instances(study.instance_blocks[0]).readings == ("joined",)
     unknown = small(('kind = "woa"', 'kind = "not-written"'))
-    assert Study(unknown, seeds=2).instance_blocks == ()
+    assert Study(unknown, seeds=2, certify_seconds=0).instance_blocks == ()
 
 
 # --- page, document, picture ----------------------------------------------------------------------
@@ -424,7 +426,7 @@ def test_one_problem_or_reading_selects() -> None:
 
 @pytest.fixture(scope="module")
 def report():
-    return audit(small(), seeds=2)
+    return audit(small(), seeds=2, certify_seconds=0)
 
 
 def test_the_page_has_the_comparison(report) -> None:
@@ -437,7 +439,7 @@ def test_the_page_has_the_comparison(report) -> None:
     assert "2 for each step of 0.3, 0.9 rad (largest change of any joint)" in text
     assert "| as-printed | 0.9 | 2 |" in text
     block = SMALL[SMALL.index("[[families]]") : SMALL.index("[[claims]]")]
-    plain = audit(small((block, "")), seeds=2)
+    plain = audit(small((block, "")), seeds=2, certify_seconds=0)
     assert "families" not in [s.id for s in case_page(plain.cases[0]).sections]
 
 
@@ -486,7 +488,9 @@ def test_way_points_dropped_into_the_file_get_the_full_audit() -> None:
     # Fewer way-points and moves than the paper's, for speed; nothing else is touched.
     text = (text[:start] + table + text[end:]).replace("iterations = 500", "iterations = 15")
     text = text.replace("steps = [0.1, 0.2, 0.3]\ninstances = 3", "steps = [0.2]\ninstances = 1")
-    report = audit(parse_case(text, "found.toml"), seeds=2, reading="v-deg-a-deg")
+    report = audit(
+        parse_case(text, "found.toml"), seeds=2, reading="v-deg-a-deg", certify_seconds=0
+    )
     (one,) = report.cases
     assert one.study.problems == ("b-spline", "quintic")
     rules = {(f.rule, f.claim) for f in one.findings}
@@ -508,7 +512,7 @@ def test_way_points_dropped_into_the_file_get_the_full_audit() -> None:
 
 def test_the_documented_digits_are_those_of_the_case_and_the_rule() -> None:
     page = (ROOT / "docs" / "families.md").read_text(encoding="utf-8")
-    study = Study(load_case(WHALE), seeds=2)
+    study = Study(load_case(WHALE), seeds=2, certify_seconds=0)
     (block,) = study.case.instances
     claim = study.case.claim(block.claim)
     for side, name in ((claim.slower, "quintic"), (claim.faster, "b-spline")):
@@ -521,7 +525,7 @@ def test_the_documented_digits_are_those_of_the_case_and_the_rule() -> None:
 
 @pytest.mark.slow
 def test_the_documented_medians_are_those_of_the_shipped_family() -> None:
-    study = Study(load_case(WHALE), seeds=2)
+    study = Study(load_case(WHALE), seeds=2, certify_seconds=0)
     found = study.instances(study.instance_blocks[0])
     columns = [(e, at) for e in (Effect.BOTH, Effect.ALGORITHM) for at in (0, 1)]
     columns.append((Effect.CURVE, 0))
