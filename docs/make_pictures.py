@@ -17,7 +17,7 @@ PICTURES = Path(__file__).parent / "pictures"
 def waterfall_puma560() -> str:
     """Where the time goes in the puma560 paper, under its default reading."""
     case = load_case("puma560-mnam-pso-353")
-    study = Study(case, reading=case.default_reading.id)
+    study = Study(case, seeds=2, reading=case.default_reading.id)
     (waterfall,) = waterfalls(study)
     return svg(waterfall_picture(waterfall, title="PUMA 560, 3-5-3: where the time goes"))
 
@@ -35,7 +35,7 @@ def exhibits() -> Iterator[tuple[str, str]]:
     """Name and document of each picture in `EXHIBITS`."""
     found = {}
     for case_id in dict.fromkeys(case for case, _ in EXHIBITS.values()):
-        study = Study(load_case(case_id))
+        study = Study(load_case(case_id), seeds=2)
         for section in (*exhibits_of_motion(study), *exhibits_of_search(study)):
             for block in section.blocks:
                 if isinstance(block, Drawn):

@@ -14,8 +14,8 @@ from ...problem import TrajgapError
 
 LISTED = "as listed"
 """Name of the settings that the case lists."""
-DESIGN = 24
-"""Settings drawn over everything open at once: each open number in 24 different places."""
+DESIGN = 16
+"""Settings drawn over everything open at once: each open number in 16 different places."""
 _OPEN_NUMBERS = {
     "inertia": (0.4, 1.0),
     "inertia_max": (0.7, 1.0),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from support.studies import hurried, shipped
+from support.studies import hurried
 from trajgap.compare.audits.replay_settings import DESIGN, LISTED, spread_settings
 from trajgap.compare.audits.rules.replays import judge_replays
 from trajgap.compare.audits.study import Study
@@ -70,9 +70,8 @@ def test_replays_inform_and_judge_nothing() -> None:
     assert "within 0.5 %" in convergence.message
 
 
-def test_a_total_that_some_setting_reaches_names_that_setting() -> None:
-    """With ω = 1 the standard swarm of the PUMA paper ends near the printed 3.528 s."""
-    study = shipped("puma560-mnam-pso-353")
+def test_a_total_beside_spread_settings_names_the_nearest() -> None:
+    study = Study(hurried("puma560-mnam-pso-353"), seeds=2, certify_seconds=0)
     (said,) = [f for f in judge_replays(study) if f.rule == "TG402" and f.claim == "pso-longest"]
     assert "inertia = " in said.message
     assert "nearest to the printed total is" in said.message

@@ -734,7 +734,7 @@ def test_no_declared_curve_is_shorter() -> None:
 
 
 def test_the_waterfall_ends_at_the_bound() -> None:
-    study = Study(load_case("puma560-mnam-pso-353"), reading="durations-positive")
+    study = Study(load_case("puma560-mnam-pso-353"), seeds=2, reading="durations-positive")
     step = waterfall._free(study, "six-joints", "durations-positive")
     assert step.evidence is Evidence.CERTIFIED
     assert isinstance(step.low, float)
