@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from support.studies import hurried
 from trajgap.compare.audits.replay_settings import DESIGN, LISTED, spread_settings
-from trajgap.compare.audits.rules.replays import judge_replays
+from trajgap.compare.audits.rules.replays import _typical, judge_replays
 from trajgap.compare.audits.study import Study
 from trajgap.compare.documents import ClaimVerdict, Severity
-from trajgap.compare.gaps import share_interval, share_of_pairs
+from trajgap.compare.gaps import share_interval, share_of_pairs, spread
 from trajgap.heuristics import GA, PSO
 
 
@@ -71,7 +71,15 @@ def test_replays_inform_and_judge_nothing() -> None:
 
 
 def test_a_total_beside_spread_settings_names_the_nearest() -> None:
-    study = Study(hurried("puma560-mnam-pso-353"), seeds=2, certify_seconds=0)
-    (said,) = [f for f in judge_replays(study) if f.rule == "TG402" and f.claim == "pso-longest"]
-    assert "inertia = " in said.message
-    assert "nearest to the printed total is" in said.message
+    spreads = {
+        LISTED: spread(np.array([3.36, 3.37])),
+        "inertia = 0.884": spread(np.array([3.50, 3.53])),
+        "inertia = 0.952": spread(np.array([3.80, 3.97])),
+        "inertia = 0.999": spread(np.array([np.inf, np.inf])),
+    }
+    said = _typical(spreads, 3.5275, 3.5285)
+    assert "(3 settings), medians run from 3.3650 to 3.8850 s" in said
+    assert "nearest to the printed total is 3.5150 s with inertia = 0.884." in said
+    assert "No run under any of these settings" not in said
+    assert "No run under any of these settings" in _typical(spreads, 4.0, 4.001)
+    assert _typical({LISTED: spreads[LISTED]}, 3.5, 3.6) == ""
