@@ -219,8 +219,20 @@ PLANTED: list[tuple[str, Callable[[Patch], None], int]] = [
 """Attack, fault, and the trials within which it must be found."""
 
 
+QUICK = 20
+"""Trials from which a planted fault is one of the slow tests."""
+
+
 @pytest.mark.parametrize(
-    ("name", "plant", "trials"), PLANTED, ids=[f"{n}: {p.__name__}" for n, p, _ in PLANTED]
+    ("name", "plant", "trials"),
+    [
+        pytest.param(
+            *one,
+            id=f"{one[0]}: {one[1].__name__}",
+            marks=[pytest.mark.slow] if one[2] >= QUICK else [],
+        )
+        for one in PLANTED
+    ],
 )
 def test_a_planted_fault_is_found(
     name: str, plant: Callable[[Patch], None], trials: int, monkeypatch: Patch

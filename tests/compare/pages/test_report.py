@@ -361,6 +361,7 @@ def test_the_index_names_every_case_and_its_counts(folder: Path) -> None:
     assert f"12 claims: {said}" in seen.words
 
 
+@pytest.mark.slow
 def test_a_shipped_case_shows_each_joint_by_itself() -> None:
     one = audited("puma560-mnam-pso-353")
     page = case_page(one)
