@@ -21,7 +21,7 @@ from ..documents import (
     more_errors,
 )
 from .card_errors import plainly
-from .causes import DOUBTED
+from .causes import DOUBTED, JUMPING
 from .rules import said_to_keep
 from .stated import place
 from .study import Study
@@ -136,9 +136,7 @@ def _limits(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[str]
 
 
 def _jumping(judgements: Iterable[Judgement]) -> str:
-    said = any(
-        c.startswith("on a curve whose velocity jumps") for j in judgements for c in j.caveats
-    )
+    said = any(c.startswith(JUMPING) for j in judgements for c in j.caveats)
     return ", on curves whose velocity jumps" if said else ""
 
 

@@ -88,19 +88,19 @@ def _sums(claim: AnyClaim, total: Printed) -> Iterator[Explanation]:
 
     def said(what: str, was: Printed, other: Printed) -> Explanation:
         return Explanation(
-            change=f"One digit of {what} may be misprinted: {other.text} in place of {was.text}.",
+            change=f"{what} may be misprinted: {other.text} in place of {was.text}.",
             effect="Then the printed total is the sum of its parts.",
         )
 
     for other in one_digit_off(total):
         if other.interval.lower <= high and low <= other.interval.upper:
-            yield said("the total", total, other)
+            yield said("The total", total, other)
     for k, part in enumerate(parts):
         for other in one_digit_off(part):
             shift_low = low - part.interval.lower + other.interval.lower
             shift_high = high - part.interval.upper + other.interval.upper
             if total.interval.lower <= shift_high and shift_low <= total.interval.upper:
-                yield said(f"the duration of segment {k + 1}", part, other)
+                yield said(f"The duration of segment {k + 1}", part, other)
 
 
 def _kept_if(
@@ -141,13 +141,14 @@ def _kept_if(
             if not 1 / _LIKELY <= h[k] / printed.value[k] <= _LIKELY:
                 continue
             change = (
-                f"One digit of the duration of segment {k + 1} may be misprinted: {other.text} in "
-                f"place of {number.text}."
+                f"The duration of segment {k + 1} may be misprinted: {other.text} in place of "
+                f"{number.text}."
             )
             digits.append((abs(h[k] - printed.value[k]), (change, problem, h, widths)))
     nearest = [one for _, one in sorted(digits, key=lambda pair: pair[0])[:_TRIED]]
-    for kind in (exchanged, turned, nearest):
-        effect = _first_that_helps(found, kind)
+    # A duration whose digit is changed can always be made long: there only what settles counts.
+    for kind, partly in ((exchanged, True), (turned, True), (nearest, False)):
+        effect = _first_that_helps(found, kind, partly)
         if effect is not None:
             yield effect
 
@@ -155,22 +156,23 @@ def _kept_if(
 def _first_that_helps(
     before: Check,
     changes: list[tuple[str, Problem, Array, Array]],
+    partly: bool,
 ) -> Explanation | None:
-    """The first change that keeps the limits; else the one that lowers the excess most."""
+    """The first change that keeps the limits; else, if ``partly``, the one that helps most."""
     best: tuple[float, str, Check] | None = None
     for change, problem, durations, widths in changes:
         after = check(problem, durations)
         if after.worst is None or after.worst.quantity == "curve":
             continue
         ratio = float(after.worst.ratio)
-        if ratio <= _NEAR and _keeps(problem, durations, widths):
-            return Explanation(change=change, effect="Then every limit is kept.")
+        kept = _kept(problem, durations, widths) if ratio <= _NEAR else ""
+        if kept:
+            return Explanation(change=change, effect=kept)
         if best is None or ratio < best[0]:
             best = ratio, change, after
     assert before.worst is not None
     excess = float(before.worst.ratio) - 1.0
-    # A duration whose digit is changed can always be made long: only a change that settles counts.
-    if best is None or "digit" in best[1] or best[0] - 1.0 > _LEAST_GAIN * excess:
+    if best is None or not partly or best[0] - 1.0 > _LEAST_GAIN * excess:
         return None
     if isclose(best[0], float(before.worst.ratio)):
         return None
@@ -181,8 +183,11 @@ def _first_that_helps(
     )
 
 
-def _keeps(problem: Problem, durations: Array, widths: Array) -> bool:
-    """Whether some value that rounds to the changed digits keeps every limit."""
+def _kept(problem: Problem, durations: Array, widths: Array) -> str:
+    """What the changed digits settle; empty where no value that rounds to them keeps the limits."""
     h = RoundingBox(durations, durations - widths, durations + widths)
     q = RoundingBox(problem.waypoints, problem.waypoints, problem.waypoints)
-    return judge_rounding(problem, h, q).verdict in (Rounding.KEEPS, Rounding.CONSISTENT)
+    some = "Then every limit is kept by some value that rounds to the printed digits."
+    return {Rounding.KEEPS: "Then every limit is kept.", Rounding.CONSISTENT: some}.get(
+        judge_rounding(problem, h, q).verdict, ""
+    )
