@@ -235,7 +235,7 @@ def _unknown(solution: Solution) -> str:
     if solution.infimum is not None or solution.status is Status.NOT_ATTAINED:
         return "no shortest motion exists: the total only approaches its infimum"
     if solution.status is Status.INFEASIBLE:
-        return "no motion keeps the limits: proved"
+        return "no motion through the printed way-points keeps the limits: proved"
     if solution.durations is None:
         return "the optimum is not checkable: the solver found no motion within the limits"
     if solution.status is not Status.OPTIMAL and solution.evidence is not Evidence.CERTIFIED:
