@@ -1,5 +1,6 @@
-"""Certified C2 cubic splines: the tables of docs/certificates-cubic.md and the example's file.
+"""Certified C2 cubic splines: tables, and the example's file.
 
+The tables stand in docs/explanation/certificates-cubic.md.
 Without arguments all tables; with names of problems only their lines of the first; with "widths"
 only the last.
 """

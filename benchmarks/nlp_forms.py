@@ -7,7 +7,7 @@ import time
 
 import numpy as np
 from trajgap.nlp import Form, solve
-from trajgap.nlp.optimum.tracking import best_form
+from trajgap.nlp.optimum.ipopt import best_form
 from trajgap.problem import (
     Limits,
     Problem,

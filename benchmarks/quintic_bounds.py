@@ -2,8 +2,8 @@
 
 ``python benchmarks/quintic_bounds.py METHOD [--seconds S] [--first F] [--every N]`` with METHOD
 certificate, mccormick or scip (``pip install pyscipopt`` first) appends a line per problem to
-``quintic_bounds.csv``; ``--table`` prints the tables of docs/certificates-quintic.md from it. The
-seconds hold the local solver's search for the answer, whose total is the upper bound.
+``quintic_bounds.csv``; ``--table`` prints the tables of docs/explanation/certificates-quintic.md
+from it. The seconds hold the local solver's search for the answer, whose total is the upper bound.
 """
 
 from __future__ import annotations

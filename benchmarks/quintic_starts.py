@@ -23,8 +23,9 @@ import numpy as np
 import trajgap.nlp
 from quintic_instances import instances
 from trajgap.nlp import random_starts, solve
+from trajgap.nlp.optimum.ipopt import compiled, structure_of
 from trajgap.nlp.optimum.starts import equal_start
-from trajgap.nlp.optimum.tracking import compiled, solve_coarse, structure_of, track
+from trajgap.nlp.optimum.tracking import solve_coarse, track
 from trajgap.problem import Verdict
 
 SAME, BLOCK, FLOOR, SEED = 1e-6, 50, 1e-3, 20260302

@@ -1,6 +1,7 @@
 """How often `solve` says a wrong word, or an optimum that brute force improves.
 
-    python benchmarks/solver_errors.py --count 1000 --seed 0
+    RATES=docs/measurements/solver-errors.csv
+    python benchmarks/solver_errors.py --count 1000 --seed 0 --write $RATES
 
 Random problems are hard on purpose: bounds on the durations, position limits, way-points that
 coincide or nearly do, joints that stand still, angles and limits over many powers of ten. Brute
@@ -11,10 +12,13 @@ shares no code with `solve`; every motion counts only once `check` has passed it
 from __future__ import annotations
 
 import argparse
+import importlib
 import sys
 import time
 from collections import Counter
 from dataclasses import dataclass, replace
+from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -199,13 +203,27 @@ def judged(solution: Solution, brute: Brute) -> str:
     return "improvable" if brute.total < solution.best * (1 - IMPROVABLE) else ""
 
 
+def _rates() -> ModuleType:
+    """The module beside this one, however this one was loaded."""
+    sys.path.insert(0, str(Path(__file__).parent))
+    try:
+        return importlib.import_module("error_rates")
+    finally:
+        del sys.path[0]
+
+
 def main() -> int:
     """Print the rates of wrong words and of improvable answers; 1 if a goal is missed."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--count", type=int, default=1000)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--verbose", action="store_true", help="print every problem that fails")
+    parser.add_argument(
+        "--write", type=Path, metavar="CSV", help="enter the counts; that of docs/ with its page"
+    )
     given = parser.parse_args()
+    code = _rates().described() if given.write is not None else ""
+    failing: list[tuple[int, str, str]] = []
     words: Counter[str] = Counter()
     faults: Counter[str] = Counter()
     spent = [0.0, 0.0]
@@ -221,6 +239,7 @@ def main() -> int:
         fault = judged(solution, brute)
         if fault:
             faults[fault] += 1
+            failing.append((k, fault, str(solution.status)))
             if given.verbose:
                 gain = 1 - brute.total / solution.best if brute.total < np.inf else np.nan
                 print(
@@ -232,6 +251,9 @@ def main() -> int:
     for name, counted in (("status", words), ("fault", faults)):
         for word, count in counted.most_common():
             print(f"| {name} | {word} | {count} | {count / given.count:.4%} |")
+    if given.write is not None:
+        rates = _rates()
+        rates.enter(given.write, rates.rows_of(code, given.seed, words, failing))
     return int(any(f.startswith("wrong infeasible") for f in faults))
 
 

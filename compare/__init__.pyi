@@ -24,7 +24,7 @@ from .documents import (
     Step,
     Waterfall,
 )
-from .gaps import gap
+from .gaps import bench, gap, measure_gaps
 from .pages import write_report
 
 __all__ = [
@@ -48,8 +48,10 @@ __all__ = [
     "Study",
     "Waterfall",
     "audit",
+    "bench",
     "gap",
     "judge_rounding",
+    "measure_gaps",
     "waterfalls",
     "write_report",
 ]

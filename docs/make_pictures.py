@@ -3,13 +3,19 @@
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
+from toppra import SplineInterpolator
+from toppra.algorithm import TOPPRA
+from toppra.constraint import JointAccelerationConstraint, JointVelocityConstraint
 from trajgap.compare.audits.study import Study
 from trajgap.compare.audits.waterfall import waterfalls
 from trajgap.compare.pages.blocks import Drawn
 from trajgap.compare.pages.exhibits import exhibits_of_motion, exhibits_of_search
+from trajgap.compare.pictures import ArmMotion, arm_picture
 from trajgap.compare.pictures.drawing import svg
 from trajgap.compare.pictures.waterfall import waterfall_picture
-from trajgap.problem import file_name, load_case
+from trajgap.nlp import solve
+from trajgap.problem import Limits, Problem, Trajectory, file_name, fit, load_case, load_robot
 
 PICTURES = Path(__file__).parent / "pictures"
 
@@ -43,7 +49,58 @@ def exhibits() -> Iterator[tuple[str, str]]:
     return ((name, found[place]) for name, place in EXHIBITS.items())
 
 
+ARM = "puma560-mnam-pso-353"
+"""The case whose three motions the arm follows: a robot file has its links."""
+PRINTED = "mnam-longest"
+"""Its claim of the longest time of each segment, the paper's own motion."""
+
+
+def retimed(trajectory: Trajectory, limits: Limits) -> ArmMotion:
+    """The path of a motion, as fast as velocity and acceleration limits let it be followed."""
+    times = np.linspace(0.0, trajectory.total_time, 1001)
+    path = SplineInterpolator(times, trajectory(times))
+    bounds = [np.column_stack([-one, one]) for one in (limits.velocity, limits.acceleration)]
+    solver = TOPPRA(
+        [JointVelocityConstraint(bounds[0]), JointAccelerationConstraint(bounds[1])],
+        path,
+        gridpoints=times,
+        solver_wrapper="seidel",
+        parametrizer="ParametrizeConstAccel",
+    )
+    found = solver.compute_trajectory(0.0, 0.0)
+    clock = np.linspace(0.0, found.duration, 401)
+    return ArmMotion("printed path retimed", clock, found(clock))
+
+
+def arm_motions() -> tuple[Problem, list[ArmMotion]]:
+    """The motion as printed, the optimum of the same curve, and the printed path retimed."""
+    case = load_case(ARM)
+    problem = case.problem()
+    claim = next(one for one in case.claims if one.id == PRINTED)
+    durations = [printed.value for printed in claim.durations]
+    printed = fit(problem.curve, problem.waypoints, durations)
+    best = fit(problem.curve, problem.waypoints, solve(problem).durations)
+    motions = []
+    for label, one in (("as printed", printed), ("optimum of the same curve", best)):
+        times = np.linspace(0.0, one.total_time, 401)
+        motions.append(ArmMotion(label, times, one(times)))
+    return problem, [*motions, retimed(printed, problem.limits)]
+
+
+def arm() -> str:
+    """The arm of the puma560 paper on its three motions."""
+    problem, motions = arm_motions()
+    return arm_picture(
+        load_robot("puma560"),
+        motions,
+        problem.waypoints,
+        name="arm-puma560",
+        title="PUMA 560 through A, B, C and D: one clock for all three",
+    )
+
+
 if __name__ == "__main__":
+    (PICTURES / "arm-puma560.html").write_text(arm(), encoding="utf-8")
     PICTURES.mkdir(exist_ok=True)
     (PICTURES / "waterfall-puma560.svg").write_text(waterfall_puma560(), encoding="utf-8")
     for name, document in exhibits():

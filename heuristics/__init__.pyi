@@ -16,18 +16,25 @@ from .baseline import uniform_rescaling
 from .hazards import TentCollapse, tent_collapse
 from .loop import run, run_many, run_many_per_joint, run_per_joint, states
 from .objective import Bounds, Counted, DeathPenalty, Objective
-from .repair import Handling, Stretch
+from .optimizers import BASELINES, Borrowed, BorrowedTask, find_optimizer
+from .repair import Handling, Stretch, judge_of
 from .result import JointRuns, Run
-from .workers import in_processes
+from .search_boxes import search_box
+from .within_budget import BudgetedRun, run_within
+from .workers import in_processes, kept_processes
 
 __all__ = [
+    "BASELINES",
     "GA",
     "KINDS",
     "MNAMPSO",
     "PSO",
     "WOA",
     "Algorithm",
+    "Borrowed",
+    "BorrowedTask",
     "Bounds",
+    "BudgetedRun",
     "ConstrainedPSO",
     "Counted",
     "DeathPenalty",
@@ -44,14 +51,19 @@ __all__ = [
     "TentCollapse",
     "differential_evolution",
     "dual_annealing",
+    "find_optimizer",
     "from_settings",
     "in_processes",
+    "judge_of",
+    "kept_processes",
     "one_by_one",
     "open_choices",
     "run",
     "run_many",
     "run_many_per_joint",
     "run_per_joint",
+    "run_within",
+    "search_box",
     "shgo",
     "states",
     "tent_collapse",

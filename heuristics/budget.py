@@ -8,7 +8,7 @@ import numpy as np
 
 from ..problem import Array, TrajgapError
 from .algorithm import Search
-from .objective import Bounds, Counted, Objective
+from .objective import Bounds, Objective, check_shape, nan_returned
 
 
 class BudgetSpent(BaseException):
@@ -17,6 +17,10 @@ class BudgetSpent(BaseException):
     Control flow, not an error: like ``GeneratorExit`` it passes every ``except Exception`` on the
     way out of a search that is not ours.
     """
+
+
+_ROOM = 8192
+"""Evaluations that there is room for at first, more than a paper's budget; then twice as many."""
 
 
 class Budgeted:
@@ -32,18 +36,30 @@ class Budgeted:
 
     Attributes
     ----------
-    totals : list of float
-        Best fitness after each position judged so far.
+    judged : int
+        Positions judged so far.
     best : ndarray or None, shape (dimensions,)
         The first position that attained it; None before anything was judged.
+    refused : int
+        Calls that asked for more than was left.
     """
 
     def __init__(self, objective: Objective, dimensions: int, budget: int) -> None:
-        self._counted = Counted(objective)
+        self._objective = objective
         self._dimensions = dimensions
         self._budget = budget
-        self.totals: list[float] = []
+        # What was judged, in order; the best so far is worked out when somebody asks for it.
+        self._fitness = np.empty(min(budget, _ROOM))
+        self._least = np.inf
+        self.judged = 0
         self.best: Array | None = None
+        self.refused = 0
+
+    @property
+    def totals(self) -> Array:
+        """Best fitness after each position judged so far, shape (judged,)."""
+        least: Array = np.minimum.accumulate(self._fitness[: self.judged])
+        return least
 
     def __call__(self, positions: Array) -> Array:
         """Fitness of a batch; of one that exceeds the budget only the first part is judged.
@@ -51,7 +67,8 @@ class Budgeted:
         Raises
         ------
         TrajgapError
-            If the positions are not a batch of the right length.
+            If the positions are not a batch of the right length, or the objective returns another
+            shape than one value per position, or NaN.
         BudgetSpent
             If no evaluation is left for some position.
         """
@@ -61,16 +78,27 @@ class Budgeted:
                 f"objective: expected positions of shape (batch, {self._dimensions}), got "
                 f"{x.shape}; pass a single one as x[None]"
             )
-        left = self._budget - len(self.totals)
-        fitness = self._counted(x[:left]) if left else np.empty(0)
-        if fitness.size:
-            leader = int(np.argmin(fitness))
-            least = self.totals[-1] if self.totals else np.inf
-            if self.best is None or fitness[leader] < least:
-                self.best = x[leader].copy()
-            self.totals += np.minimum(np.minimum.accumulate(fitness), least).tolist()
+        left = self._budget - self.judged
+        fitness = self._judge(x[:left]) if left and len(x) else np.empty(0)
         if len(x) > left:
+            self.refused += 1
             raise BudgetSpent
+        return fitness
+
+    def _judge(self, x: Array) -> Array:
+        fitness = self._objective(x)
+        check_shape(fitness, len(x))
+        leader = int(fitness.argmin())  # the first NaN, if there is one
+        least = float(fitness[leader])
+        if least != least:
+            raise nan_returned()
+        if self.best is None or least < self._least:
+            self.best, self._least = x[leader].copy(), least
+        end = self.judged + len(x)
+        while end > self._fitness.size:
+            self._fitness = np.concatenate([self._fitness, np.empty_like(self._fitness)])
+        self._fitness[self.judged : end] = fitness
+        self.judged = end
         return fitness
 
 
@@ -92,6 +120,6 @@ def searched(
         raise TrajgapError(
             f"{search.kind}: judged no position; call the objective that it is given"
         )
-    judged = len(budgeted.totals)
+    judged = budgeted.judged
     ends = np.minimum(np.arange(1, blocks + 1) * per, judged) - 1
-    return np.array(budgeted.totals)[ends], budgeted.best, judged
+    return budgeted.totals[ends], budgeted.best, judged

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..problem import TOLERANCE, Array, Problem, TrajgapError, evaluate
+from ..problem import TOLERANCE, Array, Problem, TrajgapError, keeps_limits
 
 Objective = Callable[[Array], Array]
 """Maps a batch of positions, shape (batch, dimensions), to their fitness, shape (batch,)."""
@@ -106,14 +106,19 @@ class DeathPenalty:
             In s.
         """
         lower, upper = self.problem.duration_lower, self.problem.duration_upper
-        kept = ((durations >= lower) & (durations <= upper)).all(axis=1)
+        kept = (durations >= lower) & (durations <= upper)
+        if kept.size and kept.all():  # the usual swarm is held within the bounds
+            return self._inside(durations)
+        rows = kept.all(axis=1)
         fitness = np.full(durations.shape[0], self.penalty)
-        inside = durations[kept]
-        if inside.size:
-            ratios = evaluate(self.problem, inside).ratios
-            within = (ratios <= 1 + self.tolerance).all(axis=(1, 2))
-            fitness[kept] = np.where(within, inside.sum(axis=1), self.penalty)
+        if rows.any():
+            fitness[rows] = self._inside(durations[rows])
         return fitness
+
+    def _inside(self, durations: Array) -> Array:
+        """Fitness of vectors within the duration bounds."""
+        within = keeps_limits(self.problem, durations, self.tolerance)
+        return np.where(within, durations.sum(axis=1), self.penalty)
 
 
 class Counted:
@@ -143,12 +148,28 @@ class Counted:
             If the objective returns another shape than one value per position, or NaN.
         """
         fitness = self._objective(positions)
-        if np.shape(fitness) != positions.shape[:1]:
-            raise TrajgapError(
-                f"objective: expected {positions.shape[0]} values for as many positions, "
-                f"got shape {np.shape(fitness)}"
-            )
+        check_shape(fitness, positions.shape[0])
         if np.isnan(fitness).any():
-            raise TrajgapError("objective: returned NaN; return inf for what is infeasible")
+            raise nan_returned()
         self.evaluations += positions.shape[0]
         return fitness
+
+
+def check_shape(fitness: Array, count: int) -> None:
+    """Find out whether an objective returned one value per position.
+
+    Raises
+    ------
+    TrajgapError
+        If it did not.
+    """
+    if np.shape(fitness) != (count,):
+        raise TrajgapError(
+            f"objective: expected {count} values for as many positions, "
+            f"got shape {np.shape(fitness)}"
+        )
+
+
+def nan_returned() -> TrajgapError:
+    """Error for an objective that returned NaN."""
+    return TrajgapError("objective: returned NaN; return inf for what is infeasible")

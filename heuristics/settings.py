@@ -52,6 +52,11 @@ def share(*, ends: bool = True) -> Any:
     return Field(strict=True, gt=0, lt=1, description="a number between 0 and 1")
 
 
+def switch() -> Any:
+    """True or false."""
+    return Field(strict=True, description="true or false")
+
+
 def _ascending(ends: tuple[float, float]) -> tuple[float, float]:
     if ends[0] > ends[1]:
         raise ValueError("the larger one comes first")

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import signal
 from collections import deque
-from collections.abc import Callable, Generator, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Generator, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from contextvars import ContextVar
 from dataclasses import dataclass
 from multiprocessing import get_context
 from multiprocessing.connection import Connection, wait
@@ -21,6 +22,23 @@ _TRIES = 2
 """How often one piece of work is given to a process: a second death is no accident."""
 _END = 5.0
 """Seconds that a process has to end by itself before it is killed."""
+
+
+@contextmanager
+def kept_processes() -> Iterator[None]:
+    """Keep the processes of every `in_processes` inside for the next one, and end them at the end.
+
+    A process imports for two seconds before its first work, often longer than that work takes.
+    """
+    reserve = _Reserve([])
+    before = _RESERVE.set(reserve)
+    try:
+        yield
+    finally:
+        _RESERVE.reset(before)
+        reserve.open = False
+        for worker in reserve.idle:
+            worker.end()
 
 
 def in_processes(
@@ -56,7 +74,8 @@ def in_processes(
     todo = deque(range(len(items)))
     tries = [0] * len(items)
     done: dict[int, R] = {}
-    crew: list[_Worker] = []
+    reserve = _RESERVE.get()
+    crew = [] if reserve is None else reserve.taken(min(workers, len(items)))
     try:
         for due in range(len(items)):
             while due not in done:
@@ -77,7 +96,11 @@ def in_processes(
             yield done.pop(due)
     finally:
         for worker in crew:
-            worker.end()
+            # One that still works is not kept: its answer would be taken for that of the next.
+            if reserve is not None and reserve.open and worker.at is None:
+                reserve.idle.append(worker)
+            else:
+                worker.end()
 
 
 @dataclass(eq=False)
@@ -89,12 +112,12 @@ class _Worker:
     at: int | None = None
 
     @classmethod
-    def started(cls, one: Callable[[Any], object]) -> _Worker:
+    def started(cls) -> _Worker:
         # Spawned, because a fork copies the locks of the compiled libraries.
         context = get_context("spawn")
         ours, theirs = context.Pipe()
         # A daemon, so that it cannot outlive us.
-        process = context.Process(target=_work, args=(theirs, one), daemon=True)
+        process = context.Process(target=_work, args=(theirs,), daemon=True)
         try:
             process.start()
         except OSError as error:
@@ -107,11 +130,11 @@ class _Worker:
             theirs.close()
         return cls(process, ours)
 
-    def give(self, at: int, item: object) -> None:
+    def give(self, at: int, one: Callable[[Any], object], item: object) -> None:
         """Hand out an item; if the process is gone, its pipe says so when it is read."""
         self.at = at
         with suppress(BrokenPipeError, ConnectionResetError):
-            self.pipe.send(item)
+            self.pipe.send((one, item))
 
     def answer(self) -> tuple[bool, Any] | None:
         """Whether the work finished, and its result or exception; None if the process is gone."""
@@ -145,6 +168,29 @@ class _Worker:
             self.process.join()
 
 
+@dataclass(eq=False)
+class _Reserve:
+    """Processes that wait for work, until the `kept_processes` that keeps them is left."""
+
+    idle: list[_Worker]
+    open: bool = True
+
+    def taken(self, most: int) -> list[_Worker]:
+        """Take out processes for new work, but none that was killed while it waited."""
+        taken: list[_Worker] = []
+        while self.idle and len(taken) < most:
+            worker = self.idle.pop()
+            if worker.process.is_alive():
+                taken.append(worker)
+            else:
+                worker.end()
+        return taken
+
+
+_RESERVE: ContextVar[_Reserve | None] = ContextVar("_RESERVE", default=None)
+"""Of the innermost `kept_processes` that is open; each thread has its own."""
+
+
 def _assign(
     crew: list[_Worker],
     one: Callable[[T], R],
@@ -157,11 +203,11 @@ def _assign(
     idle = [worker for worker in crew if worker.at is None]
     while todo and (idle or len(crew) < workers):
         if not idle:
-            crew.append(_Worker.started(one))
+            crew.append(_Worker.started())
             idle.append(crew[-1])
         at = todo.popleft()
         tries[at] += 1
-        idle.pop().give(at, items[at])
+        idle.pop().give(at, one, items[at])
 
 
 def _ready(crew: list[_Worker]) -> list[_Worker]:
@@ -180,13 +226,13 @@ def _again(at: int, tries: int, worker: _Worker, todo: deque[int]) -> None:
     todo.appendleft(at)
 
 
-def _work(pipe: Connection[Any, Any], one: Callable[[Any], object]) -> None:
+def _work(pipe: Connection[Any, Any]) -> None:
     """What a process does until its pipe is closed."""
     # A terminal sends Ctrl-C to every process of the group; the parent alone answers it.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     while True:
         try:
-            item = pipe.recv()
+            one, item = pipe.recv()
         except (EOFError, ConnectionResetError):
             return
         try:

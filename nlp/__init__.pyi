@@ -12,7 +12,6 @@ from .optimum import (
     build,
     kkt,
     random_starts,
-    solve,
     solve_per_joint,
     structure_of,
     weakest,
@@ -20,16 +19,18 @@ from .optimum import (
 from .proofs import (
     Certified,
     ExactProblem,
-    Interval,
     Outcome,
     Progress,
+    ProvedInterval,
     certificate,
     certify,
     exact_problem,
     printed_problem,
+    problem_seal,
     proved,
     shipped,
     shipped_file,
+    solve,
     stated_exactly,
     with_certificate,
     with_certificates,
@@ -37,7 +38,7 @@ from .proofs import (
     write_certificate,
 )
 from .proofs.any_curve import AnyCurveEstimate, estimate_any_curve
-from .retiming import Retiming, retime, retime_joints
+from .retiming import Retiming, retime, retime_joints, retimed_motion
 
 __all__ = [
     "KKT",
@@ -48,10 +49,10 @@ __all__ = [
     "ExactProblem",
     "Form",
     "Formulation",
-    "Interval",
     "Outcome",
     "PerJointSolution",
     "Progress",
+    "ProvedInterval",
     "Range",
     "Retiming",
     "Solution",
@@ -64,10 +65,12 @@ __all__ = [
     "exact_problem",
     "kkt",
     "printed_problem",
+    "problem_seal",
     "proved",
     "random_starts",
     "retime",
     "retime_joints",
+    "retimed_motion",
     "shipped",
     "shipped_file",
     "solve",

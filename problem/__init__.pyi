@@ -4,6 +4,7 @@ from .cases import (
     CaseFile,
     DurationBox,
     case_schema,
+    compare_transcriptions,
     load_case,
     load_robot,
     parse_case,
@@ -42,7 +43,8 @@ from .curves import (
     uniform_cubic_b_spline,
 )
 from .errors import CaseError, CurveError, ProcessError, TrajgapError
-from .evaluation import Evaluation, evaluate, reachable_total
+from .evaluation import Evaluation, evaluate, keeps_limits, reachable_total
+from .fields import Strict
 from .file_names import LONGEST_NAME, file_name
 from .files import (
     check_name,
@@ -78,6 +80,7 @@ from .robots import (
     sample_workspace,
     waypoint_sequences,
 )
+from .textfile import parse_toml, read_text
 from .units import CHOICES, Measured, Scale, from_si, scale, to_si
 
 __all__ = [
@@ -121,6 +124,7 @@ __all__ = [
     "Proximity",
     "Scale",
     "StepKind",
+    "Strict",
     "Timing",
     "Trajectory",
     "TrajgapError",
@@ -132,6 +136,7 @@ __all__ = [
     "check_regular",
     "clamped_control_points",
     "clamped_readings",
+    "compare_transcriptions",
     "control_vertices",
     "ctraj",
     "cubic_spline",
@@ -147,11 +152,13 @@ __all__ = [
     "geometric_jacobian",
     "inverse_kinematics",
     "jtraj",
+    "keeps_limits",
     "link_frames",
     "load_case",
     "load_robot",
     "new_file",
     "parse_case",
+    "parse_toml",
     "peak_gradients",
     "piecewise",
     "proximity",
@@ -159,6 +166,7 @@ __all__ = [
     "quintic_spline",
     "reachable_total",
     "read_regular",
+    "read_text",
     "recover_folder",
     "remove_drafts",
     "replace_file",

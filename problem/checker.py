@@ -10,9 +10,14 @@ from numpy.typing import ArrayLike
 
 from .arrays import Array
 from .curves import (
+    MANY_PIECES,
+    Extremum,
     Trajectory,
     as_durations,
     extrema,
+    largest,
+    step_sizes,
+    tops,
 )
 from .errors import CurveError
 from .limits import QUANTITIES
@@ -182,6 +187,34 @@ def _ratio(value: float, limit: float, error: float) -> float:
     return abs(value) / limit
 
 
+def _of_many(trajectory: Trajectory) -> bool:
+    """Whether there are so many pieces that their extrema are found by compiled code."""
+    return trajectory.polynomial_in_time and len(trajectory.durations) >= MANY_PIECES
+
+
+def _largest(trajectory: Trajectory, error: Array, j: int, r: int) -> tuple[Extremum, float]:
+    """The extremum of the largest size, and the bound on the error of the peak.
+
+    The true peak is at least its own extremum less that one's error, and at most the largest sum of
+    an extremum and its error: a short segment, whose error is large but whose values are small,
+    does not blur the peak of another.
+    """
+    if _of_many(trajectory):
+        found = tops(trajectory, error, j, r)
+        own = float(error[found.size.segment, r, j])
+        return found.size, max(own, found.reach - abs(found.size.value))
+    return largest(trajectory, j, r, error[:, r, j])
+
+
+def _outermost(trajectory: Trajectory, error: Array, j: int) -> tuple[Extremum, Extremum]:
+    """Where a joint's position is least, and where it is largest."""
+    if _of_many(trajectory):
+        found = tops(trajectory, error, j, 0)
+        return found.lowest, found.highest
+    points = extrema(trajectory, j, 0)
+    return max(points, key=lambda e: -e.value), max(points, key=lambda e: e.value)
+
+
 def _derivative_peaks(
     problem: Problem,
     h: Array,
@@ -194,15 +227,7 @@ def _derivative_peaks(
         for r, quantity in enumerate(QUANTITIES, start=1):
             if not np.isfinite(limits[j, r - 1]):
                 continue
-            points = extrema(trajectory, j, r)
-            bounds = np.array([float(error[e.segment, r, j]) for e in points])
-            sizes = np.array([abs(e.value) for e in points])
-            i = int(np.argmax(sizes))
-            top = points[i]
-            # The true peak is at least its own extremum less that one's error, and at most the
-            # largest sum of an extremum and its error: a short segment, whose error is large but
-            # whose values are small, does not blur the peak of another.
-            bound = max(float(bounds[i]), float((sizes + bounds).max() - sizes[i]))
+            top, bound = _largest(trajectory, error, j, r)
             limit = float(limits[j, r - 1])
             ratio = _ratio(top.value, limit, bound)
             at = problem.curve.segment_of(h, top)
@@ -226,11 +251,10 @@ def _position_peaks(
         low, high = problem.limits.position_lower[j], problem.limits.position_upper[j]
         if not (np.isfinite(low) or np.isfinite(high)):
             continue
-        points = extrema(trajectory, j, 0)
-        for limit, sign in ((low, -1.0), (high, 1.0)):
+        ends = _outermost(trajectory, error, j)
+        for limit, sign, top in ((low, -1.0, ends[0]), (high, 1.0, ends[1])):
             if not np.isfinite(limit):
                 continue
-            top = max(points, key=lambda e: sign * e.value)
             excess = sign * (top.value - limit)
             half = _half_range(low, high, limit)
             bound = float(error[:, 0, j].max())
@@ -266,6 +290,8 @@ def _duration_peaks(problem: Problem, h: Array) -> list[Peak]:
 
 def _jumps(problem: Problem, trajectory: Trajectory, error: Array) -> list[Jump]:
     jumps = []
+    if _of_many(trajectory):
+        return _jumps_of_many(problem, trajectory, error)
     for b in range(1, len(trajectory.durations)):
         for j, label in enumerate(problem.joints):
             for order in range(3):
@@ -275,6 +301,18 @@ def _jumps(problem: Problem, trajectory: Trajectory, error: Array) -> list[Jump]
                 if abs(size) > bound:
                     jumps.append(Jump(label, order, b, float(trajectory.breaks[b]), size))
     return jumps
+
+
+def _jumps_of_many(problem: Problem, trajectory: Trajectory, error: Array) -> list[Jump]:
+    found = []
+    for order in range(3):
+        size, scale = step_sizes(trajectory, order)
+        bound = error[:-1, order] + error[1:, order] + 1e-9 * scale
+        found += [(b, j, order, size[b, j]) for b, j in np.argwhere(np.abs(size) > bound).tolist()]
+    return [
+        Jump(problem.joints[j], order, b + 1, float(trajectory.breaks[b + 1]), float(step))
+        for b, j, order, step in sorted(found)
+    ]
 
 
 def _no_curve(problem: Problem, h: Array, why: CurveError, tolerance: float) -> Check:

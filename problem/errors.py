@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from .characters import visible
+
+_MOST_TOLD = 8
+"""Faults that one refusal tells: more hide the ones to begin with."""
 
 
 class TrajgapError(ValueError):
@@ -47,20 +52,33 @@ class CaseError(TrajgapError):
         whole is at fault.
     reason : str
         What is wrong, and after a semicolon how to fix it.
+    others : sequence of (str, str)
+        Field and reason of every further fault, so that one refusal tells all of them.
 
     Notes
     -----
-    The message is always one line, ``FILE: field: what is wrong; how to fix it``.
+    The message is always one line, ``FILE: field: what is wrong; how to fix it``; further faults
+    follow after ``; also``.
     """
 
-    def __init__(self, file: str, field: str, reason: str) -> None:
-        super().__init__(file, field, reason)
+    def __init__(
+        self, file: str, field: str, reason: str, others: Sequence[tuple[str, str]] = ()
+    ) -> None:
+        super().__init__(file, field, reason, tuple(others))
         self.file = file
         self.field = field
         self.reason = reason
+        self.others = tuple(others)
+
+    @property
+    def faults(self) -> tuple[tuple[str, str], ...]:
+        """Field and reason of every fault, the one to fix first in front."""
+        return ((self.field, self.reason), *self.others)
 
     def __str__(self) -> str:
-        parts = (part for part in (self.file, self.field, self.reason) if part)
-        line = " ".join(": ".join(parts).split())
+        told = [": ".join(part for part in one if part) for one in self.faults[:_MOST_TOLD]]
+        more = len(self.faults) - len(told)
+        said = "; also ".join(told) + (f" (and {more} more)" if more else "")
+        line = " ".join(": ".join(part for part in (self.file, said) if part).split())
         # File names and values come from outside; nothing of them may steer a terminal.
         return visible(line)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,12 +25,19 @@ class Evaluation:
     ratios : ndarray, shape (batch, joints, 3)
         max over t of |v|/V, |a|/A, |j|/J; 0 where there is no limit, inf where a duration is
         not positive and finite.
-    stretch : ndarray, shape (batch,)
-        c* of each vector.
     """
 
     ratios: Array
-    stretch: Array
+
+    @cached_property
+    def stretch(self) -> Array:
+        """c* of each vector, shape (batch,)."""
+        ratios = self.ratios
+        top = ratios[:, 0].copy()
+        for j in range(1, ratios.shape[1]):  # far quicker than max() along a middle axis
+            np.maximum(top, ratios[:, j], out=top)
+        stretch: Array = np.maximum(top[:, 0], np.maximum(np.sqrt(top[:, 1]), np.cbrt(top[:, 2])))
+        return stretch
 
 
 def evaluate(problem: Problem, durations: ArrayLike, nodal: ArrayLike | None = None) -> Evaluation:
@@ -58,33 +65,59 @@ def evaluate(problem: Problem, durations: ArrayLike, nodal: ArrayLike | None = N
     except (TypeError, ValueError):
         raise TrajgapError("durations: not numbers; give seconds, (batch, segments)") from None
     if nodal is None:
-        values, limits, wanted = _fixed_question(problem)
+        values, limits, wanted, plain = _fixed_question(problem)
     else:
-        values, limits, wanted = _question(problem, np.asarray(nodal, dtype=np.float64))
+        values, limits, wanted, plain = _question(problem, np.asarray(nodal, dtype=np.float64))
     peaks = problem.curve.batch_peaks(values, h, wanted)
+    if plain:
+        return Evaluation(peaks / limits)
     with np.errstate(invalid="ignore", divide="ignore"):
         ratios = peaks / limits
-    undefined = np.isnan(ratios)  # 0/0 is kept, inf/inf is not
-    if undefined.any():
-        ratios[undefined] = np.where(peaks[undefined] > 0, np.inf, 0.0)
-    top = ratios[:, 0].copy()
-    for j in range(1, ratios.shape[1]):  # far quicker than max() along a middle axis
-        np.maximum(top, ratios[:, j], out=top)
-    stretch = np.maximum(top[:, 0], np.maximum(np.sqrt(top[:, 1]), np.cbrt(top[:, 2])))
-    return Evaluation(ratios, stretch)
+    ratios[np.isnan(ratios)] = 0.0  # 0/0 is kept
+    return Evaluation(ratios)
 
 
-Question = tuple[Array, Array, NDArray[np.bool_]]
+def keeps_limits(problem: Problem, durations: Array, tolerance: float) -> NDArray[np.bool_]:
+    """Whether each of many duration vectors keeps every limit, as `evaluate` says.
+
+    Parameters
+    ----------
+    problem : Problem
+    durations : ndarray, shape (batch, segments)
+        s.
+    tolerance : float
+        Relative excess over a limit that still counts as keeping it.
+
+    Returns
+    -------
+    ndarray of bool, shape (batch,)
+        Sooner than all ratios, where bounds decide: what a death penalty asks.
+    """
+    values, divisors, wanted, _ = _fixed_question(problem)
+    ceilings = np.where(wanted, divisors, np.inf) * (1 + tolerance)
+    peaks = problem.curve.decided_peaks(values, durations, wanted, ceilings)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        ratios = peaks / divisors
+    # 0/0 keeps a limit of 0, inf/inf keeps nothing.
+    kept: NDArray[np.bool_] = ((ratios <= 1 + tolerance) | (peaks == 0.0)).all(axis=(1, 2))
+    return kept
 
 
-def _question(problem: Problem, nodal: Array | None) -> Question:
+_Question = tuple[Array, Array, NDArray[np.bool_], bool]
+"""Values, limits, which peaks are wanted, and whether no quotient of them can be undefined."""
+
+
+def _question(problem: Problem, nodal: Array | None) -> _Question:
     limits = problem.limits.derivatives
+    wanted = np.isfinite(limits)
     values = problem.curve.motion_values(problem.waypoints, nodal)
-    return values, limits, np.isfinite(limits)
+    # A peak that is not wanted is 0, or inf where a duration is not positive: so is its ratio.
+    divisors = np.where(wanted, limits, 1.0)
+    return values, divisors, wanted, bool((divisors > 0).all())
 
 
 @lru_cache(maxsize=64)
-def _fixed_question(problem: Problem) -> Question:
+def _fixed_question(problem: Problem) -> _Question:
     """Keyed by the problem's identity: a swarm asks the same problem thousands of times."""
     return _question(problem, None)
 

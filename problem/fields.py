@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from decimal import Decimal
 from difflib import get_close_matches
 from typing import Annotated, Any, Literal
@@ -27,6 +27,8 @@ from .units import CHOICES, Quantity, check_unit
 
 MOST_WAYPOINTS = 10_000
 """Way-points of one problem: the curve through them takes half a second and 50 MB to declare."""
+MOST_POSES = 500
+"""Poses of a straight line in a case file: each takes some milliseconds of inverse kinematics."""
 MOST_JOINTS = 100
 """Joints of one robot: no arm and no humanoid has as many."""
 MOST_ENTRIES = 1_000
@@ -36,14 +38,21 @@ LARGEST_SEED = 2**63 - 1
 
 
 def fault(
-    path: str, reason: str, kind: Literal["fault", "unknown_key"] = "fault"
+    path: str,
+    reason: str,
+    kind: Literal["fault", "unknown_key"] = "fault",
+    others: Sequence[tuple[str, str]] = (),
 ) -> PydanticCustomError:
-    """Make a validation error at ``path``, relative to the field being validated."""
-    return PydanticCustomError(kind, "{reason}", {"path": path, "reason": reason})
+    """Make a validation error at ``path``, relative to the field being validated.
+
+    ``others`` are the paths and reasons of further ones.
+    """
+    told = {"path": path, "reason": reason, "others": list(others)}
+    return PydanticCustomError(kind, "{reason}", told)
 
 
 def nearest(word: str, known: Iterable[str]) -> str:
-    """Mend for an unknown word: the nearest known one, or all of them."""
+    """How to fix an unknown word: the nearest known one, or all of them."""
     choices = list(known)
     close = get_close_matches(word, choices, n=1, cutoff=0.6)
     if close:
@@ -63,10 +72,13 @@ class Strict(BaseModel):
     def _known_keys(cls, data: Any) -> Any:
         if not isinstance(data, dict):
             raise fault("", f"expected a table of keys, got {describe(data)}; write it as a table")
-        for key in data:
-            if key not in cls.model_fields:
-                near = nearest(str(key), cls.model_fields)
-                raise fault(f".{key}", f"unknown key; {near}", "unknown_key")
+        unknown = [
+            (f".{key}", f"unknown key; {nearest(str(key), cls.model_fields)}")
+            for key in data
+            if key not in cls.model_fields
+        ]
+        if unknown:
+            raise fault(*unknown[0], "unknown_key", unknown[1:])
         return data
 
 

@@ -130,7 +130,7 @@ def _without_waiting(path: str, flags: int) -> int:
 
 
 @contextmanager
-def new_file(path: Path) -> Iterator[Callable[[str], None]]:
+def new_file(path: Path) -> Iterator[Callable[[str | bytes], None]]:
     """Reserve a new file; what is written appears under its name at once and complete.
 
     Parameters
@@ -140,7 +140,7 @@ def new_file(path: Path) -> Iterator[Callable[[str], None]]:
     Yields
     ------
     callable
-        To be called with the whole text, once.
+        To be called with the whole content, once.
 
     Raises
     ------
@@ -151,8 +151,11 @@ def new_file(path: Path) -> Iterator[Callable[[str], None]]:
         raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(path))
     with _draft(path, reserve=True) as draft:
 
-        def write(text: str) -> None:
-            draft.write_text(text, encoding="utf-8", newline="\n")
+        def write(content: str | bytes) -> None:
+            if isinstance(content, bytes):
+                draft.write_bytes(content)
+            else:
+                draft.write_text(content, encoding="utf-8", newline="\n")
             _publish(draft, path)
 
         yield write

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from types import MappingProxyType
 from typing import Literal, get_args
 
@@ -140,7 +141,7 @@ class Measured:
     """A printed number in radians and seconds: its value and the interval it stands for.
 
     ``lower`` and ``upper`` are rounded outwards, so that the interval contains every value that
-    prints alike. All three agree for an exact number.
+    has these digits. All three agree for an exact number.
     """
 
     value: float
@@ -159,6 +160,7 @@ class Measured:
         )
 
 
+@lru_cache(maxsize=4096)
 def to_si(number: Printed, unit: str) -> Measured:
     """Convert a printed number to radians and seconds.
 

@@ -1,6 +1,10 @@
 """How all tests are run: the same examples every time, the whole suite on several cores."""
 
+import gc
 import signal
+from functools import cache
+from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import settings
@@ -31,4 +35,35 @@ def pytest_cmdline_main(config: pytest.Config) -> None:
     if getattr(config.option, "numprocesses", 0) is None:
         config.option.numprocesses = "auto"
         config.option.maxprocesses = MOST_PROCESSES
-        config.option.dist = "worksteal"
+        config.option.dist = "loadfile"
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Keep a file's tests in one process, and all that read shared studies in the same one.
+
+    What a file or the studies compute once would otherwise be computed once a process.
+    """
+    if config.option.dist != "loadfile":
+        return None
+    from xdist.scheduler import LoadScopeScheduling
+
+    class ByFile(LoadScopeScheduling):  # type: ignore[misc]
+        """Files as units of work; those that read shared studies are one."""
+
+        def _split_scope(self, nodeid: str) -> str:
+            return scope(config.rootpath / nodeid.partition("::")[0])
+
+    return ByFile(config, log)
+
+
+@cache
+def scope(path: Path) -> str:
+    """What the tests of a file share a process with."""
+    return "studies" if "from support.studies " in path.read_text("utf-8") else str(path)
+
+
+def pytest_collection_finish() -> None:
+    """Take what is imported out of the garbage collector's rounds: it never is garbage."""
+    gc.collect()
+    gc.freeze()

@@ -2,7 +2,7 @@
 
 ``python -m trajgap.verify FILE...`` does so from the command line. Copied out alone, the folder
 does the same as ``python -I FOLDER FILE...``, with the standard library only; proofs about C4
-quintic splines need numpy. Format and mathematics are in docs/certificates.md.
+quintic splines need numpy. Format and mathematics are in docs/explanation/certificates.md.
 """
 
 from .problem import read_problem

@@ -1,6 +1,6 @@
 """Proof that no motion whatsoever is shorter, and whether an answer is one.
 
-Why the proof holds is in docs/certificates-any-curve.md; the symbols are the same here.
+Why the proof holds is in docs/explanation/certificates-any-curve.md; the symbols are the same here.
 """
 
 from __future__ import annotations

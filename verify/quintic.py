@@ -1,6 +1,6 @@
 """Proof of a lower bound for C4 quintic splines: boxes, windows, and batches of leaves.
 
-The argument is that of docs/certificates-quintic.md.
+The argument is that of docs/explanation/certificates-quintic.md.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """Lower bounds of weighted limits over boxes of a C4 quintic spline, many leaves at once.
 
-The argument is that of docs/certificates-quintic.md. Nothing is shared with the solver: the nodal
-equations come from the jumps of q''' and q'''' (the solver has the energy ∫q'''²), arrays lead with
-the leaf. Every result is a sum of products with fewer than 2000 roundings on any path, 2.3e-13 of
-the same sum over absolute values: `ROUND` of that sum is taken off.
+The argument is that of docs/explanation/certificates-quintic.md. Nothing is shared with the
+solver: the nodal equations come from the jumps of q''' and q'''' (the solver has the energy
+∫q'''²), arrays lead with the leaf. Every result is a sum of products with fewer than 2000 roundings
+on any path, 2.3e-13 of the same sum over absolute values: `ROUND` of that sum is taken off.
 """
 
 from __future__ import annotations

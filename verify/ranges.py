@@ -1,5 +1,6 @@
-"""Ranges and sizes that a certificate keeps: the table of docs/certificates.md, for both sides.
+"""Ranges and sizes that a certificate keeps, for both sides.
 
+They are the table of docs/explanation/certificates.md.
 Whoever writes a certificate must stay inside, whoever reads it checks it before it computes.
 """
 
@@ -15,8 +16,6 @@ MOST_TEXT = 10_000
 """Characters of a name: a curve is named by all its fields, which is long."""
 MOST_DIGITS = 120
 """Of a numerator, or on each side of a point: an exact float of usual size has at most 60."""
-MOST_EXPONENT = 99
-"""Of ten, in a number as text: two digits."""
 
 # --- the problem ----------------------------------------------------------------------------------
 

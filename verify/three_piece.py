@@ -1,6 +1,6 @@
 """Proof of a lower bound for 3-5-3 or 4-3-4 polynomials.
 
-Why the proof holds is in docs/certificates.md; the symbols are the same here.
+Why the proof holds is in docs/explanation/certificates.md; the symbols are the same here.
 """
 
 from __future__ import annotations

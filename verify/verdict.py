@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable
 from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from fractions import Fraction
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from . import any_curve, closed_form, cubic, three_piece
+from . import any_curve
 from .answer import check_answer
 from .problem import StatedProblem, read_problem
 from .ranges import MOST_SEGMENTS
@@ -50,25 +50,25 @@ _PROOF = ("kind", "total", "tree")
 """Keys of ``proof`` that every kind has; a kind adds its own ``keys``."""
 
 
-def _quintic() -> type[ProofKind[Any]]:
-    """The one kind that is imported on first use, since it needs numpy."""
+KINDS = {
+    "rest-to-rest": "closed_form.RestToRest",
+    "stretched": "closed_form.Stretched",
+    "three-piece": "three_piece.ThreeFiveThree",
+    "four-three-four": "three_piece.FourThreeFour",
+    "any-curve": "any_curve.AnyCurve",
+    "cubic": "cubic.CubicSpline",
+    "quintic-spline": "quintic.QuinticSpline",
+}
+"""Module and class by ``proof.kind``; imported on first use, since one needs numpy."""
+
+
+def _proof_kind(name: str) -> type[ProofKind[Any]]:
+    module, _, kind = KINDS[name].rpartition(".")
     try:
-        from .quintic import QuinticSpline
+        found: type[ProofKind[Any]] = getattr(import_module(f".{module}", __package__), kind)
     except ImportError as error:
         raise Refused(f"this kind of proof needs numpy ({error}); install numpy") from None
-    return QuinticSpline
-
-
-KINDS: dict[str, Callable[[], type[ProofKind[Any]]]] = {
-    "rest-to-rest": lambda: closed_form.RestToRest,
-    "stretched": lambda: closed_form.Stretched,
-    "three-piece": lambda: three_piece.ThreeFiveThree,
-    "four-three-four": lambda: three_piece.FourThreeFour,
-    "any-curve": lambda: any_curve.AnyCurve,
-    "cubic": lambda: cubic.CubicSpline,
-    "quintic-spline": _quintic,
-}
-"""By ``proof.kind``."""
+    return found
 
 
 @dataclass(frozen=True)
@@ -299,7 +299,7 @@ def _read_proof(
     name = proof.get("kind")
     known = type(name) is str and name in KINDS
     need(known, f"unknown kind of proof {shown(repr(name))}")
-    make = KINDS[name]()
+    make = _proof_kind(name)
     proof = fields(proof, "proof", (*_PROOF, *make.keys))
     total = number(proof["total"])
     need(total >= 0, "the total is negative")

@@ -1,14 +1,15 @@
 from .card_errors import plainly
 from .case_audit import AuditReport, CaseAudit, audit
-from .provenance import package_version
+from .provenance import certificate_files, package_version
 from .reading_words import named, segments
 from .rounding import Point, RoundingBox, RoundingVerdict, judge_rounding
-from .rules import RULES
+from .rules import EXPLAINED, RULES
 from .stated import claim_text, digits_of, place, spoken
 from .study import Study
 from .waterfall import waterfalls
 
 __all__ = [
+    "EXPLAINED",
     "RULES",
     "AuditReport",
     "CaseAudit",
@@ -17,6 +18,7 @@ __all__ = [
     "RoundingVerdict",
     "Study",
     "audit",
+    "certificate_files",
     "claim_text",
     "digits_of",
     "judge_rounding",

@@ -5,13 +5,22 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from ...nlp import Evidence, Solution, Status
-from ...problem.cases import AnyClaim, DurationsClaim, ImprovementClaim, MaximumClaim
+from ...problem.cases import (
+    AnyClaim,
+    DurationsClaim,
+    ImprovementClaim,
+    MaximumClaim,
+    TimeClaim,
+    TotalTimeClaim,
+)
 from ..documents import (
     CARD_WORDS,
     Cause,
+    CaveatKind,
     ClaimVerdict,
-    Finding,
     Judgement,
     Severity,
     VerdictCard,
@@ -21,7 +30,6 @@ from ..documents import (
     more_errors,
 )
 from .card_errors import plainly
-from .causes import DOUBTED, JUMPING
 from .rules import said_to_keep
 from .stated import place
 from .study import Study
@@ -35,7 +43,6 @@ _MANY_TIMES = 10.0
 def verdict_card(
     study: Study,
     judgements: Iterable[Judgement],
-    findings: Sequence[Finding],
     causes: Sequence[Cause],
     waterfalls: Sequence[Waterfall],
 ) -> VerdictCard:
@@ -45,7 +52,6 @@ def verdict_card(
     ----------
     study : Study
     judgements : iterable of Judgement
-    findings : sequence of Finding
     causes : sequence of Cause
         The gravest first.
     waterfalls : sequence of Waterfall
@@ -63,7 +69,7 @@ def verdict_card(
     said = {("TG201", one) for one in judged} | {("TG103", one) for one in improved}
     grave = [c for c in causes if c.severity is Severity.ERROR and (c.rule, c.claim) not in said]
     left = CARD_WORDS - sum(map(count_words, (limits, optimum, improvement or "")))
-    errors, more = _fitting([plainly(study.case, cause, findings) for cause in grave], left)
+    errors, more = _fitting([plainly(study.case, cause) for cause in grave], left)
     left -= sum(map(count_words, errors)) + (count_words(more_errors(more)) if more else 0)
     return VerdictCard(
         limits=limits,
@@ -93,8 +99,11 @@ def _explanation(causes: Sequence[Cause], room: int) -> str | None:
     """The most charitable explanation of the gravest cause that has one, if there is room."""
     for cause in causes:
         for explanation in cause.explanations[:1]:
-            whole = f"{explanation.change} {explanation.effect}"
-            return next((e for e in (whole, explanation.change) if count_words(e) <= room), None)
+            plain = explanation.change
+            called = f"An innocent explanation: {plain[:1].lower()}{plain[1:]}"
+            # What it explains and what follows matter more than what it is called.
+            said = [f"{one} {explanation.effect}" for one in (called, plain)]
+            return next((e for e in (*said, called, plain) if count_words(e) <= room), None)
     return None
 
 
@@ -123,6 +132,8 @@ def _limits(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[str]
     kept = sum(each == {ClaimVerdict.SUPPORTED} for each in under.values())
     jump = _jumping(words[one] for one in asked)
     spoken = {*asked, *(c.id for c in sets)}
+    if kept == len(under) and not any(_limited(study, *pair) for pair in study.pairs):
+        return f"No limits are stated, so that none can be broken{jump}.", spoken
     if kept == len(under):
         return f"The printed durations keep the limits{jump}.", spoken
     if broken == len(under):
@@ -135,8 +146,14 @@ def _limits(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[str]
     return f"Whether the limits are kept depends on the reading: {', '.join(parts)}{jump}.", spoken
 
 
+def _limited(study: Study, pid: str, rid: str) -> bool:
+    """Whether a problem limits anything that moves."""
+    limits = study.problem(pid, rid).limits
+    return limits.limits_position or bool(np.isfinite(limits.derivatives).any())
+
+
 def _jumping(judgements: Iterable[Judgement]) -> str:
-    said = any(c.startswith(JUMPING) for j in judgements for c in j.caveats)
+    said = any(c.kind is CaveatKind.JUMPING for j in judgements for c in j.caveats)
     return ", on curves whose velocity jumps" if said else ""
 
 
@@ -199,19 +216,21 @@ def _beside(study: Study, waterfall: Waterfall) -> str | _Above:
     rid, pid = waterfall.reading, waterfall.problem
     solution = study.optimum(pid, rid)
     why = _unknown(solution)
+    if why and not _limited(study, pid, rid):
+        return "without limits no motion is the shortest: there is no optimum to compare with"
     if why:
         return why
     name = "proven optimum" if solution.evidence is Evidence.CERTIFIED else "best known total"
     best = f"{name} {solution.best:.4f} s"
     claim = _totalled(study, waterfall)
     total = None if claim is None else study.claim_total(claim, rid)
-    if total is None:
+    if total is None or not isinstance(claim, TimeClaim):
         return f"the {best} has no printed total beside it"
     shown, (low, high) = total
     shown = shown.split(" (")[0]
     if low <= solution.best <= high:
         return f"{shown} agrees with the {best}"
-    share = _point(shown, (low, high)) / solution.best - 1
+    share = _seconds(study, claim, rid) / solution.best - 1
     if share >= _MANY_TIMES:
         return f"{shown} is {1 + share:.1f} times the {best}"
     if share > 0:
@@ -219,10 +238,14 @@ def _beside(study: Study, waterfall: Waterfall) -> str | _Above:
     return f"{shown} is {_percent(-share)} below the {best}"
 
 
-def _point(shown: str, interval: tuple[float, float]) -> float:
-    """The printed value in seconds; the middle of its interval where it is in another unit."""
-    value = float(shown.split()[0])
-    return value if interval[0] <= value <= interval[1] else sum(interval) / 2
+def _seconds(study: Study, claim: TimeClaim, rid: str) -> float:
+    """A printed total; the sum of the printed durations where none is printed."""
+    number = claim.value if isinstance(claim, TotalTimeClaim) else None
+    if isinstance(claim, DurationsClaim | MaximumClaim):
+        number = claim.total
+    if number is None:
+        return float(study.case.claim_durations(claim, rid).value.sum())
+    return study.case.measured(number, "time", claim.problem, rid).value
 
 
 def _percent(share: float) -> str:
@@ -250,7 +273,9 @@ def _totalled(study: Study, waterfall: Waterfall) -> AnyClaim | None:
     bare = [
         c
         for c in study.case.claims
-        if c.quantity == "total_time" and c.joint is None and c.problem in (None, waterfall.problem)
+        if isinstance(c, TotalTimeClaim)
+        and (c.joint, c.other_curve) == (None, None)
+        and c.problem in (None, waterfall.problem)
     ]
     faster = {c.faster for c in study.case.claims if isinstance(c, ImprovementClaim)}
     better = [c for c in bare if c.id in faster]
@@ -275,7 +300,7 @@ def _improvement(study: Study, words: Mapping[str, Judgement]) -> tuple[str | No
     elif claim.seconds is not None:
         shown = f"saving of {claim.seconds} {unit}"
     judgement = words[claim.id]
-    doubted = any(c.startswith(DOUBTED) for c in judgement.caveats)
+    doubted = any(c.kind is CaveatKind.DOUBTED for c in judgement.caveats)
     what = {
         ClaimVerdict.SUPPORTED: "follows from the printed totals"
         + (", which other printed numbers contradict" if doubted else ""),

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from ...problem import Case
 from ...problem.cases import AnyClaim, DurationsClaim, ImprovementClaim, MaximumClaim
-from ..documents import Cause, Finding, Severity
+from ..documents import Cause, Severity
 from .explanations import TABLES
 from .stated import place, spoken
 
@@ -14,23 +14,20 @@ _LONGEST = 24
 """Words of a claim's text that a sentence may quote; a longer one is called by its place."""
 
 
-def plainly(case: Case, cause: Cause, findings: Sequence[Finding]) -> str:
+def plainly(case: Case, cause: Cause) -> str:
     """A cause as one plain sentence.
 
     Parameters
     ----------
     case : Case
     cause : Cause
-    findings : sequence of Finding
-        Those of the audit, among them the first of the cause.
 
     Returns
     -------
     str
         By claims' texts and places, never by ids.
     """
-    head = next((f for f in findings if (f.rule, f.message) == (cause.rule, cause.says)), None)
-    claim = case.claim(cause.claim) if cause.claim else None
+    head, claim = cause.head, case.claim(cause.claim) if cause.claim else None
     if head is not None and head.root.startswith(f"{TABLES} "):
         return _tables_alike(case, cause, head.root.split(" ")[1:])
     if claim is None or head is None:
@@ -49,10 +46,12 @@ def plainly(case: Case, cause: Cause, findings: Sequence[Finding]) -> str:
         "TG201": f"The durations in {where} break a limit",
         "TG202": f"The motion of {where} is not continuous",
         "TG203": f"The peak in {where} is not that of the printed durations",
+        "TG208": f"The mean or integral in {where} is not that of the printed durations",
         "TG205": f"Control vertices in {where} do not follow from the way-points",
         "TG301": "By the scaling of time with the velocity limit, the two printed results cannot "
         "both be shortest",
         "TG302": f"Called optimal in {where}, but a checked motion within the limits is shorter",
+        "TG304": f"The total in {where} is not the shortest of its profile",
         "TG601": "Printed joint angles and positions do not fit the printed robot",
     }.get(cause.rule)
     if cause.rule == "TG103" and not computed:

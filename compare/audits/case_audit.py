@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import date
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from ...heuristics import kept_processes
 from ...problem import Case, CaseError, ProcessError, TrajgapError, load_case, published_ids
 from ...problem.cases import AnyClaim
 from ..documents import (
+    Advice,
     AuditDocument,
     AuditedCase,
     Basis,
@@ -30,13 +32,14 @@ from ..documents import (
 from .card import verdict_card
 from .causes import find_causes, with_caveats
 from .chosen_case import SEEDS, Pair
+from .draft import advise
 from .instances import examined_entry
 from .intervals import CERTIFY_SECONDS
 from .judging import judge, weigh
 from .provenance import provenance
 from .readings import readings_summary
 from .rules import GROUPS, NOT_COMPUTED
-from .stated import stated_claims, stated_source
+from .stated import spoken, stated_claims, stated_source
 from .study import Study
 from .waterfall import waterfalls
 
@@ -49,30 +52,56 @@ _ENDING = (CaseError, ProcessError)
 
 @dataclass(frozen=True, eq=False)
 class CaseAudit:
-    """Findings, verdicts and waterfalls of one case, with the study they were drawn from."""
+    """Findings and verdicts of one case, with the study they were drawn from.
+
+    What informs and decides nothing is computed when it is asked for: waterfalls, the readings side
+    by side, the card.
+    """
 
     case: Case
     study: Study
     findings: tuple[Finding, ...]
     judgements: tuple[Judgement, ...]
-    waterfalls: tuple[Waterfall, ...]
-    readings: ReadingsSummary | None = None
-    """The readings side by side; None if the case has only one."""
     causes: tuple[Cause, ...] = ()
     """What speaks against something printed, each once; the gravest first."""
 
     day: date | None = None
     """Of the audit; that on which its document is made if None."""
 
+    draft: bool = False
+    """Whether the case is its author's draft, who wants to know what to change."""
+
     made: VerdictCard | None = None
     """The card, where it was made by hand; otherwise `card` makes it."""
+
+    made_falls: tuple[Waterfall, ...] | None = None
+    """The waterfalls, where they were made by hand; otherwise `waterfalls` computes them."""
+
+    @cached_property
+    def waterfalls(self) -> tuple[Waterfall, ...]:
+        """Where the time goes, for each problem and reading."""
+        if self.made_falls is not None:
+            return self.made_falls
+        return waterfalls(self.study) if self.study.posed else ()
+
+    @cached_property
+    def readings(self) -> ReadingsSummary | None:
+        """The readings side by side; None if the case has only one."""
+        if len(self.case.readings) < 2:
+            return None
+        return readings_summary(self.study, self.waterfalls, self.judgements)
 
     @cached_property
     def card(self) -> VerdictCard:
         """The verdict in at most 80 words."""
-        return self.made or verdict_card(
-            self.study, self.judgements, self.findings, self.causes, self.waterfalls
-        )
+        return self.made or verdict_card(self.study, self.judgements, self.causes, self.waterfalls)
+
+    @cached_property
+    def advice(self) -> tuple[Advice, ...]:
+        """What to change before submitting; none unless the case is a draft."""
+        if not self.draft:
+            return ()
+        return advise(self.study, self.causes, self.judgements)
 
     @property
     def errors(self) -> int:
@@ -90,12 +119,14 @@ class CaseAudit:
             card=self.card,
             errors=self.errors,
             causes=self.causes,
+            advice=known(self.advice if self.draft else None, "not audited as a draft"),
             claims=stated_claims(self.case),
             findings=self.findings,
             verdicts=self.judgements,
             waterfalls=self.waterfalls,
             readings=known(self.readings, "the case has one reading"),
             left_out=tuple(self.study.intervals.left_out),
+            not_replayed=self.study.not_replayed,
             families=tuple(examined_entry(self.study.instances(b)) for b in blocks),
             provenance=provenance(self.study, self.day),
         )
@@ -141,6 +172,7 @@ def audit(
     progress: Callable[[str], None] | None = None,
     certify_seconds: float = CERTIFY_SECONDS,
     certificates: Sequence[dict[str, Any]] = (),
+    draft: bool = False,
 ) -> AuditReport:
     """Audit published claims against the exact optimum of the very problems they state.
 
@@ -161,6 +193,8 @@ def audit(
         is certified in it depends on the machine, and what was left out is said.
     certificates : sequence of dict
         Certificates beside the shipped ones; each is proved again before it counts.
+    draft : bool
+        Whether to say, for each case, what its author can change before submitting.
 
     Returns
     -------
@@ -192,7 +226,8 @@ def audit(
         for algorithm in study.case.algorithms:
             # Settings that are wrong end the audit, before anything is computed.
             study.algorithm(algorithm.id)
-    return AuditReport(tuple(audit_case(study) for study in studies))
+    with kept_processes():
+        return AuditReport(tuple(replace(audit_case(study), draft=draft) for study in studies))
 
 
 def audit_case(study: Study) -> CaseAudit:
@@ -203,6 +238,7 @@ def audit_case(study: Study) -> CaseAudit:
     groups = [group for group in GROUPS if study.posed or group.without_waypoints]
     found = [finding for group in groups for finding in _judged(group.judge, study)]
     found = [f for at, f in enumerate(found) if f.rule != NOT_COMPUTED.id or f not in found[:at]]
+    found = [f.model_copy(update={"message": spoken(study.case, f.message)}) for f in found]
     scoped = _with_scopes(found, study)
     by_rule = sorted(scoped, key=_weight)
     admissible = [reading.id for reading in study.case.readings]
@@ -211,10 +247,8 @@ def audit_case(study: Study) -> CaseAudit:
     )
     ordered = sorted(weigh(by_rule, judgements, admissible), key=_weight)
     judgements = with_caveats(study, judgements, ordered)
-    steps = waterfalls(study) if study.posed else ()
-    readings = readings_summary(study, steps, judgements)
     behind = find_causes(study, ordered)
-    return CaseAudit(study.case, study, tuple(ordered), judgements, steps, readings, behind)
+    return CaseAudit(study.case, study, tuple(ordered), judgements, behind)
 
 
 def _judged(group: _Group, study: Study) -> Iterator[Finding]:

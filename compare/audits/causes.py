@@ -5,16 +5,21 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from ...problem.cases import AnyClaim, ImprovementClaim, MaximumClaim, StatementClaim
-from ..documents import Cause, ClaimVerdict, Consequence, Finding, Judgement, Severity
+from ..documents import (
+    Cause,
+    Caveat,
+    CaveatKind,
+    ClaimVerdict,
+    Consequence,
+    Finding,
+    Judgement,
+    Severity,
+)
 from .explanations import explained
 from .study import Study
 
 _AGAINST = (Severity.ERROR, Severity.WARNING)
 """What a cause may weigh; what only informs has none."""
-JUMPING = "on a curve whose velocity jumps"
-"""How the caveat begins that a motion's velocity jumps; the card looks for it."""
-DOUBTED = "rests on numbers that others in print contradict"
-"""How the caveat begins that printed numbers contradict each other; the card looks for it."""
 
 
 def find_causes(study: Study, findings: Iterable[Finding]) -> tuple[Cause, ...]:
@@ -71,6 +76,7 @@ def _cause(study: Study, root: str, group: list[Finding], below: list[Finding]) 
         rule=first.rule,
         claim=first.claim,
         says=first.message,
+        head=first,
         readings=tuple(r for r in readings if r is not None),
         explanations=explained(study, root, first),
         consequences=tuple(consequences.values()),
@@ -105,19 +111,22 @@ def _contradictions(findings: list[Finding]) -> dict[str, set[str]]:
     return sides
 
 
-def _caveats(study: Study, judgement: Judgement, against: dict[str, set[str]]) -> Iterator[str]:
+def _caveats(study: Study, judgement: Judgement, against: dict[str, set[str]]) -> Iterator[Caveat]:
     claim = study.case.claim(judgement.claim)
     held = [r for r, v in judgement.readings.items() if v is ClaimVerdict.SUPPORTED]
-    jumping = [r for r in held if _jumps(study, claim, r)]
+    # What follows from printed totals alone needs no curve.
+    timed = not isinstance(claim, ImprovementClaim)
+    jumping = [r for r in held if timed and _jumps(study, claim, r)]
     if jumping:
         count = "" if len(judgement.readings) == 1 else f" ({len(jumping)} of {len(held)} readings)"
-        yield f"{JUMPING}{count}"
+        yield Caveat(CaveatKind.JUMPING, f"on a curve whose velocity jumps{count}")
     rests = {claim.id, *_rests_on(claim)}
     if judgement.verdict is ClaimVerdict.INCONSISTENT:
         return
     for message, sides in against.items():
         if rests & sides:
-            yield f"{DOUBTED}: {message}"
+            text = f"rests on numbers that others in print contradict: {message}"
+            yield Caveat(CaveatKind.DOUBTED, text)
 
 
 def _rests_on(claim: AnyClaim) -> tuple[str, ...]:

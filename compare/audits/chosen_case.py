@@ -67,7 +67,8 @@ class ChosenCase:
         self._kept: dict[tuple[Any, ...], Any] = {}
         self.intervals = Intervals(certificates, certify_seconds, self._progress)
 
-    def _once(self, key: tuple[Any, ...], compute: Callable[[], T]) -> T:
+    def once(self, key: tuple[Any, ...], compute: Callable[[], T]) -> T:
+        """What was kept under a key, computed where nothing is; errors are kept too."""
         if key not in self._kept:
             try:
                 self._kept[key] = compute()
@@ -99,4 +100,4 @@ class ChosenCase:
 
     def problem(self, pid: str, rid: str) -> Problem:
         """Problem of the case, with its coupling."""
-        return self._once(("problem", pid, rid), lambda: self.case.problem(pid, rid))
+        return self.once(("problem", pid, rid), lambda: self.case.problem(pid, rid))

@@ -10,9 +10,11 @@ from math import isclose, tau
 import numpy as np
 
 from ...problem import Array, Check, Printed, Problem, check
-from ...problem.cases import AnyClaim, DurationsClaim, MaximumClaim
-from ..documents import Explanation, Finding, Rounding
+from ...problem.cases import AnyClaim, ConditionsClaim, DurationsClaim, MaximumClaim
+from ..documents import Explanation, Finding, HeldOtherwise, Rounding
 from .rounding import RoundingBox, judge_rounding
+from .rules import count_conditions, held_otherwise
+from .stated import place
 from .study import Study
 
 _TRIED = 400
@@ -57,6 +59,8 @@ def explained(study: Study, root: str, finding: Finding) -> tuple[Explanation, .
             ),
         )
     claim = study.case.claim(finding.claim) if finding.claim else None
+    if isinstance(claim, ConditionsClaim) and finding.rule == "TG107":
+        return tuple(_at_the_ends(study, claim))
     if not isinstance(claim, DurationsClaim | MaximumClaim):
         return ()
     if kind == SUM and claim.total is not None:
@@ -74,10 +78,29 @@ def one_digit_off(number: Printed) -> Iterator[Printed]:
         if a != b:
             text = f"{number.text[:one]}{b}{number.text[one + 1 : next_]}{a}"
             yield Printed(text + number.text[next_ + 1 :])
-    for place in reversed(places):
+    for at in reversed(places):
         for digit in "0123456789":
-            if digit != number.text[place]:
-                yield Printed(f"{number.text[:place]}{digit}{number.text[place + 1 :]}")
+            if digit != number.text[at]:
+                yield Printed(f"{number.text[:at]}{digit}{number.text[at + 1 :]}")
+
+
+def _at_the_ends(study: Study, claim: ConditionsClaim) -> Iterator[Explanation]:
+    """Rest that is said of all way-points and may be meant of the ends."""
+    available = sum(degree + 1 for degree in claim.degrees)
+    meant = count_conditions(study, claim.model_copy(update={"rest_at": "ends"}))
+    if claim.rest_at != "all" or claim.count is not None or meant != available:
+        return
+    agreeing = [
+        place(other)
+        for other in study.case.claims
+        if isinstance(other, ConditionsClaim) and other.count and other.count.fraction == meant
+    ]
+    counted = f", as {agreeing[0]} counts them" if agreeing else ""
+    where = place(claim)
+    yield Explanation(
+        change=f"{where[:1].upper()}{where[1:]} may mean rest at the two ends only.",
+        effect=f"Then there are {meant} conditions on {available} coefficients{counted}.",
+    )
 
 
 def _sums(claim: AnyClaim, total: Printed) -> Iterator[Explanation]:
@@ -112,6 +135,13 @@ def _kept_if(
     found = check(problem, printed.value)
     if found.worst is None or found.worst.quantity in ("curve", "duration"):
         return
+    held = held_otherwise(study, claim, pid, rid)
+    if isinstance(held, HeldOtherwise) and held.sampled <= 1.0 < held.everywhere:
+        yield Explanation(
+            change="The limits may have been held at sampled times only: at ten steps a segment "
+            "none is broken.",
+            effect="Then they are broken between the samples, and the samples do not show it.",
+        )
     widths = (printed.upper - printed.lower) / 2
     exchanged = []
     for i, k in islice(combinations(range(len(printed.value)), 2), _TRIED):
@@ -187,7 +217,7 @@ def _kept(problem: Problem, durations: Array, widths: Array) -> str:
     """What the changed digits settle; empty where no value that rounds to them keeps the limits."""
     h = RoundingBox(durations, durations - widths, durations + widths)
     q = RoundingBox(problem.waypoints, problem.waypoints, problem.waypoints)
-    some = "Then every limit is kept by some value that rounds to the printed digits."
+    some = "Then every limit is kept within rounding."
     return {Rounding.KEEPS: "Then every limit is kept.", Rounding.CONSISTENT: some}.get(
         judge_rounding(problem, h, q).verdict, ""
     )

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any
 
-from ...nlp import ExactProblem, Interval, Outcome, certificate, certify, proved
+from ...nlp import ExactProblem, Outcome, ProvedInterval, certificate, certify, proved
 from ...nlp.proofs import covered, interval_of
 from ...problem import TrajgapError
 from ...verify import Subject
@@ -39,13 +40,20 @@ class Intervals:
         self, documents: Sequence[dict[str, Any]], seconds: float, progress: Callable[[str], None]
     ) -> None:
         self._documents = tuple(documents)
+        self._made: list[dict[str, Any]] = []
         self._left = seconds
         self._progress = progress
-        self._found: dict[ExactProblem, Interval | None] = {}
+        self._found: dict[ExactProblem, ProvedInterval | None] = {}
         self.left_out: list[str] = []
-        """Problems that are covered and were not certified, in words."""
+        """Problems that are covered and were not certified, and totals that were not excluded for
+        want of time, in words."""
 
-    def interval(self, problem: ExactProblem) -> Interval | None:
+    @property
+    def documents(self) -> tuple[dict[str, Any], ...]:
+        """Certificates that were given, and those that this audit made."""
+        return (*self._documents, *self._made)
+
+    def interval(self, problem: ExactProblem) -> ProvedInterval | None:
         """The interval that is proved for a problem, if there is one.
 
         Parameters
@@ -54,30 +62,39 @@ class Intervals:
 
         Returns
         -------
-        Interval or None
+        ProvedInterval or None
         """
         if problem not in self._found:
             self._found[problem] = self._sought(problem)
         return self._found[problem]
 
-    def any_curve(self, problem: ExactProblem) -> Interval | None:
+    def any_curve(self, problem: ExactProblem) -> ProvedInterval | None:
         """The interval over any curve that a given or shipped certificate proves."""
         return self._given(problem, Subject.ANY)
 
-    def _given(self, problem: ExactProblem, subject: Subject) -> Interval | None:
+    def _given(self, problem: ExactProblem, subject: Subject) -> ProvedInterval | None:
         mine = (interval_of(one, problem, subject) for one in self._documents)
         return next((found for found in mine if found is not None), None) or proved(
             problem, subject
         )
 
-    def _sought(self, problem: ExactProblem) -> Interval | None:
+    @contextmanager
+    def lent(self) -> Iterator[float]:
+        """Seconds of the budget that another proof may take; what it takes is gone."""
+        began = time.monotonic()
+        try:
+            yield max(0.0, self._left * _SHARE)
+        finally:
+            self._left -= time.monotonic() - began
+
+    def _sought(self, problem: ExactProblem) -> ProvedInterval | None:
         found = self._given(problem, Subject.DECLARED)
         if found is not None or covered(problem) is not None:
             return found
         seconds = self._left * _SHARE
         if seconds < _LEAST:
             if self._left > 0:
-                self.left_out.append(f"{problem.name}: no time was left to certify its optimum")
+                self.left_out.append(f"the optimum of {problem.name}: no time was left")
             return None
         self._progress(f"certifying {problem.name}, at most {seconds:.0f} s")
         began = time.monotonic()
@@ -88,7 +105,10 @@ class Intervals:
         finally:
             self._left -= time.monotonic() - began
         if answer.proof is not None and answer.outcome is not Outcome.OPEN:
-            found = interval_of(certificate(answer), problem, verdict=answer.verdict)
+            document = certificate(answer)
+            found = interval_of(document, problem, verdict=answer.verdict)
+            if found is not None:
+                self._made.append(document)
         if found is None:
-            self.left_out.append(f"{problem.name}: not certified within {seconds:.0f} s")
+            self.left_out.append(f"the optimum of {problem.name}, within {seconds:.0f} s")
         return found

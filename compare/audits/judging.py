@@ -5,7 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from ...nlp import Evidence
-from ..documents import ClaimVerdict, Finding, Judgement, Scope, Severity
+from ..documents import (
+    UNDECIDED,
+    ClaimVerdict,
+    Confidence,
+    Finding,
+    Judgement,
+    Scope,
+    Severity,
+    Why,
+)
 
 _ORDER = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT, ClaimVerdict.SUPPORTED)
 """What decides under one reading, the strongest first: a proof outweighs what only agrees."""
@@ -50,15 +59,35 @@ def judge(
         beside = [f"{f.message} ({f.rule}, informational)" for f in about if not f.decides]
         why = next((f.message for f in own), next(iter(beside), "no rule applies to this claim"))
         scope, evidence = Scope.NO, Evidence.NONE
+        confidence: Confidence | Why = UNDECIDED
     else:
         partial = len(words) > 1 or len(each) < len(admissible)
         scope = Scope.SOME if partial else Scope.ALL
         behind = [f for f in own if f.verdict in words and f.verdict in _ORDER]
         evidence = max((f.evidence for f in behind), key=_RANK.index, default=Evidence.NONE)
         why = " ".join(dict.fromkeys(_said(behind, verdict)))
+        confidence = _confidence(behind, verdict)
     return Judgement(
-        claim=claim, verdict=verdict, scope=scope, evidence=evidence, why=why, readings=each
+        claim=claim,
+        verdict=verdict,
+        scope=scope,
+        evidence=evidence,
+        confidence=confidence,
+        why=why,
+        readings=each,
     )
+
+
+def _confidence(behind: Iterable[Finding], verdict: ClaimVerdict) -> Confidence | Why:
+    """How a verdict is known.
+
+    One finding contradicts a claim, so that the strongest counts; support, and what depends on the
+    reading, rests on all of them.
+    """
+    known = [f.confidence for f in behind if isinstance(f.confidence, Confidence)]
+    one = verdict in (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT)
+    order = list(Confidence).index
+    return (min if one else max)(known, key=order, default=UNDECIDED)
 
 
 def _said(behind: Iterable[Finding], verdict: ClaimVerdict) -> Iterable[str]:

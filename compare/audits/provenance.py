@@ -118,14 +118,25 @@ def _git(folder: Path, *arguments: str) -> str:
 
 
 def _certificates(study: Study) -> Iterator[UsedCertificate]:
+    for file, subject in certificate_files(study):
+        digest = sha256(file.read_bytes()).hexdigest()
+        yield UsedCertificate(file=file.name, sha256=digest, subject=subject)
+
+
+def certificate_files(study: Study) -> Iterator[tuple[Path, Subject]]:
+    """Shipped certificates that an audit rests on, and the curves that each speaks about.
+
+    Parameters
+    ----------
+    study : Study
+    """
     seen: set[Path] = set()
     for exact, subject in _questions(study):
         file = shipped_file(exact, subject)
         if file is None or file in seen or proved(exact, subject) is None:
             continue
         seen.add(file)
-        digest = sha256(file.read_bytes()).hexdigest()
-        yield UsedCertificate(file=file.name, sha256=digest, subject=subject)
+        yield file, subject
 
 
 def _questions(study: Study) -> Iterator[tuple[ExactProblem, Subject]]:

@@ -9,6 +9,15 @@ from math import log
 from ...nlp import Evidence, weakest
 from ..documents import Excess, Gap, Keeping, ReadingOutcome, ReadingsSummary, Scope, Why
 
+_KEPT = {
+    Keeping.KEEPS: "kept",
+    Keeping.CONSISTENT: "kept by some values that round to the digits",
+    Keeping.DISCONTINUOUS: "kept between velocity jumps",
+    Keeping.BREAKS: "broken",
+    Keeping.UNDECIDED: "undecided",
+}
+"""What the words say of limits, within a sentence."""
+
 
 def answers(summary: ReadingsSummary) -> tuple[str, ...]:
     """What the readings make of the printed answers, and which of them fit best."""
@@ -44,7 +53,7 @@ def _of_answers(summary: ReadingsSummary) -> Iterable[str]:
     if not summary.outcomes:
         yield (
             f"Under none of {len(summary.admissible)} readings can limits, optimum or gap be "
-            f"computed: {summary.outcomes_why}."
+            f"computed, since {summary.outcomes_why}."
         )
         return
     by_answer: defaultdict[tuple[str, str], list[ReadingOutcome]] = defaultdict(list)
@@ -54,11 +63,11 @@ def _of_answers(summary: ReadingsSummary) -> Iterable[str]:
     for (claim, problem), own in by_answer.items():
         under = {k: [o.reading for o in own if o.keeping is k] for k in Keeping}
         said = ", ".join(
-            f"{k} under {len(found)} ({named(found)})" for k, found in under.items() if found
+            f"{_KEPT[k]} under {len(found)} ({named(found)})" for k, found in under.items() if found
         )
         count = len(summary.admissible)
         which = f"{count}" if len(own) == count else f"{len(own)} of {count}"
-        yield f"Limits of {claim} ({problem}), {which} readings: {said}.{_of_gaps(own)}"
+        yield f"{claim} ({problem}), {which} readings: the limits are {said}.{_of_gaps(own)}"
 
 
 def _of_gaps(own: Sequence[ReadingOutcome]) -> str:
@@ -66,17 +75,18 @@ def _of_gaps(own: Sequence[ReadingOutcome]) -> str:
     kept = [o for o in own if o.keeping in (Keeping.KEEPS, Keeping.CONSISTENT)]
     parts = []
     for group, where in (
-        (kept, "where they are kept"),
-        ([o for o in own if o not in kept], "else"),
+        (kept, " as long where the limits are kept"),
+        ([o for o in own if o not in kept], " as long elsewhere" if kept else " as long"),
     ):
         gaps = [o.gap for o in group if isinstance(o.gap, Gap)]
         if gaps:
             low = 1 + min(g.lowest for g in gaps)
             high = 1 + max(g.highest for g in gaps)
             low_, high_ = f"{low:.3g}", f"{high:.3g}"
-            parts.append(f"{where} {low_ if low_ == high_ else f'{low_} to {high_}'} times")
+            parts.append(f"{low_ if low_ == high_ else f'{low_} to {high_}'} times{where}")
     evidence = weakest(o.evidence for o in own if o.evidence is not Evidence.NONE)
-    return f" Printed total: {', '.join(parts)} the {evidence} optimum." if parts else ""
+    beside = f"the {evidence} optimum" if evidence is Evidence.CERTIFIED else "the best known total"
+    return f" Beside {beside}, the printed total is {', and '.join(parts)}." if parts else ""
 
 
 def _of_fit(summary: ReadingsSummary) -> Iterable[str]:
@@ -84,20 +94,26 @@ def _of_fit(summary: ReadingsSummary) -> Iterable[str]:
     if len(summary.fits) < 2:
         return
     own = [o for o in summary.outcomes if o.reading == nearest[0]]
-    stretches = [(o.stretch, o.claim) for o in own if not isinstance(o.stretch, Why)]
+    stretches = [
+        (o.stretch, f"{o.claim} ({o.problem})") for o in own if not isinstance(o.stretch, Why)
+    ]
     worst, claim = max(stretches, key=lambda one: abs(log(one[0])))
     there = [
-        *(["the limits are broken there"] if any(o.keeping is Keeping.BREAKS for o in own) else []),
-        *(["the velocity jumps there"] if any(o.jumps for o in own) else []),
+        *(
+            ["as printed, they break the limits"]
+            if any(o.keeping is Keeping.BREAKS for o in own)
+            else []
+        ),
+        *(["the velocity jumps"] if any(o.jumps for o in own) else []),
     ]
     if len(nearest) == len(summary.fits):
-        which = "Every reading fits the printed durations alike"
+        which = "The printed durations fit every reading alike"
     else:
         which = f"The printed durations fit best under {named(nearest, 3)}"
     yield (
-        f"{which}: those of {claim} times {worst:.4g} would just reach the limits, "
-        f"as a shortest time does{''.join(f'; {x}' for x in there)}. This measures fit; it does "
-        "not say which reading was meant."
+        f"{which}: multiplied by {worst:.4g}, those of {claim} would just reach the limits, as the "
+        f"shortest motion does{''.join(f'; {x}' for x in there)}. This does not say which reading "
+        "was meant."
     )
 
 

@@ -14,6 +14,7 @@ from ..documents import (
     Excess,
     Fit,
     Gap,
+    HeldOtherwise,
     Judgement,
     Keeping,
     Limited,
@@ -27,6 +28,7 @@ from ..documents import (
 )
 from ..gaps import gap, reference_of
 from .reading_words import answers, holding
+from .rules import held_otherwise, reading_clues
 from .study import Study
 
 SAME = 1e-6
@@ -72,6 +74,11 @@ def readings_summary(
     )
     summary = ReadingsSummary(
         admissible=admissible,
+        default=study.case.default_reading.id,
+        default_why=known(
+            study.case.default_reading.default_why, "the case file gives no reason of its own"
+        ),
+        clues=reading_clues(study),
         answers=(),
         holding=(),
         nearest=nearest,
@@ -89,6 +96,7 @@ def _outcome(study: Study, waterfall: Waterfall) -> ReadingOutcome:
     reference = reference_of(solution)
     keeping: Keeping | Why = Why("no durations are printed for all joints of this problem")
     distance: Gap | Why = Why("no printed total stands beside an optimum")
+    held: HeldOtherwise | Why = Why("no durations are printed for all joints of this problem")
     stretch: float | None = None
     excesses: tuple[Excess, ...] = ()
     jumps = 0
@@ -99,9 +107,10 @@ def _outcome(study: Study, waterfall: Waterfall) -> ReadingOutcome:
             found = study.claim_check(claim, pid, rid)
             keeping = _keeping(study, claim, pid, rid)
             jumps = sum(jump.order == 1 for jump in found.jumps)
+            held = held_otherwise(study, claim, pid, rid)
             stretch = found.stretch if isfinite(found.stretch) and found.stretch > 0 else None
         else:
-            keeping = Why(unmoved)
+            keeping, held = Why(unmoved), Why(unmoved)
         if keeping is Keeping.BREAKS:
             excesses = _excesses(study, claim, pid, rid)
         total = study.claim_total(claim, rid)
@@ -114,6 +123,7 @@ def _outcome(study: Study, waterfall: Waterfall) -> ReadingOutcome:
         claim=waterfall.claim,
         keeping=keeping,
         jumps=jumps,
+        held=held,
         excesses=excesses,
         stretch=known(stretch, "no uniform stretch reaches the limits"),
         optimum=known(None if reference is None else reference.upper, "no positive time is known"),

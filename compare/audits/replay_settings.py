@@ -7,8 +7,6 @@ from dataclasses import fields, replace
 from enum import StrEnum
 from typing import Any, cast
 
-from scipy.stats import qmc
-
 from ...heuristics import Algorithm
 from ...problem import TrajgapError
 
@@ -31,11 +29,16 @@ _OPEN_NUMBERS = {
     "mutation_rate": (0.01, 0.2),
     "mutation_reach": (0.05, 0.3),
     "elite": (0, 2),
+    "q_best": (0.1, 0.3),
+    "q_worst": (0.02, 0.1),
     "s": (-0.5, 1.0),
     "spiral": (0.5, 2.0),
 }
 """Ranges of numbers that papers leave unprinted, as textbooks and the field's software use them.
 The number of iterations is not among them: it is the budget."""
+_GROUPS = {"population": 4, "particles": 6}
+"""Sizes are drawn as multiples of these: genetic algorithms pair and quarter a population, and a
+niche swarm splits its particles evenly. Drawn otherwise, most settings would be refused."""
 
 
 def spread_settings(
@@ -70,9 +73,11 @@ def spread_settings(
             open_.append((one.name, _OPEN_NUMBERS[one.name]))
     if not open_:
         return found
+    from scipy.stats import qmc  # half a second, and few need it
+
     for row in qmc.LatinHypercube(len(open_), rng=0).random(DESIGN):
         changes = {
-            name: _drawn(getattr(algorithm, name), of, share)
+            name: _drawn(name, getattr(algorithm, name), of, share)
             for (name, of), share in zip(open_, row, strict=True)
         }
         try:
@@ -84,12 +89,13 @@ def spread_settings(
     return found
 
 
-def _drawn(current: Any, of: tuple[Any, ...], share: float) -> Any:
+def _drawn(name: str, current: Any, of: tuple[Any, ...], share: float) -> Any:
     if isinstance(current, StrEnum):
         return of[int(share * len(of))]
     low, high = of
     value = low + share * (high - low)
-    return round(value) if isinstance(current, int) else round(value, 3)
+    group = _GROUPS.get(name, 1)
+    return group * round(value / group) if isinstance(current, int) else round(value, 3)
 
 
 def _shown(value: Any) -> str:

@@ -31,13 +31,27 @@ class ReplayedCase(ChosenCase):
     def algorithm(self, algorithm_id: str) -> Algorithm[Any] | None:
         """The case's algorithm, or None if its kind is not implemented."""
         block = next(a for a in self.case.algorithms if a.id == algorithm_id)
-        if block.kind not in KINDS:
+        if block.kind is None or block.kind not in KINDS:
             return None
         try:
             return from_settings(block.kind, block.parameters)
         except TrajgapError as error:
             why = str(error).removeprefix(f"{block.kind}: ")
             raise TrajgapError(f"{self.case.file}: algorithms.{algorithm_id}: {why}") from None
+
+    @property
+    def not_replayed(self) -> tuple[str, ...]:
+        """Algorithms without an implementation here, each as one sentence with the nearest kind."""
+        found = []
+        for block in self.case.algorithms:
+            if block.kind is None:
+                found.append(f"{block.name}: the case file names no kind.")
+            elif block.kind not in KINDS:
+                try:
+                    from_settings(block.kind, {})
+                except TrajgapError as error:
+                    found.append(f"{block.name}: {error}")
+        return tuple(found)
 
     def unreplayed(self, algorithm_id: str, pid: str, rid: str) -> str | None:
         """Why an algorithm is not replayed on a problem, as a sentence; None if it is."""
@@ -60,7 +74,7 @@ class ReplayedCase(ChosenCase):
         algorithm = self.algorithm(algorithm_id)
         if algorithm is None or self.unreplayed(algorithm_id, pid, rid) is not None:
             return ()
-        return self._once(
+        return self.once(
             ("runs", algorithm_id, pid, rid),
             lambda: self._replay(algorithm, algorithm_id, pid, rid, self.seeds),
         )
@@ -99,4 +113,4 @@ class ReplayedCase(ChosenCase):
                 for name, algorithm in self.settings(algorithm_id).items()
             }
 
-        return self._once(("spread", algorithm_id, pid, rid), compute)
+        return self.once(("spread", algorithm_id, pid, rid), compute)

@@ -121,6 +121,7 @@ def judge_rounding(
     waypoints: RoundingBox | None = None,
     tolerance: float = TOLERANCE,
     loosest: Problem | None = None,
+    loose_ends: bool = False,
 ) -> RoundingVerdict:
     """Judge a printed solution over every value that rounds to the printed digits.
 
@@ -138,6 +139,9 @@ def judge_rounding(
     loosest : Problem, optional
         The same question with every limit and bound on durations where its printed digits allow
         most; by default they are exact.
+    loose_ends : bool
+        Whether derivatives at the ends are printed numbers. No proof covers what rounds to them,
+        so that nothing is said to break then.
 
     Returns
     -------
@@ -155,6 +159,11 @@ def judge_rounding(
     rounding can upset (`bound` and `interval`). A velocity that jumps is no excess over a limit:
     where nothing else is wrong, the answer is `undecided`.
     """
+    if loose_ends:
+        found = judge_rounding(problem, durations, waypoints, tolerance, loosest)
+        breaks = found.verdict is Rounding.BREAKS
+        undecided = RoundingVerdict(Rounding.UNDECIDED, found.worst_at_print, None, None)
+        return undecided if breaks else found
     found = _judge(problem, durations, waypoints, tolerance)
     exact = loosest is None or same_limits(problem, loosest)
     if loosest is None or exact or found.verdict in (Rounding.KEEPS, Rounding.CONSISTENT):

@@ -12,13 +12,18 @@ from ...problem.cases import (
     DurationsClaim,
     ImprovementClaim,
     MaximumClaim,
-    PeakClaim,
+    MeasureClaim,
+    MotionValueClaim,
     TotalTimeClaim,
 )
-from ..documents import StatedClaim, StatedSource, known
+from ..documents import StatedAnswer, StatedClaim, StatedSource, known
 
 _KINDS = {"durations": "Segment durations", "maximum": "Longest segment durations"}
 """How claims without words of their own are called; others by their quantity."""
+
+
+_TERMS = ("time-optimal", "point-to-point", "rest-to-rest", "b-spline")
+"""Words of the field with a dash, which may be ids too and stay words in a message."""
 
 
 def stated_claims(case: Case) -> tuple[StatedClaim, ...]:
@@ -27,9 +32,10 @@ def stated_claims(case: Case) -> tuple[StatedClaim, ...]:
         StatedClaim(
             claim=claim.id,
             quantity=claim.quantity,
-            text=claim_text(claim),
+            text=claim_text(case, claim),
             where=claim.where,
             printed=digits_of(case, claim),
+            answer=known(_answer(claim), "the authors were not asked"),
         )
         for claim in case.claims
     )
@@ -38,16 +44,33 @@ def stated_claims(case: Case) -> tuple[StatedClaim, ...]:
 def stated_source(case: Case) -> StatedSource:
     """Where the numbers of a case were printed."""
     named = case.source.model_dump()
-    return StatedSource(**{**named, "year": known(named["year"], "not named in the case file")})
+    typed = case.document.transcription
+    unsaid = "not said in the case file"
+    return StatedSource(
+        **{**named, "year": known(named["year"], "not named in the case file")},
+        transcribed_by=known(typed.by if typed else None, unsaid),
+        checked_by=known((typed.checked_by or None) if typed else None, unsaid),
+    )
 
 
-def claim_text(claim: AnyClaim) -> str:
-    """What a claim says: its own words, or its kind, place and algorithm."""
+def _answer(claim: AnyClaim) -> StatedAnswer | None:
+    if claim.answer is None:
+        return None
+    return StatedAnswer(
+        sent=claim.answer.sent,
+        answered=known(claim.answer.answered, "no answer so far"),
+        outcome=claim.answer.outcome,
+    )
+
+
+def claim_text(case: Case, claim: AnyClaim) -> str:
+    """What a claim says: its own words, or its kind, joint and algorithm."""
     if claim.text:
         return claim.text
     said = _KINDS.get(claim.quantity, claim.quantity.replace("_", " ").capitalize())
     said += f" of joint {claim.joint}" if claim.joint else ""
-    return said + (f", {claim.algorithm}" if claim.algorithm else "") + "."
+    names = {one.id: one.name for one in case.algorithms}
+    return said + (f", by the {names[claim.algorithm]}" if claim.algorithm else "") + "."
 
 
 def digits_of(case: Case, claim: AnyClaim) -> str:
@@ -62,8 +85,10 @@ def digits_of(case: Case, claim: AnyClaim) -> str:
     if isinstance(claim, ImprovementClaim):
         parts = [f"{claim.percent} %"] if claim.percent is not None else []
         return "; ".join(parts + ([f"{claim.seconds}{time}"] if claim.seconds is not None else []))
-    if isinstance(claim, PeakClaim):
+    if isinstance(claim, MotionValueClaim):
         digits = ", ".join(map(str, claim.printed))
+        if isinstance(claim, MeasureClaim) and claim.measure.startswith("integral"):
+            return digits
         return f"{digits} {getattr(units, claim.derivative) or ''}".strip()
     if isinstance(claim, ConvergenceClaim):
         return f"{claim.iterations} iterations"
@@ -73,25 +98,35 @@ def digits_of(case: Case, claim: AnyClaim) -> str:
 
 
 def spoken(case: Case, text: str) -> str:
-    """A message in which claims are called by their places instead of their ids.
+    """A message that calls things as a reader knows them: no id stands for a name.
 
-    An id that is a word of its own is replaced only where a problem stands behind it in brackets.
+    Claims are called by their places, algorithms by their names, problems by their titles. An id
+    that is a word of its own, of the field or of the paper ("time-optimal"), is
+    replaced only where a problem stands behind it in brackets.
     """
+    texts = [claim.text for claim in case.claims]
+    words = " ".join([*_TERMS, case.title, case.source.title, *texts])
     places = {claim.id: place(claim) for claim in case.claims}
+    places |= {one.id: f"the {one.name}" for one in case.algorithms}
     problems = "|".join(re.escape(p.id) for p in case.problems)
     for one, where in sorted(places.items(), key=lambda pair: -len(pair[0])):
         literal = where.replace("\\", "\\\\")
         known = rf"(?<![\w-]){re.escape(one)}"
         text = re.sub(rf"{known} \((?:{problems})\)", literal, text)
-        if "-" in one:
+        if "-" in one and one not in words:
             text = re.sub(rf"{known}(?![\w-])", literal, text)
-    return text
+    for problem in case.problems:
+        # Where there is one problem, its name tells nothing.
+        name = f" ({problem.title or problem.id})" if len(case.problems) > 1 else ""
+        text = text.replace(f" ({problem.id})", name)
+    return text[:1].upper() + text[1:]
 
 
 def place(claim: AnyClaim) -> str:
     """Where a claim stands, as short as it can be found: the first place that it names."""
     first = claim.where.split(";")[0].strip()
-    if first.startswith("abstract"):
-        return "the abstract"
+    for part in ("abstract", "title", "introduction", "conclusion"):
+        if re.match(rf"{part}\b", first):
+            return f"the {part}"
     head = first.split(", above")[0].split(", below")[0].split(" and ")[0]
     return ", ".join(head.split(", ")[:2])

@@ -15,13 +15,12 @@ from ...nlp import (
     PerJointSolution,
     Solution,
     Status,
-    solve,
     solve_per_joint,
     stated_exactly,
     with_certificates,
     with_interval,
 )
-from ...nlp.optimum import OPTIMUM_SLACK, free_values
+from ...nlp.optimum import OPTIMUM_SLACK, free_values, solve
 from ...problem import (
     Array,
     CaseError,
@@ -85,7 +84,7 @@ class Study(ReplayedCase):
 
         if joint is not None and len(self.problem(pid, rid).joints) == 1:
             joint = None
-        return self._once(("optimum", pid, rid, joint), compute)
+        return self.once(("optimum", pid, rid, joint), compute)
 
     def known_motions(self, pid: str, rid: str, joint: str | None = None) -> Array:
         """Durations that the study has anyway, printed and replayed: what keeps is an incumbent.
@@ -128,7 +127,7 @@ class Study(ReplayedCase):
                 return PerJointSolution(problem, joints, None, None, (), str(error), 0.0)
             return with_certificates(found, self.case.statement(pid, rid), self.intervals.interval)
 
-        return self._once(("per joint", pid, rid), compute)
+        return self.once(("per joint", pid, rid), compute)
 
     def half_digits(self, pid: str, rid: str) -> tuple[float, ...]:
         """Half a unit of the last printed place of the totals of single joints, s."""
@@ -176,7 +175,7 @@ class Study(ReplayedCase):
                 relaxed, known=member.durations, known_nodal=nodal, seconds=RELAXED_SECONDS
             )
 
-        return self._once(("relaxed", pid, rid), compute)
+        return self.once(("relaxed", pid, rid), compute)
 
     def claim_pairs(self, claim: Claim) -> Iterator[Pair]:
         """Problems and readings that a claim speaks about; none where it fits none of them."""
@@ -202,7 +201,7 @@ class Study(ReplayedCase):
         """The problem a claim's durations belong to: one joint's, or that of all joints."""
         problem = self.problem(pid, rid)
         if digits is not Digits.PRINTED:
-            problem = self._once(
+            problem = self.once(
                 ("problem", pid, rid, digits), lambda: self.case.problem_at(digits, pid, rid)
             )
         if claim.joint is None or claim.joint not in problem.joints:
@@ -219,8 +218,9 @@ class Study(ReplayedCase):
     def reachable(self, claim: Claim, durations: Array, pid: str, rid: str) -> float | None:
         """A total (s) that some stretch of ``durations`` keeps whatever the digits stand for.
 
-        It holds for every way-point and every limit that rounds to the printed digits; None if
-        there is no such stretch, or if durations alone define no motion.
+        It holds for every way-point that rounds to the printed digits or is cut off to them, and
+        every limit that rounds to them; None if there is no such stretch, or if durations alone
+        define no motion.
         """
         try:
             problem = self.claim_problem(claim, pid, rid, Digits.TIGHTEST)
@@ -228,7 +228,8 @@ class Study(ReplayedCase):
             return None
         if problem.curve.free:
             return None
-        return reachable_total(problem, durations, *self._box_columns(problem, pid, rid))
+        box = self.waypoint_box(problem, pid, rid).or_cut_off()
+        return reachable_total(problem, durations, box.lower, box.upper)
 
     def claim_optimum(self, claim: Claim, pid: str, rid: str) -> Solution:
         """Best known answer of `claim_problem`."""
@@ -258,17 +259,17 @@ class Study(ReplayedCase):
             durations = self.case.claim_durations(claim, rid).value
             return check(self._determined(claim, pid, rid), durations)
 
-        return self._once(("check", claim.id, pid, rid), compute)
+        return self.once(("check", claim.id, pid, rid), compute)
 
     def claim_rounding(self, claim: Claim, pid: str, rid: str) -> RoundingVerdict:
         """The printed durations judged over the box of all inputs that round to the digits."""
-        return self._once(
+        return self.once(
             ("rounding", claim.id, pid, rid), lambda: self._judged_box(claim, pid, rid, cut=False)
         )
 
     def claim_cut(self, claim: Claim, pid: str, rid: str) -> RoundingVerdict:
         """The same over a wider box, of inputs whose digits were rounded or cut off."""
-        return self._once(
+        return self.once(
             ("cut", claim.id, pid, rid), lambda: self._judged_box(claim, pid, rid, cut=True)
         )
 
@@ -282,7 +283,11 @@ class Study(ReplayedCase):
             durations, waypoints = durations.or_cut_off(), waypoints.or_cut_off()
         loosest = Digits.LOOSEST_CUT if cut else Digits.LOOSEST
         return judge_rounding(
-            problem, durations, waypoints, loosest=self.claim_problem(claim, pid, rid, loosest)
+            problem,
+            durations,
+            waypoints,
+            loosest=self.claim_problem(claim, pid, rid, loosest),
+            loose_ends=self.case.statement(pid, rid).loose_ends,
         )
 
     def waypoint_box(self, problem: Problem, pid: str, rid: str) -> RoundingBox:
@@ -297,15 +302,46 @@ class Study(ReplayedCase):
 
         def compute() -> bool:
             total = self.claim_total(claim, rid)
-            if total is None:
+            if total is None or self.case.statement(pid, rid).loose_ends:
                 return False
+            low, high = total[1]
+            longest = high + (high - low)
+            best = self.claim_optimum(claim, pid, rid)
+            if best.durations is not None and best.best <= longest:
+                return False  # a motion within the limits takes no longer
             self._progress(f"{self.case.id}: total of {claim.id}, {rid}")
             problem = self.claim_problem(claim, pid, rid, Digits.LOOSEST_CUT)
             waypoints = self.waypoint_box(problem, pid, rid).or_cut_off()
-            low, high = total[1]
-            return excludes_total(problem, high + (high - low), waypoints)
+            with self.intervals.lent() as seconds:
+                excluded = excludes_total(problem, longest, waypoints, seconds=seconds)
+            if excluded is None:
+                self.intervals.left_out.append(
+                    f"whether any motion of {self.problem(pid, rid).name} takes {total[0]} or "
+                    f"less, within {seconds:.0f} s"
+                )
+            return excluded is True
 
-        return self._once(("excluded", claim.id, pid, rid), compute)
+        return self.once(("excluded", claim.id, pid, rid), compute)
+
+    def longest_total(self, claim: Claim, rid: str) -> float:
+        """The longest total (s) of which a claim's digits may have been rounded or cut off.
+
+        Each number by itself: durations may be cut off beside a total that is rounded.
+        """
+        found = []
+        number = claim.value if isinstance(claim, TotalTimeClaim) else None
+        if isinstance(claim, DurationsClaim | MaximumClaim):
+            box = self.case.claim_durations(claim, rid)
+            wide = RoundingBox(box.value, box.lower, box.upper).or_cut_off()
+            found.append(float(wide.upper.sum()))
+            # A total that is the sum of the printed digits says no more than they do.
+            plain = sum(one.decimal for one in self.case.printed_durations(claim))
+            summed = claim.total is not None and claim.total.decimal == plain
+            number = None if summed else claim.total
+        if number is not None:
+            total = self.case.measured(number, "time", claim.problem, rid)
+            found.append(max(total.upper, total.cut_off().upper))
+        return min(found, default=float("inf"))
 
     def claim_total(self, claim: Claim, rid: str) -> tuple[str, tuple[float, float]] | None:
         """A claim's total as printed (or as summed), and its interval in seconds."""
@@ -353,4 +389,4 @@ class Study(ReplayedCase):
             self._progress(what)
             return examined(self, block, lambda done: self._progress(f"{what}, {done}"))
 
-        return self._once(("instances", block.id), compute)
+        return self.once(("instances", block.id), compute)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 import numpy as np
 
 from ...nlp.enclosure import Ball, bound_ratio
@@ -12,9 +14,9 @@ _MOST_SPLIT = 8
 """Segments above which splitting boxes of durations cannot come to an end in time."""
 _FLOAT_SLACK = 1e-12
 """Relative margin that outweighs the few roundings of sums and quotients of floats."""
-_MOST_BOXES = 400
-"""Boxes of durations after which the proof that excludes a total gives up; each takes
-milliseconds."""
+_BOXES = 400
+"""Boxes of durations that are always looked at, each in milliseconds: what is decided by them does
+not depend on the machine. More take time, of which the caller says how much there is."""
 
 
 def excludes_total(
@@ -22,7 +24,8 @@ def excludes_total(
     total: float,
     waypoints: RoundingBox | None = None,
     tolerance: float = TOLERANCE,
-) -> bool:
+    seconds: float = 0.0,
+) -> bool | None:
     """Prove that no durations of a total or less keep the limits, for all way-points of a box.
 
     Parameters
@@ -35,11 +38,13 @@ def excludes_total(
         rad; those of the problem, exactly, by default.
     tolerance : float
         Relative excess over a limit that still counts as keeping it, as in `check`.
+    seconds : float
+        After which no further box is looked at; the first few hundred always are.
 
     Returns
     -------
-    bool
-        True if it is proved; False says nothing.
+    bool or None
+        True if it is proved; False says nothing; None if the time was too short to say.
 
     Notes
     -----
@@ -58,9 +63,12 @@ def excludes_total(
     if not (low > 0.0).all() or problem.segments > _MOST_SPLIT:
         return False
     todo = [(low, np.minimum(total - (low.sum() - low), problem.duration_upper * target))]
-    for _ in range(_MOST_BOXES):
-        if not todo:
-            return True
+    until = time.monotonic() + seconds
+    looked = 0
+    while todo:
+        looked += 1
+        if looked > _BOXES and time.monotonic() > until:
+            return None
         least, most = todo.pop()
         # No duration is longer than what the total leaves beside the least of all others.
         most = np.minimum(most, total - (least.sum() - least))
@@ -78,7 +86,7 @@ def excludes_total(
             lower, upper = least.copy(), most.copy()
             (upper if side == 0 else lower)[k] = cut
             todo.append((lower, upper))
-    return not todo
+    return True
 
 
 def _least_durations(problem: Problem, waypoints: RoundingBox) -> Array:

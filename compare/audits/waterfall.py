@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from decimal import ROUND_FLOOR, Context, Decimal, localcontext
 from fractions import Fraction
 
@@ -10,7 +11,7 @@ from ...nlp.proofs.any_curve import estimate_any_curve
 from ...nlp.retiming import retime
 from ...problem import Coupling, down, fit, up
 from ...problem.cases import AnyClaim, DurationsClaim, MaximumClaim
-from ..documents import EXACT, Step, Waterfall, Why
+from ..documents import EXACT, PUBLISHED, SHARED_OPTIMUM, Step, Waterfall, Why
 from .study import Study
 
 _ROUNDING = 1e-12
@@ -38,6 +39,8 @@ def _starting_claim(study: Study, pid: str) -> AnyClaim | None:
 def _known(name: str, solution: Solution, note: str = "") -> Step:
     if solution.durations is None:
         return Step.missing(name, solution.why or str(solution.status))
+    if solution.boundless is not None:
+        return Step.missing(name, solution.boundless)
     notes = [n for n in (note, solution.why) if n]
     if solution.infimum is not None:
         notes.append("approached, not attained")
@@ -66,7 +69,7 @@ def _waterfall(study: Study, pid: str, rid: str) -> Waterfall:
     if len(problem.joints) > 1 and problem.coupling is Coupling.PER_JOINT:
         steps.append(_procedure(study, pid, rid))
     shared = study.optimum(pid, rid)
-    steps.append(_known("optimum of the same curve, shared durations", shared))
+    steps.append(_known(SHARED_OPTIMUM, shared))
     relaxed = _converged(study.relaxed(pid, rid))
     steps.append(
         _known("relaxed family", relaxed, "degree 5 or more in every segment, C2, freedom used")
@@ -98,22 +101,25 @@ def _published(study: Study, claim: AnyClaim, pid: str, rid: str) -> list[Step]:
     why = study.unmoved(claim, pid, rid)
     if why is not None:
         time = study.case.claim_durations(claim, rid).value.sum() if value is None else value
-        alone = Step(name="published", time=time, low=low, high=high, note=f"printed {shown}")
+        alone = Step(name=PUBLISHED, time=time, low=low, high=high, note=f"printed {shown}")
         return [alone, Step.missing("feasible after repair", why)]
     verdict = study.claim_check(claim, pid, rid)
     rounding = study.claim_rounding(claim, pid, rid)
     printed = Step(
-        name="published",
+        name=PUBLISHED,
         time=verdict.total_time if value is None else value,
         low=low,
         high=high,
-        note=f"printed {shown}; limits over the rounding box: {rounding.verdict}",
+        note=f"printed {shown}; limits, for all that rounds to the digits: {rounding.verdict}",
     )
     if verdict.feasible_time is None:
         note = verdict.feasible_why or ""
         return [printed, Step.missing("feasible after repair", note)]
     stretch = verdict.feasible_time / verdict.total_time
     note = f"stretched by {stretch:.6g}" if stretch > 1 else "no repair needed"
+    summed = verdict.total_time
+    if value is not None and stretch <= 1 and abs(summed - value) > _ROUNDING * value:
+        note += f"; the printed durations sum to {summed:.6g} s"
     repaired = Step(name="feasible after repair", time=verdict.feasible_time, note=note)
     return [printed, repaired]
 
@@ -123,12 +129,18 @@ def _procedure(study: Study, pid: str, rid: str) -> Step:
     name = "each joint at its optimum, longest per segment"
     if answer.check is None:
         return Step.missing(name, answer.why or "")
-    note = f"check: {answer.check.verdict}; each joint's optimum {answer.joint_evidence}"
+    boundless = [joint.boundless for joint in answer.joints]
+    if boundless[0] is not None and None not in boundless:
+        return Step.missing(name, boundless[0])
+    note = f"check: {answer.check.verdict}; the optimum of each joint is {answer.joint_evidence}"
     low: float | Why = EXACT
     high: float | Why = EXACT
     if answer.ranges:
         low, high = answer.ranges[0].lowest, answer.ranges[0].highest
-        note += f"; range while each joint is within {answer.ranges[0].slack:g} s of its optimum"
+        note += (
+            f"; the range holds while each joint stays within {answer.ranges[0].slack:g} s of its "
+            "optimum"
+        )
     return Step(
         name=name,
         time=answer.total_time,
@@ -143,6 +155,8 @@ def _retimed(relaxed: Solution) -> Step:
     name = "TOPPRA on the path of the relaxed family"
     if relaxed.durations is None:
         return Step.missing(name, "no path")
+    if relaxed.boundless is not None:
+        return Step.missing(name, "no shortest motion, so no path")
     problem = relaxed.problem
     trajectory = fit(problem.curve, problem.waypoints, relaxed.durations, relaxed.nodal)
     answer = retime(trajectory, problem.limits)
@@ -156,7 +170,8 @@ def _retimed(relaxed: Solution) -> Step:
         low=value - error,
         high=value + error,
         evidence=Evidence.BEST_KNOWN,
-        note=f"velocity and acceleration only; extrapolated from {answer.gridpoints} grid points",
+        note="velocity and acceleration only; extrapolated from grids of "
+        f"{_and(answer.gridpoints)} points",
     )
 
 
@@ -188,3 +203,8 @@ def _below(value: Fraction) -> str:
     """Six significant digits, rounded down."""
     with localcontext(Context(prec=6, rounding=ROUND_FLOOR)):
         return str(Decimal(value.numerator) / Decimal(value.denominator))
+
+
+def _and(numbers: Sequence[int]) -> str:
+    *most, last = map(str, numbers)
+    return f"{', '.join(most)} and {last}" if most else last

@@ -7,12 +7,32 @@ import os
 import sys
 import traceback
 from collections.abc import Sequence
+from functools import cache
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
+from .bench_command import bench
+from .case_app import case_app
+from .check_command import check
 from .interrupt import INTERRUPTED, catch_interrupts
+from .motion_options import Form, Rate, Retimed, SamplesFile
+from .new_command import new
+from .options import (
+    ENDS,
+    MOST,
+    AsJson,
+    Coupled,
+    Crate,
+    Out,
+    ProblemId,
+    ReadingId,
+    Source,
+    Workers,
+)
+from .study_command import study
+from .suite_app import suite_app
 
 # Whatever computes is imported inside the commands, so that --help answers at once.
 # The commands of this program.
@@ -23,44 +43,11 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-_LIMIT = "Limit of every joint, or one for each with commas between."
-"""Help of the three options of `new` that take limits."""
-_ENDS = """\b
-Exit codes:
-  0    done
-  1    audit --strict, and a finding has severity error; verify, and a file is refused
-  2    bad input; one line on standard error says how to fix it
-  3    solve --certify, and an interval is wider than asked for or nothing is proved
-  70   a fault of trajgap itself
-  130  interrupted
-"""
-"""What every command's --help ends with."""
+app.add_typer(suite_app, name="suite")
+app.add_typer(case_app, name="case")
+
 BAD_INPUT, FAULT, CLOSED_PIPE = 2, 70, 141
 """Exit codes: that of argument parsers, EX_SOFTWARE, and what a shell says of SIGPIPE."""
-
-MOST = 10_000
-"""Largest number of starts, seeds and workers: what they make is kept in memory."""
-
-# Arguments and options that several commands share.
-Source = Annotated[
-    str, typer.Argument(metavar="CASE|FILE", help="Id of a published case, or a case file.")
-]
-AsJson = Annotated[bool, typer.Option("--json", help="Print JSON (see docs/command-line.md).")]
-Out = Annotated[
-    Path | None, typer.Option(metavar="FILE", help="Also write the JSON to this new file.")
-]
-ProblemId = Annotated[
-    str | None, typer.Option("--problem", metavar="ID", help="Only this problem of the case.")
-]
-ReadingId = Annotated[
-    str | None, typer.Option("--reading", metavar="ID", help="Only this reading of the case.")
-]
-Coupled = Annotated[
-    str | None,
-    typer.Option(
-        "--coupling", metavar="shared|per-joint", help="Instead of what the case file says."
-    ),
-]
 
 
 def _version(asked: bool) -> None:
@@ -71,7 +58,7 @@ def _version(asked: bool) -> None:
         raise typer.Exit
 
 
-@app.callback(invoke_without_command=True, epilog=_ENDS)
+@app.callback(invoke_without_command=True, epilog=ENDS)
 def _trajgap(
     context: typer.Context,
     version: Annotated[
@@ -83,7 +70,7 @@ def _trajgap(
         typer.echo(context.get_help())
 
 
-@app.command(epilog=_ENDS)
+@app.command(epilog=ENDS)
 def cases(as_json: AsJson = False, out: Out = None) -> int:
     """List the published cases."""
     from .listing import list_cases
@@ -91,7 +78,7 @@ def cases(as_json: AsJson = False, out: Out = None) -> int:
     return list_cases(as_json, out)
 
 
-@app.command(epilog=_ENDS)
+@app.command(epilog=ENDS)
 def show(
     case: Source,
     problem: ProblemId = None,
@@ -99,39 +86,16 @@ def show(
     as_json: AsJson = False,
     out: Out = None,
 ) -> int:
-    """Show a case: problems, readings, claims, and what the paper leaves open."""
+    """Show what a case holds, and what it leaves open."""
     from .showing import show_case
 
     return show_case(case, problem, reading, as_json, out)
 
 
-@app.command(epilog=_ENDS)
-def check(
-    case: Source,
-    durations: Annotated[
-        str,
-        typer.Option(
-            metavar="0.961,1.258,1.078",
-            help="Segment durations as printed, in the case's unit of time (s if it states none). "
-            "Each number stands for all that round to its digits.",
-        ),
-    ],
-    problem: ProblemId = None,
-    reading: ReadingId = None,
-    coupling: Coupled = None,
-    as_json: AsJson = False,
-    out: Out = None,
-) -> int:
-    """Judge segment durations, for all t and over all inputs that print alike.
-
-    Under per-joint coupling each joint is judged by itself as well.
-    """
-    from .checking import check_durations
-
-    return check_durations(case, durations, problem, reading, coupling, as_json, out)
+app.command(epilog=ENDS)(check)
 
 
-@app.command(epilog=_ENDS)
+@app.command(epilog=ENDS)
 def solve(
     case: Source,
     problem: ProblemId = None,
@@ -184,10 +148,16 @@ def solve(
             "May be given several times.",
         ),
     ] = None,
+    samples: SamplesFile = None,
+    rate: Rate = None,
+    form: Form = None,
+    retimed: Retimed = False,
     as_json: AsJson = False,
     out: Out = None,
 ) -> int:
     """Solve a case exactly: all its problems under all its readings.
+
+    With --samples the motion of the answer goes into a file, which is read back and checked.
 
     With --certify, Ctrl-C leaves the best interval, and a state to go on from.
     """
@@ -202,9 +172,16 @@ def solve(
         for name, value in options.items():
             if value is not None:
                 raise typer.BadParameter(f"{name} needs --certify")
+        if samples is None and (rate is not None or form is not None or retimed):
+            lone = "--rate" if rate is not None else "--retimed" if retimed else "--format"
+            raise typer.BadParameter(f"{lone} needs --samples")
+        from .motion_writing import asked_samples
         from .solving import solve_case
 
-        return solve_case(case, problem, reading, coupling, starts, seed, as_json, out)
+        asked = None if samples is None else asked_samples(samples, rate, form, retimed)
+        return solve_case(case, problem, reading, coupling, starts, seed, as_json, out, asked)
+    if samples is not None or rate is not None or form is not None or retimed:
+        raise typer.BadParameter("--samples is of a solution; leave --certify out")
     from ...verify import Subject
     from .certifying import certify_case
 
@@ -224,7 +201,7 @@ def solve(
     )
 
 
-@app.command(epilog=_ENDS)
+@app.command(epilog=ENDS)
 def verify(
     files: Annotated[
         list[Path], typer.Argument(metavar="FILE...", help="Certificates, or states.")
@@ -244,13 +221,16 @@ def verify(
     as_json: AsJson = False,
     out: Out = None,
 ) -> int:
-    """Prove certificates again, with code that shares nothing with the solver."""
+    """Prove certificates again, apart from the solver.
+
+    The code that does so shares nothing with it.
+    """
     from .certifying import verify_files
 
     return verify_files(files, case, seconds, as_json, out)
 
 
-@app.command(epilog=_ENDS)
+@app.command(epilog=ENDS)
 def audit(
     cases: Annotated[
         list[str] | None,
@@ -262,15 +242,7 @@ def audit(
     problem: ProblemId = None,
     reading: ReadingId = None,
     seeds: Annotated[int, typer.Option(min=2, max=MOST, help="Seeds of each replay.")] = 100,
-    workers: Annotated[
-        int,
-        typer.Option(
-            min=1,
-            max=MOST,
-            help="Processes for the replays; the result does not depend on it. Starting one takes "
-            "longer than a few dozen short replays.",
-        ),
-    ] = 1,
+    workers: Workers = 1,
     certify_seconds: Annotated[
         float,
         typer.Option(
@@ -286,6 +258,10 @@ def audit(
             help="Certificates to use beside the shipped ones; each is proved again.",
         ),
     ] = None,
+    draft: Annotated[
+        bool,
+        typer.Option("--draft", help="Your own draft: say what to change before you submit it."),
+    ] = False,
     strict: Annotated[
         bool, typer.Option("--strict", help="Exit with 1 if a finding has severity error.")
     ] = False,
@@ -300,6 +276,7 @@ def audit(
             show_default="trajgap-audit",
         ),
     ] = None,
+    crate: Crate = None,
 ) -> int:
     """Audit every claim of the cases, and write pages with pictures."""
     from .auditing import audit_cases
@@ -312,60 +289,40 @@ def audit(
         workers,
         certify_seconds,
         certificates,
+        draft,
         strict,
         as_json,
         out,
+        crate,
     )
 
 
-@app.command(epilog=_ENDS)
-def new(
-    out: Annotated[Path, typer.Argument(metavar="OUT.toml", help="New case file.")],
-    table: Annotated[
-        Path,
-        typer.Option(
-            "--from", metavar="TABLE.csv", help="One way-point a row, one joint a column."
-        ),
-    ],
-    position_unit: Annotated[str | None, typer.Option(metavar="rad|deg")] = None,
-    velocity: Annotated[str | None, typer.Option(help=_LIMIT)] = None,
-    velocity_unit: Annotated[str | None, typer.Option(metavar="rad/s|deg/s")] = None,
-    acceleration: Annotated[str | None, typer.Option(help=_LIMIT)] = None,
-    acceleration_unit: Annotated[str | None, typer.Option(metavar="rad/s^2|deg/s^2")] = None,
-    jerk: Annotated[str | None, typer.Option(help=_LIMIT)] = None,
-    jerk_unit: Annotated[str | None, typer.Option(metavar="rad/s^3|deg/s^3")] = None,
-    time_unit: Annotated[str | None, typer.Option(metavar="s|ms")] = None,
-    case_id: Annotated[
-        str | None, typer.Option("--id", help="Id of the case.", show_default="the table's name")
-    ] = None,
-    family: Annotated[
-        str | None,
-        typer.Option(
-            help="Curve, as case files or the literature name it: 3-5-3, 4-3-4, natural-cubic, "
-            "cubic-b-spline, quintic-b-spline, quintic-polynomials...",
-            show_default="3-5-3 for four way-points, else a cubic spline",
+@app.command(epilog=ENDS)
+def explain(
+    asked: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="[RULE|WORD]...", help="Such as TG201 or certified; all are listed by default."
         ),
     ] = None,
-    degree: Annotated[int | None, typer.Option(help="Of a curve that needs one.")] = None,
-    durations: Annotated[
-        str | None,
-        typer.Option(metavar="H1,H2,...", help="Printed durations of the segments: a claim."),
-    ] = None,
-    total: Annotated[str | None, typer.Option(help="Printed total time: a claim.")] = None,
+    as_json: AsJson = False,
+    out: Out = None,
 ) -> int:
-    """Start a case file from a table of way-points; asks for units that are not given."""
-    from .scaffolding import new_case
+    """Explain a rule or a word of the reports.
 
-    units = {
-        "position": position_unit,
-        "velocity": velocity_unit,
-        "acceleration": acceleration_unit,
-        "jerk": jerk_unit,
-        "time": time_unit,
-    }
-    limits = {"velocity": velocity, "acceleration": acceleration, "jerk": jerk}
-    new_case(out, table, units, limits, case_id, family, degree, durations, total)
-    return 0
+    A rule is explained with what it may conclude and an example. Without an argument, everything
+    that can be explained is listed.
+    """
+    from .explaining import explain
+
+    return explain(asked or [], as_json, out)
+
+
+app.command(epilog=ENDS)(study)
+app.command(epilog=ENDS)(bench)
+
+
+app.command(epilog=ENDS)(new)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -391,7 +348,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         catch_interrupts()
     try:
         code = _run(sys.argv[1:] if arguments is None else arguments)
-        sys.stdout.flush()
+        if code != BAD_INPUT:  # told already, where it is that nothing can be written
+            sys.stdout.flush()
         return code
     except BrokenPipeError:
         return CLOSED_PIPE
@@ -411,10 +369,16 @@ def _settle() -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
+@cache
+def _command() -> Any:
+    """The commands as typer's own parser has them, built once a process."""
+    return typer.main.get_command(app)
+
+
 def _run(arguments: Sequence[str]) -> int:
     from ...problem import TrajgapError, check_name
 
-    command = typer.main.get_command(app)
+    command = _command()
     try:
         for argument in arguments:
             # Nothing that is printed or written could state such a name.

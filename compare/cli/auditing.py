@@ -12,18 +12,23 @@ from ...nlp import Evidence
 from ...problem import published_ids
 from ..audits import Study
 from ..documents import (
+    Advice,
     AuditDocument,
     AuditedCase,
     ClaimVerdict,
     Judgement,
     Scope,
     Step,
+    Urgency,
     Waterfall,
+    Why,
+    facts,
     more_errors,
+    tally,
 )
 from .certifying import read_certificates
 from .input import read_cases
-from .output import check_folder, emit, progress, say
+from .output import check_folder, emit, new_output, progress, say
 from .result_tables import seconds
 from .table import Columns, line
 
@@ -39,9 +44,11 @@ def audit_cases(
     workers: int,
     certify_seconds: float,
     certificates: Path | None,
+    draft: bool,
     strict: bool,
     as_json: bool,
     out: Path | None,
+    crate: Path | None,
 ) -> int:
     """Audit cases; all of them are read before anything is computed."""
     chosen = read_cases(sources or published_ids())
@@ -53,9 +60,13 @@ def audit_cases(
     folder = out if out is not None or as_json else AUDIT_FOLDER
     if folder is not None:
         check_folder(folder, chosen)
+    if crate is not None:
+        from ..pages import crate_library
+
+        crate_library()
     from ..audits import audit
 
-    with progress("audit") as step:
+    with new_output(crate, "--crate") as bundle, progress("audit") as step:
         report = audit(
             chosen,
             seeds=seeds,
@@ -65,12 +76,18 @@ def audit_cases(
             progress=step,
             certify_seconds=certify_seconds,
             certificates=given,
+            draft=draft,
         )
         if folder is not None:
             from ..pages import write_report
 
             step("pages and pictures")
             write_report(report, folder)
+        if crate is not None:
+            from ..pages import crate_of
+
+            step("archive")
+            bundle(crate_of(report))
     emit(report.document, audited, as_json)
     if folder is not None and not as_json:
         say(f"pages: {folder / 'index.html'}\n")
@@ -85,9 +102,11 @@ def audited(document: AuditDocument) -> list[RenderableType]:
         card = case.card
         against = {*card.errors, *([more_errors(card.more)] if card.more else [])}
         parts += [line(said, "bold red" if said in against else "") for said in card.sentences]
+        parts.append(line(tally(case.verdicts), "dim"))
         counts = Counter(v.verdict for v in case.verdicts)
         said = ", ".join(f"{counts[word]} {word}" for word in ClaimVerdict if counts[word])
-        parts += [line(""), line(f"{len(case.verdicts)} claims: {said or 'none to judge'}")]
+        many = "1 claim" if len(case.verdicts) == 1 else f"{len(case.verdicts)} claims"
+        parts += [line(""), line(f"{many}: {said or 'none to judge'}")]
         stated = {one.claim: one for one in case.claims}
         rows = [
             (v.verdict, _under(v), f"{stated[v.claim].text} ({stated[v.claim].where})")
@@ -95,9 +114,10 @@ def audited(document: AuditDocument) -> list[RenderableType]:
         ]
         if rows:
             parts.append(Columns(("verdict", "readings", "~claim and its place"), rows))
-        parts += [line(one) for one in _causes(case)]
+        advice = () if isinstance(case.advice, Why) else case.advice
+        parts += _advised(advice) if advice else [line(one) for one in _causes(case)]
         parts += [line(""), *_time_goes(case.waterfalls)]
-        parts += [line(f"not certified: {one}", "dim") for one in case.left_out]
+        parts += [line(f"{words}: {value}", "dim") for words, value in facts(case)]
     return parts
 
 
@@ -111,6 +131,15 @@ _ORDER = (
 """Claims in the table: what speaks against them first."""
 
 
+def _advised(advice: Sequence[Advice]) -> list[RenderableType]:
+    """What to change, each with its place; what is found first, then how to fix it."""
+    parts: list[RenderableType] = [line(""), line("Before you submit", "bold")]
+    for one in advice:
+        style = "bold red" if one.urgency is Urgency.CONTRADICTED else ""
+        parts += [line(f"{one.urgency}, {one.where}: {one.says}", style), line(f"  → {one.change}")]
+    return parts
+
+
 def _under(judgement: Judgement) -> str:
     """Under how many readings a verdict holds; where it depends on them, how many support it."""
     readings = list(judgement.readings.values())
@@ -122,14 +151,13 @@ def _under(judgement: Judgement) -> str:
 
 
 def _causes(case: AuditedCase) -> list[str]:
-    """Errors and warnings, one line each with the rule; the pages and --json have the rest."""
+    """Errors and warnings, one paragraph each with the rule; `trajgap explain RULE` explains it."""
     places = {one.claim: one.where for one in case.claims}
     found = []
     for cause in case.causes:
         where = f"{places[cause.claim]}: " if cause.claim else ""
         under = f" [{len(cause.readings)} readings]" if len(cause.readings) > 1 else ""
-        first = cause.says.split(". ")[0].rstrip(".")
-        found.append(f"{cause.severity} {cause.rule}{under} {where}{first}.")
+        found.append(f"{cause.severity} {cause.rule}{under} {where}{cause.says.rstrip('.')}.")
     return found
 
 
@@ -144,7 +172,9 @@ def _time_goes(waterfalls: Sequence[Waterfall]) -> list[RenderableType]:
         return []
     rows = [(name, *(cell for one in steps for cell in _step(one.get(name)))) for name in names]
     columns = [column for problem in first for column in (f">{problem}", "evidence")]
-    return [Columns((f"where the time goes, s ({waterfalls[0].reading})", *columns), rows)]
+    title = f"where the time goes, s ({waterfalls[0].reading})"
+    told = dict.fromkeys(said for one in first.values() for said in one.without_optimum)
+    return [Columns((title, *columns), rows), *(line(said, "dim") for said in told)]
 
 
 def _step(step: Step | None) -> tuple[str, str]:

@@ -31,7 +31,7 @@ from ...problem import (
     check_regular,
     file_name,
 )
-from ...problem.cases import PUBLISHED
+from ...problem.cases import case_files
 from ...verify import (
     CERTIFICATE_FORMAT,
     OLD_FORMATS,
@@ -215,7 +215,8 @@ def _stated(case: Case, one: Posed, coupling: Coupling) -> Iterator[Question]:
 
 def _hash(case: Case) -> str | None:
     """SHA-256 of a case file; None if it cannot be read any more."""
-    path = PUBLISHED.file(case.file) if case.file in PUBLISHED.ids() else Path(case.file)
+    known = case_files(case.file)
+    path = known.file(case.file) if case.file in known.ids() else Path(case.file)
     try:
         return hashlib.sha256(path.read_bytes()).hexdigest()
     except OSError:

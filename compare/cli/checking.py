@@ -69,10 +69,11 @@ def check_durations(
 def _checked(case: Case, one: Posed, box: RoundingBox) -> CheckResult:
     problem, points = one.problem, waypoint_box(case, one)
     joints: list[tuple[str, Check, RoundingVerdict]] = []
+    loose = case.statement(one.problem_id, one.reading_id).loose_ends
     if problem.coupling is Coupling.PER_JOINT:
         for j, label in enumerate(problem.joints):
             alone = problem.joint(j)
-            rounding = judge_rounding(alone, box, one_joint(points, j))
+            rounding = judge_rounding(alone, box, one_joint(points, j), loose_ends=loose)
             joints.append((label, check(alone, box.value), rounding))
     return check_result(
         case.id,
@@ -80,7 +81,7 @@ def _checked(case: Case, one: Posed, box: RoundingBox) -> CheckResult:
         one.reading_id,
         problem.coupling,
         check(problem, box.value),
-        judge_rounding(problem, box, points),
+        judge_rounding(problem, box, points, loose_ends=loose),
         box.value.tolist(),
         joints,
     )
@@ -106,7 +107,7 @@ def check_result(
     found : Check
         The durations judged at the printed point, with all joints.
     rounding : RoundingVerdict
-        Judged over the box of all inputs that print alike.
+        Judged for every value that rounds to the printed digits.
     durations : sequence of float
         s.
     joints : iterable of (str, Check, RoundingVerdict), optional
@@ -173,7 +174,10 @@ _COLUMNS = ("verdict", "rounding", ">total s", ">feasible s", ">tight s", ">wors
 def _tables(document: CheckDocument) -> list[RenderableType]:
     results = document.results
     shown = " ".join(f"{d:.6g}" for d in results[0].segment_durations)
-    note = "verdict: the printed point, for all t. rounding: all inputs that print alike."
+    note = (
+        "verdict: the printed numbers themselves, for all t. rounding: every value that rounds to "
+        "the printed digits."
+    )
     return [
         line(f"{results[0].case}: durations {shown} s", "bold"),
         *by_result(results, _COLUMNS, _cells, "all"),

@@ -135,7 +135,7 @@ def read_durations(text: str, file: str) -> tuple[Printed, ...]:
 
 
 def duration_box(case: Case, posed: Posed, printed: Sequence[Printed]) -> RoundingBox:
-    """Durations in seconds with all that print alike, in the case's unit of time.
+    """Printed durations, in s: the numbers, and the bounds of what rounds to them.
 
     Raises
     ------
@@ -161,7 +161,7 @@ def duration_box(case: Case, posed: Posed, printed: Sequence[Printed]) -> Roundi
 
 
 def waypoint_box(case: Case, posed: Posed) -> RoundingBox:
-    """The problem's way-points with all that print alike, rad."""
+    """The problem's way-points, in rad: the numbers, and the bounds of what rounds to them."""
     lower, upper = case.waypoint_box(posed.problem_id, posed.reading_id)
     return RoundingBox(posed.problem.waypoints, lower, upper)
 

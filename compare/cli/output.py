@@ -95,9 +95,12 @@ class Steps:
     def tell(self, text: str) -> None:
         """Say how the present step goes."""
 
+    def done(self, text: str) -> None:
+        """Count a step that is finished, where they do not come one after another."""
+
 
 @contextmanager
-def progress(label: str, total: int | None = None) -> Iterator[Steps]:
+def progress(label: str, total: int | None = None, rate: bool = False) -> Iterator[Steps]:
     """Show a bar on standard error while something runs, if that is a terminal.
 
     Parameters
@@ -106,6 +109,8 @@ def progress(label: str, total: int | None = None) -> Iterator[Steps]:
         What runs.
     total : int, optional
         Number of steps, where it is known.
+    rate : bool
+        Whether to show how many steps are done, how many a second, and how long the rest takes.
 
     Yields
     ------
@@ -116,10 +121,27 @@ def progress(label: str, total: int | None = None) -> Iterator[Steps]:
         yield Steps()
         return
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        ProgressColumn,
+        Task,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
+    from rich.text import Text
+
+    class Rate(ProgressColumn):
+        def render(self, task: Task) -> Text:
+            return Text("" if task.speed is None else f"{task.speed:.1f}/s")
 
     console = Console(stderr=True, markup=False, highlight=False)
-    columns = (BarColumn(bar_width=24), TimeElapsedColumn(), TextColumn("{task.description}"))
+    columns: list[ProgressColumn] = [BarColumn(bar_width=24), TimeElapsedColumn()]
+    if rate:
+        columns += [MofNCompleteColumn(), Rate(), TextColumn("left:"), TimeRemainingColumn()]
+    columns.append(TextColumn("{task.description}"))
     with Progress(*columns, console=console, transient=True) as bar:
         task = bar.add_task(label, total=total)
 
@@ -133,11 +155,14 @@ def progress(label: str, total: int | None = None) -> Iterator[Steps]:
             def tell(self, text: str) -> None:
                 bar.update(task, description=text)
 
+            def done(self, text: str) -> None:
+                bar.update(task, description=text, advance=1)
+
         yield Shown()
 
 
 @contextmanager
-def new_output(path: Path | None, field: str = "--out") -> Iterator[Callable[[str], None]]:
+def new_output(path: Path | None, field: str = "--out") -> Iterator[Callable[[str | bytes], None]]:
     """Reserve a new file; what is written appears under its name at once and complete.
 
     Parameters
@@ -150,7 +175,7 @@ def new_output(path: Path | None, field: str = "--out") -> Iterator[Callable[[st
     Yields
     ------
     callable
-        To be called with the whole text, once.
+        To be called with the whole content, once.
 
     Raises
     ------
@@ -167,9 +192,9 @@ def new_output(path: Path | None, field: str = "--out") -> Iterator[Callable[[st
                 raise CaseError(name, field, "is a directory; name a file in it")
             put = stack.enter_context(new_file(path))
 
-        def write(text: str) -> None:
+        def write(content: str | bytes) -> None:
             with _writing(name, field), _taken(name, field):
-                put(text)
+                put(content)
 
         yield write
 

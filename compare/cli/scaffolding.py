@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from ...problem import CHOICES, CaseError, scaffold
+from ...problem.cases import identity_of
 from .output import new_output, say
 
 
@@ -45,14 +46,12 @@ def new_case(
     with new_output(out, "OUT") as write:
         needed = ["position", *(name for name, limit in limits.items() if limit is not None)]
         given = {name: unit for name, unit in units.items() if unit is not None}
-        # A faulty table should be told before anything is asked.
-        guess = {name: CHOICES[name][0] for name in needed} | given
 
         def written(units: Mapping[str, str]) -> str:
             return scaffold(
                 table,
                 units,
-                case_id=case_id,
+                case_id=identity_of(out.stem) if case_id is None else case_id,
                 family=family,
                 degree=degree,
                 durations=durations,
@@ -60,29 +59,65 @@ def new_case(
                 **limits,
             )
 
-        written(guess)
-        for name in (*needed, "time"):
-            if name not in given:
-                given[name] = _ask(name, str(table))
+        faults: list[tuple[str, str]] = []
+        file = ""
+        # A faulty table or option should be told before anything is asked.
+        guess = {name: CHOICES[name][0] for name in needed} | given
+        try:
+            written(guess)
+        except CaseError as error:
+            file, faults = error.file, [(_option(field), why) for field, why in error.faults]
+        asked = [name for name in (*needed, "time") if name not in given]
+        if faults:
+            # Nobody is asked in vain; what a pipe does not hold either is told with the faults.
+            asked = [] if _interactive() else [name for name in asked if name != "time"]
+        for name in asked:
+            answer = _ask(name, str(table))
+            if answer in CHOICES[name]:
+                given[name] = answer
+            else:
+                said = f"{answer!r} is no unit of {name}" if answer else "is missing"
+                faults.append((f"--{name}-unit", f"{said}; give {' or '.join(CHOICES[name])}"))
+        if faults:
+            raise CaseError(file, *faults[0], faults[1:])
         write(written(given))
     then = "judges what is claimed" if durations or total else "once claims are filled in"
     say(f"written: {out}\nnext: trajgap audit {shlex.quote(str(out))}  # {then}\n")
 
 
+def _option(field: str) -> str:
+    """The option of the command line that an argument of `scaffold` comes from."""
+    if field.startswith("units."):
+        return f"--{field.removeprefix('units.')}-unit"
+    options = ("family", "degree", "velocity", "acceleration", "jerk", "durations", "total")
+    if field in options:
+        return f"--{field}"
+    return "--id" if field == "case_id" else field
+
+
 def _ask(quantity: str, table: str) -> str:
-    """Ask for a unit on a terminal, or read it from a pipe."""
+    """Ask for a unit on a terminal until one is given, or read a line of a pipe, which may end."""
     choices = CHOICES[quantity]
     default = "s" if quantity == "time" else None
     shown = ", ".join(choices) + (f" [{default}]" if default else "")
     while True:
-        interactive = sys.stdin.isatty()
+        interactive = _interactive()
         if interactive:
             sys.stderr.write(f"unit of {quantity} in {table} ({shown}): ")
             sys.stderr.flush()
-        line = sys.stdin.readline()
+        line = _line()
         answer = line.strip() or default or ""
-        if answer in choices:
+        if answer in choices or not line or not interactive:
             return answer
-        if not line or not interactive:
-            said = f"{answer!r} is no unit of {quantity}" if answer else "is missing"
-            raise CaseError(table, f"--{quantity}-unit", f"{said}; give {' or '.join(choices)}")
+
+
+def _interactive() -> bool:
+    return sys.stdin is not None and sys.stdin.isatty()
+
+
+def _line() -> str:
+    """The next line of standard input; empty where it has ended, or cannot be read at all."""
+    try:
+        return "" if sys.stdin is None else sys.stdin.readline()
+    except OSError:
+        return ""

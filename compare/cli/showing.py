@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Literal
 
 from rich.console import RenderableType
 
 from ...problem.cases import (
     AnyClaim,
+    Case,
     ConvergenceClaim,
     DurationsClaim,
     ImprovementClaim,
     MaximumClaim,
-    PeakClaim,
+    MotionValueClaim,
+    Statement,
     TotalTimeClaim,
 )
 from ..documents import ShowDocument, json_text, show_document
@@ -26,13 +30,14 @@ def show_case(
 ) -> int:
     """Show one case."""
     with new_output(out) as write:
-        document = show_document(read_case(source), problem, reading)
+        case = read_case(source)
+        document = show_document(case, problem, reading)
         write(json_text(document))
-    emit(document, _tables, as_json)
+    emit(document, lambda shown: _tables(shown, case), as_json)
     return 0
 
 
-def _tables(document: ShowDocument) -> list[RenderableType]:
+def _tables(document: ShowDocument, case: Case) -> list[RenderableType]:
     source, robot = document.source, document.robot
     named = (source.authors, source.title, source.journal, source.year, source.doi)
     cited = ". ".join(str(part).rstrip(".") for part in named if part)
@@ -48,6 +53,7 @@ def _tables(document: ShowDocument) -> list[RenderableType]:
         line(document.id, "bold"),
         *(line(said) for said in lines),
         Columns(("problem", "~title"), problems),
+        *_asked(document, case),
         Columns(("reading", "~why it is admissible"), readings),
     ]
     if document.claims:
@@ -59,6 +65,43 @@ def _tables(document: ShowDocument) -> list[RenderableType]:
     return parts
 
 
+def _asked(document: ShowDocument, case: Case) -> list[RenderableType]:
+    """Curve, angles and limits of each problem, in the digits and units that are read."""
+    reading = next((r.id for r in document.readings if r.default), document.readings[0].id)
+    rows = []
+    for problem in document.problems:
+        one = case.statement(problem.id, reading)
+        size = f"{one.waypoints.number} × {len(one.labels)}"
+        curve = one.curve().name + _ends(one)
+        said = (_limit(one, name) for name in ("velocity", "acceleration", "jerk"))
+        limits = "; ".join(each for each in said if each) or "none"
+        rows.append((problem.id, curve, size, one.units.position or "", limits))
+    names = ("problem", "curve", "way-points × joints", "angles in", "~limits")
+    return [line(f"Curve, units and limits under reading {reading}:"), Columns(names, rows)]
+
+
+_DERIVATIVES = {1: "velocity", 2: "acceleration", 3: "jerk"}
+"""What papers call a derivative; higher ones are called by their order."""
+
+
+def _ends(one: Statement) -> str:
+    """What is prescribed at the ends of a spline whose name does not say it."""
+    if one.declaration.family != "cubic-spline":
+        return ""
+    orders = [_DERIVATIVES.get(k, f"derivative {k}") for k in one.declaration.orders]
+    value = "0" if one.declaration.end_derivatives is None else "given"
+    return f", {' and '.join(orders)} {value} at the ends" if orders else ""
+
+
+def _limit(one: Statement, quantity: Literal["velocity", "acceleration", "jerk"]) -> str:
+    """A limit as printed, with the unit that it is read in; empty where there is none."""
+    printed = getattr(one.limits, quantity)
+    if printed is None:
+        return ""
+    numbers = " ".join(map(str, printed)) if isinstance(printed, Sequence) else str(printed)
+    return f"{quantity} {numbers} {getattr(one.units, quantity)}"
+
+
 def _stated(claim: AnyClaim) -> str:
     """The printed digits of a claim."""
     match claim:
@@ -67,7 +110,7 @@ def _stated(claim: AnyClaim) -> str:
             return " ".join(map(str, claim.durations)) + total
         case TotalTimeClaim():
             return str(claim.value)
-        case PeakClaim():
+        case MotionValueClaim():
             return " ".join(map(str, claim.printed))
         case ImprovementClaim(percent=percent) if percent is not None:
             return f"{percent} %"

@@ -30,6 +30,7 @@ from ..documents import (
     solve_result,
 )
 from .input import Posed, naming, read_case, select
+from .motion_writing import AskedSamples, check_one_motion, write_motion, written_lines
 from .output import emit, new_output, progress
 from .result_tables import by_result, place, reasons, seconds
 from .table import Columns, line
@@ -44,35 +45,45 @@ def solve_case(
     seed: int,
     as_json: bool,
     out: Path | None,
+    asked: AskedSamples | None = None,
 ) -> int:
-    """Solve each selected problem and reading."""
+    """Solve each selected problem and reading; write the motion of the first if asked to."""
     case = read_case(source)
     posed = select(case, problem, reading, coupling)
-    with new_output(out) as write:
-        results = []
+    if asked is not None:
+        check_one_motion(case, posed)
+    samples_file = None if asked is None else asked.file
+    with new_output(out) as write, new_output(samples_file, "--samples") as write_samples:
+        results, written = [], None
         with progress("solve", len(posed)) as step, naming(case.file):
             for one in posed:
                 step(f"{one.problem_id}, {one.reading_id}")
-                results.append(_solved(case, one, starts, seed))
-        document = SolveDocument(results=tuple(results))
+                result, answer = _solved(case, one, starts, seed)
+                results.append(result)
+                if asked is not None and written is None:
+                    text, written = write_motion(one, answer, asked)
+                    write_samples(text)
+        document = SolveDocument(results=tuple(results), written=written)
         write(json_text(document))
     emit(document, _tables, as_json)
     return 0
 
 
-def _solved(case: Case, one: Posed, starts: int, seed: int) -> SolveResult:
+def _solved(case: Case, one: Posed, starts: int, seed: int) -> tuple[SolveResult, Solution]:
     ids = (case.id, one.problem_id, one.reading_id)
     if one.problem.coupling is Coupling.PER_JOINT:
         halves = Study(case).half_digits(one.problem_id, one.reading_id)
         slacks = tuple(dict.fromkeys((*halves, OPTIMUM_SLACK)))
         apart = solve_per_joint(one.problem, starts=starts, seed=seed, slacks=slacks)
         apart = with_certificates(apart, case.statement(one.problem_id, one.reading_id))
-        return solve_result(*ids, apart, [_retimed(s) for s in apart.joints])
+        together = solve(one.problem, starts=starts, seed=seed)
+        retimed = [_retimed(s) for s in apart.joints]
+        return solve_result(*ids, apart, retimed, together), together
     answer = solve(one.problem, starts=starts, seed=seed)
     answer = with_certificate(
         answer, stated_exactly(case.statement(one.problem_id, one.reading_id))
     )
-    return solve_result(*ids, answer, [_retimed(answer)])
+    return solve_result(*ids, answer, [_retimed(answer)]), answer
 
 
 def _retimed(answer: Solution) -> Retiming | str:
@@ -104,6 +115,8 @@ def _tables(document: SolveDocument) -> list[RenderableType]:
         parts.append(Columns(limits, _without_repeats(active, 2)))
     parts += reasons(results, lambda r: {"status": r.status_why, "toppra": reason(r.toppra)})
     build, solve = sum(r.build_seconds for r in results), sum(r.solve_seconds for r in results)
+    if document.written is not None:
+        parts += [line(said) for said in written_lines(document.written)]
     return [*parts, line(f"build {build:.2f} s, solve {solve:.2f} s", "dim")]
 
 
@@ -129,15 +142,27 @@ def _procedure(result: SolveResult) -> list[str]:
     if longest is None:
         return []
     name = f"{result.problem}, {result.reading}: longest per segment"
+    shared = result.shared
+    together = [] if shared is None else [_together(result, shared)]
     if isinstance(longest.verdict, Why):
-        return [f"{name}: none, {longest.verdict}"]
-    lines = [f"{name}: {longest.verdict}, tight at {seconds(longest.tight_time)} s"]
+        return [*together, f"{name}: none, {longest.verdict}"]
+    lines = [*together, f"{name}: {longest.verdict}, tight at {seconds(longest.tight_time)} s"]
     for span in longest.ranges:
         lines.append(
             f"  {span.lowest:.6f} to {span.highest:.6f} s while each joint stays within "
             f"{span.slack:g} s of its own optimum"
         )
     return lines
+
+
+def _together(result: SolveResult, shared: Answer) -> str:
+    """The optimum with durations that all joints share."""
+    durations = " ".join(f"{d:.4f}" for d in given(shared.segment_durations) or ())
+    return (
+        f"{result.problem}, {result.reading}: all joints with the same durations: {shared.status}, "
+        f"{seconds(shared.total_time)} s, {shared.evidence}"
+        + (f" ({durations} s)" if durations else "")
+    )
 
 
 def _without_repeats(rows: Iterable[Sequence[object]], count: int) -> list[Sequence[object]]:

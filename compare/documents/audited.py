@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
+from .advice import Advice
 from .card import VerdictCard
 from .cause import Cause
-from .entry import Count, Document, Entry, OrWhy
+from .entry import Count, Document, Entry, Fact, OrWhy
 from .finding import Finding, Judgement
 from .instances import ExaminedInstances
 from .provenance import Provenance
@@ -24,6 +27,8 @@ class AuditedCase(Entry):
     """How many causes have severity error."""
     causes: tuple[Cause, ...]
     """What speaks against something printed, each once; the gravest first."""
+    advice: OrWhy[tuple[Advice, ...]]
+    """With `--draft`: what its author can change before submitting, the gravest first."""
     claims: tuple[StatedClaim, ...]
     """What the paper states; the other keys name a claim by its id."""
     findings: tuple[Finding, ...]
@@ -33,8 +38,10 @@ class AuditedCase(Entry):
     """Where the time goes, for each problem and reading."""
     readings: OrWhy[ReadingsSummary]
     """The readings side by side."""
-    left_out: tuple[str, ...]
+    left_out: Annotated[tuple[str, ...], Fact("not certified")]
     """What the time budget left uncertified."""
+    not_replayed: Annotated[tuple[str, ...], Fact("not replayed")]
+    """Algorithms that no implementation here replays, and why."""
     families: tuple[ExaminedInstances, ...]
     """Relative claims on instances drawn from the robot's workspace."""
     provenance: Provenance

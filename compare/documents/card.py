@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Sequence
+
 from .entry import Count, Entry, OrWhy
+from .finding import Judgement
+from .vocabulary import Confidence
 
 CARD_WORDS = 80
 """Words of a card at most: what is read at a glance, and fits a phone's first screen."""
@@ -37,6 +42,37 @@ class VerdictCard(Entry):
     def words(self) -> int:
         """How many words the card has."""
         return count_words(" ".join(self.sentences))
+
+
+def tally(judgements: Sequence[Judgement]) -> str:
+    """How many claims have a word, and how that is known: a line below a card.
+
+    Parameters
+    ----------
+    judgements : sequence of Judgement
+        Of all claims.
+
+    Returns
+    -------
+    str
+        Such as "Verdicts on 31 claims: 8 follow from the printed digits, 17 are proven under a
+        reading, 6 are open."
+    """
+    many = Counter(j.confidence for j in judgements if isinstance(j.confidence, Confidence))
+    parts = [f"{many[one]} {told[many[one] != 1]}" for one, told in _KNOWN.items() if many[one]]
+    left = len(judgements) - many.total()
+    parts += [f"{left} {'is' if left == 1 else 'are'} open"] if left else []
+    count = f"{len(judgements)} claim{'' if len(judgements) == 1 else 's'}"
+    return f"Verdicts on {count}: {', '.join(parts)}." if parts else "No claims."
+
+
+_KNOWN = {
+    Confidence.DIGITS: ("follows from the printed digits", "follow from the printed digits"),
+    Confidence.PROVEN: ("is proven under a reading", "are proven under a reading"),
+    Confidence.BEST_KNOWN: ("rests on a best known motion", "rest on best known motions"),
+    Confidence.REPLAY: ("rests on replays", "rest on replays"),
+}
+"""How verdicts are known, of one and of several."""
 
 
 def more_errors(count: int) -> str:

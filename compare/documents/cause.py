@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from pydantic import Field
+
 from .entry import Entry
+from .finding import Finding
 from .vocabulary import Severity
 
 
@@ -37,6 +40,8 @@ class Cause(Entry):
     """What it is about; null where it is about the case or a table."""
     says: str
     """One or two sentences with the numbers, under the first of its readings."""
+    head: Finding | None = Field(default=None, exclude=True)
+    """Its finding under that reading; None where a cause is made by hand; not in JSON."""
     readings: tuple[str, ...]
     """The readings under which it holds; empty where it depends on none."""
     explanations: tuple[Explanation, ...]

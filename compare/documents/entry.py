@@ -56,6 +56,13 @@ OrLeftOut: TypeAlias = Annotated[T | None, _LEFT_OUT]
 """A value whose key is left out where there is none."""
 
 
+@dataclass(frozen=True)
+class Fact:
+    """Marks a key that terminal, page and Markdown show too, under these words."""
+
+    words: str
+
+
 def known(value: T | None, why: str | None = None) -> T | Why:
     """A value, or why there is none.
 
@@ -134,6 +141,17 @@ class Entry(BaseModel):
         if reasons:
             shape["allOf"] = reasons
         return reference
+
+
+def facts(entry: Entry) -> list[tuple[str, str]]:
+    """What an entry's keys marked `Fact` hold, each value under its words; no empty ones."""
+    found = []
+    for name, field in type(entry).model_fields.items():
+        for words in (mark.words for mark in field.metadata if isinstance(mark, Fact)):
+            value = getattr(entry, name)
+            values = value if isinstance(value, tuple) else () if given(value) is None else (value,)
+            found += [(words, str(one)) for one in values]
+    return found
 
 
 def _described(schema: JsonSchemaValue, field: FieldInfo) -> JsonSchemaValue:

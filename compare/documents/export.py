@@ -11,12 +11,18 @@ from typing import Any
 from pydantic.json_schema import GenerateJsonSchema, models_json_schema
 
 from .audited import AuditDocument
+from .benched import BenchDocument
 from .case_shown import ShowDocument
 from .certified import CertifyDocument
 from .checked import CheckDocument
+from .diffed import CaseDiffDocument
 from .entry import SCHEMA, Document, Why
+from .explain_shown import ExplainDocument
+from .finding import Caveat, CaveatKind
 from .listed import CasesDocument
+from .motion_checked import MotionCheckDocument
 from .solved import SolveDocument
+from .suite import SuiteDocument, SuiteShowDocument
 from .verified import VerifyDocument
 from .vocabulary import VOCABULARY, Rule, Words, meaning, meanings
 
@@ -24,15 +30,21 @@ DOCUMENTS: tuple[type[Document], ...] = (
     CasesDocument,
     ShowDocument,
     CheckDocument,
+    MotionCheckDocument,
     SolveDocument,
     AuditDocument,
+    BenchDocument,
     CertifyDocument,
     VerifyDocument,
+    SuiteDocument,
+    SuiteShowDocument,
+    ExplainDocument,
+    CaseDiffDocument,
 )
 """What each command answers."""
 
-SCHEMA_FILE = "output.schema.json"
-"""Name of the JSON Schema in the folder of the docs."""
+SCHEMA_FILE = "reference/output.schema.json"
+"""Place of the JSON Schema in the folder of the docs."""
 
 _TABLE = re.compile(r"(<!-- table: (\S+) -->\n).*?(?=<!-- end -->)", re.DOTALL)
 """A generated table in a Markdown file, with its name."""
@@ -69,16 +81,17 @@ def output_schema() -> dict[str, Any]:
         [(document, "validation") for document in DOCUMENTS], schema_generator=_Named
     )
     shapes = schema["$defs"]
-    # A reason stands in no key of its own: the keys say so themselves.
-    del shapes[named(Why)]
+    # A reason stands in no key of its own, and of a caveat JSON has the text: the keys say so.
+    for inside in (Why, Caveat, CaveatKind):
+        del shapes[named(inside)]
     for words in (enum for one in VOCABULARY for enum in one.enums):
         said = [f"{word}: {told}" for word, told in meanings(words).items()]
         shapes[named(words)]["description"] = "\n".join([meaning(words), *said])
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": f"trajgap documents, {SCHEMA}",
-        "description": "What `trajgap cases|show|check|solve|audit|verify --json` print. Keys may "
-        "be added; none is removed or changed under this version.",
+        "description": "What `trajgap COMMAND --json` prints. Keys may be added; none is "
+        "removed or changed under this version.",
         "anyOf": [{"$ref": f"#/$defs/{named(document)}"} for document in DOCUMENTS],
         **schema,
     }
@@ -145,7 +158,7 @@ def write_docs(docs: Path, rules: Iterable[Rule]) -> None:
     """Write the JSON Schema and the tables of words and rules into the folder of the docs."""
     rules = tuple(rules)
     (docs / SCHEMA_FILE).write_text(schema_text(), encoding="utf-8")
-    for file in sorted(docs.glob("*.md")):
+    for file in sorted(docs.rglob("*.md")):
         text = file.read_text(encoding="utf-8")
         now = filled(text, rules)
         if now != text:

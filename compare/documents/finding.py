@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from enum import Enum, auto
 from typing import Annotated, Any
 
-from pydantic import Field
+from pydantic import Field, PlainSerializer, WithJsonSchema
 
 from ...nlp import Evidence
 from .entry import Entry, OrWhy, Real, Why
-from .vocabulary import Basis, ClaimVerdict, GapKind, Scope, Severity
+from .vocabulary import Basis, ClaimVerdict, Confidence, GapKind, Scope, Severity
 
 UNCERTIFIED = Why("not certified")
 """Why there is no lower bound, where no certificate proves one."""
@@ -16,6 +18,26 @@ UNCERTIFIED = Why("not certified")
 
 def _evidence(data: dict[str, Any]) -> Evidence:
     return Evidence.BEST_KNOWN if isinstance(data.get("lower"), Why) else Evidence.CERTIFIED
+
+
+UNDECIDED = Why("it decides nothing")
+"""Why a finding that is not checkable has no confidence."""
+
+
+_DIGITS_ALONE = (Basis.DIGITS, Basis.COUNT, Basis.IDENTITY, Basis.TEXT)
+"""What needs no curve and no motion: under no reading in particular, digits alone decide."""
+
+
+def _confidence(data: dict[str, Any]) -> Confidence | Why:
+    """How a finding is known, from what it rests on, its reading and its reference."""
+    if data.get("basis") is Basis.REPLAY:
+        return Confidence.REPLAY
+    if data.get("verdict") is ClaimVerdict.NOT_CHECKABLE:
+        return UNDECIDED
+    if data.get("evidence") in (Evidence.BEST_KNOWN, Evidence.UNCONVERGED):
+        return Confidence.BEST_KNOWN
+    own = data.get("reading") is None and data.get("basis") in _DIGITS_ALONE
+    return Confidence.DIGITS if own else Confidence.PROVEN
 
 
 class Reference(Entry):
@@ -51,7 +73,8 @@ class Gap(Entry):
             return f"{1 + self.lowest:.4g} times the reference"
         low, high = 100 * self.lowest, 100 * self.highest
         narrow = high - low < max(0.005 * abs(low), 5e-4)
-        return f"{low:+.3g} %" if narrow else f"{low:+.3g} to {high:+.3g} %"
+        middle = (low + high) / 2
+        return f"{middle:+.3g} %" if narrow else f"{low:+.3g} to {high:+.3g} %"
 
     def __str__(self) -> str:
         return f"{self.percent} ({self.kind}, reference {self.reference.evidence})"
@@ -77,6 +100,8 @@ class Finding(Entry):
     """Null where it depends on none."""
     reading: str | None = None
     """Null where it depends on none."""
+    confidence: OrWhy[Confidence] = Field(default_factory=_confidence)
+    """How it is known; null where it decides nothing."""
     printed: str | None = None
     """The printed digits, with units."""
     computed: str | None = None
@@ -94,6 +119,26 @@ class Finding(Entry):
     """Claims that contradict each other: neither side is taken; not in JSON."""
 
 
+class CaveatKind(Enum):
+    """What a caveat speaks of."""
+
+    JUMPING = auto()
+    """A motion's velocity jumps."""
+    DOUBTED = auto()
+    """Printed numbers contradict each other."""
+
+
+@dataclass(frozen=True)
+class Caveat:
+    """What goes with a word: its kind for the code, its text for the reader and for JSON."""
+
+    kind: CaveatKind
+    text: str
+
+    def __str__(self) -> str:
+        return self.text
+
+
 class Judgement(Entry):
     """The verdict on one claim over all admissible readings."""
 
@@ -101,8 +146,12 @@ class Judgement(Entry):
     verdict: ClaimVerdict
     scope: Scope
     evidence: Evidence
+    confidence: OrWhy[Confidence] = Why("nothing decides it")
+    """How it is known: a contradiction as its strongest finding, support as its weakest."""
     why: str
-    caveats: tuple[str, ...] = ()
+    caveats: tuple[
+        Annotated[Caveat, PlainSerializer(str), WithJsonSchema({"type": "string"})], ...
+    ] = ()
     """What goes with the word: a curve whose velocity jumps, a contradiction in print."""
     readings: dict[str, ClaimVerdict]
     """The verdict under each reading by itself."""

@@ -35,6 +35,10 @@ class Reduction(Entry):
     highest: OrWhy[float]
     shorter: OrWhy[float]
     """Share of the pairs with a reduction above 0."""
+    median_from: OrWhy[float]
+    """Lower end of the 95 % interval of an instance's median, instances resampled."""
+    median_to: OrWhy[float]
+    """Its upper end."""
 
 
 class KnownOptimum(Entry):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from ...nlp import Evidence
 from .entry import Count, Entry, OrLeftOut, OrWhy, Real
 from .finding import Gap
-from .vocabulary import ClaimVerdict, Keeping, Limited, Scope
+from .vocabulary import ClaimVerdict, Keeping, Limited, Scope, Speaks
 
 
 class Excess(Entry):
@@ -17,6 +17,19 @@ class Excess(Entry):
     quantity: Limited
     ratio: Real
     """Of the value to its limit."""
+
+
+class HeldOtherwise(Entry):
+    """Largest ratio to a limit at the printed point, by where the limits are held."""
+
+    everywhere: Real
+    """For all t, which every verdict means."""
+    steps: Count
+    """Steps a segment that the samples make."""
+    sampled: Real
+    """At those samples only; what lies between them may exceed it."""
+    vertices: OrWhy[float]
+    """On the control vertices of velocity and acceleration, which bound the curve from outside."""
 
 
 class ReadingOutcome(Entry):
@@ -31,6 +44,8 @@ class ReadingOutcome(Entry):
     """Jumps of velocity at the printed point."""
     excesses: tuple[Excess, ...]
     """Segments in which the printed point exceeds a limit, where `keeping` is "breaks"."""
+    held: OrWhy[HeldOtherwise]
+    """What limits held at samples or on control vertices would make of the printed point."""
     stretch: OrWhy[float]
     """All durations times this just reach the limits, jumps apart."""
     optimum: OrWhy[float]
@@ -60,11 +75,30 @@ class Tally(Entry):
     """How many admissible readings give each verdict."""
 
 
+class ReadingClue(Entry):
+    """What a figure, a data sheet or words of the paper say for or against one reading."""
+
+    clue: str
+    """Its id in the case file."""
+    where: str
+    text: str
+    """What is printed or known there."""
+    reading: str
+    speaks: Speaks
+    computed: str
+    """What was computed under the reading."""
+
+
 class ReadingsSummary(Entry):
     """The readings of a case side by side."""
 
     admissible: tuple[str, ...]
     """Every reading of the case."""
+    default: str
+    default_why: OrWhy[str]
+    """Why it is the default."""
+    clues: tuple[ReadingClue, ...]
+    """What speaks for and against each reading; none of it decides a verdict."""
     answers: tuple[str, ...]
     """What the readings make of the printed answers, in words."""
     holding: tuple[str, ...]

@@ -10,6 +10,7 @@ from ...nlp.retiming import Retiming
 from ...problem import Coupling, Verdict
 from .entry import Count, Document, Entry, OrLeftOut, OrWhy, Real, Why, known
 from .finding import UNCERTIFIED
+from .motion_checked import WrittenMotion
 from .vocabulary import Limited
 
 NOT_ASKED = "not asked for"
@@ -119,18 +120,22 @@ class _Asked(Entry):
 class SolveResult(Answer, _Asked):
     """One problem under one reading.
 
-    Under per-joint coupling `segment_durations` is null, and `joints` and `longest_per_segment`
-    are there.
+    Under per-joint coupling `segment_durations` is null, and `joints`, `longest_per_segment` and
+    `shared` are there.
     """
 
     joints: OrLeftOut[tuple[SolvedJoint, ...]] = None
     longest_per_segment: OrLeftOut[LongestPerSegment] = None
+    shared: OrLeftOut[Answer] = None
+    """The optimum with durations that all joints share, which Python's `solve` answers."""
 
 
 class SolveDocument(Document):
     """What `trajgap solve --json` prints."""
 
     results: tuple[SolveResult, ...]
+    written: OrLeftOut[WrittenMotion] = None
+    """With `--samples`: the motion of the first result, in a file."""
 
 
 def solve_result(
@@ -139,6 +144,7 @@ def solve_result(
     reading: str,
     answer: Solution | PerJointSolution,
     retimings: Sequence[Retiming | str] = (),
+    shared: Solution | None = None,
 ) -> SolveResult:
     """Result of `solve` for one problem under one reading.
 
@@ -151,6 +157,8 @@ def solve_result(
     retimings : sequence of Retiming or str, optional
         TOPPRA on the path of the answer, or why there is none; for a PerJointSolution one per
         joint.
+    shared : Solution, optional
+        Of joints that do not share their durations: the optimum if they did.
 
     Returns
     -------
@@ -166,23 +174,29 @@ def solve_result(
         **dict(_procedure(answer)),
         joints=tuple(SolvedJoint(joint=j, **dict(_solution(s, path))) for j, s, path in singles),
         longest_per_segment=_longest(answer),
+        shared=None if shared is None else _solution(shared),
     )
 
 
 def _solution(answer: Solution, path: Retiming | str = NOT_ASKED) -> Answer:
     none = answer.why or str(answer.status)
-    there = answer.durations is not None
+    boundless = answer.boundless
+    none = boundless or none
+    there = answer.durations is not None and boundless is None
     toppra, extrapolated = _toppra(path)
     return Answer(
         status=answer.status,
-        status_why=answer.why,
+        status_why=boundless or answer.why,
         total_time=answer.total_time if there else Why(none),
-        segment_durations=_durations(answer, none),
-        infimum=known(answer.infimum, "the total time is attained" if there else none),
+        segment_durations=_durations(answer, none) if there else Why(none),
+        infimum=known(
+            answer.infimum if boundless is None else 0.0,
+            "the total time is attained" if there else none,
+        ),
         lower_bound=known(answer.lower_bound, UNCERTIFIED.reason),
-        evidence=answer.evidence,
-        max_violation=answer.check.max_violation if answer.check else Why(none),
-        kkt_residual=known(answer.kkt_residual, none),
+        evidence=answer.evidence if there else Evidence.NONE,
+        max_violation=answer.check.max_violation if there and answer.check else Why(none),
+        kkt_residual=known(answer.kkt_residual if there else None, none),
         active=tuple(_active(a) for a in answer.active),
         starts=answer.starts,
         starts_at_best=answer.starts_at_best,

@@ -5,6 +5,17 @@ from __future__ import annotations
 from .entry import Entry, OrWhy
 
 
+class StatedAnswer(Entry):
+    """What the authors were asked about a claim, and what they said."""
+
+    sent: str
+    """Day on which they were asked."""
+    answered: OrWhy[str]
+    """Day of their answer."""
+    outcome: str
+    """What came of it; empty where nothing has yet."""
+
+
 class StatedClaim(Entry):
     """One claim: its words, its place in the paper, its digits."""
 
@@ -18,6 +29,8 @@ class StatedClaim(Entry):
     """Place in the paper: section, table, row."""
     printed: str
     """The printed digits with their unit; empty where it prints none."""
+    answer: OrWhy[StatedAnswer]
+    """Of the authors, where they were asked."""
 
 
 class StatedSource(Entry):
@@ -29,3 +42,7 @@ class StatedSource(Entry):
     year: OrWhy[int]
     doi: str
     note: str
+    transcribed_by: OrWhy[str]
+    """Who typed the numbers of the case file, and from what."""
+    checked_by: OrWhy[str]
+    """Who compared them with the paper, and how."""

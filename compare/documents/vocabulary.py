@@ -13,6 +13,7 @@ from itertools import pairwise
 
 from ...nlp import Evidence, Outcome, Status
 from ...problem import Coupling, Verdict
+from ...problem.motions import Interpolation, MotionForm
 from ...verify import Subject
 
 
@@ -27,6 +28,17 @@ class Severity(StrEnum):
     do not fit together, or a best known value speaks against a statement."""
     INFO = "info"
     """A fact beside the claim, or support for it."""
+
+
+class Urgency(StrEnum):
+    """How much hangs on a piece of advice."""
+
+    CONTRADICTED = "contradicted"
+    """A reader can prove it wrong from the draft alone."""
+    DOUBTFUL = "doubtful"
+    """Wrong under some reading, or it does not fit what stands beside it."""
+    OPEN = "open"
+    """Nobody can check it, or check it in one way only, from what is printed."""
 
 
 class ClaimVerdict(StrEnum):
@@ -81,6 +93,22 @@ class Basis(StrEnum):
     """What the extracted text carries or does not."""
 
 
+class Confidence(StrEnum):
+    """How a verdict is known: what would have to be wrong for it to fall."""
+
+    DIGITS = "printed digits"
+    """It follows from the printed digits alone, whatever the reading: sums, percentages, counts of
+    conditions, tables set side by side."""
+    PROVEN = "proven under a reading"
+    """It follows from the curve, way-points and limits as a reading has them: by an enclosure over
+    the rounding, by exact extrema of the printed motion, or by a certified bound."""
+    BEST_KNOWN = "best known"
+    """It rests on the best motion found under a reading, with nothing proved below it."""
+    REPLAY = "replay"
+    """It rests on seeded runs of the algorithm under listed choices; no verdict is of this kind,
+    and findings that are only inform."""
+
+
 class Rounding(StrEnum):
     """What holds of printed durations, for every value that rounds to the printed digits."""
 
@@ -104,6 +132,15 @@ class Keeping(StrEnum):
     """The printed point keeps every limit inside the segments; its velocity jumps between them."""
     BREAKS = "breaks"
     UNDECIDED = "undecided"
+
+
+class Speaks(StrEnum):
+    """On which side a clue stands about one reading; it decides no verdict."""
+
+    FOR = "for"
+    """What is computed under the reading fits what is printed or known."""
+    AGAINST = "against"
+    """It does not fit."""
 
 
 class GapKind(StrEnum):
@@ -145,6 +182,21 @@ class Uncovered(StrEnum):
 
     NOT_COVERED = "not covered"
     """No method for this curve; the reason is given."""
+
+
+class MotionQuantity(StrEnum):
+    """What is limited of a joint."""
+
+    POSITION = "position"
+    """Angle, or place of a sliding joint."""
+    VELOCITY = "velocity"
+    """Its derivative."""
+    ACCELERATION = "acceleration"
+    """Where `deceleration` is limited too: while the speed grows."""
+    DECELERATION = "deceleration"
+    """Acceleration while the speed falls."""
+    JERK = "jerk"
+    """Derivative of the acceleration."""
 
 
 class Limited(StrEnum):
@@ -204,7 +256,7 @@ class Words:
     Attributes
     ----------
     key : str
-        As docs/command-line.md names it.
+        As docs/reference/command-line.md names it.
     enums : tuple of type
     table : str
         Name of the table in the docs that explains them; empty where the list of keys does.
@@ -220,6 +272,7 @@ VOCABULARY = (
     Words("`coupling`", (Coupling,)),
     Words("`verdict` of a check", (Verdict,)),
     Words("`keeping`", (Keeping,)),
+    Words("`speaks`: a clue about a reading", (Speaks,)),
     Words("`rounding_verdict`", (Rounding,), "rounding"),
     Words(
         "`evidence`; of a verdict or a finding the word for its reference", (Evidence,), "evidence"
@@ -229,13 +282,18 @@ VOCABULARY = (
     Words("`subject`", (Subject,)),
     Words("`severity`", (Severity,), "severity"),
     Words("`verdict` on a claim", (ClaimVerdict,), "claims"),
+    Words("`urgency` of advice", (Urgency,)),
     Words("`scope`: how many readings", (Scope,)),
     Words("`basis`", (Basis,)),
+    Words("`confidence` of a verdict or a finding", (Confidence,), "confidence"),
     Words("`effect` of a reduction", (Effect,)),
     Words("`kind` of a gap", (GapKind,)),
     Words("`quantity`", (Limited,)),
+    Words("`quantity` of a motion from elsewhere", (MotionQuantity,)),
+    Words("`interpolation`", (Interpolation,)),
+    Words("`form` of a written motion", (MotionForm,)),
 )
-"""Every set of words in the documents, in the order of docs/command-line.md."""
+"""Every set of words in the documents, in the order of docs/reference/command-line.md."""
 
 TIMES = {
     "feasible time": "T·max(1, c*): all durations stretched until every limit is kept.",

@@ -9,6 +9,10 @@ from .entry import Entry, OrWhy, Why
 
 EXACT = Why("a single value, not an interval")
 """Why a value has no interval."""
+PUBLISHED = "published"
+"""Name of the step that is the printed total."""
+SHARED_OPTIMUM = "optimum of the same curve, shared durations"
+"""Name of the step that distances are counted from."""
 
 
 class Step(Entry):
@@ -39,3 +43,11 @@ class Waterfall(Entry):
     claim: str | None
     """The printed durations for all joints of the problem; null if none are printed."""
     steps: tuple[Step, ...]
+
+    @property
+    def without_optimum(self) -> tuple[str, ...]:
+        """Why the optimum of the printed curve has no time, in a sentence; empty where it has."""
+        why = next((s.time for s in self.steps if s.name == SHARED_OPTIMUM), None)
+        if not isinstance(why, Why):
+            return ()
+        return (f"No optimum: {why}.",)

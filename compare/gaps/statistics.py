@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import bootstrap
 
 from ...problem import Array
 
@@ -97,6 +96,8 @@ def share_interval(slower: Array, faster: Array, reduction: float) -> tuple[floa
     """
     if not (np.isfinite(slower).any() and np.isfinite(faster).any()):
         return float("nan"), float("nan")
+    from scipy.stats import bootstrap  # half a second, and few need it
+
     found = bootstrap(
         (slower, faster),
         lambda a, b: share_of_pairs(a, b, reduction),

@@ -141,6 +141,8 @@ class CardShown:
     errors: tuple[str, ...]
     beside: str = ""
     drawn: Drawn | None = None
+    tally: str = ""
+    """How many claims have which word, and how that is known."""
     kind: ClassVar[str] = "card"
 
 
@@ -158,6 +160,8 @@ class Claimed:
     more : tuple of str
         The rest of the reasons, for a fold.
     caveats : tuple of str
+    answer : str
+        What the authors say; empty where they were not asked.
     anchor : str
         Name under which others point here.
     id : str
@@ -174,6 +178,7 @@ class Claimed:
     caveats: tuple[str, ...]
     anchor: str
     id: str
+    answer: str = ""
     kind: ClassVar[str] = "claimed"
 
 
@@ -235,6 +240,8 @@ class Page:
     """Who printed it, when it was audited, and with what."""
     doi: str = ""
     """Of the paper; empty where it is not named."""
+    links: tuple[tuple[str, str], ...] = ()
+    """Words and files that the head of the page leads to, where it is no page of an audit."""
 
     @property
     def filled(self) -> Page:

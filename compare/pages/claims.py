@@ -2,20 +2,35 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 
 from ...nlp import Evidence
 from ...problem import file_name
+from ...problem.cases import AnyClaim
 from ..audits import CaseAudit, claim_text, digits_of, named, place, plainly, spoken
-from ..documents import Cause, ClaimVerdict, Finding, Judgement, Scope
+from ..documents import Cause, ClaimVerdict, Confidence, Finding, Judgement, Scope, Severity
 from .blocks import Behind, Block, Cell, Claimed, Prose, Section, slug, word
 
 _AGAINST = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT, ClaimVerdict.DEPENDS)
 """Verdicts that stand in the open, the gravest first."""
 _DECIDED = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT, ClaimVerdict.SUPPORTED)
 """Verdicts of findings that say something of a claim, those against it first."""
-_OPEN_WORDS = 45
+_OPEN_WORDS = 30
 """Words of a reason that stand in the open; what goes beyond is a fold away."""
+
+
+_KNOWN = {
+    Confidence.DIGITS: "follows from the printed digits",
+    Confidence.PROVEN: "proven",
+    Confidence.BEST_KNOWN: "against the best known motion",
+    Confidence.REPLAY: "by replays",
+}
+"""How a verdict is known, beside its claim."""
+
+
+_CITED = re.compile(r"\(TG[^()]*\)")
+"""The rules and readings that stand behind a reason."""
 
 
 def against(one: CaseAudit) -> Section:
@@ -24,8 +39,9 @@ def against(one: CaseAudit) -> Section:
         claimed(one, j) for verdict in _AGAINST for j in one.judgements if j.verdict is verdict
     ]
     blocks: list[Block] = [*_alike(found)]
-    if one.causes:
-        blocks += [Prose("What lies behind", "heading"), *(_behind(one, c) for c in one.causes)]
+    causes = [c for c in one.causes if not _told(one, c)]
+    if causes:
+        blocks += [Prose("The causes", "heading"), *(_behind(one, c) for c in causes)]
     if not found:
         title = "What speaks against something printed"
     else:
@@ -60,30 +76,46 @@ def _alike(found: Sequence[Claimed]) -> Iterator[Claimed]:
                 caveats=one.caveats if one.caveats != before.caveats else (),
                 anchor=one.anchor,
                 id=one.id,
+                answer=one.answer,
             )
 
 
 def claimed(one: CaseAudit, judgement: Judgement) -> Claimed:
     """One claim with its verdict and why."""
     claim = one.case.claim(judgement.claim)
-    reasons = [spoken(one.case, reason) for reason in _why(one, judgement)]
+    # The place of the claim stands above its reasons.
+    told = (reason.removeprefix(f"{claim.where}: ") for reason in _why(one, judgement))
+    reasons = [spoken(one.case, reason) for reason in told]
     why, more = _opened(reasons)
     return Claimed(
-        text=claim_text(claim),
+        text=claim_text(one.case, claim),
         where=claim.where,
         printed=digits_of(one.case, claim),
         verdict=word(judgement.verdict),
         holds=_holds(judgement),
         why=why,
         more=more,
-        caveats=tuple(f"But: {spoken(one.case, caveat)}" for caveat in judgement.caveats),
+        caveats=tuple(
+            f"{spoken(one.case, caveat.text).rstrip('.')}." for caveat in judgement.caveats
+        ),
         anchor=file_name("claim", claim.id),
         id=claim.id,
+        answer=answered(claim),
     )
 
 
+def answered(claim: AnyClaim) -> str:
+    """What the authors say of a claim, or that they were asked; empty where they were not."""
+    if claim.answer is None:
+        return ""
+    answer = claim.answer
+    came = f"answered {answer.answered}" if answer.answered else "no answer so far"
+    said = f"Authors asked {answer.sent}, {came}"
+    return f"{said}: {answer.outcome}" if answer.outcome else f"{said}."
+
+
 def _opened(reasons: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Whole sentences up to `_OPEN_WORDS` words, at least one; and all reasons if that cuts."""
+    """Whole sentences of the first reason up to `_OPEN_WORDS` words, at least one; and the rest."""
     shown: list[str] = []
     room = _OPEN_WORDS
     for reason in reasons[:1]:
@@ -94,9 +126,11 @@ def _opened(reasons: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
             shown.append(sentence)
             room -= count
     opened = " ".join(shown)
-    if list(reasons) == [opened]:
-        return (opened,), ()
-    return ((opened,) if opened else ()), tuple(reasons)
+    if reasons and _CITED.fullmatch(reasons[0].removeprefix(opened).strip()):
+        # What is left over names the rules alone: it stays with its sentence.
+        opened = reasons[0]
+    rest = [reason.removeprefix(opened).strip() for reason in reasons[:1]] + list(reasons[1:])
+    return ((opened,) if opened else ()), tuple(reason for reason in rest if reason)
 
 
 def _sentences(text: str) -> list[str]:
@@ -108,6 +142,7 @@ def _holds(judgement: Judgement) -> str:
     """Under which readings the word holds, and which reference it rests on."""
     parts = []
     count = len(judgement.readings)
+    known = _KNOWN[judgement.confidence] if isinstance(judgement.confidence, Confidence) else ""
     if judgement.scope is Scope.SOME or judgement.verdict is ClaimVerdict.DEPENDS:
         under: dict[ClaimVerdict, list[str]] = {}
         for reading, verdict in judgement.readings.items():
@@ -115,9 +150,13 @@ def _holds(judgement: Judgement) -> str:
         each = [f"{verdict} under {_which(names)}" for verdict, names in under.items()]
         parts.append(f"of {count} readings: {', '.join(each)}" if count > 1 else each[0])
     elif judgement.scope is Scope.ALL and count > 1:
-        parts.append(f"under all {count} readings")
+        every = "under both readings" if count == 2 else f"under all {count} readings"
+        proven = judgement.confidence is Confidence.PROVEN
+        parts.append(f"{known} {every}" if proven else every)
+        known = "" if proven else known
     if judgement.evidence is not Evidence.NONE:
         parts.append(f"reference: {judgement.evidence}")
+    parts += [known] if known else []
     return "; ".join(parts)
 
 
@@ -126,33 +165,32 @@ def _which(readings: Sequence[str]) -> str:
 
 
 def _why(one: CaseAudit, judgement: Judgement) -> Iterator[str]:
-    """What decides: findings that say the same in other numbers share a line."""
-    lines: dict[tuple[str, ...], list[Finding]] = {}
+    """What decides: each message once, with the rules and the readings that say it."""
+    said: dict[str, list[Finding]] = {}
     for f in one.findings:
         if f.claim == judgement.claim and f.decides and f.verdict in _DECIDED:
-            lines.setdefault((f.rule, f.verdict, f.kind), []).append(f)
-    if not lines:
+            said.setdefault(f.message, []).append(f)
+    if not said:
         yield judgement.why
-    for (rule, *_), own in sorted(
-        lines.items(), key=lambda line: _DECIDED.index(line[1][0].verdict)
-    ):
-        messages = list(dict.fromkeys(f.message for f in own))
+    for message, own in sorted(said.items(), key=lambda line: _DECIDED.index(line[1][0].verdict)):
+        rules = ", ".join(dict.fromkeys(f.rule for f in own))
         readings = list(dict.fromkeys(f.reading for f in own if f.reading))
         every = not readings or len(readings) == len(one.study.readings)
-        where = "" if every and len(messages) == 1 else f", {named(readings)}"
-        others = len(messages) - 1
-        more = f" In other numbers: {others} more finding{'s' * (others > 1)}." if others else ""
-        yield f"{messages[0]} ({rule}{where}){more}"
+        yield f"{message} ({rules}{'' if every else f'; {named(readings)}'})"
 
 
 # --- causes ---------------------------------------------------------------------------------------
 
 
+def _told(one: CaseAudit, cause: Cause) -> bool:
+    """Whether a claim above says all of a warning: nothing rests on it, nothing explains it."""
+    if cause.severity is Severity.ERROR or cause.explanations or cause.consequences:
+        return False
+    return any(j.claim == cause.claim and j.verdict in _AGAINST for j in one.judgements)
+
+
 def _behind(one: CaseAudit, cause: Cause) -> Behind:
-    if cause.claim is None:
-        says = spoken(one.case, cause.says)
-    else:
-        says = plainly(one.case, cause, one.findings)
+    says = spoken(one.case, cause.says) if cause.claim is None else plainly(one.case, cause)
     if len(cause.readings) and len(cause.readings) < len(one.study.readings):
         says += f" (Under {len(cause.readings)} of {len(one.study.readings)} readings.)"
     says, *_ = _opened([says])[0] or (says,)
@@ -167,4 +205,5 @@ def _behind(one: CaseAudit, cause: Cause) -> Behind:
 
 def _to(one: CaseAudit, claim_id: str) -> Cell:
     claim = one.case.claim(claim_id)
-    return Cell(place(claim), target=file_name("claim", claim.id))
+    said = f"{claim_text(one.case, claim)} ({place(claim)})"
+    return Cell(said, target=file_name("claim", claim.id))

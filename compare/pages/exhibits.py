@@ -11,7 +11,7 @@ from ...heuristics.algorithms import ImprovedWOA, InitialRule, TentRule
 from ...problem import Array, TrajgapError, file_name, forward_kinematics, to_si
 from ...problem.cases import ControlVerticesClaim, DurationsClaim, MaximumClaim
 from ...problem.robots import Chain, DhTable, proximity, sample_workspace
-from ..audits import Study
+from ..audits import Study, place
 from ..audits.rules import vertices
 from ..pictures import (
     Picture,
@@ -25,7 +25,7 @@ from ..pictures import (
 )
 from .blocks import Block, Drawn, Folded, Grid, Section, number, text
 from .motions_shown import whole_claims
-from .units import both_units
+from .units import both_units, paper_units
 
 _SAMPLES = 20_000
 """Positions of the workspace that its bounding box is taken from, as by default in case files."""
@@ -93,9 +93,12 @@ def _jumps_of(
         return
     rid = jumping[0]
     problem, durations = study.problem(pid, rid), study.case.claim_durations(first, rid).value
-    names = ", ".join(c.id for c in claims)
+    names = "; ".join(dict.fromkeys(place(c) for c in claims))
     picture = jump_picture(
-        problem, durations, title=f"Jumps of the velocity with the printed durations of {names}"
+        problem,
+        durations,
+        title=f"Jumps of the velocity with the printed durations of {names}",
+        units=paper_units(study.case.statement(pid, rid)),
     )
     where = "; ".join(dict.fromkeys(c.where for c in claims))
     caption = (
@@ -114,7 +117,7 @@ def _jumps_of(
         for jump in velocity_jumps(problem, durations)
     )
     columns = ("joint", "break", "time", "velocity after less before")
-    yield Folded(f"All {len(rows)} jumps, {names}, reading {rid}", (Grid(columns, rows),))
+    yield Folded(f"All {len(rows)} jumps: {names}; reading {rid}", (Grid(columns, rows),))
 
 
 # --- control polygon ------------------------------------------------------------------------------

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 from ...nlp import Evidence
 from ...problem import Verdict
-from ..audits import RULES
+from ..audits import EXPLAINED, RULES
 from ..documents import (
     TERMS,
     TIMES,
     Basis,
     ClaimVerdict,
+    Confidence,
     GapKind,
     Rounding,
     Scope,
@@ -25,9 +26,11 @@ SCOPES = f"{', '.join(Scope)} readings"
 """The term that explains how many readings agree."""
 
 
-def glossary() -> Section:
-    """The one section of the report's glossary: the vocabulary, and the rules by their ids."""
-    # A word of two enumerations is explained once, by the first.
+def word_groups() -> Iterator[tuple[str, dict[str, str]]]:
+    """What the words of a report are said of, and each word with its meaning.
+
+    A word of two enumerations is explained once, by the first.
+    """
     groups: tuple[tuple[str, Mapping[str, str]], ...] = (
         ("On a claim", meanings(ClaimVerdict) | {SCOPES: meaning(Scope)}),
         (
@@ -39,19 +42,28 @@ def glossary() -> Section:
         ("On a distance", meanings(GapKind) | TIMES),
         ("On steps, optima and runs", TERMS),
         ("Severity of a finding", meanings(Severity)),
+        ("How a verdict is known", meanings(Confidence)),
         ("Basis of a finding", meanings(Basis)),
     )
+    explained: set[str] = set()
+    for title, words in groups:
+        yield title, {word: said for word, said in words.items() if word not in explained}
+        explained.update(words)
+
+
+def glossary() -> Section:
+    """The one section of the report's glossary: the vocabulary, and the rules by their ids."""
     blocks: list[Block] = [
         Prose(
             "A verdict is about a printed number or sentence, under named readings of the text. "
             "What a check of one motion means for printed digits is the rounding verdict's to say."
         )
     ]
-    explained: set[str] = set()
-    for title, words in groups:
-        pairs = tuple((word, said) for word, said in words.items() if word not in explained)
-        explained.update(words)
-        blocks += [Prose(title, "heading"), Terms(pairs, anchored=True)]
-    rules = tuple((rule.id, rule.title + ".") for rule in RULES)
+    for title, words in word_groups():
+        blocks += [Prose(title, "heading"), Terms(tuple(words.items()), anchored=True)]
+    rules = tuple(
+        (rule.id, f"{rule.title}. {EXPLAINED[rule.id].asks} {EXPLAINED[rule.id].concludes}")
+        for rule in RULES
+    )
     blocks += [Prose("Rules by their permanent ids", "heading"), Terms(rules, anchored=True)]
     return Section("how-to-read", "How to read a verdict", tuple(blocks))

@@ -46,8 +46,8 @@ def _examined(study: Study, result: InstancesResult, examined: ExaminedInstances
     return [
         *(Prose(said) for said in (placed(result), attributed(result)) if said),
         Prose(
-            "The instances are not the paper's: what they show can be called not reproduced, never "
-            "more, and the absolute times stay not checkable. Way-points written into the case "
+            "The instances are not the paper's: they inform and decide nothing, and the absolute "
+            "times stay not checkable. Way-points written into the case "
             "file in place of not_printed and count bring the whole audit.",
             "note",
         ),

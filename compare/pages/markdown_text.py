@@ -63,7 +63,8 @@ def _block(page: Page, block: Block) -> str:
         inner = [_block(page, one) for one in block.blocks]
         return "\n\n".join([f"### {plain(block.title)}", *inner])
     if isinstance(block, CardShown):
-        lines = (*block.lines, *block.errors, *([block.beside] if block.beside else []))
+        last = [one for one in (block.beside, block.tally) if one]
+        lines = (*block.lines, *block.errors, *last)
         card = "\n".join(f"- {_line(line)}" for line in lines)
         return card if block.drawn is None else f"{card}\n\n{_block(page, block.drawn)}"
     if isinstance(block, Claimed):
@@ -78,7 +79,8 @@ def _block(page: Page, block: Block) -> str:
 def _claimed(block: Claimed) -> str:
     place = "; ".join(x for x in (block.where, block.printed, block.holds) if x)
     head = f"- **{plain(block.verdict.text)}**: {_line(block.text)} ({_line(place)})"
-    reasons = (*block.why, *block.more, *block.caveats)
+    answer = [block.answer] if block.answer else []
+    reasons = (*block.why, *block.more, *block.caveats, *answer)
     return "\n".join([head, *(f"  - {_line(reason)}" for reason in reasons)])
 
 

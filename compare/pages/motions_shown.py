@@ -13,7 +13,8 @@ from ...problem.cases import AnyClaim, DurationsClaim, MaximumClaim, TotalTimeCl
 from ..audits import CaseAudit, Study, place
 from ..pictures import Picture, Runs, convergence, endings, landscape, motion_picture, svg
 from .blocks import Block, Drawn, Folded, Grid, Prose, Section
-from .numbers import REPLAY_COLUMNS, replay_rows
+from .numbers import REPLAY_COLUMNS, problem_name, replay_rows
+from .units import paper_units
 
 
 def motions(one: CaseAudit) -> Section:
@@ -23,17 +24,24 @@ def motions(one: CaseAudit) -> Section:
     for pid in one.study.problems:
         blocks += _printed_motions(one.study, pid, rid)
         solution = one.study.optimum(pid, rid)
-        if solution.durations is not None:
-            title = f"{solution.evidence.capitalize()} optimum, {pid}: {solution.total_time:.6f} s"
+        if solution.durations is not None and solution.boundless is None:
+            title = f"{_optimum_of(one, pid, solution)}: {solution.total_time:.6f} s"
             picture = motion_picture(
                 solution.problem,
                 solution.durations,
                 title=title,
                 check=solution.check,
                 nodal=solution.nodal,
+                units=paper_units(one.study.case.statement(pid, rid)),
             )
             blocks.append(_drawn(file_name("optimum", pid), picture, f"Reading {rid}."))
     return Section("motions", "Motions, with limits and peaks", tuple(blocks), folded=True)
+
+
+def _optimum_of(one: CaseAudit, pid: str, solution: Solution) -> str:
+    """What the optimum of a problem is called, and the problem where there are several."""
+    known = f"{solution.evidence.capitalize()} optimum"
+    return known + (f", {problem_name(one, pid)}" if len(one.case.problems) > 1 else "")
 
 
 def _drawn(name: str, picture: Picture, caption: str) -> Drawn:
@@ -75,6 +83,7 @@ def _printed_motions(study: Study, pid: str, rid: str) -> Iterator[Block]:
             title=title,
             check=study.claim_check(first, pid, rid),
             note=f"for every value that rounds to the digits: {rounding}",
+            units=paper_units(study.case.statement(pid, rid)),
         )
         where = "; ".join(c.where for c in claims)
         yield _drawn(file_name("motion", pid, first.id), picture, f"{where}. Reading {rid}.")
@@ -102,6 +111,12 @@ def _tables_by_joint(study: Study, pid: str) -> dict[str, list[DurationsClaim]]:
     return {", ".join(tables): claims for tables, claims in found.values()}
 
 
+def _tables_called(study: Study, tables: str) -> str:
+    """Tables by their places instead of their ids."""
+    places = {table.id: table.where for table in study.case.tables}
+    return ", ".join(places.get(one, one) for one in tables.split(", "))
+
+
 def _joint_by_joint(
     study: Study, pid: str, rid: str, tables: str, claims: list[DurationsClaim]
 ) -> Drawn:
@@ -112,10 +127,11 @@ def _joint_by_joint(
     picture = motion_picture(
         problem,
         durations,
-        title=f"Printed durations of each joint by itself: {tables}",
+        title=f"Printed durations of each joint by itself: {_tables_called(study, tables)}",
         note=f"for every value that rounds to the digits: {words}",
+        units=paper_units(study.case.statement(pid, rid)),
     )
-    each = "; ".join(f"{c.id}: {v}" for c, v in zip(claims, verdicts, strict=True))
+    each = "; ".join(f"joint {c.joint}: {v}" for c, v in zip(claims, verdicts, strict=True))
     caption = (
         "Each joint with its own durations, at the printed digits. For every value that rounds to "
         "the printed digits: "
@@ -135,9 +151,10 @@ def searches(one: CaseAudit) -> Section:
         runs = _runs(study, pid)
         if not runs:
             continue
-        blocks += _convergence(study, pid, rid, runs)
+        name = problem_name(one, pid)
+        blocks += _convergence(study, pid, rid, runs, name)
         references, printed = _totals(study, pid, rid)
-        title = f"Totals of all runs, {pid}"
+        title = f"Totals of all runs: {name}"
         caption = "Vertical strokes are medians. A reported total is not clipped at the optimum."
         blocks.append(
             _drawn(
@@ -145,7 +162,7 @@ def searches(one: CaseAudit) -> Section:
             )
         )
         grid = Grid(REPLAY_COLUMNS, tuple(replay_rows(study, pid)))
-        blocks.append(Folded(f"Spread over seeds and open choices, {pid}", (grid,)))
+        blocks.append(Folded(f"Spread over seeds and open choices: {name}", (grid,)))
     lead = Prose(
         f"Each algorithm was run with seeds 0 to {study.seeds - 1} under the choices listed below, "
         f"reading {rid}, and under settings spread over all that the text leaves open. Replays "
@@ -157,11 +174,19 @@ def searches(one: CaseAudit) -> Section:
 
 
 def _runs(study: Study, pid: str) -> dict[str, Runs]:
-    replays = {a.id: study.runs(a.id, pid, study.main_reading) for a in study.case.algorithms}
+    names = [a.name for a in study.case.algorithms]
+    replays = {
+        a.name if names.count(a.name) == 1 else f"{a.name} ({a.id})": study.runs(
+            a.id, pid, study.main_reading
+        )
+        for a in study.case.algorithms
+    }
     return {name: one for name, one in replays.items() if one}
 
 
-def _convergence(study: Study, pid: str, rid: str, runs: dict[str, Runs]) -> Iterator[Block]:
+def _convergence(
+    study: Study, pid: str, rid: str, runs: dict[str, Runs], name: str
+) -> Iterator[Block]:
     by_joint = isinstance(next(iter(runs.values()))[0], JointRuns)
     problem = study.problem(pid, rid)
     solutions = [study.optimum(pid, rid, label) for label in problem.joints] if by_joint else [
@@ -172,9 +197,12 @@ def _convergence(study: Study, pid: str, rid: str, runs: dict[str, Runs]) -> Ite
     printed: dict[str, list[float]] = {}
     widths = [0.0]
     groups: dict[str, list[DurationsClaim | MaximumClaim]] = (
-        {tables: list(claims) for tables, claims in _tables_by_joint(study, pid).items()}
+        {
+            _tables_called(study, tables): list(claims)
+            for tables, claims in _tables_by_joint(study, pid).items()
+        }
         if by_joint
-        else {c.id: [c] for c in whole_claims(study, pid)}
+        else {place(c): [c] for c in whole_claims(study, pid)}
     )
     for label, claims in groups.items():
         boxes = [total[1] for c in claims if (total := study.claim_total(c, rid)) is not None]
@@ -187,7 +215,7 @@ def _convergence(study: Study, pid: str, rid: str, runs: dict[str, Runs]) -> Ite
         rounding=max(widths),
         evidence=str(weakest(s.evidence for s in solutions)),
         joints=problem.joints,
-        title=f"Best total so far, {pid}" + (", each joint by itself" if by_joint else ""),
+        title=f"Best total so far: {name}" + (", each joint by itself" if by_joint else ""),
     )
     yield _drawn(
         file_name("convergence", pid),
@@ -204,7 +232,7 @@ def _time(solution: Solution) -> float:
 def _totals(study: Study, pid: str, rid: str) -> tuple[dict[str, float], dict[str, float]]:
     shared = study.optimum(pid, rid)
     references = {}
-    if shared.durations is not None:
+    if shared.durations is not None and shared.boundless is None:
         references[f"{shared.evidence} optimum, shared durations"] = _time(shared)
     problem = study.problem(pid, rid)
     if len(problem.joints) > 1 and problem.coupling == "per-joint":
@@ -218,9 +246,11 @@ def _totals(study: Study, pid: str, rid: str) -> tuple[dict[str, float], dict[st
         if claim in whole_claims(study, pid) or (whole and claim.problem in (None, pid)):
             total = study.claim_total(claim, rid)
             if total is not None:
-                printed.setdefault(total[0], []).append(claim.id)
+                printed.setdefault(total[0], []).append(place(claim))
                 values[total[0]] = (total[1][0] + total[1][1]) / 2
-    return references, {", ".join(ids): values[shown] for shown, ids in printed.items()}
+    return references, {
+        ", ".join(dict.fromkeys(where)): values[shown] for shown, where in printed.items()
+    }
 
 
 # --- landscapes -----------------------------------------------------------------------------------
@@ -234,16 +264,25 @@ def landscapes(one: CaseAudit) -> Section:
         problem = study.problem(pid, rid)
         if problem.segments != 3:
             blocks.append(
-                Prose(f"{pid} has {problem.segments} segments; three can be drawn.", "note")
+                Prose(
+                    f"{problem_name(one, pid)}: {problem.segments} segments; a landscape "
+                    "needs three.",
+                    "note",
+                )
             )
             continue
         runs = _runs(study, pid)
         printed = [
-            (c.id, study.case.claim_durations(c, rid).value) for c in whole_claims(study, pid)
+            (place(c), study.case.claim_durations(c, rid).value) for c in whole_claims(study, pid)
         ]
         ends = {name: np.array([r.durations for r in many]) for name, many in runs.items()}
         blocks += _landscape(
-            file_name("landscape", pid), problem, study.optimum(pid, rid), printed, ends, pid
+            file_name("landscape", pid),
+            problem,
+            study.optimum(pid, rid),
+            printed,
+            ends,
+            problem_name(one, pid),
         )
         single: list[Drawn] = []
         for tables, claims in _tables_by_joint(study, pid).items():
@@ -257,13 +296,13 @@ def landscapes(one: CaseAudit) -> Section:
                     file_name("landscape", pid, "joint", str(j + 1)),
                     problem.joint(j),
                     study.optimum(pid, rid, problem.joints[j]),
-                    [(tables, study.case.claim_durations(claim, rid).value)],
+                    [(_tables_called(study, tables), study.case.claim_durations(claim, rid).value)],
                     own,
-                    f"{pid}, joint {problem.joints[j]}",
+                    f"joint {problem.joints[j]}",
                 )
             break
         if single:
-            blocks.append(Folded(f"Each joint by itself, {pid}", tuple(single)))
+            blocks.append(Folded(f"Each joint by itself: {problem_name(one, pid)}", tuple(single)))
     shown = tuple(blocks) if any(not isinstance(b, Prose) for b in blocks) else ()
     return Section("landscapes", "Landscapes of the total time", shown, folded=True)
 

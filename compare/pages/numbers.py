@@ -9,9 +9,9 @@ from decimal import ROUND_FLOOR, Decimal
 import numpy as np
 
 from ...nlp import Evidence, PerJointSolution, Solution
-from ...problem import Coupling, file_name
+from ...problem import Case, Coupling, file_name
 from ...problem.cases import DurationsClaim
-from ..audits import CaseAudit, Study
+from ..audits import CaseAudit, Study, place
 from ..documents import Gap, Step, Waterfall, Why
 from ..gaps import gap, reference_of, spread
 from ..pictures import seconds as interval
@@ -36,6 +36,8 @@ _ON_A_LINE = 2
 """Durations on each line of a cell: nine on one would push the table off the page."""
 _MANY = 10
 """Distance, as a share, beyond which a multiple says more than a percentage."""
+_SAME = 5e-4
+"""Distance, as a share, whose one decimal is 0, so that its sign would say nothing."""
 _FEW = 3
 """Other readings of a problem that still get a picture each."""
 
@@ -52,7 +54,8 @@ def card_picture(one: CaseAudit) -> Drawn | None:
     if waterfall is None:
         return None
     several = len({w.problem for w in one.waterfalls}) > 1
-    title = f"Where the time goes{f', {waterfall.problem}' if several else ''}"
+    title = "Where the time goes"
+    title += f": {problem_name(one, waterfall.problem)}" if several else ""
     picture = waterfall_picture(waterfall, title=title, narrow=True)
     return Drawn("time", svg(picture), title, inside=True)
 
@@ -65,49 +68,75 @@ def where_time_goes(one: CaseAudit) -> Section:
         own = [w for w in one.waterfalls if w.problem == pid]
         others = [w for w in own if w.reading != main]
         for waterfall in own:
-            shown = f"{pid}, {waterfall.reading}"
+            shown = problem_name(one, pid, waterfall.reading)
             if waterfall.reading == main:
-                blocks.append(_distances(waterfall))
-                blocks.append(Folded(f"Picture and notes: {shown}", _drawn(waterfall)))
+                blocks.append(_distances(waterfall, shown))
+                blocks += [Prose(said, "note") for said in waterfall.without_optimum]
+                blocks.append(Folded(f"Picture and notes: {shown}", _drawn(one, waterfall)))
             elif len(others) <= _FEW:
-                blocks.append(Folded(f"Other reading: {shown}", _drawn(waterfall)))
+                blocks.append(Folded(f"Other reading: {shown}", _drawn(one, waterfall)))
         if len(others) > _FEW:
-            title = f"Other readings of {pid}, step by step"
-            blocks.append(Folded(title, (_side_by_side(pid, others),)))
+            title = f"Other readings, step by step: {problem_name(one, pid)}"
+            blocks.append(Folded(title, (_side_by_side(one, pid, others),)))
     return Section("waterfall", "Distance from the optimum", tuple(blocks))
 
 
-def _distances(waterfall: Waterfall) -> Grid:
+def _distances(waterfall: Waterfall, caption: str) -> Grid:
     """Each step in seconds, and how far the first one lies above it."""
     first = next((s.time for s in waterfall.steps if not isinstance(s.time, Why)), None)
     rows = tuple(
-        (text(s.name), number(interval(s)), number(_above(first, s)), word(s.evidence))
+        (text(s.name), number(interval(s)), number(_above(first, s)), _evidence(s))
         for s in waterfall.steps
         if not isinstance(s.time, Why)
     )
-    caption = f"{waterfall.problem}, {waterfall.reading}"
-    return Grid(("step", "total", "first step beside it", "evidence"), rows, caption).filled
+    names = ("step", "total", "the first beside this one", "evidence")
+    return Grid(names, rows, caption).filled
 
 
 def _above(first: float | None, step: Step) -> str | None:
     if first is None or isinstance(step.time, Why) or step.time <= 0 or first == step.time:
         return None
+    if abs(first / step.time - 1) < _SAME:
+        return "0.0\N{NO-BREAK SPACE}%"
     if first / step.time > 1 + _MANY:
         return f"{first / step.time:.1f} times"
-    return f"{100 * (first / step.time - 1):+.1f} %"
+    # The unit stays with its number on the narrowest screen.
+    return f"{100 * (first / step.time - 1):+.1f}\N{NO-BREAK SPACE}%"
 
 
-def _drawn(waterfall: Waterfall) -> tuple[Plain, ...]:
-    title = f"Where the time goes: {waterfall.problem}, {waterfall.reading}"
+def _evidence(step: Step) -> Cell:
+    """The word for a reference value; empty for what is printed, which has none."""
+    return text(None) if step.evidence is Evidence.NONE else word(step.evidence)
+
+
+def problem_cell(case: Case, pid: str) -> str:
+    """What a table calls a problem: its title; nothing where it is the only one."""
+    title = next((p.title for p in case.problems if p.id == pid), "") or pid
+    return title if len(case.problems) > 1 else ""
+
+
+def problem_name(one: CaseAudit, pid: str, reading: str | None = None) -> str:
+    """What a reader calls a problem: its title, and the reading where there are several."""
+    title = next((p.title for p in one.case.problems if p.id == pid), "") or pid
+    if not one.case.document.problems:
+        title = "The motion"  # the file names no problem, and "main" says nothing
+    under = f"; reading {reading}" if reading and len(one.study.readings) > 1 else ""
+    return f"{title}{under}"
+
+
+def _drawn(one: CaseAudit, waterfall: Waterfall) -> tuple[Plain, ...]:
+    title = f"Where the time goes: {problem_name(one, waterfall.problem, waterfall.reading)}"
     picture = waterfall_picture(waterfall, title=title)
     caption = "Bars start at 0; best known values are hatched, certified ones solid." + (
-        f" The first bar is claim {waterfall.claim}." if waterfall.claim else ""
+        f" The first bar is printed in {place(one.case.claim(waterfall.claim))}."
+        if waterfall.claim
+        else ""
     )
     name = file_name("waterfall", waterfall.problem, waterfall.reading)
     return Drawn(name, svg(picture), title, caption), _steps(waterfall)
 
 
-def _side_by_side(pid: str, waterfalls: Sequence[Waterfall]) -> Grid:
+def _side_by_side(one: CaseAudit, pid: str, waterfalls: Sequence[Waterfall]) -> Grid:
     """Steps of many readings, one row each; steps that no reading has are left out."""
     names = dict.fromkeys(s.name for w in waterfalls for s in w.steps)
     rows = []
@@ -115,7 +144,7 @@ def _side_by_side(pid: str, waterfalls: Sequence[Waterfall]) -> Grid:
         steps = {s.name: s for s in waterfall.steps}
         cells = [_step(steps.get(name)) for name in names]
         rows.append((text(waterfall.reading), *cells))
-    caption = f"Other readings of {pid}; an empty cell was not computed"
+    caption = f"{problem_name(one, pid)}; an empty cell was not computed"
     return Grid(("reading", *names), tuple(rows), caption).filled
 
 
@@ -128,7 +157,7 @@ def _step(step: Step | None) -> Cell:
 
 def _steps(waterfall: Waterfall) -> Grid:
     rows = tuple(
-        (text(s.name), number(interval(s)), word(s.evidence), text(s.note)) for s in waterfall.steps
+        (text(s.name), number(interval(s)), _evidence(s), text(s.note)) for s in waterfall.steps
     )
     return Grid(("step", "total", "evidence", "note"), rows)
 
@@ -152,6 +181,9 @@ def _durations(values: list[float]) -> str:
 
 
 def _answer(solution: Solution) -> tuple[Cell, ...]:
+    if solution.boundless is not None:
+        why = text(f"{solution.status}\n{solution.boundless}")
+        return (why, *(text(None) for _ in _ANSWER[1:]))
     check = solution.check
     residual = solution.kkt_residual
     total = None if solution.durations is None else seconds(solution.total_time)
@@ -180,12 +212,26 @@ def optima(one: CaseAudit) -> Section:
     without: defaultdict[str, list[str]] = defaultdict(list)
     for pid, rid in study.pairs:
         own = study.optimum(pid, rid)
-        rows.append((text(pid), text(rid), text("printed curve, shared durations"), *_answer(own)))
+        rows.append(
+            (
+                text(problem_cell(study.case, pid)),
+                text(rid),
+                text("printed curve, shared durations"),
+                *_answer(own),
+            )
+        )
         relaxed = study.relaxed(pid, rid)
         if relaxed.durations is None:
             without[relaxed.why or str(relaxed.status)].append(rid)
         else:
-            rows.append((text(pid), text(rid), text("relaxed family"), *_answer(relaxed)))
+            rows.append(
+                (
+                    text(problem_cell(study.case, pid)),
+                    text(rid),
+                    text("relaxed family"),
+                    *_answer(relaxed),
+                )
+            )
         if _by_joint(study, pid, rid):
             blocks += _joints(study, pid, rid)
     if not rows:
@@ -197,7 +243,9 @@ def optima(one: CaseAudit) -> Section:
         for why, found in without.items()
     ]
     names = ("problem", "reading", "formulation", *_ANSWER)
-    return Section("optima", _OPTIMA, (Grid(names, tuple(rows)), *notes, *blocks), folded=True)
+    return Section(
+        "optima", _OPTIMA, (Grid(names, tuple(rows)).filled, *notes, *blocks), folded=True
+    )
 
 
 def _by_joint(study: Study, pid: str, rid: str) -> bool:
@@ -233,7 +281,8 @@ def _joints(study: Study, pid: str, rid: str) -> Iterator[Block]:
             )
         )
     names = ("joint", *_ANSWER, "printed", "gap")
-    yield Prose(f"Each joint by itself: {pid}, {rid}", "heading")
+    named = problem_cell(study.case, pid) or "each segment takes the longest duration"
+    yield Prose(f"Each joint by itself: {named}; reading {rid}", "heading")
     yield Grid(names, tuple(rows))
     yield Prose(_procedure(answer), "note")
 
@@ -276,7 +325,7 @@ def sensitivities(one: CaseAudit) -> Section:
             change = sum(changes)
             rows.append(
                 (
-                    text(pid),
+                    text(problem_cell(one.case, pid)),
                     text(rid),
                     text(where),
                     text(quantity),
@@ -291,7 +340,7 @@ def sensitivities(one: CaseAudit) -> Section:
         "note",
     )
     names = ("problem", "reading", "limit of", "quantity", "peaks at it", "changes the total", "by")
-    body: Block = Grid(names, tuple(rows)) if rows else Prose("No limit is reached.")
+    body: Block = Grid(names, tuple(rows)).filled if rows else Prose("No limit is reached.")
     return Section("sensitivities", title, (note, body), folded=True)
 
 
@@ -310,7 +359,7 @@ def replay_rows(study: Study, pid: str) -> list[tuple[Cell, ...]]:
             away = gap(s.median, reference).percent if known and reference is not None else None
             rows.append(
                 (
-                    text(algorithm.id),
+                    text(algorithm.name),
                     text(name),
                     number(s.runs),
                     number(s.failed),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from ...problem import Case
@@ -14,6 +14,7 @@ from .blocks import (
     Cell,
     Folded,
     Grid,
+    Plain,
     Prose,
     Section,
     number,
@@ -38,8 +39,61 @@ def side_by_side(one: CaseAudit) -> Section:
             blocks.append(Folded(title, tuple(tables)))
         else:
             blocks += [*(Prose(spoken(one.case, said)) for said in summary.answers[-1:]), *tables]
+        blocks += _argued(one, summary)
     blocks += _determined(one.case)
     return Section("side-by-side", "What depends on the reading", tuple(blocks))
+
+
+def _argued(one: CaseAudit, summary: ReadingsSummary) -> Iterator[Block]:
+    """Why the default is one, what speaks for each reading, and limits held elsewhere."""
+    found: dict[tuple[str, str, str, str], list[str]] = {}
+    for clue in summary.clues:
+        key = (clue.where, clue.text, clue.computed, str(clue.speaks))
+        found.setdefault(key, []).append(clue.reading)
+    rows = tuple(
+        (text(f"{where}\n{said}"), text(", ".join(readings)), text(speaks), text(computed))
+        for (where, said, computed, speaks), readings in found.items()
+    )
+    blocks: list[Plain] = []
+    if not isinstance(summary.default_why, Why):
+        blocks.append(Prose(f"Default {summary.default}: {summary.default_why}"))
+    if rows:
+        columns = ("printed or known", "readings", "speaks", "computed under them")
+        note = "None of this decides a verdict: an implausible reading stays admissible."
+        blocks += [Grid(columns, rows, prose=True), Prose(note, "note")]
+    if blocks:
+        yield Folded("What speaks for and against the readings", tuple(blocks))
+    held = [o for o in summary.outcomes if not isinstance(o.held, Why)]
+    if held:
+        yield Folded("If the limits were held elsewhere", _held(one, held))
+
+
+def _held(one: CaseAudit, outcomes: list[ReadingOutcome]) -> tuple[Block, ...]:
+    """Largest ratio to a limit for all t, at samples, and on control vertices."""
+    rows, steps = [], 0
+    for outcome in outcomes:
+        held = outcome.held
+        if isinstance(held, Why):
+            continue
+        steps = held.steps
+        vertices = None if isinstance(held.vertices, Why) else f"{held.vertices:.4g}"
+        whose = place(one.case.claim(outcome.claim)) if outcome.claim else outcome.problem
+        rows.append(
+            (
+                text(whose),
+                text(outcome.reading),
+                number(f"{held.everywhere:.4g}"),
+                number(f"{held.sampled:.4g}"),
+                number(vertices),
+            )
+        )
+    columns = ("durations", "reading", "for all t", "at samples", "on control vertices")
+    note = (
+        "Largest ratio of the printed durations to a limit; above 1 it is broken. Every verdict "
+        f"means all t. Samples: {steps} steps a segment. Control vertices bound velocity and "
+        "acceleration of a B-spline from outside, so that limits on them are stricter."
+    )
+    return Grid(columns, tuple(rows)).filled, Prose(note, "note")
 
 
 def _outcomes(one: CaseAudit, summary: ReadingsSummary) -> list[Block]:
@@ -60,7 +114,7 @@ def _outcomes(one: CaseAudit, summary: ReadingsSummary) -> list[Block]:
         "durations times this just reach the limits, jumps apart. The printed total is "
         "beside the optimum."
     )
-    return [*grids, Prose(note, "note")]
+    return [*grids, Folded("How to read this table", (Prose(note, "note"),))]
 
 
 def _row(outcome: ReadingOutcome, default: str) -> tuple[Cell, ...]:
@@ -71,7 +125,7 @@ def _row(outcome: ReadingOutcome, default: str) -> tuple[Cell, ...]:
     if not isinstance(outcome.stretch, Why):
         stretch = f"{outcome.stretch:.4f}"
     if not isinstance(outcome.gap, Why):
-        gap = f"{outcome.gap.percent}\n{outcome.gap.kind}"
+        gap = f"{outcome.gap.percent.replace('-', '−')}\n{outcome.gap.kind}"
     over = ""
     if outcome.excesses:
         worst = max(outcome.excesses, key=lambda e: e.ratio)

@@ -7,11 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...problem import QUANTITIES, Coupling, Problem, file_name
+from ...problem import QUANTITIES, Case, Coupling, Problem, file_name
 from ...problem.cases import Statement
-from ..audits import RULES, CaseAudit, Study
-from ..documents import Finding, Severity, Why
+from ..audits import RULES, CaseAudit, Study, place
+from ..documents import Finding, Severity, Why, facts
 from .blocks import Block, Cell, Folded, Grid, Prose, Section, Terms, text, word
+from .numbers import problem_cell
 from .units import both_units
 
 _TITLES = {rule.id: rule.title for rule in RULES}
@@ -22,12 +23,13 @@ def posed(one: CaseAudit) -> Section:
     """The problems that the paper poses, as they were computed."""
     grid = _problems(one.study)
     case = one.case
-    facts = [
+    terms = [
         ("note on the text", case.source.note),
         ("robot", case.robot.name),
         ("joints", ", ".join(case.robot.joints)),
+        *facts(one.document),
     ]
-    blocks: tuple[Block, ...] = (Terms(tuple(f for f in facts if f[1])),)
+    blocks: tuple[Block, ...] = (Terms(tuple(term for term in terms if term[1])),)
     blocks += (grid,) if grid.rows else ()
     return Section("audited", "What was audited", blocks, folded=True)
 
@@ -39,7 +41,7 @@ def _problems(study: Study) -> Grid:
         how = "shared durations" if p.coupling is Coupling.SHARED else "each joint by itself"
         rows.append(
             (
-                text(pid),
+                text(problem_cell(study.case, pid)),
                 text(rid),
                 text(f"{len(p.joints)} × {p.waypoints.shape[0]}"),
                 text(p.curve.name),
@@ -57,7 +59,8 @@ def _problems(study: Study) -> Grid:
         "durations",
         "coupling",
     )
-    return Grid(names, tuple(rows), "Problems posed, in radians and seconds")
+    caption = "Problems posed; in brackets rad and s where the paper has other units"
+    return Grid(names, tuple(rows), caption).filled
 
 
 def _limits(problem: Problem, statement: Statement) -> str:
@@ -91,7 +94,7 @@ def findings(one: CaseAudit) -> Section:
         if not own:
             continue
         title = f"Severity {severity}: {len(own)} finding{'' if len(own) == 1 else 's'}"
-        grid = _finding_grid(own, len(one.study.readings))
+        grid = _finding_grid(one.case, own, len(one.study.readings))
         if severity is Severity.INFO:
             blocks.append(Folded(title, (grid,)))
         else:
@@ -99,7 +102,7 @@ def findings(one: CaseAudit) -> Section:
     return Section("findings", "Every finding, rule by rule", tuple(blocks), folded=True)
 
 
-def _finding_grid(found: list[Finding], readings: int) -> Grid:
+def _finding_grid(case: Case, found: list[Finding], readings: int) -> Grid:
     groups: dict[tuple[object, ...], list[Finding]] = {}
     for f in found:
         key = (f.rule, f.claim, f.problem, f.verdict, f.printed, f.computed, f.message, _gap(f))
@@ -109,7 +112,9 @@ def _finding_grid(found: list[Finding], readings: int) -> Grid:
         names = [x.reading for x in (f, *more) if x.reading is not None]
         which = "all" if not names or len(set(names)) == readings else ", ".join(names)
         about = f.claim or ""
-        under = [about, f.problem or "", f"readings: {which}"]
+        where = place(case.claim(about)) if about else ""
+        problem = problem_cell(case, f.problem) if f.problem else ""
+        under = [where, problem, f"readings: {which}"]
         rows.append(
             (
                 Cell(f"{f.rule}\n{_TITLES.get(f.rule, '')}", target=f"word-{f.rule}"),
@@ -150,7 +155,7 @@ def foundations(one: CaseAudit) -> list[Section]:
     )
     lost = tuple((text(n.where), text(n.what), text(n.why)) for n in case.not_checkable)
     opened = [
-        Folded(f"Left open for {a.name} ({a.kind})", (Terms(_numbered(a.open)),))
+        Folded(f"Left open for {a.name}", (Terms(_numbered(a.open)),))
         for a in case.algorithms
         if a.open
     ]

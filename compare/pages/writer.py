@@ -7,8 +7,6 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
-from markupsafe import Markup
 from pydantic import BaseModel, Field
 
 from ...nlp.optimum import KKT_TOLERANCE, SAME, STARTS
@@ -20,14 +18,15 @@ from ...problem import (
     read_regular,
     recover_folder,
     replace_folder,
-    visible,
 )
 from ..audits import AuditReport, CaseAudit, package_version
-from ..documents import AuditDocument, ClaimVerdict, Why, json_text, more_errors
-from ..pictures import embedded, themed
+from ..documents import AuditDocument, ClaimVerdict, Why, json_text, more_errors, tally
+from ..pictures import themed
 from . import motions_shown as report_pictures
-from .blocks import GLOSSARY, Block, CardShown, Folded, Page, Prose, Section, Terms, link, slug
+from .advised import advised
+from .blocks import GLOSSARY, Block, CardShown, Folded, Page, Prose, Section, Terms
 from .claims import against, folded_claims
+from .environment import environment, style
 from .exhibits import exhibits_of_motion, exhibits_of_search
 from .glossary import glossary
 from .instances import other_instances
@@ -44,8 +43,6 @@ _INDEX = "index.html"
 """The page that leads to those of the cases."""
 RESERVED = (Path(_INDEX).stem, Path(MARK).stem, Path(GLOSSARY).stem)
 """Names of pages of the report itself, which no case can take."""
-_TEMPLATES = Path(__file__).parent / "templates"
-"""Where the pages' templates and style lie, as package data."""
 
 
 class _MarkedCase(BaseModel):
@@ -90,7 +87,7 @@ def write_report(report: AuditReport, out: Path) -> None:
             raise TrajgapError(
                 f"{out}: {other} is not part of a trajgap report; name a new or an empty folder"
             )
-        replace_folder(out, _files(report))
+        replace_folder(out, report_files(report))
     except OSError as error:
         reason = error.strerror or type(error).__name__
         raise TrajgapError(f"{out}: cannot be written ({reason}); name another place") from None
@@ -126,30 +123,44 @@ def foreign(out: Path) -> str | None:
     return None
 
 
-def _files(report: AuditReport) -> dict[str, str]:
+def report_files(report: AuditReport) -> dict[str, str]:
+    """Every file of a report, by its path in the folder.
+
+    Parameters
+    ----------
+    report : AuditReport
+
+    Returns
+    -------
+    dict of str to str
+    """
     document = report.document
-    style = (_TEMPLATES / "style.css").read_text(encoding="utf-8")
-    environment = _environment()
+    shapes = environment()
     files: dict[str, str] = {}
     for one in report.cases:
         page = case_page(one)
         name = page.file
-        files[f"{name}.html"] = environment.get_template("case.html").render(page=page, style=style)
+        files[f"{name}.html"] = shapes.get_template("case.html").render(page=page, style=style())
         files[f"{name}.md"] = markdown(page)
         files[f"{name}.json"] = json_text(AuditDocument(cases=(one.document,)))
         for picture in page.pictures:
             files[page.picture(picture)] = themed(picture.document)
-    index = environment.get_template(_INDEX)
+    index = shapes.get_template(_INDEX)
     files[_INDEX] = index.render(
         rows=[_row(one) for one in report.cases],
         verdicts=[str(v) for v in ClaimVerdict],
         version=package_version("trajgap"),
-        style=style,
+        style=style(),
     )
     words = Page("glossary", "How to read a verdict", (glossary(),))
-    files[GLOSSARY] = environment.get_template("case.html").render(page=words, style=style)
+    files[GLOSSARY] = shapes.get_template("case.html").render(page=words, style=style())
     files[MARK] = json_text(document)
     return files
+
+
+def page_text(page: Page) -> str:
+    """HTML of one page that stands by itself."""
+    return environment().get_template("case.html").render(page=page, style=style())
 
 
 def _row(one: CaseAudit) -> dict[str, Any]:
@@ -188,6 +199,7 @@ def case_page(one: CaseAudit) -> Page:
         one.case.title,
         (
             _card(one),
+            advised(one),
             against(one),
             where_time_goes(one),
             side_by_side(one),
@@ -217,7 +229,7 @@ def _card(one: CaseAudit) -> Section:
     lines += [card.improvement] if isinstance(card.improvement, str) else []
     errors = (*card.errors, *([more_errors(card.more)] if card.more else []))
     beside = card.explanation if isinstance(card.explanation, str) else ""
-    shown = CardShown(tuple(lines), errors, beside, card_picture(one))
+    shown = CardShown(tuple(lines), errors, beside, card_picture(one), tally(one.judgements))
     return Section("card", "Verdict", (shown,))
 
 
@@ -234,9 +246,11 @@ def _not_computed(one: CaseAudit) -> Section:
 
 
 def _reproduced(one: CaseAudit) -> Section:
-    made = one.document.provenance
+    made, source = one.document.provenance, one.document.source
     versions = ", ".join(f"{name} {version}" for name, version in made.libraries.items())
     pairs = [
+        ("transcribed by", str(source.transcribed_by)),
+        ("checked by", str(source.checked_by)),
         ("made again by", made.command),
         ("date", made.date),
         ("trajgap", made.trajgap),
@@ -254,27 +268,3 @@ def _reproduced(one: CaseAudit) -> Section:
         blocks.append(Folded(f"{len(proved)} certificates, proved again", (Terms(proved),)))
     title = "Cite this audit, and make it again"
     return Section("reproducibility", title, tuple(blocks), folded=True)
-
-
-def _environment() -> Environment:
-    environment = Environment(
-        loader=FileSystemLoader(_TEMPLATES),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-        finalize=_visible,
-    )
-    environment.filters["slug"] = slug
-    environment.filters["link"] = link
-    environment.filters["inline"] = lambda drawn: Markup(embedded(drawn.document, drawn.name))
-    environment.filters["unescaped"] = Markup
-    return environment
-
-
-def _visible(value: object) -> object:
-    """What a page prints: plain text with every character visible, markup of ours as it is."""
-    if isinstance(value, str) and not isinstance(value, Markup):
-        return visible(value, keep="\n")
-    return value

@@ -1,4 +1,6 @@
+from .arm import ArmMotion, arm_picture
 from .drawing import DARK, THEME, Picture, embedded, svg, themed
+from .gap_bands import Anytime, gap_picture, profile_picture
 from .instances import instances_picture
 from .jumps import jump_picture, velocity_jumps
 from .motion import motion_picture
@@ -12,16 +14,21 @@ from .workspace import workspace_picture
 __all__ = [
     "DARK",
     "THEME",
+    "Anytime",
+    "ArmMotion",
     "Picture",
     "Runs",
+    "arm_picture",
     "convergence",
     "embedded",
     "endings",
+    "gap_picture",
     "instances_picture",
     "jump_picture",
     "landscape",
     "motion_picture",
     "polygon_picture",
+    "profile_picture",
     "seconds",
     "svg",
     "tent_picture",

@@ -148,7 +148,9 @@ def finish(figure: Picture, note: str = "") -> None:
     if note:
         figure.supxlabel(note, x=0.005, ha="left", fontsize=8, color=MUTED)
     # The layout moves a little with every drawing; frozen, the same figure gives the same bytes.
-    figure.draw_without_rendering()
+    layout = figure.get_layout_engine()
+    if layout is not None:
+        layout.execute(figure)
     figure.set_layout_engine("none")
 
 

@@ -7,7 +7,6 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from ...problem import Jump, Problem, Trajectory, TrajgapError, check, fit
-from ..documents import UNITS
 from .drawing import (
     BLUE,
     GRID,
@@ -19,7 +18,7 @@ from .drawing import (
     finish,
     shown,
 )
-from .motion import sampled
+from .motion import Units, sampled, shown_in
 
 _VELOCITY = 1
 """Order of the derivative whose jumps are drawn."""
@@ -43,7 +42,9 @@ def velocity_jumps(problem: Problem, durations: ArrayLike) -> tuple[Jump, ...]:
     return tuple(sorted(found, key=lambda j: (problem.joints.index(j.joint), j.time)))
 
 
-def jump_picture(problem: Problem, durations: ArrayLike, *, title: str) -> Picture:
+def jump_picture(
+    problem: Problem, durations: ArrayLike, *, title: str, units: Units | None = None
+) -> Picture:
     """Velocity of every joint over time; below it the size of each jump.
 
     Parameters
@@ -52,6 +53,8 @@ def jump_picture(problem: Problem, durations: ArrayLike, *, title: str) -> Pictu
     durations : array_like, shape (segments,)
         Shared by all joints, s.
     title : str
+    units : mapping, optional
+        Those of the paper, as for `motion_picture`; SI by default.
 
     Returns
     -------
@@ -68,6 +71,7 @@ def jump_picture(problem: Problem, durations: ArrayLike, *, title: str) -> Pictu
         raise TrajgapError(
             f"jump_picture: expected durations of shape ({problem.segments},), got {h.shape}"
         )
+    written, one = unit = shown_in(units, "velocity")
     motion = fit(problem.curve, problem.waypoints, h)
     jumps = velocity_jumps(problem, h)
     joints = problem.joints
@@ -75,7 +79,7 @@ def jump_picture(problem: Problem, durations: ArrayLike, *, title: str) -> Pictu
     rows = -(-len(joints) // columns)
     own = [[j for j in jumps if j.joint == label] for label in joints]
     description = "; ".join(
-        f"joint {label}: {_named(found)}" for label, found in zip(joints, own, strict=True)
+        f"joint {label}: {_named(found, unit)}" for label, found in zip(joints, own, strict=True)
     )
     with drawing():
         figure = Picture(title, description, 9.9, 0.9 + 3.0 * rows)
@@ -88,38 +92,39 @@ def jump_picture(problem: Problem, durations: ArrayLike, *, title: str) -> Pictu
                 upper.remove()
                 lower.remove()
                 continue
-            _velocity(upper, motion, j, own[j])
-            _sizes(lower, motion, own[j])
+            _velocity(upper, motion, j, own[j], one)
+            _sizes(lower, motion, own[j], one)
             upper.set_title(f"joint {shown(joints[j], 12)}", weight="bold")
-            lower.set_title(shown(_named(own[j]), 60), fontsize=8)
+            lower.set_title(shown(_named(own[j], unit), 60), fontsize=8)
         for axes in grid[-1]:
             axes.set_xlabel("time, s")
         for row in range(rows):
-            grid[2 * row, 0].set_ylabel(f"velocity, {UNITS['velocity']}")
-            grid[2 * row + 1, 0].set_ylabel(f"jump, {UNITS['velocity']}")
+            grid[2 * row, 0].set_ylabel(f"velocity, {written}")
+            grid[2 * row + 1, 0].set_ylabel(f"jump, {written}")
         figure.align_ylabels(grid[:, 0])
         key = "○ before a jump   ● after it   vertical lines: way-points   bars: after less before"
         finish(figure, key)
     return figure
 
 
-def _named(jumps: list[Jump]) -> str:
+def _named(jumps: list[Jump], unit: tuple[str, float]) -> str:
     if not jumps:
         return "no jump"
     top = max(jumps, key=lambda j: abs(j.size))
-    size = f"{top.size:+#.3g}".replace("e-0", "e-").replace("-", "−")
+    size = f"{top.size / unit[1]:+#.3g}".replace("e-0", "e-").replace("-", "−")
     count = f"largest of {len(jumps)} jumps" if len(jumps) > 1 else "jump"
-    return f"{count}: {size} {UNITS['velocity']} at {top.time:.2f} s"
+    return f"{count}: {size} {unit[0]} at {top.time:.2f} s"
 
 
-def _velocity(axes: Axes, motion: Trajectory, joint: int, jumps: list[Jump]) -> None:
+def _velocity(axes: Axes, motion: Trajectory, joint: int, jumps: list[Jump], one: float) -> None:
     _ground(axes, motion)
-    axes.plot(*sampled(motion, joint, _VELOCITY), color=BLUE, linewidth=1.4, zorder=2)
+    times, values = sampled(motion, joint, _VELOCITY)
+    axes.plot(times, values / one, color=BLUE, linewidth=1.4, zorder=2)
     for jump in jumps:
         for value, colour in zip(_sides(motion, joint, jump), (PAPER, INK), strict=True):
             axes.plot(
                 jump.time,
-                value,
+                value / one,
                 marker="o",
                 markersize=3.4,
                 markerfacecolor=colour,
@@ -131,13 +136,13 @@ def _velocity(axes: Axes, motion: Trajectory, joint: int, jumps: list[Jump]) -> 
     axes.ticklabel_format(axis="y", scilimits=(-5, 5))
 
 
-def _sizes(axes: Axes, motion: Trajectory, jumps: list[Jump]) -> None:
+def _sizes(axes: Axes, motion: Trajectory, jumps: list[Jump], one: float) -> None:
     _ground(axes, motion)
     top = max((abs(j.size) for j in jumps), default=0.0)
     for jump in jumps:
         largest = abs(jump.size) == top
         colour = INK if largest else ORANGE
-        axes.vlines(jump.time, 0.0, jump.size, color=colour, linewidth=4.0, zorder=2)
+        axes.vlines(jump.time, 0.0, jump.size / one, color=colour, linewidth=4.0, zorder=2)
     if not jumps:
         axes.set_ylim(-1.0, 1.0)
     axes.locator_params(axis="y", nbins=3)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
+from typing import TypeAlias
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -26,6 +27,12 @@ from .drawing import BLUE, GRID, INK, PAPER, RED, Picture, drawing, finish, show
 
 _SAMPLES = 48
 """Points of a segment that are drawn, beside its exact extrema: smooth at the width of a page."""
+_POINTS = 480
+"""Points of a curve of many segments, extrema apart: more than a panel has pixels."""
+_FEWEST = 8
+"""Points of a segment at least, however many there are."""
+Units: TypeAlias = Mapping[str, tuple[str, float]]
+"""How quantities are shown: the unit as it is written, and how much of SI one of it is."""
 _OFF_SCALE = 0.12
 """Share of a limit below which drawing the limit would flatten the curve."""
 
@@ -38,6 +45,7 @@ def motion_picture(
     check: Check | None = None,
     note: str = "",
     nodal: ArrayLike | None = None,
+    units: Units | None = None,
 ) -> Picture:
     """Angle, velocity, acceleration (and jerk, if limited) over time, one row per joint.
 
@@ -53,6 +61,8 @@ def motion_picture(
         Further words below the picture, such as the verdict over the rounding box.
     nodal : array_like, shape (free, joints), optional
         Free derivatives of an under-determined interpolant.
+    units : mapping, optional
+        Those of the paper, by "position", "velocity" and so on; SI where one is missing.
 
     Returns
     -------
@@ -81,14 +91,17 @@ def motion_picture(
         ]
     orders = [0, 1, 2] + ([3] if np.isfinite(problem.limits.jerk).any() else [])
     description = "; ".join(
-        _words(problem, *rows[j], j, r) for j in range(joints) for r in orders if r
+        _words(problem, *rows[j], j, r, shown_in(units, _name(r)))
+        for j in range(joints)
+        for r in orders
+        if r
     )
     with drawing():
         figure = Picture(title, description, 3.3 * len(orders), 0.95 + 1.45 * joints)
         grid = figure.subplots(joints, len(orders), squeeze=False, sharex="all")
         for j, (trajectory, column) in enumerate(rows):
             for axes, r in zip(grid[j], orders, strict=True):
-                _panel(axes, problem, trajectory, column, j, r)
+                _panel(axes, problem, trajectory, column, j, r, shown_in(units, _name(r)))
         for axes in grid[-1]:
             axes.set_xlabel("time, s")
         key = "○ way-point   ● largest value   - - limit   red: beyond a limit"
@@ -96,6 +109,11 @@ def motion_picture(
             key += f"   ·   for all t: {check.verdict}"
         finish(figure, key + (f"   ·   {shown(note, 90)}" if note else ""))
     return figure
+
+
+def shown_in(units: Units | None, quantity: str) -> tuple[str, float]:
+    """The unit that a quantity is drawn in, and how much of SI one of it is."""
+    return (units or {}).get(quantity, (UNITS[quantity], 1.0))
 
 
 def _array(values: ArrayLike | None) -> Array | None:
@@ -118,23 +136,39 @@ def _name(order: int) -> str:
     return ("position", *QUANTITIES)[order]
 
 
-def _words(problem: Problem, trajectory: Trajectory, column: int, joint: int, order: int) -> str:
+def _words(
+    problem: Problem,
+    trajectory: Trajectory,
+    column: int,
+    joint: int,
+    order: int,
+    unit: tuple[str, float],
+) -> str:
     top = _largest(trajectory, column, order)
     quantity = _name(order)
     limit = _limits_of(problem, joint, order)[1]
     text = (
-        f"joint {problem.joints[joint]}: largest {quantity} {top.value:.5g} {UNITS[quantity]} "
-        f"at {top.time:.4g} s"
+        f"joint {problem.joints[joint]}: largest {quantity} {top.value / unit[1]:.5g} "
+        f"{unit[0]} at {top.time:.4g} s"
     )
-    return text + (f", limit {limit:.5g}" if np.isfinite(limit) else ", no limit")
+    return text + (f", limit {limit / unit[1]:.5g}" if np.isfinite(limit) else ", no limit")
 
 
 def _panel(
-    axes: Axes, problem: Problem, trajectory: Trajectory, column: int, joint: int, order: int
+    axes: Axes,
+    problem: Problem,
+    trajectory: Trajectory,
+    column: int,
+    joint: int,
+    order: int,
+    unit: tuple[str, float],
 ) -> None:
     quantity = _name(order)
+    written, one = unit
     times, values = sampled(trajectory, column, order)
     low, high = _limits_of(problem, joint, order)
+    too_much = beyond(trajectory, column, order, low, high)
+    values, low, high = values / one, low / one, high / one
     for b in trajectory.breaks:
         axes.axvline(float(b), color=GRID, linewidth=0.7, zorder=0)
     axes.axhline(0.0, color=GRID, linewidth=0.7, zorder=0)
@@ -145,15 +179,15 @@ def _panel(
     ]
     for limit in drawn:
         axes.axhline(limit, color=INK, linestyle=(0, (4, 3)), linewidth=0.9, zorder=1)
-    for start, end in beyond(trajectory, column, order, low, high):
+    for start, end in too_much:
         axes.axvspan(start, end, facecolor=RED, edgecolor=RED, alpha=0.22, linewidth=1.0, zorder=1)
         inside = (times >= start) & (times <= end)
         axes.plot(times[inside], values[inside], color=RED, linewidth=2.0, zorder=3)
-    axes.set_ylabel(UNITS[quantity])
+    axes.set_ylabel(written)
     if order == 0:
         axes.plot(
             trajectory.breaks[list(problem.curve.waypoint_breaks)],
-            problem.waypoints[:, joint],
+            problem.waypoints[:, joint] / one,
             linestyle="none",
             marker="o",
             markersize=4.5,
@@ -164,7 +198,7 @@ def _panel(
         axes.set_title(f"joint {shown(problem.joints[joint], 12)}, angle", weight="bold")
     else:
         axes.set_title(quantity)
-        _mark_peak(axes, _largest(trajectory, column, order), high)
+        _mark_peak(axes, _largest(trajectory, column, order), high, one)
     extent = np.concatenate([[np.nanmin(values), np.nanmax(values)], drawn])
     room = 0.1 * (float(np.ptp(extent)) or 1.0)
     axes.set_ylim(float(extent.min()) - room, float(extent.max()) + room)
@@ -173,13 +207,14 @@ def _panel(
     axes.locator_params(axis="x", nbins=6)
 
 
-def _mark_peak(axes: Axes, top: Extremum, limit: float) -> None:
-    over = abs(top.value) > limit * (1 + TOLERANCE)
+def _mark_peak(axes: Axes, top: Extremum, limit: float, one: float) -> None:
+    value = top.value / one
+    over = abs(value) > limit * (1 + TOLERANCE)
     colour = RED if over else INK
-    axes.plot([top.time], [top.value], marker="o", markersize=4.5, color=colour, zorder=5)
-    text = f"{top.value:.4f}".replace("-", "−")
+    axes.plot([top.time], [value], marker="o", markersize=4.5, color=colour, zorder=5)
+    text = f"{value:.4f}".replace("-", "−")
     if np.isfinite(limit) and limit > 0:
-        share = 100 * abs(top.value) / limit
+        share = 100 * abs(value) / limit
         text += f", {share:.2f} % of ±{limit:.5g}"
     elif np.isfinite(limit):
         text += ", limit 0"
@@ -202,10 +237,11 @@ def sampled(trajectory: Trajectory, column: int, order: int) -> tuple[Array, Arr
     """
     times: list[Array] = []
     values: list[Array] = []
+    count = max(_FEWEST, min(_SAMPLES, _POINTS // len(trajectory.durations)))
     scale = max(abs(e.value) for e in extrema(trajectory, column, order)) or 1.0
     for k, start in enumerate(trajectory.breaks[:-1]):
         own = [e.s for e in extrema(trajectory, column, order) if e.segment == k]
-        s = np.unique(np.concatenate([np.linspace(0.0, 1.0, _SAMPLES + 1), own]))
+        s = np.unique(np.concatenate([np.linspace(0.0, 1.0, count + 1), own]))
         v = trajectory.values(k, column, order, s)
         if values and abs(values[-1][-1] - v[0]) > 1e-6 * scale:
             times.append(np.array([start]))

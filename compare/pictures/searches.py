@@ -34,6 +34,8 @@ _INVISIBLE = 0.02
 """Share of its own height by which a curve may move unseen, so that its point is left out."""
 _TICKS = (0.01, 0.1, 1.0, 10.0, 100.0, 1000.0, 10_000.0, 100_000.0)
 """Gaps in percent that the axis may name: decades from the end of the linear part."""
+_RUNS = 16
+"""Runs of an algorithm drawn one by one: more thin lines on top of each other show no more."""
 
 
 def convergence(
@@ -112,7 +114,7 @@ def convergence(
                 axes.set_xlabel("iteration")
         for row in grid:
             row[0].set_ylabel("gap of best so far, %")
-        figure.legend(*_legend(runs, printed), loc="outside lower left", ncols=2, handlelength=3.2)
+        figure.legend(*_legend(runs, printed), loc="outside lower left", ncols=1, handlelength=3.2)
         finish(figure)
     return figure
 
@@ -156,7 +158,10 @@ def _panel(
         iterations = np.arange(gaps.shape[1], dtype=np.float64)
         axes.add_collection(
             LineCollection(
-                [_stairs(iterations, g) for g in gaps], colors=colour, linewidths=0.5, alpha=0.28
+                [_stairs(iterations, g) for g in _drawn(gaps)],
+                colors=colour,
+                linewidths=0.5,
+                alpha=0.28,
             )
         )
         # Quantiles that are runs: a run without answer is infinite and can't be averaged.
@@ -188,6 +193,14 @@ def _panel(
     axes.set_ylim(min(1.6 * low, -0.5 * _LINEAR), 2.0 * max(high, _LINEAR))
     axes.set_xlim(0, max(t.shape[1] - 1 for t in panel.values()))
     light_grid(axes, "y")
+
+
+def _drawn(gaps: Array) -> Array:
+    """The runs that are drawn one by one: all, or spread by rank from the best end to the worst."""
+    if len(gaps) <= _RUNS:
+        return gaps
+    ranks = np.linspace(0, len(gaps) - 1, _RUNS).round().astype(np.intp)
+    return gaps[np.argsort(gaps[:, -1], kind="stable")[ranks]]
 
 
 def _stairs(iterations: Array, values: Array) -> Array:
@@ -223,8 +236,9 @@ def _legend(
     handles, labels = [], []
     for (colour, line), (name, replays) in zip(_styles(len(runs)), runs.items(), strict=True):
         handles.append(Line2D([], [], color=colour, linestyle=line, linewidth=1.8))
+        each = "each" if len(replays) <= _RUNS else f"{_RUNS} of them, best and worst included,"
         labels.append(
-            f"{len(replays)} runs of {shown(name, 34)}: median, quartiles (band), each (thin)"
+            f"{len(replays)} runs of {shown(name, 64)}: median, quartiles (band), {each} (thin)"
         )
     for dash, (label, value) in zip(_dashes(len(printed)), printed.items(), strict=True):
         handles.append(Line2D([], [], color=RED, linestyle=dash, linewidth=1.3))
@@ -288,7 +302,7 @@ def endings(
                 f"{shown(label, 60)}, {value:.6g} s", (value, at), (4, 0),
                 textcoords="offset points", va="center", fontsize=8, color=colour,
             )  # fmt: skip
-        names = [f"{shown(n, 30)}\n{_range(one)}" for n, one in ends.items()]
+        names = [f"{shown(n, 34, 2)}\n{_range(one)}" for n, one in ends.items()]
         axes.set_yticks(range(count), names)
         axes.tick_params(axis="y", length=0)
         axes.set_ylim(count - 0.2 + 0.42 * len(lines), -0.65)

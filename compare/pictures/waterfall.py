@@ -23,8 +23,8 @@ from .drawing import (
     shown,
 )
 
-_HEADING = "first step beside it"
-"""Above the column that says how much longer the first step takes: one percentage per distance."""
+_HEADING = "the first beside this one"
+"""Above the column that sets the first step beside each: one percentage per distance."""
 _EDGES = (1.2, 1.36)
 """Right edges of the seconds and the percent in that column (bars end at 1)."""
 _MANY = 10
@@ -81,7 +81,7 @@ def waterfall_picture(waterfall: Waterfall, *, title: str, narrow: bool = False)
             if not isinstance(step.time, Why) and before:
                 for edge, text in zip(edges, _beside(before[0], step.time), strict=True):
                     axes.text(edge * top, row, text, va="center", ha="right", fontsize=8)
-        axes.set_yticks(range(len(steps)), [shown(s.name, 24 if narrow else 30, 2) for s in steps])
+        axes.set_yticks(range(len(steps)), [shown(s.name, 24 if narrow else 30, 3) for s in steps])
         axes.tick_params(axis="y", length=0)
         axes.set_ylim(len(steps) - 0.4, -0.9)
         axes.set_xlim(0, (edges[-1] + 0.02) * top)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ...problem import Array
 from ..objective import Bounds, Objective
-from ..settings import Span, clean, number, positive, reject, share, whole
+from ..settings import Span, clean, number, positive, reject, share, switch, whole
 from .ga import (
     ELITE_OPEN,
     SHARED_OPEN,
@@ -126,6 +126,11 @@ class ImprovedGA:
         "parents" or "survives"; the text leaves it open.
     k1, k2, k3, k4 : float
         Constants of (14)(15); printed.
+    adaptive_crossover, adaptive_mutation : bool
+        Whether the rate is that of (14) or (15), as printed; otherwise the fixed one, to see what
+        adapting it changes.
+    crossover_fixed, mutation_fixed : float
+        Rates where they are not adaptive; those of `GA`, not printed.
     fitness_rule, encoding, resolution, position_range, crossover, mutation, mutated
         As `GA`; not printed, the resolution apart.
     mutation_reach, penalty
@@ -155,6 +160,10 @@ class ImprovedGA:
     k2: Annotated[float, number()] = 0.05
     k3: Annotated[float, number()] = 0.02
     k4: Annotated[float, number()] = 2.0
+    adaptive_crossover: Annotated[bool, switch()] = True
+    adaptive_mutation: Annotated[bool, switch()] = True
+    crossover_fixed: Annotated[float, share()] = 0.8
+    mutation_fixed: Annotated[float, share()] = 0.05
     fitness_rule: FitnessRule = FitnessRule.INVERSE
     encoding: Encoding = Encoding.REAL
     resolution: Annotated[float, positive()] = 0.001
@@ -178,11 +187,16 @@ class ImprovedGA:
         return genetics_of(self)
 
     def rates(self, fitness: Array) -> tuple[float, float]:
-        """P_c and P_z of a population, (14)(15)."""
+        """P_c and P_z of a population, (14)(15), or the fixed ones."""
         top = float(fitness.max())
         # Rounding may lift the mean of equal numbers above them, and the arcsine out of its domain.
         at = concentration(min(float(fitness.mean()), top), top)
-        return crossover_rate(at, self.k1, self.k4), mutation_rate(at, self.k2, self.k3)
+        crossing = crossover_rate(at, self.k1, self.k4)
+        mutating = mutation_rate(at, self.k2, self.k3)
+        return (
+            crossing if self.adaptive_crossover else self.crossover_fixed,
+            mutating if self.adaptive_mutation else self.mutation_fixed,
+        )
 
     def parents(self, totals: Array, generation: int, rng: np.random.Generator) -> NDArray[np.intp]:
         """Indices of the mating pool: the best quarter, and a roulette on the middle half."""

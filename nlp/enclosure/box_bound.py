@@ -183,12 +183,21 @@ def _uniform_mean_value(
     )
 
 
+def _timed_mean_value(
+    problem: Problem, h: Ball, q: Ball, more: LimitRows | None
+) -> _MeanValue | None:
+    curve = problem.curve
+    assert isinstance(curve, TimedUniformBSpline)
+    centred = partial(centred_timed, natural=curve.natural_clock)
+    return _uniform_mean_value(centred, 2, problem, h, q, more)
+
+
 _ENCLOSURES: dict[
     type[Curve], Callable[[Problem, Ball, Ball, LimitRows | None], _MeanValue | None]
 ] = {
     Interpolant: _polynomial_mean_value,
     StretchedUniformBSpline: partial(_uniform_mean_value, centred_stretched, 3),
-    TimedUniformBSpline: partial(_uniform_mean_value, centred_timed, 2),
+    TimedUniformBSpline: _timed_mean_value,
 }
 """Kinds of curve whose derivatives are enclosed over a box, with the highest order that is; of any
 other kind only the mean speed is known."""

@@ -93,6 +93,7 @@ def centred_timed(
     s: Array,
     h: Ball,
     q: Ball,
+    natural: bool = False,
 ) -> Centred:
     """`centred_stretched` for time that is a B-spline too; velocity and acceleration only."""
     middle = Ball.exact(q.mid)
@@ -100,7 +101,8 @@ def centred_timed(
     first, second = (
         _at(shape_matrix(waypoints), segment, np.full_like(order, r), s) for r in (1, 2)
     )
-    rate, bend = (_at(clock_matrix(waypoints), segment, np.full_like(order, r), s) for r in (1, 2))
+    clock = clock_matrix(waypoints, natural)
+    rate, bend = (_at(clock, segment, np.full_like(order, r), s) for r in (1, 2))
     twice = order == 2
     value = _in_time(first @ middle, second @ middle, rate @ still, bend @ still, joint, twice)
     by_waypoint = _by_waypoint(first, second, rate @ still, bend @ still, twice)

@@ -1,11 +1,14 @@
+from .clock import call_cap, stopping_after, time_up
 from .formulation import Form, Formulation, Structure, build
+from .ipopt import structure_of
 from .judgement import KKT_TOLERANCE, SAME
 from .optimality import KKT, Active, kkt
 from .per_joint import OPTIMUM_SLACK, PerJointSolution, Range, solve_per_joint
 from .solution import Evidence, Solution, Status, weakest
 from .solver import STARTS, solve
 from .starts import random_starts
-from .tracking import free_values, structure_of
+from .symbolic import ca
+from .tracking import free_values
 
 __all__ = [
     "KKT",
@@ -23,11 +26,15 @@ __all__ = [
     "Status",
     "Structure",
     "build",
+    "ca",
+    "call_cap",
     "free_values",
     "kkt",
     "random_starts",
     "solve",
     "solve_per_joint",
+    "stopping_after",
     "structure_of",
+    "time_up",
     "weakest",
 ]

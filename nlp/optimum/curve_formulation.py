@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
-import casadi as ca
 import numpy as np
 
 from ...problem import Array, Curve, Problem
@@ -16,7 +15,8 @@ from ...problem.curves import (
     roots_in_unit,
 )
 from .curve_symbols import Symbols, derived, evaluated, numbers, shape_key, symbols
-from .tracking import ipopt_options
+from .ipopt import ipopt_options
+from .symbolic import ca
 
 SLOWEST = 1e-4
 """Least dt/de where time is not linear, relative to the mean duration."""

@@ -7,17 +7,16 @@ from dataclasses import dataclass
 from math import perm
 from typing import Any
 
-import casadi as ca
 import numpy as np
 
 from ...problem import Array, ClampedBSpline, Curve, Problem, TrajgapError
 from ...problem.curves import (
     TimedUniformBSpline,
     average_matrix,
-    clock_matrix,
     fractions_of,
     shape_matrix,
 )
+from .symbolic import ca
 
 Polynomial = list[Any]
 
@@ -134,7 +133,7 @@ def _stretched_symbols(
 def _timed_symbols(curve: TimedUniformBSpline, joints: int, highest: int) -> Symbols:
     n = curve.segments
     h, c = ca.SX.sym("h", n), ca.SX.sym("c", 4 * n, joints)
-    nodes = clock_matrix(curve.waypoints).astype(np.float64)
+    nodes = curve.clock.astype(np.float64)
     clocks = [[ca.dot(nodes[k, m], h) for m in range(4)] for k in range(n)]
     speeds = [derived(t) for t in clocks]
     pieces = [

@@ -8,6 +8,7 @@ import time
 import numpy as np
 
 from ...problem import Array, Problem, Verdict, check, evaluate
+from .clock import time_up
 from .curve_formulation import CompiledCurve, ScaledCurve, follow, packed, scaled_curve
 from .tracking import Local, run
 
@@ -47,6 +48,8 @@ def curve_coarse(
     scaled = scaled_curve(problem, unit)
     bounds = _bounds(problem, unit, floor)
     p = packed(scaled, *follow(built, scaled, None))
+    if time_up():
+        return start, scaled, False, 0
     x, _, success, iterations = run(built.cold, built.formulation, start / unit, p, bounds)
     return x * unit, scaled, success, iterations
 
@@ -63,6 +66,8 @@ def curve_track(
     best, h = curve_merit(problem, np.clip(h, wide[0] * unit, wide[1] * unit))
     radius, step, iterations, converged, duals = 0.5, np.inf, 0, False, None
     for _ in range(_PASSES):
+        if time_up():
+            break
         x = h / unit
         p = packed(scaled, *follow(built, scaled, h))
         bounds = (
@@ -106,7 +111,7 @@ def curve_multistart(
     tracked: list[tuple[Array, Local]] = []
     found: list[Local] = []
     for start in points:
-        if found and time.monotonic() > until:
+        if found and (time.monotonic() > until or time_up()):
             break
         coarse, scaled, success, iterations = curve_coarse(problem, built, start, floor)
         usable = success and np.isfinite(coarse).all()

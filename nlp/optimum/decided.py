@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...problem import QUANTITIES, Array, Check, Problem, Verdict, check
-from .descent import Box, descend
+from .descent import LogBox, descend
 from .tracking import Local
 
 ROUNDS = 6
@@ -97,7 +97,9 @@ def _stretched(
 def _narrowed(problem: Problem, h: Array) -> tuple[Array, None] | None:
     """The end of a descent within limits that are narrower by the motion's rounding errors."""
     bottom = np.maximum(problem.duration_lower, 0.5 * h)
-    box = Box(np.log(bottom), np.log(np.maximum(np.minimum(problem.duration_upper, 2 * h), bottom)))
+    box = LogBox(
+        np.log(bottom), np.log(np.maximum(np.minimum(problem.duration_upper, 2 * h), bottom))
+    )
     for _ in range(NARROWINGS):
         verdict = check(problem, h)
         if verdict.limits is not Verdict.UNDECIDED:

@@ -14,6 +14,7 @@ from scipy.linalg import LinAlgError, cholesky, solve_triangular
 from scipy.optimize import nnls
 
 from ...problem import Array, Problem
+from .clock import time_up
 from .limit_rows import ExactRows, exact_rows
 
 STEPS = 80
@@ -37,7 +38,7 @@ PULL = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
-class Box:
+class LogBox:
     """Bounds on the logarithms of the durations."""
 
     low: Array
@@ -80,7 +81,7 @@ def least_point(
     return step, -weights / residual[-1]
 
 
-def _walled(rows: ExactRows, box: Box, radius: float) -> tuple[Array, Array]:
+def _walled(rows: ExactRows, box: LogBox, radius: float) -> tuple[Array, Array]:
     """Rows and their room, with the walls of the box and of the trust region."""
     z = np.log(rows.durations)
     one = np.eye(z.size)
@@ -90,7 +91,7 @@ def _walled(rows: ExactRows, box: Box, radius: float) -> tuple[Array, Array]:
     return matrix, np.concatenate([-rows.excess, np.maximum(up, 0.0), np.maximum(down, 0.0)])
 
 
-def restored(problem: Problem, h: Array, box: Box, steps: int = RESTORING_STEPS) -> ExactRows:
+def restored(problem: Problem, h: Array, box: LogBox, steps: int = RESTORING_STEPS) -> ExactRows:
     """Limits at a vector of the box with the least excess that is found near ``h``.
 
     Each step minimises ½(t + 1)² + ½ρ|d|² over steps d and excesses t, every linearised limit at
@@ -99,7 +100,7 @@ def restored(problem: Problem, h: Array, box: Box, steps: int = RESTORING_STEPS)
     rows = exact_rows(problem, np.exp(box.inside(np.log(h))))
     radius, n = WIDEST_STEP, h.size
     for _ in range(steps):
-        if rows.worst <= KEPT or not np.isfinite(rows.worst) or radius < SMALLEST_STEP:
+        if time_up() or rows.worst <= KEPT or not np.isfinite(rows.worst) or radius < SMALLEST_STEP:
             break
         matrix, room = _walled(rows, box, radius)
         elastic = np.zeros((len(matrix), 1))
@@ -121,7 +122,7 @@ def restored(problem: Problem, h: Array, box: Box, steps: int = RESTORING_STEPS)
     return rows
 
 
-def _onto_limits(problem: Problem, h: Array, box: Box) -> ExactRows:
+def _onto_limits(problem: Problem, h: Array, box: LogBox) -> ExactRows:
     """The nearest vector at the limits: by a uniform stretch where the box allows it, else Newton.
 
     A stretch leaves the path and its positions as they are.
@@ -180,7 +181,7 @@ class Descent:
         return self.excess <= KEPT
 
 
-def descend(problem: Problem, start: Array, box: Box) -> Descent:
+def descend(problem: Problem, start: Array, box: LogBox) -> Descent:
     """Shorten a motion within its limits until no step gains.
 
     Parameters
@@ -189,7 +190,7 @@ def descend(problem: Problem, start: Array, box: Box) -> Descent:
         With a determined curve of any kind.
     start : ndarray, shape (segments,)
         s; need not keep the limits.
-    box : Box
+    box : LogBox
         Bounds on the logarithms of the durations.
 
     Returns
@@ -205,6 +206,8 @@ def descend(problem: Problem, start: Array, box: Box) -> Descent:
     hessian = np.diag(rows.durations / total + 1e-4)
     radius, taken, history = WIDEST_STEP, 0, [total]
     for taken in range(1, STEPS + 1):
+        if time_up():
+            break
         slope = rows.durations / total
         matrix, room = _walled(rows, box, radius)
         found = least_point(hessian, slope, matrix, np.maximum(room, 0.0))

@@ -9,8 +9,9 @@ from dataclasses import replace
 import numpy as np
 
 from ...problem import Array, Problem, check
+from .clock import time_up
 from .decided import kept
-from .descent import Box, Descent, descend
+from .descent import Descent, LogBox, descend
 from .starts import SETTLED_SEGMENTS, equal_start
 from .tracking import Local
 from .wide_search import Basin, basins
@@ -61,13 +62,13 @@ def made_up(problem: Problem, floor: float) -> Array:
     return np.where(least_durations(problem) < floor, floor, 0.0)
 
 
-def box_above(problem: Problem, floor: Array) -> Box:
+def box_above(problem: Problem, floor: Array) -> LogBox:
     """Bounds on log durations: the problem's own, the least durations, and the floors."""
     tiny = LEAST_SHARE * float(equal_start(problem).mean())
     low = np.maximum(np.maximum(least_durations(problem), floor), tiny)
     # A least duration above an upper bound leaves no motion; the box stays one for the search.
     high = np.maximum(problem.duration_upper, low)
-    return Box(np.log(low), np.log(high))
+    return LogBox(np.log(low), np.log(high))
 
 
 def ordinary(problem: Problem, basin: Basin) -> bool:
@@ -109,13 +110,13 @@ def exact_search(
     box = box_above(problem, floor)
     found: list[Local] = []
     for start in points:
-        if found and time.monotonic() > until:
+        if found and (time.monotonic() > until or time_up()):
             break
         found.append(as_local(problem, descend(problem, start, box)))
     return _resumed(problem, found, box, until)
 
 
-def _resumed(problem: Problem, found: list[Local], box: Box, until: float) -> list[Local]:
+def _resumed(problem: Problem, found: list[Local], box: LogBox, until: float) -> list[Local]:
     """The ends of descents, the best one descended from again for as long as that gains.
 
     A descent may stop short where its Hessian, made along a bent valley, fits no longer; from its
@@ -127,7 +128,7 @@ def _resumed(problem: Problem, found: list[Local], box: Box, until: float) -> li
             key=lambda i: found[i].total,
             default=None,
         )
-        if best is None or found[best].converged or time.monotonic() > until:
+        if best is None or found[best].converged or time.monotonic() > until or time_up():
             break
         before = found[best]
         after = as_local(problem, descend(problem, before.durations, box))

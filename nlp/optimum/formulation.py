@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
 
-import casadi as ca
 import numpy as np
 
 from ...problem import Array
 from ...problem.curves import PERM, Condition, ConditionKind, Interpolant, layout
+from .symbolic import ca
 
 GRID = {1: 0, 2: 2, 3: 4, 4: 5}
 """Interior slots of a segment for a limited derivative of this polynomial degree."""
@@ -311,7 +311,6 @@ def build(structure: Structure) -> Formulation:
 
 
 def pack_parameters(
-    formulation: Formulation,
     values: Array,
     inverse_limits: Array,
     position: Array,

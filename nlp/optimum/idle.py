@@ -28,6 +28,9 @@ def idle_segments(problem: Problem) -> list[int]:
     polynomials = problem.curve.piecewise
     if polynomials is None:
         return []
+    rests = (problem.waypoints[1:] == problem.waypoints[:-1]).all(axis=1).any()
+    if not rests and len(polynomials.waypoint_breaks) == polynomials.segments + 1:
+        return []
     h = equal_start(problem)
     trajectory = fit(problem.curve, problem.waypoints, h)
     gradient = coefficient_gradient(polynomials, problem.waypoints, h).durations

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...problem import Array, CurveError, Extremum, Problem, evaluate, extrema, fit, peak_gradients
+from ...problem import Array, CurveError, Extremum, Problem, extrema, fit, peak_gradients
 
 NEAR = 0.3
 """Extrema below this share of their limit are left out: no step of a trust region reaches it."""
@@ -103,15 +103,3 @@ def exact_rows(problem: Problem, h: Array) -> ExactRows:
     sizes = [e.order * abs(e.value) if e.order else float(span[e.joint]) or 1.0 for e in points]
     scale = signs / np.array(sizes)
     return ExactRows(h, excess, slope * scale[:, None], tuple(points), signs)
-
-
-def worst_excess(problem: Problem, h: Array) -> float:
-    """The largest excess over any limit, 0 at a limit; inf if a joint with limit 0 moves."""
-    stretch = float(evaluate(problem, h[None]).stretch[0])
-    if not np.isfinite(stretch):
-        return np.inf
-    worst = float(np.log(stretch)) if stretch > 0 else -np.inf
-    if not problem.limits.limits_position:
-        return worst
-    rows = _limited(problem, h)
-    return max([worst, *(excess for e, _, excess in rows if e.order == 0)])

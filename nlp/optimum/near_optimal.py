@@ -7,18 +7,17 @@ from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
-import casadi as ca
 import numpy as np
 
 from ...problem import Array, Problem, check, fit
 from .formulation import Formulation, Structure, pack_parameters
+from .ipopt import compiled, structure_of
+from .symbolic import ca
 from .tracking import (
     Scaled,
-    compiled,
     pack,
     place_slots,
     scaled_problem,
-    structure_of,
     unpack,
     variable_bounds,
 )
@@ -35,7 +34,7 @@ _OPTIONS = {
     "ipopt.mu_init": 1e-4,
     "ipopt.max_iter": 200,
 }
-"""Options of IPOPT as `tracking.ipopt_options`, begun near a solution (small barrier)."""
+"""Options of IPOPT as `ipopt.ipopt_options`, begun near a solution (small barrier)."""
 
 
 @lru_cache(maxsize=32)
@@ -103,7 +102,7 @@ def _improve(
             trajectory = fit(problem.curve, problem.waypoints, own)
             trajectory = replace(trajectory, scaled=trajectory.scaled / s.angle_unit)
             places, newton = place_slots(f, trajectory)
-            p.append(pack_parameters(f, s.values, s.inverse_limits, s.position, places, newton))
+            p.append(pack_parameters(s.values, s.inverse_limits, s.position, places, newton))
             x0.append(x)
             low.append(wide[0])
             high.append(wide[1])

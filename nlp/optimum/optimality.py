@@ -68,13 +68,13 @@ def _peaks_near_limit(
     problem: Problem, durations: Array, nodal: Array | None, near: float
 ) -> list[_Constraint]:
     trajectory = fit(problem.curve, problem.waypoints, durations, nodal)
-    limits = problem.limits
+    limits, derivatives = problem.limits, problem.limits.derivatives
     curve = problem.curve
     every_break = len(curve.waypoint_breaks) == curve.segments + 1
     found: list[_Constraint] = []
     for j, name in enumerate(problem.joints):
         for r, quantity in enumerate(QUANTITIES, start=1):
-            limit = float(limits.derivatives[j, r - 1])
+            limit = float(derivatives[j, r - 1])
             if not np.isfinite(limit) or limit == 0:
                 continue
             for e in extrema(trajectory, j, r):

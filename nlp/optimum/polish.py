@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...problem import Array, Extremum, Problem, check, extrema, fit, peak_gradients
+from .clock import time_up
 from .optimality import KKT, Active, kkt
 
 _STEPS = 4
@@ -42,6 +43,8 @@ def polish(problem: Problem, durations: Array, report: KKT) -> tuple[Array, KKT]
     weights = np.array([a.multiplier for a in limited])
     h = durations.copy()
     for _ in range(_STEPS):
+        if time_up():
+            return durations, report
         base, excess, columns = _conditions(problem, h, active, weights)
         hessian = np.empty((moving.size, moving.size))
         for i, k in enumerate(moving):

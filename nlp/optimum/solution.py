@@ -6,8 +6,15 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from enum import StrEnum
 
-from ...problem import Array, Check, Problem
+import numpy as np
+
+from ...problem import Array, Check, Problem, Trajectory, TrajgapError, fit
+from ...problem.motions import Samples, sampled
 from .optimality import Active
+
+_VANISHING = 1e-3
+"""Share of a motion's total below which its infimum is 0: the motion found stands a floor of the
+search above it, and an infimum above 0 is nearly reached there."""
 
 
 class Status(StrEnum):
@@ -109,6 +116,15 @@ class Solution:
         return self.infimum if self.infimum is not None else self.total_time
 
     @property
+    def boundless(self) -> str | None:
+        """Why nothing keeps the total from 0, so that there is no time to set others beside."""
+        if self.infimum is None or self.infimum > _VANISHING * self.total_time:
+            return None
+        if not np.isfinite(self.problem.limits.derivatives).any():
+            return "without limits there is no shortest motion (not checkable)"
+        return "nothing that is limited keeps the total from 0, so that no motion is the shortest"
+
+    @property
     def evidence(self) -> Evidence:
         """Certified only with a lower bound; best known only where the search converged."""
         if self.durations is None:
@@ -116,6 +132,38 @@ class Solution:
         if self.lower_bound is not None:
             return Evidence.CERTIFIED
         return Evidence.UNCONVERGED if self.status is Status.FEASIBLE else Evidence.BEST_KNOWN
+
+    @property
+    def trajectory(self) -> Trajectory:
+        """The motion of the answer: joint angles over time, rad over s.
+
+        Raises
+        ------
+        TrajgapError
+            If there are no durations.
+        """
+        if self.durations is None:
+            raise TrajgapError(f"no motion: {self.status}" + (f", {self.why}" if self.why else ""))
+        return fit(self.problem.curve, self.problem.waypoints, self.durations, self.nodal)
+
+    def sample(self, dt: float) -> Samples:
+        """Position, velocity and acceleration every ``dt`` seconds, and at the end.
+
+        Parameters
+        ----------
+        dt : float
+            s.
+
+        Returns
+        -------
+        Samples
+
+        Raises
+        ------
+        TrajgapError
+            If there are no durations, or the step is no time.
+        """
+        return sampled(self.trajectory, dt, self.problem.joints)
 
     def __str__(self) -> str:
         lines = [f"{self.problem.name}: {self.status}" + (f" ({self.why})" if self.why else "")]

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
-from dataclasses import dataclass, replace
-from functools import partial
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ...problem import Array, Problem, TrajgapError, check
-from .curve_formulation import compiled_curve, curve_structure
-from .curve_tracking import curve_multistart
+from .asked import Ask, vectors
+from .clock import time_up
 from .decided import decided, kept
 from .descent import restored
 from .exact_multistart import (
@@ -26,22 +24,20 @@ from .exact_multistart import (
     ordinary,
     searchable,
 )
+from .feasibility import apart
 from .formulation import Form
 from .idle import idle_segments, with_least_idle
+from .ipopt import compiled, structure_of
 from .judgement import judged, stretchable
+from .long_solve import long_enough, solve_long
+from .matching import matched
+from .newton import settled_quickly
+from .short_ways import moving_at_floor, short_ways, shortened
+from .smoother import as_answer, carried_over, smoother
 from .solution import Solution, Status
-from .starts import equal_start, first_nodal, screened_starts, settled
-from .tracking import (
-    Compiled,
-    Local,
-    compiled,
-    merit,
-    pack,
-    solve_coarse,
-    structure_of,
-    track,
-    unpack,
-)
+from .starts import equal_start, first_nodal, screened_starts
+from .tracked_multistart import eliminating, tracked_multistart, tracked_search
+from .tracking import Local
 from .unsearched import unsearched
 from .wide_search import Basin
 
@@ -80,7 +76,8 @@ def solve(
         Its coupling is not looked at: durations are shared by all joints of the problem. See
         `solve_per_joint` for the other procedure.
     starts : int
-        Number of starts: equal durations first, then screened random ones.
+        Number of starts: equal durations first, then screened random ones. Determined splines of
+        more than 24 segments have one start, durations after the way of each segment.
     seed : int
         Seed of the random starts.
     initial : array_like, shape (starts, segments), optional
@@ -110,11 +107,11 @@ def solve(
     answer = unsearched(problem)
     if answer is not None:
         return answer
-    ask = _Ask(
+    ask = Ask(
         starts,
         seed,
-        None if initial is None else _vectors(problem, "initial", initial),
-        np.empty((0, problem.segments)) if known is None else _vectors(problem, "known", known),
+        None if initial is None else vectors(problem, "initial", initial),
+        np.empty((0, problem.segments)) if known is None else vectors(problem, "known", known),
         None if known_nodal is None else np.asarray(known_nodal, dtype=np.float64),
         form,
         time.monotonic() + seconds,
@@ -122,39 +119,39 @@ def solve(
     wanted = (len(ask.known), problem.curve.free, len(problem.joints))
     if ask.known_nodal is not None and ask.known_nodal.shape != wanted:
         raise TrajgapError(f"known_nodal: expected shape {wanted}, got {ask.known_nodal.shape}")
+    if long_enough(problem, ask) and (answer := solve_long(problem, ask)) is not None:
+        return answer
+    smooth = smoother(problem)
+    if smooth is not None:
+        found = as_answer(problem, _solve_smoother(problem, smooth, ask, seconds))
+        if found is not None:
+            return found
     idle = idle_segments(problem)
     if idle:
         return _with_idle(problem, idle, ask)
     return _solve_moving(problem, ask)
 
 
-@dataclass(frozen=True, eq=False)
-class _Ask:
-    """The arguments of `solve`."""
-
-    starts: int
-    seed: int
-    initial: Array | None
-    known: Array
-    known_nodal: Array | None
-    form: Form | None
-    until: float
-    """Reading of the monotonic clock after which no further start is begun."""
-
-
-def _vectors(problem: Problem, name: str, given: ArrayLike) -> Array:
-    points = np.atleast_2d(np.asarray(given, dtype=np.float64))
-    if points.size == 0:
-        return np.empty((0, problem.segments))
-    if points.shape[1:] != (problem.segments,) or not (np.isfinite(points) & (points > 0)).all():
-        raise TrajgapError(
-            f"{name}: expected shape (starts, {problem.segments}) of positive durations, "
-            f"got {np.asarray(given).shape}"
-        )
-    return points
+def _solve_smoother(problem: Problem, smooth: Problem, ask: Ask, seconds: float) -> Solution:
+    """`solve` on the smoother declaration, with the same starts and known motions."""
+    known, values = ask.known, None
+    if ask.known_nodal is None:
+        known = known[:0]  # without their free derivatives they are not determined
+    else:
+        values = carried_over(problem, ask.known_nodal, known, smooth)
+    return solve(
+        smooth,
+        starts=ask.starts,
+        seed=ask.seed,
+        initial=ask.initial,
+        known=known,
+        known_nodal=values,
+        form=ask.form,
+        seconds=seconds,
+    )
 
 
-def _solve_moving(problem: Problem, ask: _Ask) -> Solution:
+def _solve_moving(problem: Problem, ask: Ask) -> Solution:
     """`solve` for a problem without idle segments."""
     began = time.perf_counter()
     if not searchable(problem):
@@ -166,24 +163,37 @@ def _solve_moving(problem: Problem, ask: _Ask) -> Solution:
         alike = stretchable(problem) and (ask.initial >= UNEQUAL * mean).all()
         solution = _tracked(problem, ask) if alike else _searched(problem, ask)
     else:
-        wide = exact_starts(problem, ask.starts, ask.seed, _floor(problem, FLOORS[-1]))
-        if ordinary(problem, wide[0]):
-            solution = _challenged(problem, _tracked(problem, ask), wide, ask)
-        else:
-            solution = _searched(problem, ask)
+        solution = _shortened(problem, _quickly(problem, ask) or _widely(problem, ask), ask)
     solution = _with_known(problem, solution, ask)
+    if solution.durations is None:
+        solution = _without_jumps(problem, solution, ask.seed)
     if solution.durations is None:
         solution = _stretched_start(problem, solution)
     return replace(solution, solve_seconds=time.perf_counter() - began - solution.build_seconds)
+
+
+def _quickly(problem: Problem, ask: Ask) -> Solution | None:
+    """The answer of Newton descents, where they settle."""
+    if ask.form is not None or time_up():
+        return None
+    return settled_quickly(problem, ask.starts, ask.seed, FLOORS[-1], ask.until)
+
+
+def _widely(problem: Problem, ask: Ask) -> Solution:
+    """The answer of a wide search, and of the tracked NLP where that is at its best."""
+    wide = exact_starts(problem, ask.starts, ask.seed, _floor(problem, FLOORS[-1]))
+    if ordinary(problem, wide[0]):
+        return _challenged(problem, _tracked(problem, ask), wide, ask)
+    return _searched(problem, ask)
 
 
 def _floor(problem: Problem, share: float) -> Array:
     return made_up(problem, share * float(equal_start(problem).mean()))
 
 
-def _tracked(problem: Problem, ask: _Ask) -> Solution:
+def _tracked(problem: Problem, ask: Ask) -> Solution:
     """The tracked NLP from each start."""
-    search, build_seconds = _search(problem, ask)
+    search, build_seconds = tracked_search(problem, ask)
     points = ask.initial
     if points is None:
         points = screened_starts(problem, ask.starts, np.random.default_rng(ask.seed))
@@ -194,10 +204,10 @@ def _tracked(problem: Problem, ask: _Ask) -> Solution:
         made = np.where(problem.duration_lower == 0, floor, 0.0)
         found = search(points, floor)
         solution = judged(problem, found, made, len(points))
-        if solution.status is Status.FEASIBLE and _reduced(problem, ask.form):
+        if solution.status is Status.FEASIBLE and eliminating(problem, ask.form) and not time_up():
             # Eliminating across very unequal durations loses digits; the lifted form does not.
             lifted = compiled(structure_of(problem, Form.LIFTED))
-            found += _multistart(problem, lifted, points, floor, ask.until)
+            found += tracked_multistart(problem, lifted, points, floor, ask.until)
             solution = judged(problem, found, made, len(points))
         if solution.status is not Status.NOT_ATTAINED:
             break
@@ -210,13 +220,17 @@ def _tracked(problem: Problem, ask: _Ask) -> Solution:
     return replace(solution, build_seconds=build_seconds)
 
 
-def _searched(problem: Problem, ask: _Ask, durations: Array | None = None) -> Solution:
+def _searched(
+    problem: Problem,
+    ask: Ask,
+    durations: Array | None = None,
+    shares: tuple[float, ...] = (*FLOORS, *DEEPER),
+) -> Solution:
     """Exact descents from the basins of a wide search, or from the given starts.
 
     Where an answer ends at a floor, the floor is lowered, with a search of its own; where it still
     does, the total only approaches its infimum.
     """
-    shares = (*FLOORS, *DEEPER)
     carried = np.empty((0, problem.segments)) if durations is None else durations[None]
     coarse: Solution | None = None
     for k, share in enumerate(shares):
@@ -241,7 +255,8 @@ def _searched(problem: Problem, ask: _Ask, durations: Array | None = None) -> So
             return solution
         if coarse is not None:
             solution = _approached(problem, coarse, solution, shares[k - 1], share)
-            if share == FLOORS[-1] and not _nearly_coincident(problem, solution, floor):
+            assert solution.durations is not None
+            if share == FLOORS[-1] and not moving_at_floor(problem, solution.durations, floor):
                 return solution
         assert solution.durations is not None
         coarse, carried = solution, solution.durations[None]
@@ -249,7 +264,7 @@ def _searched(problem: Problem, ask: _Ask, durations: Array | None = None) -> So
     return coarse
 
 
-def _after_restoration(problem: Problem, ask: _Ask, solution: Solution) -> Solution:
+def _after_restoration(problem: Problem, ask: Ask, solution: Solution) -> Solution:
     """The tracked NLP once more, from starts that a feasibility phase has brought to the limits."""
     if problem.curve.free:
         usual = equal_start(problem)  # stretched to be tight, with the free derivatives at rest
@@ -269,6 +284,16 @@ def _after_restoration(problem: Problem, ask: _Ask, solution: Solution) -> Solut
     return _tracked(problem, replace(ask, initial=np.array(ends)))
 
 
+def _without_jumps(problem: Problem, solution: Solution, seed: int) -> Solution:
+    """Ratios of durations at which a determined curve happens not to jump."""
+    found = [Local(h, None, float(h.sum()), True, True, 0) for h in matched(problem, seed)]
+    if not found:
+        return solution
+    answer = judged(problem, found, np.zeros(problem.segments), len(found))
+    why = f"shortest of {len(found)} ratios of durations at which the motion does not jump"
+    return replace(answer, status=Status.FEASIBLE, why=why, iterations=solution.iterations)
+
+
 def _stretched_start(problem: Problem, solution: Solution) -> Solution:
     """Equal durations, stretched until they pass, where no search found anything."""
     found = decided(problem, equal_start(problem), first_nodal(problem))
@@ -278,28 +303,36 @@ def _stretched_start(problem: Problem, solution: Solution) -> Solution:
     return replace(answer, iterations=solution.iterations, build_seconds=solution.build_seconds)
 
 
-def _nearly_coincident(problem: Problem, solution: Solution, floor: Array) -> bool:
-    """Whether a joint moves in a segment at its floor: the total rises again further down."""
-    assert solution.durations is not None
-    at = (floor > 0) & (solution.durations <= 1.01 * floor)
-    breaks = problem.curve.waypoint_breaks
-    return any(
-        at[b] and (problem.waypoints[w] != problem.waypoints[w + 1]).any()
-        for w, b in enumerate(breaks[:-1])
-    )
-
-
-def _challenged(problem: Problem, solution: Solution, wide: list[Basin], ask: _Ask) -> Solution:
+def _challenged(problem: Problem, solution: Solution, wide: list[Basin], ask: Ask) -> Solution:
     """The answer, or a better one from a basin that the tracked NLP did not reach."""
-    if solution.status not in (Status.OPTIMAL, Status.FEASIBLE):
+    if solution.status not in (Status.OPTIMAL, Status.FEASIBLE) and not time_up():
         return _better_of(solution, _searched(problem, ask, solution.durations))
     bar = solution.best * (1 - BETTER) if _settled(solution) else np.inf
     points = np.array([basin.durations for basin in wide if basin.total < bar])
-    if points.size == 0:
+    if points.size == 0 or time_up():
         return solution
     floor = _floor(problem, FLOORS[-1])
     found = judged(problem, exact_search(problem, points, floor, ask.until), floor, solution.starts)
     return _better_of(solution, found)
+
+
+def _shortened(problem: Problem, solution: Solution, ask: Ask) -> Solution:
+    """The answer, or a better one in which a segment between close way-points is much shorter."""
+    if solution.status is not Status.OPTIMAL or apart(problem) or _late(ask):
+        return solution
+    if not short_ways(problem):
+        return solution
+    assert solution.durations is not None
+    floor = _floor(problem, DEEPER[0])
+    points = shortened(problem, solution.durations, floor, ask.seed)
+    if points.size == 0:
+        return solution
+    found = _searched(problem, replace(ask, initial=points), shares=DEEPER)
+    return _better_of(solution, replace(found, starts=solution.starts + found.starts))
+
+
+def _late(ask: Ask) -> bool:
+    return time.monotonic() > ask.until or time_up()
 
 
 def _better_of(one: Solution, other: Solution) -> Solution:
@@ -318,7 +351,7 @@ def _settled(solution: Solution) -> bool:
     return solution.status in (Status.OPTIMAL, Status.NOT_ATTAINED)
 
 
-def _with_known(problem: Problem, solution: Solution, ask: _Ask) -> Solution:
+def _with_known(problem: Problem, solution: Solution, ask: Ask) -> Solution:
     """The answer, or the shortest known motion that `check` passes, made shorter if possible."""
     nodal: list[Array | None] = [None] * len(ask.known)
     if problem.curve.free:
@@ -339,58 +372,13 @@ def _with_known(problem: Problem, solution: Solution, ask: _Ask) -> Solution:
     if searchable(problem):
         found += exact_search(problem, best[None], floor, ask.until)
     else:
-        search, _ = _search(problem, ask)
+        search, _ = tracked_search(problem, ask)
         found += search(best[None], FLOORS[-1] * float(best.mean()))
     shorter = judged(problem, found, floor, solution.starts)
     return shorter if shorter.best < solution.best else solution
 
 
-def _search(problem: Problem, ask: _Ask) -> tuple[Callable[[Array, float], list[Local]], float]:
-    """Local search from starts above a floor, and the time its build took, s."""
-    if problem.curve.piecewise is not None:
-        build_ = compiled(structure_of(problem, ask.form))
-        return partial(_multistart, problem, build_, until=ask.until), build_.build_seconds
-    built = compiled_curve(curve_structure(problem))
-    return partial(curve_multistart, problem, built, until=ask.until), built.build_seconds
-
-
-def _reduced(problem: Problem, form: Form | None) -> bool:
-    if problem.curve.piecewise is None:
-        return False
-    return structure_of(problem, form).form is Form.REDUCED
-
-
-def _multistart(
-    problem: Problem, build_: Compiled, points: Array, floor: float, until: float
-) -> list[Local]:
-    """Local optima of all starts; the same coarse solution is tracked only once."""
-    tracked: list[tuple[Array, Local]] = []
-    found: list[Local] = []
-    for start in points:
-        if found and time.monotonic() > until:
-            break
-        near = settled(problem, start)
-        x, scaled, success, iterations = solve_coarse(problem, build_, near, floor)
-        coarse, _ = unpack(problem, build_.formulation, scaled, x)
-        known = [
-            local
-            for h, local in tracked
-            if np.abs(h - coarse).max() <= 1e-6 * coarse.sum() and local.feasible
-        ]
-        local = known[0] if known else track(problem, build_, x, scaled, floor, until)
-        if success and not known:
-            tracked.append((coarse, local))
-        bar, _, _ = merit(problem, start, first_nodal(problem))
-        if bar < local.total:
-            # The coarse solve left the start's basin for a worse one: descend from the start.
-            first = pack(problem, build_.formulation, scaled, start, first_nodal(problem))
-            direct = track(problem, build_, first, scaled, floor, until)
-            local = min(local, direct, key=lambda one: one.total)
-        found.append(replace(local, iterations=local.iterations + iterations))
-    return found
-
-
-def _with_idle(problem: Problem, idle: list[int], ask: _Ask) -> Solution:
+def _with_idle(problem: Problem, idle: list[int], ask: Ask) -> Solution:
     """Solve with idle segments held at an ordinary duration, then give them their least one."""
     held = equal_start(problem)
     low, high = problem.duration_lower.copy(), problem.duration_upper.copy()

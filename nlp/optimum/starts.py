@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...problem import Array, Problem, evaluate
+from .clock import time_up
 
 CHAINS, CHAIN_STEPS = 384, 40
 """Short random descents (shared by the joints' cost) and their number of steps."""
@@ -100,6 +101,8 @@ def settled(problem: Problem, start: Array) -> Array:
     pool, totals = _repaired_total(problem, start[None])
     point, total, width = pool[0], totals[0], 0.5
     for _ in range(SETTLING_STEPS):
+        if time_up():
+            break
         steps = np.exp(width * generator.standard_normal((OFFSPRING, problem.segments)))
         pool, totals = _repaired_total(problem, point * steps)
         best = int(np.argmin(totals))
@@ -148,6 +151,8 @@ def _descents(problem: Problem, pool: Array, generator: np.random.Generator) -> 
     """Greedy random steps of shrinking width, every member of the pool by itself."""
     chains, total = _repaired_total(problem, pool)
     for width in np.geomspace(0.3, 0.02, CHAIN_STEPS):
+        if time_up():
+            break
         step = np.exp(width * generator.standard_normal(chains.shape))
         moved, moved_total = _repaired_total(problem, chains * step)
         better = moved_total < total

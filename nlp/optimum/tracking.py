@@ -1,113 +1,29 @@
-"""Compile a formulation, place its slots on the true extrema, and follow them to an optimum."""
+"""Place the slots of a formulation on the true extrema, and follow them to an optimum."""
 
 from __future__ import annotations
 
 import time
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from typing import Any, Protocol
 
-import casadi as ca
 import numpy as np
 
 from ...problem import Array, Interpolant, Problem, Verdict, check, fit
-from ...problem.curves import Trajectory, critical_points, layout, right_hand_sides
+from ...problem.curves import Trajectory, critical_points, right_hand_sides
+from .clock import time_up
 from .formulation import (
     Form,
     Formulation,
-    Structure,
-    build,
     interior_slots,
     pack_parameters,
 )
+from .ipopt import Compiled
 from .starts import first_nodal
 
 _PASSES = 40
 """Solves from one start: a bound against endless shrinking of the trust region."""
 _PATIENCE = 8
 """Passes without a gain after which a start is given up."""
-ADAPTIVE_VARIABLES = 1000
-"""Up to here the adaptive barrier needs far fewer iterations, beyond it sometimes very many; with
-virtual breaks, whose segments may vanish, it needs more."""
-
-
-@dataclass(frozen=True, eq=False)
-class Compiled:
-    """A formulation with its solvers: cold from a start, warm from a neighbouring solution."""
-
-    formulation: Formulation
-    cold: Any
-    warm: Any
-    build_seconds: float
-
-
-def ipopt_options(warm: bool, adaptive: bool = False) -> dict[str, Any]:
-    """Options of IPOPT that reach 1e-9, from a cold or a warm start."""
-    options: dict[str, Any] = {
-        "print_time": False,
-        "ipopt.print_level": 0,
-        "ipopt.sb": "yes",
-        "ipopt.tol": 1e-9,
-        "ipopt.constr_viol_tol": 1e-10,
-        "ipopt.dual_inf_tol": 1e-8,
-        "ipopt.compl_inf_tol": 1e-9,
-        "ipopt.bound_relax_factor": 0.0,
-        "ipopt.honor_original_bounds": "yes",
-        "ipopt.acceptable_iter": 0,
-        "ipopt.max_iter": 300,
-        "ipopt.mu_strategy": "adaptive" if adaptive and not warm else "monotone",
-    }
-    if warm:
-        options |= {
-            "ipopt.tol": 1e-12,
-            "ipopt.constr_viol_tol": 1e-12,
-            "ipopt.compl_inf_tol": 1e-12,
-            "ipopt.max_iter": 60,
-            "ipopt.warm_start_init_point": "yes",
-            "ipopt.warm_start_bound_push": 1e-9,
-            "ipopt.warm_start_bound_frac": 1e-9,
-            "ipopt.warm_start_slack_bound_push": 1e-9,
-            "ipopt.warm_start_slack_bound_frac": 1e-9,
-            "ipopt.warm_start_mult_bound_push": 1e-9,
-            "ipopt.mu_init": 1e-7,
-            "ipopt.nlp_scaling_method": "none",
-        }
-    return options
-
-
-@lru_cache(maxsize=64)
-def compiled(structure: Structure) -> Compiled:
-    """Build a structure and its solvers once; later problems of the same shape reuse them."""
-    began = time.perf_counter()
-    f = build(structure)
-    nlp = {
-        "x": f.variables,
-        "p": f.parameters,
-        "f": f.objective,
-        "g": ca.vertcat(f.equalities, f.inequalities),
-    }
-    adaptive = f.sizes["variables"] <= ADAPTIVE_VARIABLES and not structure.interpolant.virtual
-    cold = ca.nlpsol("cold", "ipopt", nlp, ipopt_options(False, adaptive=adaptive))
-    warm = ca.nlpsol("warm", "ipopt", nlp, ipopt_options(True))
-    return Compiled(f, cold, warm, time.perf_counter() - began)
-
-
-def best_form(interpolant: Interpolant, joints: int) -> Form:
-    """Reduced where few coefficients are eliminated, lifted otherwise (benchmarks/nlp_forms.py)."""
-    small = layout(interpolant).unknowns <= 16 and interpolant.free * joints <= 6
-    return Form.REDUCED if small else Form.LIFTED
-
-
-def structure_of(problem: Problem, form: Form | None = None) -> Structure:
-    """The shape of a problem's NLP: curve, joints, and which derivatives are limited."""
-    limits = problem.limits.derivatives
-    usable = np.isfinite(limits) & (limits > 0)
-    orders = tuple(r for r in (1, 2, 3) if usable[:, r - 1].any())
-    if problem.limits.limits_position:
-        orders = (0, *orders)
-    joints = problem.waypoints.shape[1]
-    chosen = form or best_form(problem.piecewise, joints)
-    return Structure(problem.piecewise, joints, orders, chosen)
 
 
 @dataclass(frozen=True, eq=False)
@@ -329,9 +245,11 @@ def solve_coarse(
     scaled = scaled_problem(problem, f, unit)
     bounds = variable_bounds(problem, f, unit, floor)
     places, weights = place_slots(f, None)
-    p = pack_parameters(f, scaled.values, scaled.inverse_limits, scaled.position, places, weights)
+    p = pack_parameters(scaled.values, scaled.inverse_limits, scaled.position, places, weights)
     h = np.clip(start, bounds[0][: start.size] * unit, bounds[1][: start.size] * unit)
     first = pack(problem, f, scaled, h, first_nodal(problem))
+    if time_up():
+        return first, scaled, False, 0
     x, _, success, iterations = run(build_.cold, f, first, p, bounds)
     return x, scaled, success, iterations
 
@@ -370,14 +288,12 @@ def track(
     radius, step, iterations, converged, duals = 0.5, np.inf, 0, False, None
     stale = 0
     for _ in range(_PASSES):
-        if time.monotonic() > until:
+        if time.monotonic() > until or time_up():
             break
         trajectory = fit(problem.curve, problem.waypoints, h, nodal)
         c = trajectory.scaled / scaled.angle_unit
         places, weights = place_slots(f, replace(trajectory, scaled=c))
-        p = pack_parameters(
-            f, scaled.values, scaled.inverse_limits, scaled.position, places, weights
-        )
+        p = pack_parameters(scaled.values, scaled.inverse_limits, scaled.position, places, weights)
         low, high = wide[0].copy(), wide[1].copy()
         room = radius * np.maximum(np.abs(x), np.where(np.arange(x.size) < n, 0.0, 1.0))
         held = slice(None) if problem.curve.free else slice(n)

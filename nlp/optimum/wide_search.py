@@ -8,7 +8,8 @@ import numpy as np
 
 from ...problem import Array, CurveError, Problem, evaluate, fit
 from ...problem.curves import batch_coefficients
-from .descent import Box
+from .clock import time_up
+from .descent import LogBox
 
 MEMBERS, MOST_MEMBERS = 16, 128
 """Members of a population for each segment, and at most."""
@@ -55,7 +56,7 @@ def _outside(problem: Problem, h: Array) -> Array:
     return np.asarray(np.where(np.isfinite(worst), worst, HOPELESS))
 
 
-def excess_and_total(problem: Problem, h: Array, box: Box) -> tuple[Array, Array, Array]:
+def excess_and_total(problem: Problem, h: Array, box: LogBox) -> tuple[Array, Array, Array]:
     """Vectors stretched towards the limits within the box: log durations, excess and total."""
     low, high = np.exp(box.low), np.exp(box.high)
     h = np.clip(h, low, high)
@@ -106,7 +107,7 @@ class Basin:
 
 
 def basins(
-    problem: Problem, base: Array, box: Box, count: int, generator: np.random.Generator
+    problem: Problem, base: Array, box: LogBox, count: int, generator: np.random.Generator
 ) -> list[Basin]:
     """The best mutually distant members of a differential evolution, best first.
 
@@ -116,7 +117,7 @@ def basins(
         With a determined curve of any kind.
     base : ndarray, shape (segments,)
         Usual durations, s, in the middle of the first population.
-    box : Box
+    box : LogBox
     count : int
         Most basins.
     generator : numpy.random.Generator
@@ -140,6 +141,8 @@ def basins(
     scale = float(base.sum())
     worth = _worth(excess, total, scale)
     for _ in range(GENERATIONS):
+        if time_up():
+            break
         a, b = generator.integers(size, size=(2, size))
         best = np.argsort(worth, kind="stable")[generator.integers(max(2, size // 4), size=size)]
         factor = generator.uniform(0.3, 0.9, (size, 1))

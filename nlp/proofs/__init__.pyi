@@ -3,13 +3,14 @@ from .document import (
     certificate,
     certificate_text,
     fits,
+    problem_seal,
     shipped,
     shipped_file,
     unlike,
     write_certificate,
 )
 from .evidence import (
-    Interval,
+    ProvedInterval,
     interval_of,
     proved,
     stated_exactly,
@@ -19,14 +20,15 @@ from .evidence import (
 )
 from .exact import ExactProblem, decimal, exact_problem, printed_problem
 from .outcome import Certified, Outcome, Progress
+from .proven_optimum import solve
 from .state import StateFile, read_state, state_document
 
 __all__ = [
     "Certified",
     "ExactProblem",
-    "Interval",
     "Outcome",
     "Progress",
+    "ProvedInterval",
     "StateFile",
     "certificate",
     "certificate_text",
@@ -37,10 +39,12 @@ __all__ = [
     "fits",
     "interval_of",
     "printed_problem",
+    "problem_seal",
     "proved",
     "read_state",
     "shipped",
     "shipped_file",
+    "solve",
     "state_document",
     "stated_exactly",
     "unlike",

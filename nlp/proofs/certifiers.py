@@ -4,37 +4,41 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
+from importlib import import_module
 from typing import Any
 
 from ...problem import Problem, TrajgapError
 from ...verify import Subject
-from .any_curve import ANY_CURVE
-from .closed_form import REST_TO_REST, STRETCHED
-from .cubic import CUBIC
 from .exact import ExactProblem, exact_problem
 from .judged import SPARE, Deadline, judged, unstated
 from .outcome import GAP, Certified, Progress, Request
-from .quintic import QUINTIC
 from .session import Certifier, Session
 from .state import resumed
-from .three_piece import THREE_PIECE
 
-CERTIFIERS: tuple[Certifier, ...] = (
-    REST_TO_REST,
-    THREE_PIECE,
-    STRETCHED,
-    CUBIC,
-    QUINTIC,
-    ANY_CURVE,
+CERTIFIERS: tuple[str, ...] = (
+    "closed_form.REST_TO_REST",
+    "three_piece.THREE_PIECE",
+    "closed_form.STRETCHED",
+    "cubic.CUBIC",
+    "quintic.QUINTIC",
+    "any_curve.ANY_CURVE",
 )
-"""Every kind of proof; of those that declare a curve and speak about a subject the first is taken.
+"""Every kind of proof, by module and name; of those that declare a curve the first is taken.
 
 A rest-to-rest cubic is a C2 cubic spline too: closed forms stand in front."""
 
 
+@cache
+def certifiers(subject: Subject) -> tuple[Certifier, ...]:
+    """The kinds of proof that speak about a subject, the preferred one first."""
+    named = (entry.rpartition(".") for entry in CERTIFIERS)
+    every = (getattr(import_module(f".{room}", __package__), name) for room, _, name in named)
+    return tuple(certifier for certifier in every if certifier.subject is subject)
+
+
 def _certifier(problem: ExactProblem, subject: Subject) -> Certifier | None:
-    fitting = (c for c in CERTIFIERS if c.subject is subject and c.declares(problem))
-    return next(fitting, None)
+    return next((c for c in certifiers(subject) if c.declares(problem)), None)
 
 
 def covered(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> str | None:
@@ -53,7 +57,7 @@ def covered(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> str |
     certifier = _certifier(problem, subject)
     if certifier is not None:
         return unstated(problem) or certifier.missing(problem)
-    families = ", ".join(c.family for c in CERTIFIERS if c.subject is subject)
+    families = ", ".join(certifier.family for certifier in certifiers(subject))
     return f"{problem.curve.name}: not covered; covered are {families}"
 
 
@@ -91,8 +95,8 @@ def certify(
         Time limit of all of it: proving a state again, the search, and proving the result with
         `trajgap.verify`, for which the search leaves time. At the limit, or at Ctrl-C, the best
         interval proved so far is returned; a proof that could not be verified in time is left in
-        the state alone. It is kept to within a second and one box, but for the local solver, which
-        is not interrupted.
+        the state alone. It is kept to within a second and one step: a box, a step of the local
+        solver, or the exact proof that an answer keeps the limits.
     seed : int
         Of the starts of the local solver that finds the answer.
     resume : Certified or dict, optional

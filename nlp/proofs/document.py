@@ -11,10 +11,11 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from ...problem import Curve, Interpolant, TrajgapError, replace_file
+from ...problem import Curve, Interpolant, Problem, TrajgapError, replace_file
 from ...problem.curves import StretchedUniformBSpline, TimedUniformBSpline
-from ...verify import CERTIFICATE_FORMAT, CertifiedQuestion, Subject, number, seal
-from .exact import ExactProblem, Real, decimal
+from ...problem.suite import list_instances
+from ...verify import CERTIFICATE_FORMAT, CertifiedQuestion, Refused, Subject, number, seal
+from .exact import ExactProblem, Real, decimal, exact_problem
 from .outcome import Certified, Outcome
 
 _WORDS = ("unit", "joints", "curve")
@@ -52,6 +53,21 @@ def problem_document(problem: ExactProblem) -> dict[str, Any]:
         "duration_lower": [decimal(x) for x in problem.duration_lower],
         "duration_upper": [None if x is None else decimal(x) for x in problem.duration_upper],
     }
+
+
+def problem_seal(problem: Problem) -> str:
+    """SHA-256 of a problem's own numbers, each float taken as exact, as certificates seal theirs.
+
+    Parameters
+    ----------
+    problem : Problem
+        Neither its name nor its coupling is looked at.
+
+    Returns
+    -------
+    str
+    """
+    return seal(problem_document(exact_problem(problem)))
 
 
 def _other(curve: Curve) -> dict[str, Any]:
@@ -189,6 +205,12 @@ def write_certificate(
     return len(text.encode())
 
 
+def _read_object(path: Path) -> dict[str, Any]:
+    """A JSON file of ours."""
+    document: dict[str, Any] = json.loads(path.read_text("utf-8"))
+    return document
+
+
 def shipped_folder() -> Path:
     """Folder of the certificates that come with the package."""
     return Path(__file__).parents[1] / "certificates"
@@ -209,22 +231,48 @@ def shipped(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> dict[
     dict or None
     """
     place = _place(problem, subject)
-    return None if place is None else copy.deepcopy(_all_shipped()[place])
+    if place is not None:
+        return copy.deepcopy(all_shipped()[place])
+    file = _suite_file(problem, subject)
+    return None if file is None else _read_object(file)
 
 
 def shipped_file(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> Path | None:
     """File of the certificate that `shipped` returns; None where there is none."""
     place = _place(problem, subject)
-    return None if place is None else _shipped_paths()[place]
+    return _suite_file(problem, subject) if place is None else _shipped_paths()[place]
 
 
 def _place(problem: ExactProblem, subject: Subject) -> int | None:
-    wanted = question(problem_document(problem), subject)
-    for place, document in enumerate(_all_shipped()):
+    try:
+        wanted = question(problem_document(problem), subject)
+    except Refused:  # a number with more digits than a certificate may state
+        return None
+    for place, document in enumerate(all_shipped()):
         same = document["claim"]["subject"] == subject
         if same and question(document["problem"], subject) == wanted:
             return place
     return None
+
+
+def _suite_file(problem: ExactProblem, subject: Subject) -> Path | None:
+    """The suite's certificate of this question: its table names the hash of each problem."""
+    wanted = seal(problem_document(problem))
+    for one in list_instances():
+        if one.problem_hash == wanted and one.lower_subject == subject:
+            file = one.certificate_file()
+            return None if file is None else Path(str(file))
+    return None
+
+
+def suite_documents(segments: int, joints: int) -> tuple[dict[str, Any], ...]:
+    """Certificates of the suite's instances of one size; read anew."""
+    files = [
+        one.certificate_file()
+        for one in list_instances()
+        if (one.segments, one.joints) == (segments, joints)
+    ]
+    return tuple(_read_object(Path(str(file))) for file in files if file is not None)
 
 
 def _shipped_paths() -> tuple[Path, ...]:
@@ -232,8 +280,9 @@ def _shipped_paths() -> tuple[Path, ...]:
 
 
 @lru_cache(maxsize=1)
-def _all_shipped() -> tuple[dict[str, Any], ...]:
-    return tuple(json.loads(path.read_text("utf-8")) for path in _shipped_paths())
+def all_shipped() -> tuple[dict[str, Any], ...]:
+    """Every certificate that ships with the package, in the order of the files; read once."""
+    return tuple(map(_read_object, _shipped_paths()))
 
 
 def question(problem: dict[str, Any], subject: Subject = Subject.DECLARED) -> dict[str, Any]:

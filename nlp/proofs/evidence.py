@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ...problem import TrajgapError
+from ...problem import TrajgapError, Verdict, check
 from ...problem.cases import Statement
 from ...verify import CertificateVerdict, Subject, verify_certificate
 from ..optimum import PerJointSolution, Solution, solve
@@ -24,10 +24,13 @@ WIDEST = Fraction(1, 100)
 """Relative width from which an interval is too wide to call the optimum certified."""
 _SAME = 1e-9
 """Relative excess within which a solver's total is the certificate's: what its tolerance is."""
+_BELOW = 1e-12
+"""Relative distance below the bound that rounding explains: `newton_kernel.KEPT`, the excess over a
+limit that a search in floats takes for kept."""
 
 
 @dataclass(frozen=True)
-class Interval:
+class ProvedInterval:
     """What a certificate proves, after it was proved again.
 
     Attributes
@@ -48,7 +51,7 @@ class Interval:
 
 
 @lru_cache(maxsize=1024)
-def proved(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> Interval | None:
+def proved(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> ProvedInterval | None:
     """The interval of a shipped certificate, or of a closed form; proved again, once a process.
 
     Parameters
@@ -59,7 +62,7 @@ def proved(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> Interv
 
     Returns
     -------
-    Interval or None
+    ProvedInterval or None
         None without a certificate of exactly this problem, or if it does not prove its claim
         or leaves an interval wider than `WIDEST`.
     """
@@ -74,7 +77,7 @@ def proved(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> Interv
         verdict = found.verdict
     else:
         verdict = None if document is None else verify_certificate(document)
-    return None if document is None or verdict is None else _narrow(document, verdict)
+    return None if document is None or verdict is None else narrow(document, verdict)
 
 
 def interval_of(
@@ -82,7 +85,7 @@ def interval_of(
     problem: ExactProblem,
     subject: Subject = Subject.DECLARED,
     verdict: CertificateVerdict | None = None,
-) -> Interval | None:
+) -> ProvedInterval | None:
     """The interval of a given certificate, proved again.
 
     Parameters
@@ -96,23 +99,24 @@ def interval_of(
 
     Returns
     -------
-    Interval or None
+    ProvedInterval or None
         None if it is about another problem, proves nothing, or leaves an interval wider than
         `WIDEST`.
     """
     if unstated(problem) is not None or not fits(document, problem, subject):
         return None
-    return _narrow(document, verdict or verify_certificate(document))
+    return narrow(document, verdict or verify_certificate(document))
 
 
-def _narrow(document: dict[str, Any], verdict: CertificateVerdict) -> Interval | None:
+def narrow(document: dict[str, Any], verdict: CertificateVerdict) -> ProvedInterval | None:
+    """What a certificate proves; None if that is nothing, or wider than `WIDEST`."""
     if not verdict.proves or verdict.lower is None:
         return None
     if verdict.upper is not None and verdict.upper - verdict.lower > WIDEST * verdict.lower:
         return None
     given = document["claim"]["durations"]
     durations = None if given is None else tuple(Fraction(h) for h in given)
-    return Interval(verdict.lower, verdict.upper, durations, verdict.infeasible)
+    return ProvedInterval(verdict.lower, verdict.upper, durations, verdict.infeasible)
 
 
 def stated_exactly(statement: Statement, joint: int | None = None) -> ExactProblem | None:
@@ -136,19 +140,20 @@ def with_certificate(solution: Solution, problem: ExactProblem | None) -> Soluti
     Returns
     -------
     Solution
-        Solved once more from the certificate's durations if these are shorter. Unchanged if
-        nothing is proved, or if the answer lies below the bound: then one of the two is wrong.
+        Solved once more from the certificate's durations if these are shorter; at these durations
+        if the answer lies below the bound by rounding alone. Unchanged if nothing is proved, or if
+        the answer lies farther below the bound: then one of the two is wrong.
     """
     return with_interval(solution, None if problem is None else proved(problem))
 
 
-def with_interval(solution: Solution, found: Interval | None) -> Solution:
+def with_interval(solution: Solution, found: ProvedInterval | None) -> Solution:
     """Add a proved lower bound of the same problem, as `with_certificate` does.
 
     Parameters
     ----------
     solution : Solution
-    found : Interval or None
+    found : ProvedInterval or None
         Proved for the same problem in exact numbers.
 
     Returns
@@ -164,13 +169,30 @@ def with_interval(solution: Solution, found: Interval | None) -> Solution:
     lower = float(found.lower)
     if Fraction(lower) > found.lower:
         lower = math.nextafter(lower, -math.inf)
+    if solution.infimum is None and lower * (1.0 - _BELOW) <= solution.best < lower:
+        solution = _proved_answer(solution, found.durations)
     return replace(solution, lower_bound=lower) if lower <= solution.best < math.inf else solution
+
+
+def _proved_answer(solution: Solution, durations: tuple[Fraction, ...]) -> Solution:
+    """The answer at proved durations, rounded up; as it was if they do not pass in floats."""
+    rounded = [float(h) for h in durations]
+    h = np.array(
+        [
+            math.nextafter(x, math.inf) if Fraction(x) < d else x
+            for x, d in zip(rounded, durations, strict=True)
+        ]
+    )
+    found = check(solution.problem, h)
+    if found.verdict is not Verdict.PASS:
+        return solution
+    return replace(solution, durations=h, check=found)
 
 
 def with_certificates(
     answer: PerJointSolution,
     statement: Statement,
-    find: Callable[[ExactProblem], Interval | None] = proved,
+    find: Callable[[ExactProblem], ProvedInterval | None] = proved,
 ) -> PerJointSolution:
     """`with_certificate` for each joint's own optimum; the procedure's output stays what it is.
 

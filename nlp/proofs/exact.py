@@ -204,11 +204,13 @@ def printed_problem(statement: Statement) -> ExactProblem:
     Raises
     ------
     TrajgapError
-        If the interpolant prescribes a derivative that is not 0.
+        If the interpolant prescribes a derivative that is not 0, or turns are added to angles.
     CaseError
         If a unit is missing.
     """
     statement.points()
+    if statement.turns:
+        raise TrajgapError("certify: angles with whole turns added are not covered")
     problem = statement.problem()
     if not problem.curve.homogeneous:
         raise TrajgapError("certify: end derivatives other than 0 are not covered")

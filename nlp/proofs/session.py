@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, TypeVar
@@ -13,7 +14,7 @@ import numpy as np
 
 from ...problem import Array, TrajgapError, evaluate
 from ...verify import Subject, verify_certificate
-from ..optimum import solve
+from ..optimum import solve, stopping_after
 from .answer import float_problem, prove_feasible
 from .document import certificate
 from .exact import ExactProblem
@@ -34,6 +35,8 @@ needs but that for cubic splines, which is measured."""
 EARLY = 0.25
 """Share of the time after which judging is measured: earlier, most runs that end in time are over,
 and judging twice would cost them more than it gives."""
+SEEKING = 0.5
+"""Share of what is left of the time that a local search may take: the rest is for the proof."""
 SAFE = 1.5
 """Factor on what was measured: later boxes may take longer to judge than those so far."""
 
@@ -207,15 +210,23 @@ class Session:
     def seek(self, initial: Array | None = None) -> bool:
         """Look for a shorter answer with the local solver, from given durations or its own starts.
 
+        The solver has a share of the time that is left, and then what it has found is taken.
+
         Returns
         -------
         bool
             Whether one was found.
         """
-        solution = solve(self.floats, seed=self.request.seed, initial=initial)
+        with self.sharing_the_time():
+            solution = solve(self.floats, seed=self.request.seed, initial=initial)
         tries = [h for h in (solution.durations, initial) if h is not None]
         shorter = [self.offer(h) for h in tries]
         return any(shorter)
+
+    def sharing_the_time(self) -> AbstractContextManager[None]:
+        """Within, a local search ends after its share of the time that is left."""
+        left = self.request.seconds - self.seconds
+        return stopping_after(SEEKING * left)
 
     def stretched(self, directions: Array) -> Array:
         """Rows of durations, each stretched until it keeps the limits and the least durations.

@@ -26,6 +26,8 @@ class SampledPath:
     ----------
     s : ndarray, shape (points,)
         Arc length, rad.
+    position : ndarray, shape (points, joints)
+        rad.
     tangent : ndarray, shape (points, joints)
         q′ = dq/ds.
     before, after : ndarray, shape (points, joints)
@@ -37,6 +39,7 @@ class SampledPath:
     """
 
     s: Array
+    position: Array
     tangent: Array
     before: Array
     after: Array
@@ -128,7 +131,7 @@ def sample(piece: PathPiece, graded: Measure, cells: int) -> SampledPath:
         u, s = u[keep], s[keep]
         length = float(s[-1])
         speed = np.where((one.rest[0] & (u == 0.0)) | (one.rest[1] & (u == 1.0)), 0.0, one.speed(u))
-        parts.append((s, one.tangent(u), speed, one.curvature(u)))
+        parts.append((s, one.tangent(u), speed, one.curvature(u), one.derivative(u, 0)))
     last = parts[-1]
 
     def joined(i: int) -> Array:
@@ -136,6 +139,7 @@ def sample(piece: PathPiece, graded: Measure, cells: int) -> SampledPath:
 
     return SampledPath(
         s=joined(0),
+        position=joined(4),
         tangent=joined(1),
         before=np.concatenate([parts[0][3][:1], *[part[3][1:] for part in parts]]),
         after=joined(3),

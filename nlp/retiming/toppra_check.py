@@ -146,7 +146,8 @@ def retime(
         for level, n in enumerate(cells):
             path = sample(piece, graded, n)
             ends = path.end_speeds(given)
-            expected = stretch * piece.duration
+            # No joint with a limit moves far enough to count: any scale will do.
+            expected = (stretch or 1.0) * piece.duration
             found = optimal_duration(path, limits.velocity, limits.acceleration, ends, expected)
             if found is None:
                 why = f"TOPPRA found no parametrisation of piece {i + 1} on {n} cells"

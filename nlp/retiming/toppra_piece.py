@@ -122,6 +122,24 @@ def optimal_duration(
         Duration, s; None if no parametrisation was found, or no joint that moves on this piece
         has an acceleration limit.
     """
+    found = optimal_speeds(path, velocity, acceleration, end_speeds, expected)
+    return None if found is None else found[0]
+
+
+def optimal_speeds(
+    path: SampledPath,
+    velocity: Array,
+    acceleration: Array,
+    end_speeds: tuple[float, float],
+    expected: float,
+) -> tuple[float, Array] | None:
+    """As `optimal_duration`, with the path speeds at the points of the grid.
+
+    Returns
+    -------
+    tuple of float and ndarray, shape (points,), or None
+        s, and rad/s.
+    """
     if not np.isfinite(acceleration[path.moving]).any():
         return None
     unlimited = _UNLIMITED * float(path.s[-1]) / expected
@@ -141,7 +159,7 @@ def _attempt(
     end_speeds: tuple[float, float],
     length: float,
     time_unit: float,
-) -> float | None:
+) -> tuple[float, Array] | None:
     scale = length / float(path.s[-1])
     grid = path.s * scale
     moving, some = path.moving, path.moving & np.isfinite(acceleration)
@@ -174,4 +192,5 @@ def _attempt(
             return None
         if solver.problem_data.sd_vec[-1] < slower * end:
             return None
-    return float(answer.duration) * time_unit
+        speeds = np.asarray(solver.problem_data.sd_vec, dtype=np.float64)
+    return float(answer.duration) * time_unit, speeds / (time_unit * scale)

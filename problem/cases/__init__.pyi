@@ -1,6 +1,7 @@
 from .case import Case, DurationBox
 from .claim import (
     AnyClaim,
+    AuthorsAnswer,
     Claim,
     ConditionsClaim,
     ControlVerticesClaim,
@@ -8,17 +9,21 @@ from .claim import (
     DurationsClaim,
     ImprovementClaim,
     MaximumClaim,
+    MeasureClaim,
+    MotionValueClaim,
     PeakClaim,
     StatementClaim,
     TimeClaim,
     TotalTimeClaim,
 )
-from .data_files import PUBLISHED
+from .clue import AnyClue, AxisClue, DataSheetClue, HalfTurnsClue, SmoothClue
+from .data_files import PUBLISHED, SUITE_PREFIX, case_files
+from .faults import all_faults, refusal
 from .instances import InstancesBlock, instance_waypoints
 from .load import load_case, parse_case, published_ids
-from .references import motions_of_peak
+from .references import motions_of
 from .robot_file import load_robot, robot_ids
-from .scaffolding import scaffold
+from .scaffolding import identity_of, scaffold
 from .schema import (
     AlgorithmBlock,
     Assumption,
@@ -30,15 +35,21 @@ from .schema import (
     Robot,
     Source,
     Table,
+    Transcription,
     case_schema,
 )
 from .statement import Digits, Statement
+from .transcripts import Difference, compare_transcriptions
 
 __all__ = [
     "PUBLISHED",
+    "SUITE_PREFIX",
     "AlgorithmBlock",
     "AnyClaim",
+    "AnyClue",
     "Assumption",
+    "AuthorsAnswer",
+    "AxisClue",
     "Cartesian",
     "Case",
     "CaseFile",
@@ -46,30 +57,42 @@ __all__ = [
     "ConditionsClaim",
     "ControlVerticesClaim",
     "ConvergenceClaim",
+    "DataSheetClue",
+    "Difference",
     "Digits",
     "DurationBox",
     "DurationsClaim",
+    "HalfTurnsClue",
     "ImprovementClaim",
     "InstancesBlock",
     "MaximumClaim",
+    "MeasureClaim",
+    "MotionValueClaim",
     "NotCheckable",
     "PeakClaim",
     "ProblemBlock",
     "Reading",
     "Robot",
+    "SmoothClue",
     "Source",
     "Statement",
     "StatementClaim",
     "Table",
     "TimeClaim",
     "TotalTimeClaim",
+    "Transcription",
+    "all_faults",
+    "case_files",
     "case_schema",
+    "compare_transcriptions",
+    "identity_of",
     "instance_waypoints",
     "load_case",
     "load_robot",
-    "motions_of_peak",
+    "motions_of",
     "parse_case",
     "published_ids",
+    "refusal",
     "robot_ids",
     "scaffold",
 ]

@@ -13,9 +13,12 @@ from ..fields import nearest
 from ..printed import Printed
 from ..problem import Coupling, Problem
 from ..robots import Chain, Convention, DhTable
-from ..units import Measured, Quantity
+from ..units import CHOICES, Measured, Quantity
 from .claim import AnyClaim, Claim, DurationsClaim, MaximumClaim
+from .clue import AnyClue
 from .instances import InstancesBlock
+from .line import on_line
+from .overlay import overlaid
 from .robot_file import robot_file, robot_ids
 from .schema import (
     AlgorithmBlock,
@@ -29,8 +32,9 @@ from .schema import (
     Robot,
     Source,
     Table,
+    Waypoints,
 )
-from .statement import Digits, Statement, overlaid
+from .statement import Digits, Statement
 
 _ONLY_PROBLEM = ProblemBlock(id="main")
 """Stands for the one problem of a file that lists none; its id is what `--problem` then takes."""
@@ -102,6 +106,11 @@ class Case:
     def claims(self) -> tuple[AnyClaim, ...]:
         """What the paper claims."""
         return self.document.claims
+
+    @property
+    def clues(self) -> tuple[AnyClue, ...]:
+        """What speaks for or against readings beside the claims."""
+        return self.document.clues
 
     @property
     def tables(self) -> tuple[Table, ...]:
@@ -395,7 +404,26 @@ class Case:
         """One problem under one reading, still in printed digits."""
         problem = self.problems[0] if problem_id is None else self._problem(problem_id)
         reading = self.default_reading if reading_id is None else self._reading(reading_id)
-        return overlaid(self.document, self.file, problem, reading)
+        return overlaid(self.document, self.file, problem, reading, self._drawn)
+
+    def _drawn(self, waypoints: Waypoints, unit: str | None, selected: str) -> Waypoints:
+        """Rows of way-points that lie on a line, computed once for each unit."""
+        known = self._lines.get((waypoints, unit))
+        if known is None:
+            chain = self.chain()
+            if chain is None or chain.labels != self.robot.joints:
+                why = "needs the robot's table, and all its joints in robot.joints; add them"
+                raise CaseError(self.file, "waypoints.line", why + selected)
+            if unit is None:
+                choices = ", ".join(CHOICES["position"])
+                raise CaseError(self.file, "units.position", f"is missing; add one of {choices}")
+            known = on_line(waypoints, unit, chain, self.file, selected)
+            self._lines[waypoints, unit] = known
+        return known
+
+    @cached_property
+    def _lines(self) -> dict[tuple[Waypoints, str | None], Waypoints]:
+        return {}
 
     def _problem(self, problem_id: str) -> ProblemBlock:
         for problem in self.problems:

@@ -2,13 +2,37 @@
 
 from __future__ import annotations
 
+from datetime import date
 from typing import Annotated, Literal, Self
 
-from pydantic import Discriminator, Field, StrictInt, model_validator
+from pydantic import AfterValidator, Discriminator, Field, StrictInt, model_validator
 
+from ..errors import TrajgapError
 from ..fields import Id, Length, Number, PrintedRows, Strict, Text, fault
 from ..printed import Printed
 from ..problem import Coupling
+
+
+def _day(text: str) -> str:
+    try:
+        return date.fromisoformat(text).isoformat()
+    except ValueError:
+        raise TrajgapError(f"{text!r} is no day; write it as 2026-01-31") from None
+
+
+Day = Annotated[Text, AfterValidator(_day)]
+"""A day of the calendar, such as "2026-01-31"."""
+
+
+class AuthorsAnswer(Strict):
+    """What the authors were asked about a claim, and what they said."""
+
+    sent: Day
+    """When they were asked."""
+    answered: Day | None = None
+    """When they answered; absent while they have not."""
+    outcome: str = ""
+    """What came of it, in a sentence of ours."""
 
 
 class Claim(Strict):
@@ -32,6 +56,8 @@ class Claim(Strict):
     """The table that prints it."""
     printed_tables: tuple[Id, ...] = ()
     """Further tables that the claim speaks about."""
+    answer: AuthorsAnswer | None = None
+    """What the authors say of it, where they were asked."""
 
 
 class TimeClaim(Claim):
@@ -73,6 +99,15 @@ class TotalTimeClaim(TimeClaim):
     """The claim of durations whose total it states, where that is printed elsewhere."""
     value: Length
     """Total time."""
+    profile: Literal["trapezoidal", "s-curve"] | None = None
+    """The profile of `other_curve`, where it is one that starts and ends each segment at rest:
+    constant acceleration and speed, or constant jerk."""
+
+    @model_validator(mode="after")
+    def _on_another_curve(self) -> Self:
+        if self.profile is not None and self.other_curve is None:
+            raise fault(".profile", "goes with other_curve; name the curve there as the paper does")
+        return self
 
 
 class ImprovementClaim(Claim):
@@ -99,16 +134,15 @@ class ImprovementClaim(Claim):
         return self
 
 
-class PeakClaim(Claim):
-    """The largest absolute value of a derivative: one number, or one for each joint."""
+class MotionValueClaim(Claim):
+    """What claims of a derivative of a motion have in common: one number, or one for each joint."""
 
-    quantity: Literal["peak"]
     of: Id | None = None
     """The claim of durations whose motion it describes; the only one that fits if absent."""
     derivative: Literal["velocity", "acceleration", "jerk"]
     """Which derivative."""
     value: Length | None = None
-    """Largest absolute value, in the file's unit of that derivative."""
+    """The number, in the file's units."""
     values: Annotated[tuple[Length, ...], Field(min_length=1)] | None = None
     """The same of each joint, in the order of the robot's joints."""
 
@@ -124,6 +158,25 @@ class PeakClaim(Claim):
     def printed(self) -> tuple[Printed, ...]:
         """Its numbers, one or one for each joint."""
         return self.values or (() if self.value is None else (self.value,))
+
+
+class PeakClaim(MotionValueClaim):
+    """The largest absolute value of a derivative."""
+
+    quantity: Literal["peak"]
+
+
+class MeasureClaim(MotionValueClaim):
+    """A mean or an integral of a derivative over the motion.
+
+    One number for several joints is that of their Euclidean norm, of the largest joint, or the mean
+    of the joints.
+    """
+
+    quantity: Literal["measure"]
+    measure: Literal["mean", "rms", "integral", "integral-square"]
+    """"mean" of the absolute value and "rms" in the derivative's unit; "integral" of the absolute
+    value in that times the unit of time; "integral-square" in its square times the unit of time."""
 
 
 class ConvergenceClaim(Claim):
@@ -167,11 +220,28 @@ class StatementClaim(Claim):
     """A claim in words."""
 
     quantity: Literal["statement"]
-    checks: Literal["within_limits", "continuous", "jumps", "at_rest", "optimal", "none"]
+    checks: Literal[
+        "within_limits",
+        "continuous",
+        "jumps",
+        "at_rest",
+        "optimal",
+        "kinematics",
+        "varies_most",
+        "varies_much",
+        "above",
+        "none",
+    ]
     """How it can be checked on the claims named in ``of``; "jumps" says that acceleration does,
-    "at_rest" that velocity is 0 at both ends."""
+    "at_rest" that velocity is 0 at both ends. Without ``of``: "kinematics" says that joint angles
+    and positions belong together, "varies_most" and "varies_much" that ``joint`` does, "above" that
+    the first of ``positions`` lies above the second."""
     of: tuple[Id, ...] = ()
     """The claims whose durations it speaks about."""
+    positions: tuple[Id, ...] = ()
+    """Two printed positions, where ``checks`` is "above"."""
+    against: Id | None = None
+    """Another algorithm that the claim's own is compared with: replays of both stand beside it."""
     not_checkable: str | None = None
     """Why it cannot be checked; needed exactly if ``checks`` is "none"."""
 
@@ -183,6 +253,13 @@ class StatementClaim(Claim):
                 'goes with checks = "none" and only with it; say why it cannot be checked, '
                 "or how it can",
             )
+        if (self.checks == "above") != (len(self.positions) == 2):
+            raise fault(".positions", 'names two positions, and goes with checks = "above" only')
+        if self.checks in ("varies_most", "varies_much") and self.joint is None:
+            how = self.checks.removeprefix("varies_")
+            raise fault(".joint", f"is missing; name the joint that is said to vary {how}")
+        if self.against is not None and self.algorithm is None:
+            raise fault(".against", "goes with algorithm; name the one that is compared with it")
         return self
 
 
@@ -192,6 +269,7 @@ AnyClaim = Annotated[
     | TotalTimeClaim
     | ImprovementClaim
     | PeakClaim
+    | MeasureClaim
     | ConvergenceClaim
     | ConditionsClaim
     | ControlVerticesClaim
@@ -206,6 +284,7 @@ QUANTITY_KINDS = (
     "total_time",
     "improvement",
     "peak",
+    "measure",
     "convergence",
     "conditions",
     "control_vertices",

@@ -2,18 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from hashlib import sha256
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path
+from typing import Any, TypeVar
+
+from pydantic import BaseModel, ValidationError
 
 from ..errors import CaseError
 from ..fields import nearest
 from ..textfile import read_hashed
+from .faults import all_faults, refusal
+
+M = TypeVar("M", bound=BaseModel)
 
 _ENDING = ".toml"
 """Of every shipped data file: people write and read them."""
+
+FORMAT = 1
+"""The version of the formats of case and robot files that this package reads."""
 
 
 @dataclass(frozen=True)
@@ -25,19 +35,26 @@ class Shipped:
     package : str
     kind : str
         What one of them is, for messages.
+    prefix : str
+        Stands before an id, so that ids of several packages cannot be confused.
+    listed_by : str
+        The command that lists the ids, where they are too many for a message.
     """
 
     package: str
     kind: str
+    prefix: str = ""
+    listed_by: str = ""
 
     def ids(self) -> tuple[str, ...]:
         """Ids of the files, sorted."""
         names = (entry.name for entry in files(self.package).iterdir())
-        return tuple(sorted(n.removesuffix(_ENDING) for n in names if n.endswith(_ENDING)))
+        found = sorted(n.removesuffix(_ENDING) for n in names if n.endswith(_ENDING))
+        return tuple(f"{self.prefix}{name}" for name in found)
 
     def file(self, id: str) -> Traversable:
         """The file of an id."""
-        return files(self.package).joinpath(f"{id}{_ENDING}")
+        return files(self.package).joinpath(f"{id.removeprefix(self.prefix)}{_ENDING}")
 
     def text(self, source: str | Path) -> str:
         """Text of a shipped file by its id, or of another by its path; raises as `hashed`."""
@@ -56,13 +73,58 @@ class Shipped:
             data = self.file(source).read_bytes()
             return data.decode("utf-8"), sha256(data).hexdigest()
         path = Path(source)
-        if not path.suffix and not path.exists():
+        # What begins with the prefix is never a file: dots in a name make no ending of it.
+        meant = bool(self.prefix) and str(source).startswith(self.prefix)
+        if meant or (not path.suffix and not path.exists()):
             name = str(source)
-            raise CaseError(name, "", f"neither a {self.kind} nor a file; {nearest(name, known)}")
+            near = nearest(name, known)
+            if self.listed_by and not near.startswith("did you mean"):
+                near = f"`{self.listed_by}` lists them"
+            said = f"no {self.kind}" if meant else f"neither a {self.kind} nor a file"
+            raise CaseError(name, "", f"{said}; {near}")
         return read_hashed(path)
 
 
 PUBLISHED = Shipped("trajgap.problem.published", "published case")
 """The published cases: one package of data, which holds nothing else."""
+SUITE_PREFIX = "suite:"
+"""Stands before the name of an instance of the suite wherever a case is named."""
+SUITE = Shipped(
+    "trajgap.problem.suite.cases", "instance of the suite", SUITE_PREFIX, "trajgap suite"
+)
+"""The instances of the suite: one package of data, which holds nothing else."""
 ROBOTS = Shipped("trajgap.problem.robots", "shipped robot")
 """The robots, beside the code that computes with them."""
+
+
+def case_files(source: str | Path) -> Shipped:
+    """Where the case files lie among which a source is looked for by its id."""
+    return SUITE if str(source).startswith(SUITE_PREFIX) else PUBLISHED
+
+
+def check_format(raw: Mapping[str, Any], file: str) -> None:
+    """Refuse a file of another version of its format.
+
+    Raises
+    ------
+    CaseError
+    """
+    version = raw.get("format")
+    if version is None:
+        raise CaseError(file, "format", f"is missing; add `format = {FORMAT}`")
+    if version != FORMAT or isinstance(version, bool):
+        raise CaseError(file, "format", f"is {version!r}; this version reads {FORMAT}")
+
+
+def validated(kind: type[M], raw: Mapping[str, Any], file: str) -> M:
+    """What a file holds, checked field by field.
+
+    Raises
+    ------
+    CaseError
+        All faults, in one line.
+    """
+    try:
+        return kind.model_validate(raw)
+    except ValidationError as error:
+        raise refusal(file, all_faults(error)) from None

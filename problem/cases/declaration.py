@@ -70,7 +70,11 @@ FAMILIES = {
     ),
     "jtraj": Family(lambda block, count, ends: jtraj(count - 1)),
     "uniform-cubic-b-spline": Family(
-        lambda block, count, ends: uniform_cubic_b_spline(count, block.time or ""), ("time",)
+        lambda block, count, ends: uniform_cubic_b_spline(
+            count, block.time or "", block.time_ends == "natural"
+        ),
+        ("time",),
+        ("time_ends",),
     ),
     "clamped-b-spline": Family(_clamped, ("degree", "knots", "parameters"), ("time", "end_orders")),
 }
@@ -111,6 +115,8 @@ class InterpolantBlock(Strict):
     """Clamped B-spline: what the knots are placed by."""
     time: Literal["stretched", "timed"] | None = None
     """B-splines: whether each segment is stretched in time by itself, or time is smooth."""
+    time_ends: Literal["equal-vertices", "natural"] | None = None
+    """Uniform B-spline whose time is timed: how time ends, as the joints do if absent."""
     free: Annotated[StrictInt, Field(ge=0)] = 0
     """Coefficients per joint that the conditions leave free."""
 

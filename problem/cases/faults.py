@@ -1,15 +1,23 @@
-"""One clear line for whatever a validated case file gets wrong."""
+"""One clear line for all that a case file gets wrong."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 from pydantic import ValidationError
 
+from ..errors import CaseError
 from ..fields import UNION_TAGS, describe, nearest
 from .claim import QUANTITY_KINDS
+from .clue import CLUE_KINDS
 
+_TOLD_APART = {
+    "claims": ("quantity", QUANTITY_KINDS, "quantity of a claim"),
+    "clues": ("kind", CLUE_KINDS, "kind of clue"),
+}
+"""Lists whose entries are of several kinds: the key that tells them apart, its values, its name."""
 _ONE_OR_EACH = (
     "velocity",
     "acceleration",
@@ -30,8 +38,47 @@ _EXPECTED = {
 """Pydantic's error type to what was wanted, and how to give it in TOML."""
 
 
-def first_fault(error: ValidationError) -> tuple[str, str]:
-    """Field path and reason of the fault to fix first.
+class Faults:
+    """Faults of one file, gathered so that one refusal tells all of them.
+
+    Parameters
+    ----------
+    file : str
+        Name for error messages.
+    """
+
+    def __init__(self, file: str) -> None:
+        self.file = file
+        self.found: list[tuple[str, str]] = []
+
+    def add(self, field: str, reason: str) -> None:
+        """Note a fault; only the first at each field, since others may follow from it."""
+        if all(field != known for known, _ in self.found):
+            self.found.append((field, reason))
+
+    @contextmanager
+    def noted(self) -> Iterator[None]:
+        """Go on after whatever is refused inside."""
+        try:
+            yield
+        except CaseError as error:
+            for field, reason in error.faults:
+                self.add(field, reason)
+
+    def refuse(self) -> None:
+        """Raise a CaseError that tells all faults, if there are any."""
+        if self.found:
+            raise refusal(self.file, self.found)
+
+
+def refusal(file: str, faults: Sequence[tuple[str, str]]) -> CaseError:
+    """The error that tells all faults, at least one, the first to be fixed first."""
+    (field, reason), *others = faults
+    return CaseError(file, field, reason, others)
+
+
+def all_faults(error: ValidationError) -> list[tuple[str, str]]:
+    """Field path and reason of every fault, the one to fix first in front.
 
     Parameters
     ----------
@@ -40,32 +87,34 @@ def first_fault(error: ValidationError) -> tuple[str, str]:
 
     Returns
     -------
-    field : str
-        Path such as ``claims[3].durations[1]``.
-    reason : str
-        What is wrong and how to fix it; one line, with the number of further faults.
+    list of (str, str)
+        A path such as ``claims[3].durations[1]``, and what is wrong and how to fix it.
     """
     details = error.errors(include_url=False)
     # A misspelt key is also a missing one; the spelling is what to fix.
     details.sort(key=lambda detail: detail["type"] != "unknown_key")
-    field, reason = _read(details[0])
-    more = len(details) - 1
-    return field, reason + (f" (and {more} more)" if more else "")
+    found = Faults("")
+    for detail in details:
+        for field, reason in _read(detail):
+            found.add(field, reason)
+    return found.found
 
 
-def _read(detail: Mapping[str, Any]) -> tuple[str, str]:
+def _read(detail: Mapping[str, Any]) -> list[tuple[str, str]]:
     context = detail.get("ctx", {})
     kind, raw = detail["type"], detail["input"]
     path = _path(detail["loc"])
     if kind in ("fault", "unknown_key"):
-        return (path + context["path"]).removeprefix("."), context["reason"]
+        told = [(context["path"], context["reason"]), *context.get("others", ())]
+        return [((path + at).removeprefix("."), reason) for at, reason in told]
     if kind in ("union_tag_invalid", "union_tag_not_found"):
-        given = raw.get("quantity") if isinstance(raw, dict) else None
+        key, kinds, name = _TOLD_APART[detail["loc"][0]]
+        given = raw.get(key) if isinstance(raw, dict) else None
         if given is None:
-            return f"{path}.quantity", f"is missing; add one of {', '.join(QUANTITY_KINDS)}"
-        fix = nearest(str(given), QUANTITY_KINDS)
-        return f"{path}.quantity", f"{_short(given)} is no quantity of a claim; {fix}"
-    return path, _reason(kind, raw, context, detail["msg"])
+            return [(f"{path}.{key}", f"is missing; add one of {', '.join(kinds)}")]
+        fix = nearest(str(given), kinds)
+        return [(f"{path}.{key}", f"{_short(given)} is no {name}; {fix}")]
+    return [(path, _reason(kind, raw, context, detail["msg"]))]
 
 
 def _reason(kind: str, raw: object, context: Mapping[str, Any], message: str) -> str:
@@ -96,7 +145,7 @@ def _path(location: tuple[str | int, ...]) -> str:
         before = location[position - 1] if position else None
         if part in UNION_TAGS and before in _ONE_OR_EACH:
             continue
-        if position == 2 and location[0] == "claims" and part in QUANTITY_KINDS:
+        if position == 2 and location[0] in _TOLD_APART and part in _TOLD_APART[location[0]][1]:
             continue
         path += f"[{part}]" if isinstance(part, int) else f".{part}"
     return path.removeprefix(".")

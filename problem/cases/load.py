@@ -6,19 +6,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from pydantic import ValidationError
-
-from ..errors import CaseError
 from ..textfile import parse_toml
 from .case import Case
-from .data_files import PUBLISHED
-from .faults import first_fault
+from .data_files import PUBLISHED, case_files, check_format, validated
+from .faults import Faults
 from .references import check_claims, check_kinematics, check_references
 from .schema import CaseFile
 from .sizes import check_sizes, check_values
-
-FORMAT = 1
-"""The version of the case file format that this module reads."""
 
 
 def published_ids() -> tuple[str, ...]:
@@ -32,7 +26,7 @@ def load_case(source: str | Path) -> Case:
     Parameters
     ----------
     source : str or Path
-        Id of a published case, or path of a TOML file.
+        Id of a published case, ``suite:NAME`` of an instance of the suite, or path of a TOML file.
 
     Returns
     -------
@@ -44,7 +38,7 @@ def load_case(source: str | Path) -> Case:
         If there is no such case or file, or anything in it is wrong: one line naming the file,
         the field and how to fix it.
     """
-    text, digest = PUBLISHED.hashed(source)
+    text, digest = case_files(source).hashed(source)
     return replace(parse_case(text, str(source)), sha256=digest)
 
 
@@ -89,25 +83,18 @@ def check_case(raw: dict[str, Any], file: str) -> Case:
     CaseError
         As `load_case`.
     """
-    version = raw.get("format")
-    if version is None:
-        raise CaseError(file, "format", f"is missing; add `format = {FORMAT}`")
-    if version != FORMAT or isinstance(version, bool):
-        raise CaseError(file, "format", f"is {version!r}; this version reads {FORMAT}")
+    check_format(raw, file)
     check_values(raw, file)
-    try:
-        document = CaseFile.model_validate(raw)
-    except ValidationError as error:
-        raise CaseError(file, *first_fault(error)) from None
+    document = validated(CaseFile, raw, file)
     check_sizes(document, file)
-    check_references(document, file)
+    faults = Faults(file)
+    check_references(document, faults)
     case = Case(document, file)
-    check_kinematics(document, file, case.chain())
+    with faults.noted():
+        check_kinematics(document, faults, case.chain())
     for problem_id, reading_id in case.selections():
-        statement = case.statement(problem_id, reading_id)
-        if statement.complete:
-            statement.problem()
-        else:
-            statement.data()
-    check_claims(document, file, lambda claim: case.statement(claim.problem))
+        with faults.noted():
+            case.statement(problem_id, reading_id).check()
+    check_claims(document, faults, lambda claim: case.statement(claim.problem))
+    faults.refuse()
     return case

@@ -5,17 +5,10 @@ from __future__ import annotations
 from functools import lru_cache
 from pathlib import Path
 
-from pydantic import ValidationError
-
-from ..errors import CaseError
 from ..robots import Chain
 from ..textfile import parse_toml
-from .data_files import ROBOTS
-from .faults import first_fault
+from .data_files import ROBOTS, check_format, validated
 from .schema import RobotFile
-
-FORMAT = 1
-"""The version of the robot file format that this module reads."""
 
 
 def robot_ids() -> tuple[str, ...]:
@@ -90,15 +83,8 @@ def parse_robot(text: str, file: str) -> RobotFile:
         As `load_robot`.
     """
     raw = parse_toml(text, file)
-    version = raw.get("format")
-    if version is None:
-        raise CaseError(file, "format", f"is missing; add `format = {FORMAT}`")
-    if version != FORMAT or isinstance(version, bool):
-        raise CaseError(file, "format", f"is {version!r}; this version reads {FORMAT}")
-    try:
-        return RobotFile.model_validate(raw)
-    except ValidationError as error:
-        raise CaseError(file, *first_fault(error)) from None
+    check_format(raw, file)
+    return validated(RobotFile, raw, file)
 
 
 _parsed = lru_cache(maxsize=32)(parse_robot)

@@ -6,6 +6,7 @@ import csv
 import json
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from difflib import get_close_matches
 from pathlib import Path
 from typing import cast
 
@@ -14,6 +15,7 @@ from ..printed import Printed
 from ..textfile import read_text
 from ..units import CHOICES, Quantity, check_unit
 from .declaration import FAMILIES
+from .faults import Faults
 from .load import parse_case
 
 _LABEL_HEADERS = ("", "waypoint", "way-point", "point", "label", "name")
@@ -90,8 +92,8 @@ def scaffold(
         Table separated by commas, semicolons or tabs. The header names the joints, each further
         row is a way-point; a first column headed "waypoint", "point" or "label" names them.
     units : mapping
-        Unit of "position", and of "velocity", "acceleration" and "jerk" where a limit is given;
-        "time" is "s" if left out.
+        Unit of "position", and of "velocity", "acceleration" and "jerk" where a limit is given or
+        a peak is printed; "time" is "s" if left out.
     case_id : str, optional
         Id of the case; the file's name by default.
     family : str, optional
@@ -114,14 +116,20 @@ def scaffold(
     Raises
     ------
     CaseError
-        If the table or a unit cannot be used.
+        If the table or an argument cannot be used: all faults at once. Those of the table name its
+        file, those of an argument the argument.
     """
     path = Path(csv_path)
     name = str(csv_path)
+    table, options = Faults(name), Faults("")
     limits = {"velocity": velocity, "acceleration": acceleration, "jerk": jerk}
     given = {key: _listed(number) for key, number in limits.items() if number is not None}
-    checked = _units(name, units, given)
-    header, rows = _table(name, read_text(path))
+    claimed = {"durations": _listed(durations or ""), "total": _listed(total or "")}
+    checked = _units(options, units, given)
+    for key, each in (given | claimed).items():
+        for number in each:
+            _digits(options, key, number)
+    header, rows = _table(table, read_text(path))
     labelled = header[0].strip().lower() in _LABEL_HEADERS
     joints = header[1:] if labelled else header
     labels = [row[0] for row in rows] if labelled else [str(k + 1) for k in range(len(rows))]
@@ -129,15 +137,10 @@ def scaffold(
     for key, each in given.items():
         if len(each) not in (1, len(joints)):
             many = f"lists {len(each)} numbers for {len(joints)} joints"
-            raise CaseError(name, key, f"{many}; give one for all, or one each")
-        for number in each:
-            _digits(name, key, number)
-    claimed = {"durations": _listed(durations or ""), "total": _listed(total or "")}
-    for key, each in claimed.items():
-        for number in each:
-            _digits(name, key, number)
-    curve = _curve(name, family, degree, len(rows), "jerk" in given)
-    identity = case_id if case_id is not None else _identity(path.stem)
+            options.add(key, f"{many}; give one for all, or one each")
+    curve = _curve(options, family, degree, len(rows), "jerk" in given)
+    _refuse(table, options)
+    identity = case_id if case_id is not None else identity_of(path.stem)
     text = _text(
         identity,
         path.name,
@@ -149,8 +152,34 @@ def scaffold(
         curve,
         _claims(claimed["durations"], claimed["total"]),
     )
-    parse_case(text, name)
+    try:
+        parse_case(text, name)
+    except CaseError as error:
+        for field, reason in error.faults:
+            meant = _argument(field)
+            (table if meant is None else options).add(meant or field, reason)
+        _refuse(table, options)
     return text
+
+
+def _refuse(table: Faults, options: Faults) -> None:
+    """Tell all faults at once, those of the table, which names its file, in front."""
+    told = Faults(table.file if table.found else "")
+    told.found = [*table.found, *options.found]
+    told.refuse()
+
+
+def _argument(field: str) -> str | None:
+    """The argument that a field of the case comes from; None for the table."""
+    if field.startswith("interpolant"):
+        return "degree" if field.endswith("degree") else "family"
+    if field.startswith("units."):
+        return field
+    if field.startswith("limits."):
+        return field.removeprefix("limits.").split("[")[0]
+    if field.startswith("claims[0]."):
+        return "durations" if "durations" in field else "total"
+    return "case_id" if field == "id" else None
 
 
 def _listed(numbers: str) -> list[str]:
@@ -158,7 +187,9 @@ def _listed(numbers: str) -> list[str]:
     return [one.strip() for one in numbers.split(",")] if numbers.strip() else []
 
 
-def _curve(name: str, family: str | None, degree: int | None, points: int, jerk: bool) -> list[str]:
+def _curve(
+    faults: Faults, family: str | None, degree: int | None, points: int, jerk: bool
+) -> list[str]:
     """Lines of the block that declares the curve, with the reason for it."""
     why, keys = "as given", dict[str, object]()
     if family is None and points == 4:
@@ -172,8 +203,12 @@ def _curve(name: str, family: str | None, degree: int | None, points: int, jerk:
         why = f"what papers call {family}"
         family, keys = LITERATURE[family]
     if family not in FAMILIES:
-        known = ", ".join((*FAMILIES, *LITERATURE))
-        raise CaseError(name, "interpolant.family", f"{family!r} is not known; use one of {known}")
+        names = (*FAMILIES, *LITERATURE)
+        near = [one for one in names if family and family.lower() in one]
+        near = near or get_close_matches(family, names)
+        meant = f"did you mean {' or '.join(near)}? All: " if near else "use one of "
+        reason = f"{family!r} is not known; {meant}{', '.join(names)}"
+        faults.add("family", reason)
     if degree is not None:
         keys = {**keys, "degree": degree}
     lines = [f"family = {_quoted(family)}  # {why}"]
@@ -189,7 +224,7 @@ def _claims(durations: Sequence[str], total: Sequence[str]) -> list[str]:
             'id = "durations"',
             'quantity = "durations"',
             'where = "Table 2"  # where the paper prints them',
-            f"durations = [{', '.join(map(_quoted, durations))}]",
+            f"durations = [{', '.join(map(_quoted, durations))}]{_coarse(durations)}",
             *([f"total = {_quoted(total[0])}"] if total else []),
             "",
         ]
@@ -208,25 +243,36 @@ def _claims(durations: Sequence[str], total: Sequence[str]) -> list[str]:
     return lines
 
 
-def _units(name: str, units: Mapping[str, str], limits: Iterable[str]) -> dict[str, str]:
+def _coarse(durations: Sequence[str]) -> str:
+    """A remark on durations without decimals, which may be meant exactly."""
+    whole = next((one for one in durations if re.fullmatch("[0-9]+", one)), None)
+    if whole is None:
+        return ""
+    return f'  # "{whole}" may be {int(whole) - 0.5:g} to {int(whole) + 0.5:g}; no quotes: exact'
+
+
+def _units(faults: Faults, units: Mapping[str, str], limits: Iterable[str]) -> dict[str, str]:
     for key in units:
         if key not in CHOICES:
-            raise CaseError(name, f"units.{key}", f"no such quantity; known: {', '.join(CHOICES)}")
+            faults.add(f"units.{key}", f"no such quantity; known: {', '.join(CHOICES)}")
     checked: dict[str, str] = {}
-    for key in ("position", *limits, "time"):
+    needed = {"position", *limits, "time"}
+    # A unit without a limit serves a printed peak.
+    for key in (one for one in CHOICES if one in needed or one in units):
         quantity = cast(Quantity, key)
         unit = units.get(key, "s" if key == "time" else None)
         if unit is None:
-            choices = ", ".join(CHOICES[key])
-            raise CaseError(name, f"units.{key}", f"is missing; give one of {choices}")
+            faults.add(f"units.{key}", f"is missing; give one of {', '.join(CHOICES[key])}")
+            continue
         try:
             checked[key] = check_unit(unit, quantity)
         except TrajgapError as error:
-            raise CaseError(name, f"units.{key}", str(error)) from None
+            faults.add(f"units.{key}", str(error))
     return checked
 
 
-def _table(name: str, text: str) -> tuple[list[str], list[list[str]]]:
+def _table(faults: Faults, text: str) -> tuple[list[str], list[list[str]]]:
+    """Header and rows; what does not keep the rows from being read is told with the options."""
     delimiter = max(",;\t", key=text.split("\n", 1)[0].count)
     reader = csv.reader(text.splitlines(), delimiter=delimiter, strict=True)
     lines: list[tuple[int, list[str]]] = []
@@ -235,38 +281,31 @@ def _table(name: str, text: str) -> tuple[list[str], list[list[str]]]:
             if any(cell.strip() for cell in row):
                 lines.append((reader.line_num, [cell.strip() for cell in row]))
     except csv.Error as error:
-        raise CaseError(
-            name, f"line {reader.line_num}", f"not valid CSV, {error}; fix it"
-        ) from None
+        why = f"not valid CSV, {error}; fix it"
+        raise CaseError(faults.file, f"line {reader.line_num}", why) from None
     _, header = lines[0]
     first = 1 if header[0].lower() in _LABEL_HEADERS else 0
     if len(header) == first:
-        raise CaseError(name, "line 1", "names no joint; head one column per joint")
+        faults.add("line 1", "names no joint; head one column per joint")
     for column, label in enumerate(header[first:], first + 1):
         where = f"line 1, column {column}"
         if not label:
-            raise CaseError(name, where, "the joint has no name; head every column")
-        if label in header[first : column - 1]:
-            raise CaseError(name, where, f"joint {label!r} is named twice; rename one")
+            faults.add(where, "the joint has no name; head every column")
+        elif label in header[first : column - 1]:
+            faults.add(where, f"joint {label!r} is named twice; rename one")
     if _is_number(header[first:]):
-        raise CaseError(
-            name, "line 1", "holds numbers; the first line names the joints, put a header above it"
+        faults.add(
+            "line 1", "holds numbers; the first line names the joints, put a header above it"
         )
-    rows: list[list[str]] = []
+    rows = [row for _, row in lines[1:]]
     for line, row in lines[1:]:
         if len(row) != len(header):
-            raise CaseError(
-                name,
-                f"line {line}",
-                f"has {len(row)} cells, the header {len(header)}; fill or remove cells",
-            )
+            many = f"has {len(row)} cells, the header {len(header)}"
+            faults.add(f"line {line}", f"{many}; fill or remove cells")
         for column, cell in enumerate(row[first:], first + 1):
-            _digits(name, f"line {line}, column {column}", cell)
-        rows.append(row)
+            _digits(faults, f"line {line}, column {column}", cell)
     if len(rows) < 2:
-        raise CaseError(
-            name, "", f"holds {len(rows)} way-points; give at least two rows of numbers"
-        )
+        faults.add("", f"holds {len(rows)} way-points; give at least two rows of numbers")
     return header, rows
 
 
@@ -275,17 +314,18 @@ def _is_number(cells: Sequence[str]) -> bool:
     return any(re.fullmatch(r"[-−+]?[0-9]*\.[0-9]+|[-−][0-9.]+", cell) for cell in cells)
 
 
-def _digits(name: str, field: str, text: str) -> None:
+def _digits(faults: Faults, field: str, text: str) -> None:
     try:
         Printed(text)
     except TrajgapError as error:
         fix = str(error)
         if re.fullmatch(r"\s*[-+−]?[0-9]+,[0-9]+\s*", text):
             fix = f"{text!r} has a decimal comma; write a decimal point"
-        raise CaseError(name, field, fix) from None
+        faults.add(field, fix)
 
 
-def _identity(stem: str) -> str:
+def identity_of(stem: str) -> str:
+    """An id made of a file's name: small letters, digits, dots and dashes."""
     return re.sub(r"[^a-z0-9.]+", "-", stem.lower()).strip("-.") or "case"
 
 

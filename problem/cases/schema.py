@@ -9,6 +9,7 @@ from pydantic import BeforeValidator, Field, StrictBool, StrictInt, WithJsonSche
 
 from ..errors import TrajgapError
 from ..fields import (
+    MOST_POSES,
     MOST_WAYPOINTS,
     AccelerationUnit,
     Id,
@@ -33,6 +34,7 @@ from ..problem import Coupling
 from ..robots import DhTable
 from ..units import LengthUnit
 from .claim import AnyClaim
+from .clue import AnyClue
 from .declaration import InterpolantBlock
 from .instances import InstancesBlock
 
@@ -43,6 +45,7 @@ LISTS = (
     "families",
     "tables",
     "claims",
+    "clues",
     "assumptions",
     "columns",
     "cartesian",
@@ -102,6 +105,17 @@ class Units(Strict):
     time: TimeUnit = None
 
 
+class StraightLine(Strict):
+    """A straight move of the robot's end, as the toolboxes' ``ctraj`` makes it."""
+
+    first: tuple[Number, ...]
+    """Exact angles of the robot's joints at its start, one each."""
+    last: tuple[Number, ...]
+    """The same at its end."""
+    points: Annotated[StrictInt, Field(ge=2, le=MOST_POSES)]
+    """Poses on the line, both ends included."""
+
+
 class Waypoints(Strict):
     """Joint angles at the way-points, as one row per joint or one row per way-point."""
 
@@ -112,6 +126,8 @@ class Waypoints(Strict):
     """One row per joint, one number per way-point."""
     waypoint_rows: PrintedRows | None = None
     """One row per way-point, one number per joint."""
+    line: StraightLine | None = None
+    """Instead of rows: way-points whose poses lie on a straight line."""
     not_printed: Text | None = None
     """Why there are no rows, where the paper prints none; with `count`."""
     count: Annotated[StrictInt, Field(ge=2, le=MOST_WAYPOINTS)] | None = None
@@ -122,8 +138,12 @@ class Waypoints(Strict):
         if self.not_printed is not None or self.count is not None:
             self._check_absent()
             return self
-        if (self.joint_rows is None) == (self.waypoint_rows is None):
-            raise fault("", "needs joint_rows or waypoint_rows, and not both; give one of them")
+        given = (self.joint_rows, self.waypoint_rows, self.line)
+        if sum(one is not None for one in given) != 1:
+            raise fault("", "needs one of joint_rows, waypoint_rows and line; give one")
+        if self.line is not None:
+            self._check_labels()
+            return self
         name = "joint_rows" if self.joint_rows is not None else "waypoint_rows"
         across = "way-point" if name == "joint_rows" else "joint"
         rows = self.joint_rows or self.waypoint_rows or ()
@@ -146,7 +166,7 @@ class Waypoints(Strict):
         return self
 
     def _check_absent(self) -> None:
-        if self.joint_rows is not None or self.waypoint_rows is not None:
+        if (self.joint_rows, self.waypoint_rows, self.line) != (None, None, None):
             name = "count" if self.not_printed is None else "not_printed"
             raise fault(f".{name}", "goes without rows only; leave it out, or the rows")
         for name in ("not_printed", "count"):
@@ -163,6 +183,8 @@ class Waypoints(Strict):
     @property
     def number(self) -> int:
         """How many way-points there are, printed or not."""
+        if self.line is not None:
+            return self.line.points
         return len(self.points) or self.count or 0
 
     @property
@@ -210,6 +232,8 @@ class Override(ProblemData):
 
     joints: JointLabels | None = None
     """The joints that take part; all if absent. Per-joint lists keep listing every joint."""
+    turns: dict[str, tuple[StrictInt, ...]] = Field(default_factory=dict)
+    """Whole turns added to the printed angles of a joint, one number per way-point."""
 
 
 class ProblemBlock(Override):
@@ -227,11 +251,15 @@ class Reading(Override):
     id: Id
     why: Text
     default: StrictBool = False
+    default_why: Text | None = None
+    """Why it is the default, where several are admissible; with `default`."""
     interpolant_of: tuple[Id, ...] = ()
     """Problems whose interpolant it changes; every problem if empty."""
 
     @model_validator(mode="after")
     def _changes_one(self) -> Self:
+        if self.default_why is not None and not self.default:
+            raise fault(".default_why", "goes with default = true; add it, or leave this out")
         if self.interpolant_of and self.interpolant is None:
             raise fault(".interpolant_of", "goes with an interpolant; add it, or leave this out")
         return self
@@ -261,8 +289,8 @@ class AlgorithmBlock(Strict):
 
     id: Id
     name: Text
-    kind: Text
-    """Which implementation replays it, such as "pso"."""
+    kind: Text | None = None
+    """Which implementation replays it, such as "pso"; none if absent."""
     settings: dict[str, Setting] = Field(default_factory=dict)
     """Settings as printed."""
     chosen: dict[str, Setting] = Field(default_factory=dict)
@@ -343,6 +371,15 @@ class NotCheckable(Strict):
     why: Text
 
 
+class Transcription(Strict):
+    """Who typed the numbers of the file, and who compared them with the paper."""
+
+    by: Text
+    """Who typed them, and from what."""
+    checked_by: str = ""
+    """Who compared them with the paper, and how; empty where nobody has."""
+
+
 class CaseFile(ProblemData):
     """A case file: what one paper prints, and how it can be read."""
 
@@ -351,12 +388,14 @@ class CaseFile(ProblemData):
     title: Text
     source: Source
     robot: Robot
+    transcription: Transcription | None = None
     problems: tuple[ProblemBlock, ...] = ()
     readings: tuple[Reading, ...] = ()
     algorithms: tuple[AlgorithmBlock, ...] = ()
     families: tuple[InstancesBlock, ...] = ()
     tables: tuple[Table, ...] = ()
     claims: tuple[AnyClaim, ...] = ()
+    clues: tuple[AnyClue, ...] = ()
     assumptions: tuple[Assumption, ...] = ()
     columns: tuple[Column, ...] = ()
     cartesian: tuple[Cartesian, ...] = ()

@@ -2,38 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import TypeVar
+from math import tau
 
 import numpy as np
 
 from ..arrays import Array
 from ..curves import Curve
 from ..errors import CaseError, TrajgapError
-from ..fields import Strict
 from ..limits import Limits
 from ..printed import Printed
 from ..problem import Coupling, Problem
 from ..units import CHOICES, Measured, Quantity, to_si
 from .declaration import InterpolantBlock, declare
-from .schema import (
-    CaseFile,
-    Durations,
-    LimitsBlock,
-    Override,
-    ProblemBlock,
-    Reading,
-    Units,
-    Waypoints,
-)
+from .faults import Faults
+from .schema import Durations, LimitsBlock, Units, Waypoints
 
-Block = TypeVar("Block", bound=Strict)
 Data = tuple[Curve, Limits, Array, Array]
 """Curve, limits, and bounds on the durations."""
 _DERIVATIVES: tuple[Quantity, ...] = ("velocity", "acceleration", "jerk")
 """What orders 1 to 3 measure; higher ones have no unit in a case file."""
+_LIMITED: dict[str, Quantity] = {
+    "velocity": "velocity",
+    "acceleration": "acceleration",
+    "jerk": "jerk",
+    "position_lower": "position",
+    "position_upper": "position",
+}
+"""What each key of the limits is measured in."""
 _LARGEST = 1e12
 """Largest number of a case file, rad and s: squares and quotients stay far from overflow."""
 _LOWER = "durations.lower"
@@ -71,6 +69,8 @@ class Statement:
     declaration: InterpolantBlock
     durations: Durations
     coupling: Coupling
+    turns: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+    """Whole turns added to the angles of joints, one number per way-point."""
 
     def fail(self, field: str, reason: str) -> CaseError:
         """Make an error at a field, naming the problem and reading under which it shows."""
@@ -129,24 +129,68 @@ class Statement:
                 "list every joint in both",
             )
         by_joint = self.waypoints.joint_rows is not None
+        self._check_turns(len(rows))
         return [
             [
-                self.si(
-                    row[j],
-                    "position",
-                    f"waypoints.joint_rows[{j}][{k}]"
-                    if by_joint
-                    else f"waypoints.waypoint_rows[{k}][{j}]",
+                _turned(
+                    self.si(
+                        row[j],
+                        "position",
+                        f"waypoints.joint_rows[{j}][{k}]"
+                        if by_joint
+                        else f"waypoints.waypoint_rows[{k}][{j}]",
+                    ),
+                    self.turns[self.labels[j]][k] if self.labels[j] in self.turns else 0,
                 )
                 for j in self.joints
             ]
             for k, row in enumerate(rows)
         ]
 
+    def _check_turns(self, count: int) -> None:
+        for label, given in self.turns.items():
+            if label not in self.labels:
+                listed = ", ".join(self.labels)
+                raise self.fail("turns", f"joint {label!r} is unknown; robot.joints lists {listed}")
+            if len(given) != count:
+                raise self.fail(
+                    f"turns.{label}", f"{len(given)} numbers for {count} way-points; give one each"
+                )
+
     @property
     def complete(self) -> bool:
         """Whether the way-points are printed, so that there is a problem to solve."""
         return bool(self.waypoints.points)
+
+    def check(self) -> None:
+        """Check that a problem can be posed, and tell all that is in the way at once.
+
+        Raises
+        ------
+        CaseError
+            If anything in it is wrong.
+        """
+        faults = Faults(self.file)
+        with faults.noted():
+            if self.complete:
+                self.problem()
+            else:
+                self.data()
+        if not faults.found:
+            return
+        # What is told first may hide the rest: each part is asked for by itself.
+        with faults.noted():
+            self.curve()
+        with faults.noted():
+            if self.complete:
+                self.points()
+        for name, quantity in _LIMITED.items():
+            with faults.noted():
+                self._limit(name, quantity, Digits.PRINTED)
+        for name in ("lower", "upper"):
+            with faults.noted():
+                self._each("durations", name, "time", self.curve().segments, "segment", 0.0)
+        faults.refuse()
 
     def curve(self) -> Curve:
         """Declare the curve for the number of way-points.
@@ -179,6 +223,11 @@ class Statement:
                 f"free = {polynomials.free}",
             )
         return curve
+
+    @property
+    def loose_ends(self) -> bool:
+        """Whether some derivative at the ends is a printed number, which stands for an interval."""
+        return any(not number.exact for number in self.declaration.end_derivatives or ())
 
     def _end_value(self, order: int) -> float:
         values = self.declaration.end_derivatives
@@ -257,14 +306,14 @@ class Statement:
         lower = np.maximum(_end(durations, digits, upper=False), 0.0)
         durations = self._each("durations", "upper", "time", segments, "segment", np.inf)
         upper = _end(durations, digits, upper=True)
+        if (upper == 0).any():
+            raise self.fail("durations.upper", "is 0; a duration is positive, give more")
         if (lower > upper).any():
             at = int(np.argmax(lower > upper))
             raise self.fail(
                 "durations.lower",
                 f"lies above durations.upper in segment {at + 1}; exchange or change them",
             )
-        if (upper == 0).any():
-            raise self.fail("durations.upper", "is 0; a duration is positive, give more")
         position_lower = self._limit("position_lower", "position", digits)
         position_upper = self._limit("position_upper", "position", digits)
         if (position_lower > position_upper).any():
@@ -302,6 +351,17 @@ class Statement:
         return [none if one is None else self.si(one, quantity, f"{block}.{name}") for one in given]
 
 
+def _turned(angle: Measured, turns: int) -> Measured:
+    """An angle with whole turns added, in an interval that cutting off digits does not leave."""
+    if not turns:
+        return angle
+    value = angle.value + turns * tau
+    # On the far side of 0 cut-off digits would widen the wrong end, so both ends are widened here.
+    half = 2.0 * max(angle.upper - angle.value, angle.value - angle.lower)
+    slack = 4.0 * float(np.spacing(max(abs(value), abs(angle.value))))
+    return Measured(value, value - half - slack, value + half + slack)
+
+
 def _end(numbers: Sequence[Measured], digits: Digits, upper: bool) -> Array:
     """The end of each number's interval that allows most, or least."""
     if digits is Digits.PRINTED:
@@ -311,76 +371,6 @@ def _end(numbers: Sequence[Measured], digits: Digits, upper: bool) -> Array:
     if upper is (digits is Digits.TIGHTEST):
         return np.array([n.lower for n in numbers])
     return np.array([n.upper for n in numbers])
-
-
-def overlaid(document: CaseFile, file: str, problem: ProblemBlock, reading: Reading) -> Statement:
-    """Lay a problem over the file's own statements, and a reading over both.
-
-    Parameters
-    ----------
-    document : CaseFile
-    file : str
-        Name for error messages.
-    problem : ProblemBlock
-    reading : Reading
-
-    Returns
-    -------
-    Statement
-
-    Raises
-    ------
-    CaseError
-        If way-points or interpolant are missing, or an unknown joint is selected.
-    """
-    selected = f" (problem {problem.id!r}, reading {reading.id!r})"
-    if not document.problems and not document.readings:
-        selected = ""
-    layers: tuple[Override, ...] = (problem, reading)
-    waypoints, interpolant = document.waypoints, document.interpolant
-    coupling, chosen = document.coupling, None
-    for layer in layers:
-        waypoints = layer.waypoints or waypoints
-        if not isinstance(layer, Reading) or problem.id in (layer.interpolant_of or (problem.id,)):
-            interpolant = layer.interpolant or interpolant
-        coupling = layer.coupling or coupling
-        chosen = layer.joints or chosen
-    if waypoints is None:
-        raise CaseError(file, "waypoints", f"is missing; add the table of way-points{selected}")
-    if interpolant is None:
-        raise CaseError(
-            file, "interpolant", f'is missing; add family = "3-5-3" or another{selected}'
-        )
-    labels = document.robot.joints
-    for label in chosen or ():
-        if label not in labels:
-            raise CaseError(
-                file,
-                "joints",
-                f"joint {label!r} is unknown; robot.joints lists {', '.join(labels)}{selected}",
-            )
-    taken = labels if chosen is None else chosen
-    return Statement(
-        file=file,
-        name=f"{document.id}, {problem.id}, {reading.id}",
-        selected=selected,
-        labels=labels,
-        joints=tuple(j for j, label in enumerate(labels) if label in taken),
-        units=_merged(document.units, *(layer.units for layer in layers)),
-        waypoints=waypoints,
-        limits=_merged(document.limits, *(layer.limits for layer in layers)),
-        declaration=interpolant,
-        durations=_merged(document.durations, *(layer.durations for layer in layers)),
-        coupling=coupling or Coupling.SHARED,
-    )
-
-
-def _merged(base: Block, *changes: Block) -> Block:
-    for change in changes:
-        base = base.model_copy(
-            update={key: getattr(change, key) for key in change.model_fields_set}
-        )
-    return base
 
 
 def _unprefixed(error: TrajgapError) -> str:

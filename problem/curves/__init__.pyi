@@ -1,8 +1,9 @@
+from .adjoint import Adjoint, Places, places_of
 from .clamped import ClampedBSpline
 from .clamped_counts import ClampedReading, Count, clamped_readings
 from .clamped_fit import clamped_control_points
 from .clamped_knots import Knots, Parameters, average_matrix, fractions_of
-from .compilation import compiler
+from .compilation import Deferred, compiler, interpreted
 from .condition import Condition, ConditionKind
 from .interpolant import (
     Interpolant,
@@ -16,13 +17,16 @@ from .interpolant import (
 )
 from .kernel import MAX_COEFFICIENTS, roots_in_unit
 from .kind import Curve, PeakGradients, as_curve, fit
-from .peak import Extremum, critical_points, extrema
+from .peak import Extremum, critical_points, extrema, largest
+from .piece_kernel import divided_extremes, one_sided_extreme, piece_extremes
+from .pieces import MANY_PIECES, near_extrema, step_sizes, tops
 from .refined import coefficient_gradient
 from .spline import (
     PERM,
     as_durations,
     batch_coefficients,
     layout,
+    motion_values,
     right_hand_sides,
     trajectory_from_scaled,
 )
@@ -33,8 +37,10 @@ from .uniform import StretchedUniformBSpline, TimedUniformBSpline, uniform_cubic
 from .uniform_matrices import clock_matrix, control_vertices, shape_matrix, vertex_matrix
 
 __all__ = [
+    "MANY_PIECES",
     "MAX_COEFFICIENTS",
     "PERM",
+    "Adjoint",
     "ClampedBSpline",
     "ClampedReading",
     "ClockedTrajectory",
@@ -42,11 +48,13 @@ __all__ = [
     "ConditionKind",
     "Count",
     "Curve",
+    "Deferred",
     "Extremum",
     "Interpolant",
     "Knots",
     "Parameters",
     "PeakGradients",
+    "Places",
     "StretchedUniformBSpline",
     "TimedUniformBSpline",
     "Timing",
@@ -64,13 +72,21 @@ __all__ = [
     "critical_points",
     "cubic_spline",
     "cubic_spline_virtual",
+    "divided_extremes",
     "extrema",
     "fit",
     "fractions_of",
+    "interpreted",
     "jtraj",
+    "largest",
     "layout",
+    "motion_values",
+    "near_extrema",
     "numerators",
+    "one_sided_extreme",
+    "piece_extremes",
     "piecewise",
+    "places_of",
     "quintic_spline",
     "rest_to_rest",
     "right_hand_sides",
@@ -79,7 +95,9 @@ __all__ = [
     "shape_matrix",
     "shape_of",
     "solve_in_closed_form",
+    "step_sizes",
     "three_five_three",
+    "tops",
     "trajectory_from_scaled",
     "uniform_cubic_b_spline",
     "vertex_matrix",

@@ -122,13 +122,13 @@ def _read(
         )  # fmt: skip
     why = nearest_reading(knots, degree, end_orders) if inner >= 0 else "lower the degree"
     if inner < 0:
-        words = f"impossible as printed: degree {degree} needs more way-points; {why}"
+        words = f"impossible as the text has it: degree {degree} needs more way-points; {why}"
         return ClampedReading(
             degree, knots, parameters, time, conditions, points, Count.OVER, None, words
         )
     if points < conditions:
         # Only the printed rule, taken at its letter, is called impossible.
-        literal = "impossible as printed: " if knots is Knots.AVERAGED else ""
+        literal = "impossible as the text has it: " if knots is Knots.AVERAGED else ""
         words = f"{literal}over-determined, {counted}; {why}"
         return ClampedReading(
             degree, knots, parameters, time, conditions, points, Count.OVER, None, words

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..errors import TrajgapError
-from . import refined, spline
-from .condition import Condition, ConditionKind
+from . import kernel, refined, spline
+from .condition import Condition, ConditionKind, ConditionTable, condition_table
 from .kind import (
     Curve,
     Derivatives,
@@ -29,7 +29,7 @@ from .spline import trajectory_from_scaled
 from .trajectory import Trajectory
 
 _DENSE = 300
-"""Coefficients above which the rank is judged by a sparse factorisation: a dense one is cubic."""
+"""Coefficients above which the rank is judged by a banded factorisation: a dense one is cubic."""
 
 
 @dataclass(frozen=True)
@@ -114,10 +114,11 @@ class Interpolant(Curve):
         """Number of segments."""
         return len(self.degrees)
 
-    @property
+    @cached_property
     def waypoint_breaks(self) -> tuple[int, ...]:
         """Breaks that carry a way-point, in order."""
-        return tuple(b for b in range(self.segments + 1) if b not in self.virtual)
+        virtual = set(self.virtual)
+        return tuple(b for b in range(self.segments + 1) if b not in virtual)
 
     @property
     def coefficients(self) -> int:
@@ -127,7 +128,7 @@ class Interpolant(Curve):
     @property
     def conditions(self) -> int:
         """Number of conditions on them."""
-        return len(self.rows)
+        return self.table.kinds.size
 
     @property
     def free(self) -> int:
@@ -174,6 +175,11 @@ class Interpolant(Curve):
         nodal: Array | None = None,
     ) -> PeakGradients:
         """Gradients by implicit differentiation of the linear system."""
+        if self.coefficients > _DENSE:
+            # The module builds on this one's neighbours, and few problems need it.
+            from .adjoint import Adjoint, places_of
+
+            return Adjoint(self, waypoints, durations, nodal).gradients(places_of(points))
         g = refined.coefficient_gradient(self, waypoints, durations, nodal)
         by_duration = np.empty((len(points), self.segments))
         by_waypoint = np.empty((len(points), waypoints.shape[0]))
@@ -187,30 +193,25 @@ class Interpolant(Curve):
         return PeakGradients(by_duration, by_waypoint, by_nodal)
 
     @cached_property
+    def table(self) -> ConditionTable:
+        """The conditions as arrays, ordered by break, so that the linear system is banded."""
+        virtual = set(self.virtual)
+        given = [
+            frozenset([*(order for order, _ in entries), *([] if b in virtual else [0])])
+            for b, entries in enumerate(self.prescribed)
+        ]
+        return condition_table(given, self.continuity)
+
+    @cached_property
     def rows(self) -> tuple[Condition, ...]:
-        """The conditions, ordered by break, so that the linear system is banded."""
-        rows: list[Condition] = []
-        n = self.segments
-        for b in range(n + 1):
-            given = {order for order, _ in self.prescribed[b]}
-            if b not in self.virtual:
-                given.add(0)
-            kinds = [kind for kind, there in _SIDES if there(b, n)]
-            rows += [Condition(kind, b, order) for kind in kinds for order in sorted(given)]
-            if 0 < b < n:
-                orders = range(self.continuity[b - 1] + 1)
-                rows += [
-                    Condition(ConditionKind.MATCH, b, order)
-                    for order in orders
-                    if order not in given
-                ]
-        return tuple(rows)
+        """The conditions one by one."""
+        return self.table.conditions
 
     @cached_property
     def rank(self) -> int:
         """Rank of the conditions for equal durations."""
         if self.conditions == self.coefficients > _DENSE:
-            return self.conditions if self._sparse_regular() else self.conditions - 1
+            return self.conditions if self._banded_regular() else self.conditions - 1
         return int(np.linalg.matrix_rank(self._unit_matrix(self.rows)))
 
     @cached_property
@@ -219,6 +220,8 @@ class Interpolant(Curve):
 
         Lowest orders first; with their values prescribed the coefficients are determined.
         """
+        if self.free == 0:
+            return ()
         rows = list(self.rows)
         chosen: list[tuple[int, int]] = []
         matrix, rank = self._unit_matrix(rows), self.rank
@@ -264,18 +267,14 @@ class Interpolant(Curve):
             virtual=tuple(virtual),
         )
 
-    def _sparse_regular(self) -> bool:
+    def _banded_regular(self) -> bool:
         """Whether a long, determined declaration has a regular system for equal durations."""
-        from scipy.sparse import csc_array
-        from scipy.sparse.linalg import splu
-
-        entries = [(i, c, v) for i, row in enumerate(self.rows) for c, v in self._entries(row)]
-        i, c, v = zip(*entries, strict=True)
-        matrix = csc_array((v, (i, c)), shape=(self.conditions, self.coefficients))
-        try:
-            pivots = np.abs(splu(matrix).U.diagonal())
-        except RuntimeError:
+        if self.table.orders.max() >= kernel.MAX_COEFFICIENTS:
+            return False  # a derivative beyond every degree: 0 whatever the coefficients
+        right = self.table.kinds == ConditionKind.RIGHT_VALUE
+        if (self.table.orders > np.array([*self.degrees, 0])[self.table.breaks])[right].any():
             return False
+        pivots = np.abs(refined.system(self, np.ones(self.segments)).factorised().diagonal)
         return bool(pivots.min() > 1e-13 * pivots.max())
 
     def _entries(self, row: Condition) -> list[tuple[int, float]]:
@@ -348,7 +347,18 @@ def three_five_three() -> Interpolant:
 
 def cubic_spline(segments: int, ends: tuple[tuple[int, float], ...] = ((1, 0.0),)) -> Interpolant:
     """C2 cubic spline; clamped (velocity 0 at the ends) unless ``ends`` says otherwise."""
-    return piecewise((3,) * segments, 2, ends, name="C2 cubic spline")
+    return piecewise((3,) * segments, 2, ends, name=_spline_name(ends))
+
+
+def _spline_name(ends: tuple[tuple[int, float], ...]) -> str:
+    """What tells a cubic spline from others: what holds at its ends."""
+    if ends == ((1, 0.0),):
+        return "clamped C2 cubic spline"
+    if ends == ((2, 0.0),):
+        return "natural C2 cubic spline"
+    words = ("", "velocity", "acceleration", "jerk")
+    given = [words[order] for order, _ in ends if order < len(words)]
+    return f"C2 cubic spline with {' and '.join(given) or 'nothing'} given at the ends"
 
 
 def quintic_spline(segments: int) -> Interpolant:

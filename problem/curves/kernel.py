@@ -20,7 +20,14 @@ _LANES = 192
 _SETTLED = 1e-6
 """Newton step below which a lane rests: the next error is its square, 1e-12, and a peak's error
 the square of that of its place."""
-KERNELS = ("kernel.py", "clamped_kernel.py", "timed_kernel.py")
+KERNELS = (
+    "kernel.py",
+    "banded.py",
+    "clamped_kernel.py",
+    "piece_kernel.py",
+    "pieces.py",
+    "timed_kernel.py",
+)
 """Every file of compiled functions here: they call each other, so they share a stamp."""
 compiled = compiler(*(Path(__file__).with_name(name) for name in KERNELS))
 """Compiles a function of one of these files."""

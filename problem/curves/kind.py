@@ -163,6 +163,27 @@ class Curve(ABC):
             rad/s, rad/s², rad/s³.
         """
 
+    def decided_peaks(
+        self, values: Array, durations: Array, wanted: NDArray[np.bool_], ceilings: Array
+    ) -> Array:
+        """Peaks that are on the same side of the ceilings as the true ones.
+
+        A curve that knows bounds answers sooner than `batch_peaks`; this is that.
+
+        Parameters
+        ----------
+        values, durations, wanted : ndarray
+            As `batch_peaks` takes them.
+        ceilings : ndarray, shape (joints, 3)
+            rad/s, rad/s², rad/s³.
+
+        Returns
+        -------
+        ndarray, shape (batch, joints, 3)
+            Where one exceeds its ceiling, others of that vector may be infinite.
+        """
+        return self.batch_peaks(values, durations, wanted)
+
     @abstractmethod
     def value_gradients(
         self,
@@ -270,6 +291,15 @@ def value_errors(trajectory: Trajectory, coefficient_error: Array) -> Array:
         place = np.einsum("p,kpj->kj", PERM[:, r + 1], size)
         errors[:, r] = (own + place) / trajectory.durations[:, None] ** r
     return errors
+
+
+def derivative_rows(s: Array, order: NDArray[np.int64]) -> Array:
+    """`derivative_row` of many places, shape (places, 10)."""
+    powers = np.arange(PERM.shape[0])
+    left = powers - order[:, None]
+    return np.asarray(
+        np.where(left >= 0, s[:, None] ** np.maximum(left, 0), 0.0) * PERM[:, order].T
+    )
 
 
 def derivative_row(s: float, order: int) -> Array:

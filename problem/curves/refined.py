@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import solve_triangular
 
 from ..arrays import Array
 from . import kernel
+from .banded import Factors, factorise, image
 from .condition import ConditionKind
 from .spline import PERM, coefficients, layout, right_hand_sides, singular
 
@@ -19,12 +20,17 @@ if TYPE_CHECKING:
     from .interpolant import Interpolant
 
 DENSE_UNKNOWNS = 400
-"""Up to this many coefficients one dense inverse takes a few milliseconds; windows gain nothing."""
-CHUNK = 24
-"""Segments whose rows of the inverse are found together: the least work for halos of 16 to 32."""
-HALOS = (16, 48)
-"""Segments added on both sides of a chunk, tried in turn. What a window leaves out falls by about
-0.27 a segment for C2 cubics and 0.43 for C4 quintics: below 1e-9 and 1e-5 at 16, 1e-17 at 48."""
+"""Up to this many coefficients one dense inverse takes a few milliseconds; a band gains nothing."""
+SHARES = (1e-5, 1e-9, 1e-14)
+"""Of the largest entry in a row of the inverse, below which entries are left out, tried in turn:
+the first nearly always does (at 1e-3 a second image is needed, at 1e-8 rows are a third longer),
+the last leaves out what rounding would lose."""
+DENSE_AFTER_ALL = 6000
+"""Up to this many coefficients, 300 MB, a dense inverse is tried where no banded one settles."""
+IMAGES = 3
+"""Images of a bound that are taken: the first one contains its own nearly always."""
+_PART = 32768
+"""Rows that are handled together in extended precision: some ten megabytes for seven joints."""
 
 _POSITIVE = 1e-290
 """Added to every bound, so that none is 0: far below any angle, far above the least float even
@@ -32,7 +38,7 @@ after division by hʳ."""
 
 
 @dataclass(frozen=True, eq=False)
-class _Pattern:
+class Pattern:
     """Where the entries of each row stand, and what the durations change in them.
 
     ``columns`` and ``constant`` have shape (rows, widest row), padded with zero entries. Row
@@ -48,33 +54,26 @@ class _Pattern:
 
 
 @lru_cache(maxsize=256)
-def _pattern(interpolant: Interpolant) -> _Pattern:
+def pattern_of(interpolant: Interpolant) -> Pattern:
+    """The places of all entries, from the declaration alone."""
     plan = layout(interpolant)
     first = np.concatenate([[0], np.cumsum(plan.degrees + 1)])
-    size = plan.kinds.size
-    columns = np.zeros((size, plan.degrees.max() + 2), dtype=np.int64)
+    right, match = (plan.kinds == kind for kind in (ConditionKind.RIGHT_VALUE, ConditionKind.MATCH))
+    segment = np.where(right, plan.breaks, plan.breaks - 1)
+    r, degree = plan.orders, plan.degrees[segment]
+    columns = np.zeros((r.size, int(plan.degrees.max()) + 2), dtype=np.int64)
     constant = np.zeros(columns.shape)
-    jumps, slots = [], []
-    for i in range(size):
-        kind, b, r = plan.kinds[i], plan.breaks[i], plan.orders[i]
-        if kind == ConditionKind.RIGHT_VALUE:
-            columns[i, 0], constant[i, 0] = first[b] + r, PERM[r, r]
-            continue
-        powers = np.arange(r, plan.degrees[b - 1] + 1)
-        columns[i, : powers.size] = first[b - 1] + powers
-        constant[i, : powers.size] = PERM[powers, r]
-        if kind == ConditionKind.MATCH and r <= plan.degrees[b]:
-            columns[i, powers.size] = first[b] + r
-            jumps.append(i)
-            slots.append(powers.size)
-    return _Pattern(
-        first=first,
-        columns=columns,
-        constant=constant,
-        segment=np.where(plan.kinds == ConditionKind.RIGHT_VALUE, plan.breaks, plan.breaks - 1),
-        jumps=np.array(jumps, dtype=np.int64),
-        slots=np.array(slots, dtype=np.int64),
-    )
+    columns[right, 0], constant[right, 0] = (first[segment] + r)[right], PERM[r, r][right]
+    for m in range(columns.shape[1] - 1):
+        power = np.minimum(r + m, PERM.shape[0] - 1)
+        there = ~right & (r + m <= degree)
+        columns[there, m] = (first[segment] + power)[there]
+        constant[there, m] = PERM[power, r][there]
+    jumps = np.flatnonzero(match)
+    jumps = jumps[r[jumps] <= plan.degrees[plan.breaks[jumps]]]
+    slots = np.maximum(degree - r + 1, 0)[jumps]
+    columns[jumps, slots] = first[plan.breaks[jumps]] + r[jumps]
+    return Pattern(first, columns, constant, segment, jumps, slots)
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,18 +103,40 @@ class System:
             out += self.values[:, m, None] * flat[self.columns[:, m]]
         return out
 
-    def dense(self, rows: NDArray[np.int64], low: int, high: int) -> Array:
-        """The given rows over columns low to high − 1, which must hold all their entries."""
-        out = np.zeros((rows.size, high - low))
-        values = self.values[rows].astype(np.float64)
-        at = np.where(values != 0.0, self.columns[rows] - low, 0)
-        np.add.at(out, (np.arange(rows.size)[:, None], at), values)
+    def right(self, values: Array) -> NDArray[np.floating]:
+        """Right-hand sides from the rows' values."""
+        return np.asarray(self.factor[:, None] * values.astype(self.factor.dtype))
+
+    def parts(self) -> Iterator[tuple[slice, System]]:
+        """The rows in parts, so that extended precision takes little memory."""
+        for start in range(0, len(self.values), _PART):
+            at = slice(start, start + _PART)
+            yield at, System(self.columns[at], self.values[at], self.factor[at], self.first)
+
+    def dense(self) -> Array:
+        """The rows as a full matrix."""
+        size = len(self.values)
+        out = np.zeros((size, size))
+        values = self.values.astype(np.float64)
+        at = np.where(values != 0.0, self.columns, 0)
+        np.add.at(out, (np.arange(size)[:, None], at), values)
         return out
+
+    def factorised(self) -> Factors:
+        """The rows as a band matrix, with its factors: as many rows as coefficients are needed."""
+        real = self.values != 0.0
+        away = np.where(real, self.columns - np.arange(len(self.values))[:, None], 0)
+        lower, upper = int(-away.min()), int(away.max())
+        band = np.zeros((len(self.values), lower + upper + 1))
+        for m in range(self.columns.shape[1]):
+            i = np.flatnonzero(real[:, m])
+            band[i, away[i, m] + lower] = self.values[i, m]
+        return factorise(band, lower, upper)
 
 
 def system(interpolant: Interpolant, durations: NDArray[np.floating]) -> System:
     """The rows for given durations, in the precision of ``durations``."""
-    plan, pattern = layout(interpolant), _pattern(interpolant)
+    plan, pattern = layout(interpolant), pattern_of(interpolant)
     values = pattern.constant.astype(durations.dtype)
     i, b = pattern.jumps, plan.breaks[pattern.jumps]
     r = plan.orders[i]
@@ -129,83 +150,25 @@ def system(interpolant: Interpolant, durations: NDArray[np.floating]) -> System:
     return System(pattern.columns, values / scale[:, None], factor / scale, pattern.first)
 
 
-def _places(interpolant: Interpolant) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+@lru_cache(maxsize=256)
+def places(interpolant: Interpolant) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Segment and power of each coefficient."""
-    first = _pattern(interpolant).first
+    first = pattern_of(interpolant).first
     segment = np.repeat(np.arange(interpolant.segments), np.diff(first))
     return segment, np.arange(first[-1]) - first[segment]
 
 
 def _flat(interpolant: Interpolant, scaled: Array) -> Array:
-    return np.asarray(scaled[_places(interpolant)])
+    return np.asarray(scaled[places(interpolant)])
 
 
 def _unflat(interpolant: Interpolant, flat: Array) -> Array:
     """Coefficients of the last axis but one put back into (segments, powers)."""
     shape = (interpolant.segments, kernel.MAX_COEFFICIENTS)
     out = np.zeros((*flat.shape[:-2], *shape, flat.shape[-1]))
-    segment, power = _places(interpolant)
+    segment, power = places(interpolant)
     out[..., segment, power, :] = flat
     return out
-
-
-@dataclass(frozen=True, eq=False)
-class _Block:
-    """Some rows of an approximate inverse B: those of the coefficients ``own``.
-
-    ``inverse`` is not zero in the columns ``rows`` only; ``defect`` bounds |BA − I| in the columns
-    ``window`` and is 0 elsewhere.
-    """
-
-    own: slice
-    window: slice
-    rows: NDArray[np.int64]
-    inverse: Array
-    defect: Array
-
-
-def _defect(inverse: Array, matrix: Array, at: int) -> Array:
-    """Bound on |BA − I| for some rows of B, their rounding and that of A's entries included."""
-    size = np.finfo(np.float64).eps * (len(matrix) + 2)
-    found = inverse @ matrix
-    found[np.arange(len(inverse)), at + np.arange(len(inverse))] -= 1.0
-    return np.asarray(np.abs(found) + size * (np.abs(inverse) @ np.abs(matrix)))
-
-
-def _blocks(
-    interpolant: Interpolant, rows: System, durations: Array, halo: int | None
-) -> list[_Block]:
-    """An approximate inverse: dense, or (with a halo) by windows of neighbouring segments.
-
-    A derivative at a break depends less and less on way-points further away, so an entry of A⁻¹
-    far from the diagonal is tiny. A window takes the rows of A whose entries all lie in its
-    segments; being rows of a regular matrix they are independent, so the window's matrix W has a
-    right inverse, W⁺ = QR⁻ᵀ from Wᵀ = QR. Its rows for the inner segments, with zeros elsewhere,
-    stand for those of A⁻¹. Nothing is assumed of what is left out: it shows in BA − I.
-    """
-    size, first, n = len(rows.values), rows.first, interpolant.segments
-    everything = np.arange(size)
-    if halo is None:
-        matrix = rows.dense(everything, 0, size)
-        inverse = _inverse(interpolant, matrix, durations)
-        whole = slice(0, size)
-        return [_Block(whole, whole, everything, inverse, _defect(inverse, matrix, 0))]
-    real = rows.values != 0.0
-    lowest = np.where(real, rows.columns, size).min(axis=1)
-    highest = np.where(real, rows.columns, -1).max(axis=1)
-    found = []
-    for s in range(0, n, CHUNK):
-        own = slice(int(first[s]), int(first[min(s + CHUNK, n)]))
-        window = slice(int(first[max(0, s - halo)]), int(first[min(n, s + CHUNK + halo)]))
-        inside = np.flatnonzero((lowest >= window.start) & (highest < window.stop))
-        matrix = rows.dense(inside, window.start, window.stop)
-        q, r = np.linalg.qr(matrix.T)
-        if not np.abs(np.diag(r)).min() > 0.0:
-            raise singular(interpolant, durations)
-        at = own.start - window.start
-        inverse = solve_triangular(r, q[at : at + own.stop - own.start].T).T
-        found.append(_Block(own, window, inside, inverse, _defect(inverse, matrix, at)))
-    return found
 
 
 def refined_coefficients(
@@ -225,7 +188,8 @@ def refined_coefficients(
     and every ``error`` that contains its own image, |B||r| + |I − BA| error ≤ error, is a bound if
     the first term is positive: |I − BA| then shrinks a positive vector, so its spectral radius is
     below 1 and repeated use of the inequality ends in |e| ≤ error. That holds for any B, also for
-    one with the far entries left out; on long splines only windows of it are computed.
+    one with the far entries left out, as `banded.image` makes it for long splines. An image of a
+    bound is a bound itself, and the closer one.
 
     Returns
     -------
@@ -234,43 +198,84 @@ def refined_coefficients(
     """
     rows = system(interpolant, durations.astype(np.longdouble))
     values = right_hand_sides(interpolant, waypoints, nodal)
-    right = rows.factor[:, None] * values.astype(np.longdouble)
-    first = coefficients(interpolant, waypoints, durations, nodal)
-    halos = () if len(rows.values) <= DENSE_UNKNOWNS else HALOS
-    for halo in (*halos, None):
-        blocks = _blocks(interpolant, rows, durations, halo)
-        flat = _flat(interpolant, first).astype(np.longdouble)
-        for _ in range(2):
-            residual = (right - rows.times(flat)).astype(np.float64)
-            flat = flat + np.concatenate([b.inverse @ residual[b.rows] for b in blocks])
-        error = _bounded(rows, blocks, right, flat)
-        if error is not None:
-            rounded = flat.astype(np.float64)
-            error = error + np.finfo(np.float64).eps * np.abs(rounded)
-            return _unflat(interpolant, rounded), _unflat(interpolant, error)
-    raise singular(interpolant, durations)
+    first = _flat(interpolant, coefficients(interpolant, waypoints, durations, nodal))
+    size = len(rows.values)
+    if size > DENSE_UNKNOWNS:
+        flat, error = _refined_in_band(rows, values, first)
+        if error is None and size > DENSE_AFTER_ALL:
+            raise singular(interpolant, durations)
+    else:
+        flat, error = first, None
+    if error is None:
+        matrix = rows.dense()
+        inverse = _inverse(interpolant, matrix, durations)
+        flat = _refined(rows, values, first, lambda residual: inverse @ residual)
+        error = _bounded(rows, matrix, inverse, values, flat)
+    if error is None:
+        raise singular(interpolant, durations)
+    rounded = flat.astype(np.float64)
+    error = error + np.finfo(np.float64).eps * np.abs(rounded)
+    return _unflat(interpolant, rounded), _unflat(interpolant, error)
+
+
+def _refined(
+    rows: System, values: Array, first: Array, solve: Callable[[Array], Array]
+) -> NDArray[np.floating]:
+    """Coefficients after two steps of refinement, in extended precision."""
+    flat = first.astype(np.longdouble)
+    for _ in range(2):
+        residual = np.concatenate(
+            [(part.right(values[at]) - part.times(flat)) for at, part in rows.parts()]
+        )
+        flat = flat + solve(residual.astype(np.float64))
+    return flat
+
+
+def _excess(rows: System, values: Array, flat: NDArray[np.floating], terms: int) -> Array:
+    """Bound on the residual, its rounding in sums of so many terms included."""
+    tiny = np.finfo(np.longdouble).eps * (terms + 24)
+    found = []
+    for at, part in rows.parts():
+        right = part.right(values[at])
+        sizes = replace(part, values=np.abs(part.values)).times(np.abs(flat))
+        excess = np.abs(right - part.times(flat)) + tiny * (sizes + np.abs(right))
+        found.append(excess.astype(np.float64))
+    return np.concatenate(found)
+
+
+def _refined_in_band(
+    rows: System, values: Array, first: Array
+) -> tuple[NDArray[np.floating], Array | None]:
+    """Coefficients, refined by a band's factors, and an error that contains its own image."""
+    factors = rows.factorised()
+    if not (np.abs(factors.diagonal) > 0.0).all():
+        return first, None
+    flat = _refined(rows, values, first, factors.solve)
+    excess = _excess(rows, values, flat, rows.columns.shape[1])
+    for share in SHARES:
+        guess = 2.0 * (_POSITIVE + image(factors, share, excess, None))
+        for _ in range(IMAGES):
+            error = _POSITIVE + image(factors, share, excess, guess)
+            if (error <= guess).all():
+                return flat, error
+            guess = 2.0 * error
+    return flat, None
 
 
 def _bounded(
-    rows: System,
-    blocks: list[_Block],
-    right: NDArray[np.floating],
-    flat: NDArray[np.floating],
+    rows: System, matrix: Array, inverse: Array, values: Array, flat: NDArray[np.floating]
 ) -> Array | None:
     """An error that contains its own image, or None."""
-    tiny = np.finfo(np.longdouble).eps * (len(right) + 24)
-    sizes = System(rows.columns, np.abs(rows.values), rows.factor, rows.first)
-    rounding = tiny * (sizes.times(np.abs(flat)) + np.abs(right))
-    excess = (np.abs(right - rows.times(flat)) + rounding).astype(np.float64)
-    first = _POSITIVE + np.concatenate([np.abs(b.inverse) @ excess[b.rows] for b in blocks])
-
-    def image(error: Array) -> Array:
-        return np.concatenate([b.defect @ error[b.window] for b in blocks])
-
+    excess = _excess(rows, values, flat, len(matrix))
+    size = np.finfo(np.float64).eps * (len(matrix) + 2)
+    # The rounding of the product, and of A's entries, is part of the defect |BA − I|.
+    found = np.abs(inverse @ matrix - np.eye(len(matrix)))
+    defect = found + size * (np.abs(inverse) @ np.abs(matrix))
+    first = _POSITIVE + np.abs(inverse) @ excess
     error = first
     for _ in range(3):
-        error = first + 1.1 * image(error)
-    return error if (first + image(error) <= error).all() else None
+        error = first + 1.1 * (defect @ error)
+    return error if (first + defect @ error <= error).all() else None
 
 
 def _inverse(interpolant: Interpolant, matrix: NDArray[np.floating], durations: Array) -> Array:
@@ -306,12 +311,12 @@ def coefficient_gradient(
     nodal: Array | None = None,
 ) -> CoefficientGradient:
     """Derivatives of the coefficients by implicit differentiation of the linear system."""
-    plan, pattern = layout(interpolant), _pattern(interpolant)
+    plan, pattern = layout(interpolant), pattern_of(interpolant)
     values = right_hand_sides(interpolant, waypoints, nodal)
     rows = system(interpolant, durations)
     size, joints = len(rows.factor), waypoints.shape[1]
     flat = _flat(interpolant, coefficients(interpolant, waypoints, durations, nodal))
-    inverse = _inverse(interpolant, rows.dense(np.arange(size), 0, size), durations)
+    inverse = _inverse(interpolant, rows.dense(), durations)
     by_duration = np.zeros((interpolant.segments, size, joints))
     # A row that matches two segments holds (h_{b−1}/h_b)ʳ.
     i, b = pattern.jumps, plan.breaks[pattern.jumps]

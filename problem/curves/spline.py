@@ -16,6 +16,7 @@ from scipy.interpolate import PPoly
 from ..arrays import Array
 from ..errors import TrajgapError
 from . import kernel
+from .compilation import Deferred
 from .condition import ConditionKind
 from .trajectory import Trajectory
 
@@ -26,6 +27,8 @@ PERM = np.array(
     [[float(math.perm(p, r)) for r in range(kernel.MAX_COEFFICIENTS)] for p in range(10)]
 )
 """PERM[p, r] = p!/(p − r)!: the factor of sᵖ⁻ʳ in the r-th derivative of sᵖ."""
+_fit_one = Deferred(kernel.fit_coefficients, 2.0)
+"""The fit of one vector; compiling it takes two to three seconds."""
 _THREAD_WORK = 4000
 """Polynomials (vectors times joints) below which starting threads costs more than it saves."""
 _LONGEST = 1e30
@@ -53,52 +56,51 @@ class Layout:
 def layout(interpolant: Interpolant) -> Layout:
     """Layout of ``interpolant``; its free derivatives, if any, become prescribed rows."""
     full = interpolant.completed() if interpolant.free else interpolant
-    rows = full.rows
-    n = full.segments
-    column = np.full((n, kernel.MAX_COEFFICIENTS), -1, dtype=np.int64)
-    given = {(r.at, r.order) for r in rows if r.kind == ConditionKind.RIGHT_VALUE}
-    count = 0
-    for k, d in enumerate(full.degrees):
-        for p in range(d + 1):
-            if (k, p) not in given:
-                column[k, p] = count
-                count += 1
+    table, n = full.table, full.segments
+    kinds, breaks, orders = table.kinds, table.breaks, table.orders
+    degrees = np.array(full.degrees, dtype=np.int64)
+    powers = np.arange(kernel.MAX_COEFFICIENTS)
+    unknown = powers <= degrees[:, None]
+    right, match = kinds == ConditionKind.RIGHT_VALUE, kinds == ConditionKind.MATCH
+    unknown[breaks[right], orders[right]] = False
+    column = np.where(unknown, np.cumsum(unknown).reshape(unknown.shape) - 1, -1)
+    k, r = breaks[~right] - 1, orders[~right]
+    equation = np.arange(k.size)
     lower = upper = 0
-    equations = [r for r in rows if r.kind != ConditionKind.RIGHT_VALUE]
-    for e, row in enumerate(equations):
-        k = row.at - 1
-        touched = [column[k, p] for p in range(row.order, full.degrees[k] + 1)]
-        if row.kind == ConditionKind.MATCH and row.order <= full.degrees[row.at]:
-            touched.append(column[row.at, row.order])
-        used = [c for c in touched if c >= 0]
-        lower = max([lower, *(e - c for c in used)])
-        upper = max([upper, *(c - e for c in used)])
-    free = {key: i for i, key in enumerate(interpolant.free_derivatives)} if full.free == 0 else {}
-    waypoint = {b: i for i, b in enumerate(interpolant.waypoint_breaks)}
-    values = [dict(e) for e in full.prescribed]
+    for p in range(int(degrees.max()) + 1):
+        touched = np.where(p >= r, column[k, p], -1)
+        used = touched >= 0
+        lower = max(lower, int((equation - touched)[used].max(initial=0)))
+        upper = max(upper, int((touched - equation)[used].max(initial=0)))
+    beyond = np.full(k.size, -1)
+    at = match[~right] & (r <= degrees[np.minimum(k + 1, n - 1)])
+    beyond[at] = column[k[at] + 1, r[at]]
+    used = beyond >= 0
+    lower = max(lower, int((equation - beyond)[used].max(initial=0)))
+    upper = max(upper, int((beyond - equation)[used].max(initial=0)))
+    values = np.zeros((n + 1, kernel.MAX_COEFFICIENTS + 1))
+    for b, entries in enumerate(full.prescribed):
+        for order, value in entries:
+            if order < values.shape[1]:
+                values[b, order] = value
+    free = np.full(values.shape, -1, dtype=np.int64)
+    if full.free == 0:
+        for i, (b, order) in enumerate(interpolant.free_derivatives):
+            free[b, order] = i
+    waypoint = np.full(n + 1, -1, dtype=np.int64)
+    waypoint[list(interpolant.waypoint_breaks)] = np.arange(len(interpolant.waypoint_breaks))
     return Layout(
-        kinds=np.array([r.kind for r in rows], dtype=np.int64),
-        breaks=np.array([r.at for r in rows], dtype=np.int64),
-        orders=np.array([r.order for r in rows], dtype=np.int64),
-        degrees=np.array(full.degrees, dtype=np.int64),
+        kinds=kinds,
+        breaks=breaks,
+        orders=orders,
+        degrees=degrees,
         column=column,
-        unknowns=count,
+        unknowns=int(unknown.sum()),
         lower=lower,
         upper=upper,
-        prescribed=np.array(
-            [0.0 if r.kind == ConditionKind.MATCH else values[r.at].get(r.order, 0.0) for r in rows]
-        ),
-        waypoint=np.array(
-            [
-                waypoint.get(r.at, -1) if r.order == 0 and r.kind != ConditionKind.MATCH else -1
-                for r in rows
-            ],
-            dtype=np.int64,
-        ),
-        nodal=np.array(
-            [free.get((r.at, r.order), -1) if r.kind != ConditionKind.MATCH else -1 for r in rows],
-            dtype=np.int64,
-        ),
+        prescribed=np.where(match, 0.0, values[breaks, orders]),
+        waypoint=np.where((orders == 0) & ~match, waypoint[breaks], -1),
+        nodal=np.where(match, -1, free[breaks, orders]),
     )
 
 
@@ -140,7 +142,8 @@ def batch_coefficients(
     values = right_hand_sides(interpolant, waypoints, nodal)
     vectors, joints = len(durations), waypoints.shape[1]
     out = np.zeros((interpolant.segments, kernel.MAX_COEFFICIENTS, joints * vectors))
-    kernel.fit_coefficients(
+    fitted = _fit_one if vectors == 1 else kernel.fit_coefficients
+    fitted(
         np.ascontiguousarray(durations.T),
         vectors,
         values,

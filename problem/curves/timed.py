@@ -85,7 +85,7 @@ class ClockedTrajectory(Trajectory):
 
     clock: Array
 
-    @property
+    @cached_property
     def breaks(self) -> Array:
         """Times at which the pieces meet, s."""
         return np.append(self.clock[:, 0], self.clock[-1].sum())

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import PPoly
 
 from ..arrays import Array
-from .peak import critical_points
+from .peak import Extremum, critical_points, polynomial_extrema
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +38,7 @@ class Trajectory:
         """Derivative ``order`` at ``time`` (s); shape of ``time`` plus (joints,)."""
         return np.asarray(self.polynomial(time, nu=order), dtype=np.float64)
 
-    @property
+    @cached_property
     def breaks(self) -> Array:
         """Times at which the pieces meet, s."""
         return np.asarray(self.polynomial.x, dtype=np.float64)
@@ -58,12 +59,24 @@ class Trajectory:
         return int(self.scaled.shape[2])
 
     def derivative(self, segment: int, joint: int, order: int) -> Array:
-        """Ascending coefficients in s of a time derivative on one piece."""
-        d = self.degrees[segment]
-        a = self.scaled[segment, : d + 1, joint].copy()
-        for _ in range(order):
-            a = a[1:] * np.arange(1, a.size) if a.size > 1 else np.zeros(1)
-        return np.asarray(a / self.durations[segment] ** order, dtype=np.float64)
+        """Ascending coefficients in s of a time derivative on one piece; not to be written to."""
+        known = self._derivatives.get((segment, order))
+        if known is None:
+            d = self.degrees[segment]
+            a = self.scaled[segment, : d + 1].T.copy()
+            for _ in range(order):
+                size = a.shape[1]
+                a = a[:, 1:] * np.arange(1, size) if size > 1 else np.zeros((len(a), 1))
+            known = np.asarray(a / self.durations[segment] ** order, dtype=np.float64)
+            known.setflags(write=False)
+            self._derivatives[segment, order] = known
+        one: Array = known[joint]
+        return one
+
+    @cached_property
+    def _derivatives(self) -> dict[tuple[int, int], Array]:
+        """Of every joint, by piece and order: the checker asks for each several times."""
+        return {}
 
     def turning(self, piece: int, joint: int, order: int) -> Array:
         """Places in (0, 1) of a piece where a derivative in time turns."""
@@ -71,8 +84,27 @@ class Trajectory:
 
     def values(self, piece: int, joint: int, order: int, places: Array) -> Array:
         """Derivative in time at places, 0..1, of a piece."""
-        found = np.polynomial.polynomial.polyval(places, self.derivative(piece, joint, order))
-        return np.asarray(found, dtype=np.float64)
+        a = self.derivative(piece, joint, order)
+        found: Array = a[-1] + places * 0.0
+        for coefficient in a[-2::-1]:
+            found = coefficient + found * places
+        return found
+
+    def quick_extrema(self, joint: int, order: int) -> list[Extremum] | None:
+        """`extrema` of one derivative where plain polynomials allow a shorter way, else None."""
+        if type(self) is not Trajectory:
+            return None
+        rows = self.scaled[:, :, joint].tolist()
+        begins, durations = self.breaks.tolist(), self.durations.tolist()
+        found: list[Extremum] = []
+        for k, degree in enumerate(self.degrees):
+            row = rows[k][: degree + 1]
+            for _ in range(order):
+                row = [c * p for p, c in enumerate(row)][1:] or [0.0]
+            rate = durations[k] ** order
+            row = [c / rate for c in row]
+            found += polynomial_extrema(row, joint, k, order, begins[k], durations[k])
+        return found
 
     def times(self, piece: int, places: Array) -> Array:
         """Times of places of a piece, s."""
@@ -80,7 +112,7 @@ class Trajectory:
 
     def level(self, piece: int, joint: int, order: int, value: float) -> Array:
         """Ascending polynomial on a piece that vanishes where a derivative has the value."""
-        found = self.derivative(piece, joint, order)
+        found = self.derivative(piece, joint, order).copy()
         found[0] -= value
         return found
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
@@ -20,6 +21,15 @@ from .uniform_matrices import clock_matrix, shape_matrix
 
 _STEP = 1e-30
 """Complex step of the gradients, s: its square is lost in any double, so nothing is truncated."""
+
+_UNDECIDED = 1e-9
+"""Relative distance from a ceiling within which peaks are computed: bounds know them to 1e-12."""
+
+
+@lru_cache(maxsize=16)
+def _nodes(waypoints: int, natural: bool) -> Array:
+    """The clock's matrix as the kernel takes it."""
+    return np.ascontiguousarray(clock_matrix(waypoints, natural), dtype=np.float64)
 
 
 @dataclass(frozen=True)
@@ -87,16 +97,33 @@ class StretchedUniformBSpline(UniformBSpline, StretchedCurve):
         )
 
 
+@dataclass(frozen=True)
 class TimedUniformBSpline(UniformBSpline):
     """Uniform cubic B-splines q(e) through the way-points and t(e) through the time nodes.
 
-    Source: `irb1600-ga-cubic-bspline`, (1) to (3), with the t″ that (7) carries: time closed at
-    both ends as the joints are. C2 in time where dt/de > 0, which not every set of durations
-    gives. The closing makes q″ = ±2q′ and t″ = ±2t′ at the ends: the acceleration is 0 there
-    and the velocity is not.
+    Source: `irb1600-ga-cubic-bspline`, (1) to (3), with the t″ that (7) carries. C2 in time where
+    dt/de > 0, which not every set of durations gives. How time ends is not printed: closed as the
+    joints are, q″ = ±2q′ and t″ = ±2t′ at the ends, so that the acceleration is 0 there and the
+    velocity is not; with natural ends t″ = 0, and neither is 0.
+
+    Parameters
+    ----------
+    natural_clock : bool
+        Whether t″ is 0 at both ends, instead of equal control vertices of time.
     """
 
+    natural_clock: bool = False
     words = "time a B-spline too"
+
+    @property
+    def name(self) -> str:
+        """Words for messages; they tell both ends of time apart."""
+        return f"{super().name}{', with natural ends of time' if self.natural_clock else ''}"
+
+    @property
+    def clock(self) -> NDArray[np.longdouble]:
+        """Coefficients in e of t on each segment, as combinations of the durations."""
+        return clock_matrix(self.waypoints, self.natural_clock)
 
     def smooth_order(self, break_index: int) -> int:
         """C2 at every break."""
@@ -104,7 +131,7 @@ class TimedUniformBSpline(UniformBSpline):
 
     def enclosed(self, waypoints: Array, durations: Array, nodal: Array | None = None) -> Enclosed:
         """From exact rational matrices; a `CurveError` where time would run backwards."""
-        q, t = shape_matrix(self.waypoints), clock_matrix(self.waypoints)
+        q, t = shape_matrix(self.waypoints), self.clock
         return enclosed_with_clock(q, t, waypoints, durations)
 
     def motion_values(self, waypoints: Array, nodal: Array | None = None) -> Array:
@@ -114,10 +141,28 @@ class TimedUniformBSpline(UniformBSpline):
 
     def batch_peaks(self, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
         """True peaks by the compiled kernel."""
+        return self._peaks(values, durations, wanted, np.zeros(wanted.shape), np.inf)
+
+    def decided_peaks(
+        self, values: Array, durations: Array, wanted: NDArray[np.bool_], ceilings: Array
+    ) -> Array:
+        """Peaks of pieces that bounds alone do not decide."""
+        low = np.where(np.isfinite(ceilings), ceilings, 0.0) * (1 - _UNDECIDED)
+        return self._peaks(values, durations, wanted, low, ceilings * (1 + _UNDECIDED))
+
+    def _peaks(
+        self,
+        values: Array,
+        durations: Array,
+        wanted: NDArray[np.bool_],
+        low: Array,
+        high: Array | float,
+    ) -> Array:
         h = as_batch(self, durations)
         peaks = np.empty((h.shape[0], values.shape[2], 3))
-        nodes = np.ascontiguousarray(clock_matrix(self.waypoints), dtype=np.float64)
-        timed_kernel.batch_peaks(h, values, nodes, wanted, peaks)
+        above = np.broadcast_to(np.asarray(high, dtype=np.float64), low.shape).copy()
+        nodes = _nodes(self.waypoints, self.natural_clock)
+        timed_kernel.batch_peaks(h, values, nodes, wanted, low, above, peaks)
         return peaks
 
     def value_gradients(
@@ -129,7 +174,7 @@ class TimedUniformBSpline(UniformBSpline):
     ) -> PeakGradients:
         """By complex steps: every number is a rational function of durations and way-points."""
         matrix = shape_matrix(self.waypoints).astype(np.float64)
-        nodes = clock_matrix(self.waypoints).astype(np.float64)
+        nodes = self.clock.astype(np.float64)
         scaled, clock = matrix @ waypoints, nodes @ durations
         by_duration = np.empty((len(points), self.segments))
         by_waypoint = np.empty((len(points), self.waypoints))
@@ -143,7 +188,7 @@ class TimedUniformBSpline(UniformBSpline):
 
 
 def uniform_cubic_b_spline(
-    waypoints: int, time: Timing | str
+    waypoints: int, time: Timing | str, natural_clock: bool = False
 ) -> StretchedUniformBSpline | TimedUniformBSpline:
     """Uniform cubic B-spline through a number of way-points.
 
@@ -152,14 +197,19 @@ def uniform_cubic_b_spline(
     waypoints : int
     time : Timing or str
         "stretched" or "timed".
+    natural_clock : bool
+        Of a timed one: as in `TimedUniformBSpline`.
 
     Raises
     ------
     TrajgapError
-        If the word is another, or there are fewer than two way-points.
+        If the word is another, if a stretched clock shall be natural, or if there are fewer than
+        two way-points.
     """
     if time not in tuple(Timing):
         raise TrajgapError(f"interpolant.time: {time!r} is unknown; use stretched or timed")
-    if Timing(time) is Timing.STRETCHED:
-        return StretchedUniformBSpline(waypoints)
-    return TimedUniformBSpline(waypoints)
+    if Timing(time) is Timing.TIMED:
+        return TimedUniformBSpline(waypoints, natural_clock)
+    if natural_clock:
+        raise TrajgapError("interpolant.time_ends: goes with time = 'timed' alone; leave it out")
+    return StretchedUniformBSpline(waypoints)

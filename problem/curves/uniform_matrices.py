@@ -16,37 +16,53 @@ _SIXTH = Fraction(1, 6)
 
 
 @lru_cache(maxsize=64)
-def vertex_matrix(waypoints: int) -> tuple[tuple[Fraction, ...], ...]:
+def vertex_matrix(waypoints: int, natural: bool = False) -> tuple[tuple[Fraction, ...], ...]:
     """Control vertices as exact combinations of the way-points, (m + 2) rows of m numbers.
 
     (V_{i−1} + 4 V_i + V_{i+1})/6 = W_i (2) with V_1 = V_0 and V_{m+1} = V_m (3). Rows sum to 1;
     the sum of the absolute values of a row is at most 3, since the diagonal of the system exceeds
-    the rest of its row by at least 2/6.
+    the rest of its row by at least 2/6. A natural curve has no curvature at its ends instead of
+    (3): V_0 − 2 V_1 + V_2 = 0, so that V_1 = W_0 by (2), and the same at the other end.
     """
     m = waypoints
-    end = 5 * _SIXTH
+    end = Fraction(1) if natural else 5 * _SIXTH
     diagonal = [end, *([4 * _SIXTH] * (m - 2)), end]
     rows = [[Fraction(int(i == k)) for k in range(m)] for i in range(m)]
+
+    def beside(i: int) -> Fraction:
+        """Weight of a neighbour in row i."""
+        return Fraction(0) if natural and i in (0, m - 1) else _SIXTH
+
     for i in range(1, m):
-        factor = _SIXTH / diagonal[i - 1]
-        diagonal[i] -= factor * _SIXTH
+        factor = beside(i) / diagonal[i - 1]
+        diagonal[i] -= factor * beside(i - 1)
         rows[i] = [a - factor * b for a, b in zip(rows[i], rows[i - 1], strict=True)]
     for i in range(m - 1, -1, -1):
         above = rows[i + 1] if i + 1 < m else [Fraction(0)] * m
-        rows[i] = [(a - _SIXTH * b) / diagonal[i] for a, b in zip(rows[i], above, strict=True)]
-    return tuple(map(tuple, (rows[0], *rows, rows[-1])))
+        rows[i] = [(a - beside(i) * b) / diagonal[i] for a, b in zip(rows[i], above, strict=True)]
+    first, last = rows[0], rows[-1]
+    if natural:
+        first = [2 * a - b for a, b in zip(rows[0], rows[1], strict=True)]
+        last = [2 * a - b for a, b in zip(rows[-1], rows[-2], strict=True)]
+    return tuple(map(tuple, (first, *rows, last)))
 
 
 @lru_cache(maxsize=64)
-def shape_matrix(waypoints: int) -> NDArray[np.longdouble]:
+def shape_matrix(waypoints: int, natural: bool = False) -> NDArray[np.longdouble]:
     """Coefficients in e of each segment as combinations of the way-points.
+
+    Parameters
+    ----------
+    waypoints : int
+    natural : bool
+        As in `vertex_matrix`.
 
     Returns
     -------
     ndarray of longdouble, shape (segments, 4, way-points)
         Exact rational numbers, rounded once.
     """
-    v = vertex_matrix(waypoints)
+    v = vertex_matrix(waypoints, natural)
 
     def combined(k: int, weights: Sequence[int], divisor: int) -> list[Fraction]:
         rows = [v[k + i] for i in range(4)]
@@ -68,14 +84,20 @@ def shape_matrix(waypoints: int) -> NDArray[np.longdouble]:
 
 
 @lru_cache(maxsize=64)
-def clock_matrix(waypoints: int) -> NDArray[np.longdouble]:
+def clock_matrix(waypoints: int, natural: bool = False) -> NDArray[np.longdouble]:
     """Coefficients in e of t on each segment as combinations of the durations.
+
+    Parameters
+    ----------
+    waypoints : int
+    natural : bool
+        As in `vertex_matrix`, for the time nodes.
 
     Returns
     -------
     ndarray of longdouble, shape (segments, 4, segments)
     """
-    nodes = shape_matrix(waypoints)
+    nodes = shape_matrix(waypoints, natural)
     # Node i is the sum of the durations before it.
     matrix = np.cumsum(nodes[:, :, :0:-1], axis=2)[:, :, ::-1]
     matrix.setflags(write=False)

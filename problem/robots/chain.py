@@ -268,6 +268,29 @@ def forward_kinematics(chain: Chain, q: ArrayLike) -> Array:
     return pose
 
 
+def end_positions(chain: Chain, q: Array) -> Array:
+    """Position of the end of a chain, m, shape (..., 3), for finite values of shape (..., joints).
+
+    Coordinates of one point are carried from the end to the base, where `forward_kinematics`
+    multiplies transforms: ten times fewer operations for the searches that ask for nothing else.
+    """
+    x = y = z = np.zeros(q.shape[:-1])
+    for joint in reversed(range(chain.joints)):
+        turns = chain.kinds[joint] is JointKind.REVOLUTE
+        value = q[..., joint]
+        theta = chain.theta_offset[joint] + (value if turns else 0.0)
+        d = chain.d[joint] + (0.0 if turns else value)
+        a, alpha = chain.a[joint], chain.alpha[joint]
+        ct, st, ca, sa = np.cos(theta), np.sin(theta), np.cos(alpha), np.sin(alpha)
+        if chain.convention is Convention.STANDARD:
+            x, y, z = x + a, ca * y - sa * z, sa * y + ca * z + d
+            x, y = ct * x - st * y, st * x + ct * y
+        else:
+            x, y, z = ct * x - st * y + a, st * x + ct * y, z + d
+            y, z = ca * y - sa * z, sa * y + ca * z
+    return np.stack([x, y, z], axis=-1)
+
+
 def geometric_jacobian(chain: Chain, q: ArrayLike) -> Array:
     """Velocity and angular velocity of the end per joint velocity, in the base frame.
 

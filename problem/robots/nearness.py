@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array
 from ..errors import TrajgapError
-from .chain import Chain, forward_kinematics
+from .chain import Chain, end_positions
 from .inverse import inverse_kinematics
 
 _MOST_BOXES = 400_000
@@ -87,7 +87,7 @@ def proximity(
     width = tolerance if tolerance is not None else 1e-4 * kept.reach
 
     def distance(q: Array) -> Array:
-        ends = forward_kinematics(kept, q)[..., :3, 3]
+        ends = end_positions(kept, q)
         if radial:
             return np.asarray(np.abs(np.linalg.norm(ends, axis=-1) - np.linalg.norm(goal)))
         return np.asarray(np.linalg.norm(ends - goal, axis=-1))

@@ -1,4 +1,7 @@
-"""The long run: ``python tests/attacks --seconds 3600 --seed 1 --write docs/attacks.csv``."""
+"""The long run.
+
+``python tests/attacks --seconds 3600 --seed 1 --write docs/measurements/attacks.csv``.
+"""
 
 from __future__ import annotations
 

@@ -30,12 +30,15 @@ CLAIMS = (
     "total_time",
     "improvement",
     "peak",
+    "measure",
     "convergence",
     "conditions",
     "control_vertices",
     "statement",
 )
 """Every quantity that a claim may state; a test compares with the schema."""
+MEASURES = ("mean", "rms", "integral", "integral-square")
+"""Every measure of a motion."""
 DERIVATIVES = ("velocity", "acceleration", "jerk")
 """Quantities by order of derivative, from 1."""
 UNITS = {

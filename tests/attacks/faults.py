@@ -407,6 +407,6 @@ ATTACKS = (
         "exit code 141, nothing on standard error",
         closed_pipe,
         0.3,
-        2,
+        1,
     ),
 )

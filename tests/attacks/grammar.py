@@ -7,7 +7,17 @@ from typing import Any
 
 import numpy as np
 
-from attacks.cases import CLAIMS, DERIVATIVES, UNITS, Drawn, Rng, draw_asked, near_limits, raw_of
+from attacks.cases import (
+    CLAIMS,
+    DERIVATIVES,
+    MEASURES,
+    UNITS,
+    Drawn,
+    Rng,
+    draw_asked,
+    near_limits,
+    raw_of,
+)
 from attacks.curves import Array, Asked, NoCurve, segments_of
 from attacks.toml_text import Bare
 
@@ -190,6 +200,9 @@ def _claim(
             value = f"{10 ** rng.uniform(-1, 2):.3g}"
             own = {"of": "d-1", "derivative": key}
             return own | ({"value": value} if rng.random() < 0.5 else {"values": [value] * joints})
+        case "measure":
+            key, kind = str(rng.choice(DERIVATIVES)), str(rng.choice(MEASURES))
+            return {"of": "d-1", "derivative": key, "measure": kind, "value": "1.3"}
         case "convergence":
             return {"iterations": Bare("30")}
         case "control_vertices":

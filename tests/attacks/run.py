@@ -8,6 +8,7 @@ import os
 import shutil
 import tempfile
 import time
+import traceback
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -86,6 +87,11 @@ def tried(
     except Broken as broken:
         account.broken.append(Failure(number, str(broken), _kept(folder)))
         say(f"{account.attack.name}: trial {number}: {broken}")
+    except Exception:
+        # A slip of the attack is a failure like any other, not the end of an hour's run.
+        why = f"the attack itself failed: {traceback.format_exc()}"
+        account.broken.append(Failure(number, why, _kept(folder)))
+        say(f"{account.attack.name}: trial {number}: {why}")
     finally:
         account.tried += 1
         account.seconds += time.monotonic() - began
@@ -141,8 +147,14 @@ def warm() -> None:
     from trajgap.compare.cli import main
     from trajgap.compare.pages import write_report  # noqa: F401
 
-    sink = io.StringIO()
-    with contextlib.redirect_stdout(sink), contextlib.redirect_stderr(sink):
-        code = main(["check", "puma560-mnam-pso-353", "--durations", "2,2,2", "--json"])
-    if code:
-        raise RuntimeError(f"a shipped case is not checked: {sink.getvalue()}")
+    case = "irb460-pso-353"
+    for arguments in (
+        ("check", case, "--durations", "2,2,2", "--json"),
+        ("show", case),
+        ("solve", case),
+    ):
+        sink = io.StringIO()
+        with contextlib.redirect_stdout(sink), contextlib.redirect_stderr(sink):
+            code = main(list(arguments))
+        if code:
+            raise RuntimeError(f"a shipped case is not read: {sink.getvalue()}")

@@ -139,11 +139,14 @@ def _begun(
     with warnings.catch_warnings():
         # Other threads of the parent may be alive; none of them holds a lock that a child needs.
         warnings.simplefilter("ignore", DeprecationWarning)
+        # A signal before the child has its own handlers would unwind the parent's stack in it.
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         pid = os.fork()
     if pid == 0:
         for own, _ in pipes:
             os.close(own)
         _child(function, plan, seconds, memory_mb, folder, [other for _, other in pipes])
+    signal.pthread_sigmask(signal.SIG_SETMASK, before)
     for _, other in pipes:
         os.close(other)
     return pid, [own for own, _ in pipes], began
@@ -170,6 +173,7 @@ def _child(
             stream = io.TextIOWrapper(open(number, f"{mode}b", closefd=False), "utf-8")  # noqa: SIM115
             setattr(sys, name, stream)
             setattr(sys, f"__{name}__", stream)
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
         if folder is not None:
             os.chdir(folder)
         _limited(plan, seconds, memory_mb)

@@ -12,9 +12,9 @@ from attacks.attack import Attack
 from attacks.run import Account
 
 ROOT = Path(__file__).parents[2]
-CSV = ROOT / "docs" / "attacks.csv"
-PAGE = ROOT / "docs" / "attacks.md"
-SIGNALS_CSV = ROOT / "docs" / "attacks-signals.csv"
+CSV = ROOT / "docs" / "measurements" / "attacks.csv"
+PAGE = ROOT / "docs" / "measurements" / "attacks.md"
+SIGNALS_CSV = ROOT / "docs" / "measurements" / "attacks-signals.csv"
 SIGNALS = "attacks, each command"
 """What the markers around the table of each command say."""
 BEGIN, END = "<!-- attacks: begin -->", "<!-- attacks: end -->"
@@ -93,7 +93,7 @@ def command_of(seconds: int, seed: int) -> str:
     """The command of a run, its seconds rounded to whole minutes."""
     minutes = max(1, round(seconds / 60))
     run = f"python tests/attacks --seconds {60 * minutes} --seed {seed}"
-    return f"{run} --write docs/attacks.csv"
+    return f"{run} --write docs/measurements/attacks.csv"
 
 
 def each_table(rows: Sequence[Row]) -> str:
@@ -102,7 +102,7 @@ def each_table(rows: Sequence[Row]) -> str:
     most = max(row.trials for row in rows)
     lines = [
         f"`python tests/attacks --only {','.join(attacks)} --trials {most} --seed {rows[0].seed} "
-        f"--write docs/attacks-signals.csv`, {sum(r.trials for r in rows):,} trials, "
+        f"--write docs/measurements/attacks-signals.csv`, {sum(r.trials for r in rows):,} trials, "
         f"{sum(r.failures for r in rows)} failures:",
         "",
         "| attack | command | trials | held | not judged | failures | what was seen |",

@@ -10,7 +10,7 @@ from trajgap.problem import parse_case
 from trajgap.problem.cases import declaration
 from trajgap.problem.cases.claim import QUANTITY_KINDS
 
-from attacks import faults
+from attacks import faults, true_proofs
 from attacks.attack import Attack
 from attacks.cases import CLAIMS, FAMILIES
 from attacks.grammar import draw_case
@@ -34,6 +34,8 @@ pytestmark = pytest.mark.skipif(not available(), reason="children are forked and
 
 SEED = 7
 """Another one than that of the long run."""
+QUICK_SECONDS = 0.5
+"""For making a certificate that is then altered: a wide interval is proved like a narrow one."""
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -49,9 +51,22 @@ def holds(attack: Attack, trials: int) -> None:
     assert account.held >= trials / 3, "too little can be judged"
 
 
-@pytest.mark.parametrize("attack", ATTACKS, ids=lambda a: a.name)
+SLOW = ("dead worker", "valid case files, audited")
+"""Attacks that take seconds a trial: `heuristics/test_workers.py` kills a worker sooner, and *valid
+case files* draws from the same grammar."""
+
+
+@pytest.mark.parametrize(
+    "attack",
+    [
+        pytest.param(a, id=a.name, marks=[pytest.mark.slow] if a.name in SLOW else [])
+        for a in ATTACKS
+    ],
+)
 def test_a_few_trials_hold(attack: Attack, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(faults, "WORKS", {k: w for k, w in faults.WORKS.items() if w.quick})
+    monkeypatch.setattr(true_proofs, "MAKE_SECONDS", QUICK_SECONDS)
+    monkeypatch.setattr(true_proofs, "_EACH", 1)
     holds(attack, attack.quick)
 
 
@@ -119,24 +134,45 @@ def test_the_page_names_every_file() -> None:
             assert f"`{path.name}`" in text
 
 
-KINDS = {
-    "stretched": "uniform_cubic_b_spline(4, 'stretched')",
-    "timed": "uniform_cubic_b_spline(4, 'timed')",
-    "clamped": "ClampedBSpline(4, 4, 'averaged-continued')",
-}
+KINDS = (
+    "uniform_cubic_b_spline(4, 'stretched')",
+    "uniform_cubic_b_spline(4, 'timed')",
+    "ClampedBSpline(4, 4, 'averaged-continued')",
+)
 
 
-@pytest.mark.parametrize("curve", KINDS.values(), ids=KINDS)
-def test_every_kind_of_curve_is_known_from_the_start(curve: str) -> None:
+def test_every_kind_of_curve_is_known_from_the_start() -> None:
     # Trials run in a process that has imported everything: a fresh one has not.
     import subprocess
     import sys
 
     program = (
+        "import os\n"
         "from trajgap.problem import ClampedBSpline, Limits, Problem, check\n"
         "from trajgap.problem import uniform_cubic_b_spline\n"
-        f"problem = Problem([[0.1], [0.9], [-0.3], [0.4]], Limits(9.0, 90.0), {curve})\n"
-        "print(check(problem, [0.8, 1.1, 0.9]).limits)"
+        f"for make in {', '.join(f'lambda: {kind}' for kind in KINDS)}:\n"
+        "    if os.fork():  # each kind in a process that knows no other\n"
+        "        os.wait()\n"
+        "        continue\n"
+        "    problem = Problem([[0.1], [0.9], [-0.3], [0.4]], Limits(9.0, 90.0), make())\n"
+        "    print(check(problem, [0.8, 1.1, 0.9]).limits, flush=True)\n"
+        "    os._exit(0)"
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
-    assert (done.returncode, done.stdout) == (0, "pass\n"), done.stderr
+    assert (done.returncode, done.stdout) == (0, "pass\npass\npass\n"), done.stderr
+
+
+def test_a_slip_of_an_attack_is_a_failure_with_its_files() -> None:
+    def slips(rng: np.random.Generator, folder: Path) -> str | None:
+        (folder / "case.toml").write_text("x", encoding="utf-8")
+        raise TypeError("what is no longer there")
+
+    account = Account(Attack("slip", "-", "-", slips))
+    tried(account, SEED, 3)
+    (failure,) = account.broken
+    assert failure.number == 3
+    assert "the attack itself failed" in failure.why
+    assert "TypeError: what is no longer there" in failure.why
+    assert failure.files == {"case.toml": b"x"}
+    assert account.tried == 1
+    assert account.held == 0

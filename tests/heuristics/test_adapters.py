@@ -216,5 +216,5 @@ def test_a_spent_budget_judges_nothing_more() -> None:
         with pytest.raises(BudgetSpent):
             budgeted(np.array([[3.0], [2.0]]))
     assert calls == [2, 1]
-    assert budgeted.totals == [5.0, 4.0, 3.0]
+    assert budgeted.totals.tolist() == [5.0, 4.0, 3.0]
     np.testing.assert_array_equal(budgeted.best, [3.0])

@@ -214,6 +214,7 @@ def test_joints_by_themselves() -> None:
     )
 
 
+@pytest.mark.slow
 def test_same_bits_for_any_number_of_workers() -> None:
     one = run_many(WOA(), posed(), range(3), 1, 10, objective="stretch")
     two = run_many(WOA(), posed(), range(3), 2, 10, objective="stretch")
@@ -224,7 +225,12 @@ def test_same_bits_for_any_number_of_workers() -> None:
 
 
 @pytest.mark.parametrize(
-    "algorithm", [WOA(), ImprovedWOA(), GA(iterations=300)], ids=lambda a: a.kind
+    "algorithm",
+    [
+        WOA(),
+        *(pytest.param(a, marks=pytest.mark.slow) for a in (ImprovedWOA(), GA(iterations=300))),
+    ],
+    ids=lambda a: a.kind,
 )
 def test_its_effect_on_the_kind_of_problem_of_the_whale_paper(algorithm: WOA) -> None:
     """Eight way-points, six joints: every seed ends shorter than any does under the penalty."""

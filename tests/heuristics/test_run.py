@@ -92,6 +92,7 @@ def test_same_bits_for_any_number_of_workers() -> None:
         assert not b.trace.flags.writeable
 
 
+@pytest.mark.slow
 def test_same_bits_per_joint_for_any_number_of_workers() -> None:
     one = run_many_per_joint(PSO(), PROBLEM, range(3), iterations=10)
     three = run_many_per_joint(PSO(), PROBLEM, range(3), workers=3, iterations=10)
@@ -246,7 +247,7 @@ def test_summary_fits_a_screen() -> None:
     assert str(joint).startswith("pso on two joints, joint elbow, seed 4.1: ")
 
 
-@pytest.mark.parametrize("workers", [1, 2])
+@pytest.mark.parametrize("workers", [1, pytest.param(2, marks=pytest.mark.slow)])
 def test_progress_comes_in_order(workers: int) -> None:
     seen: list[int] = []
     run_many(PSO(), PROBLEM, [4, 2, 9], workers, 2, progress=lambda r: seen.append(r.seed))
@@ -284,6 +285,7 @@ def test_budget_must_be_whole(iterations: object) -> None:
         run(PSO(), PROBLEM, 0, iterations)
 
 
+@pytest.mark.slow
 def test_an_interrupt_is_answered_by_the_parent_alone(tmp_path: Path) -> None:
     # A terminal sends Ctrl-C to every process of the group. After two of three runs one worker is
     # busy and one waits, where KeyboardInterrupt would print a traceback.

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from trajgap.heuristics import PSO, Run, in_processes, run_many
+from trajgap.heuristics import PSO, Run, in_processes, kept_processes, run_many
 from trajgap.problem import CaseError, Limits, Problem, TrajgapError, load_case, three_five_three
 
 WAYPOINTS = [[0.1, 0.5], [0.7, 0.2], [1.2, -0.4], [0.9, 0.3]]
@@ -119,6 +119,30 @@ def test_exceptions_arrive_as_they_are() -> None:
     with pytest.raises(CaseError, match=r"^x: neither a published case nor a file; known: ") as one:
         list(in_processes(load_case, ["x"], 1))
     assert one.value.file == "x"
+
+
+def test_kept_processes_work_again_and_end() -> None:
+    with kept_processes():
+        assert list(in_processes(partial(pow, 2), [3, 1], 2)) == [8, 2]
+        before = {p.pid for p in multiprocessing.active_children()}
+        assert len(before) == 2
+        with pytest.raises(ZeroDivisionError):
+            list(in_processes(partial(divmod, 1), [0], 2))
+        assert {p.pid for p in multiprocessing.active_children()} == before
+        # One that was killed while it waited costs no try of the work that it would have got.
+        gone = multiprocessing.active_children()[0]
+        gone.kill()
+        gone.join()
+        assert list(in_processes(partial(divmod, 7), [2, 3], 2)) == [(3, 1), (2, 1)]
+        after = {p.pid for p in multiprocessing.active_children()}
+        assert len(after) == 2
+        assert len(after & before) == 1
+        # Work that is given up ends its process: nobody waits for the answer.
+        results = in_processes(time.sleep, [0.0, 600.0], 2)
+        next(results)
+        results.close()
+        assert len(multiprocessing.active_children()) == 1
+    assert multiprocessing.active_children() == []
 
 
 def test_results_that_cannot_be_sent_are_named() -> None:

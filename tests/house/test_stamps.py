@@ -8,20 +8,33 @@ from pathlib import Path
 import pytest
 from support.checkout import ROOT
 
-STAMPED = ("trajgap.problem.curves.kernel", "trajgap.nlp.proofs.quintic.nodal")
+STAMPED = {
+    "trajgap.problem.curves.kernel": (),
+    "trajgap.nlp.optimum.newton_curve": ("problem/curves/kernel.py",),
+    "trajgap.nlp.proofs.quintic.nodal": (),
+}
+"""Modules that name a room's kernels, and the files elsewhere whose functions those call."""
 
 
 def folder_of(module: str) -> Path:
-    return ROOT.joinpath(*module.split(".")[1:-1])
+    """Where a module was imported from: the checkout, or what is installed."""
+    file = import_module(module).__file__
+    assert file is not None
+    return Path(file).resolve().parent
 
 
 @pytest.mark.parametrize("home", STAMPED)
 def test_compiled_functions_carry_the_hash_of_all_their_sources(home: str) -> None:
     paths = [folder_of(home) / name for name in import_module(home).KERNELS]
-    stamp = hashlib.sha256(b"".join(path.read_bytes() for path in paths)).hexdigest()[:16]
+    root = folder_of("trajgap.problem").parent
+    called = [root / name for name in STAMPED[home]]
+    stamp = hashlib.sha256(b"".join(path.read_bytes() for path in paths + called)).hexdigest()[:16]
     for path in paths:
-        inside = vars(import_module(f"{home.rpartition('.')[0]}.{path.stem}")).values()
-        functions = [x.py_func for x in inside if hasattr(x, "py_func")]
+        module = import_module(f"{home.rpartition('.')[0]}.{path.stem}")
+        compiled = [x.py_func for x in vars(module).values() if hasattr(x, "py_func")]
+        elsewhere = {Path(f.__code__.co_filename).resolve() for f in compiled} - set(paths)
+        assert elsewhere <= set(called), f"{path.name} calls compiled functions of other files"
+        functions = [f for f in compiled if Path(f.__code__.co_filename).resolve() in paths]
         assert functions, f"{path.name} compiles nothing"
         assert all(f.__qualname__ == f"{f.__name__}_{stamp}" for f in functions)
 

@@ -1,9 +1,12 @@
 """B-spline problems on shifted, unequal way-points, and the uniform ones once more by scipy."""
 
 import numpy as np
-from scipy.interpolate import BSpline
+from scipy.interpolate import BSpline, CubicSpline
 from scipy.optimize import brentq
 from trajgap.problem import ClampedBSpline, Limits, Problem, uniform_cubic_b_spline
+
+NATURAL = "timed, with natural ends of time"
+"""The third reading of time, beside those of `Timing`."""
 
 
 def clamped(kind, seed: int = 0, count: int = 8, joints: int = 3):
@@ -28,7 +31,9 @@ def uniform(time: str, seed: int = 0, count: int = 6, joints: int = 3, spread: f
         rng.uniform(1, 4, joints), rng.uniform(2, 9, joints), rng.uniform(20, 90, joints)
     )
     h = rng.uniform(1 - spread, 1 + spread, count - 1)
-    return Problem(q, limits, uniform_cubic_b_spline(count, time)), h
+    natural = time == NATURAL
+    curve = uniform_cubic_b_spline(count, "timed" if natural else time, natural)
+    return Problem(q, limits, curve), h
 
 
 def vertices_by_solving(w: np.ndarray) -> np.ndarray:
@@ -51,9 +56,12 @@ def spline_by_scipy(w: np.ndarray) -> BSpline:
 class ByScipy:
     """Motion in time from scipy's B-splines of q and t, inverted by bracketing."""
 
-    def __init__(self, q: np.ndarray, h: np.ndarray) -> None:
+    def __init__(self, q: np.ndarray, h: np.ndarray, natural: bool = False) -> None:
         self.q = spline_by_scipy(q)
-        self.t = spline_by_scipy(np.concatenate([[0.0], np.cumsum(h)])[:, None])
+        nodes = np.concatenate([[0.0], np.cumsum(h)])[:, None]
+        self.t = spline_by_scipy(nodes)
+        if natural:
+            self.t = CubicSpline(np.arange(len(nodes)), nodes, bc_type="natural")
         self.last = len(h)
 
     def time(self, e: float) -> float:

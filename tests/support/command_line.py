@@ -7,11 +7,15 @@ import os
 import subprocess
 import sys
 from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+PUMA, IRB = "puma560-mnam-pso-353", "irb460-pso-353"
+# The command asks the faces when it runs, and a face keeps what it has handed out.
+AUDITS, PAGES = (import_module(f"trajgap.compare.{name}") for name in ("audits", "pages"))
 CASE = """
 format = 1
 id = "mine"

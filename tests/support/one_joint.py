@@ -42,3 +42,7 @@ id = "degrees"
 why = "a number usual in degrees"
 units = { velocity = "deg/s" }
 """
+
+
+def one_joint(points: str, limit: str, time: str, checks: str, tail: str = "") -> str:
+    return HEAD.format(points=points, limit=limit, time=time, checks=checks) + tail

@@ -1,7 +1,8 @@
 """The shipped problems that a proof about the declared curve covers, by name of their files."""
 
 from trajgap.nlp.proofs.certifiers import covered
-from trajgap.nlp.proofs.exact import ExactProblem, printed_problem
+from trajgap.nlp.proofs.evidence import stated_exactly
+from trajgap.nlp.proofs.exact import ExactProblem
 from trajgap.problem import Coupling, load_case, published_ids
 
 
@@ -15,8 +16,8 @@ def posed() -> list[tuple[str, ExactProblem]]:
                 statement = case.statement(problem.id, reading.id)
                 if not statement.complete:
                     continue
-                exact = printed_problem(statement)
-                if covered(exact) is not None:
+                exact = stated_exactly(statement)
+                if exact is None or covered(exact) is not None:
                     continue
                 found.append((f"{case_id}.{problem.id}.{reading.id}", exact))
                 if len(exact.joints) > 1 and statement.coupling is Coupling.PER_JOINT:

@@ -14,6 +14,8 @@ from importlib.resources import files
 import pytest
 from trajgap.compare.audits.case_audit import CaseAudit, audit_case
 from trajgap.compare.audits.study import Study
+from trajgap.compare.pages.blocks import Page
+from trajgap.compare.pages.writer import case_page
 from trajgap.nlp import PerJointSolution, Solution, stated_exactly
 from trajgap.problem import Case, parse_case, published_ids
 from trajgap.problem.cases.load import check_case
@@ -92,12 +94,20 @@ def audited(case_id: str) -> CaseAudit:
 def audited_alone(case_id: str) -> CaseAudit:
     """The audit of a case without families of instances, which take minutes."""
     case = hurried(case_id)
+    if not case.document.families:
+        return audited(case_id)
     alone = replace(case, document=case.document.model_copy(update={"families": ()}))
     return audit_case(Reworded(alone, shipped(case_id)))
 
 
-QUICKLY = ("irb460-pso-353", "puma560-mnam-pso-353", "z1-woa-bspline")
-"""Shipped cases whose audit by `audited_alone` takes well under a minute on an idle core."""
+@cache
+def page_alone(case_id: str) -> Page:
+    """The page of `audited_alone`, its pictures drawn."""
+    return case_page(audited_alone(case_id))
+
+
+QUICKLY = ("irb460-pso-353", "z1-woa-bspline")
+"""Shipped cases whose audit by `audited_alone` takes a few seconds on an idle core."""
 EVERY = [
     case_id if case_id in QUICKLY else pytest.param(case_id, marks=pytest.mark.slow)
     for case_id in published_ids()

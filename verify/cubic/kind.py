@@ -1,7 +1,7 @@
 """Proof of a lower bound for C2 cubic splines: the steps and leaves of its tree.
 
-Why the proof holds is in docs/certificates-cubic.md. A file gives weights; every bound that follows
-from them is computed here anew, in exact arithmetic.
+Why the proof holds is in docs/explanation/certificates-cubic.md. A file gives weights; every bound
+that follows from them is computed here anew, in exact arithmetic.
 """
 
 from __future__ import annotations

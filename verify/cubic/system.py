@@ -1,6 +1,6 @@
 """C2 cubic splines as a certificate states them: equations, conditions, and what limits imply.
 
-Symbols are those of docs/certificates-cubic.md.
+Symbols are those of docs/explanation/certificates-cubic.md.
 """
 
 from __future__ import annotations

@@ -66,6 +66,16 @@ def _reductions(result: InstancesResult) -> Iterator[Reduction]:
                 for step in (None, *result.block.lengths):
                     found = distribution(result.reductions(reading, effect, at, step))
                     empty = found.missing == found.pairs
+                    low, high = (
+                        result.median_interval(reading, effect, at)
+                        if step is None
+                        else (np.nan, np.nan)
+                    )
+                    apart = Why(
+                        "instances are resampled over all steps together"
+                        if step is not None
+                        else "fewer than two instances have answers"
+                    )
                     none = Why("no pair of runs has two answers")
                     yield Reduction(
                         reading=reading,
@@ -80,6 +90,8 @@ def _reductions(result: InstancesResult) -> Iterator[Reduction]:
                         upper_quarter=none if empty else found.upper_quarter,
                         highest=none if empty else found.highest,
                         shorter=none if empty else found.shorter,
+                        median_from=low if np.isfinite(low) else apart,
+                        median_to=high if np.isfinite(high) else apart,
                     )
 
 

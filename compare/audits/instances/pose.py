@@ -65,6 +65,11 @@ def printed_reduction(study: Study, block: InstancesBlock) -> tuple[float, float
     return 1 - fast_high / slow_low, 1 - fast_low / slow_high
 
 
+def _printed_totals(study: Study, block: InstancesBlock, rid: str) -> tuple[str | None, str | None]:
+    slow, fast = (study.claim_total(side, rid) for side in _sides(study, block))
+    return slow and slow[0], fast and fast[0]
+
+
 def examined(
     study: Study, block: InstancesBlock, progress: Callable[[str], None] | None = None
 ) -> InstancesResult:
@@ -123,4 +128,5 @@ def examined(
         readings=readings,
         iterations=last.iterations,
         samples=examine(tasks, study.workers, progress),
+        printed_totals=_printed_totals(study, block, readings[0]),
     )

@@ -16,6 +16,10 @@ MIDDLE = 0.9
 """Share of a distribution within which a printed reduction counts as reproduced."""
 
 
+_RESAMPLED = 1000
+"""Samples of instances behind an interval: its ends move by about a tenth of its width."""
+
+
 @dataclass(frozen=True)
 class Optimum:
     """Total (s) of a solve, inf without an answer, and how it ended."""
@@ -151,6 +155,8 @@ class InstancesResult:
     readings: tuple[str, ...]
     iterations: int
     samples: tuple[Sample, ...]
+    printed_totals: tuple[str | None, str | None] = (None, None)
+    """Of the slower and the faster procedure, with their unit."""
 
     @property
     def instances(self) -> int:
@@ -168,6 +174,32 @@ class InstancesResult:
     ) -> Array:
         """Reductions of all instances under one reading, as `Sample.reductions`."""
         return np.concatenate([s.reductions(effect, objective) for s in self.of(reading, step)])
+
+    def median_interval(
+        self, reading: str, effect: Effect, objective: int = 0
+    ) -> tuple[float, float]:
+        """95 % interval of the median reduction of an instance, by resampling the instances.
+
+        Pairs of runs on one instance depend on each other, so that instances are drawn, each with
+        its median; percentiles with a fixed seed. nan with fewer than two instances with answers.
+        """
+        each = [distribution(s.reductions(effect, objective)).median for s in self.of(reading)]
+        known = np.array([m for m in each if np.isfinite(m)])
+        if known.size < 2:
+            return float("nan"), float("nan")
+        if np.ptp(known) == 0.0:
+            return float(known[0]), float(known[0])
+        from scipy.stats import bootstrap  # half a second, and few need it
+
+        found = bootstrap(
+            (known,), np.median, n_resamples=_RESAMPLED, method="percentile", rng=0
+        ).confidence_interval
+        return float(found.low), float(found.high)
+
+    def totals(self, reading: str, route: int, objective: int = 0) -> Array:
+        """Totals (s) of a procedure's runs on all instances: 0 the slower one, 2 the faster."""
+        every = np.concatenate([s.totals[objective, route] for s in self.of(reading)])
+        return np.asarray(every[np.isfinite(every)])
 
     def settled(self, reading: str, objective: int = 0) -> NDArray[np.intp]:
         """Iterations at which the faster procedure's runs settled, those without answer apart."""

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from ....heuristics import Algorithm, in_processes, run
-from ....nlp import Solution, solve
+from ....nlp import Solution
+from ....nlp.optimum import solve
 from ....problem import TOLERANCE, Array, Coupling, Problem, check
 from ...gaps import SETTLED, settled_at
 from .result import Optimum, Sample

@@ -1,16 +1,24 @@
+from .clues import held_otherwise, reading_clues
+from .condition_count import count_conditions
 from .continuous_time import said_to_keep
 from .on_instances import HANDLED, attributed, placed
+from .plain_words import EXPLAINED, Explained
 from .printed_vertices import Vertex, vertices
 from .registry import GROUPS, NOT_COMPUTED, RULES
 
 __all__ = [
+    "EXPLAINED",
     "GROUPS",
     "HANDLED",
     "NOT_COMPUTED",
     "RULES",
+    "Explained",
     "Vertex",
     "attributed",
+    "count_conditions",
+    "held_otherwise",
     "placed",
+    "reading_clues",
     "said_to_keep",
     "vertices",
 ]

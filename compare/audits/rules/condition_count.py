@@ -13,7 +13,7 @@ from ....problem.cases import AnyClaim, ConditionsClaim, StatementClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..study import Study
 from .peaks import has_curve, largest
-from .wording import called, in_units, unit_shown
+from .wording import called_under, in_units, unit_shown
 
 _REST = 0.01
 """Share of a derivative's peak up to which its value at an end counts as 0: rounding of the printed
@@ -32,23 +32,35 @@ def judge_counts(study: Study) -> Iterator[Finding]:
             yield from _at_rest(study, claim, claim.of, (1,))
 
 
-def conditions(claim: ConditionsClaim) -> int:
+def count_conditions(study: Study, claim: ConditionsClaim) -> int:
     """Number of conditions that a statement asks for on one joint.
 
-    Positions at both ends of every segment, continuity at the via-points, and the derivatives
-    said to vanish: on both sides of a via-point where it is said of all way-points.
+    Positions at both ends of every segment, continuity at the breaks, and the derivatives said to
+    vanish: on both sides of a via-point where it is said of all way-points. At a virtual way-point
+    of the declared curve the two segments only join: one condition instead of two positions.
     """
-    n = len(claim.degrees)
+    n, virtual = len(claim.degrees), _virtual(study, claim)
     rest = len(claim.orders)
-    positions, ends = 2 * n, 2 * rest
+    positions, ends = 2 * n - virtual, 2 * rest
     if claim.rest_at == "all":
         others = [r for r in range(1, claim.continuity + 1) if r not in claim.orders]
-        return positions + ends + (n - 1) * (2 * rest + len(others))
+        vias = (n - 1 - virtual) * (2 * rest + len(others))
+        return positions + ends + vias + virtual * claim.continuity
     return positions + ends + (n - 1) * claim.continuity
 
 
+def _virtual(study: Study, claim: ConditionsClaim) -> int:
+    """Virtual way-points of the curve that a statement is about, if it has as many segments."""
+    for pid, rid in study.pairs:
+        if claim.problem in (None, pid) and rid == study.main_reading:
+            curve = study.problem(pid, rid).curve.piecewise
+            if curve is not None and curve.segments == len(claim.degrees):
+                return len(curve.virtual)
+    return 0
+
+
 def _counted(study: Study, claim: ConditionsClaim) -> Finding:
-    wanted = conditions(claim)
+    wanted = count_conditions(study, claim)
     available = sum(d + 1 for d in claim.degrees)
     degrees = "-".join(map(str, claim.degrees))
     computed = f"{wanted} conditions on {available} coefficients"
@@ -57,12 +69,13 @@ def _counted(study: Study, claim: ConditionsClaim) -> Finding:
     message = f"{degrees} polynomials: {computed} per joint."
     if claim.count is not None and claim.count.fraction != wanted:
         verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
-        message = f"{degrees} polynomials: {computed} per joint, where {printed} is printed."
+        message = f"{degrees} polynomials: {computed} per joint; the paper prints {printed}."
     elif impossible := _impossible_segments(study, claim):
         verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
         message = (
             f"{degrees} polynomials: {computed} per joint. No polynomial of that degree meets "
-            f"them in segment {', '.join(map(str, impossible))}, where the way-points differ."
+            f"them in segment{'s' if len(impossible) > 1 else ''} "
+            f"{' and '.join(map(str, impossible))}, where the way-points differ."
         )
     elif wanted > available:
         verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.WARNING
@@ -159,12 +172,12 @@ def _at_rest(
                     continue
                 judged += 1
                 moving += [
-                    f"{called(motion)} ({pid}): {said}"
+                    f"{called_under(motion, pid)}: {said}"
                     for said in _moving(study, motion, pid, rid, orders)
                 ]
         if not judged:
             continue
-        names = ", ".join(QUANTITIES[r - 1] for r in orders if r <= len(QUANTITIES))
+        names = " and ".join(QUANTITIES[r - 1] for r in orders if r <= len(QUANTITIES))
         yield Finding(
             rule="TG207",
             severity=Severity.WARNING if moving else Severity.INFO,
@@ -172,10 +185,10 @@ def _at_rest(
             basis=Basis.CHECK,
             claim=claim.id,
             reading=rid,
-            message="Said to be at rest at both ends, and not so on the stated curve: "
+            message="The motion is said to be at rest at both ends, but not on the stated curve: "
             f"{'; '.join(moving)}."
             if moving
-            else f"On the stated curve {names} vanish at both ends of {judged} printed motion(s).",
+            else f"On the stated curve {names} are 0 at both ends of every printed motion.",
         )
 
 

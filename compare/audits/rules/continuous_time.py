@@ -21,7 +21,7 @@ from ...documents import Basis, ClaimVerdict, Finding, Rounding, Severity
 from ..explanations import LIMITS
 from ..study import Study
 from .peaks import box_reach, has_curve, largest
-from .wording import all_called, called, in_units, unit_shown
+from .wording import all_called, called_under, in_units, unit_shown
 
 
 @dataclass(frozen=True)
@@ -72,11 +72,11 @@ def _ratio(study: Study, claim: AnyClaim, pid: str, rid: str) -> str:
         return "nothing is limited"
     if worst.quantity == "curve":
         return "the printed durations define no curve"
-    where = f"joint {worst.joint} " if worst.joint is not None else f"segment {worst.segment + 1} "
+    whose = f"joint {worst.joint}" if worst.joint is not None else f"segment {worst.segment + 1}"
     unit = unit_shown(study, pid, rid, worst.quantity)
     value = in_units(study, pid, rid, worst.quantity, abs(worst.value))
     limit = in_units(study, pid, rid, worst.quantity, worst.limit)
-    return f"{where}{worst.quantity} {value:.6g} against {limit:.6g} {unit}"
+    return f"the {worst.quantity} of {whose} reaches {value:.6g} {unit}, limit {limit:.6g} {unit}"
 
 
 def _judged(study: Study, claim: AnyClaim, pid: str, rid: str) -> _Judged:
@@ -86,7 +86,7 @@ def _judged(study: Study, claim: AnyClaim, pid: str, rid: str) -> _Judged:
     verdict, severity = _VERDICTS[rounding.verdict]
     at_print = _ratio(study, claim, pid, rid)
     explained = {
-        Rounding.KEEPS: "The printed point keeps every limit for all t",
+        Rounding.KEEPS: "The printed numbers keep every limit for all t",
         Rounding.CONSISTENT: "Some values that round to the printed digits keep every limit for "
         "all t",
         Rounding.BREAKS: "A limit is broken for every value that rounds to the printed digits",
@@ -98,13 +98,21 @@ def _judged(study: Study, claim: AnyClaim, pid: str, rid: str) -> _Judged:
         kind = str(found.verdict)
         jumps = sum(jump.order == 1 for jump in found.jumps)
         explained = (
-            "discontinuous: the printed point keeps every limit inside the segments, and the "
-            f"velocity jumps {jumps} times between them, which no finite acceleration does"
+            "The motion is discontinuous: the printed numbers keep every limit inside the "
+            f"segments, and the velocity jumps {jumps} times between them, which takes an infinite "
+            "acceleration"
         )
-    message = f"{explained} ({rounding.verdict}); largest at the printed point: {at_print}."
+    message = f"{explained}. At the printed numbers {at_print}."
+    if rounding.verdict is Rounding.UNDECIDED and study.case.statement(pid, rid).loose_ends:
+        message += (
+            " Derivatives at the ends are printed numbers, and no proof covers all that rounds to "
+            "them."
+        )
     bound = rounding.lower_bound_of_worst
     if rounding.verdict is Rounding.BREAKS and bound is not None:
-        message += f" Over the whole rounding box the ratio is at least {bound:.6g}."
+        message += (
+            f" Whatever the rounding, a limit is exceeded by a factor of at least {bound:.6g}."
+        )
     if rounding.verdict is Rounding.BREAKS:
         cut = study.claim_cut(claim, pid, rid).verdict
         if cut is not Rounding.BREAKS:
@@ -208,9 +216,9 @@ def _jumps(study: Study, claim: AnyClaim) -> Iterator[Finding]:
             printed=durations_text(study, claim),
             computed=f"{len(velocity)} jumps of velocity, up to {size}",
             message=(
-                f"discontinuous under this reading: the velocity jumps {len(velocity)} times at "
-                f"the via-points, most in joint {top.joint} at t = {top.time:.6g} s by {size}. "
-                "Limits are judged apart from jumps."
+                f"The motion is discontinuous under this reading: velocity jumps {len(velocity)} "
+                f"times at the via-points, most in joint {top.joint} at t = {top.time:.6g} s by "
+                f"{size}. Limits are judged apart from jumps."
             ),
             decides=False,
         )
@@ -230,13 +238,13 @@ def _limits_statement(study: Study, claim: StatementClaim) -> Iterator[Finding]:
         breaking = [one for one in judged if one[2].verdict is ClaimVerdict.REFUTED]
         if breaking:
             verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
-            message = " ".join(f"{called(c)} ({pid}): {one.message}" for c, pid, one in breaking)
+            message = " ".join(f"{called_under(c, pid)}: {one.message}" for c, pid, one in breaking)
         elif all(one.verdict is ClaimVerdict.SUPPORTED for _, _, one in judged):
             verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
             every = all_called(c for c, _, _ in judged)
             message = (
-                f"Every printed set of durations ({every}) keeps the limits for all t, or some "
-                "values that round to its digits do."
+                f"Every printed set of durations ({every}) keeps the limits for all t, as printed "
+                "or for some values that round to its digits."
             )
         else:
             verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
@@ -244,7 +252,7 @@ def _limits_statement(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             names = all_called(c for c, _, _ in undecided)
             message = f"The printed digits do not decide whether the limits are kept: {names}."
             why = [
-                f"{called(c)} ({pid}): {one.message}"
+                f"{called_under(c, pid)}: {one.message}"
                 for c, pid, one in undecided
                 if one.kind in (str(Verdict.DISCONTINUOUS), "total open")
             ]
@@ -274,8 +282,12 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
         if not judged:
             continue
         message = (
-            f"Rebuilt from the printed durations, position, velocity and acceleration of "
-            f"{judged} motion(s) agree on both sides of every via-point."
+            "In the motion rebuilt from the printed durations, position, velocity and acceleration "
+            "agree on both sides of every via-point."
+            if judged == 1
+            else f"In {'both' if judged == 2 else f'all {judged}'} motions rebuilt from the "
+            "printed durations, position, velocity and acceleration agree on both sides of every "
+            "via-point."
         )
         verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
         if jumps:
@@ -284,8 +296,9 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             size = in_units(study, where, rid, name, top.size)
             verdict, severity = ClaimVerdict.INCONSISTENT, Severity.WARNING
             message = (
-                f"discontinuous: {len(jumps)} jumps, the largest in {name} of joint {top.joint} "
-                f"at t = {top.time:.6g} s by {size:.6g} {unit_shown(study, where, rid, name)}."
+                f"The motion is discontinuous: {len(jumps)} jumps, the largest in {name} of joint "
+                f"{top.joint} at t = {top.time:.6g} s by {size:.6g} "
+                f"{unit_shown(study, where, rid, name)}."
             )
         yield Finding(
             rule="TG202",

@@ -33,7 +33,7 @@ from ..explanations import LIMITS, OPTIMAL
 from ..rounding import same_limits
 from ..study import Study
 from .continuous_time import broken
-from .wording import called
+from .wording import called, called_under
 
 _BELOW = (
     " The whole printed interval lies below the best known total. That value is not a proven "
@@ -92,7 +92,7 @@ def _distance(
     distance = gap(interval, reference, feasible=kept)
     which = "with shared durations" if shared or claim.joint is None else f"of joint {claim.joint}"
     message = (
-        f"Printed {shown} {_set_beside(distance)} the {reference.evidence} optimum {which}, "
+        f"Printed {shown} {set_beside(distance)} the {reference.evidence} optimum {which}, "
         f"{reference.upper:.6f} s{_bounded(reference)}."
     )
     if not isinstance(claim, TotalTimeClaim) and study.unmoved(claim, pid, rid) is None:
@@ -177,7 +177,7 @@ def _bounded(reference: Reference) -> str:
     return f" (proved, gap {width:.1e})"
 
 
-def _set_beside(distance: Gap) -> str:
+def set_beside(distance: Gap) -> str:
     """How a printed total lies beside a reference, as the verb of a sentence."""
     low, high = 100 * distance.lowest, 100 * distance.highest
     if distance.many_times:
@@ -229,6 +229,7 @@ class _Sides:
     breaking: list[str] = field(default_factory=list)
     roots: list[str] = field(default_factory=list)
     agreeing: list[str] = field(default_factory=list)
+    rounded_up: bool = False
     open: list[str] = field(default_factory=list)
     evidence: list[Evidence] = field(default_factory=list)
 
@@ -239,7 +240,7 @@ def _weigh(study: Study, claim: AnyClaim, pid: str, rid: str, sides: _Sides) -> 
     if total is None:
         return
     shown, interval = total
-    name = f"{called(claim)} ({pid})"
+    name = called_under(claim, pid)
     solution = study.claim_optimum(claim, pid, rid)
     shorter = _shorter(study, claim, pid, rid, solution, total)
     if shorter is not None:
@@ -249,7 +250,7 @@ def _weigh(study: Study, claim: AnyClaim, pid: str, rid: str, sides: _Sides) -> 
     # Whether a bare total is too short takes a proof, which is tried only where it may succeed.
     bare = isinstance(claim, TotalTimeClaim) and known and interval[1] >= solution.best
     proof = None if bare else broken(study, claim, pid, rid)
-    below = _below_certified(study, claim, pid, rid, solution, interval)
+    below = _below_certified(study, claim, pid, rid, solution)
     if proof is not None or below is not None:
         sides.breaking.append(f"{name}: {proof or below}")
         sides.roots.append(f"{LIMITS} {claim.id}")
@@ -258,15 +259,29 @@ def _weigh(study: Study, claim: AnyClaim, pid: str, rid: str, sides: _Sides) -> 
         sides.open.append(f"{name}: {_no_optimum(solution)}")
         return
     sides.evidence.append(solution.evidence)
-    if interval[0] <= solution.best <= interval[1]:
+    if _rounded_up(study, claim, rid, interval) <= solution.best <= interval[1]:
         sides.agreeing.append(name)
+        sides.rounded_up |= not interval[0] <= solution.best
         return
     distance = gap(interval, _reference(solution), feasible=False)
     sides.open.append(
-        f"{name}: printed {shown} {_set_beside(distance)} the {solution.evidence} optimum "
+        f"{name}: printed {shown} {set_beside(distance)} the {solution.evidence} optimum "
         f"{solution.best:.6f} s, and no proof for all values that round to the printed digits "
         "decides whether that is more than rounding explains"
     )
+
+
+def _rounded_up(study: Study, claim: AnyClaim, rid: str, interval: tuple[float, float]) -> float:
+    """Low end of a printed total whose digits were rounded up, as durations are to keep a limit.
+
+    Rounding up moves the low end of each number down by another half of its last place; a total
+    beside durations is then the sum of what was rounded up.
+    """
+    low, high = interval
+    if isinstance(claim, TotalTimeClaim) or not study.has_durations(claim):
+        return low - (high - low) / 2
+    box = study.case.claim_durations(claim, rid)
+    return min(low, float((box.lower - (box.upper - box.lower) / 2).sum()))
 
 
 def _reference(solution: Solution) -> Reference:
@@ -295,12 +310,10 @@ def _below_certified(
     pid: str,
     rid: str,
     solution: Solution,
-    interval: tuple[float, float],
 ) -> str | None:
     """That a total lies below a certified bound, which speaks only where the problem is exact."""
     bound = solution.lower_bound
-    low, high = interval
-    if bound is None or high + (high - low) >= bound:
+    if bound is None or study.longest_total(claim, rid) >= bound:
         return None
     problem = study.claim_problem(claim, pid, rid)
     box = study.waypoint_box(problem, pid, rid)
@@ -332,15 +345,19 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
             # What refutes is a motion or a broken limit: no optimum, known or certified, is needed.
             known = Evidence.NONE
             verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
-            said = [f"Not the shortest: {'; '.join(longer)}."] if longer else []
-            said += [f"Not an answer within the limits: {' '.join(breaking)}"] if breaking else []
+            every = "for every value that rounds to the printed digits"
+            said = [f"Not the shortest, {every}: {'; '.join(longer)}."] if longer else []
+            said += [f"Not an answer within the limits. {' '.join(breaking)}"] if breaking else []
             message = " ".join(said)
         elif sides.open:
             verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
             message = f"Not decided: {'; '.join(sides.open)}."
         else:
             verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
-            message = f"Every printed total agrees with the {known} optimum."
+            message = f"Every printed total agrees with the {known} optimum"
+            message += (
+                ", digits rounded up so that the limits are kept." if sides.rounded_up else "."
+            )
         yield Finding(
             rule="TG302",
             severity=severity,
@@ -373,13 +390,12 @@ def _shorter(
         return None
     shown, interval = total
     reached = study.reachable(claim, solution.durations, pid, rid)
-    if reached is None or interval[0] <= reached:
+    if reached is None or _rounded_up(study, claim, rid, interval) <= reached:
         return None
     distance = gap(interval, Reference(upper=reached), feasible=_kept(study, claim, pid, rid))
     jumps = solution.check is not None and any(j.order == 1 for j in solution.check.jumps)
-    kind = "a checked motion, whose velocity may jump at the via-points under this reading,"
+    kind = "a checked motion whose velocity may jump at the via-points under this reading"
     return (
-        f"{called(claim)} ({pid}): printed {shown}; {kind if jumps else 'a checked motion'} takes "
-        f"{reached:.6f} s for every value that rounds to the printed digits (the printed total "
-        f"{_set_beside(distance)} that)"
+        f"{called(claim)} prints {shown}, which {set_beside(distance)} the {reached:.6f} s of "
+        f"{kind if jumps else 'a checked motion'}"
     )

@@ -14,7 +14,7 @@ from ....problem.cases import (
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..study import Study
 from .printed_digits import compared, hull, meet, shown, span
-from .printed_tables import doubted, printed_total
+from .printed_tables import contradicted, doubted, printed_total, total_allowed
 
 _SHARE_OF = {"slower": "the longer total", "faster": "the shorter total"}
 """What a percentage may be a share of; of the longer total, if either fits."""
@@ -34,11 +34,13 @@ def judge_improvements(study: Study) -> Iterator[Finding]:
         root = f"improvement {claim.id}"
         seconds = _difference(slower.interval, faster.interval)
         if claim.percent is not None:
-            yield _percentage(claim, claim.percent, slower, faster, what, root)
+            yield _percentage(study, claim, claim.percent, slower, faster, what, root)
         if claim.seconds is not None:
             cut = _difference(slower.truncated, faster.truncated)
+            mixed = _difference(*_allowed(study, claim, slower, faster))
             unit = study.time_unit
-            yield compared("TG103", claim, claim.seconds, seconds, cut, what, unit, root)
+            said = claim, claim.seconds, seconds, cut, what, unit, root
+            yield compared("TG103", *said, mixed=mixed)
         if claim.percent is None and claim.seconds is None:
             yield _unquantified(study, claim, slower, faster, seconds)
         tables = [_table_total(study, c.algorithm, c.problem) for c in (slower_claim, faster_claim)]
@@ -74,7 +76,18 @@ def _bases(claim: ImprovementClaim) -> tuple[str, ...]:
     return tuple(_SHARE_OF) if claim.base is None else (claim.base,)
 
 
+def _allowed(
+    study: Study, claim: ImprovementClaim, slower: Printed, faster: Printed
+) -> tuple[Interval, Interval]:
+    """Both totals, rounded or cut off, or the sum of digits that were; positive ones."""
+    a, b = (total_allowed(study, study.case.claim(i)) for i in (claim.slower, claim.faster))
+    if a.lower > 0 and b.lower > 0:
+        return a, b
+    return slower.interval, faster.interval
+
+
 def _percentage(
+    study: Study,
     claim: ImprovementClaim,
     percent: Printed,
     slower: Printed,
@@ -86,11 +99,14 @@ def _percentage(
     zero = Fraction(0)
     bases = [b for b in _bases(claim) if b == "slower" or faster.truncated.lower > zero]
     tried = []
+    # A total may be the sum of digits cut off, and the percentage that of the whole numbers.
+    wide = _allowed(study, claim, slower, faster)
     for base in bases or ["slower"]:
         share = f"{what}, as a share of {_SHARE_OF[base]},"
         rounded = _share(slower.interval, faster.interval, base)
         cut = _share(slower.truncated, faster.truncated, base)
-        tried.append(compared("TG103", claim, percent, rounded, cut, share, "%", root))
+        mixed = _share(*wide, base)
+        tried.append(compared("TG103", claim, percent, rounded, cut, share, "%", root, mixed=mixed))
     weights = list(Severity)
     best = max(tried, key=lambda f: weights.index(f.severity))
     others = [f for f in tried if f is not best]
@@ -109,12 +125,21 @@ def _unquantified(
 ) -> Finding:
     unit = study.time_unit
     between = f"{slower} and {faster} {unit}"
+    sides = [study.case.claim(i) for i in (claim.slower, claim.faster)]
     if slower.text == faster.text:
         message = (
-            f"The printed totals of the two algorithms are alike, {faster} {unit}: an improvement, "
-            f"if any, is below {shown(seconds.upper)} {unit}."
+            f"Both algorithms print the same total, {faster} {unit}: an improvement, if there is "
+            f"one, is below {shown(seconds.upper)} {unit}."
         )
-        verdict, severity = ClaimVerdict.INCONSISTENT, Severity.WARNING
+        # An improvement below the last digit is one. Only tables alike that are said to differ
+        # speak against it.
+        verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
+        if contradicted(study, sides):
+            verdict, severity = ClaimVerdict.INCONSISTENT, Severity.WARNING
+            message += (
+                " Their tables agree in every number, and elsewhere in print the two results "
+                "differ."
+            )
     elif seconds.lower > 0 and not study.posed:
         message = (
             f"The printed totals are {between}, in the order that is claimed; neither can be "
@@ -138,7 +163,7 @@ def _unquantified(
         claim=claim.id,
         printed=between,
         message=message,
-        follows=doubted(study, [study.case.claim(i) for i in (claim.slower, claim.faster)]),
+        follows=doubted(study, sides),
     )
 
 
@@ -152,7 +177,9 @@ def _against_tables(
     slower, faster = totals
     assert slower is not None
     assert faster is not None
-    found = [_share(hull(slower), hull(faster), base) for base in _bases(claim)]
+    longer, shorter = (total_allowed(study, t) for t in tables if t is not None)
+    positive = min(longer.lower, shorter.lower) > 0
+    found = [_share(longer, shorter, base) for base in _bases(claim) if positive]
     if not found or any(meet(hull(percent), allowed) for allowed in found):
         return
     allowed = found[0]

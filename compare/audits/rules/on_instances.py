@@ -47,18 +47,21 @@ def judge_instances(study: Study) -> Iterator[Finding]:
 
 def placed(result: InstancesResult) -> str:
     """Where the printed reduction lies among those of the runs, over all readings."""
-    many = len(result.readings)
     drawn = f"{result.instances} instances drawn from the robot's workspace"
     if result.printed is None:
         return f"No reduction is printed to set beside {drawn}."
-    missed = [r for r in result.readings if not reproduced(result, r)]
-    aside = ", ".join(f"{r}: {_aside(result, r)}" for r in missed)
-    out = f"; not reproduced in {len(missed)} ({aside})" if missed else ""
-    return (
-        f"On {drawn} the printed reduction of {percent_range(*result.printed)} lies within the "
-        f"middle {100 * MIDDLE:g} % of those of one run against one run in "
-        f"{many - len(missed)} of {many} readings{out}."
-    )
+    inside = [r for r in result.readings if reproduced(result, r)]
+    sides: dict[str, list[str]] = {}
+    for reading in result.readings:
+        if reading not in inside:
+            sides.setdefault(_aside(result, reading), []).append(reading)
+    said = f"On {drawn}, the printed reduction of {percent_range(*result.printed)} is "
+    middle = f"the middle {100 * MIDDLE:g} % of the reductions of one run against one run"
+    parts = [f"usual under {', '.join(inside)}, within {middle}"] if inside else []
+    for side, own in sides.items():
+        what = "" if inside or parts else f", outside {middle}"
+        parts.append(f"unusual under {', '.join(own)} ({side}){what}")
+    return f"{said}{'; it is '.join(parts)}."
 
 
 def attributed(result: InstancesResult) -> str:
@@ -66,15 +69,19 @@ def attributed(result: InstancesResult) -> str:
     both, curve = medians(result, Effect.BOTH), medians(result, Effect.CURVE)
     if both is None or curve is None:
         return ""
-    alone = ", ".join(
-        f"{percent_range(*span, digits=1)} with {objective}"
-        for at, objective in enumerate(result.block.objectives)
-        if (span := medians(result, Effect.ALGORITHM, at)) is not None
-    )
-    return (
-        f"Medians by reading: both together {percent_range(*both, digits=1)}; the curve alone, at "
-        f"the best known optima, {percent_range(*curve, digits=1)}; the algorithm alone {alone}."
-    )
+    said = [
+        f"Median reduction, from the smallest to the largest over the readings: curve and "
+        f"algorithm together {percent_range(*both, digits=1)}; the curve alone, at the best known "
+        f"optima, {percent_range(*curve, digits=1)}."
+    ]
+    for at, objective in enumerate(result.block.objectives):
+        span = medians(result, Effect.ALGORITHM, at)
+        if span is not None:
+            said.append(
+                f"The algorithm alone, where {HANDLED[objective]}: "
+                f"{percent_range(*span, digits=1)}."
+            )
+    return " ".join(said)
 
 
 def _aside(result: InstancesResult, reading: str) -> str:
@@ -99,7 +106,7 @@ def _summary(result: InstancesResult) -> Finding:
         placed(result),
         attributed(result),
         block.why,
-        "They are not the paper's instances and decide nothing about its totals.",
+        "These are not the paper's instances, so they decide nothing about its totals.",
     )
     message = " ".join(sentence for sentence in said if sentence)
     printed = None if result.printed is None else percent_range(*result.printed)
@@ -116,35 +123,48 @@ def _summary(result: InstancesResult) -> Finding:
 
 
 def _under(result: InstancesResult, reading: str) -> Finding:
-    fast, slow, block = result.faster, result.slower, result.block
+    block = result.block
     both = distribution(result.reductions(reading, Effect.BOTH))
-    steps = ", ".join(f"{step:g}" for step in block.lengths)
-    parts = [
-        f"{fast.algorithm} on {fast.problem} against {slow.algorithm} on {slow.problem}, "
-        f"{result.instances} instances at steps of {steps} {block.unit}, {block.runs} runs each, "
-        f"one run against one run: the total falls by {both}; "
-        f"it falls at all in {100 * both.shorter:.3g} % of the pairs."
-    ]
+    parts = []
     if result.printed is not None and both.missing < both.pairs:
         values = result.reductions(reading, Effect.BOTH)
         least = float((values[np.isfinite(values)] >= result.printed[0]).mean())
-        inside = "within" if reproduced(result, reading) else "outside"
-        parts.append(
-            f"The printed {percent_range(*result.printed)} lies {inside} the middle "
-            f"{100 * MIDDLE:g} % of them; {100 * least:.3g} % show at least as much."
+        usual, inside = (
+            ("usual", "within") if reproduced(result, reading) else ("unusual", "outside")
         )
+        parts.append(
+            f"The printed reduction of {percent_range(*result.printed)} is {usual} here: it lies "
+            f"{inside} the middle {100 * MIDDLE:g} % of the reductions, and {100 * least:.3g} % of "
+            "them are at least as large."
+        )
+    steps = ", ".join(f"{step:g}" for step in block.lengths)
+    parts += [
+        f"The reductions are those of one run against one run on {result.instances} instances, at "
+        f"steps of {steps} {block.unit}, with {block.runs} runs each: {both}.",
+        f"The paper's procedure is the faster one in {100 * both.shorter:.3g} % of the pairs.",
+    ]
+    low, high = result.median_interval(reading, Effect.BOTH)
+    if np.isfinite(low):
+        parts.append(
+            f"The median of an instance lies in {percent_range(low, high, digits=1)} "
+            "(95 % interval, instances resampled)."
+        )
+    parts += _totals(result, reading)
     curve = distribution(result.reductions(reading, Effect.CURVE))
     alone = distribution(result.reductions(reading, Effect.ALGORITHM))
-    parts.append(
-        f"At the best known optima the curve alone is worth {curve}; the algorithm alone, on "
-        f"{fast.problem}, {alone}."
-    )
+    parts += [
+        f"The curve alone saves, at the best known optima: {curve}.",
+        f"The algorithm alone saves, on the paper's curve: {alone}.",
+    ]
     for at, objective in enumerate(block.objectives[1:], start=1):
         pair = [
             distribution(result.reductions(reading, effect, at))
             for effect in (Effect.BOTH, Effect.ALGORITHM)
         ]
-        parts.append(f"Where {HANDLED[objective]}: both {pair[0]}; the algorithm alone {pair[1]}.")
+        parts.append(
+            f"Where {HANDLED[objective]}, both together save {pair[0]}, and the algorithm alone "
+            f"{pair[1]}."
+        )
     failed = result.failed(reading)
     if failed:
         parts.append(f"{failed} runs found nothing that keeps its limits.")
@@ -161,24 +181,35 @@ def _under(result: InstancesResult, reading: str) -> Finding:
     )
 
 
+def _totals(result: InstancesResult, reading: str) -> Iterator[str]:
+    """Where printed totals lie among those of the runs: how usual they are under a reading."""
+    for route, printed in zip((0, 2), result.printed_totals, strict=True):
+        totals = result.totals(reading, route)
+        if printed is None or not totals.size:
+            continue
+        low, middle, high = np.quantile(totals, [0.0, 0.5, 1.0])
+        which = "compared with the paper's" if route == 0 else "of the paper"
+        yield (
+            f"Where {printed} is printed, the procedure {which} takes {middle:.3g} s at the median "
+            f"({low:.3g} to {high:.3g} s)."
+        )
+
+
 def _convergence(result: InstancesResult, claim: ConvergenceClaim) -> Finding:
     shares = []
     for reading in result.readings:
         settled = result.settled(reading)
         shares.append(float((settled <= claim.iterations.value).mean()) if settled.size else 0.0)
-    missed = sum(share < 0.5 for share in shares)
     low, high = 100 * min(shares), 100 * max(shares)
-    message = (
-        f"On {result.instances} instances drawn from the robot's workspace the best-so-far of "
-        f"{claim.algorithm} on {claim.problem} is within {100 * SETTLED:g} % of its final value by "
-        f"iteration {claim.iterations} of {result.iterations} in {low:.3g} to {high:.3g} % of the "
-        f"runs, depending on the reading. "
+    each = ", ".join(
+        f"{100 * share:.3g} % under {reading}"
+        for share, reading in zip(shares, result.readings, strict=True)
     )
-    message += (
-        f"Most runs of every one of {len(shares)} readings are."
-        if missed == 0
-        else f"Not reproduced by most runs in {missed} of {len(shares)} readings. The instances "
-        "are not the paper's."
+    message = (
+        f"By iteration {claim.iterations} of {result.iterations} the search has converged in "
+        f"{low:.3g} to {high:.3g} % of the runs on {result.instances} drawn instances: its best "
+        f"total is then within {100 * SETTLED:g} % of the final one ({each}). The instances are "
+        "not the paper's."
     )
     return Finding(
         rule="TG404",

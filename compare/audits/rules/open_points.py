@@ -14,7 +14,7 @@ def list_open_points(study: Study) -> Iterator[Finding]:
     for claim in study.claims:
         if isinstance(claim, StatementClaim) and claim.not_checkable:
             why = claim.not_checkable.removesuffix(".")
-            yield _listed(claim.id, f"{claim.where}: {why}.")
+            yield _listed(claim.id, f"{why[:1].upper()}{why[1:]}.")
     if not study.posed:
         yield from _without_waypoints(study)
     for item in study.case.not_checkable:
@@ -31,7 +31,7 @@ def _without_waypoints(study: Study) -> Iterator[Finding]:
         what = "An absolute time" if isinstance(claim, TotalTimeClaim) else "This"
         yield _listed(
             claim.id,
-            f"{claim.where}: {what} cannot be computed without the way-points: {why}. Added to "
+            f"{what} cannot be computed without the way-points: {why}. Added to "
             "the case file, they make it checkable.",
         )
 

@@ -7,7 +7,7 @@ from itertools import combinations
 from math import inf, isfinite, log
 
 from ....problem import check
-from ....problem.cases import AnyClaim, DurationsClaim, PeakClaim, TimeClaim, motions_of_peak
+from ....problem.cases import AnyClaim, DurationsClaim, PeakClaim, TimeClaim, motions_of
 from ...documents import Basis, Finding
 from ..study import Study
 from .continuous_time import broken
@@ -25,7 +25,7 @@ def judge_places(study: Study) -> Iterator[Finding]:
     """Findings of TG108, which inform and decide nothing."""
     for claim in study.claims:
         if isinstance(claim, PeakClaim):
-            for motion in motions_of_peak(study.case.claims, claim):
+            for motion in motions_of(study.case.claims, claim):
                 yield from _peaks_elsewhere(study, claim, motion)
         elif isinstance(claim, DurationsClaim) and claim.joint is not None:
             yield from _row_elsewhere(study, claim)

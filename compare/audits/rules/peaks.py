@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import cached_property
 from math import pi
 
 import numpy as np
 
-from ....problem import QUANTITIES, Extremum, Printed, extrema, fit, peak_gradients
-from ....problem.cases import AnyClaim, PeakClaim, motions_of_peak
+from ....problem import QUANTITIES, Array, Extremum, Printed, extrema, fit, peak_gradients
+from ....problem.cases import AnyClaim, MotionValueClaim, PeakClaim, motions_of
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..study import Study
+from .norms import largest_norm
 from .wording import called, in_units, unit_shown
 
 _SAMPLES = 50
@@ -21,7 +22,7 @@ _SAMPLES = 50
 _PHASES = 8
 """Offsets at which those samples are tried: the worst of so many comes near the worst of all."""
 _FACTORS = {
-    180 / pi: "as °, rad printed, or the other way round",
+    180 / pi: "as between degrees and radians",
     1000.0: "as a thousandth of the unit",
     100.0: "as a hundredth of the unit",
     60.0: "as per minute instead of per second",
@@ -33,17 +34,22 @@ _NEAR_FACTOR = 0.01
 """Relative distance from such a ratio below which the unit is named as an explanation."""
 
 
+_WIDE = 0.05
+"""Share of a peak above which the room that digits leave is said: what then fits tells little."""
+
+
 class Class(StrEnum):
     """How a printed peak lies beside the exact one."""
 
     ROUNDING = "rounding"
     CUT_OFF = "cut off"
     SAMPLING = "sampling"
+    NORM = "norm over the joints"
     UNIT = "other unit"
     OFF = "off"
 
 
-FITS = (Class.ROUNDING, Class.CUT_OFF, Class.SAMPLING)
+FITS = (Class.ROUNDING, Class.CUT_OFF, Class.SAMPLING, Class.NORM)
 """The classes that accuse of nothing."""
 
 
@@ -62,6 +68,8 @@ class Beside:
         Its first-order change over all values that round to the printed digits.
     sampled : float
         The least peak that coarse sampling of that motion finds.
+    norm : Beside, optional
+        The same beside the largest norm over the joints, where one number speaks of several.
     """
 
     printed: Printed
@@ -73,6 +81,7 @@ class Beside:
     exact: float
     reach: float
     sampled: float
+    norm: Beside | None = None
 
     @property
     def distance(self) -> float:
@@ -87,10 +96,14 @@ class Beside:
         low, high = self.exact - self.reach, self.exact + self.reach
         if self.lower <= high and low <= self.upper:
             return Class.ROUNDING
-        if self.cut_lower <= high and low <= self.cut_upper:
+        # Durations and way-points whose digits are cut off lie up to a whole last place away.
+        low, high, widest = low - self.reach, high + self.reach, max(self.upper, self.cut_upper)
+        if min(self.lower, self.cut_lower) <= high and low <= widest:
             return Class.CUT_OFF
-        if self.sampled - self.reach <= self.cut_upper and self.value < self.exact:
+        if self.sampled - 2 * self.reach <= widest and self.value < self.exact:
             return Class.SAMPLING
+        if self.norm is not None and self.norm.kind in FITS:
+            return Class.NORM
         return Class.OFF if self.factor is None else Class.UNIT
 
     @property
@@ -120,13 +133,17 @@ def box_reach(study: Study, claim: AnyClaim, pid: str, rid: str, point: Extremum
 
 def largest(study: Study, claim: AnyClaim, pid: str, rid: str, order: int) -> list[Extremum]:
     """Largest extremum of each joint of the claim's problem, at the printed point."""
-    problem = study.claim_problem(claim, pid, rid)
-    durations = study.case.claim_durations(claim, rid).value
-    trajectory = fit(problem.curve, problem.waypoints, durations)
-    return [
-        max(extrema(trajectory, j, order), key=lambda e: abs(e.value))
-        for j in range(len(problem.joints))
-    ]
+
+    def compute() -> list[Extremum]:
+        problem = study.claim_problem(claim, pid, rid)
+        durations = study.case.claim_durations(claim, rid).value
+        trajectory = fit(problem.curve, problem.waypoints, durations)
+        return [
+            max(extrema(trajectory, j, order), key=lambda e: abs(e.value))
+            for j in range(len(problem.joints))
+        ]
+
+    return study.once(("largest", claim.id, pid, rid, order), compute)
 
 
 def has_curve(study: Study, claim: AnyClaim, pid: str, rid: str) -> bool:
@@ -177,7 +194,8 @@ def beside(
     top = max(tops, key=lambda e: abs(e.value))
     measured = study.case.measured(printed, claim.derivative, pid, rid)
     cut = measured.cut_off()
-    return Beside(
+    samples = _samples(study, motion, pid, rid, order)
+    found = Beside(
         printed,
         measured.value,
         measured.lower,
@@ -186,28 +204,34 @@ def beside(
         cut.upper,
         abs(top.value),
         box_reach(study, motion, pid, rid, top),
-        _sampled(study, motion, pid, rid, order, None if joint is None else top.joint),
+        min(float((v if joint is None else v[:, top.joint]).max()) for v in samples),
     )
+    if joint is not None or len(tops) == 1 or found.kind in FITS:
+        return found
+    whole = largest_norm(study, motion, pid, rid, order)
+    sampled = min(float(np.linalg.norm(v, axis=1).max()) for v in samples)
+    norm = replace(found, exact=whole.largest, reach=whole.reach, sampled=sampled)
+    return replace(found, norm=norm)
 
 
-def _sampled(
-    study: Study, motion: AnyClaim, pid: str, rid: str, order: int, joint: int | None
-) -> float:
-    """The least peak found by evenly spaced samples, over the offsets that they may have."""
-    problem = study.claim_problem(motion, pid, rid)
-    durations = study.case.claim_durations(motion, rid).value
-    trajectory = fit(problem.curve, problem.waypoints, durations)
-    step = float(durations.sum()) / _SAMPLES
-    found = []
-    for phase in range(_PHASES):
-        times = (np.arange(_SAMPLES) + phase / _PHASES) * step
-        values = np.abs(trajectory(times, order))
-        found.append(float((values if joint is None else values[:, joint]).max()))
-    return min(found)
+def _samples(study: Study, motion: AnyClaim, pid: str, rid: str, order: int) -> list[Array]:
+    """Absolute values at evenly spaced times, for each offset that these may have."""
+
+    def compute() -> list[Array]:
+        problem = study.claim_problem(motion, pid, rid)
+        durations = study.case.claim_durations(motion, rid).value
+        trajectory = fit(problem.curve, problem.waypoints, durations)
+        step = float(durations.sum()) / _SAMPLES
+        offsets = np.arange(_PHASES)[:, None] / _PHASES
+        times = (np.arange(_SAMPLES) + offsets) * step
+        found = np.abs(trajectory(times.ravel(), order))
+        return list(found.reshape(_PHASES, _SAMPLES, -1))
+
+    return study.once(("samples", motion.id, pid, rid, order), compute)
 
 
-def peak_numbers(study: Study, claim: PeakClaim) -> list[tuple[str | None, Printed]]:
-    """Each printed number of a peak claim with the joint that it belongs to."""
+def peak_numbers(study: Study, claim: MotionValueClaim) -> list[tuple[str | None, Printed]]:
+    """Each printed number of a claim of a derivative with the joint that it belongs to."""
     if claim.values is None:
         return [(claim.joint, number) for number in claim.printed]
     return list(zip(study.case.robot.joints, claim.values, strict=True))
@@ -217,7 +241,7 @@ def judge_peaks(study: Study) -> Iterator[Finding]:
     """Findings of TG203."""
     for claim in study.claims:
         if isinstance(claim, PeakClaim):
-            meant = motions_of_peak(study.case.claims, claim)
+            meant = motions_of(study.case.claims, claim)
             for motion in meant:
                 yield from _peaks(study, claim, motion)
             if not meant:
@@ -274,13 +298,18 @@ def described(
     whose = "" if joint is None else f"joint {joint}: "
     exact = _exact(study, claim, one, pid, rid)
     said = f"{whose}the exact peak of {claim.derivative} is {exact}, printed is {one.printed}"
+    room = ""
+    if one.exact and one.reach > _WIDE * one.exact:
+        room = f", which leaves {100 * one.reach / one.exact:.2g} % either way"
+    norm = "" if one.norm is None else _exact(study, claim, one.norm, pid, rid)
     away = f"{100 * one.distance:+.2g} %"
     return (
         said
         + {
-            Class.ROUNDING: ", equal within the rounding of the printed digits",
+            Class.ROUNDING: f", equal within the rounding of the printed digits{room}",
             Class.CUT_OFF: f" ({away}), as digits that are cut off instead of rounded give it",
             Class.SAMPLING: f" ({away}), slightly below it, as sampling the motion gives it",
+            Class.NORM: f" ({away}), as the largest norm over the joints gives it, {norm}",
             Class.UNIT: f" ({away}); their ratio is near {one.factor}",
             Class.OFF: f" ({away}), off by more than rounding, cut-off or sampling explain",
         }[one.kind]

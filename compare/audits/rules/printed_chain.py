@@ -10,7 +10,7 @@ from itertools import combinations
 import numpy as np
 
 from ....problem import Array, Measured, to_si
-from ....problem.cases import Cartesian, Statement
+from ....problem.cases import Cartesian, Statement, StatementClaim
 from ....problem.robots import Chain, Convention, DhTable, JointKind, Proximity, proximity
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..study import Study
@@ -56,7 +56,8 @@ def judge_kinematics(study: Study) -> Iterator[Finding]:
     if not case.cartesian:
         return
     if dh is None:
-        yield _not_checkable(None, "Positions of the end are printed, but no table of the robot.")
+        said = "Positions of the end are printed, but no table of the robot."
+        yield _of_claim(study, _not_checkable(None, said))
         return
     for reading in study.readings:
         posed: dict[object, tuple[str, Statement]] = {}
@@ -65,7 +66,18 @@ def judge_kinematics(study: Study) -> Iterator[Finding]:
             if rid == reading:
                 posed.setdefault((posing.waypoints.points, posing.units.position), (pid, posing))
         for pid, posing in posed.values():
-            yield _compared(study, dh, posing, reading, pid if len(posed) > 1 else None)
+            found = _compared(study, dh, posing, reading, pid if len(posed) > 1 else None)
+            yield _of_claim(study, found)
+
+
+def _of_claim(study: Study, finding: Finding) -> Finding:
+    """The finding about the statement that angles and positions belong together, if one is made."""
+    own = (
+        c.id
+        for c in study.case.claims
+        if isinstance(c, StatementClaim) and c.checks == "kinematics"
+    )
+    return finding.model_copy(update={"claim": next(own, None)})
 
 
 def _compared(study: Study, dh: DhTable, posing: Statement, rid: str, pid: str | None) -> Finding:
@@ -184,15 +196,16 @@ def _judged(
     assert chain is not None
     free = [label for label in chain.labels if label not in printed]
     names = [place.label or place.id for _, place in places]
-    given = f"{chain.name}: joints {', '.join(printed)} in {posing.units.position}"
-    given += f", joints {', '.join(free)} free" if free else ""
+    given = f"The angles of {_named(printed)} are read in {posing.units.position}"
+    given += f"; {_named(free)} may have any value." if free else "."
     fitting = next((m for m in matches if m.fits), None)
     if fitting is not None:
         far = max(n.upper for n in fitting.near)
         verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
         message = (
-            f"{given}: the end meets every printed position within {_up(far)} m "
-            f"({fitting.convention} convention); rounding explains {_up(max(fitting.slack))} m."
+            f"The end meets every printed position within {_up(far)} m "
+            f"({fitting.convention} convention), and rounding explains {_up(max(fitting.slack))} "
+            f"m. {given}"
         )
     else:
         listed = "; ".join(
@@ -201,25 +214,29 @@ def _judged(
             for m in matches
         )
         rounding = ", ".join(_up(s) for s in matches[0].slack)
-        message = (
-            f"{given}: the end comes no nearer to the printed positions than {listed}. "
+        nearest = (
+            f"{given} The end then comes no nearer to the printed positions than {listed}. "
             f"Rounding explains at most {rounding} m."
         )
         if all(m.misses for m in matches):
             verdict, severity = ClaimVerdict.INCONSISTENT, Severity.WARNING
-            message += _whatever(matches)
-            message += (
-                " Taken as the table has them: the base frame, the zeros of the angles, and the "
-                "origin of the last frame as the end."
+            do = "does" if len(free) == 1 else "do"
+            whatever = f", whatever {_named(free)} {do}" if free else ""
+            message = (
+                "On the robot as printed, the printed angles do not lead to the printed "
+                f"positions{whatever}. {nearest}{_whatever(matches)} The base frame, the zeros of "
+                "the angles and the origin of the last frame as the end are those of the table."
             )
         else:
             verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
             signed = any(_fits(near, m.slack) for m in matches for near in m.signed)
-            message += (
-                " With other signs of the twists, which the text may have lost, every one fits."
+            message = (
+                "With other signs of the twists, which the text may have lost, the end meets "
+                "every printed position."
                 if signed
-                else " Whether that is more than rounding is not decided."
-            )
+                else "Whether rounding explains the distances to the printed positions is not "
+                "decided."
+            ) + f" {nearest}"
     worst = "; ".join(f"{_down(m.worst)} m ({m.convention})" for m in matches)
     return Finding(
         rule="TG601",
@@ -234,16 +251,25 @@ def _judged(
     )
 
 
+def _named(labels: list[str]) -> str:
+    """Joints in a sentence."""
+    return (
+        f"joint{'' if len(labels) == 1 else 's'} {' and '.join(labels[-2:])}"
+        if len(labels) < 3
+        else f"joints {', '.join(labels[:-1])} and {labels[-1]}"
+    )
+
+
 def _whatever(matches: list[_Match]) -> str:
     """What holds whatever the signs of the twists and the axes of the base."""
     said = ""
     if any(m.signed for m in matches):
         worst = " and ".join(f"{_down(m.worst)} m ({m.convention})" for m in matches)
-        said += f" Whatever the signs of the twists, some position stays {worst} away."
+        said += f" With any other signs of the twists, some position stays {worst} away."
     turned = [f"{_down(m.radial)} m ({m.convention})" for m in matches if m.radial > 0]
     if turned:
         said += (
-            " Whatever the axes of the base, the distance from its origin misses by up to "
+            " With any other axes of the base, the distance from its origin still misses by up to "
             f"{' and '.join(turned)}."
         )
     return said

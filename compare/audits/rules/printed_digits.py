@@ -40,6 +40,11 @@ def hull(number: Printed) -> Interval:
     return Interval(min(a.lower, b.lower), max(a.upper, b.upper))
 
 
+def _either(a: Interval, b: Interval) -> Interval:
+    """The least interval that holds two."""
+    return Interval(min(a.lower, b.lower), max(a.upper, b.upper))
+
+
 def _sum(parts: Sequence[Interval]) -> Interval:
     zero = Fraction(0)
     return Interval(sum((p.lower for p in parts), zero), sum((p.upper for p in parts), zero))
@@ -65,10 +70,12 @@ def compared(
     unit: str,
     root: str,
     plain: str = "",
+    mixed: Interval | None = None,
 ) -> Finding:
     """A printed number against the interval that its printed ingredients allow.
 
-    ``plain`` is what the digits as printed give, shown where the printed number is another.
+    ``plain`` is what the digits as printed give, shown where the printed number is another;
+    ``mixed`` is what the ingredients allow, each rounded or cut off, if that is more than both.
     """
     digits, computed = f"{printed} {unit}", f"{span(rounded)} {unit}"
     verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
@@ -85,6 +92,12 @@ def compared(
         message = (
             f"{what} allows {computed} with rounded digits; printed is {digits}, which fits only "
             f"if digits are cut off instead of rounded ({span(cut)} {unit})."
+        )
+    elif meet(hull(printed), whole := _either(_either(rounded, cut), mixed or rounded)):
+        severity, kind = Severity.WARNING, "fits mixed"
+        message = (
+            f"{what} allows {computed} with rounded digits; printed is {digits}, which fits only "
+            f"if some digits are rounded and others cut off ({span(whole)} {unit})."
         )
     else:
         verdict, severity, kind = ClaimVerdict.REFUTED, Severity.ERROR, "does not fit"

@@ -1,4 +1,4 @@
-"""TG104 and TG105: tables that print alike, and one total that is printed in two places."""
+"""TG104 and TG105: tables with the same numbers, and one total that is printed in two places."""
 
 from __future__ import annotations
 
@@ -74,6 +74,25 @@ def doubted(study: Study, claims: Iterable[AnyClaim]) -> tuple[str, ...]:
         f"{TABLES} {first.id} {second.id}"
         for first, second in _alike(study.case)
         if tables & {first.id, second.id}
+    )
+
+
+def contradicted(study: Study, claims: Iterable[AnyClaim]) -> bool:
+    """Whether a table that prints one of the claims equals another that is said to differ.
+
+    Parameters
+    ----------
+    study : Study
+    claims : iterable of AnyClaim
+
+    Returns
+    -------
+    bool
+    """
+    tables = {claim.table for claim in claims} - {None}
+    return any(
+        tables & {first.id, second.id} and _apart(study.case, first, second)
+        for first, second in _alike(study.case)
     )
 
 
@@ -191,16 +210,43 @@ def _stated_as(study: Study, claim: TotalTimeClaim) -> tuple[Sequence[AnyClaim],
     return (tables if single else []), False
 
 
-def _total_shown(study: Study, claim: AnyClaim) -> tuple[str, Interval]:
-    """A total as printed or as the sum of its parts, and what its digits allow."""
+def total_allowed(study: Study, claim: AnyClaim) -> Interval:
+    """What the digits of a total allow, rounded or cut off.
+
+    A printed total may be the sum of printed digits, so that what its parts allow is allowed too.
+
+    Parameters
+    ----------
+    study : Study
+    claim : AnyClaim
+        States a total, or durations.
+
+    Returns
+    -------
+    Interval
+        In the unit of time of the file.
+    """
     printed = printed_total(claim)
-    if printed is not None:
-        return f"{printed} {study.time_unit}", hull(printed)
     parts = study.case.printed_durations(claim)
     zero = Fraction(0)
-    allowed = Interval(
+    summed = Interval(
         sum((hull(p).lower for p in parts), zero), sum((hull(p).upper for p in parts), zero)
     )
+    if printed is None:
+        return summed
+    own = hull(printed)
+    if not parts or not meet(own, summed):
+        return own
+    return Interval(min(own.lower, summed.lower), max(own.upper, summed.upper))
+
+
+def _total_shown(study: Study, claim: AnyClaim) -> tuple[str, Interval]:
+    """A total as printed or as the sum of its parts, and what its digits allow."""
+    allowed = total_allowed(study, claim)
+    printed = printed_total(claim)
+    if printed is not None:
+        return f"{printed} {study.time_unit}", allowed
+    parts = study.case.printed_durations(claim)
     return f"{sum(p.decimal for p in parts)} {study.time_unit} (sum of its durations)", allowed
 
 

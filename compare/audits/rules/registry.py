@@ -7,18 +7,22 @@ from dataclasses import dataclass
 
 from ...documents import Finding, Rule
 from ..study import Study
+from .compared_before import cite_comparisons
 from .condition_count import judge_counts
 from .continuous_time import judge_motions
 from .distances import judge_distances
 from .improvements import judge_improvements
+from .measures import judge_measures
 from .on_instances import judge_instances
 from .open_points import list_open_points
 from .other_places import judge_places
 from .peaks import judge_peaks
 from .printed_chain import judge_kinematics
 from .printed_digits import judge_digits
+from .printed_joints import judge_joints
 from .printed_tables import judge_tables
 from .printed_vertices import judge_vertices
+from .profiles import judge_profiles
 from .replays import judge_replays
 from .scaling_law import judge_scaling
 
@@ -54,6 +58,14 @@ GROUPS = (
         without_waypoints=True,
     ),
     RuleGroup(
+        judge_joints,
+        {
+            "TG110": "A joint that is said to vary most does, among the printed joints",
+            "TG602": "A position that is said to lie above another does",
+        },
+        without_waypoints=True,
+    ),
+    RuleGroup(
         judge_improvements,
         {"TG103": "A printed improvement follows from the printed totals"},
         without_waypoints=True,
@@ -83,6 +95,10 @@ GROUPS = (
         },
     ),
     RuleGroup(judge_peaks, {"TG203": "Printed peaks are those of the printed durations"}),
+    RuleGroup(
+        judge_measures,
+        {"TG208": "Printed means and integrals are those of the printed durations"},
+    ),
     RuleGroup(judge_places, {"TG108": "Printed numbers fit their own row, column or table best"}),
     RuleGroup(
         judge_vertices,
@@ -100,6 +116,10 @@ GROUPS = (
         },
     ),
     RuleGroup(
+        judge_profiles,
+        {"TG304": "A printed total of a profile beside the shortest of its kind"},
+    ),
+    RuleGroup(
         judge_replays,
         {
             "TG401": "An improvement beside the spread over seeds",
@@ -110,6 +130,11 @@ GROUPS = (
     RuleGroup(
         judge_instances,
         {"TG404": "A relative claim beside a family of instances drawn from the robot's workspace"},
+        without_waypoints=True,
+    ),
+    RuleGroup(
+        cite_comparisons,
+        {"TG405": "A comparison of two algorithms beside a committed study of it"},
         without_waypoints=True,
     ),
     RuleGroup(list_open_points, {"TG501": "Not checkable from the text"}, without_waypoints=True),

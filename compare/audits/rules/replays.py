@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from itertools import chain
 
 import numpy as np
@@ -16,6 +17,7 @@ from ....problem.cases import (
     DurationsClaim,
     ImprovementClaim,
     MaximumClaim,
+    StatementClaim,
     TotalTimeClaim,
 )
 from ...documents import Basis, Finding
@@ -45,6 +47,24 @@ def judge_replays(study: Study) -> Iterator[Finding]:
             yield from _total(study, claim)
         elif isinstance(claim, ConvergenceClaim):
             yield from _convergence(study, claim)
+        elif isinstance(claim, StatementClaim) and claim.against is not None:
+            yield from _compared(study, claim, claim.against)
+
+
+def _found(
+    study: Study, rule: str, claim: AnyClaim, pid: str, printed: str
+) -> Callable[..., Finding]:
+    """A finding of a rule about replays of a claim's algorithms, in want of what it says."""
+    return partial(
+        Finding,
+        rule=rule,
+        basis=Basis.REPLAY,
+        decides=False,
+        claim=claim.id,
+        problem=pid,
+        reading=study.main_reading,
+        printed=printed,
+    )
 
 
 def _totals(runs: Replays) -> Array:
@@ -96,6 +116,32 @@ def _improvement(study: Study, claim: ImprovementClaim) -> Iterator[Finding]:
                 f"at {_at(names[0], most[0])}; {_at(names[1], most[1])}."
             )
         median = 1 - spread(faster).median / spread(slower).median
+        found = _found(study, "TG401", claim, pid, f"{claim.percent} %")
+        yield found(message=message, computed=f"median {100 * median:.3g} %")
+
+
+def _at(name: str | None, setting: str) -> str:
+    return f"{name} {setting}" if setting == LISTED else f"{name} with {setting}"
+
+
+def _compared(study: Study, claim: StatementClaim, other: str) -> Iterator[Finding]:
+    """Two algorithms that a sentence compares: totals, and how soon a run has settled."""
+    rid, own = study.main_reading, str(claim.algorithm)
+    for pid in study.problems:
+        if claim.problem not in (None, pid):
+            continue
+        runs = {name: study.runs(name, pid, rid) for name in (own, other)}
+        if not all(runs.values()):
+            continue
+        totals = {name: _totals(found) for name, found in runs.items()}
+        shorter = share_of_pairs(totals[other], totals[own], 0.0)
+        low, high = share_interval(totals[other], totals[own], 0.0)
+        settled = "; ".join(
+            f"{name} stays within {100 * tolerance:g} % of its final total from iteration "
+            f"{int(np.median(_settled(found, tolerance)))} on at the median"
+            for tolerance in _TOLERANCES
+            for name, found in runs.items()
+        )
         yield Finding(
             rule="TG401",
             basis=Basis.REPLAY,
@@ -103,14 +149,14 @@ def _improvement(study: Study, claim: ImprovementClaim) -> Iterator[Finding]:
             claim=claim.id,
             problem=pid,
             reading=rid,
-            printed=f"{claim.percent} %",
-            computed=f"median {100 * median:.3g} %",
-            message=message,
+            computed=f"shorter in {_percent(shorter)} of the pairs",
+            message=(
+                f"In {study.seeds} independent runs each under the listed choices, {own} reaches "
+                f"{spread(totals[own])} and {other} {spread(totals[other])}; one run of {own} is "
+                f"no longer than one of {other} with probability {_percent(shorter)} (95 % "
+                f"interval {_percent(low)} to {_percent(high)}): {settled}."
+            ),
         )
-
-
-def _at(name: str | None, setting: str) -> str:
-    return f"{name} {setting}" if setting == LISTED else f"{name} with {setting}"
 
 
 def _total(study: Study, claim: AnyClaim) -> Iterator[Finding]:
@@ -125,29 +171,14 @@ def _total(study: Study, claim: AnyClaim) -> Iterator[Finding]:
         alone = claim.joint is not None and len(problem.joints) > 1
         if reading != rid or alone:
             continue
+        found = _found(study, "TG402", claim, pid, shown)
         runs = study.spread_runs(claim.algorithm, pid, rid)
         if not runs:
-            yield Finding(
-                rule="TG402",
-                basis=Basis.REPLAY,
-                decides=False,
-                claim=claim.id,
-                problem=pid,
-                reading=rid,
-                printed=shown,
-                message=study.unreplayed(claim.algorithm, pid, rid) or "",
-            )
+            yield found(message=study.unreplayed(claim.algorithm, pid, rid) or "")
             continue
         spreads = {name: spread(_totals(one)) for name, one in runs.items()}
         listed = spreads[LISTED]
-        yield Finding(
-            rule="TG402",
-            basis=Basis.REPLAY,
-            decides=False,
-            claim=claim.id,
-            problem=pid,
-            reading=rid,
-            printed=shown,
+        yield found(
             computed=f"{listed.lowest:.6f} to {listed.highest:.6f} s",
             message=(
                 f"{claim.algorithm} under the listed choices reaches {listed} in {listed.runs} "
@@ -169,9 +200,14 @@ def _typical(spreads: dict[str, Spread], low: float, high: float) -> str:
         f"run from {min(medians.values()):.4f} to {max(medians.values()):.4f} s; nearest to the "
         f"printed total is {medians[nearest]:.4f} s with {nearest}."
     )
-    if not inside:
-        return said + " No run under any of these settings is on the other side of it."
-    return said
+    if inside:
+        return said
+    answered = [s for s in spreads.values() if np.isfinite(s.lowest)]
+    if all(s.lowest > high for s in answered):
+        return said + " Every run under every one of these settings is longer."
+    if all(s.highest < low for s in answered):
+        return said + " Every run under every one of these settings is shorter."
+    return said + " Under each of these settings all runs lie on one side of it."
 
 
 def _traces(runs: Sequence[Run] | Sequence[JointRuns]) -> list[Run]:
@@ -191,45 +227,31 @@ def _convergence(study: Study, claim: ConvergenceClaim) -> Iterator[Finding]:
     for pid in study.problems:
         if claim.problem not in (None, pid):
             continue
+        found = _found(study, "TG403", claim, pid, f"{claim.iterations} iterations")
         runs = study.spread_runs(claim.algorithm, pid, rid)
         if not runs:
-            yield Finding(
-                rule="TG403",
-                basis=Basis.REPLAY,
-                decides=False,
-                claim=claim.id,
-                problem=pid,
-                reading=rid,
-                printed=f"{claim.iterations} iterations",
-                message=study.unreplayed(claim.algorithm, pid, rid) or "",
-            )
+            yield found(message=study.unreplayed(claim.algorithm, pid, rid) or "")
             continue
-        parts = []
+        parts, spans = [], []
         for tolerance in _TOLERANCES:
             within = {
                 name: float((_settled(one, tolerance) <= claim.iterations.value).mean())
                 for name, one in runs.items()
             }
-            part = f"{_percent(within[LISTED])} are within {100 * tolerance:g} %"
-            if len(within) > 1:
-                part += (
-                    f" ({_percent(min(within.values()))} to {_percent(max(within.values()))} over "
-                    f"{len(within)} settings of what the text leaves open)"
-                )
-            parts.append(part)
+            parts.append(f"{_percent(within[LISTED])} within {100 * tolerance:g} %")
+            spans.append(f"{_percent(min(within.values()))} to {_percent(max(within.values()))}")
+        varied = (
+            f" Over {len(runs)} settings of what the text leaves open the shares are "
+            f"{' and '.join(spans)}."
+            if len(runs) > 1
+            else ""
+        )
         settled = _settled(runs[LISTED], SETTLED)
-        yield Finding(
-            rule="TG403",
-            basis=Basis.REPLAY,
-            decides=False,
-            claim=claim.id,
-            problem=pid,
-            reading=rid,
-            printed=f"{claim.iterations} iterations",
+        yield found(
             computed=f"median {np.median(settled):.0f} iterations",
             message=(
                 f"Of {settled.size} runs under the listed choices, at iteration "
-                f"{claim.iterations}: {'; '.join(parts)} of their final value. The text names no "
-                "tolerance."
+                f"{claim.iterations}, {' and '.join(parts)} of their final value.{varied} The text "
+                "names no tolerance."
             ),
         )

@@ -13,7 +13,8 @@ from ...documents import Basis, ClaimVerdict, Finding, Reference, Severity
 from ...gaps import gap
 from ..explanations import OPTIMAL
 from ..study import Study
-from .wording import called
+from .distances import set_beside
+from .wording import called_under
 
 
 def judge_scaling(study: Study) -> Iterator[Finding]:
@@ -91,13 +92,17 @@ def _stretched(
         return
     distance = gap((low, high), Reference(upper=reachable), feasible=False)
     summed = float(durations.sum())
+    exact = f"{summed * factor:.6g} s"
+    allowed = f"{reachable:.6g} s"
+    if allowed != exact:
+        exact += f", or {allowed} with the rounding of way-points, limits and durations allowed for"
     message = (
-        f"The durations printed for {called(source)} ({pairs[0][0]}) sum to {summed:.6g} s; times "
-        f"{factor:.6g}, the ratio of the two limits, that is {summed * factor:.6g} s, and with the "
-        f"rounding of way-points, limits and durations allowed for {reachable:.6g} s. So stretched "
-        f"they keep the limit of {called(target)} ({pairs[1][0]}), for which {shown} is printed, "
-        f"{distance.percent} from there. With velocity limits only, shortest time times "
-        "limit is a constant, so the two printed results cannot both be shortest."
+        "With velocity limits only, shortest time times limit is a constant, so the two printed "
+        "results cannot both be shortest. "
+        f"The durations in {called_under(source, pairs[0][0])} sum to {summed:.6g} s. Times "
+        f"{factor:.6g}, the ratio of the two limits, that is {exact}. So stretched they keep the "
+        f"limit of {called_under(target, pairs[1][0])}; {shown}, printed there, "
+        f"{set_beside(distance)} that."
     )
     beside = Finding(
         rule="TG301",

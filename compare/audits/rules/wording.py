@@ -53,8 +53,13 @@ def in_units(study: Study, pid: str, rid: str, quantity: str, value: float) -> f
 
 
 def called(claim: AnyClaim) -> str:
-    """What a sentence calls a claim: the place where it stands."""
-    return claim.where
+    """What a sentence calls a claim: the place where it stands, the first where there are more."""
+    return claim.where.split(";")[0].strip()
+
+
+def called_under(claim: AnyClaim, pid: str) -> str:
+    """A claim by its place, and the problem in brackets where the claim is about several."""
+    return called(claim) if claim.problem == pid else f"{called(claim)} ({pid})"
 
 
 def all_called(claims: Iterable[AnyClaim]) -> str:

@@ -15,7 +15,7 @@ from ..rounding import down
 from ..session import Certifier, Session
 from .estimate import estimate_any_curve
 from .exact import FreeQuestion, missing, prove_motion, question, unanswered
-from .local import Question, local_optimum
+from .local import LocalQuestion, local_optimum
 from .proof import DIGITS, free_bound, restored
 from .search import Node, Search
 
@@ -127,7 +127,8 @@ def _first_motion(session: Session, asked: FreeQuestion) -> Motion | None:
         position_lower=(None,) * len(exact.joints),
         position_upper=(None,) * len(exact.joints),
     )
-    known = estimate_any_curve(float_problem(alone), seed=session.request.seed)
+    with session.sharing_the_time():
+        known = estimate_any_curve(float_problem(alone), seed=session.request.seed)
     if known.durations is None or known.nodal_velocities is None:
         return None
     return prove_motion(asked, known.durations, known.nodal_velocities[:, list(asked.joints)])
@@ -147,7 +148,7 @@ def _local_motion(asked: FreeQuestion, durations: Array) -> Motion | None:
         [[np.inf if x is None else float(x) for x in asked.tight[j]] for j in bent]
     ).reshape(-1, 2)
     ends = asked.ends
-    core = Question(
+    core = LocalQuestion(
         np.array([[float(row[j]) for j in bent] for row in asked.steps]),
         limits[:, 0],
         limits[:, 1],

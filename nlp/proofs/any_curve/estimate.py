@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ....problem import Problem, TrajgapError
-from ...optimum import Evidence
-from .local import KEPT, Question, local_optimum, starting_points
+from ...optimum import Evidence, time_up
+from .local import KEPT, LocalQuestion, local_optimum, starting_points
 from .reach import profile
 
 STARTS = 6
@@ -142,8 +142,13 @@ def estimate_any_curve(
             upper=question.upper[moving],
         )
         points = starting_points(core, starts, np.random.default_rng(seed), given[:, moving])
-        answers = [answer for h in points if (answer := local_optimum(core, h)) is not None]
-        count = len(points)
+        answers, count = [], 0
+        for h in points:
+            if count and time_up():
+                break
+            count += 1
+            if (answer := local_optimum(core, h)) is not None:
+                answers.append(answer)
         if not answers:
             return AnyCurveEstimate(
                 None, why=f"none of {count} starts led to an answer", starts=count
@@ -220,10 +225,10 @@ def _not_covered(problem: Problem) -> str | None:
     return None
 
 
-def _pose(problem: Problem, matter: NDArray[np.bool_]) -> Question:
+def _pose(problem: Problem, matter: NDArray[np.bool_]) -> LocalQuestion:
     steps = np.diff(problem.waypoints, axis=0)[:, matter]
     velocity = problem.limits.velocity[matter]
-    return Question(
+    return LocalQuestion(
         steps=steps,
         velocity=velocity,
         acceleration=problem.limits.acceleration[matter],
@@ -259,7 +264,7 @@ def _outside_range(
     return None
 
 
-def _not_attained(question: Question, durations: NDArray[np.float64]) -> str | None:
+def _not_attained(question: LocalQuestion, durations: NDArray[np.float64]) -> str | None:
     """Say why curves only approach the total, or None if one attains it."""
     vanishing = np.flatnonzero(durations == 0)
     if vanishing.size:

@@ -6,12 +6,14 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
-import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
+from ...optimum import ca, call_cap
 from .reach import reachable
 
+QUICK_SIZE = 16
+"""Segments times joints up to which a call of IPOPT ends by itself in less than a second."""
 KEPT = 1e-9
 """Relative excess over a bound that still counts as keeping it."""
 _REPAIR = 1e-6
@@ -19,7 +21,7 @@ _REPAIR = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class Question:
+class LocalQuestion:
     """What is left of a problem.
 
     Attributes
@@ -43,7 +45,7 @@ class Question:
 
 
 def starting_points(
-    question: Question, count: int, generator: np.random.Generator, given: NDArray[np.float64]
+    question: LocalQuestion, count: int, generator: np.random.Generator, given: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Durations with a standstill at every way-point, random multiples of them, given ones."""
     d, v, a = np.abs(question.steps), question.velocity, question.acceleration
@@ -58,7 +60,7 @@ def starting_points(
 
 
 @lru_cache(maxsize=32)
-def _solver(segments: int, joints: int) -> Any:
+def _solver(segments: int, joints: int, cap: float | None) -> Any:
     """IPOPT on durations h, nodal velocities v, upward and downward peak speeds."""
     h = ca.SX.sym("h", segments)
     v = ca.SX.sym("v", segments + 1, joints)
@@ -78,7 +80,7 @@ def _solver(segments: int, joints: int) -> Any:
         "f": ca.sum1(h),
         "g": ca.vertcat(*[ca.vec(row) for row in rows]),
     }
-    options = {
+    options: dict[str, Any] = {
         "print_time": False,
         "ipopt.print_level": 0,
         "ipopt.sb": "yes",
@@ -90,11 +92,13 @@ def _solver(segments: int, joints: int) -> Any:
         "ipopt.acceptable_iter": 0,
         "ipopt.max_iter": 300,
     }
+    if cap is not None:
+        options["ipopt.max_wall_time"] = cap
     return ca.nlpsol("estimate_any_curve", "ipopt", nlp, options)
 
 
 def local_optimum(
-    question: Question, start: NDArray[np.float64]
+    question: LocalQuestion, start: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
     """Durations and nodal velocities of a local optimum, exactly feasible, or None."""
     n, joints = question.steps.shape
@@ -115,7 +119,7 @@ def local_optimum(
     down = np.minimum(cap, (-v[:-1] - v[1:] + a * h[:, None]) / 2)
     tall = np.tile(cap, (n, 1)).ravel("F")
     free = np.full(n * joints, -np.inf)
-    solver = _solver(n, joints)
+    solver = _solver(n, joints, call_cap() if n * joints > QUICK_SIZE else None)
     found = solver(
         x0=np.concatenate([h, *[part.ravel("F") for part in (v, up, down)]]),
         p=np.concatenate([steps.ravel("F"), a]),
@@ -145,7 +149,7 @@ def _slopes(
 
 
 def _repaired(
-    question: Question, h: NDArray[np.float64], v: NDArray[np.float64]
+    question: LocalQuestion, h: NDArray[np.float64], v: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
     """The answer stretched uniformly by as little as makes it feasible in our own arithmetic."""
     h = np.maximum(h, question.lower)

@@ -11,7 +11,7 @@ import numpy as np
 from ....problem import TrajgapError
 from ....verify import CUT, LEAF, number
 from ..exact import decimal
-from .rows import KINDS, Row
+from .rows import KINDS, ReachRow
 from .search import Node, Search
 
 KIND = "any-curve"
@@ -39,7 +39,7 @@ class FreeBound:
     tree: tuple[list[int | str], ...]
 
     def document(self) -> dict[str, Any]:
-        """Kind "any-curve" of docs/certificates-any-curve.md."""
+        """Kind "any-curve" of docs/explanation/certificates-any-curve.md."""
         return {
             "kind": KIND,
             "total": decimal(self.total),
@@ -59,7 +59,7 @@ def free_bound(search: Search, root: Node, total: Fraction) -> FreeBound:
     total : Fraction
         At most what every leaf proves with all digits, s.
     """
-    known: dict[Row, int] = {}
+    known: dict[ReachRow, int] = {}
     tree: list[list[int | str]] = []
     stack = [root]
     while stack:
@@ -131,7 +131,7 @@ def restored(search: Search, document: dict[str, Any], target: float) -> Node:
     return bounded(root)
 
 
-def _row(search: Search, row: Any) -> Row:
+def _row(search: Search, row: Any) -> ReachRow:
     kind, segment, joint, sign = KINDS.index(row[0]), int(row[1]), int(row[2]), int(row[3])
     numbers = [int(x) for x in row[4:]]
     own = search.asked.joints.index(joint)
@@ -139,4 +139,4 @@ def _row(search: Search, row: Any) -> Row:
         raise ValueError("a row is malformed")
     if search.asked.loose[own][1] is None or sign * search.asked.steps[segment][own] < 0:
         raise ValueError("a row does not fit the problem")
-    return Row(kind, segment, own, sign, *numbers)
+    return ReachRow(kind, segment, own, sign, *numbers)

@@ -79,13 +79,6 @@ class Profile:
         """Largest |velocity|, rad/s."""
         return float(np.abs(self.velocity).max())
 
-    @property
-    def peak_acceleration(self) -> float:
-        """Largest |acceleration|, rad/s²; corners may differ by no more than rounding."""
-        rounding = 8 * np.finfo(np.float64).eps * self.peak_speed
-        change = np.maximum(0.0, np.abs(np.diff(self.velocity)) - rounding)
-        return float((change / np.diff(self.time)).max())
-
     def position_range(self) -> tuple[float, float]:
         """Least and largest displacement on the way, rad."""
         steps = np.diff(self.time)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from .exact import FreeQuestion
 
-Box = tuple[tuple[Fraction, Fraction], ...]
+Sides = tuple[tuple[Fraction, Fraction], ...]
 """Bounds of every duration, s."""
 
 UNIT = 10**10
@@ -20,7 +20,7 @@ KINDS = ("reach", "brake", "change")
 """Their names in a certificate, in the order of the integers."""
 
 
-class Row(NamedTuple):
+class ReachRow(NamedTuple):
     """One inequality; ``sign`` mirrors the joint so that its displacement is not negative.
 
     ``a`` and ``b`` are slopes of tangents, ``c`` is velocity limit over peak speed, all times UNIT.
@@ -45,14 +45,14 @@ class ExactRow:
     right: Fraction
 
 
-def exact_row(asked: FreeQuestion, row: Row, box: Box, speed: Fraction) -> ExactRow:
+def exact_row(asked: FreeQuestion, row: ReachRow, box: Sides, speed: Fraction) -> ExactRow:
     """A row in rational numbers.
 
     Parameters
     ----------
     asked : FreeQuestion
-    row : Row
-    box : Box
+    row : ReachRow
+    box : Sides
         Only "brake" depends on it.
     speed : Fraction
         Bound on the joint's speed.
@@ -67,7 +67,7 @@ def exact_row(asked: FreeQuestion, row: Row, box: Box, speed: Fraction) -> Exact
           peak = (a(2 − a) + b(2 − b))/2A − dn²,
         - brake: (A(a² + b²)/2 − d/lu)·h − a v₀ − b v₁ ≥ −|1 − a − b|·V − d(1/l + 1/u).
 
-        Why they hold for all a, b and c ≥ 0 is in docs/certificates-any-curve.md.
+        Why they hold for all a, b and c ≥ 0 is in docs/explanation/certificates-any-curve.md.
     """
     acceleration = asked.loose[row.joint][1]
     assert acceleration is not None
@@ -96,8 +96,8 @@ def exact_row(asked: FreeQuestion, row: Row, box: Box, speed: Fraction) -> Exact
 def bound(
     asked: FreeQuestion,
     speeds: tuple[Fraction, ...],
-    box: Box,
-    weighted: Iterable[tuple[Row, Fraction]],
+    box: Sides,
+    weighted: Iterable[tuple[ReachRow, Fraction]],
 ) -> Fraction:
     """Lower bound of the total in a box: Σh − Σ weight·(row's excess), least over the box.
 
@@ -106,8 +106,8 @@ def bound(
     asked : FreeQuestion
     speeds : tuple of Fraction
         Bounds on the joints' speeds.
-    box : Box
-    weighted : iterable of (Row, Fraction)
+    box : Sides
+    weighted : iterable of (ReachRow, Fraction)
         Weights ≥ 0.
 
     Returns

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ....problem import Array
 from .exact import FreeQuestion
 from .program import least_total, lower
-from .rows import BRAKE, CHANGE, REACH, Box, Row, bound
+from .rows import BRAKE, CHANGE, REACH, ReachRow, Sides, bound
 from .tangents import (
     Floats,
     Ints,
@@ -51,7 +51,7 @@ class Node:
 
     Attributes
     ----------
-    box : Box
+    box : Sides
     rows, weights : ndarray
         What bounds the total; weights belong to scaled rows.
     lower : float
@@ -68,7 +68,7 @@ class Node:
         Where it is cut, and its halves; none yet.
     """
 
-    box: Box
+    box: Sides
     rows: Ints
     weights: Array
     lower: float
@@ -112,7 +112,7 @@ class Search:
         self.speeds = tuple(self.asked.speed(j, self.cap) for j in joints)
         self.scaled = floats(self.asked, self.speeds, float(self.cap) / len(self.asked.steps))
 
-    def whole(self) -> Box | None:
+    def whole(self) -> Sides | None:
         """The box of all durations with a total below the cap; None if it is empty."""
         floor = [self.asked.floor(k) for k in range(len(self.asked.steps))]
         spare = self.cap - sum(floor)
@@ -122,12 +122,12 @@ class Search:
         )
         return None if any(low > high for low, high in box) else box
 
-    def node(self, box: Box, carried: Ints, target: float, inherited: Node | None) -> Node:
+    def node(self, box: Sides, carried: Ints, target: float, inherited: Node | None) -> Node:
         """Bound the total in a box by a linear program, refined by tangents until it is enough.
 
         Parameters
         ----------
-        box : Box
+        box : Sides
         carried : ndarray, shape (rows, 7)
             Rows to begin with.
         target : float
@@ -326,7 +326,7 @@ class Search:
         tangents = reach_rows(scaled, durations / scaled.time, v, -np.inf)
         return self.node(box, np.concatenate([change_rows(scaled), tangents]), target, None)
 
-    def exact(self, leaf: Node, digits: int) -> tuple[Fraction, list[tuple[Row, str]]]:
+    def exact(self, leaf: Node, digits: int) -> tuple[Fraction, list[tuple[ReachRow, str]]]:
         """What the weights of a leaf, rounded to so many digits, prove: s, and them as text."""
         if not leaf.box:
             return self.cap, []
@@ -334,7 +334,7 @@ class Search:
         rates = scaled.time**2 / scaled.angle[leaf.rows[:, 2]]
         weights = leaf.weights * np.where(leaf.rows[:, 0] == REACH, 1.0, rates)
         texts = [
-            (Row(*map(int, row)), f"{weight:.{digits}g}".replace("e+", "e"))
+            (ReachRow(*map(int, row)), f"{weight:.{digits}g}".replace("e+", "e"))
             for row, weight in zip(leaf.rows, weights, strict=True)
         ]
         weighted = ((row, Fraction(text)) for row, text in texts)

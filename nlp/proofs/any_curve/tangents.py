@@ -11,7 +11,7 @@ from scipy.sparse import csr_array
 
 from ....problem import Array
 from .exact import FreeQuestion
-from .rows import BRAKE, CHANGE, REACH, UNIT, Row
+from .rows import BRAKE, CHANGE, REACH, UNIT, ReachRow
 
 Ints = NDArray[np.int64]
 
@@ -71,7 +71,7 @@ def matrix(scaled: Floats, rows: Ints, low: Array, high: Array) -> tuple[csr_arr
     ----------
     scaled : Floats
     rows : ndarray, shape (rows, 7)
-        As in `Row`.
+        As in `ReachRow`.
     low, high : ndarray, shape (segments,)
         The box, scaled.
 
@@ -109,7 +109,7 @@ def change_rows(scaled: Floats) -> Ints:
     """All rows |v₁ − v₀| ≤ A·h."""
     segments, joints = scaled.ways.shape
     found = [
-        Row(CHANGE, k, j, sign, 0, 0, 0)
+        ReachRow(CHANGE, k, j, sign, 0, 0, 0)
         for k in range(segments)
         for j in range(joints)
         if np.isfinite(scaled.acceleration[j])

@@ -36,14 +36,14 @@ class SegmentBound:
 
 
 @dataclass(frozen=True)
-class ClosedForm:
+class SegmentBounds:
     """Bounds of all segments, as the proof of a certificate of kind ``kind``."""
 
     kind: str
     bounds: tuple[SegmentBound, ...]
 
     def document(self) -> dict[str, Any]:
-        """Kinds "rest-to-rest" and "stretched" of docs/certificates.md."""
+        """Kinds "rest-to-rest" and "stretched" of docs/explanation/certificates.md."""
         leaf = [LEAF, *([b.joint, b.order, b.place, decimal(b.least)] for b in self.bounds)]
         total = sum((b.least for b in self.bounds), Fraction(0))
         return {"kind": self.kind, "total": decimal(total), "tree": [leaf]}
@@ -88,23 +88,28 @@ def peaks(degree: int) -> list[tuple[int, Fraction]]:
         slope = np.polynomial.Polynomial([float(p * c) for p, c in enumerate(poly)][1:] or [0.0])
         roots = np.real(slope.roots()) if slope.degree() else np.zeros(0)
         places = {0, PLACES, *(round(float(np.clip(s, 0, 1)) * PLACES) for s in roots)}
-        values = {k: abs(_at(poly, Fraction(k, PLACES))) for k in places}
+        values = {k: abs(at(poly, Fraction(k, PLACES))) for k in places}
         best = max(values, key=lambda k: (values[k], k))
         found.append((best, values[best]))
     return found
 
 
-def _at(poly: list[Fraction], s: Fraction) -> Fraction:
+def at(poly: list[Fraction], s: Fraction) -> Fraction:
+    """Value of a polynomial, its constant first."""
     return sum((c * s**p for p, c in enumerate(poly)), Fraction(0))
 
 
-def closed_form(problem: ExactProblem) -> tuple[list[SegmentBound], list[float]]:
+def closed_form(
+    problem: ExactProblem, peak: Callable[[int, int, int], tuple[int, Fraction, Fraction]]
+) -> tuple[list[SegmentBound], list[float]]:
     """Least duration of every segment, proved, and durations to try as the answer.
 
     Parameters
     ----------
     problem : ExactProblem
-        For which `is_rest_to_rest` holds.
+    peak : callable
+        Of joint, segment and order, if the segment takes 1 s: a place (in 1/PLACES) of almost the
+        largest |derivative|, its value there, and the largest.
 
     Returns
     -------
@@ -112,24 +117,34 @@ def closed_form(problem: ExactProblem) -> tuple[list[SegmentBound], list[float]]
     durations : list of float
         s.
     """
-    tops = peaks(problem.piecewise.degrees[0])
     bounds, durations = [], []
     for k in range(problem.segments):
         best = SegmentBound(problem.duration_lower[k])
         longest = float(best.least)
         for j, limits in enumerate(problem.limits):
-            way = abs(problem.waypoints[k + 1][j] - problem.waypoints[k][j])
-            for order, (limit, (place, top)) in enumerate(zip(limits, tops, strict=True), start=1):
-                if limit is None or limit.low <= 0 or way == 0:
+            for order, limit in enumerate(limits, start=1):
+                if limit is None or limit.low <= 0:
                     continue
-                least = root_below(way * top / limit.high, order)
-                longest = max(longest, float(way * top / limit.low) ** (1 / order))
+                place, value, top = peak(j, k, order)
+                longest = max(longest, float(top / limit.low) ** (1 / order))
+                least = root_below(value / limit.high, order) if value else Fraction(0)
                 if least > best.least:
                     best = SegmentBound(least, j, order, place)
         bounds.append(best)
         durations.append(longest)
     still = max(sum(durations), 1e-3) * STILL
     return bounds, [max(h, still) for h in durations]
+
+
+def _closed_form(problem: ExactProblem) -> tuple[list[SegmentBound], list[float]]:
+    tops = peaks(problem.piecewise.degrees[0])
+
+    def peak(joint: int, segment: int, order: int) -> tuple[int, Fraction, Fraction]:
+        way = abs(problem.waypoints[segment + 1][joint] - problem.waypoints[segment][joint])
+        place, top = tops[order - 1]
+        return place, way * top, way * top
+
+    return closed_form(problem, peak)
 
 
 def proving(
@@ -139,7 +154,9 @@ def proving(
 
     def prove(session: Session) -> bool:
         bounds, durations = closed(session.exact)
-        session.keep(sum((b.least for b in bounds), Fraction(0)), ClosedForm(kind, tuple(bounds)))
+        session.keep(
+            sum((b.least for b in bounds), Fraction(0)), SegmentBounds(kind, tuple(bounds))
+        )
         longest = session.exact.duration_upper
         if not session.offer(np.array(durations)):
             session.infeasible = any(
@@ -154,7 +171,7 @@ REST_TO_REST = Certifier(
     "rest-to-rest polynomials",
     is_rest_to_rest,
     lambda _: None,
-    proving("rest-to-rest", closed_form),
+    proving("rest-to-rest", _closed_form),
     instant=True,
 )
 """Rest at every way-point makes each segment a formula, whatever the odd degree."""

@@ -8,10 +8,9 @@ from fractions import Fraction
 from ....problem.curves import StretchedUniformBSpline
 from ..answer import uniform_coefficients
 from ..exact import ExactProblem
-from ..rounding import root_below
 from ..session import Certifier
 from ..three_piece import PLACES
-from .rest_polynomials import STILL, SegmentBound, proving
+from .rest_polynomials import SegmentBound, at, closed_form, proving
 
 
 def _declares(problem: ExactProblem) -> bool:
@@ -30,54 +29,21 @@ def _peak(piece: list[Fraction], order: int) -> tuple[int, Fraction, Fraction]:
         if 0 < vertex < 1:
             exact.append(vertex)
             places.add(round(vertex * PLACES))
-    values = {k: abs(_at(poly, Fraction(k, PLACES))) for k in places}
+    values = {k: abs(at(poly, Fraction(k, PLACES))) for k in places}
     best = max(values, key=lambda k: (values[k], k))
-    return best, values[best], max(abs(_at(poly, e)) for e in exact)
+    return best, values[best], max(abs(at(poly, e)) for e in exact)
 
 
-def _at(poly: list[Fraction], e: Fraction) -> Fraction:
-    return sum((c * e**p for p, c in enumerate(poly)), Fraction(0))
-
-
-def closed_form(problem: ExactProblem) -> tuple[list[SegmentBound], list[float]]:
-    """Least duration of every segment, proved, and durations to try as the answer.
-
-    Parameters
-    ----------
-    problem : ExactProblem
-        With a stretched uniform cubic B-spline.
-
-    Returns
-    -------
-    bounds : list of SegmentBound
-    durations : list of float
-        s.
-    """
+def _closed_form(problem: ExactProblem) -> tuple[list[SegmentBound], list[float]]:
     curves = uniform_coefficients(problem.waypoints)
-    bounds, durations = [], []
-    for k in range(problem.segments):
-        best = SegmentBound(problem.duration_lower[k])
-        longest = float(best.least)
-        for j, limits in enumerate(problem.limits):
-            for order, limit in enumerate(limits, start=1):
-                if limit is None or limit.low <= 0:
-                    continue
-                place, value, top = _peak(curves[j][k], order)
-                longest = max(longest, float(top / limit.low) ** (1 / order))
-                least = root_below(value / limit.high, order) if value else Fraction(0)
-                if least > best.least:
-                    best = SegmentBound(least, j, order, place)
-        bounds.append(best)
-        durations.append(longest)
-    still = max(sum(durations), 1e-3) * STILL
-    return bounds, [max(h, still) for h in durations]
+    return closed_form(problem, lambda joint, k, order: _peak(curves[joint][k], order))
 
 
 STRETCHED = Certifier(
     "uniform cubic B-splines stretched in time",
     _declares,
     lambda _: None,
-    proving("stretched", closed_form),
+    proving("stretched", _closed_form),
     instant=True,
 )
 """One curve alone: its segments do not know of each other, so that each is a formula."""

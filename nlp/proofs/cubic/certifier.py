@@ -19,7 +19,7 @@ from .ranges import implied
 from .replay import replayed
 from .search import Search
 from .system import CubicSystem, cubic_system, kind_of_ends
-from .tree import Box, Prover, proof_document
+from .tree import Prover, TickBox, proof_document
 
 _LADDER = Ladder((0.1, 0.01, 1e-3, 1e-4, 1e-5), 0.98, 3.0)
 """A lower cap narrows every box from the start: each stage is cheap beside the next."""
@@ -34,7 +34,7 @@ class Tree:
     """The proof of a lower bound, in ticks; unfinished: open boxes of it are proposed."""
 
     prover: Prover
-    root: Box
+    root: TickBox
     lower: int
     unfinished: bool = False
 
@@ -87,7 +87,7 @@ class _Stage:
     """A tree to work on, the ticks to prove in it, and the goal below which to start anew."""
 
     prover: Prover
-    root: Box
+    root: TickBox
     goal: Callable[[], int]
     restart: int = 0
 

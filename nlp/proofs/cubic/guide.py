@@ -7,7 +7,7 @@ import numpy as np
 from ....problem import Array
 from .ranges import matrices
 from .relaxation import BoxProgram, Proposal
-from .system import PLACES, CubicSystem, Row
+from .system import PLACES, CubicRow, CubicSystem
 
 _TINY = 1e-9
 """Stands for a span of 0 in a quotient: spans are of order 1 in the units of a system."""
@@ -28,7 +28,7 @@ def errors(program: BoxProgram, proposal: Proposal) -> Array:
     return out[: system.free]
 
 
-def peaks(system: CubicSystem, point: Array) -> list[Row]:
+def peaks(system: CubicSystem, point: Array) -> list[CubicRow]:
     """Velocity conditions at the interior peaks of the splines for some durations.
 
     On a piece the acceleration runs from a to b in a line, and is 0 at the share s = a/(a − b); the
@@ -41,7 +41,7 @@ def peaks(system: CubicSystem, point: Array) -> list[Row]:
 
     Returns
     -------
-    list of Row
+    list of CubicRow
         Where a limit is exceeded; empty if the durations determine no spline.
     """
     fixed, linear, steps, which = matrices(system)
@@ -71,5 +71,5 @@ def peaks(system: CubicSystem, point: Array) -> list[Row]:
             s = place / PLACES
             value = speed + length * (a * (s - s * s / 2) + b * s * s / 2)
             if abs(value) > _EXCESS * float(velocity or 0):
-                found.append(Row("velocity", j, t, 1 if value > 0 else -1, place))
+                found.append(CubicRow("velocity", j, t, 1 if value > 0 else -1, place))
     return found

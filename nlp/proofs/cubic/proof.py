@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ....problem import Array
 from ...enclosure import EPS, Ball, raised
 from .ranges import Side, matrices
-from .system import CubicSystem, Row
+from .system import CubicRow, CubicSystem
 
 MIX = 32
 """Shares of a product's two bounds are multiples of 1/MIX."""
@@ -58,7 +58,7 @@ class Weights:
     """
 
     scale: int
-    rows: dict[Row, int]
+    rows: dict[CubicRow, int]
     equations: dict[tuple[int, int], int]
     mix: NDArray[np.int64]
 
@@ -79,7 +79,7 @@ class Lagrangian:
 
 
 @lru_cache(maxsize=4096)
-def _row(system: CubicSystem, row: Row, cap: Fraction) -> tuple[Array, Array, Array, float]:
+def _row(system: CubicSystem, row: CubicRow, cap: Fraction) -> tuple[Array, Array, Array, float]:
     """Dense terms of a condition: alone, product, along, constant."""
     terms = system.row(row, cap)
     alone = np.zeros(system.unknowns)

@@ -13,7 +13,7 @@ from scipy.sparse import csr_array, hstack, vstack
 from ....problem import Array
 from .proof import MIX, Target, Weights
 from .ranges import Side, matrices
-from .system import CubicSystem, Row
+from .system import CubicRow, CubicSystem
 
 _TANGENTS = 5
 """Of 1/T over a side: what they miss falls with the square of the box, and rows cost time."""
@@ -51,9 +51,9 @@ class Proposal:
 class Relaxation:
     """The relaxation of one system under some conditions, to be written down for boxes."""
 
-    def __init__(self, system: CubicSystem, rows: list[Row], cap: Fraction) -> None:
+    def __init__(self, system: CubicSystem, rows: list[CubicRow], cap: Fraction) -> None:
         self.system, self.cap = system, cap
-        self.rows = [*rows, Row("total")]
+        self.rows = [*rows, CubicRow("total")]
         fixed, linear, _, _ = matrices(system)
         used = np.abs(linear).sum(axis=1) > 0
         terms = [system.row(row, cap) for row in self.rows]

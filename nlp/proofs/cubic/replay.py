@@ -11,8 +11,8 @@ from ....problem import TrajgapError
 from ....verify import CUT, LEAF, MIX_DIGITS, MOST_INTEGER, MOST_POWER, OPEN
 from ..exact import ExactProblem
 from .proof import MIX, TOTAL, Target, Weights, multiplied
-from .system import CubicSystem, Row, kind_of_ends, scaled
-from .tree import Box, Prover, Step
+from .system import CubicRow, CubicSystem, kind_of_ends, scaled
+from .tree import BoxStep, Prover, TickBox
 
 _LARGEST = 2**26
 """Of the integer weights in a state: up to there `proof.lagrangian` adds them up exactly."""
@@ -20,7 +20,7 @@ _LARGEST = 2**26
 
 def replayed(
     exact: ExactProblem, document: dict[str, Any], clock: Callable[[], None]
-) -> tuple[Prover, Box, int]:
+) -> tuple[Prover, TickBox, int]:
     """The tree of a document, with what it proves in ticks.
 
     Parameters
@@ -34,7 +34,7 @@ def replayed(
     Returns
     -------
     prover : Prover
-    root : Box
+    root : TickBox
     lower : int
 
     Raises
@@ -77,7 +77,7 @@ def replayed(
     return prover, root, min((box.floor for box in root.leaves()), default=cap)
 
 
-def _again(prover: Prover, box: Box, step: list[Any], known: list[Row]) -> None:
+def _again(prover: Prover, box: TickBox, step: list[Any], known: list[CubicRow]) -> None:
     kind, (held, equations, mix) = step[0], step[-3:]
     scale = 0 if kind == LEAF else _whole(step[-4], _LARGEST)
     _need(scale > 0 or kind == LEAF, "weight of the target")
@@ -88,7 +88,7 @@ def _again(prover: Prover, box: Box, step: list[Any], known: list[Row]) -> None:
         value = _whole(step[1], MOST_INTEGER)
         bound = prover.bound(box, TOTAL, weights)
         _need(bound is not None and bound >= value, "a floor is not proved")
-        box.steps.append(Step("f", value=value, weights=weights))
+        box.steps.append(BoxStep("f", value=value, weights=weights))
         box.floor = max(box.floor, value)
         prover.trim(box)
     else:
@@ -101,7 +101,7 @@ def _again(prover: Prover, box: Box, step: list[Any], known: list[Row]) -> None:
         _need(k >= 0 and sign in (1, -1), "a side that is not there")
         bound = prover.bound(box, Target(k, sign), weights)
         _need(bound is not None and bound >= sign * value, "a side is not proved")
-        prover.set(box, Step("t", k, sign, value, weights))
+        prover.set(box, BoxStep("t", k, sign, value, weights))
 
 
 def _need(condition: bool, reason: str) -> None:
@@ -114,8 +114,8 @@ def _whole(value: Any, most: int) -> int:
     return int(value)
 
 
-def _row(system: CubicSystem, entry: list[Any]) -> Row:
-    row = Row(*entry)
+def _row(system: CubicSystem, entry: list[Any]) -> CubicRow:
+    row = CubicRow(*entry)
     _need(row.sign in (1, -1), "sign of a condition")
     if row.kind in ("jerk", "velocity"):
         _need(0 <= row.joint < system.joints, "joint of a condition")
@@ -137,7 +137,7 @@ def _weights(
     held: list[Any],
     equations: list[Any],
     mix: str,
-    known: list[Row],
+    known: list[CubicRow],
 ) -> Weights:
     rows = {known[_index(k, known)]: _whole(w, _LARGEST) for k, w in _pairs(held)}
     _need(all(w >= 0 for w in rows.values()), "a negative weight")
@@ -160,7 +160,7 @@ def _pairs(flat: list[Any]) -> list[tuple[Any, Any]]:
     return list(zip(flat[::2], flat[1::2], strict=True))
 
 
-def _index(k: Any, known: list[Row]) -> int:
+def _index(k: Any, known: list[CubicRow]) -> int:
     number = _whole(k, len(known) - 1)
     _need(number >= 0, "a condition that is not there")
     return number

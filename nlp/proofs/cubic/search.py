@@ -16,7 +16,7 @@ from .guide import errors, peaks
 from .proof import TOTAL, Target
 from .relaxation import BoxProgram, Proposal, Relaxation
 from .system import CubicSystem
-from .tree import Box, Prover
+from .tree import Prover, TickBox
 
 _ROUNDS = 4
 """On one box at most: a guard, since they end where one shrinks it by less than `_AGAIN`."""
@@ -46,7 +46,7 @@ class Watch(Protocol):
 class Search:
     """One stage: raises the floor of the lowest box until it reaches the goal."""
 
-    def __init__(self, watch: Watch, prover: Prover, root: Box) -> None:
+    def __init__(self, watch: Watch, prover: Prover, root: TickBox) -> None:
         self.watch, self.prover, self.root = watch, prover, root
         self.rows = prover.system.starting_rows()
         self.relaxation = Relaxation(prover.system, self.rows, prover.total)
@@ -89,7 +89,7 @@ class Search:
             self.boxes += 1
         return True
 
-    def _work(self, box: Box) -> int:
+    def _work(self, box: TickBox) -> int:
         """Narrow a box round after round; the coordinate to halve if it stays open, or −1."""
         prover, best = self.prover, None
         for _ in range(_ROUNDS):
@@ -113,10 +113,10 @@ class Search:
         score[widths < _FINEST] = -1.0
         return int(np.argmax(score))
 
-    def _volume(self, box: Box) -> float:
+    def _volume(self, box: TickBox) -> float:
         return float(np.prod(np.subtract(box.high, box.low, dtype=np.float64)))
 
-    def _total(self, program: BoxProgram, box: Box) -> tuple[BoxProgram, Proposal | None]:
+    def _total(self, program: BoxProgram, box: TickBox) -> tuple[BoxProgram, Proposal | None]:
         """Raise the floor by the bound of the total, with velocities at the peaks found so far.
 
         Returns the program with those velocities in it, and its answer.
@@ -140,7 +140,7 @@ class Search:
         prover.lift(box, found.weights)
         return program, found
 
-    def _sides(self, program: BoxProgram, box: Box, found: Proposal) -> None:
+    def _sides(self, program: BoxProgram, box: TickBox, found: Proposal) -> None:
         """Move the sides inward."""
         for k in range(self.prover.system.free):
             for sign in (1, -1):

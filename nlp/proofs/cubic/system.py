@@ -3,7 +3,7 @@
 Unknowns of one joint are its accelerations at all breaks and its velocities at all way-points. The
 coordinates y are the spans T between way-points and, with virtual way-points, the first and the
 last duration h with ρ = h²/T. Equations and limits are affine in y and in the unknowns, apart from
-1/T beside the known displacement of a span. Derivation: docs/certificates-cubic.md.
+1/T beside the known displacement of a span. Derivation: docs/explanation/certificates-cubic.md.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _EXPONENT = 3
 
 
 @dataclass(frozen=True, order=True)
-class Row:
+class CubicRow:
     """A condition ≤ 0.
 
     Attributes
@@ -50,7 +50,7 @@ class Row:
 
 
 @dataclass(frozen=True, eq=False)
-class Terms:
+class SparseTerms:
     """Σ by·x + Σ product·y·x + Σ along·y + constant, sparse."""
 
     by: dict[int, float] = field(default_factory=dict)
@@ -169,15 +169,15 @@ class CubicSystem:
         special = {0: {m: 1}, 1: {0: 1, m: -1}, n - 2: {m - 1: 1, m + 1: -1}, n - 1: {m + 1: 1}}
         return special.get(k, {k - 1: 1})
 
-    def equations(self) -> list[tuple[Terms, tuple[int, int] | None]]:
+    def equations(self) -> list[tuple[SparseTerms, tuple[int, int] | None]]:
         """Equations: their terms = 0, or = sign·6·displacement/T for (span, sign)."""
         n, m, breaks = self.pieces, self.spans, self.breaks
-        out: list[tuple[Terms, tuple[int, int] | None]] = []
+        out: list[tuple[SparseTerms, tuple[int, int] | None]] = []
         for break_, waypoint, order in ((0, 0, self.ends[0]), (n, m, self.ends[1])):
             if order != 2:
-                out.append((Terms(by={self.speed(waypoint): 1.0}), None))
+                out.append((SparseTerms(by={self.speed(waypoint): 1.0}), None))
             if order != 1:
-                out.append((Terms(by={break_: 1.0}), None))
+                out.append((SparseTerms(by={break_: 1.0}), None))
         for t in range(m):
             left, right = breaks[t], breaks[t + 1]
             start, end = self.speed(t), self.speed(t + 1)
@@ -187,7 +187,7 @@ class CubicSystem:
                 h, _, rho = self.curved[0 if t == 0 else 1]
                 out.append(
                     (
-                        Terms(
+                        SparseTerms(
                             {speed: 2.0 * sign},
                             {(t, near): -1.0, (t, far): -1.0, (h, far): 1.0},
                         ),
@@ -196,31 +196,31 @@ class CubicSystem:
                 )
                 products = {(t, near): 2.0, (h, near): -1.0}
                 products |= {(t, far): 1.0, (h, far): -2.0, (rho, far): 1.0}
-                out.append((Terms(product=products), (t, sign)))
+                out.append((SparseTerms(product=products), (t, sign)))
                 continue
             ends = {(t, left): -1.0, (t, right): -1.0}
-            out.append((Terms({end: 2.0, start: -2.0}, ends), None))
-            out.append((Terms({start: 6.0}, {(t, left): 2.0, (t, right): 1.0}), (t, 1)))
+            out.append((SparseTerms({end: 2.0, start: -2.0}, ends), None))
+            out.append((SparseTerms({start: 6.0}, {(t, left): 2.0, (t, right): 1.0}), (t, 1)))
         return out
 
-    def row(self, row: Row, cap: Fraction) -> Terms:
+    def row(self, row: CubicRow, cap: Fraction) -> SparseTerms:
         """Left-hand side of a condition ≤ 0."""
         k, sign = row.index, float(row.sign)
         if row.kind == "total":
-            return Terms(along={t: Fraction(1) for t in range(self.spans)}, constant=-cap)
+            return SparseTerms(along={t: Fraction(1) for t in range(self.spans)}, constant=-cap)
         if row.kind == "lower":
             along = {c: Fraction(-x) for c, x in self.piece(k).items()}
-            return Terms(along=along, constant=self.shortest[k])
+            return SparseTerms(along=along, constant=self.shortest[k])
         if row.kind == "upper":
             longest = self.longest[k]
             assert longest is not None
-            return Terms(
+            return SparseTerms(
                 along={c: Fraction(x) for c, x in self.piece(k).items()}, constant=-longest
             )
         if row.kind == "jerk":
             limit = self.limits[row.joint][2]
             assert limit is not None
-            return Terms(
+            return SparseTerms(
                 {k + 1: sign, k: -sign}, along={c: -limit * x for c, x in self.piece(k).items()}
             )
         limit = self.limits[row.joint][0]
@@ -232,26 +232,28 @@ class CubicSystem:
             h = m if k == 0 else m + 1
             products = {(k, near): first, (h, near): 0.5 * sign - first}
             products |= {(k, far): second, (h, far): -second}
-            return Terms(product={p: x for p, x in products.items() if x}, constant=-limit)
+            return SparseTerms(product={p: x for p, x in products.items() if x}, constant=-limit)
         left, right = self.breaks[k], self.breaks[k + 1]
-        return Terms({self.speed(k): sign}, {(k, left): first, (k, right): second}, constant=-limit)
+        return SparseTerms(
+            {self.speed(k): sign}, {(k, left): first, (k, right): second}, constant=-limit
+        )
 
-    def starting_rows(self) -> list[Row]:
+    def starting_rows(self) -> list[CubicRow]:
         """Conditions of a first relaxation."""
         rows = []
         for j, (velocity, _, jerk) in enumerate(self.limits):
             for sign in (1, -1):
                 if jerk is not None:
-                    rows += [Row("jerk", j, k, sign) for k in range(self.pieces)]
+                    rows += [CubicRow("jerk", j, k, sign) for k in range(self.pieces)]
                 for t in range(self.spans if velocity is not None else 0):
                     rough = self.virtual and t in (0, self.spans - 1)
                     places = (0, *_STARTING) if rough else _STARTING
-                    rows += [Row("velocity", j, t, sign, place) for place in places]
+                    rows += [CubicRow("velocity", j, t, sign, place) for place in places]
         for k in range(self.pieces):
             if len(self.piece(k)) > 1:
-                rows.append(Row("lower", index=k))
+                rows.append(CubicRow("lower", index=k))
             if self.longest[k] is not None:
-                rows.append(Row("upper", index=k))
+                rows.append(CubicRow("upper", index=k))
         return rows
 
 

@@ -15,11 +15,11 @@ from ....verify import CUT, LEAF, MIX_DIGITS, OPEN, TICKS
 from ..exact import decimal
 from .proof import NOTHING, TOTAL, Target, Weights, least, multiplied
 from .ranges import Side, a_priori, implied, narrowed, with_rho
-from .system import CubicSystem, Row
+from .system import CubicRow, CubicSystem
 
 
 @dataclass(frozen=True, eq=False)
-class Step:
+class BoxStep:
     """What is done to a box.
 
     ``kind``: "r" narrows the ranges, "t" sets a side (``sign`` 1: its lower end) to ``value``, "f"
@@ -34,7 +34,7 @@ class Step:
 
 
 @dataclass(eq=False)
-class Box:
+class TickBox:
     """A box of the tree.
 
     Attributes
@@ -45,9 +45,9 @@ class Box:
         Of the unknowns.
     floor : int
         The total is at least this many ticks.
-    steps : list of Step
+    steps : list of BoxStep
         What was done to it, in this order.
-    children : tuple of Box
+    children : tuple of TickBox
         After a step "s".
     closed : bool
         Nothing below the cap is feasible in it.
@@ -57,11 +57,11 @@ class Box:
     high: list[int]
     ranges: tuple[Array, Array]
     floor: int
-    steps: list[Step] = field(default_factory=list)
-    children: tuple[Box, ...] = ()
+    steps: list[BoxStep] = field(default_factory=list)
+    children: tuple[TickBox, ...] = ()
     closed: bool = False
 
-    def leaves(self) -> Iterator[Box]:
+    def leaves(self) -> Iterator[TickBox]:
         """Open leaves below it, itself included."""
         stack = [self]
         while stack:
@@ -71,7 +71,7 @@ class Box:
             elif not box.closed:
                 yield box
 
-    def worked(self) -> Iterator[Box]:
+    def worked(self) -> Iterator[TickBox]:
         """Boxes that something was done to, itself included."""
         stack = [self]
         while stack:
@@ -92,7 +92,7 @@ class Prover:
         """The cap in units of time."""
         return Fraction(self.cap, TICKS)
 
-    def root(self) -> Box:
+    def root(self) -> TickBox:
         """Box of everything feasible below the cap."""
         system = self.system
         low = [0] * system.free
@@ -116,7 +116,7 @@ class Prover:
             longest_piece = system.longest[k]
             if longest_piece is not None:
                 high[h] = min(high[h], math.ceil(longest_piece * TICKS))
-        box = Box(low, high, self._widest(), 0)
+        box = TickBox(low, high, self._widest(), 0)
         self.trim(box)
         return box
 
@@ -124,12 +124,12 @@ class Prover:
         shape = (self.system.unknowns, self.system.joints)
         return np.full(shape, -np.inf), np.full(shape, np.inf)
 
-    def side(self, box: Box) -> Side:
+    def side(self, box: TickBox) -> Side:
         """The box in floats, which hold ticks exactly."""
         low, high = (np.array(x, dtype=np.float64) / TICKS for x in (box.low, box.high))
         return with_rho(self.system, low, high)
 
-    def trim(self, box: Box) -> None:
+    def trim(self, box: TickBox) -> None:
         """What the cap says about the spans, and a span about the piece in it."""
         spans = range(self.system.spans)
         total = sum(box.low[t] for t in spans)
@@ -141,20 +141,20 @@ class Prover:
         empty = any(x > y for x, y in zip(box.low, box.high, strict=True))
         box.closed = box.closed or empty or box.floor >= self.cap
 
-    def narrow(self, box: Box) -> bool:
+    def narrow(self, box: TickBox) -> bool:
         """Narrow the ranges of the unknowns; False if the box turns out to be empty."""
         side = self.side(box)
         low, high = a_priori(self.system, side, self.total)
         low, high = np.maximum(low, box.ranges[0]), np.minimum(high, box.ranges[1])
         found = narrowed(self.system, side, low, high)
-        box.steps.append(Step("r"))
+        box.steps.append(BoxStep("r"))
         if found is None:
             box.closed = True
             return False
         box.ranges = found
         return True
 
-    def bound(self, box: Box, target: Target, weights: Weights) -> Fraction | None:
+    def bound(self, box: TickBox, target: Target, weights: Weights) -> Fraction | None:
         """Proved bound of a target (of nothing: whether it is positive), in ticks."""
         if weights.scale < 1 and target is not NOTHING:
             return None
@@ -163,7 +163,9 @@ class Prover:
             return None
         return Fraction(value) * TICKS / max(weights.scale, 1)
 
-    def tighten(self, box: Box, coordinate: int, sign: int, weights: Weights, least_: int) -> bool:
+    def tighten(
+        self, box: TickBox, coordinate: int, sign: int, weights: Weights, least_: int
+    ) -> bool:
         """Move a side inward, if by ``least_`` ticks at least."""
         bound = self.bound(box, Target(coordinate, sign), weights)
         if bound is None:
@@ -177,10 +179,10 @@ class Prover:
             value = min(value, box.high[coordinate] + 1)
         else:
             value = max(value, box.low[coordinate] - 1)
-        self.set(box, Step("t", coordinate, sign, value, weights))
+        self.set(box, BoxStep("t", coordinate, sign, value, weights))
         return True
 
-    def set(self, box: Box, step: Step) -> None:
+    def set(self, box: TickBox, step: BoxStep) -> None:
         """Carry out a step "t" that is proved."""
         box.steps.append(step)
         k = step.coordinate
@@ -190,48 +192,49 @@ class Prover:
             box.high[k] = min(box.high[k], step.value)
         self.trim(box)
 
-    def lift(self, box: Box, weights: Weights) -> None:
+    def lift(self, box: TickBox, weights: Weights) -> None:
         """Raise the floor."""
         bound = self.bound(box, TOTAL, weights)
         if bound is not None and math.floor(bound) > box.floor:
             box.floor = min(math.floor(bound), self.cap)
-            box.steps.append(Step("f", value=box.floor, weights=weights))
+            box.steps.append(BoxStep("f", value=box.floor, weights=weights))
             box.closed = box.floor >= self.cap
 
-    def clear(self, box: Box, weights: Weights) -> bool:
+    def clear(self, box: TickBox, weights: Weights) -> bool:
         """Close a box that is empty."""
         bound = self.bound(box, NOTHING, weights)
         if bound is None or bound <= 0:
             return False
-        box.steps.append(Step("e", weights=weights))
+        box.steps.append(BoxStep("e", weights=weights))
         box.closed = True
         return True
 
-    def halve(self, box: Box, coordinate: int) -> tuple[Box, Box]:
+    def halve(self, box: TickBox, coordinate: int) -> tuple[TickBox, TickBox]:
         """Halve a box."""
         at = (box.low[coordinate] + box.high[coordinate]) // 2
         return self.split(box, coordinate, at)
 
-    def split(self, box: Box, coordinate: int, at: int) -> tuple[Box, Box]:
+    def split(self, box: TickBox, coordinate: int, at: int) -> tuple[TickBox, TickBox]:
         """Split a box at a place."""
-        lower = Box(list(box.low), list(box.high), box.ranges, box.floor)
-        upper = Box(list(box.low), list(box.high), box.ranges, box.floor)
+        lower = TickBox(list(box.low), list(box.high), box.ranges, box.floor)
+        upper = TickBox(list(box.low), list(box.high), box.ranges, box.floor)
         lower.high[coordinate] = min(at, box.high[coordinate])
         upper.low[coordinate] = max(at, box.low[coordinate])
         for half in (lower, upper):
             self.trim(half)
-        box.steps.append(Step("s", coordinate, value=at))
+        box.steps.append(BoxStep("s", coordinate, value=at))
         box.children = (lower, upper)
         return lower, upper
 
 
-def proof_document(prover: Prover, root: Box, lower: int, unfinished: bool) -> dict[str, Any]:
-    """The proof that the total is at least ``lower`` ticks, as in docs/certificates-cubic.md.
+def proof_document(prover: Prover, root: TickBox, lower: int, unfinished: bool) -> dict[str, Any]:
+    """The proof that the total is at least ``lower`` ticks.
 
+    It is derived in docs/explanation/certificates-cubic.md.
     With ``unfinished``, boxes that are not closed are open leaves: a proposal to go on from.
     """
     system = prover.system
-    rows: dict[Row, int] = {}
+    rows: dict[CubicRow, int] = {}
     tree: list[Any] = []
     stack = [root]
     while stack:
@@ -254,7 +257,7 @@ def proof_document(prover: Prover, root: Box, lower: int, unfinished: bool) -> d
     }
 
 
-def _serves(box: Box, step: Step) -> bool:
+def _serves(box: TickBox, step: BoxStep) -> bool:
     """Whether a floor is needed: it closes the box, or something below it is open."""
     if box.closed:
         return step is box.steps[-1]
@@ -262,7 +265,7 @@ def _serves(box: Box, step: Step) -> bool:
     return step is last and next(box.leaves(), None) is not None
 
 
-def _step(system: CubicSystem, step: Step, rows: dict[Row, int]) -> Any:
+def _step(system: CubicSystem, step: BoxStep, rows: dict[CubicRow, int]) -> Any:
     if step.kind == "r":
         return ["r"]
     if step.kind == "s":

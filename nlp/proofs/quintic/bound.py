@@ -1,6 +1,6 @@
 """Lower bound of weighted limits over a box of durations: compiled, safe in floating point.
 
-Derivation and error argument: docs/certificates-quintic.md, whose symbols are used here.
+Derivation and error argument: docs/explanation/certificates-quintic.md, whose symbols are used.
 """
 
 from __future__ import annotations

@@ -35,7 +35,7 @@ _REST = ((1, 0.0), (2, 0.0))
 
 
 @dataclass(frozen=True)
-class Units:
+class BinaryUnits:
     """Joint j is measured in 2**powers[j] of the problem's unit of angle, time in 2**second s."""
 
     powers: tuple[int, ...]
@@ -51,14 +51,14 @@ class Units:
 class Tree:
     """Bisections of the simplex of durations that prove a total; both in the units of the proof."""
 
-    units: Units
+    units: BinaryUnits
     total: Fraction
     low: tuple[Fraction, ...]
     windows: Windows
     leaves: Leaves
 
     def document(self) -> dict[str, Any]:
-        """Kind "quintic-spline" of docs/certificates-quintic.md."""
+        """Kind "quintic-spline" of docs/explanation/certificates-quintic.md."""
         return {
             "kind": "quintic-spline",
             "total": decimal(self.total * self.units.time),
@@ -137,7 +137,7 @@ class _Search:
         self.steps, self.limits = _steps(own), _limits(own)
         assert session.durations is not None
         near = np.array([float(h / self.units.time) for h in session.durations])
-        self.library = windows(self.steps, self.limits, near)
+        self.library = windows(self.steps, self.limits, near, clock=session.check_clock)
 
     def rounded(self, total: Fraction) -> Fraction:
         """A total that is exact in floating point in the units of the proof, s."""
@@ -190,7 +190,7 @@ class _Search:
         return False
 
 
-def _units(exact: ExactProblem) -> Units:
+def _units(exact: ExactProblem) -> BinaryUnits:
     """Units in which steps and total are not far from 1; those of the problem where they are not.
 
     Weights, multipliers and totals of a proof have ranges, which these units keep to.
@@ -202,7 +202,7 @@ def _units(exact: ExactProblem) -> Units:
         for order in (1, 2, 3):
             needs = (steps / limits[:, order - 1]) ** (1.0 / order)
             least = np.maximum(least, needs.max(axis=1))
-    return Units(tuple(powers), _power(float(least.sum())))
+    return BinaryUnits(tuple(powers), _power(float(least.sum())))
 
 
 def _power(size: float) -> int:

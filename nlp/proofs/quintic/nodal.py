@@ -6,7 +6,7 @@ all curves through the way-points: M(r) x = b(r) with, over the segments k,
     M = Σ_k M_k(r_k),  M_k[a, b] = STIFFNESS[a, b]·r_k**POWERS[a, b],
     b = Σ_k b_k(r_k),  b_k[a] = LOAD[a]·r_k**LOAD_POWERS[a]·Δ_k,
 
-symmetric and positive definite. Symbols are those of docs/certificates-quintic.md.
+symmetric and positive definite. Symbols are those of docs/explanation/certificates-quintic.md.
 """
 
 from __future__ import annotations

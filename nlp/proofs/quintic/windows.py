@@ -10,6 +10,7 @@ with m_k the mean of |ψ| on segment k. Every term depends on one duration alone
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -140,7 +141,13 @@ class Windows:
     terms: Array
 
 
-def windows(steps: Array, limits: Array, durations: Array, directions: int = 50) -> Windows:
+def windows(
+    steps: Array,
+    limits: Array,
+    durations: Array,
+    directions: int = 50,
+    clock: Callable[[], None] = lambda: None,
+) -> Windows:
     """Conditions that are violated at random directions, and the mean velocities.
 
     Parameters
@@ -151,6 +158,8 @@ def windows(steps: Array, limits: Array, durations: Array, directions: int = 50)
     durations : ndarray, shape (segments,)
         The directions spread around it.
     directions : int
+    clock : callable, optional
+        Called before each direction; may raise.
 
     Returns
     -------
@@ -167,6 +176,7 @@ def windows(steps: Array, limits: Array, durations: Array, directions: int = 50)
 
     limited = [j for j in range(joints) if np.isfinite(limits[j, :2]).any() and steps[:, j].any()]
     for d in range(directions):
+        clock()
         spread = _SPREAD * rng.standard_normal(n) if d else np.zeros(n)
         direction = durations * np.exp(spread)
         direction *= durations.sum() / direction.sum()

@@ -19,8 +19,8 @@ from .rows import (
     PLACES,
     STRICT,
     TOTAL,
+    PieceRow,
     Prover,
-    Row,
     on_square,
     shape_for,
     static_rows,
@@ -70,7 +70,7 @@ class Boxes:
         return Boxes(np.vstack([level, level]), np.vstack([low, high]))
 
 
-Proof = tuple[tuple[Row, ...], tuple[Fraction, ...]]
+Proof = tuple[tuple[PieceRow, ...], tuple[Fraction, ...]]
 
 
 class Proposer:
@@ -252,13 +252,13 @@ class Proposer:
         axis = np.where(gap > 2, 1, np.where(gap < -2, 0, axis))
         proofs: list[Proof | None] = []
 
-        def row_of(n: int, k: int) -> Row:
+        def row_of(n: int, k: int) -> PieceRow:
             if k < len(self.static):
                 return self.static[k]
             c, i = divmod(k - len(self.static), count)
             g, j, r, sign, _ = self._limits[chosen[n, i]]
             kind = self._shape.pieces[g].kind
-            return Row(kind, j, r, sign, int(place[n, i]), self._caps[c])
+            return PieceRow(kind, j, r, sign, int(place[n, i]), self._caps[c])
 
         for n in range(len(boxes)):
             proof: Proof | None = None
@@ -284,7 +284,7 @@ class Proposer:
         return proofs, axis.astype(np.int64)
 
 
-def _rounded(weights: Array, digits: int, row_of: Callable[[int], Row]) -> Proof | None:
+def _rounded(weights: Array, digits: int, row_of: Callable[[int], PieceRow]) -> Proof | None:
     top = float(weights.max())
     if not top > 0:
         return None

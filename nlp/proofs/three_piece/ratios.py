@@ -2,7 +2,7 @@
 
 With x = h₂/h₁, y = h₂/h₃ and s from 0 to 1 along a piece, q(s) is Σ xⁱyʲ·c(s) over a positive
 polynomial of x and y, all of degree at most 2 in x and in y. The derivation is in
-docs/certificates.md.
+docs/explanation/certificates.md.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ class Piece:
 
 
 @dataclass(frozen=True)
-class Shape:
+class ThreePieces:
     """One kind of curve of three pieces.
 
     Attributes
@@ -201,14 +201,14 @@ def _middle_cubic(q: Sequence[Fraction]) -> dict[Ratios, Powers]:
 
 
 SHAPES = (
-    Shape(
+    ThreePieces(
         "three-piece",
         (3, 5, 3),
         (Piece("place", 1, {(0, 0): 1}, _middle_quintic),),
         (3, 6, 6),
         ((0, 0), (1, 0), (2, 0), (0, 1), (0, 2)),
     ),
-    Shape(
+    ThreePieces(
         "four-three-four",
         (4, 3, 4),
         (
@@ -220,10 +220,10 @@ SHAPES = (
         ((0, 0), (1, 0), (2, 0), (0, 1), (0, 2), (1, 1), (2, 1), (1, 2)),
     ),
 )
-"""The two curves that have this form: docs/certificates.md derives it for each."""
+"""The two curves that have this form: docs/explanation/certificates.md derives it for each."""
 
 
-def shape_of(curve: Curve) -> Shape | None:
+def shape_of(curve: Curve) -> ThreePieces | None:
     """Shape of a curve, if it is C2 and at rest with zero acceleration at both ends.
 
     Parameters
@@ -232,7 +232,7 @@ def shape_of(curve: Curve) -> Shape | None:
 
     Returns
     -------
-    Shape or None
+    ThreePieces or None
     """
     rest = ((1, 0.0), (2, 0.0))
     if (

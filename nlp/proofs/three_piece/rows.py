@@ -10,7 +10,7 @@ import numpy as np
 
 from ....problem import TrajgapError
 from ..exact import ExactProblem
-from .ratios import Ratios, Shape, derivative, shape_of
+from .ratios import Ratios, ThreePieces, derivative, shape_of
 from .square_polynomials import (
     MONOMIALS,
     SHARES,
@@ -32,7 +32,7 @@ TOTAL = -1
 
 
 @dataclass(frozen=True)
-class Row:
+class PieceRow:
     """One necessary condition on the durations.
 
     Attributes
@@ -61,7 +61,7 @@ class Row:
     cap: int = TOTAL
 
 
-def shape_for(problem: ExactProblem) -> Shape:
+def shape_for(problem: ExactProblem) -> ThreePieces:
     """Shape of the problem's curve.
 
     Parameters
@@ -70,7 +70,7 @@ def shape_for(problem: ExactProblem) -> Shape:
 
     Returns
     -------
-    Shape
+    ThreePieces
 
     Raises
     ------
@@ -100,7 +100,7 @@ def on_square(ratios: dict[Ratios, Fraction]) -> Poly:
     return out
 
 
-def exact_row(problem: ExactProblem, row: Row, total: Fraction) -> Poly:
+def exact_row(problem: ExactProblem, row: PieceRow, total: Fraction) -> Poly:
     """Row as a polynomial that is negative at every feasible direction with a total < ``total``.
 
     A piece is N/E in the ratios, both with a²b² taken in, and h_g < cap·m_g/hold. So a feasible
@@ -118,7 +118,7 @@ def exact_row(problem: ExactProblem, row: Row, total: Fraction) -> Poly:
 
 
 @lru_cache(maxsize=2_000)
-def _without_cap(problem: ExactProblem, row: Row) -> tuple[Poly, Poly]:
+def _without_cap(problem: ExactProblem, row: PieceRow) -> tuple[Poly, Poly]:
     """Both sides of a row, the left one times capʳ: the same in every stage of a search."""
     hold = SUM if row.cap == TOTAL else SHARES[row.cap]
     if row.kind == "lower":
@@ -162,9 +162,9 @@ class Prover:
     def __init__(self, problem: ExactProblem, total: Fraction) -> None:
         self.problem, self.total = problem, total
         self.size = size_for(problem)
-        self._rows: dict[Row, Poly] = {}
+        self._rows: dict[PieceRow, Poly] = {}
 
-    def row(self, row: Row) -> Poly:
+    def row(self, row: PieceRow) -> Poly:
         """`exact_row`, remembered."""
         if row not in self._rows:
             self._rows[row] = padded(exact_row(self.problem, row, self.total), self.size)
@@ -172,7 +172,7 @@ class Prover:
 
     def proves(
         self,
-        rows: tuple[Row, ...],
+        rows: tuple[PieceRow, ...],
         weights: tuple[Fraction, ...],
         a: tuple[int, int],
         b: tuple[int, int],
@@ -186,7 +186,7 @@ class Prover:
         return never_negative(out, a, b)
 
 
-def static_rows(problem: ExactProblem) -> list[Row]:
+def static_rows(problem: ExactProblem) -> list[PieceRow]:
     """Rows that hold at every point alike: the heaviest joint for each kind and order."""
     caps = [TOTAL] + [g for g, u in enumerate(problem.duration_upper) if u is not None]
     rows, q = [], problem.waypoints
@@ -202,8 +202,8 @@ def static_rows(problem: ExactProblem) -> list[Row]:
                     if ratio > 0 and (best is None or ratio > best[0]):
                         best = ratio, joint
                 if best is not None:
-                    rows.append(Row(kind, best[1], order, cap=cap))
+                    rows.append(PieceRow(kind, best[1], order, cap=cap))
         for g, lower in enumerate(problem.duration_lower):
             if lower > 0 and g != cap:
-                rows.append(Row("lower", g, 1, cap=cap))
+                rows.append(PieceRow("lower", g, 1, cap=cap))
     return rows

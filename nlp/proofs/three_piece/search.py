@@ -18,7 +18,7 @@ from ..session import Certifier, Ladder, OutOfTime, Session, Shorter
 from .boxes import Boxes, Proof, Proposer
 from .ratios import shape_of
 from .rows import STRICT, shape_for
-from .tree import State, proposed, tree_document
+from .tree import Cover, proposed, tree_document
 
 _BATCH = 256
 """Boxes that are looked at together: numpy is busy, and a look at the clock comes soon."""
@@ -41,10 +41,10 @@ class Tree:
     """Boxes that prove a total, or are to prove it: kind of proof, and what is known."""
 
     kind: str
-    state: State
+    state: Cover
 
     def document(self) -> dict[str, Any]:
-        """Kind "three-piece" or "four-three-four" of docs/certificates.md."""
+        """Kind "three-piece" or "four-three-four" of docs/explanation/certificates.md."""
         return tree_document(self.kind, self.state)
 
 
@@ -64,13 +64,13 @@ class _Work:
         new = (head.pick(proved), tuple(proof for proof in found if proof is not None))
         return _Work((*self.done, new), queue)
 
-    def state(self, target: Fraction) -> State:
+    def state(self, target: Fraction) -> Cover:
         """All boxes; the open ones without a proof."""
         every = [boxes for boxes, _ in self.done] + list(self.queue)
         proofs: list[Proof | None] = [proof for _, found in self.done for proof in found]
         proofs += [None] * sum(map(len, self.queue))
         level = np.vstack([boxes.level for boxes in every])
-        return State(target, Boxes(level, np.vstack([b.index for b in every])), tuple(proofs))
+        return Cover(target, Boxes(level, np.vstack([b.index for b in every])), tuple(proofs))
 
 
 @dataclass(eq=False)
@@ -148,7 +148,7 @@ def _prove(session: Session) -> bool:
     start, kind = np.zeros((1, 2), np.int64), shape_for(session.exact).proof
     given = session.taken_up(partial(_proposed, session.exact, kind))
     if given is None:
-        given = State(Fraction(0), Boxes(start, start), (None,))
+        given = Cover(Fraction(0), Boxes(start, start), (None,))
     session.proposals = Tree(kind, given)
     search = _Search(session, given.boxes, given.proofs)
     session.seek()
@@ -168,7 +168,7 @@ def _prove(session: Session) -> bool:
     return True
 
 
-def _proposed(exact: ExactProblem, kind: str, document: dict[str, Any]) -> State:
+def _proposed(exact: ExactProblem, kind: str, document: dict[str, Any]) -> Cover:
     """Boxes of a stopped run: what they say of themselves only proposes."""
     if document["kind"] != kind:
         raise TrajgapError(f"resume: a state of kind {document['kind']!r}")

@@ -12,14 +12,14 @@ from ....problem import TrajgapError
 from ....verify import LEAF, OPEN, number
 from ..exact import ExactProblem, decimal
 from .boxes import Boxes, Proof
-from .rows import PLACES, TOTAL, Row, shape_for
+from .rows import PLACES, TOTAL, PieceRow, shape_for
 
 _DEEPEST = 60
 """Halvings of a side in a tree that is read: an index of 64 bits holds them."""
 
 
 @dataclass(frozen=True, eq=False)
-class State:
+class Cover:
     """Boxes that together cover the unit square of directions, with proofs for ``target``.
 
     A box without a proof is open.
@@ -30,9 +30,9 @@ class State:
     proofs: tuple[Proof | None, ...]
 
 
-def tree_document(kind: str, state: State) -> dict[str, Any]:
-    """Total, rows and tree as docs/certificates.md describes them."""
-    rows: dict[Row, int] = {}
+def tree_document(kind: str, state: Cover) -> dict[str, Any]:
+    """Total, rows and tree as docs/explanation/certificates.md describes them."""
+    rows: dict[PieceRow, int] = {}
     nodes: list[Any] = []
     for n in _preorder(state):
         if isinstance(n, str):
@@ -54,7 +54,7 @@ def tree_document(kind: str, state: State) -> dict[str, Any]:
     }
 
 
-def proposed(problem: ExactProblem, document: dict[str, Any]) -> State:
+def proposed(problem: ExactProblem, document: dict[str, Any]) -> Cover:
     """Read a tree of unknown origin, whose proofs are proposals.
 
     Parameters
@@ -65,7 +65,7 @@ def proposed(problem: ExactProblem, document: dict[str, Any]) -> State:
 
     Returns
     -------
-    State
+    Cover
 
     Raises
     ------
@@ -87,7 +87,7 @@ def proposed(problem: ExactProblem, document: dict[str, Any]) -> State:
         if len(which) != len(weights) or not which:
             raise TrajgapError("resume: a leaf without weights")
         proofs.append((which, weights))
-    return State(target, boxes, tuple(proofs))
+    return Cover(target, boxes, tuple(proofs))
 
 
 def _whole(value: Any, low: int, high: int) -> int:
@@ -96,12 +96,12 @@ def _whole(value: Any, low: int, high: int) -> int:
     return value
 
 
-def _row(problem: ExactProblem, entry: Any) -> Row:
+def _row(problem: ExactProblem, entry: Any) -> PieceRow:
     kind, joint, order, sign, place, cap = entry
     shape = shape_for(problem)
     places = [piece.kind for piece in shape.pieces]
     joints = 3 if kind == "lower" else len(problem.joints)
-    row = Row(
+    row = PieceRow(
         str(kind),
         _whole(joint, 0, joints - 1),
         _whole(order, 0 if kind in places else 1, 3),
@@ -158,7 +158,7 @@ def _weight(weight: Fraction) -> str:
     return short if len(short) < len(text) and Fraction(short) == weight else text
 
 
-def _preorder(state: State) -> list[str | int]:
+def _preorder(state: Cover) -> list[str | int]:
     """Bisection tree in preorder: the letter of a cut, or the number of a box."""
     nodes: list[str | int] = []
     boxes = [(*state.boxes.level[n], *state.boxes.index[n]) for n in range(len(state.boxes))]

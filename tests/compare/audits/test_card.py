@@ -2,7 +2,7 @@
 
 import pytest
 from support.studies import EVERY, audited_alone
-from trajgap.compare.audits.card import verdict_card
+from trajgap.compare.audits.card import _explanation, verdict_card
 from trajgap.compare.audits.case_audit import audit_case
 from trajgap.compare.audits.study import Study
 from trajgap.compare.documents import CARD_WORDS, Cause, Explanation, Severity, Why
@@ -49,6 +49,38 @@ def test_without_way_points_the_card_says_what_is_not_checkable():
     assert "not checkable" in card.optimum
 
 
+def test_without_limits_the_card_praises_no_motion_for_keeping_them():
+    """Any durations would: a table of times for a given path often prints no limits."""
+    times = """
+[[claims]]
+id = "times"
+quantity = "durations"
+where = "Table 2"
+durations = ["1.0", "1.0", "1.0"]
+"""
+    text = LONG.replace('velocity = "1.0"', "") + times
+    card = audit_case(Study(parse_case(text, "x"), certify_seconds=0)).card
+    assert card.limits == "No limits are stated, so that none can be broken."
+    assert card.optimum.startswith("Without limits no motion is the shortest")
+
+
+@pytest.mark.parametrize(
+    ("curve", "says"),
+    [("", "below the"), ('other_curve = "straight lines"', "has no printed total beside it")],
+)
+def test_no_total_on_another_curve_stands_beside_the_optimum(curve, says):
+    total = f"""
+[[claims]]
+id = "total"
+quantity = "total_time"
+where = "Table 2"
+value = "0.50"
+{curve}
+"""
+    card = audit_case(Study(parse_case(LONG + total, "x"), certify_seconds=0)).card
+    assert says in card.optimum
+
+
 def test_many_errors_are_counted_where_the_words_end():
     one = audited_alone("irb460-pso-353")
     explanation = Explanation(change="Two columns may be swapped.", effect="Then all is well.")
@@ -64,12 +96,35 @@ def test_many_errors_are_counted_where_the_words_end():
         )
         for k in range(40)
     ]
-    card = verdict_card(one.study, one.judgements, one.findings, many, one.waterfalls)
+    card = verdict_card(one.study, one.judgements, many, one.waterfalls)
     assert card.words <= CARD_WORDS
     assert card.errors
     assert card.errors[0] == "In row 0 the printed number is not what the numbers beside it allow."
     assert len(card.errors) + card.more == 40
     assert f"{card.more} more errors stand below." in card.sentences
+
+
+def test_the_explanation_of_an_error_is_called_one():
+    one = audited_alone("irb460-pso-353")
+    explanation = Explanation(change="Two columns may be swapped.", effect="Then all is well.")
+    cause = Cause(
+        severity=Severity.ERROR,
+        rule="TG107",
+        claim=None,
+        says="In row 1 the printed number is not what the others allow.",
+        readings=(),
+        explanations=(explanation,),
+        consequences=(),
+    )
+    card = verdict_card(one.study, one.judgements, [cause], one.waterfalls)
+    assert card.sentences[-1] == (
+        "An innocent explanation: two columns may be swapped. Then all is well."
+    )
+    # Where words are short, it goes without its name before it is left out.
+    assert _explanation([cause], 10) == "Two columns may be swapped. Then all is well."
+    assert _explanation([cause], 8) == "An innocent explanation: two columns may be swapped."
+    assert _explanation([cause], 5) == "Two columns may be swapped."
+    assert _explanation([cause], 4) is None
 
 
 LONG = """

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import pytest
 from support.one_joint import HEAD
 from support.studies import audited
 from trajgap.compare import audit
 from trajgap.compare.audits.case_audit import CaseAudit
 from trajgap.compare.audits.explanations import one_digit_off
-from trajgap.compare.documents import ClaimVerdict, Severity
+from trajgap.compare.documents import CaveatKind, ClaimVerdict, Severity
 from trajgap.problem import Printed, parse_case
 
 TWO_SEGMENTS = HEAD.replace('durations = ["{time}"]', "durations = [{time}]\ntotal = {total}")
@@ -39,7 +40,8 @@ def test_neither_side_of_a_contradiction_in_print_is_taken() -> None:
     by = {j.claim: j for j in one.judgements}
     for claim in ("pso-longest", "mnam-longest", "mnam-total", "pso-joint-1", "limits-kept"):
         (said,) = by[claim].caveats
-        assert said.startswith("rests on numbers that others in print contradict: Table 2")
+        assert said.kind is CaveatKind.DOUBTED
+        assert said.text.startswith("rests on numbers that others in print contradict: Table 2")
     assert by["pso-total"].verdict is ClaimVerdict.INCONSISTENT
     assert by["conditions"].caveats == ()
 
@@ -54,6 +56,50 @@ def test_a_motion_and_a_scaling_law_that_refute_one_claim_are_one_error() -> Non
     assert changes[0] == "The durations of segments 1 and 3 may have been exchanged in print."
     assert broken.explanations[0].effect == "Then every limit is kept."
     assert "0.4854 in place of 0.3854" in changes[1]
+
+
+def test_rest_at_all_points_may_be_meant_of_the_ends() -> None:
+    """The sentence leaves 18 conditions on 14 coefficients; another one counts 14."""
+    one = audited("irb460-pso-353")
+    (count,) = [c for c in one.causes if c.rule == "TG107"]
+    (meant,) = count.explanations
+    assert meant.change == "Section 4.2 may mean rest at the two ends only."
+    assert (
+        meant.effect
+        == "Then there are 14 conditions on 14 coefficients, as section 4.3 counts them."
+    )
+
+
+CONDITIONS = """
+[[claims]]
+id = "rest"
+quantity = "conditions"
+where = "section 2"
+rest_at = "all"
+orders = [{orders}]
+degrees = [3, 3]
+continuity = 2
+"""
+
+
+@pytest.mark.parametrize(("orders", "offered"), [("1", 1), ("1, 2", 0)])
+def test_rest_at_the_ends_is_offered_only_where_the_count_fits(orders: str, offered: int) -> None:
+    """Two cubics have 8 coefficients: rest of velocity at the ends leaves 8 conditions, rest of
+    acceleration too would leave 10."""
+    one = judged('"0.00", "0.50", "1.00"', "90", '"1.00", "1.00"', '"2.00"', "within_limits")
+    assert one.causes == ()
+    text = TWO_SEGMENTS.format(
+        points='"0.00", "0.50", "1.00"',
+        limit="90",
+        time='"1.00", "1.00"',
+        total='"2.00"',
+        checks="within_limits",
+    )
+    case = parse_case(text + CONDITIONS.format(orders=orders), "made-up.toml")
+    (cause,) = audit(case, seeds=2).cases[0].causes
+    assert cause.rule == "TG107"
+    said = [e.effect for e in cause.explanations]
+    assert said == ["Then there are 8 conditions on 8 coefficients."] * offered
 
 
 def test_one_claim_under_many_readings_is_one_error() -> None:
@@ -108,3 +154,14 @@ def test_one_digit_off_is_one_digit_or_two_neighbours_exchanged() -> None:
     assert len(off) == 3 * 9 + 2  # 2.10 and 1.02 are the exchanges
     assert {"2.10", "1.02", "1.29", "9.20"} <= off
     assert "1.20" not in off
+
+
+@pytest.mark.parametrize(("limit", "told"), [("2.035", True), ("2.03", False)])
+def test_limits_that_hold_at_samples_are_explained_by_them(limit: str, told: bool) -> None:
+    """A cubic spline peaks at 2.0431 rad/s, and at 2.0326 rad/s at ten steps a segment."""
+    text = TWO_SEGMENTS.replace('family = "rest-to-rest"\ndegree = 5', 'family = "cubic-spline"')
+    times = {"time": '"0.83000", "0.71000"', "total": '"1.54000"', "checks": "within_limits"}
+    case = parse_case(text.format(points="0.1, 1.3, 0.9", limit=limit, **times), "made-up.toml")
+    (cause,) = audit(case, seeds=2, certify_seconds=0).cases[0].causes
+    assert cause.rule == "TG201"
+    assert any("at ten steps a segment none" in e.change for e in cause.explanations) is told

@@ -92,7 +92,7 @@ def test_what_breaks_the_limits_is_not_optimal_within_them() -> None:
     assert found.verdict is ClaimVerdict.REFUTED
     assert (found.basis, found.evidence) == (Basis.ENCLOSURE, Evidence.NONE)
     assert found.message.startswith(
-        "Not an answer within the limits: Table 2 (main): A limit is broken for every value"
+        "Not an answer within the limits. Table 2: A limit is broken for every value"
     )
     beside = next(f for f in one.findings if f.rule == "TG302" and f.claim == "d")
     assert beside.severity is Severity.INFO

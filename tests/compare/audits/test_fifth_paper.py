@@ -12,6 +12,6 @@ EXAMPLES = ROOT / "docs" / "examples"
 def test_the_clean_septic_totals_of_fang_2020_come_out_supported(name: str) -> None:
     one = audit(EXAMPLES / f"{name}.toml", seeds=2).cases[0]
     assert {f.severity for f in one.findings} == {Severity.INFO}
-    assert len(one.judgements) == 3
+    assert len(one.judgements) == 4
     assert {j.verdict for j in one.judgements} == {ClaimVerdict.SUPPORTED}
     assert {j.scope for j in one.judgements} == {Scope.ALL}

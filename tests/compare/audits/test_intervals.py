@@ -7,7 +7,9 @@ from trajgap.compare import audit
 from trajgap.compare.audits.case_audit import CaseAudit
 from trajgap.compare.audits.study import Study
 from trajgap.compare.audits.waterfall import waterfalls
-from trajgap.compare.documents import Why
+from trajgap.compare.cli.auditing import audited
+from trajgap.compare.documents import AuditDocument, Why, facts
+from trajgap.compare.pages.verdicts import posed
 from trajgap.nlp import Evidence, Solution, Status, certificate, certify, printed_problem, solve
 from trajgap.problem import Case, parse_case
 
@@ -62,7 +64,11 @@ def test_what_the_budget_leaves_out_is_said() -> None:
     (one,) = audit(stated(), seeds=2, certify_seconds=0.1).cases
     assert distance_of(one) is Evidence.BEST_KNOWN
     (said,) = one.document.left_out
-    assert said.endswith("no time was left to certify its optimum")
+    assert said.endswith(": no time was left")
+    assert facts(one.document) == [("not certified", said)]
+    (terms, *_) = posed(one).blocks
+    assert ("not certified", said) in terms.pairs  # page and Markdown
+    assert f"not certified: {said}" in map(str, audited(AuditDocument(cases=(one.document,))))
 
 
 def test_a_given_certificate_counts_once_it_is_proved_again() -> None:

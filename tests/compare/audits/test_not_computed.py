@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from support.base_case import BASE
 from trajgap.compare.audits import CaseAudit, Study, audit, case_audit
 from trajgap.compare.audits.rules.registry import RuleGroup
 from trajgap.compare.documents import ClaimVerdict, Finding, Why
@@ -127,7 +128,7 @@ def broken_rule(study: Study):
     for claim in study.claims:
         if claim.id == "by":
             raise TrajgapError("nobody knows")
-        yield Finding(rule="TG101", basis="check", claim=claim.id, message="seen")
+        yield Finding(rule="TG101", basis="check", claim=claim.id, message="Seen")
 
 
 def test_one_claim_that_fails_takes_no_other_with_it(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -135,8 +136,8 @@ def test_one_claim_that_fails_takes_no_other_with_it(monkeypatch: pytest.MonkeyP
     case = parse_case(CASE.format(interpolant=SPLINE, limits=""), "partly.toml")
     one = case_audit.audit_case(Study(case, seeds=2, certify_seconds=0))
     assert {(f.rule, f.claim, f.message) for f in one.findings} == {
-        ("TG101", "d", "seen"),
-        ("TG101", "shortest", "seen"),
+        ("TG101", "d", "Seen"),
+        ("TG101", "shortest", "Seen"),
         ("TG502", "by", "Not computed: nobody knows."),
     }
 
@@ -176,3 +177,13 @@ def test_wrong_settings_of_an_algorithm_end_an_audit_before_it_begins() -> None:
     text = CASE.format(interpolant=SPLINE, limits="").replace("particles = 6", "particles = -6")
     with pytest.raises(TrajgapError, match=r"partly\.toml: algorithms\.pso: particles"):
         audit(parse_case(text, "partly.toml"), seeds=2, certify_seconds=0)
+
+
+def test_an_algorithm_that_nothing_replays_is_named_with_the_nearest_kind() -> None:
+    named = parse_case(BASE.replace('kind = "pso"', 'kind = "psso"'), "base.toml")
+    assert Study(named).not_replayed == (
+        "PSO: algorithm kind: 'psso' is unknown; did you mean 'pso'?",
+    )
+    unnamed = parse_case(BASE.replace('kind = "pso"\n', ""), "base.toml")
+    assert Study(unnamed).not_replayed == ("PSO: the case file names no kind.",)
+    assert Study(parse_case(BASE, "base.toml")).not_replayed == ()

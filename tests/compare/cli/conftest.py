@@ -1,9 +1,13 @@
-"""Every test of the command line starts in an empty folder of its own."""
+"""Every test of the command line starts in an empty folder; an audit that takes no time."""
+
+from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
-from support.command_line import CASE, Run
+from support.command_line import AUDITS, CASE, PAGES, Run
+from support.documents import report
 from trajgap.compare.cli import main
 
 
@@ -25,3 +29,25 @@ def run(capsys: pytest.CaptureFixture[str]) -> Run:
         return code, captured.out, captured.err
 
     return call
+
+
+@pytest.fixture
+def stand_in(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
+    """A finished audit in place of minutes of work."""
+    seen: dict[str, Any] = {}
+
+    def audit(cases: Any, **options: Any) -> Any:
+        seen.update(options, cases=[case.id for case in cases])
+        return report()
+
+    monkeypatch.setattr(AUDITS, "audit", audit)
+    return seen
+
+
+@pytest.fixture
+def pages(monkeypatch: pytest.MonkeyPatch) -> None:
+    def write(report: object, out: Path) -> None:
+        out.mkdir(exist_ok=True)
+        (out / "index.html").write_text("page", encoding="utf-8")
+
+    monkeypatch.setattr(PAGES, "write_report", write)

@@ -24,7 +24,7 @@ from trajgap.nlp import ExactProblem, shipped
 from trajgap.nlp.proofs.document import shipped_folder
 from trajgap.nlp.proofs.state import read_state
 from trajgap.nlp.proofs.three_piece import rows as three_piece
-from trajgap.nlp.proofs.three_piece.rows import Row, exact_row
+from trajgap.nlp.proofs.three_piece.rows import PieceRow, exact_row
 from trajgap.problem import TrajgapError
 from trajgap.verify import CertifiedQuestion, Subject, seal
 from trajgap.verify import verify_certificate as verify
@@ -126,7 +126,7 @@ def test_a_time_limit_leaves_a_state_to_go_on_from(run: Run) -> None:
 def test_a_proof_that_the_verifier_refuses_is_not_called_certified(
     run: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def broken(problem: ExactProblem, row: Row, total: Fraction) -> three_piece.Poly:
+    def broken(problem: ExactProblem, row: PieceRow, total: Fraction) -> three_piece.Poly:
         return exact_row(problem, row, total * Fraction(9, 10))
 
     monkeypatch.setattr(three_piece, "exact_row", broken)
@@ -197,6 +197,7 @@ def test_ctrl_c_leaves_the_interval_and_a_state(run: Run) -> None:
     assert code == 0
 
 
+@pytest.mark.slow
 def test_the_live_line_on_a_terminal() -> None:
     code, seen = on_terminal(["solve", *ONE, "--certify"], COLUMNS="160")
     assert code == 0

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from trajgap.compare.audits.judging import judge, weigh
@@ -43,7 +45,9 @@ def test_an_infeasible_time_has_a_difference_and_no_optimality_gap() -> None:
 def test_a_solution_is_a_reference() -> None:
     solution = solve(load_case("irb460-pso-353").problem("limit-80"))
     assert gap(solution.total_time, solution).lowest == 0
-    assert gap(solution.total_time, solution).reference.evidence is Evidence.BEST_KNOWN
+    assert gap(solution.total_time, solution).reference.evidence is Evidence.CERTIFIED
+    bare = replace(solution, lower_bound=None)
+    assert gap(bare.total_time, bare).reference.evidence is Evidence.BEST_KNOWN
 
 
 def test_a_distance_of_many_times_the_reference_is_a_factor() -> None:

@@ -7,11 +7,10 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
-from trajgap.compare import AuditReport, audit, write_report
+from trajgap.compare import audit, write_report
 from trajgap.compare.pages import foreign
 from trajgap.compare.pages.blocks import Cell, Grid, Page, Prose, Section, Terms
 from trajgap.compare.pages.markdown_text import markdown
-from trajgap.compare.pages.writer import case_page
 from trajgap.problem import file_name, parse_case
 
 DASH = """
@@ -91,7 +90,7 @@ def test_every_waterfall_has_its_picture(folder: Path) -> None:
                 files.remove(file)
                 root = ElementTree.fromstring(file.read_text(encoding="utf-8"))
                 title = root.findtext("{http://www.w3.org/2000/svg}title")
-                assert title == f"Where the time goes: {problem}, {reading}"
+                assert title == f"Where the time goes: {problem}; reading {reading}"
                 for end in ("html", "md"):
                     page = (folder / f"{case}.{end}").read_text(encoding="utf-8")
                     assert f"pictures/{file.name}" in page
@@ -146,13 +145,13 @@ def test_every_block_of_markdown_shows_it() -> None:
 def test_pages_of_cases_with_long_ids(tmp_path: Path) -> None:
     ids = ["a" * 250, "a" * 251]
     cases = [parse_case(DASH.replace('"dash"', f'"{name}"'), name) for name in ids]
-    for case in cases:
-        assert len(case_page(audit(case, seeds=2, certify_seconds=0).cases[0]).file) < 130
-    report = AuditReport(tuple(audit(case, seeds=2, certify_seconds=0).cases[0] for case in cases))
+    report = audit(cases, seeds=2, problem="a", reading="c", certify_seconds=0)
     write_report(report, tmp_path / "out")
     # Two cases, the index and the glossary.
-    assert len(list((tmp_path / "out").glob("*.html"))) == 4
+    pages = list((tmp_path / "out").glob("*.html"))
+    assert len(pages) == 4
+    assert all(len(page.stem) < 130 for page in pages)
     index = (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
     for target in re.findall(r'href="([^"#]+)"', index):
         assert (tmp_path / "out" / target).is_file()
-    write_report(report, tmp_path / "out")
+    assert foreign(tmp_path / "out") is None

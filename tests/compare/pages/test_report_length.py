@@ -5,14 +5,15 @@ import re
 from dataclasses import replace
 
 import pytest
-from support.studies import EVERY, audited_alone
+from support.studies import EVERY, page_alone
 from trajgap.compare.audits.case_audit import CaseAudit, audit
 from trajgap.compare.audits.study import Study
 from trajgap.compare.documents import Step, Waterfall, Why
 from trajgap.compare.pages.blocks import Cell, Folded, Grid, Page, Prose, Section
+from trajgap.compare.pages.environment import environment, style
 from trajgap.compare.pages.markdown_text import markdown
 from trajgap.compare.pages.numbers import where_time_goes
-from trajgap.compare.pages.writer import _TEMPLATES, _environment, case_page
+from trajgap.compare.pages.writer import case_page
 from trajgap.nlp import Evidence
 from trajgap.problem import load_case
 
@@ -25,10 +26,10 @@ def test_many_readings_share_a_table_and_few_have_pictures() -> None:
         Step.missing("retimed", "no acceleration is limited"),
     )
     first = Waterfall(problem="limit-80", reading=case.default_reading.id, claim=None, steps=steps)
-    one = CaseAudit(case, Study(case, seeds=2, certify_seconds=0), (), (), (first,))
+    one = CaseAudit(case, Study(case, seeds=2, certify_seconds=0), (), ())
     for others in (3, 5):
         more = [first.model_copy(update={"reading": f"reading-{k}"}) for k in range(others)]
-        section = where_time_goes(replace(one, waterfalls=(first, *more)))
+        section = where_time_goes(replace(one, made_falls=(first, *more)))
         drawn = Page("p", "t", (section,)).pictures
         inner = [b for fold in section.blocks if isinstance(fold, Folded) for b in fold.blocks]
         tables = [b for b in inner if isinstance(b, Grid) and b.columns[0] == "reading"]
@@ -62,11 +63,11 @@ def test_a_case_without_waypoints_says_once_what_is_not_computed() -> None:
 def test_long_tables_of_readings_scroll_in_a_box_and_print_whole() -> None:
     grid = Grid(("problem", "reading"), ((Cell("p"), Cell("r")),) * 13)
     page = Page("p", "t", (Section("a", "A", (grid, replace(grid, rows=grid.rows[:12]))),))
-    environment = _environment()
-    html_page = environment.get_template("case.html").render(page=page, style="")
+    shapes = environment()
+    html_page = shapes.get_template("case.html").render(page=page, style="")
     assert re.findall(r'<div class="(scroll[^"]*)"', html_page) == ["scroll tall", "scroll"]
-    style = (_TEMPLATES / "style.css").read_text(encoding="utf-8")
-    assert "max-height: none" in style.split("@media print")[1]
+    sheet = style()
+    assert "max-height: none" in sheet.split("@media print")[1]
 
 
 MOST_BYTES = 600_000
@@ -113,10 +114,10 @@ def test_what_is_folded_is_not_counted() -> None:
 
 @pytest.mark.parametrize("case_id", EVERY)
 def test_pages_of_the_papers_are_short_before_anything_is_unfolded(case_id: str) -> None:
-    page = case_page(audited_alone(case_id))
-    environment = _environment()
-    style = (_TEMPLATES / "style.css").read_text(encoding="utf-8")
-    text = environment.get_template("case.html").render(page=page, style=style)
+    page = page_alone(case_id)
+    shapes = environment()
+    sheet = style()
+    text = shapes.get_template("case.html").render(page=page, style=sheet)
     assert len(text.encode()) <= MOST_BYTES
     words = " ".join(Open(text).text).split()
     assert 150 < len(words) <= MOST_WORDS

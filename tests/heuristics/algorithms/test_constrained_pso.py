@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from support.scripted import OPEN, Script
 from trajgap.heuristics import Bounds, ConstrainedPSO
 from trajgap.heuristics.algorithms.swarm import Swarm
 from trajgap.problem import TrajgapError
 
-OPEN = Bounds(np.full(2, -np.inf), np.full(2, np.inf))
 C = 1e6
 WIDE = ConstrainedPSO(
     particles=2,
@@ -20,18 +20,6 @@ WIDE = ConstrainedPSO(
 )
 R1 = np.array([[0.25, 0.5], [0.75, 0.125]])
 R2 = np.array([[0.5, 0.25], [0.125, 1.0]])
-
-
-class Script:
-    """Stands in for a generator: hands out given numbers, in order, in the shape asked for."""
-
-    def __init__(self, *numbers: np.ndarray | float) -> None:
-        self.left = list(np.concatenate([np.ravel(n) for n in numbers]))
-
-    def random(self, shape: object = None) -> np.ndarray | float:
-        count = int(np.prod(shape)) if shape is not None else 1
-        taken = [self.left.pop(0) for _ in range(count)]
-        return np.array(taken).reshape(shape) if shape is not None else taken[0]
 
 
 def total(x: np.ndarray) -> np.ndarray:

@@ -93,6 +93,18 @@ def test_rates_of_a_population() -> None:
         assert (crossing, mutating) == pytest.approx((0.0, 0.05), abs=1e-7)
 
 
+def test_either_rate_may_be_fixed() -> None:
+    fitness = np.array([0.25, 0.5, 0.0, 0.25])
+    printed = ImprovedGA().rates(fitness)
+    assert ImprovedGA(adaptive_crossover=False).rates(fitness) == (0.8, printed[1])
+    assert ImprovedGA(adaptive_mutation=False, mutation_fixed=0.3).rates(fitness) == (
+        printed[0],
+        0.3,
+    )
+    with pytest.raises(TrajgapError, match=r"adaptive_mutation: expected true or false, got 1"):
+        ImprovedGA(adaptive_mutation=1)
+
+
 def test_parents_by_hand() -> None:
     totals = np.array([5.0, 1.0, 8.0, 2.0, 7.0, 3.0, 6.0, 4.0])
     # Best quarter: 1, 3. Middle half: 5, 7, 0, 6. Dropped: 4, 2.

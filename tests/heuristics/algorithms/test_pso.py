@@ -4,31 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from support.scripted import OPEN, Script, off_centre
 from trajgap.heuristics import PSO, Bounds
 from trajgap.heuristics.algorithms.swarm import Swarm
 
-OPEN = Bounds(np.full(2, -np.inf), np.full(2, np.inf))
 FREE = PSO(particles=2, inertia=0.5, velocity_rule="free", position_rule="free")
 
 R1 = np.array([[0.25, 0.5], [0.75, 0.125]])
 R2 = np.array([[0.5, 0.25], [0.125, 1.0]])
-
-
-class Script:
-    """Stands in for a generator: hands out given numbers, in order, in the shape asked for."""
-
-    def __init__(self, *numbers: np.ndarray | float) -> None:
-        self.left = list(np.concatenate([np.ravel(n) for n in numbers]))
-
-    def random(self, shape: object = None) -> np.ndarray | float:
-        count = int(np.prod(shape)) if shape is not None else 1
-        taken = [self.left.pop(0) for _ in range(count)]
-        return np.array(taken).reshape(shape) if shape is not None else taken[0]
-
-
-def off_centre(x: np.ndarray) -> np.ndarray:
-    """Squared distance to (1, 2), the second axis weighted threefold."""
-    return (x[:, 0] - 1) ** 2 + 3 * (x[:, 1] - 2) ** 2
 
 
 def swarm() -> Swarm:

@@ -214,7 +214,7 @@ def test_segments_in_which_nothing_moves() -> None:
     assert bounded.total_time == pytest.approx(0.3)
 
 
-@pytest.mark.parametrize("time", ["stretched", "timed"])
+@pytest.mark.parametrize("time", ["stretched", pytest.param("timed", marks=pytest.mark.slow)])
 def test_bounds_positions_and_impossible_limits(time: str) -> None:
     problem, _ = uniform(time, 34, count=4, joints=2)
     free = solve(problem, starts=2)

@@ -14,7 +14,7 @@ from scipy.optimize import minimize
 from trajgap.compare import audit
 from trajgap.nlp import Solution, Status, solve, solve_per_joint
 from trajgap.nlp.optimum import feasibility, limit_rows
-from trajgap.nlp.optimum.descent import Box, descend, least_point, restored
+from trajgap.nlp.optimum.descent import LogBox, descend, least_point, restored
 from trajgap.nlp.optimum.exact_multistart import box_above, exact_search
 from trajgap.nlp.optimum.limit_rows import exact_rows
 from trajgap.nlp.optimum.optimality import kkt
@@ -161,6 +161,7 @@ def test_a_known_motion_is_kept_where_the_solver_finds_nothing(
     def lost(one: Problem, *_: object) -> Solution:
         return Solution(one, Status.NONE_FOUND, "lost")
 
+    monkeypatch.setattr(solver, "settled_quickly", lambda *_: None)
     monkeypatch.setattr(solver, "_tracked", lost)
     monkeypatch.setattr(solver, "_searched", lost)
     monkeypatch.setattr(solver, "_challenged", lambda one, *_: lost(one))
@@ -332,7 +333,7 @@ def test_exact_rows_have_the_gradients_of_their_excesses(
 
 def test_a_descent_starts_outside_the_limits_and_ends_within() -> None:
     problem = case("boxed", BOXED).problem()
-    box = Box(np.log(problem.duration_lower), np.log(problem.duration_upper))
+    box = LogBox(np.log(problem.duration_lower), np.log(problem.duration_upper))
     start = np.sqrt(problem.duration_lower * problem.duration_upper)
     assert check(problem, start).verdict is Verdict.VIOLATED
     assert restored(problem, start, box).worst < 1e-9
@@ -370,7 +371,7 @@ def benchmark() -> ModuleType:
     return module
 
 
-@pytest.mark.parametrize("seed", [16, 39, 142, 221, 309])
+@pytest.mark.parametrize("seed", [16, 39, 142, 221, pytest.param(309, marks=pytest.mark.slow)])
 def test_brute_force_improves_no_answer_and_contradicts_no_word(seed: int) -> None:
     errors = benchmark()
     problem = errors.random_problem(np.random.default_rng(seed))
@@ -395,7 +396,7 @@ def test_shipped_optima_are_those_of_the_exact_descents() -> None:
     problem = load_case("puma560-mnam-pso-353").problem()
     solution = solve(problem)
     floor = 1e-4 * solution.durations.mean()
-    box = Box(np.full(3, np.log(floor)), np.full(3, 5.0))
+    box = LogBox(np.full(3, np.log(floor)), np.full(3, 5.0))
     low = np.maximum(box.low, np.log(np.maximum(problem.duration_lower, 1e-300)))
-    ended = descend(problem, 2.0 * solution.durations, Box(low, box.high))
+    ended = descend(problem, 2.0 * solution.durations, LogBox(low, box.high))
     assert ended.durations.sum() == pytest.approx(solution.total_time, rel=1e-9)

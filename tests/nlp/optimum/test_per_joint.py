@@ -8,7 +8,10 @@ def puma(reading: str) -> Problem:
     return load_case("puma560-mnam-pso-353").problem(reading_id=reading)
 
 
-@pytest.mark.parametrize("reading", ["durations-at-least-0.3", "durations-positive"])
+@pytest.mark.parametrize(
+    "reading",
+    ["durations-at-least-0.3", pytest.param("durations-positive", marks=pytest.mark.slow)],
+)
 def test_the_procedure_is_the_longest_of_each_joints_own_optimum(reading: str) -> None:
     problem = puma(reading)
     answer = solve_per_joint(problem, slacks=(5e-4, 1e-6))

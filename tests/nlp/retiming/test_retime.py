@@ -1,13 +1,14 @@
 """TOPPRA on paths of known answers, its order, the one-sided inequality and the second solver."""
 
-import logging
-
 import numpy as np
 import pytest
 import toppra
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import BPoly, CubicSpline, PPoly
+from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
+from support.path_nlp import path_nlp_duration
+from support.puma import PUMA, PUMA_LIMITS
+from support.retimed import PUMA_353, close, hermite, puma, rest_to_rest_time, trajectory
 from toppra.algorithm import TOPPRA
 from toppra.constraint import (
     DiscretizationType,
@@ -15,82 +16,22 @@ from toppra.constraint import (
     JointVelocityConstraint,
 )
 from trajgap.nlp import solve
-from trajgap.nlp.retiming.grid import measure, sample
-from trajgap.nlp.retiming.path import pieces
-from trajgap.nlp.retiming.path_nlp import path_nlp_duration
-from trajgap.nlp.retiming.toppra_check import Retiming, extrapolate, retime, retime_joints
+from trajgap.nlp.retiming.toppra_check import extrapolate, retime
 from trajgap.problem import (
     Interpolant,
     Limits,
     Problem,
-    Trajectory,
-    TrajgapError,
     check,
     cubic_spline,
     cubic_spline_virtual,
-    extrema,
     fit,
     piecewise,
     quintic_spline,
     rest_to_rest,
     three_five_three,
 )
-from trajgap.problem.curves.spline import trajectory_from_scaled
 
 Array = NDArray[np.float64]
-
-# Way-points A, B, C, D of the six joints, and limits, as printed in doi 10.12677/mos.2024.136535.
-PUMA = np.array(
-    [
-        [0.1885, 0.8168, 0.1257, -0.8796],
-        [-1.6336, -2.0071, -1.0681, -1.0053],
-        [0.2513, -0.3770, -1.0681, -0.3142],
-        [0.3142, -0.0628, 0.4398, 0.8796],
-        [0.1885, -0.1257, 0.2513, 0.5027],
-        [0.3142, -0.1257, -0.1885, -0.2513],
-    ]
-).T
-PUMA_LIMITS = Limits(6.0, 8.0, joints=6)
-PUMA_353 = np.array([0.98201, 1.22974, 1.08496])
-"""Optimal durations of the shared 3-5-3 problem, rounded up."""
-
-
-def trajectory(coefficients: list[ArrayLike], durations: ArrayLike) -> Trajectory:
-    """Segments from ascending coefficients in their own time, each of shape (powers, joints)."""
-    h = np.asarray(durations, dtype=float)
-    blocks = [np.asarray(c, dtype=float) for c in coefficients]
-    scaled = np.zeros((h.size, 10, blocks[0].shape[1]))
-    for k, c in enumerate(blocks):
-        scaled[k, : len(c)] = c * h[k] ** np.arange(len(c))[:, None]
-    return trajectory_from_scaled(scaled, tuple(len(c) - 1 for c in blocks), h)
-
-
-def hermite(times: ArrayLike, nodes: ArrayLike) -> Trajectory:
-    """Through position, velocity, ... at every time; nodes of shape (times, orders, joints)."""
-    t, n = np.asarray(times, dtype=float), np.asarray(nodes, dtype=float)
-    joints = [
-        PPoly.from_bernstein_basis(BPoly.from_derivatives(t, list(n[:, :, j]))).c[::-1]
-        for j in range(n.shape[2])
-    ]
-    return trajectory(
-        [np.stack([c[:, k] for c in joints], 1) for k in range(t.size - 1)], np.diff(t)
-    )
-
-
-def rest_to_rest_time(distance: ArrayLike, velocity: ArrayLike, acceleration: ArrayLike) -> float:
-    """Trapezoid or triangle on the straight line along ``distance``, all joints together."""
-    d = np.abs(np.asarray(distance, dtype=float))
-    v = float(np.min(np.asarray(velocity) / d))
-    a = float(np.min(np.asarray(acceleration) / d))
-    return 1.0 / v + v / a if v**2 < a else 2.0 / np.sqrt(a)
-
-
-def close(found: Retiming, expected: float) -> bool:
-    assert found.applicable, found.why
-    assert found.extrapolated is not None
-    assert found.error is not None
-    assert found.error < 1e-3 * expected
-    return abs(found.extrapolated - expected) <= found.error
 
 
 # --- paths of known answers -----------------------------------------------------------------------
@@ -225,13 +166,6 @@ def test_toppra_cpp_cubic_path() -> None:
     assert second == pytest.approx(found.durations[0], rel=1e-4)
 
 
-# --- order, and the second solver -----------------------------------------------------------------
-
-
-def puma(interpolant: Interpolant, durations: ArrayLike) -> Trajectory:
-    return fit(interpolant, PUMA, durations)
-
-
 def test_first_order_and_extrapolation_within_its_error() -> None:
     curve = puma(three_five_three(), PUMA_353)
     coarse = retime(curve, PUMA_LIMITS, gridpoints=(100, 200, 400))
@@ -359,175 +293,3 @@ def test_the_duration_belongs_to_the_path_and_not_to_its_timing() -> None:
     one, two = (retime(c, PUMA_LIMITS) for c in (curve, slow))
     assert one.durations == pytest.approx(two.durations, rel=1e-5)
     assert two.inequality_holds
-
-
-def test_permuted_mirrored_reversed_and_rescaled() -> None:
-    h = np.array([0.9, 0.8, 1.1])
-    limits = Limits(np.linspace(2, 4, 6), np.linspace(5, 9, 6))
-    base = retime(fit(quintic_spline(3), PUMA, h), limits)
-    order = np.array([3, 0, 5, 1, 4, 2])
-    turned = Limits(limits.velocity[order], limits.acceleration[order])
-    assert close(retime(fit(quintic_spline(3), PUMA[:, order], h), turned), base.extrapolated)
-    assert close(retime(fit(quintic_spline(3), 1.0 - PUMA, h), limits), base.extrapolated)
-    assert close(retime(fit(quintic_spline(3), PUMA[::-1], h[::-1]), limits), base.extrapolated)
-    faster = Limits(3 * limits.velocity, 9 * limits.acceleration)
-    assert close(retime(fit(quintic_spline(3), PUMA, h), faster), base.extrapolated / 3)
-
-
-def test_each_joint_on_its_own_path() -> None:
-    curve = puma(three_five_three(), PUMA_353)
-    each = retime_joints(curve, PUMA_LIMITS)
-    for j, found in enumerate(each):
-        turning = [e for e in extrema(curve, j, 0) if abs(curve(e.time, 1)[j]) < 1e-9]
-        values = [turning[0].value]
-        for e in turning[1:]:
-            if abs(e.value - values[-1]) > 1e-9:
-                values.append(e.value)
-        expected = sum(rest_to_rest_time([d], [6.0], [8.0]) for d in np.diff(values))
-        assert close(found, expected)
-        assert len(found.cuts) == len(values)
-    assert max(f.extrapolated for f in each) < retime(curve, PUMA_LIMITS).extrapolated
-
-
-# --- cutting, sampling ----------------------------------------------------------------------------
-
-
-def test_segments_in_which_nothing_moves_are_left_out() -> None:
-    q = np.array([[0.0, 0.3], [1.0, 0.5], [1.0, 0.5], [0.2, -1.0]])
-    limits = Limits([2.0, 3.0], [8.0, 5.0])
-    for degree in (3, 5, 7):
-        found = retime(fit(rest_to_rest(3, degree), q, [1.0, 0.4, 1.5]), limits)
-        expected = sum(
-            rest_to_rest_time(q[k + 1] - q[k], limits.velocity, limits.acceleration) for k in (0, 2)
-        )
-        assert close(found, expected)
-        assert found.cuts == pytest.approx((0.0, 1.0, 1.4, 2.9), abs=1e-9)
-
-
-def test_a_standstill_without_reversal_is_a_cut_too() -> None:
-    # v = (t − 1)² times a constant: both joints touch 0 and go on.
-    touch = np.polynomial.Polynomial.fromroots([1.0, 1.0]).integ().coef[:, None] * [1.0, -0.4]
-    parts, cuts = pieces(trajectory([touch], [2.5]))
-    assert cuts == pytest.approx((1.0,), abs=1e-6)
-    assert [piece.rest for piece in parts] == [(False, True), (True, False)]
-
-
-@pytest.mark.parametrize("miss", [1e-12, 1e-7, 1e-4, 1e-2])
-def test_a_near_reversal_costs_about_as_much_as_a_reversal(miss: float) -> None:
-    nodes = [
-        [[0.0, 0.0], [0.0, 0.0], [0.0, 0.0]],
-        [[1.0, 0.0], [0.0, miss], [-3.0, 0.0]],
-        [[0.0, 0.0], [0.0, 0.0], [0.0, 0.0]],
-    ]
-    found = retime(hermite([0.0, 1.0, 2.0], nodes), Limits(3.0, 7.0, joints=2))
-    assert found.extrapolated == pytest.approx(4 * np.sqrt(1 / 7), rel=1e-3)
-
-
-def test_samples_against_finite_differences() -> None:
-    curve = puma(three_five_three(), PUMA_353)
-    (piece,), _ = pieces(curve)
-    path = sample(piece, measure(piece), 4000)
-    assert np.allclose(np.linalg.norm(path.tangent, axis=1), 1.0, atol=1e-12)
-    inner = slice(400, -400)
-    slope = np.gradient(path.tangent, path.s, axis=0)
-    middle = (path.before + path.after) / 2
-    assert np.allclose(slope[inner], middle[inner], atol=2e-3 * np.abs(middle[inner]).max())
-    times = np.linspace(0, curve.total_time, 200_001)
-    assert path.s[-1] == pytest.approx(
-        np.trapezoid(np.linalg.norm(curve(times, 1), axis=1), times), rel=1e-8
-    )
-    # The grid is graded at the rest ends, where q″ grows like s^(−2/3): s ~ τ³.
-    share = np.log(path.s[8] / path.s[4]) / np.log(2)
-    assert 2.7 < share < 3.3
-
-
-# --- where it does not apply ----------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("limits", "why"),
-    [
-        (Limits(6.0, 8.0, 50.0, joints=6), "jerk is limited"),
-        (Limits(6.0, joints=6), "no acceleration is limited"),
-        (Limits([6, 6, 0, 6, 6, 6], 8.0), "joint 3 moves, but its velocity limit is 0"),
-        (Limits(6.0, [8, 0, 8, 8, 8, 8]), "joint 2 moves, but its acceleration limit is 0"),
-    ],
-)
-def test_not_applicable_by_limits(limits: Limits, why: str) -> None:
-    curve = puma(three_five_three(), PUMA_353)
-    found = retime(curve, limits)
-    assert not found.applicable
-    assert found.why is not None
-    assert found.why.startswith(why)
-    assert found.extrapolated is None
-    assert found.durations == ()
-    assert why in str(found)
-    with pytest.raises(TrajgapError, match=f"path NLP: not applicable, {why}"):
-        path_nlp_duration(curve, limits)
-
-
-def test_jerk_limits_of_joints_at_rest_do_not_matter() -> None:
-    q = np.column_stack([PUMA[:, 0], np.full(4, 0.7)])
-    limits = Limits(6.0, [8.0, np.inf], [np.inf, 5.0])
-    found = retime(fit(three_five_three(), q, PUMA_353), limits)
-    alone = retime(fit(three_five_three(), q[:, :1], PUMA_353), Limits(6.0, 8.0, joints=1))
-    assert found.durations == pytest.approx(alone.durations, rel=1e-5)
-
-
-def test_zero_limits_of_joints_at_rest_do_not_matter() -> None:
-    q = np.column_stack([PUMA[:, 0], np.full(4, 0.7), PUMA[:, 2]])
-    curve = fit(three_five_three(), q, PUMA_353)
-    found = retime(curve, Limits([6.0, 0.0, 6.0], [8.0, 0.0, 8.0]))
-    alone = fit(three_five_three(), q[:, [0, 2]], PUMA_353)
-    assert found.durations == pytest.approx(
-        retime(alone, Limits(6.0, 8.0, joints=2)).durations, rel=1e-5
-    )
-    assert found.inequality_holds
-    second = path_nlp_duration(curve, Limits([6.0, 0.0, 6.0], [8.0, 0.0, 8.0]), 500)
-    assert second == pytest.approx(found.durations[0], rel=3e-5)
-
-
-def test_not_applicable_by_shape() -> None:
-    limits = Limits(6.0, 8.0, joints=1)
-    lines = trajectory([[[0.0], [1.0]], [[1.0], [-1.0]]], [1.0, 1.0])
-    assert retime(lines, limits).why == "the velocity of joint 1 jumps by -2 at break 1"
-    gap = trajectory([[[0.0], [1.0]], [[1.5], [1.0]]], [1.0, 1.0])
-    assert retime(gap, limits).why == "the position of joint 1 jumps by 0.5 at break 1"
-    still = trajectory([[[0.4], [0.0]]], [1.0])
-    assert retime(still, limits).why == "nothing moves"
-
-
-def test_end_speeds_that_cannot_be_reached() -> None:
-    curve = puma(three_five_three(), PUMA_353)
-    found = retime(curve, PUMA_LIMITS, end_speeds=(1000.0, 0.0))
-    assert not found.applicable
-    assert found.why == "TOPPRA found no parametrisation of piece 1 on 500 cells"
-
-
-def test_arguments_that_make_no_sense() -> None:
-    curve = puma(three_five_three(), PUMA_353)
-    with pytest.raises(TrajgapError, match="gridpoints: expected three ascending numbers"):
-        retime(curve, PUMA_LIMITS, gridpoints=(100, 100, 200))
-    with pytest.raises(TrajgapError, match="end_speeds: expected two speeds of 0 or more"):
-        retime(curve, PUMA_LIMITS, end_speeds=(-1.0, 0.0))
-    with pytest.raises(TrajgapError, match="limits: given for 2 joints, trajectory has 6"):
-        retime(curve, Limits(1.0, 1.0, joints=2))
-
-
-# --- manners --------------------------------------------------------------------------------------
-
-
-def test_toppra_stays_quiet_and_its_logger_as_it_was(caplog: pytest.LogCaptureFixture) -> None:
-    logger = logging.getLogger("toppra")
-    level = logger.level
-    with caplog.at_level(logging.DEBUG):
-        retime(puma(three_five_three(), PUMA_353), PUMA_LIMITS, end_speeds=(1000.0, 0.0))
-    assert [r for r in caplog.records if r.name.startswith("toppra")] == []
-    assert logger.level == level
-
-
-def test_summary_on_one_screen() -> None:
-    text = str(retime(puma(three_five_three(), PUMA_353), PUMA_LIMITS))
-    assert len(text.splitlines()) <= 6
-    for part in ("2.0269", "(2000)", "fitted order 1.", "one-sided           holds"):
-        assert part in text

@@ -273,7 +273,9 @@ def as_json(text: str):
 
 
 def test_the_exported_schema_is_current():
-    exported = json.loads((ROOT / "docs" / "case.schema.json").read_text(encoding="utf-8"))
+    exported = json.loads(
+        (ROOT / "docs" / "reference" / "case.schema.json").read_text(encoding="utf-8")
+    )
     assert exported == json.loads(json.dumps(case_schema()))
 
 
@@ -305,7 +307,7 @@ def test_documents_dump_to_the_digits_that_they_were_read_from():
 
 
 def test_every_key_is_in_the_documentation():
-    page = (ROOT / "docs" / "case-files.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "reference" / "case-files.md").read_text(encoding="utf-8")
     schema = case_schema()
     blocks = [schema, *schema["$defs"].values()]
     keys = {key for block in blocks for key in block.get("properties", {})}
@@ -325,3 +327,40 @@ def test_published_cases_load_by_path_too(tmp_path):
 def test_errors_survive_pickling():
     error = CaseError("a.toml", "b", "c")
     assert str(pickle.loads(pickle.dumps(error))) == str(error)
+
+
+TURNED = """
+[[readings]]
+id = "turned"
+why = "modulo a full turn"
+turns = { a = [0, 2, -1, 0] }
+"""
+
+
+def test_whole_turns_are_added_to_printed_angles():
+    case = parse_case(BASE + TURNED, "base.toml")
+    plain, turned = (case.problem("one", r).waypoints for r in ("plain", "turned"))
+    expected = plain + np.array([[0, 0], [2, 0], [-1, 0], [0, 0]]) * 2 * np.pi
+    np.testing.assert_allclose(turned, expected, rtol=1e-15)
+    lower, upper = case.waypoint_box("one", "turned")
+    low, high = case.waypoint_box("one", "plain")
+    shift = np.array([4 * np.pi, -2 * np.pi])
+    # Wide enough for digits that were cut off, on either side of 0.
+    half = (high - low)[1:3, 0] / 2
+    assert (lower[1:3, 0] <= plain[1:3, 0] + shift - 2 * half).all()
+    assert (upper[1:3, 0] >= plain[1:3, 0] + shift + 2 * half).all()
+    np.testing.assert_array_equal(lower[:, 1], low[:, 1])
+
+
+@pytest.mark.parametrize(
+    ("turns", "message"),
+    [
+        ("{ a = [1] }", "turns.a: 1 numbers for 4 way-points; give one each"),
+        ("{ c = [0, 0, 0, 0] }", "turns: joint 'c' is unknown; robot.joints lists a, b"),
+    ],
+)
+def test_wrong_turns_are_refused(turns, message):
+    text = BASE + TURNED.replace("{ a = [0, 2, -1, 0] }", turns)
+    with pytest.raises(CaseError) as caught:
+        parse_case(text, "base.toml").problem("one", "turned")
+    assert message in str(caught.value)

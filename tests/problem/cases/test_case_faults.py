@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from support.base_case import BASE
 from support.checkout import ROOT
 from trajgap.problem.cases.claim import QUANTITY_KINDS
-from trajgap.problem.cases.faults import first_fault
+from trajgap.problem.cases.faults import all_faults, refusal
 from trajgap.problem.cases.load import check_case, load_case, parse_case
 from trajgap.problem.cases.schema import CaseFile
 from trajgap.problem.cases.statement import _LARGEST
@@ -46,8 +46,8 @@ FAULTS = [
     (('["1", "2", "3", "4"]]', '["1", "2", "3", 1979-05-27]]'), "waypoints.joint_rows[1][3]: expected a number, got a date; write the printed digits, such as \"0.660\""),
     (('["1", "2", "3", "4"]]', "[]]"), "waypoints.joint_rows[1]: is empty; fill it in or leave the key out"),
     (('joint_rows = [["0.0", "10.5", "-3.25", "4"], ["1", "2", "3", "4"]]', "joint_rows = [['1'], ['2']]"), "waypoints.joint_rows: holds one way-point only; give at least two"),
-    (('labels = ["A", "B", "C", "D"]\n', 'waypoint_rows = [["1", "2"]]\n'), "waypoints: needs joint_rows or waypoint_rows, and not both; give one of them"),
-    (('joint_rows = [["0.0", "10.5", "-3.25", "4"], ["1", "2", "3", "4"]]\n', ""), "waypoints: needs joint_rows or waypoint_rows, and not both; give one of them"),
+    (('labels = ["A", "B", "C", "D"]\n', 'waypoint_rows = [["1", "2"]]\n'), "waypoints: needs one of joint_rows, waypoint_rows and line; give one"),
+    (('joint_rows = [["0.0", "10.5", "-3.25", "4"], ["1", "2", "3", "4"]]\n', ""), "waypoints: needs one of joint_rows, waypoint_rows and line; give one"),
     (('"C", "D"]', '"C"]'), "waypoints.labels: 3 labels for 4 way-points; give one each"),
     (("[waypoints]\n", "[source.x]\n"), "source.x: unknown key; known: authors, title, journal, year, doi, note"),
     (("[100, ", "[-100, "), "limits.velocity[0]: -100 is negative; give 0 or more"),
@@ -161,7 +161,7 @@ def test_numbers_beyond_computing_name_their_field(change, number):
 def test_small_angles_and_small_lower_bounds_are_read():
     text = BASE.replace('"10.5"', '"6.1e-17"').replace("lower = 0.1", "lower = 1e-300")
     assert parse_case(text, "base.toml").problem("one", "rad").waypoints[1, 0] == 6.1e-17
-    digits = (ROOT / "docs/case-files.md").read_text(encoding="utf-8")
+    digits = (ROOT / "docs/reference/case-files.md").read_text(encoding="utf-8")
     assert f"sizes from {1 / _LARGEST:g} to {_LARGEST:g} are computed with" in digits
 
 
@@ -184,12 +184,12 @@ def test_toml_syntax(old, new, line):
     assert "\n" not in str(caught.value)
 
 
-def test_several_faults_are_counted_and_spelling_comes_first():
+def test_several_faults_are_told_and_spelling_comes_first():
     text = BASE.replace('name = "arm"\n', "").replace('kind = "pso"', 'kinds = "pso"')
     with pytest.raises(CaseError) as caught:
         parse_case(text, "base.toml")
     assert str(caught.value) == (
-        "base.toml: algorithms[0].kinds: unknown key; did you mean 'kind'? (and 1 more)"
+        "base.toml: algorithms[0].kinds: unknown key; did you mean 'kind'?; also robot.name: is missing; add it"
     )
 
 
@@ -288,10 +288,10 @@ def test_whatever_is_put_anywhere_either_loads_or_gives_one_line(data):
     try:
         check_case(raw, "base.toml")
     except CaseError as error:
-        line = str(error)
+        line, count = str(error), len(error.faults)
         assert line.startswith("base.toml: ")
         assert "\n" not in line
-        assert len(line) < 400
+        assert len(line) < 400 * count
 
 
 def test_an_unforeseen_fault_still_names_the_field():
@@ -301,7 +301,39 @@ def test_an_unforeseen_fault_still_names_the_field():
         type=PydanticCustomError("new_kind", "Input is odd"), loc=("a", 1), input="x" * 99
     )
     error = ValidationError.from_exception_data("CaseFile", [details])
-    field, reason = first_fault(error)
+    ((field, reason),) = all_faults(error)
     assert field == "a[1]"
     assert reason == f"Input is odd, got 'x{'x' * 35}...; see the schema of case files"
     assert CaseFile.model_fields
+
+
+def test_all_missing_units_are_told_in_one_refusal():
+    units = BASE[BASE.index("[units]") : BASE.index("[waypoints]")]
+    with pytest.raises(CaseError) as caught:
+        parse_case(BASE.replace(units, ""), "base.toml")
+    fields = [field for field, _ in caught.value.faults]
+    for name in ("position", "velocity", "acceleration", "time"):
+        assert f"units.{name}" in fields
+    assert len(fields) == len(set(fields))
+    assert "also units.velocity: is missing; add one of rad/s, deg/s" in str(caught.value)
+
+
+def test_faults_of_every_stage_are_told_together():
+    """Of a reference, of what an assumption affects, and of a unit under one reading."""
+    text = BASE.replace('slower = "times-b"', 'slower = "times-c"')
+    text = text.replace('affects = ["durations"', 'affects = ["nothing"')
+    with pytest.raises(CaseError) as caught:
+        parse_case(text.replace('velocity = "deg/s"', "", 1), "base.toml")
+    fields = {field for field, _ in caught.value.faults}
+    assert {"claims[2].slower", "assumptions[0].affects[0]", "units.velocity"} <= fields
+
+
+def test_misspelt_keys_of_one_block_are_told_together():
+    with pytest.raises(CaseError, match=r"limits\.velocty: .*; also limits\.jrk: unknown key"):
+        parse_case(BASE.replace("[limits]", "[limits]\nvelocty = 1\njrk = 2", 1), "base.toml")
+
+
+def test_one_refusal_tells_a_handful_and_counts_the_rest():
+    faults = [(f"claims[{k}].id", "is missing; add it") for k in range(11)]
+    told = str(refusal("x.toml", faults))
+    assert told.endswith("also claims[7].id: is missing; add it (and 3 more)")

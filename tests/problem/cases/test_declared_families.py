@@ -129,7 +129,7 @@ def test_the_toolboxes_straight_move_has_the_poses_of_ctraj() -> None:
 
 
 def test_the_programs_of_the_page_run(capsys: pytest.CaptureFixture[str]) -> None:
-    page = (ROOT / "docs" / "interpolants.md").read_text()
+    page = (ROOT / "docs" / "reference" / "interpolants.md").read_text()
     programs = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
     assert len(programs) == 2
     for program in programs:

@@ -125,11 +125,11 @@ def test_tables_that_are_refused(table, text, reason):
             "units.position: 'rad/s' measures velocity, not position; use one of rad, deg",
         ),
         (
-            {"angle": "rad"},
+            {"angle": "rad", "position": "rad"},
             {},
             "units.angle: no such quantity; known: position, velocity, acceleration, jerk, time",
         ),
-        (RAD, {"velocity": "-6"}, "limits.velocity: -6 is negative; give 0 or more"),
+        (RAD, {"velocity": "-6"}, "velocity: -6 is negative; give 0 or more"),
         (
             RAD,
             {"velocity": "six"},
@@ -139,12 +139,12 @@ def test_tables_that_are_refused(table, text, reason):
         (
             RAD,
             {"case_id": "My case"},
-            "id: 'My case' is not an id; use lower-case letters, digits, dots and dashes",
+            "case_id: 'My case' is not an id; use lower-case letters, digits, dots and dashes",
         ),
         (
             RAD,
             {"family": "3-5-3"},
-            "interpolant: 3-5-3 polynomials of 3 segments passes 4 way-points, but 2 are given; "
+            "family: 3-5-3 polynomials of 3 segments passes 4 way-points, but 2 are given; "
             "change the family, the degrees or the way-points",
         ),
     ],
@@ -153,7 +153,7 @@ def test_options_that_are_refused(table, units, options, reason):
     path = table("a,b\n1,2\n3,4\n")
     with pytest.raises(CaseError) as caught:
         scaffold(path, units, **options)
-    assert str(caught.value) == f"{path}: {reason}"
+    assert str(caught.value) == reason
 
 
 def test_a_missing_table(tmp_path):
@@ -192,6 +192,17 @@ def test_a_default_without_a_shortest_motion_is_not_one(table):
     assert 'family = "cubic-spline"  # cubic-spline-virtual has no shortest motion' in text
 
 
+def test_a_unit_without_a_limit_is_written_for_printed_peaks(table):
+    text = scaffold(table(points(4)), RAD)
+    assert (parse_case(text, "x").document.units.velocity, "# jerk" in text) == ("rad/s", True)
+
+
+def test_durations_without_decimals_carry_what_they_may_be(table):
+    text = scaffold(table(points(4)), RAD, durations="1,2.0,3")
+    assert '"3"]  # "1" may be 0.5 to 1.5; no quotes: exact' in text
+    assert "no quotes" not in scaffold(table(points(4)), RAD, durations="1.0,2.0,3.0")
+
+
 def test_limits_of_each_joint_and_printed_times_are_taken_as_given(table):
     text = scaffold(
         table(points(4)),
@@ -225,12 +236,35 @@ def test_every_commented_claim_loads_once_its_blanks_are_filled_in(table):
     [
         ({"velocity": "1,2,3"}, "velocity: lists 3 numbers for 2 joints; give one for all, or one"),
         ({"durations": "1,x,2"}, "durations: 'x' is not a finite decimal number"),
-        ({"family": "bezier"}, "interpolant.family: 'bezier' is not known; use one of 3-5-3"),
-        ({"family": "rest-to-rest"}, "interpolant.degree: is missing"),
+        (
+            {"family": "clamped"},
+            "family: 'clamped' is not known; did you mean clamped-b-spline or "
+            "clamped-cubic? All: 3-5-3",
+        ),
+        ({"family": "bezier"}, "family: 'bezier' is not known; use one of 3-5-3"),
+        ({"family": "rest-to-rest"}, "degree: is missing"),
     ],
 )
 def test_new_options_that_are_refused(table, options, reason):
     path = table(points(4))
     with pytest.raises(CaseError) as caught:
         scaffold(path, RAD, **options)
-    assert str(caught.value).startswith(f"{path}: {reason}")
+    assert str(caught.value).startswith(reason)
+
+
+def test_all_faults_of_table_and_arguments_are_told_at_once(table):
+    path = table("a,b\n1,x\n3\n")
+    with pytest.raises(CaseError) as caught:
+        scaffold(path, {}, family="bezier", velocity="6", jerk="1,2,3", durations="y")
+    assert str(caught.value).startswith(f"{path}: line 2, column 2: 'x' is not a finite")
+    fields = [field for field, _ in caught.value.faults]
+    assert fields == [
+        "line 2, column 2",
+        "line 3",
+        "units.position",
+        "units.velocity",
+        "units.jerk",
+        "durations",
+        "jerk",
+        "family",
+    ]

@@ -135,6 +135,8 @@ def test_settings_of_an_algorithm(key: str) -> None:
 
 
 def test_the_limits_are_documented() -> None:
-    page = (Path(__file__).parents[3] / "docs" / "case-files.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[3] / "docs" / "reference" / "case-files.md").read_text(
+        encoding="utf-8"
+    )
     for bound in ("5 MB", "100,000", "1,000 |", "10,000 |", "| 100 |", "200,000", "2^63 − 1"):
         assert bound in page.partition("## How large a case may be")[2]

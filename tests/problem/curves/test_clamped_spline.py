@@ -109,8 +109,9 @@ def test_the_count_decides_which_readings_are_determined() -> None:
     determined = [k for k, r in found.items() if r.count is Count.DETERMINED]
     assert {degree for degree, knots, _, _ in determined if knots == "waypoints"} == {5}
     assert {degree for degree, knots, _, _ in determined if knots != "waypoints"} == {3, 4, 5, 6, 7}
-    assert "degree 5, knots averaged, parameters times, timed: impossible as printed" in str(
-        found[5, "averaged", "times", "timed"]
+    assert (
+        "degree 5, knots averaged, parameters times, timed: impossible as the text has it"
+        in str(found[5, "averaged", "times", "timed"])
     )
 
 
@@ -149,7 +150,7 @@ def test_few_waypoints() -> None:
     with pytest.raises(TrajgapError, match="at least two way-points"):
         clamped_readings(1)
     words = next(r.words for r in clamped_readings(3, degrees=(7,)) if r.knots == "averaged")
-    assert words.startswith("impossible as printed: degree 7 needs more way-points")
+    assert words.startswith("impossible as the text has it: degree 7 needs more way-points")
     two = ClampedBSpline(2, 5, "averaged-continued", "times")
     assert two.inner_knots == 0
     q = np.array([[0.3], [1.5]])

@@ -148,3 +148,18 @@ def test_declarations_compare_by_value() -> None:
     assert three_five_three() == three_five_three()
     assert hash(three_five_three()) == hash(three_five_three())
     assert piecewise((3, 5, 3)).name == "3-5-3 polynomials, C2"
+
+
+@pytest.mark.parametrize(
+    ("ends", "name"),
+    [
+        (((1, 0.0),), "clamped C2 cubic spline"),
+        (((2, 0.0),), "natural C2 cubic spline"),
+        (((1, 0.5),), "C2 cubic spline with velocity given at the ends"),
+        (((3, 0.0),), "C2 cubic spline with jerk given at the ends"),
+    ],
+)
+def test_cubic_splines_are_named_by_what_holds_at_their_ends(
+    ends: tuple[tuple[int, float], ...], name: str
+) -> None:
+    assert cubic_spline(5, ends).name == name

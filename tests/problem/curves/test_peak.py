@@ -25,9 +25,10 @@ from trajgap.problem import (
     evaluate,
     extrema,
     fit,
+    rest_to_rest,
     three_five_three,
 )
-from trajgap.problem.curves.peak import critical_points
+from trajgap.problem.curves.peak import critical_points, largest
 
 
 def as_problem(velocity: np.ndarray) -> Problem:
@@ -209,6 +210,16 @@ def test_every_sampled_bump_is_an_extremum() -> None:
             bumps = t[1:-1][(y[1:-1] - y[:-2]) * (y[2:] - y[1:-1]) < 0]
             places = np.array([e.time for e in extrema(curve, j, order)])
             assert bumps.size == 0 or np.abs(bumps[:, None] - places).min(axis=1).max() < 3e-4
+
+
+def test_another_piece_that_may_be_larger_blurs_the_peak() -> None:
+    # Speeds of the two cubics peak at 1.5 and 1.2; the second is known to 0.5 only.
+    curve = fit(rest_to_rest(2, 3), np.array([[0.2], [1.2], [2.0]]), [1.0, 1.0])
+    top, bound = largest(curve, 0, 1, np.array([1e-9, 0.5]))
+    assert (top.segment, top.time) == (0, 0.5)
+    assert top.value == pytest.approx(1.5)
+    assert bound == pytest.approx(0.2)
+    assert largest(curve, 0, 1, np.array([0.25, 0.5]))[1] == 0.25
 
 
 def test_batched_evaluation_against_fifty_digits() -> None:

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import pickle
 from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 import pytest
-from scipy.interpolate import CubicSpline
-from support.b_splines import ByScipy, spline_by_scipy, uniform, vertices_by_solving
+from support.b_splines import NATURAL, spline_by_scipy, uniform, vertices_by_solving
 from trajgap.heuristics import PSO, run, uniform_rescaling
 from trajgap.problem import (
     ClockedTrajectory,
-    CurveError,
     Limits,
     Problem,
     Timing,
@@ -24,7 +21,6 @@ from trajgap.problem import (
     evaluate,
     extrema,
     fit,
-    load_case,
     peak_gradients,
     solve_in_closed_form,
     uniform_cubic_b_spline,
@@ -32,8 +28,7 @@ from trajgap.problem import (
 from trajgap.problem.curves.stretched import segment_peaks
 from trajgap.problem.curves.uniform_matrices import clock_matrix, shape_matrix, vertex_matrix
 
-POLISH = "irb1600-ga-cubic-bspline"
-TIMES = tuple(Timing)
+TIMES = (*Timing, NATURAL)
 
 
 # --- control vertices -----------------------------------------------------------------------------
@@ -194,10 +189,13 @@ def test_declarations_are_checked() -> None:
         TrajgapError, match=r"interpolant.time: 'both' is unknown; use stretched or"
     ):
         uniform_cubic_b_spline(5, "both")
-    for time in TIMES:
+    with pytest.raises(TrajgapError, match=r"interpolant.time_ends: goes with time = 'timed'"):
+        uniform_cubic_b_spline(5, "stretched", natural_clock=True)
+    for time in Timing:
         with pytest.raises(TrajgapError, match="at least two way-points are needed"):
             uniform_cubic_b_spline(1, time)
         assert len(uniform_cubic_b_spline(2, time).waypoint_breaks) == 2
+    assert len(uniform_cubic_b_spline(2, "timed", natural_clock=True).waypoint_breaks) == 2
     with pytest.raises(TrajgapError, match="str is no kind of curve known here"):
         fit("3-5-3", [[0.0]], [1.0])
     with pytest.raises(TrajgapError, match="curve: str is no kind of curve known here"):
@@ -280,127 +278,19 @@ def test_the_verdict_about_limits_stands_beside_the_jumps() -> None:
     assert "jumps           24, the largest of velocity by" in str(slow)
 
 
-# --- (b) timed ------------------------------------------------------------------------------------
+def test_curves_whose_time_ends_otherwise_are_told_apart() -> None:
+    equal, natural = (uniform_cubic_b_spline(5, "timed", n) for n in (False, True))
+    assert equal != natural
+    assert natural.name == f"{equal.name}, with natural ends of time"
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_derivatives_in_time_are_finite_differences_of_an_independent_inversion(seed: int) -> None:
-    problem, h = uniform("timed", seed)
-    other = ByScipy(problem.waypoints, h)
-    trajectory = fit(problem.curve, problem.waypoints, h)
-    rng = np.random.default_rng(seed + 50)
-    for e in rng.uniform(0.05, 0.95, 5) + np.arange(5):
-        t, step = other.time(e), 1e-3
-        q = [other.position(t + i * step) for i in (-2, -1, 0, 1, 2)]
-        np.testing.assert_allclose(trajectory(t), q[2], rtol=0, atol=1e-12)
-        velocity = (q[0] - 8 * q[1] + 8 * q[3] - q[4]) / (12 * step)
-        acceleration = (-q[0] + 16 * q[1] - 30 * q[2] + 16 * q[3] - q[4]) / (12 * step**2)
-        np.testing.assert_allclose(trajectory(t, 1), velocity, rtol=0, atol=2e-8)
-        np.testing.assert_allclose(trajectory(t, 2), acceleration, rtol=0, atol=5e-6)
-        jerk = (trajectory(t + step, 2) - trajectory(t - step, 2)) / (2 * step)
-        np.testing.assert_allclose(trajectory(t, 3), jerk, rtol=2e-3, atol=2e-2)
-
-
-@pytest.mark.parametrize("seed", range(3))
-def test_peaks_are_those_of_dense_samples(seed: int) -> None:
-    problem, h = uniform("timed", seed)
-    other = ByScipy(problem.waypoints, h)
-    # Jerk jumps at the knots: their left sides count too.
-    e = np.concatenate([np.linspace(0, 5, 200001)[:-1], np.nextafter(np.arange(1, 6), 0)])
-    q1, q2, q3 = (other.q(e, r) for r in (1, 2, 3))
-    t1, t2, t3 = (other.t(e, r) for r in (1, 2, 3))
-    velocity, acceleration = q1 / t1, (q2 * t1 - q1 * t2) / t1**3
-    n2, n2_slope = q2 * t1 - q1 * t2, q3 * t1 - q1 * t3
-    jerk = (n2_slope * t1 - 3 * n2 * t2) / t1**5
-    sampled = np.array([np.abs(x).max(axis=0) for x in (velocity, acceleration, jerk)]).T
-    exact = evaluate(problem, h[None]).ratios[0] * problem.limits.derivatives
-    assert (sampled <= exact * (1 + 1e-12)).all()
-    np.testing.assert_allclose(sampled, exact, rtol=1e-6)
-
-
-def test_it_is_scipys_cubic_spline_with_its_own_end_slopes() -> None:
-    problem, h = uniform("timed", 12)
-    w, v = problem.waypoints, vertices_by_solving(problem.waypoints)
-    ends = ((1, (v[2] - v[0]) / 2), (1, (v[-1] - v[-3]) / 2))
-    spline = CubicSpline(np.arange(len(w)), w, bc_type=ends)
-    trajectory = fit(problem.curve, w, h)
-    for k in range(5):
-        value = np.polynomial.polynomial.polyval(0.37, trajectory.scaled[k])
-        np.testing.assert_allclose(value, spline(k + 0.37), rtol=0, atol=1e-12)
-
-
-def test_c2_in_time_without_rest_at_the_ends() -> None:
-    problem, h = uniform("timed", 13)
-    verdict = check(problem, 9 * h)
-    assert verdict.verdict is Verdict.PASS
-    assert verdict.continuous
-    trajectory = fit(problem.curve, problem.waypoints, h)
-    end = float(h.sum())
-    np.testing.assert_allclose(trajectory([0.0, end], 2), 0.0, atol=1e-11)
-    assert (np.abs(trajectory([0.0, end], 1)) > 0.01).all()
-
-
-def test_equal_durations_are_not_uniform_in_time_near_the_ends() -> None:
-    trajectory = fit(uniform_cubic_b_spline(6, "timed"), np.arange(6.0)[:, None], np.ones(5))
-    # q and t are then the same function of e: the motion is q = t, although dt/de is not 1.
-    np.testing.assert_allclose(trajectory([0.3, 2.7, 4.9])[:, 0], [0.3, 2.7, 4.9], atol=1e-14)
-    assert isinstance(trajectory, ClockedTrajectory)
-    assert abs(trajectory.clock[0, 1] - 1) > 0.1
-
-
-def test_time_must_not_run_backwards() -> None:
-    problem, _ = uniform("timed", 14)
-    h = np.array([1.0, 0.05, 2.0, 0.04, 1.0])
-    assert np.isinf(evaluate(problem, h[None]).ratios).all()
-    with pytest.raises(
-        CurveError, match=r"^durations: time would not increase along the curve, dt/"
-    ):
-        fit(problem.curve, problem.waypoints, h)
-    verdict = check(problem, h)
-    assert verdict.verdict is verdict.limits is Verdict.VIOLATED
-    assert verdict.worst is not None
-    assert verdict.worst.quantity == "curve"
-    assert verdict.feasible_time is None
-    assert "time would not increase" in str(verdict.feasible_why)
-    assert "segment" in str(verdict)
-    other = spline_by_scipy(np.concatenate([[0.0], np.cumsum(h)])[:, None])
-    slopes = other(np.linspace(0, 5 - 1e-12, 10001), 1)
-    assert slopes.min() == pytest.approx(verdict.worst.value, abs=1e-6)
-    assert int(np.argmin(slopes) // 2000) == verdict.worst.segment
-    error = pickle.loads(pickle.dumps(CurveError("a reason", 2, -0.5)))
-    assert (str(error), error.segment, error.value) == ("a reason", 2, -0.5)
-
-
-def test_a_derivative_is_no_polynomial() -> None:
-    problem, h = uniform("timed", 15)
-    trajectory = fit(problem.curve, problem.waypoints, h)
-    assert trajectory.derivative(1, 2, 0) == pytest.approx(trajectory.scaled[1, :4, 2])
-    with pytest.raises(TrajgapError, match="time is not linear here"):
-        trajectory.derivative(1, 2, 1)
-
-
-def test_position_limits_are_found_between_waypoints() -> None:
-    problem, h = uniform("timed", 16)
-    top = max(e.value for e in extrema(fit(problem.curve, problem.waypoints, h), 0, 0))
-    assert top > problem.waypoints[:, 0].max()
-    limits = Limits(99.0, position_upper=[top - 1e-3, 99.0, 99.0], position_lower=-99.0)
-    verdict = check(replace(problem, limits=limits), h)
-    assert verdict.verdict is Verdict.VIOLATED
-    assert verdict.worst is not None
-    assert verdict.worst.quantity == "position"
-
-
-@pytest.mark.parametrize("time", TIMES)
-def test_the_printed_durations_of_the_polishing_paper(time: str) -> None:
-    """One unit throughout: limits kept before the optimisation, broken after it."""
-    case = load_case(POLISH)
-    before, after = (case.claim_durations(case.claim(i)).value for i in ("before", "after"))
-    stretch = {"stretched": (0.874623, 1.325186), "timed": (0.755499, 1.085194)}[time]
-    for unit in ("rad", "deg"):
-        problem = case.problem(reading_id=f"angles-{unit}-v-{unit}-a-{unit}-{time}")
-        found = check(problem, before), check(problem, after)
-        assert [one.limits for one in found] == [Verdict.PASS, Verdict.VIOLATED]
-        assert [one.stretch for one in found] == pytest.approx(stretch, abs=1e-6)
-        assert found[0].continuous
-        assert found[1].continuous == (time == "timed")
-        assert {found[1].worst.joint, found[1].worst.quantity} == {"6", "acceleration"}
+@pytest.mark.parametrize("count", [2, 3, 6])
+def test_natural_vertices_meet_the_waypoint_equations_without_curvature_at_the_ends(
+    count: int,
+) -> None:
+    v = vertex_matrix(count, natural=True)
+    for i in range(count):
+        row = [(a + 4 * b + c) / 6 for a, b, c in zip(*v[i : i + 3], strict=True)]
+        assert row == [Fraction(int(k == i)) for k in range(count)]
+    for ends in (v[:3], v[-3:]):
+        assert [a - 2 * b + c for a, b, c in zip(*ends, strict=True)] == [0] * count

@@ -184,7 +184,8 @@ def test_polish_limits_and_readings():
     angles = np.array([[float(c) for c in row] for row in rows(f"{POLISH}.table-1").values()]).T
     units = {"rad": 1.0, "deg": np.pi / 180}
     seen = set()
-    for reading in case.readings:
+    mixes = [r for r in case.readings if "modulo" not in r.id and "natural" not in r.id]
+    for reading in mixes:
         _, q, _, v, _, a, time = reading.id.split("-")
         problem = case.problem("nine-segments", reading.id)
         np.testing.assert_allclose(problem.waypoints, angles * units[q], rtol=1e-15)
@@ -195,8 +196,22 @@ def test_polish_limits_and_readings():
         assert np.isinf(problem.limits.jerk).all()
         assert problem.curve == uniform_cubic_b_spline(10, time)
         seen.add((q, v, a, time))
-    assert len(seen) == len(case.readings) == 16
-    assert case.default_reading.id == "angles-rad-v-rad-a-rad-stretched"
+    assert len(seen) == len(mixes) == 16
+    natural = case.problem("nine-segments", "angles-rad-v-rad-a-rad-timed-natural")
+    assert natural.curve == uniform_cubic_b_spline(10, "timed", natural_clock=True)
+    default = case.problem("nine-segments")
+    np.testing.assert_array_equal(natural.waypoints, default.waypoints)
+    np.testing.assert_array_equal(natural.limits.derivatives, default.limits.derivatives)
+    turned = [r.id for r in case.readings if "modulo" in r.id]
+    assert turned == [f"angles-modulo-2pi-v-rad-a-rad-{time}" for time in ("timed", "stretched")]
+    for name in turned:
+        problem = case.problem("nine-segments", name)
+        # Principal values, and nothing else changes.
+        np.testing.assert_allclose(np.exp(1j * problem.waypoints), np.exp(1j * angles), atol=1e-12)
+        np.testing.assert_array_equal(problem.waypoints[1:], angles[1:])
+        assert np.abs(problem.waypoints).max() < np.pi + 1e-4
+        np.testing.assert_array_equal(problem.limits.velocity, printed[:, 0])
+    assert case.default_reading.id == "angles-rad-v-rad-a-rad-timed"  # slopes are said to be equal
 
 
 def test_polish_numbers_in_the_text():

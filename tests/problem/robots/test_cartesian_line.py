@@ -50,7 +50,7 @@ def test_poses_lie_on_the_line_in_equal_steps_and_turn_about_one_axis() -> None:
 def test_a_curve_through_more_points_leaves_the_line_less() -> None:
     arm, first, last = ends()
     off = []
-    for points in (5, 9, 17):
+    for points in (4, 7, 13):
         line = ctraj(arm, first, last, points, guess=START)
         curve = cubic_spline(points - 1)
         off.append(line.deviation(fit(curve, line.waypoints, np.full(points - 1, 0.3))))

@@ -16,6 +16,7 @@ from trajgap.problem.robots.chain import (
     Chain,
     Convention,
     JointKind,
+    end_positions,
     forward_kinematics,
     geometric_jacobian,
     link_frames,
@@ -55,6 +56,21 @@ def test_scara_by_hand_with_a_sliding_joint():
         atol=1e-15,
     )
     np.testing.assert_allclose(end[:3, 2], [0, 0, -1], atol=1e-15)
+
+
+@pytest.mark.parametrize("convention", [S, M])
+@pytest.mark.parametrize("seed", range(3))
+def test_positions_alone_are_those_of_the_transforms(convention: Convention, seed: int):
+    rng = np.random.default_rng(seed)
+    kinds = [JointKind.REVOLUTE, JointKind.PRISMATIC]
+    arm = Chain(
+        convention,
+        *rng.uniform(-2, 2, (4, 5)),
+        kinds=tuple(kinds[k] for k in rng.integers(2, size=5)),
+    )
+    q = rng.uniform(-3, 3, (7, 2, 5))
+    expected = forward_kinematics(arm, q)[..., :3, 3]
+    np.testing.assert_allclose(end_positions(arm, q), expected, rtol=0, atol=1e-13)
 
 
 def test_palletiser_as_printed_stays_in_a_plane():

@@ -2,38 +2,24 @@
 
 from __future__ import annotations
 
-import json
-import re
 from dataclasses import replace
 
-import jsonschema
 import numpy as np
 import pytest
-from support.checkout import ROOT
-from trajgap.compare import audit
-from trajgap.compare.audits.case_audit import audit_case
+from support.families import WHALE, examined, small
 from trajgap.compare.audits.instances import study as family_study
 from trajgap.compare.audits.instances.pose import printed_reduction
 from trajgap.compare.audits.instances.result import (
-    MIDDLE,
     InstancesResult,
     Optimum,
     Sample,
     distribution,
-    percent_range,
     reproduced,
 )
-from trajgap.compare.audits.rules.on_instances import judge_instances
 from trajgap.compare.audits.study import Study
-from trajgap.compare.documents import Effect, Procedure, json_text
-from trajgap.compare.pages.markdown_text import markdown
-from trajgap.compare.pages.writer import case_page
-from trajgap.compare.pictures.drawing import svg
-from trajgap.compare.pictures.instances import instances_picture
+from trajgap.compare.documents import Effect, Procedure
 from trajgap.nlp import Evidence
 from trajgap.problem import (
-    Case,
-    CaseError,
     ClampedBSpline,
     Problem,
     TrajgapError,
@@ -41,123 +27,9 @@ from trajgap.problem import (
     forward_kinematics,
     jtraj,
     load_case,
-    parse_case,
     quintic_spline,
 )
 from trajgap.problem.cases.instances import instance_waypoints
-
-WHALE = "z1-woa-bspline"
-
-SMALL = """
-format = 1
-id = "small"
-title = "two joints"
-[source]
-year = 2024
-[robot]
-name = "arm"
-joints = ["1", "2"]
-[robot.dh]
-convention = "standard"
-length_unit = "m"
-angle_unit = "rad"
-d = [0, 0]
-a = [0.5, 0.3]
-alpha = [0, 0]
-[units]
-position = "rad"
-velocity = "rad/s"
-acceleration = "rad/s^2"
-time = "s"
-[waypoints]
-not_printed = "lost"
-count = 3
-[limits]
-velocity = [1.5, 2.5]
-acceleration = [4, 3]
-[durations]
-upper = 8
-[[problems]]
-id = "spline"
-interpolant = { family = "quintic-spline" }
-[[problems]]
-id = "stops"
-interpolant = { family = "jtraj" }
-[[readings]]
-id = "as-printed"
-why = "as printed."
-default = true
-[[readings]]
-id = "joined"
-why = "the other curve."
-interpolant_of = ["stops"]
-interpolant = { family = "quintic-spline" }
-[[algorithms]]
-id = "plain"
-name = "plain"
-kind = "woa"
-settings = { whales = 8, iterations = 12, position_initial = [0, 8] }
-[[algorithms]]
-id = "new"
-name = "new"
-kind = "improved-woa"
-settings = { whales = 8, iterations = 12, position_initial = [0, 8] }
-[[families]]
-id = "drawn"
-claim = "better"
-why = "They are like the paper's."
-kind = "joint"
-steps = [0.3, 0.9]
-instances = 2
-seed = 5
-samples = 50
-[[claims]]
-id = "old-total"
-quantity = "total_time"
-where = "Table 1"
-problem = "stops"
-algorithm = "plain"
-value = "2.00"
-[[claims]]
-id = "new-total"
-quantity = "total_time"
-where = "Table 1"
-problem = "spline"
-algorithm = "new"
-value = "1.50"
-[[claims]]
-id = "better"
-quantity = "improvement"
-where = "Table 1"
-slower = "old-total"
-faster = "new-total"
-[[claims]]
-id = "settles"
-quantity = "convergence"
-where = "Fig. 1"
-problem = "spline"
-algorithm = "new"
-iterations = "10"
-"""
-
-
-def small(*changes: tuple[str, str]) -> Case:
-    text = SMALL
-    for old, new in changes:
-        assert text.count(old) >= 1, old
-        text = text.replace(old, new)
-    return parse_case(text, "small.toml")
-
-
-def examined(*changes: tuple[str, str], workers: int = 1) -> InstancesResult:
-    study = Study(small(*changes), seeds=2, workers=workers, certify_seconds=0)
-    return study.instances(study.instance_blocks[0])
-
-
-@pytest.fixture(scope="module")
-def result() -> InstancesResult:
-    return examined()
-
 
 # --- what is drawn --------------------------------------------------------------------------------
 
@@ -202,6 +74,7 @@ def test_a_step_that_nothing_reaches_is_named() -> None:
 # --- what is computed -----------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_same_bits_on_any_number_of_workers(result: InstancesResult) -> None:
     other = examined(workers=2)
     assert [(s.reading, s.step, s.index) for s in other.samples] == [
@@ -278,6 +151,7 @@ def test_no_answer_is_below_the_best_known_optimum_of_its_curve(result: Instance
         assert (s.totals[:, 1:] >= s.faster.total * (1 - 1e-8)).all()
 
 
+@pytest.mark.slow
 def test_the_faster_form_of_a_clamped_spline_is_the_same_curve() -> None:
     rng = np.random.default_rng(4)
     points, durations = rng.normal(size=(5, 2)), rng.uniform(0.4, 2.0, (9, 4))
@@ -368,203 +242,3 @@ def test_the_printed_reduction_is_an_interval_of_the_digits() -> None:
         printed.instances[0]
     ).printed or (0, 0)
     assert (low, high) == (pytest.approx(0.2485), pytest.approx(0.2495))
-
-
-def test_findings_inform_and_decide_nothing() -> None:
-    study = Study(small(), seeds=2, certify_seconds=0)
-    found = list(judge_instances(study))
-    assert [(f.claim, f.reading) for f in found] == [
-        ("better", None), ("better", "as-printed"), ("better", "joined"), ("settles", None),
-    ]  # fmt: skip
-    for f in found:
-        assert (f.rule, str(f.severity), str(f.verdict)) == ("TG404", "info", "not checkable")
-        assert not f.decides
-        assert "refuted" not in f.message
-    assert (
-        "On 4 instances drawn from the robot's workspace the printed reduction" in found[0].message
-    )
-    assert "They are not the paper's instances and decide nothing" in found[0].message
-    assert "4 instances at steps of 0.3, 0.9 rad, 2 runs each" in found[1].message
-    assert "the curve alone is worth median 0.0 % (0.0 to 0.0 %)" in found[2].message
-    assert "by iteration 10 of 12" in found[3].message
-    one = audit_case(study)
-    verdicts = {j.claim: str(j.verdict) for j in one.judgements}
-    assert verdicts == {
-        "old-total": "not checkable", "new-total": "not checkable", "better": "not checkable",
-        "settles": "not checkable",
-    }  # fmt: skip
-
-
-def test_without_a_pair_of_answers_the_words_say_so() -> None:
-    found = list(
-        judge_instances(
-            Study(
-                small(
-                    ("upper = 8", "upper = 0.05"),
-                    ("position_initial = [0, 8]", "position_initial = [0, 0.05]"),
-                    ("instances = 2", "instances = 1"),
-                ),
-                seeds=2,
-            )
-        )
-    )
-    assert "not reproduced in 2 (as-printed: no pair of answers" in found[0].message
-    assert found[0].computed == "no pair of answers"
-    assert "12 runs found nothing that keeps its limits" in found[1].message
-
-
-def test_one_problem_or_reading_selects() -> None:
-    assert Study(small(), seeds=2, problem="spline", certify_seconds=0).instance_blocks == ()
-    study = Study(small(), seeds=2, reading="joined", certify_seconds=0)
-    assert study.instances(study.instance_blocks[0]).readings == ("joined",)
-    unknown = small(('kind = "woa"', 'kind = "not-written"'))
-    assert Study(unknown, seeds=2, certify_seconds=0).instance_blocks == ()
-
-
-# --- page, document, picture ----------------------------------------------------------------------
-
-
-@pytest.fixture(scope="module")
-def report():
-    return audit(small(), seeds=2, certify_seconds=0)
-
-
-def test_the_page_has_the_comparison(report) -> None:
-    page = case_page(report.cases[0])
-    (section,) = (s for s in page.sections if s.id == "families")
-    text = markdown(replace(page, sections=(section,)))
-    assert "refuted" not in text
-    assert "![Reduction of the total, better, on 4 instances]" in text
-    assert "4 for each step" not in text
-    assert "2 for each step of 0.3, 0.9 rad (largest change of any joint)" in text
-    assert "| as-printed | 0.9 | 2 |" in text
-    block = SMALL[SMALL.index("[[families]]") : SMALL.index("[[claims]]")]
-    plain = audit(small((block, "")), seeds=2, certify_seconds=0)
-    assert "families" not in [s.id for s in case_page(plain.cases[0]).sections]
-
-
-def test_the_document_is_valid_and_whole(report) -> None:
-    document = json.loads(json_text(report.document))
-    schema = json.loads((ROOT / "docs" / "output.schema.json").read_text(encoding="utf-8"))
-    jsonschema.validate(document, schema)
-    (one,) = document["cases"][0]["families"]
-    assert schema["$defs"]["effect"]["enum"] == [str(effect) for effect in Effect]
-    assert set(one) <= set(schema["$defs"]["examined_instances"]["properties"])
-    whole = [r for r in one["reductions"] if r["step"] is None]
-    assert len(whole) == 2 * (2 + 2 + 1)
-    assert len(one["instances"]) == 4
-    assert all(len(i["readings"]) == 2 for i in one["instances"])
-    totals = one["instances"][0]["readings"][0]["totals"]
-    assert [t["objective"] for t in totals] == ["death-penalty", "stretch"]
-    assert len(totals[0]["faster"]) == 2
-    assert one["printed_lowest"] == pytest.approx(1 - 1.505 / 1.995)
-
-
-def test_the_picture_shows_every_pair(result: InstancesResult) -> None:
-    picture = instances_picture(result, title="saved")
-    assert svg(picture) == svg(instances_picture(result, title="saved"))
-    both, alone, curve = picture.axes
-    points = np.concatenate([c.get_offsets() for c in both.collections if len(c.get_offsets())])
-    shown = np.sort(points[:, 0])
-    values = [result.reductions(r, Effect.BOTH, at) for r in result.readings for at in (0, 1)]
-    np.testing.assert_allclose(shown, np.sort(100 * np.concatenate(values)), rtol=1e-12)
-    assert [t.get_text() for t in both.get_yticklabels()] == list(result.readings)
-    assert sum(len(c.get_offsets()) for c in curve.collections) == len(result.samples)
-    assert alone.get_title(loc="left") == "algorithm alone"
-    assert "as-printed: both together median" in picture.description
-    assert "printed: 24.56 to 25.44 %" in picture.description
-
-
-# --- a user finds the way-points ------------------------------------------------------------------
-
-
-def test_way_points_dropped_into_the_file_get_the_full_audit() -> None:
-    text = (ROOT / "problem" / "published" / f"{WHALE}.toml").read_text(encoding="utf-8")
-    start, end = text.index("not_printed = "), text.index("[limits]")
-    angles = [
-        [f"{0.31 * (j + 1) * (-1) ** k - 0.17 * j * k:.4f}" for k in range(4)] for j in range(6)
-    ]
-    table = "joint_rows = [\n" + ",\n".join(f"  {json.dumps(row)}" for row in angles) + "\n]\n\n"
-    # Fewer way-points and moves than the paper's, for speed; nothing else is touched.
-    text = (text[:start] + table + text[end:]).replace("iterations = 500", "iterations = 15")
-    text = text.replace("steps = [0.1, 0.2, 0.3]\ninstances = 3", "steps = [0.2]\ninstances = 1")
-    report = audit(
-        parse_case(text, "found.toml"), seeds=2, reading="v-deg-a-deg", certify_seconds=0
-    )
-    (one,) = report.cases
-    assert one.study.problems == ("b-spline", "quintic")
-    rules = {(f.rule, f.claim) for f in one.findings}
-    for claim in ("b-spline-total", "quintic-total"):
-        assert {("TG302", claim), ("TG402", claim)} <= rules
-        assert ("TG501", claim) not in rules
-    assert {("TG103", "improvement"), ("TG403", "convergence"), ("TG404", "improvement")} <= rules
-    assert [w.problem for w in one.waterfalls] == ["b-spline", "quintic"]
-    assert all(w.steps[0].name for w in one.waterfalls)
-    for pid in one.study.problems:
-        assert one.study.optimum(pid, "v-deg-a-deg").check is not None
-    (limits,) = (j for j in one.judgements if j.claim == "limits-kept")
-    assert "and no durations: whether its motion keeps the limits" in limits.why
-    assert [s.id for s in case_page(one).sections].count("families") == 1
-
-
-# --- the page of the documentation ----------------------------------------------------------------
-
-
-def test_the_documented_digits_are_those_of_the_case_and_the_rule() -> None:
-    page = (ROOT / "docs" / "families.md").read_text(encoding="utf-8")
-    study = Study(load_case(WHALE), seeds=2, certify_seconds=0)
-    (block,) = study.case.instances
-    claim = study.case.claim(block.claim)
-    for side, name in ((claim.slower, "quintic"), (claim.faster, "b-spline")):
-        total = study.case.claim(side)
-        assert (total.problem, f"{total.value} s" in page) == (name, True)
-    assert percent_range(*printed_reduction(study, block) or (0, 0)) in page
-    assert f"{100 * MIDDLE:g} %" in page
-    assert [f"`{reading}` |" in page for reading in block.readings] == [True] * 5
-
-
-@pytest.mark.slow
-def test_the_documented_medians_are_those_of_the_shipped_family() -> None:
-    study = Study(load_case(WHALE), seeds=2, certify_seconds=0)
-    found = study.instances(study.instance_blocks[0])
-    columns = [(e, at) for e in (Effect.BOTH, Effect.ALGORITHM) for at in (0, 1)]
-    columns.append((Effect.CURVE, 0))
-    page = (ROOT / "docs" / "families.md").read_text(encoding="utf-8")
-    rows = re.findall(r"^\| `([\w-]+)` \| (.*) \|$", page, re.MULTILINE)
-    assert [reading for reading, _ in rows] == list(found.readings)
-    for reading, cells in rows:
-        printed = [float(cell.replace("−", "-")) for cell in cells.split(" | ")]
-        computed = [100 * distribution(found.reductions(reading, *c)).median for c in columns]
-        assert printed == pytest.approx(computed, abs=0.0501)
-        assert abs(computed[3]) < 3
-    missed = [r for r in found.readings if not reproduced(found, r)]
-    assert missed == ["v-deg-a-deg", "v-rad-a-deg"]
-    assert all(f"`{reading}`" in page.split("\n\n")[-1] for reading in missed)
-
-
-# --- what is refused ------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "message"),
-    [
-        ('claim = "better"', 'claim = "bettr"',
-         "families[0].claim: 'bettr' is not the id of any of the claims; did you mean 'better'?"),
-        ('claim = "better"', 'claim = "settles"',
-         "families[0].claim: 'settles' is a claim of quantity 'convergence'; name an improvement"),
-        ('algorithm = "plain"\n', "",
-         "families[0].claim: claim 'old-total' does not name its problem and its algorithm; add"),
-        ("samples = 50", 'readings = ["joined", "x"]',
-         "families[0].readings[1]: 'x' is not the id"),
-        ("[0.3, 0.9]", "[0.3, 0]", "families[0].steps[1]: is 0; a step moves something, give more"),
-        ("[0.3, 0.9]", "[0.3, 0.30]", "families[0].steps[1]: 0.30 is given twice; leave one out"),
-        ("instances = 2", "instances = 0", "families[0].instances:"),
-        ('kind = "joint"', 'kind = "wrist"', "families[0].kind:"),
-        ("samples = 50", 'objectives = ["mercy"]', "families[0].objectives[0]:"),
-        (SMALL[SMALL.index("[robot.dh]") : SMALL.index("[units]")], "",
-         "families[0].id: way-points are drawn from the robot's workspace; add robot.dh"),
-    ],
-)  # fmt: skip
-def test_faults_of_a_family(old: str, new: str, message: str) -> None:
-    with pytest.raises(CaseError, match=re.escape(f"small.toml: {message}")):
-        small((old, new))

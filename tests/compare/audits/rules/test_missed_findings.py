@@ -4,154 +4,18 @@ from __future__ import annotations
 
 import pytest
 from support.findings import said_of, study_of
-from support.one_joint import HEAD
+from support.one_joint import one_joint
 from trajgap.compare import audit
-from trajgap.compare.audits.rounding import RoundingBox
 from trajgap.compare.audits.rules.condition_count import judge_counts, meets
 from trajgap.compare.audits.rules.continuous_time import judge_motions
 from trajgap.compare.audits.rules.distances import judge_distances
 from trajgap.compare.audits.rules.other_places import judge_places
 from trajgap.compare.audits.rules.peaks import judge_peaks
 from trajgap.compare.audits.rules.printed_digits import judge_digits
-from trajgap.compare.audits.rules.printed_tables import judge_tables
-from trajgap.compare.audits.total_bound import excludes_total
 from trajgap.compare.documents import ClaimVerdict, Severity
-from trajgap.nlp import solve
-from trajgap.problem import Limits, Problem, parse_case, rest_to_rest, three_five_three
+from trajgap.problem import parse_case
 
 # A quintic from rest to rest over d rad in h s peaks at 15 d/(8 h) rad/s: 0.98684 s under 1.9.
-TOTAL = """
-[[claims]]
-id = "t"
-quantity = "total_time"
-where = "abstract"
-value = "{}"
-[[claims]]
-id = "said"
-quantity = "statement"
-where = "abstract"
-checks = "{}"
-of = ["t"]
-"""
-
-
-def one_joint(points: str, limit: str, time: str, checks: str, tail: str = "") -> str:
-    return HEAD.format(points=points, limit=limit, time=time, checks=checks) + tail
-
-
-@pytest.mark.parametrize(
-    ("points", "value", "checks", "verdict"),
-    [
-        ("0, 1", "5.35", "optimal", "refuted"),  # 442 % above
-        ("0, 1", "0.690", "optimal", "refuted"),  # 0.7 of it
-        ("0, 1", "0.987", "optimal", "supported"),
-        ("0, 1", "0.690", "within_limits", "refuted"),
-        ("0, 1", "0.986", "within_limits", "not checkable"),  # 0.98684 cut off
-        ("0, 1", "5.35", "within_limits", "not checkable"),
-        ('"0.00", "1.00"', "0.690", "optimal", "refuted"),
-        ('"0.00", "1.00"', "0.690", "within_limits", "refuted"),
-        ('"0.00", "1.00"', "0.975", "within_limits", "not checkable"),  # 0.99 rad takes 0.977 s
-        ('"0.00", "1.00"', "0.999", "optimal", "refuted"),
-        ('"0.00", "1.00"', "0.990", "optimal", "not checkable"),
-    ],
-)
-def test_a_bare_total_is_judged(points: str, value: str, checks: str, verdict: str) -> None:
-    study = study_of(one_joint(points, "1.9", "0.99", "optimal", TOTAL.format(value, checks)))
-    rule, id_ = {
-        "optimal": (judge_distances, "TG302"),
-        "within_limits": (judge_motions, "TG201"),
-    }[checks]
-    (found,) = said_of(study, rule, "said", id_)
-    assert found.verdict == verdict
-
-
-def test_no_total_is_excluded_that_a_motion_takes() -> None:
-    """Three pieces under a velocity limit: the proof holds well below the optimum, never at it."""
-    problem = Problem(
-        [[0.1], [0.9], [-0.3], [0.5]], Limits(velocity=1.7, joints=1), three_five_three()
-    )
-    best = solve(problem).total_time
-    assert excludes_total(problem, 0.4 * best)
-    assert not excludes_total(problem, best)
-    wide = RoundingBox(problem.waypoints, problem.waypoints - 0.05, problem.waypoints + 0.05)
-    assert excludes_total(problem, 0.3 * best, wide)
-    still = Problem([[0.0], [1.0]], Limits(acceleration=1.0, joints=1), rest_to_rest(1, 5))
-    assert not excludes_total(still, 0.01)  # no speed bounds a duration: nothing is proved
-
-
-ABSTRACT = """
-[[claims]]
-id = "t"
-quantity = "total_time"
-where = "abstract"
-{of}
-value = "{value}"
-"""
-
-
-@pytest.mark.parametrize(
-    ("value", "of", "verdict", "severity"),
-    [
-        ("0.990", "", ClaimVerdict.SUPPORTED, Severity.INFO),
-        ("0.909", "", ClaimVerdict.INCONSISTENT, Severity.WARNING),
-        ("0.909", 'of = "d"', ClaimVerdict.INCONSISTENT, Severity.ERROR),
-    ],
-)
-def test_a_total_that_differs_from_the_table_is_noticed(
-    value: str, of: str, verdict: ClaimVerdict, severity: Severity
-) -> None:
-    tail = ABSTRACT.format(value=value, of=of)
-    study = study_of(one_joint("0, 1", "1.9", "0.990", "optimal", tail))
-    (found,) = said_of(study, judge_tables, "t", "TG105")
-    assert (found.verdict, found.severity) == (verdict, severity)
-    assert "0.990 s (sum of its durations)" in found.message
-
-
-def test_a_total_that_may_be_either_of_two_is_not_accused() -> None:
-    tail = ABSTRACT.format(value="0.5", of='algorithm = "x"')
-    two = tail + '[[claims]]\nid = "e"\nquantity = "durations"\nwhere = "Table 3"\n'
-    two += (
-        'algorithm = "x"\ndurations = ["0.8"]\n[[algorithms]]\nid = "x"\nname = "x"\nkind = "x"\n'
-    )
-    text = one_joint("0, 1", "1.9", "0.99", "optimal", two)
-    text = text.replace('where = "Table 2"\n', 'where = "Table 2"\nalgorithm = "x"\n', 1)
-    (found,) = said_of(study_of(text), judge_tables, "t", "TG105")
-    assert (found.verdict, found.severity) == (ClaimVerdict.NOT_CHECKABLE, Severity.INFO)
-    assert "none of the totals printed elsewhere" in found.message
-
-
-MEAN = """
-[[claims]]
-id = "best"
-quantity = "total_time"
-where = "abstract"
-algorithm = "x"
-value = "0.990"
-[[claims]]
-id = "mean"
-quantity = "total_time"
-where = "Table 6, mean of 30 runs"
-algorithm = "x"
-value = "1.052"
-[[algorithms]]
-id = "x"
-name = "x"
-kind = "x"
-"""
-
-
-def test_a_mean_and_a_best_total_contradict_nothing() -> None:
-    text = one_joint("0, 1", "1.9", "0.990", "optimal", MEAN)
-    text = text.replace('where = "Table 2"\n', 'where = "Table 2"\nproblem = "other"\n', 1)
-    text = text.replace(
-        "[[claims]]", '[[problems]]\nid = "main"\n[[problems]]\nid = "other"\n[[claims]]', 1
-    )
-    text = text.replace('quantity = "total_time"\n', 'quantity = "total_time"\nproblem = "main"\n')
-    for claim in ("best", "mean"):
-        (found,) = said_of(study_of(text), judge_tables, claim, "TG105")
-        assert (found.verdict, found.severity) == (ClaimVerdict.NOT_CHECKABLE, Severity.INFO)
-
-
 REST = """
 [[claims]]
 id = "rest"
@@ -183,6 +47,23 @@ def test_rest_at_the_ends_is_evaluated(orders: str, verdict: str) -> None:
         (found,) = said_of(study, judge_counts, claim, "TG207")
         assert found.verdict == verdict
         assert ("a velocity of 90 °/s" in found.message) == (verdict == "inconsistent")
+
+
+VIRTUAL = REST.replace("degrees = [3, 3]", 'degrees = [3, 3, 3, 3]\ncount = "{count}"').replace(
+    "orders = [1]", "orders = [1, 2]"
+)
+
+
+@pytest.mark.parametrize(("count", "fits"), [("16", True), ("18", False)])
+def test_virtual_points_have_no_position_to_pass(count: str, fits: bool) -> None:
+    """Four positions of segments at way-points, two joined ones, C2 at three breaks, v = a = 0 at
+    two ends: 4 + 2 + 6 + 4 = 16."""
+    text = one_joint("0, 60, 0", "120", "1.00", "optimal", VIRTUAL.format(count=count))
+    text = text.replace('durations = ["1.00"]', 'durations = ["1.00", "1.00", "1.00", "1.00"]')
+    text = text.replace('family = "rest-to-rest"\ndegree = 5', 'family = "cubic-spline-virtual"')
+    (found,) = said_of(study_of(text), judge_counts, "ends", "TG107")
+    assert found.computed == "16 conditions on 16 coefficients"
+    assert found.verdict == ("supported" if fits else "refuted")
 
 
 @pytest.mark.parametrize(
@@ -363,7 +244,7 @@ def test_the_paper_s_own_units_are_spoken() -> None:
     text = one_joint("0, 60", "110", "0.50", "within_limits")
     text = text.replace('"rad"', '"deg"').replace('"rad/s"', '"deg/s"')
     (found,) = said_of(study_of(text), judge_motions, "d", "TG201")
-    assert "velocity 225 against 110 °/s" in found.message
+    assert "reaches 225 °/s, limit 110 °/s" in found.message
     parse_case(text, "made-up.toml")
 
 

@@ -10,7 +10,7 @@ from trajgap.compare.audits.rules.replays import _typical, judge_replays
 from trajgap.compare.audits.study import Study
 from trajgap.compare.documents import ClaimVerdict, Severity
 from trajgap.compare.gaps import share_interval, share_of_pairs, spread
-from trajgap.heuristics import GA, PSO
+from trajgap.heuristics import GA, PSO, ImprovedGA
 
 
 def test_settings_fill_the_range_of_every_open_number() -> None:
@@ -32,6 +32,14 @@ def test_the_same_settings_every_time_and_the_printed_ones_held() -> None:
     assert {a.population for a in one.values()} == {40}
     assert all(isinstance(a.elite, int) and a.elite == 0 for a in one.values())
     assert all("mutation_rate = " in name for name in one if name != LISTED)
+
+
+@pytest.mark.parametrize("algorithm", [GA(), ImprovedGA()], ids=lambda one: one.kind)
+def test_no_setting_is_lost_because_a_population_cannot_be_paired(algorithm: object) -> None:
+    found = spread_settings(algorithm, ("resolution", "k1", "k2", "k3", "k4"))  # type: ignore[arg-type]
+    assert len(found) == 1 + DESIGN
+    assert {one.population % 4 for one in found.values()} == {0}
+    assert len({one.population for one in found.values()}) > DESIGN // 2
 
 
 def test_nothing_open_leaves_the_listed_settings() -> None:
@@ -80,6 +88,8 @@ def test_a_total_beside_spread_settings_names_the_nearest() -> None:
     said = _typical(spreads, 3.5275, 3.5285)
     assert "(3 settings), medians run from 3.3650 to 3.8850 s" in said
     assert "nearest to the printed total is 3.5150 s with inertia = 0.884." in said
-    assert "No run under any of these settings" not in said
-    assert "No run under any of these settings" in _typical(spreads, 4.0, 4.001)
+    assert "every one of these settings" not in said
+    assert _typical(spreads, 4.0, 4.001).endswith("every one of these settings is shorter.")
+    assert _typical(spreads, 3.0, 3.001).endswith("every one of these settings is longer.")
+    assert _typical(spreads, 3.4, 3.401).endswith("all runs lie on one side of it.")
     assert _typical({LISTED: spreads[LISTED]}, 3.5, 3.6) == ""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from support.studies import SEEDS, audited, changed, hurried
 from trajgap.compare.audits.case_audit import audit
-from trajgap.compare.audits.rules.condition_count import conditions, judge_counts
+from trajgap.compare.audits.rules.condition_count import count_conditions, judge_counts
 from trajgap.compare.audits.rules.continuous_time import judge_motions
 from trajgap.compare.audits.rules.distances import judge_distances
 from trajgap.compare.audits.rules.improvements import judge_improvements
@@ -109,8 +109,8 @@ def test_digits_that_stand_in_an_unrelated_column_are_mentioned_and_decide_nothi
 def test_eighteen_conditions_do_not_fit_fourteen_coefficients() -> None:
     study = changed(IRB)
     claims = {c.id: c for c in study.case.claims}
-    assert conditions(claims["rest-at-all-points"]) == 18
-    assert conditions(claims["conditions-14"]) == 14
+    assert count_conditions(study, claims["rest-at-all-points"]) == 18
+    assert count_conditions(study, claims["conditions-14"]) == 14
     found = {f.claim: f.verdict for f in judge_counts(study)}
     assert found["rest-at-all-points"] is ClaimVerdict.REFUTED
     assert found["conditions-14"] is ClaimVerdict.SUPPORTED
@@ -205,6 +205,7 @@ def test_optimal_is_refuted_by_a_shorter_checked_motion_and_supported_by_its_dig
     assert found["waypoints-rad"].evidence is Evidence.CERTIFIED
 
 
+@pytest.mark.slow
 def test_a_claim_stands_beside_its_own_optimum_the_shared_one_and_the_procedure() -> None:
     study = changed(PUMA)
     found = [f for f in judge_distances(study) if f.reading == "durations-at-least-0.3"]
@@ -260,6 +261,7 @@ def test_what_the_extraction_damaged_is_listed_and_never_refuted() -> None:
         assert len(found) >= len(load_case(case).not_checkable)
 
 
+@pytest.mark.slow
 def test_no_error_rests_on_the_plain_check() -> None:
     for case in (PUMA, IRB):
         for finding in audited(case).findings:

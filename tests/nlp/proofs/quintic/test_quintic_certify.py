@@ -164,7 +164,7 @@ def test_dense_search_stays_within_two_hundred_intervals() -> None:
 
 @pytest.mark.slow
 def test_a_row_of_the_docs_is_proved_again() -> None:
-    page = (ROOT / "docs" / "certificates-quintic.md").read_text("utf-8")
+    page = (ROOT / "docs" / "explanation" / "certificates-quintic.md").read_text("utf-8")
     problems = runpy.run_path(str(ROOT / "benchmarks" / "quintic_instances.py"))["instances"]()
     assert sum(f"| {problem.name} | [" in page for problem in problems) == 20
     problem = next(p for p in problems if p.name == "step 3.0 rad, number 2")
@@ -191,7 +191,7 @@ def test_limits_falsified_on_purpose_prove_too_much_and_are_refused(
     judged = certify(small(), gap=0.01)
     assert (judged.outcome, judged.proof) == (Outcome.OPEN, None)
     units = module._units(exact_problem(small()))
-    assert units == module.Units((0, 0), 0)
+    assert units == module.BinaryUnits((0, 0), 0)
     session = Session(exact_problem(small()), Request(seconds=np.inf))
     session.durations = truth.durations
     stages = module._Search(session)

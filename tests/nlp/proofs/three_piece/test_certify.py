@@ -6,7 +6,6 @@ import copy
 import json
 from dataclasses import replace
 from fractions import Fraction
-from functools import partial
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -14,21 +13,20 @@ from typing import Any
 import numpy as np
 import pytest
 from support.checkout import ROOT
+from support.intervals import judged
 from support.shipped_problems import POSED
 from support.three_pieces import dense_best, random_problem
 from support.unjudged import unjudged
 from support.unlucky import answering
 from trajgap.nlp import solve
-from trajgap.nlp.proofs.answer import exact_coefficients, keeps_limits, never_above
+from trajgap.nlp.proofs.answer import exact_coefficients, never_above
 from trajgap.nlp.proofs.certifiers import certify, covered
 from trajgap.nlp.proofs.document import certificate, problem_document, shipped, shipped_folder
 from trajgap.nlp.proofs.exact import ExactProblem, decimal, exact_problem
-from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress, Request
-from trajgap.nlp.proofs.session import Session
-from trajgap.nlp.proofs.state import resumed, state_document
+from trajgap.nlp.proofs.outcome import Certified, Outcome
 from trajgap.nlp.proofs.three_piece import rows as three_piece
 from trajgap.nlp.proofs.three_piece.boxes import Boxes
-from trajgap.nlp.proofs.three_piece.rows import PLACES, Prover, Row, exact_row
+from trajgap.nlp.proofs.three_piece.rows import PLACES, PieceRow, Prover, exact_row
 from trajgap.problem import (
     Limits,
     Problem,
@@ -47,28 +45,17 @@ module = import_module("trajgap.nlp.proofs.three_piece.search")
 def attack(seed: int) -> Outcome:
     problem = random_problem(seed)
     found = certify(problem, gap=1e-3, seconds=20.0)
-    best = dense_best(problem)
-    if found.outcome is Outcome.INFEASIBLE:
-        assert best == np.inf
-    else:
-        assert float(found.lower) <= best * (1 + 1e-9)
-        if found.upper is not None:
-            assert found.lower <= found.upper
-            assert found.durations is not None
-            assert keeps_limits(exact_problem(problem), found.durations)
-    if found.proof is not None:
-        assert verify(certificate(found)).proves
-    return found.outcome
+    return judged(problem, found, dense_best(problem))
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(3))
 def test_dense_search_never_leaves_the_interval(seed: int) -> None:
     attack(seed)
 
 
 @pytest.mark.slow
 def test_dense_search_never_leaves_the_interval_of_two_hundred_problems() -> None:
-    outcomes = [attack(seed) for seed in range(8, 208)]
+    outcomes = [attack(seed) for seed in range(3, 208)]
     decided = outcomes.count(Outcome.CERTIFIED) + outcomes.count(Outcome.INFEASIBLE)
     assert decided >= 195
 
@@ -97,7 +84,7 @@ def all_files() -> list[Path]:
 
 
 def test_the_table_in_the_docs_is_that_of_the_files() -> None:
-    page = (ROOT / "docs" / "certificates.md").read_text("utf-8")
+    page = (ROOT / "docs" / "explanation" / "certificates.md").read_text("utf-8")
     rows = {}
     for line in page.splitlines():
         cells = [cell.strip() for cell in line.strip("|").split("|")]
@@ -135,7 +122,7 @@ def test_an_answer_that_is_not_optimal_is_never_certified(monkeypatch: pytest.Mo
 
 
 def test_a_broken_relaxation_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
-    def broken(problem: ExactProblem, row: Row, total: Fraction) -> three_piece.Poly:
+    def broken(problem: ExactProblem, row: PieceRow, total: Fraction) -> three_piece.Poly:
         return exact_row(problem, row, total * Fraction(9, 10))
 
     raw = unjudged(monkeypatch)
@@ -159,184 +146,6 @@ def test_a_local_answer_is_replaced_by_a_better_one(monkeypatch: pytest.MonkeyPa
     assert found.outcome is Outcome.CERTIFIED
     assert found.upper is not None
     assert float(found.upper) == pytest.approx(float(Fraction(true["claim"]["upper"])), rel=1e-6)
-
-
-def test_a_stopped_run_goes_on_where_it_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
-    exact = POSED["puma560-mnam-pso-353.six-joints.durations-positive.joint-1"]
-
-    def interrupt(progress: Progress) -> None:
-        if progress.nodes > 150 and progress.open_boxes > 0:
-            raise KeyboardInterrupt
-
-    monkeypatch.setattr(module, "_BATCH", 16)
-    first = certify(exact, report=interrupt)
-    assert first.outcome is Outcome.INTERVAL
-    assert first.proposals is not None
-    assert first.open_boxes > 0
-    assert first.lower > 0
-    assert 1e-6 < first.gap < 1
-    assert verify(certificate(first)).proves
-    second = certify(exact, resume=first)
-    assert second.outcome is Outcome.CERTIFIED
-    assert second.nodes < 400
-    assert verify(certificate(second)).proves
-
-
-def stopped_at(name: str, monkeypatch: pytest.MonkeyPatch) -> Certified:
-    """A run that was stopped with a proved lower bound and with open boxes."""
-
-    def interrupt(progress: Progress) -> None:
-        if progress.lower > 0 and progress.open_boxes > 0:
-            raise KeyboardInterrupt
-
-    monkeypatch.setattr(module, "_BATCH", 8)
-    found = certify(POSED[name], report=interrupt)
-    assert found.outcome is Outcome.INTERVAL
-    return found
-
-
-def state_of(found: Certified) -> dict[str, Any]:
-    """The state of a stopped run, through JSON."""
-    document = state_document(found)
-    assert document is not None
-    return dict(json.loads(json.dumps(document)))
-
-
-def test_an_edited_state_proves_nothing_false(monkeypatch: pytest.MonkeyPatch) -> None:
-    name = "irb460-pso-353.limit-80.waypoints-rad"
-    exact, found = POSED[name], stopped_at(name, monkeypatch)
-    assert found.upper is not None
-    base = state_of(found)
-    assert resumed(exact, base).lower == found.lower
-    rng = np.random.default_rng(3)
-    outcomes = []
-    for part in ("claim", "proof", "proposals"):
-        places = state_places(base[part], (part,))
-        for _ in range(120):
-            path = places[rng.integers(0, len(places))]
-            data = copy.deepcopy(base)
-            node = data
-            for key in path[:-1]:
-                node = node[key]
-            node[path[-1]] = mangled(node[path[-1]], rng)
-            try:
-                state = resumed(exact, data)
-                session = Session(exact, Request(resume=state))
-                pending = session.taken_up(partial(module._proposed, exact, "three-piece"))
-            except TrajgapError:
-                outcomes.append((part, "refused"))
-                continue
-            outcomes.append((part, "taken"))
-            assert state.lower <= found.upper, path
-            assert (state.proof is None) == (state.lower == 0)
-            if state.durations is not None:
-                assert keeps_limits(exact, state.durations), path
-            assert pending is None or (0.5**pending.boxes.level).prod(axis=1).sum() == 1.0
-    for part in ("claim", "proof", "proposals"):
-        assert outcomes.count((part, "refused")) > 20
-    assert outcomes.count(("proof", "taken")) > 0
-    assert outcomes.count(("proposals", "taken")) > 20
-
-
-def state_places(node: Any, path: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
-    children = node.items() if isinstance(node, dict) else enumerate(node)
-    found = []
-    for key, child in children:
-        found.append((*path, key))
-        if isinstance(child, dict | list):
-            found += state_places(child, (*path, key))
-    return found
-
-
-def mangled(value: Any, rng: np.random.Generator) -> Any:
-    choice = int(rng.integers(0, 5))
-    if choice == 0:
-        return [None, [], "", {}, -1, "1e9", "x", True][int(rng.integers(0, 8))]
-    if isinstance(value, bool) or value is None:
-        return "1"
-    if isinstance(value, int):
-        return value + int(rng.choice([-1, 1, 5]))
-    if value == ".":
-        return ["?", "/", "r", "x"][int(rng.integers(0, 4))]
-    if isinstance(value, str) and value[:1].isdigit():
-        return str(Fraction(value) * (1 + Fraction(int(rng.integers(-9, 9)), 10)))
-    if isinstance(value, list):
-        return value[:-1]
-    return value
-
-
-def test_a_resumed_bound_alone_proves_nothing_infeasible(monkeypatch: pytest.MonkeyPatch) -> None:
-    name = "irb460-pso-353.limit-80.waypoints-rad"
-    exact, found = POSED[name], stopped_at(name, monkeypatch)
-    state = state_of(found)
-    state["claim"] |= {"durations": None, "upper": None}
-    assert state["proof"] is not None
-    assert None in exact.duration_upper
-    answering(monkeypatch, lambda call, initial: None)
-    again = certify(exact, resume=state)
-    assert again.outcome is Outcome.OPEN
-    assert again.lower == found.lower
-    assert verify(certificate(again)).proves
-
-
-def test_edited_open_boxes_only_cost_time(monkeypatch: pytest.MonkeyPatch) -> None:
-    name = "irb460-pso-353.limit-80.waypoints-rad"
-    exact, found = POSED[name], stopped_at(name, monkeypatch)
-    state = state_of(found)
-    # "Everything is proved by any row", and a total that is far too long.
-    state["proposals"] |= {"tree": [[".", 0, "1"]], "total": "100"}
-    again = certify(exact, gap=1e-3, resume=state)
-    assert again.outcome is Outcome.CERTIFIED
-    assert again.lower >= found.lower
-    assert verify(certificate(again)).proves
-
-
-@pytest.mark.parametrize(
-    ("part", "change", "reason"),
-    [
-        ("proposals", {"kind": "stretched"}, "a state of kind"),
-        ("proposals", {"tree": None}, "malformed"),
-        ("claim", {"durations": ["0.1", "0.1", "0.1"]}, "not proved .answer"),
-        ("claim", {"durations": ["0.4", "0.4"]}, "not proved .answer: one duration per segment"),
-        ("claim", {"lower": "1e-9"}, "not proved .the lower bound exceeds the total"),
-        ("problem", {"unit": "deg"}, "about another problem"),
-    ],
-)
-def test_a_bad_state_is_refused(part: str, change: dict[str, Any], reason: str) -> None:
-    exact = POSED["irb460-pso-353.limit-80.waypoints-rad"]
-    state = state_of(certify(exact, seconds=0.0))
-    state[part] |= change
-    with pytest.raises(TrajgapError, match=reason):
-        certify(exact, resume=state)
-
-
-def test_what_is_no_state_is_refused() -> None:
-    exact = POSED["irb460-pso-353.limit-80.waypoints-rad"]
-    finished = certify(exact, gap=0.1)
-    for other in (finished, certificate(finished), {}, {"format": "trajgap-state-1"}):
-        with pytest.raises(TrajgapError, match="resume: no trajgap-state-2"):
-            certify(exact, resume=other)
-
-
-def test_a_proof_that_is_not_one_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    name = "irb460-pso-353.limit-80.waypoints-rad"
-    found = stopped_at(name, monkeypatch)
-    state = state_of(found)
-    total = state["proof"]["total"]
-    state["proof"]["total"] = str(found.upper)
-    with pytest.raises(TrajgapError, match=r"not proved .leaf at node"):
-        certify(POSED[name], resume=state)
-    state["proof"]["total"] = total
-    state["proof"]["tree"][-1] = ["?"]
-    with pytest.raises(TrajgapError, match=r"not proved .the tree leaves a part open"):
-        certify(POSED[name], resume=state)
-
-
-def test_a_state_is_proved_like_a_certificate(monkeypatch: pytest.MonkeyPatch) -> None:
-    found = stopped_at("irb460-pso-353.limit-80.waypoints-rad", monkeypatch)
-    verdict = verify(state_of(found))
-    assert str(verdict).startswith("proves: ")
-    assert (verdict.lower, verdict.upper) == (found.lower, found.upper)
 
 
 @pytest.mark.parametrize(
@@ -465,7 +274,7 @@ def test_rows_are_the_limits_of_the_curve() -> None:
         joint, order = int(rng.integers(0, 6)), int(rng.integers(1, 3))
         place, sign = int(rng.integers(0, PLACES + 1)), int(rng.choice([-1, 1]))
         total = Fraction(float(h.sum()))
-        poly = exact_row(exact, Row("place", joint, order, sign, place), total)
+        poly = exact_row(exact, PieceRow("place", joint, order, sign, place), total)
         a, b = h[0] / (h[0] + h[1]), h[2] / (h[1] + h[2])
         powers = np.arange(len(poly))
         value = float((a**powers) @ poly.astype(float) @ (b**powers))
@@ -498,7 +307,7 @@ def test_peaks_are_judged_exactly() -> None:
 
 def test_a_proof_needs_weights() -> None:
     exact = POSED["irb460-pso-353.limit-80.waypoints-rad"]
-    row, side = Row("first", 0, 1), (3, 0)
+    row, side = PieceRow("first", 0, 1), (3, 0)
     prover = Prover(exact, Fraction(1))
     assert prover.proves((row,), (Fraction(1),), side, side)
     assert not prover.proves((row,), (Fraction(0),), side, side)

@@ -12,18 +12,19 @@ from importlib import import_module
 import numpy as np
 import pytest
 from support.checkout import ROOT
+from support.intervals import judged
 from support.three_pieces import dense_best, random_problem
 from support.unjudged import unjudged
 from support.unlucky import answering
-from trajgap.nlp.proofs.answer import exact_coefficients, keeps_limits
+from trajgap.nlp.proofs.answer import exact_coefficients
 from trajgap.nlp.proofs.certifiers import certify, covered
 from trajgap.nlp.proofs.document import certificate
 from trajgap.nlp.proofs.exact import ExactProblem, exact_problem
 from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress
 from trajgap.nlp.proofs.state import state_document
 from trajgap.nlp.proofs.three_piece import rows as three_piece
-from trajgap.nlp.proofs.three_piece.ratios import SHAPES, Shape, shape_of
-from trajgap.nlp.proofs.three_piece.rows import PLACES, STRICT, Row, exact_row
+from trajgap.nlp.proofs.three_piece.ratios import SHAPES, ThreePieces, shape_of
+from trajgap.nlp.proofs.three_piece.rows import PLACES, STRICT, PieceRow, exact_row
 from trajgap.nlp.proofs.three_piece.square_polynomials import Poly
 from trajgap.problem import (
     Limits,
@@ -74,7 +75,7 @@ def test_rows_are_the_exact_spline() -> None:
         shares = (a * (1 - b), (1 - a) * (1 - b), b * (1 - a))
         for (kind, k), order, sign in itertools.product(kinds.items(), range(4), (1, -1)):
             place, joint = int(rng.integers(0, PLACES + 1)), int(rng.integers(0, 2))
-            poly = exact_row(exact, Row(kind, joint, order, sign, place), sum(h, Fraction(0)))
+            poly = exact_row(exact, PieceRow(kind, joint, order, sign, place), sum(h, Fraction(0)))
             value = sum(c * a**i * b**j for (i, j), c in np.ndenumerate(poly))
             derivative = [
                 math.perm(p, order) * c / h[k] ** order for p, c in enumerate(curve[joint][k])
@@ -91,7 +92,7 @@ def test_rows_are_the_exact_spline() -> None:
 
 
 @pytest.mark.parametrize("shape", SHAPES, ids=lambda shape: shape.proof)
-def test_solver_and_verifier_have_the_same_rows(shape: Shape) -> None:
+def test_solver_and_verifier_have_the_same_rows(shape: ThreePieces) -> None:
     limits = Limits(2.0, 3.0, 5.0, -9.0, 7.0)
     problem = replace(fixed(), limits=limits, curve=piecewise(shape.degrees))
     bounded = replace(problem, duration_lower=np.full(3, 0.5), duration_upper=np.full(3, 9.0))
@@ -103,11 +104,11 @@ def test_solver_and_verifier_have_the_same_rows(shape: Shape) -> None:
     proof = MAKES[shape.proof](stated, document["proof"], total, Clock(60.0))
     assert proof.degrees == list(shape.degrees)
     curves = proof._curves()
-    rows = [Row("lower", 2, 1), Row("mean", 0, 1, cap=2)]
+    rows = [PieceRow("lower", 2, 1), PieceRow("mean", 0, 1, cap=2)]
     for order, cap in itertools.product((1, 2, 3), (-1, 0)):
-        rows += [Row(end, 1, order, cap=cap) for end in ("first", "last")]
-        rows += [Row(kind, 1, order, -1, 123_456, cap) for kind in proof.divisors]
-    rows += [Row(kind, 0, 0, sign, 777_777) for kind in proof.divisors for sign in (1, -1)]
+        rows += [PieceRow(end, 1, order, cap=cap) for end in ("first", "last")]
+        rows += [PieceRow(kind, 1, order, -1, 123_456, cap) for kind in proof.divisors]
+    rows += [PieceRow(kind, 0, 0, sign, 777_777) for kind in proof.divisors for sign in (1, -1)]
     for row in rows:
         mine = exact_row(exact_problem(bounded), row, total)
         entry = [row.kind, row.joint, row.order, row.sign, row.place, row.cap]
@@ -137,30 +138,22 @@ def test_what_an_end_piece_must_reach() -> None:
 def attack(seed: int) -> Outcome:
     problem = random_434(seed)
     found = certify(problem, seconds=60.0)
-    best = dense_best(problem, 81)
-    if found.outcome is Outcome.INFEASIBLE:
-        assert best == np.inf
-    else:
-        assert float(found.lower) <= best * (1 + 1e-9)
-        if found.durations is not None:
-            assert found.upper == sum(found.durations) >= found.lower
-            assert keeps_limits(exact_problem(problem), found.durations)
+    if found.durations is not None:
+        assert found.upper == sum(found.durations)
     if found.outcome is Outcome.CERTIFIED:
         assert found.gap <= 1e-6
         assert found.seconds < 60
-    if found.proof is not None:
-        assert verify(certificate(found)).proves
-    return found.outcome
+    return judged(problem, found, dense_best(problem, 81))
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(2))
 def test_dense_search_never_leaves_the_interval(seed: int) -> None:
     assert attack(seed) in (Outcome.CERTIFIED, Outcome.INFEASIBLE)
 
 
 @pytest.mark.slow
 def test_dense_search_never_leaves_the_interval_of_two_hundred_problems() -> None:
-    outcomes = [attack(seed) for seed in range(6, 206)]
+    outcomes = [attack(seed) for seed in range(2, 206)]
     decided = outcomes.count(Outcome.CERTIFIED) + outcomes.count(Outcome.INFEASIBLE)
     assert decided >= 195
 
@@ -182,7 +175,7 @@ def test_each_kind_of_limit_is_certified(kind: str, joints: int) -> None:
     assert found.gap <= 1e-6
     assert float(found.lower) <= dense_best(problem, 81) <= float(found.lower) * 1.03
     assert verify(certificate(found)).proves
-    page = (ROOT / "docs" / "certificates.md").read_text("utf-8")
+    page = (ROOT / "docs" / "explanation" / "certificates.md").read_text("utf-8")
     cells = next(line.split("|") for line in page.splitlines() if line.startswith(f"| {kind} |"))
     assert found.upper is not None
     assert float(cells[1 + joints]) == pytest.approx(float(found.upper), rel=2e-6)
@@ -248,7 +241,7 @@ def test_a_broken_row_is_caught(kinds: tuple[str, ...], monkeypatch: pytest.Monk
     problem = fixed(1) if kinds == ("place",) else far
     true = certify(problem)
 
-    def broken(problem: ExactProblem, row: Row, total: Fraction) -> Poly:
+    def broken(problem: ExactProblem, row: PieceRow, total: Fraction) -> Poly:
         return exact_row(problem, row, total * Fraction(9, 10) if row.kind in kinds else total)
 
     monkeypatch.setattr(three_piece, "exact_row", broken)

@@ -1,0 +1,122 @@
+"""What a study costs beside its runs: memory over 10,000 of them, and one worker against two.
+
+    python benchmarks/study_cost.py memory [RUNS]
+    python benchmarks/study_cost.py workers [SEEDS]
+    python benchmarks/study_cost.py overhead
+
+``memory`` prints the resident memory of the session as cheap runs pass through it. ``workers``
+compares two workers with one at the papers' budget, which needs two idle cores.
+``overhead`` sets a trial, with its row, beside the bare loop, and beside the loop with a check of
+its answer, which a trial always makes.
+"""
+
+from __future__ import annotations
+
+import resource
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from trajgap.compare.gaps import (
+    Session,
+    Store,
+    Trial,
+    export_rows,
+    on_this_machine,
+    parse_study,
+    run_study,
+    run_trial,
+    study_rows,
+)
+from trajgap.heuristics import PSO, run
+from trajgap.problem import check, load_case
+
+HEAD = """
+format = 1
+[[problems]]
+case = "puma560-mnam-pso-353"
+readings = "durations-at-least-0.3"
+coupling = "shared"
+[[optimizers]]
+"""
+
+
+def resident() -> float:
+    """Largest resident memory of this process so far, MB."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+
+
+def memory(runs: int) -> None:
+    text = f'{HEAD}name = "random"\n'.replace(
+        "format = 1", f"format = 1\nbudget = 20\nseeds = {runs}"
+    )
+    plan = parse_study(text, "memory", Path())
+    with tempfile.TemporaryDirectory() as folder, Store(Path(folder, "runs.sqlite")) as store:
+        begun = time.monotonic()
+
+        def told(session: Session) -> None:
+            if session.run in (0, 10, 100) or session.run % max(1, runs // 10) == 0:
+                rate = session.run / (time.monotonic() - begun)
+                print(
+                    f"{session.run:6} runs  {resident():7.1f} MB  {rate:6.1f} a second", flush=True
+                )
+
+        with on_this_machine(2) as engine:
+            run_study(plan, store, engine, told=told)
+        for name in ("rows.csv", "rows.parquet", "rows.ioh"):
+            print(f"{name:12}  {export_rows(study_rows(plan, store), Path(folder, name))} rows"
+                  f"  {resident():7.1f} MB")  # fmt: skip
+
+
+def workers(seeds: int) -> None:
+    text = f'{HEAD}name = "mnam-pso"\n'.replace("format = 1", f"format = 1\nseeds = {seeds}")
+    plan = parse_study(text, "workers", Path())
+    took = {}
+    for count in (1, 2, 1, 2):
+        with tempfile.TemporaryDirectory() as folder, Store(Path(folder, "runs.sqlite")) as store:
+            begun = 0.0
+
+            def told(session: Session) -> None:
+                nonlocal begun
+                # The first runs start the processes.
+                if session.run == 4:
+                    begun = time.monotonic()
+
+            with on_this_machine(count) as engine:
+                run_study(plan, store, engine, told=told)
+            rate = (seeds - 4) / (time.monotonic() - begun)
+            took.setdefault(count, []).append(rate)
+            print(f"{count} workers: {rate:.2f} runs a second", flush=True)
+    print(f"two workers: {max(took[2]) / max(took[1]):.2f} times one")
+
+
+def overhead() -> None:
+    problem = load_case("puma560-mnam-pso-353").problem(None, None, "shared")
+    algorithm = PSO(particles=30, iterations=199)
+    trial = Trial(problem, "puma", "r", "pso", settings='{"particles":30}', budget=6000)
+    calls = {
+        "bare loop": lambda: run(algorithm, problem, seed=0),
+        "and check": lambda: check(problem, run(algorithm, problem, seed=0).durations),
+        "trial": lambda: run_trial(trial),
+    }
+    best = dict.fromkeys(calls, float("inf"))
+    for _ in range(40):
+        for name, call in calls.items():
+            begun = time.process_time()
+            call()
+            best[name] = min(best[name], time.process_time() - begun)
+    for name, seconds in best.items():
+        print(f"{name:10} {1e3 * seconds:7.2f} ms")
+    for name in ("bare loop", "and check"):
+        print(f"a trial takes {100 * (best['trial'] / best[name] - 1):.1f} % more than: {name}")
+
+
+if __name__ == "__main__":
+    what, *count = sys.argv[1:]
+    if what == "memory":
+        memory(int(count[0]) if count else 10_000)
+    elif what == "workers":
+        workers(int(count[0]) if count else 200)
+    else:
+        overhead()

@@ -1,0 +1,246 @@
+"""What speaks for and against each reading beside the claims, computed; it decides no verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from math import pi
+
+import numpy as np
+
+from ....problem import Array, Measured, control_vertices, fit, from_si, to_si
+from ....problem.cases import (
+    AnyClaim,
+    AnyClue,
+    AxisClue,
+    DataSheetClue,
+    HalfTurnsClue,
+    SmoothClue,
+    Statement,
+)
+from ...documents import HeldOtherwise, ReadingClue, Speaks, Why
+from ..study import Study
+from .peaks import has_curve, largest
+from .wording import in_units, unit_shown
+
+_FILLED = 0.1
+"""Share of an axis that a curve fills at least, and of a data sheet's limits that printed ones use:
+a plot scales its axes to its curves, and nobody buys a robot ten times too fast."""
+_SAME = 1e-3
+"""Relative difference that rounding in a data sheet leaves: 3.1415 rad/s is 180 °/s."""
+_ORDERS = {"velocity": 1, "acceleration": 2, "jerk": 3}
+"""Orders of the derivatives that clues name."""
+_STEPS = 10
+"""Steps a segment on which limits held at samples only are tried: a coarse figure's."""
+
+
+def reading_clues(study: Study) -> tuple[ReadingClue, ...]:
+    """Every clue of a case under every reading that is posed.
+
+    Parameters
+    ----------
+    study : Study
+
+    Returns
+    -------
+    tuple of ReadingClue
+        By clue, then by reading.
+    """
+    return tuple(
+        found
+        for clue in study.case.clues
+        for reading in study.readings
+        for found in _under(study, clue, reading)
+    )
+
+
+def _under(study: Study, clue: AnyClue, rid: str) -> Iterator[ReadingClue]:
+    if isinstance(clue, AxisClue):
+        said = _on_axis(study, clue, rid)
+    elif isinstance(clue, DataSheetClue):
+        said = _data_sheet(study, clue, rid)
+    elif isinstance(clue, SmoothClue):
+        said = _smooth(study, clue, rid)
+    else:
+        said = _half_turns(study, clue, rid)
+    if said is not None:
+        speaks, computed = said
+        yield ReadingClue(
+            clue=clue.id,
+            where=clue.where,
+            text=clue.text,
+            reading=rid,
+            speaks=speaks,
+            computed=computed,
+        )
+
+
+_Said = tuple[Speaks, str] | None
+"""On which side a clue speaks and what was computed; None where a reading poses nothing."""
+
+
+def _motions(study: Study, names: Sequence[str], rid: str) -> list[tuple[AnyClaim, str]]:
+    """Claims with durations that define a curve under a reading, with their problems."""
+    return [
+        (claim, pid)
+        for claim in map(study.case.claim, names)
+        for pid, reading in study.claim_pairs(claim)
+        if reading == rid
+        and study.unmoved(claim, pid, rid) is None
+        and has_curve(study, claim, pid, rid)
+    ]
+
+
+def _on_axis(study: Study, clue: AxisClue, rid: str) -> _Said:
+    """The largest value of the curves that a figure shows beside the last label of its axis."""
+    tops = [
+        abs(top.value)
+        for claim, pid in _motions(study, clue.of, rid)
+        for top in largest(study, claim, pid, rid, _ORDERS[clue.quantity])
+        if clue.joint in (None, study.claim_problem(claim, pid, rid).joints[top.joint])
+    ]
+    if not tops:
+        return None
+    reach = from_si(max(tops), clue.unit)
+    labels = sorted({abs(tick.value) for tick in clue.ticks})
+    last = labels[-1]
+    # An axis may go on for less than one step beyond its last label.
+    step = max((b - a for a, b in pairwise(labels)), default=0.0)
+    beside = f"{clue.quantity} up to {reach:.3g} {_shown(clue.unit)}, last label {last:g}"
+    if reach < _FILLED * last:
+        return Speaks.AGAINST, f"{beside}: the curve would be a flat line"
+    if reach > last + step:
+        return Speaks.AGAINST, f"{beside}: the curve would leave the axis"
+    return Speaks.FOR, beside + (" of an axis that may go on for one step" if reach > last else "")
+
+
+def _shown(unit: str) -> str:
+    return unit.replace("deg", "°").replace("^2", "²").replace("^3", "³")
+
+
+def _data_sheet(study: Study, clue: DataSheetClue, rid: str) -> _Said:
+    """The printed limits of a reading over those of a data sheet, joint by joint."""
+    statement = _statement(study, rid)
+    known = [to_si(value, clue.unit) for value in clue.values]
+    given = getattr(statement.limits, clue.quantity)
+    each = list(given) if isinstance(given, tuple) else [given] * len(known)
+    pairs = [
+        (statement.si(one, clue.quantity), known[j])
+        for j, one in enumerate(each)
+        if one is not None and j in statement.joints
+    ]
+    if not pairs:
+        return None
+    if all(_alike(ours, sheet) for ours, sheet in pairs):
+        return Speaks.FOR, f"{clue.quantity} limits equal those of the data sheet"
+    ratios = [ours.value / sheet.value for ours, sheet in pairs]
+    low, high = (f"{ratio:.3g}" for ratio in (min(ratios), max(ratios)))
+    times = low if low == high else f"{low} to {high}"
+    below = all(ours.lower <= sheet.upper * (1 + _SAME) for ours, sheet in pairs)
+    within = below and min(ratios) >= _FILLED
+    speaks = Speaks.FOR if within else Speaks.AGAINST
+    return speaks, f"{clue.quantity} limits {times} times those of the data sheet"
+
+
+def _alike(one: Measured, other: Measured) -> bool:
+    slack = _SAME * other.value
+    return one.lower <= other.upper + slack and other.lower <= one.upper + slack
+
+
+def _smooth(study: Study, clue: SmoothClue, rid: str) -> _Said:
+    """How often a derivative that is said not to jump does so."""
+    motions = _motions(study, clue.of, rid)
+    if not motions:
+        return None
+    order = _ORDERS[clue.quantity]
+    jumps = [
+        (abs(jump.size), pid)
+        for claim, pid in motions
+        for jump in study.claim_check(claim, pid, rid).jumps
+        if jump.order == order
+    ]
+    if not jumps:
+        return Speaks.FOR, f"{clue.quantity} does not jump"
+    size, pid = max(jumps)
+    shown = in_units(study, pid, rid, clue.quantity, size)
+    unit = unit_shown(study, pid, rid, clue.quantity)
+    plural = "s" if len(jumps) > 1 else ""
+    return (
+        Speaks.AGAINST,
+        f"{clue.quantity} jumps {len(jumps)} time{plural}, by up to {shown:.3g} {unit}",
+    )
+
+
+def _half_turns(study: Study, clue: HalfTurnsClue, rid: str) -> _Said:
+    """How many printed angles of a joint are multiples of π within their rounding."""
+    statement = _statement(study, rid)
+    column = statement.labels.index(clue.joint)
+    printed = [row[column] for row in statement.waypoints.points]
+    angles = [statement.si(one, "position") for one in printed if one.fraction != 0]
+    if not angles:
+        return None
+    found = sum(
+        one.lower <= round(one.value / pi) * pi <= one.upper and round(one.value / pi) != 0
+        for one in angles
+    )
+    said = f"{found} of {len(angles)} angles of joint {clue.joint} other than 0 are multiples of π"
+    # By luck hardly any is: digits are finer than half turns.
+    return (Speaks.FOR if 2 * found > len(angles) else Speaks.AGAINST), said
+
+
+def _statement(study: Study, rid: str) -> Statement:
+    return study.case.statement(study.case.problems[0].id, rid)
+
+
+def held_otherwise(study: Study, claim: AnyClaim, pid: str, rid: str) -> HeldOtherwise | Why:
+    """The largest ratio to a limit if the limits were held otherwise than for all t.
+
+    Parameters
+    ----------
+    study : Study
+    claim : AnyClaim
+        With durations that define a motion.
+    pid, rid : str
+
+    Returns
+    -------
+    HeldOtherwise or Why
+    """
+    worst = study.claim_check(claim, pid, rid).worst
+    if worst is None or worst.quantity in ("curve", "duration"):
+        return Why("the printed durations define no motion whose limits are held")
+    problem = study.claim_problem(claim, pid, rid)
+    durations = study.case.claim_durations(claim, rid).value
+    trajectory = fit(problem.curve, problem.waypoints, durations)
+    limits = problem.limits.derivatives
+    places = np.linspace(0.0, 1.0, _STEPS + 1)
+    pieces = len(trajectory.breaks) - 1
+    sampled = 0.0
+    for joint in range(len(problem.joints)):
+        for order in (1, 2, 3):
+            limit = float(limits[joint, order - 1])
+            if not np.isfinite(limit) or limit <= 0:
+                continue
+            for piece in range(pieces):
+                there = trajectory.values(piece, joint, order, places)
+                sampled = max(sampled, float(np.abs(there).max()) / limit)
+    vertices: float | Why = Why("the curve has no control vertices in time")
+    declared = study.case.statement(pid, rid).declaration
+    if (declared.family, declared.time) == ("uniform-cubic-b-spline", "stretched"):
+        vertices = _on_vertices(problem.waypoints, durations, limits)
+    return HeldOtherwise(
+        everywhere=float(worst.ratio), steps=_STEPS, sampled=sampled, vertices=vertices
+    )
+
+
+def _on_vertices(waypoints: Array, durations: Array, limits: Array) -> float:
+    """Limits on the vertices of velocity and acceleration, which bound the curve from outside."""
+    vertices = control_vertices(waypoints)
+    worst = 0.0
+    for order in (1, 2):
+        found = np.abs(np.diff(vertices, order, axis=0))
+        for k, h in enumerate(durations):
+            # Segment k is made of the vertices k to k + 3.
+            ratio = found[k : k + 4 - order] / h**order / limits[:, order - 1]
+            worst = max(worst, float(ratio[:, limits[:, order - 1] > 0].max(initial=0.0)))
+    return worst

@@ -1,0 +1,107 @@
+"""TG405: what a committed study found on the comparison of two algorithms."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from ...documents import Basis, Finding
+from ..comparisons import Ablated, Comparison, Designed, Listed, comparison_of
+from ..study import Study
+
+_STRONG = 0.75
+"""Probability from which the text says that taking something away changes a run: 3 of 4 pairs."""
+
+
+def cite_comparisons(study: Study) -> Iterator[Finding]:
+    """Findings of TG405: information only, for settings, operators and seeds are not printed."""
+    for claim in study.claims:
+        known = comparison_of(study.case.id, claim.id)
+        if known is None:
+            continue
+        first = known.listed[0]
+        yield Finding(
+            rule="TG405",
+            basis=Basis.REPLAY,
+            decides=False,
+            claim=claim.id,
+            printed=known.printed,
+            computed=f"shows in {_percent(first.shown.share)} of the pairs",
+            message=" ".join(comparison_words(known)),
+        )
+
+
+def comparison_words(known: Comparison) -> Iterator[str]:
+    """What a comparison came to, in sentences."""
+    what = f"at least {100 * known.advantage:.4g} % shorter" if known.advantage else "shorter"
+    runs = known.listed[0].shown.runs
+    yield (
+        f"A committed study ran both on {known.on}, {known.budget:,} evaluations a run, "
+        f"{min(runs)} independent runs each."
+    )
+    yield (
+        f"Under the listed choices one run of {known.improved} is {what} than one of "
+        f"{known.standard} {_each(known.listed)}."
+    )
+    if known.designed:
+        pairs, typical = (sum(getattr(o, n) for o in known.designed) for n in ("pairs", "typical"))
+        best = max(known.designed, key=lambda one: one.most or 0.0)
+        yield (
+            f"With all that the text leaves open varied together, that is typical (in half of the "
+            f"pairs of runs or more) in {typical} of {pairs} pairs of settings"
+            + (f", most often with {_settings(known, best)} ({_percent(best.most)})." if best.most
+               else ".")
+        )  # fmt: skip
+    if known.ablated:
+        yield _taken_away(known.ablated)
+
+
+def _each(listed: Sequence[Listed]) -> str:
+    """Shares of the first problem and reading, one for each handling; the rest as a range."""
+    first = listed[0]
+    same = [o for o in listed if (o.problem, o.reading) == (first.problem, first.reading)]
+    told = "with probability " + "; ".join(
+        f"{_percent(one.shown.share)} ({_sure(one)}) under {one.handling}" for one in same
+    )
+    others = [one.shown.share for one in listed if one not in same and one.shown.share is not None]
+    if not others:
+        return told
+    ends = " to ".join(dict.fromkeys(_percent(end) for end in (min(others), max(others))))
+    where = "other problem or reading" if len(others) == 1 else "other problems and readings"
+    return f"{told}; under {len(others)} {where} {ends}"
+
+
+def _sure(one: Listed) -> str:
+    if one.shown.share == 0:  # resampling the same runs shows no event that none of them shows
+        return f"in none of the {one.shown.runs[0] * one.shown.runs[1]:,} pairs"
+    return f"95 % interval {_percent(one.shown.lowest)} to {_percent(one.shown.highest)}"
+
+
+def _settings(known: Comparison, best: Designed) -> str:
+    return f"{known.standard} at {best.at[0]} and {known.improved} at {best.at[1]}"
+
+
+def _taken_away(ablated: Sequence[Ablated]) -> str:
+    """What single parts of the improvement change, where its own runs are told from the others."""
+    alone = [one for one in ablated if len(one.without) == 1 and one.shown.shorter is not None]
+    parts = [
+        f"{' and '.join(one.without)} {_percent(one.shown.shorter)}"
+        + (" (it helps)" if _above(one) else " (it harms)" if _below(one) else "")
+        for one in alone
+    ]
+    return (
+        "Share of pairs in which the whole algorithm is shorter than itself without "
+        + ", ".join(parts)
+        + "."
+    )
+
+
+def _above(one: Ablated) -> bool:
+    return (one.shown.shorter or 0.0) >= _STRONG
+
+
+def _below(one: Ablated) -> bool:
+    return one.shown.shorter is not None and one.shown.shorter <= 1 - _STRONG
+
+
+def _percent(share: float | None) -> str:
+    return "an unknown share" if share is None else f"{100 * share:.3g} %"

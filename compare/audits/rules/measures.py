@@ -1,0 +1,266 @@
+"""TG208: printed means and integrals of a derivative beside those of the printed motion."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ....problem import QUANTITIES, Array, Printed, Trajectory, fit
+from ....problem.cases import AnyClaim, MeasureClaim, motions_of
+from ...documents import Basis, ClaimVerdict, Finding, Severity
+from ..study import Study
+from .peaks import has_curve, peak_numbers
+from .printed_digits import hull
+from .wording import called, in_units, unit_shown
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(10)
+"""Gauss-Legendre on -1..1: exact up to degree 19, and squares of declared polynomials have 18."""
+_PARTS = 8
+"""Parts of each piece beside its zeros: norms, and curves that are no polynomial in time, are
+smooth enough there."""
+_SAMPLES = (50, 100, 200, 500, 1000)
+"""Numbers of samples of which a paper may have taken a mean, with or without the last instant."""
+_POWERS = {"mean": (1, 0), "rms": (1, 0), "integral": (1, 1), "integral-square": (2, 1)}
+"""Powers of the derivative's unit and of time in each measure."""
+NAMES = {
+    "mean": "mean absolute value",
+    "rms": "root mean square",
+    "integral": "integral of the absolute value",
+    "integral-square": "integral of the square",
+}
+"""Each measure in words."""
+
+
+@dataclass(frozen=True)
+class MotionMeasure:
+    """A measure of each joint, and of their Euclidean norm."""
+
+    joints: Array
+    norm: float
+
+    def meant(self, joint: int | None) -> dict[str, float]:
+        """What one printed number may be, in words: that of a joint, or of the robot."""
+        if joint is not None:
+            return {"": float(self.joints[joint])}
+        if len(self.joints) == 1:
+            return {"": float(self.joints[0])}
+        return {
+            " of the norm over the joints": self.norm,
+            " of the largest joint": float(self.joints.max()),
+            " of the joints in the mean": float(self.joints.mean()),
+        }
+
+
+def measured(trajectory: Trajectory, order: int, measure: str) -> MotionMeasure:
+    """A mean or an integral of a derivative of a motion.
+
+    Of each joint it is exact up to float rounding where the pieces are polynomials in time, since
+    they are split where the derivative changes its sign.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+    order : int
+        1 for velocity, 2 for acceleration, 3 for jerk.
+    measure : str
+        A key of `NAMES`.
+
+    Returns
+    -------
+    MotionMeasure
+        rad and s.
+    """
+    first, square, norm = np.zeros(trajectory.joints), np.zeros(trajectory.joints), 0.0
+    for piece in range(len(trajectory.durations)):
+        places, shares = _nodes(trajectory, piece, order)
+        values = np.array(
+            [trajectory.values(piece, j, order, places) for j in range(trajectory.joints)]
+        )
+        first += np.abs(values) @ shares
+        square += values**2 @ shares
+        norm += float(np.linalg.norm(values, axis=0) @ shares)
+    total = float(trajectory.breaks[-1] - trajectory.breaks[0])
+    return _finished(first, square, norm, total, measure)
+
+
+def _finished(
+    first: Array, square: Array, norm: float, total: float, measure: str
+) -> MotionMeasure:
+    match measure:
+        case "mean":
+            return MotionMeasure(first / total, norm / total)
+        case "rms":
+            return MotionMeasure(np.sqrt(square / total), float(np.sqrt(square.sum() / total)))
+        case "integral":
+            return MotionMeasure(first, norm)
+    return MotionMeasure(square, float(square.sum()))
+
+
+def _nodes(trajectory: Trajectory, piece: int, order: int) -> tuple[Array, Array]:
+    """Places of a piece and the time that each stands for."""
+    cuts = [np.linspace(0.0, 1.0, _PARTS + 1)]
+    for joint in range(trajectory.joints):
+        level = np.trim_zeros(trajectory.level(piece, joint, order, 0.0), "b")
+        if level.size > 1:
+            cuts.append(np.polynomial.polynomial.polyroots(level).real)
+    ends = np.unique(np.clip(np.concatenate(cuts), 0.0, 1.0))
+    middle, half = (ends[1:] + ends[:-1]) / 2, (ends[1:] - ends[:-1]) / 2
+    places = (middle[:, None] + half[:, None] * _NODES).ravel()
+    # Time is a polynomial of degree 3 at most over a piece.
+    four = np.linspace(0.0, 1.0, 4)
+    clock = np.polynomial.Polynomial.fit(four, trajectory.times(piece, four), 3)
+    return places, (half[:, None] * _WEIGHTS).ravel() * clock.deriv()(places)
+
+
+def sampled(trajectory: Trajectory, order: int, measure: str) -> list[MotionMeasure]:
+    """The same from samples, as programs take it: one for each number of samples."""
+    start, end = trajectory.breaks[0], trajectory.breaks[-1]
+    found = []
+    for count in _SAMPLES:
+        for whole in (True, False):
+            times = np.linspace(start, end, count, endpoint=whole)
+            values = trajectory(times, order)
+            total = float(end - start)
+            first, square = (x.mean(axis=0) * total for x in (np.abs(values), values**2))
+            norm = float(np.linalg.norm(values, axis=1).mean()) * total
+            found.append(_finished(first, square, norm, total, measure))
+    return found
+
+
+@dataclass(frozen=True)
+class _Beside:
+    """A printed number beside a measure, all in the unit of the paper."""
+
+    printed: Printed
+    meaning: str
+    exact: float
+    reach: float
+    low: float
+    high: float
+
+    @property
+    def fits(self) -> str:
+        """How the two agree; empty if they do not."""
+        own = self.printed.interval
+        if float(own.lower) <= self.exact + self.reach and self.exact - self.reach <= own.upper:
+            return "equal within the rounding of the printed digits"
+        wide = hull(self.printed)
+        reach = 2 * self.reach
+        if float(wide.lower) <= self.exact + reach and self.exact - reach <= wide.upper:
+            return "as digits that are cut off instead of rounded give it"
+        if float(wide.lower) <= self.high + reach and self.low - reach <= wide.upper:
+            return f"as {_SAMPLES[0]} or more samples of the motion give it"
+        return ""
+
+
+def judge_measures(study: Study) -> Iterator[Finding]:
+    """Findings of TG208."""
+    for claim in study.claims:
+        if isinstance(claim, MeasureClaim):
+            meant = motions_of(study.case.claims, claim)
+            for motion in meant:
+                yield from _measures(study, claim, motion)
+            if not meant:
+                yield Finding(
+                    rule="TG208",
+                    basis=Basis.TEXT,
+                    claim=claim.id,
+                    message="No durations are printed of whose motion this could be measured.",
+                )
+
+
+def _measures(study: Study, claim: MeasureClaim, motion: AnyClaim) -> Iterator[Finding]:
+    for pid, rid in study.claim_pairs(motion):
+        if claim.problem not in (None, pid) or not has_curve(study, motion, pid, rid):
+            continue
+        joints = study.claim_problem(motion, pid, rid).joints
+        pairs = [(j, n) for j, n in peak_numbers(study, claim) if j is None or j in joints]
+        if not pairs:
+            continue
+        found = [
+            (joint, _beside(study, claim, number, motion, joint, pid, rid))
+            for joint, number in pairs
+        ]
+        wrong = [(joint, one) for joint, one in found if not one.fits]
+        unit = _unit(study, claim, pid, rid)
+        said = "; ".join(_said(claim, joint, one, unit) for joint, one in (wrong or found))
+        yield Finding(
+            rule="TG208",
+            severity=Severity.WARNING if wrong else Severity.INFO,
+            verdict=ClaimVerdict.INCONSISTENT if wrong else ClaimVerdict.SUPPORTED,
+            basis=Basis.CHECK,
+            claim=claim.id,
+            problem=pid,
+            reading=rid,
+            printed=", ".join(map(str, claim.printed)),
+            computed="; ".join(f"{one.exact:.6g} ± {one.reach:.1g} {unit}" for _, one in found),
+            message=f"Of the printed durations ({called(motion)}): {said}.",
+            root=f"measures of {motion.id}" if wrong else "",
+            between=(claim.id, motion.id) if wrong else (),
+        )
+
+
+def _said(claim: MeasureClaim, joint: str | None, one: _Beside, unit: str) -> str:
+    whose = one.meaning if joint is None else f" of joint {joint}"
+    exact = f"the {NAMES[claim.measure]} of {claim.derivative}{whose} is {one.exact:.6g} {unit}"
+    how = one.fits or "off by more than rounding, cut-off or sampling explain"
+    return f"{exact}, printed is {one.printed}, {how}"
+
+
+def _unit(study: Study, claim: MeasureClaim, pid: str, rid: str) -> str:
+    own, by_time = _POWERS[claim.measure]
+    unit = unit_shown(study, pid, rid, claim.derivative)
+    shown = unit if own == 1 else f"({unit})²"
+    return f"{shown}·{study.time_unit}" if by_time else shown
+
+
+def _beside(
+    study: Study,
+    claim: MeasureClaim,
+    printed: Printed,
+    motion: AnyClaim,
+    joint: str | None,
+    pid: str,
+    rid: str,
+) -> _Beside:
+    """A printed number beside the measure that it is nearest to, of those that it may be."""
+    problem = study.claim_problem(motion, pid, rid)
+    box = study.case.claim_durations(motion, rid)
+    points = study.waypoint_box(problem, pid, rid)
+    order = QUANTITIES.index(claim.derivative) + 1
+    index = None if joint is None else problem.joints.index(joint)
+    own, by_time = _POWERS[claim.measure]
+    unit = in_units(study, pid, rid, claim.derivative, 1.0) ** own
+    unit *= in_units(study, pid, rid, "time", 1.0) ** by_time
+
+    def meant(waypoints: Array, durations: Array) -> dict[str, float]:
+        trajectory = fit(problem.curve, waypoints, durations)
+        found = measured(trajectory, order, claim.measure).meant(index)
+        return {words: unit * value for words, value in found.items()}
+
+    at_print = meant(points.value, box.value)
+    reach = dict.fromkeys(at_print, 0.0)
+    moved = [(points.value, _with(box.value, k, box.upper)) for k in np.ndindex(box.value.shape)]
+    moved += [
+        (_with(points.value, k, points.upper), box.value)
+        for k in np.ndindex(points.value.shape)
+        if points.upper[k] > points.value[k]
+    ]
+    for waypoints, durations in moved:
+        for words, value in meant(waypoints, durations).items():
+            reach[words] += abs(value - at_print[words])
+    coarse = sampled(fit(problem.curve, points.value, box.value), order, claim.measure)
+    tried = []
+    for words, value in at_print.items():
+        samples = [unit * one.meant(index)[words] for one in coarse]
+        tried.append(_Beside(printed, words, value, reach[words], min(samples), max(samples)))
+    fitting = [one for one in tried if one.fits]
+    return min(fitting or tried, key=lambda one: abs(one.exact - float(printed.fraction)))
+
+
+def _with(values: Array, k: tuple[int, ...], others: Array) -> Array:
+    found = values.copy()
+    found[k] = others[k]
+    return found

@@ -1,0 +1,136 @@
+"""TG110 and TG602: what is said of the printed joints and positions, by their digits alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+from itertools import product
+from math import sqrt
+
+from ....problem import Printed
+from ....problem.cases import Cartesian, StatementClaim
+from ...documents import Basis, ClaimVerdict, Finding, Severity
+from ..study import Study
+
+
+def judge_joints(study: Study) -> Iterator[Finding]:
+    """Findings of TG110 and TG602."""
+    for claim in study.claims:
+        if isinstance(claim, StatementClaim) and claim.checks in (
+            "varies_most",
+            "varies_much",
+        ):
+            yield _varies(study, claim)
+        elif isinstance(claim, StatementClaim) and claim.checks == "above":
+            yield _above(study, claim)
+
+
+def _varies(study: Study, claim: StatementClaim) -> Finding:
+    """The joint's range beside those of the other printed joints, all in the printed unit."""
+    statement = study.case.statement(claim.problem)
+    rows = statement.waypoints.points
+    printed = {label: [row[j] for row in rows] for j, label in enumerate(statement.labels)}
+    printed |= {c.joint: list(c.values) for c in study.case.columns if c.joint is not None}
+    ranges = {label: _range(numbers) for label, numbers in printed.items() if numbers}
+    own = ranges.pop(str(claim.joint), None)
+    if own is None:
+        message = f"No angles of joint {claim.joint} are printed."
+        return Finding(rule="TG110", basis=Basis.DIGITS, claim=claim.id, message=message)
+    shown = " and ".join(
+        f"{_middle(least, most):.2f} of joint {label}" for label, (least, most) in ranges.items()
+    )
+    message = (
+        f"The printed angles of joint {claim.joint} span "
+        f"{_middle(*own):.2f}, beside {shown or 'no other joint in print'} (printed unit)."
+    )
+    chain = study.case.chain()
+    missing = [] if chain is None else [one for one in chain.labels if one not in printed]
+    several = len(missing) > 1
+    aside = (
+        f" Joint{'s' * several} {' and '.join(missing)} {'are' if several else 'is'} not printed."
+    )
+    aside = aside if missing else ""
+    if claim.checks == "varies_much":
+        # "Much" has no measure, and a joint that turns less may vary much in another sense.
+        verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
+        aside += " The text does not say how much “much” is, so nothing is decided."
+    elif any(least > own[1] for least, _ in ranges.values()):
+        more = [label for label, (least, _) in ranges.items() if least > own[1]]
+        plural = "s" if len(more) > 1 else ""
+        verdict, severity = ClaimVerdict.INCONSISTENT, Severity.WARNING
+        message += f" Joint{plural} {', '.join(more)} var{'y' if plural else 'ies'} more."
+    elif missing or not ranges or any(most > own[0] for _, most in ranges.values()):
+        verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
+    else:
+        verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
+    return Finding(
+        rule="TG110",
+        severity=severity,
+        verdict=verdict,
+        basis=Basis.DIGITS,
+        claim=claim.id,
+        computed=f"{_middle(*own):.2f} in the printed unit",
+        message=message + aside,
+    )
+
+
+def _range(numbers: list[Printed]) -> tuple[Fraction, Fraction]:
+    """Least and largest range of all values that round to the digits."""
+    intervals = [n.interval for n in numbers]
+    high = max(i.upper for i in intervals) - min(i.lower for i in intervals)
+    low = max(i.lower for i in intervals) - min(i.upper for i in intervals)
+    return max(low, Fraction(0)), high
+
+
+def _middle(low: Fraction, high: Fraction) -> float:
+    return float(low + high) / 2
+
+
+def _above(study: Study, claim: StatementClaim) -> Finding:
+    """How far one position stands beside another in the horizontal plane, and how far above it.
+
+    Signs are often lost in print and in extraction, so that no sign alone decides.
+    """
+    by_id = {place.id: place for place in study.case.cartesian}
+    upper, lower = (by_id[name] for name in claim.positions)
+    beside = _beside(upper, lower)
+    rise = upper.values[2].interval
+    floor = lower.values[2].interval
+    names = f"{upper.label or upper.id} stands {{}} {upper.unit} beside {lower.label or lower.id}"
+    height = float(upper.values[2].fraction - lower.values[2].fraction)
+    message = f"{names.format(f'{beside[0]:.4g}')} and {height:.4g} {upper.unit} above it."
+    if _meets(upper, lower) and rise.lower > floor.upper:
+        return _told(claim, ClaimVerdict.SUPPORTED, message)
+    least = min(_beside(upper, lower, signs) for signs in product((1, -1), repeat=2))
+    if least[0] < beside[0]:
+        message += (
+            f" With another sign of {' and '.join(least[1])} it would be {least[0]:.4g} "
+            f"{upper.unit}; signs may be lost in the text, so that nothing is decided."
+        )
+    return _told(claim, ClaimVerdict.NOT_CHECKABLE, message)
+
+
+def _told(claim: StatementClaim, verdict: ClaimVerdict, message: str) -> Finding:
+    return Finding(
+        rule="TG602", verdict=verdict, basis=Basis.DIGITS, claim=claim.id, message=message
+    )
+
+
+def _meets(one: Cartesian, other: Cartesian) -> bool:
+    pairs = zip(one.values[:2], other.values[:2], strict=True)
+    return all(
+        a.interval.lower <= b.interval.upper and b.interval.lower <= a.interval.upper
+        for a, b in pairs
+    )
+
+
+def _beside(
+    one: Cartesian, other: Cartesian, signs: tuple[int, ...] = (1, 1)
+) -> tuple[float, tuple[str, ...]]:
+    """Distance in the plane with other signs of one position, and the coordinates changed."""
+    away = [
+        sign * a.value - b.value
+        for sign, a, b in zip(signs, one.values[:2], other.values[:2], strict=True)
+    ]
+    changed = tuple(name for name, sign in zip("xy", signs, strict=True) if sign < 0)
+    return sqrt(sum(x * x for x in away)), changed

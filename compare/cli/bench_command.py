@@ -1,0 +1,87 @@
+"""What the command `bench` takes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from .options import MOST, ProblemId
+
+
+def bench(
+    case: Annotated[
+        str,
+        typer.Argument(
+            metavar="CASE|FILE|SUITE",
+            help="Id of a published case, a case file, suite:NAME, several as suite:A,B or "
+            "suite:353-*, or suite for all.",
+        ),
+    ],
+    optimizer: Annotated[
+        list[str],
+        typer.Option(
+            metavar="A,B,...",
+            help="The papers' pso, mnam-pso, ga, woa..., or scipy:differential_evolution, "
+            "mealpy:OriginalWOA, pymoo:DE, pygmo:sade, cma, or your own module:function.",
+        ),
+    ],
+    settings: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="NAME=JSON",
+            help="Settings of an optimiser: pso='{\"particles\": 20}'. Else the paper's.",
+        ),
+    ] = None,
+    problem: ProblemId = None,
+    reading: Annotated[
+        str | None,
+        typer.Option("--reading", metavar="ID", help="Under this reading, not the default one."),
+    ] = None,
+    seeds: Annotated[int, typer.Option(min=1, max=MOST, help="Runs of each optimiser.")] = 30,
+    budget: Annotated[int, typer.Option(min=1, max=10**7, help="Evaluations of each run.")] = 6000,
+    handling: Annotated[
+        str,
+        typer.Option(
+            metavar="death-penalty|stretch|rescale",
+            help="What happens to durations that break a limit.",
+        ),
+    ] = "death-penalty",
+    baselines: Annotated[
+        bool,
+        typer.Option(help="Random search, equal durations, local searches, CMA-ES with repair."),
+    ] = True,
+    seconds: Annotated[
+        float, typer.Option("--time", metavar="SECONDS", min=0.001, help="Limit of each run.")
+    ] = 300.0,
+    workers: Annotated[
+        int, typer.Option(min=1, max=MOST, help="Processes; the rows do not depend on it.")
+    ] = 1,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print JSON; write a page only where --out says.")
+    ] = False,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FOLDER",
+            help="Where the page goes: a new or an empty folder, or that of an earlier bench.",
+            show_default="trajgap-bench",
+        ),
+    ] = None,
+    store: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="Keep every run in this file as it ends; what it holds is not run again.",
+        ),
+    ] = None,
+) -> int:
+    """Show how far optimisers end from the optimum of a case or suite."""
+    from .benching import bench_case
+
+    return bench_case(
+        case, optimizer, settings or [], problem, reading, seeds, budget, handling, baselines,
+        seconds, workers, as_json, out, store,
+    )  # fmt: skip

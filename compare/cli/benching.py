@@ -1,0 +1,217 @@
+"""The command `bench`: optimisers on a case or on instances of the suite, against the optimum."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from rich.console import RenderableType
+
+from ...heuristics import KINDS
+from ...nlp import Evidence, Solution, solve, stated_exactly, with_certificate
+from ...problem import Case, CaseError, Coupling, TrajgapError
+from ...problem.cases import SUITE_PREFIX
+from ...problem.suite import instance_of, select_instances
+from ..documents import (
+    BENCH_COLUMNS,
+    OVERALL_COLUMNS,
+    BenchDocument,
+    BenchResult,
+    Reference,
+    bench_cells,
+    known,
+    overall_cells,
+)
+from ..gaps import (
+    BenchPlan,
+    Runs,
+    Store,
+    measure_gaps,
+    on_this_machine,
+    plan_bench,
+    run_bench,
+)
+from ..pages import bench_document, check_bench_folder, most_solved, optimum_said, write_bench
+from .input import Posed, naming, read_case, select
+from .output import emit, progress, say
+from .table import Columns, line
+
+_ONE_BY_ONE = 6
+"""Problems up to which each has a table of its own on the terminal; the page and JSON have all."""
+BENCH_FOLDER = Path("trajgap-bench")
+"""Where the page goes, unless the command line says otherwise."""
+
+
+def bench_case(
+    source: str,
+    optimizers: Sequence[str],
+    settings: Sequence[str],
+    problem: str | None,
+    reading: str | None,
+    seeds: int,
+    budget: int,
+    handling: str,
+    baselines: bool,
+    seconds: float,
+    workers: int,
+    as_json: bool,
+    out: Path | None,
+    store: Path | None,
+) -> int:
+    """Bench optimisers on each selected problem; under the default reading unless one is named."""
+    cases = _cases(source)
+    folder = out if out is not None or as_json else BENCH_FOLDER
+    if folder is not None:
+        check_bench_folder(folder)
+    chosen = [name for text in optimizers for name in text.split(",") if name]
+    set_here = _settings(settings)
+    asked = []
+    for case in cases:
+        own = _own(case, chosen)
+        settled = own | {name: {**own.get(name, {}), **told} for name, told in set_here.items()}
+        with naming(case.file):
+            for one in select(case, problem, reading or case.default_reading.id, "shared"):
+                plan = plan_bench(
+                    one.problem,
+                    chosen,
+                    seeds=seeds,
+                    budget=budget,
+                    handling=handling,
+                    settings=settled,
+                    baselines=baselines,
+                    name=case.id if len(cases) > 1 else f"{case.id}/{one.problem_id}",
+                    reading="" if len(cases) > 1 else one.reading_id,
+                    seconds=seconds,
+                )
+                asked.append(_Asked(case, one, _coupling_said(case, one, plan)))
+    results = _run(asked, workers, store)
+    if folder is not None:
+        write_bench(results, folder)
+    emit(bench_document(results), _tables, as_json)
+    if folder is not None and not as_json:
+        say(f"page: {folder / 'index.html'}\n")
+    return 0
+
+
+def _cases(source: str) -> list[Case]:
+    """One case, or the instances of the suite that are named."""
+    word = SUITE_PREFIX.rstrip(":")
+    several = source == word or (
+        source.startswith(SUITE_PREFIX) and any(sign in source for sign in ",*?[")
+    )
+    return [one.case() for one in select_instances(source)] if several else [read_case(source)]
+
+
+def _settings(texts: Sequence[str]) -> dict[str, dict[str, Any]]:
+    """Settings given as ``NAME={"key": value}``."""
+    found = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        try:
+            told = json.loads(value) if equals else None
+        except ValueError:
+            told = None
+        if not isinstance(told, dict):
+            raise CaseError(
+                "--set", "", f'{text!r} is not NAME={{"setting": value}}; give JSON after the ='
+            )
+        found[name] = told
+    return found
+
+
+def _own(case: Case, chosen: Sequence[str]) -> dict[str, dict[str, Any]]:
+    """Settings of the paper's own algorithms; the budget takes the place of its iterations."""
+    found: dict[str, dict[str, Any]] = {}
+    for block in case.algorithms:
+        if block.kind in chosen and block.kind in KINDS:
+            told = {k: v for k, v in block.parameters.items() if k != "iterations"}
+            # An infinite penalty is every algorithm's default, and JSON knows no infinity.
+            found[block.kind] = {
+                k: v for k, v in told.items() if not (isinstance(v, float) and math.isinf(v))
+            }
+    return found
+
+
+def _coupling_said(case: Case, one: Posed, plan: BenchPlan) -> BenchPlan:
+    stated = case.problem(one.problem_id, one.reading_id).coupling
+    if stated is Coupling.SHARED or len(one.problem.joints) == 1:
+        return plan
+    note = "The case searches each joint by itself; here all joints share their durations."
+    return replace(plan, notes=(note, *plan.notes))
+
+
+@dataclass(frozen=True, eq=False)
+class _Asked:
+    """One problem with its runs, before they are made."""
+
+    case: Case
+    posed: Posed
+    plan: BenchPlan
+
+
+def _run(
+    asked: Sequence[_Asked], workers: int, kept: Path | None
+) -> list[tuple[BenchResult, Runs]]:
+    results = []
+    with progress("solve", len(asked)) as solving:
+        optima = []
+        for one in asked:
+            solving(f"the optimum of {one.case.id}, {one.posed.problem_id}, {one.posed.reading_id}")
+            with naming(one.case.file):
+                optima.append(_optimum(one.case, one.posed))
+    with ExitStack() as stack:
+        store = None if kept is None else stack.enter_context(Store(kept))
+        engine = stack.enter_context(on_this_machine(workers))
+        total = sum(len(one.plan.trials) for one in asked)
+        step = stack.enter_context(progress("first runs", total, rate=True))
+        for one, optimum in zip(asked, optima, strict=True):
+            with naming(one.case.file):
+                runs = run_bench(one.plan, engine, lambda row: step.done(row.optimizer), store)
+                results.append((measure_gaps(runs, optimum), runs))
+    return results
+
+
+def _optimum(case: Case, one: Posed) -> Solution | Reference:
+    """What the suite knows of its own; else solved, certified where a certificate is shipped."""
+    instance = instance_of(case)
+    if instance is not None:
+        lower = known(instance.lower or None, "no lower bound is proved")
+        evidence = Evidence(str(instance.evidence))
+        return Reference(upper=instance.upper, lower=lower, evidence=evidence)
+    answer = solve(one.problem)
+    exact = stated_exactly(case.statement(one.problem_id, one.reading_id))
+    answer = with_certificate(answer, exact)
+    if not 0 < answer.best < math.inf:
+        why = answer.why or str(answer.status)
+        raise TrajgapError(
+            f"{case.file}: {one.problem_id}, {one.reading_id}: no positive optimum to measure gaps "
+            f"against ({why})"
+        )
+    return answer
+
+
+def _tables(document: BenchDocument) -> list[RenderableType]:
+    parts: list[RenderableType] = []
+    if document.overall:
+        parts += [line(most_solved(document.overall)), line("")]
+        columns = tuple(f">{name}" if i else name for i, name in enumerate(OVERALL_COLUMNS))
+        parts.append(Columns(columns, [overall_cells(one) for one in document.overall]))
+        parts.append(line(""))
+    for result in document.results if len(document.results) <= _ONE_BY_ONE else ():
+        parts.append(line(result.title, "bold"))
+        parts.append(line(result.verdict))
+        parts += [line(optimum_said(result.optimum)), line("")]
+        columns = tuple(f">{name}" if i else name for i, name in enumerate(BENCH_COLUMNS))
+        parts.append(Columns(columns, [bench_cells(one) for one in result.standings]))
+        parts += [
+            line(f"{one.optimizer}: {message}", "yellow")
+            for one in result.standings
+            for message in one.messages
+        ]
+        parts += [line(note, "dim") for note in result.notes]
+    return parts

@@ -1,0 +1,83 @@
+"""The command `explain`: a rule with an example, or a word of the reports."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from difflib import get_close_matches
+from pathlib import Path
+
+from rich.console import RenderableType
+
+from ...problem import CaseError
+from ..audits import EXPLAINED, RULES
+from ..documents import ExplainDocument, ExplainedRule, ExplainedWord, json_text
+from ..pages import word_groups
+from .output import emit, new_output
+from .table import Columns, line
+
+
+def explain(asked: Sequence[str], as_json: bool, out: Path | None) -> int:
+    """Explain rules and words; without any, list what can be explained."""
+    with new_output(out) as write:
+        document = _document(asked)
+        write(json_text(document))
+    emit(document, _in_full if asked else _listed, as_json)
+    return 0
+
+
+def _document(asked: Sequence[str]) -> ExplainDocument:
+    """Document of `explain`: what is asked for, or everything."""
+    rules, words = tuple(_rules()), tuple(_words())
+    if not asked:
+        return ExplainDocument(rules=rules, words=words)
+    wanted = [" ".join(one.split()).casefold() for one in asked]
+    names = (*(one.id for one in rules), *(one.word for one in words))
+    known = {name.casefold(): name for name in names}
+    for one, said in zip(wanted, asked, strict=True):
+        if one not in known:
+            near = get_close_matches(one, known, n=1)
+            meant = f"did you mean {known[near[0]]!r}?" if near else "`trajgap explain` lists all"
+            raise CaseError(repr(said), "", f"is no rule and no word of the reports; {meant}")
+    return ExplainDocument(
+        rules=tuple(one for one in rules if one.id.casefold() in wanted),
+        words=tuple(one for one in words if one.word.casefold() in wanted),
+    )
+
+
+def _rules() -> Iterator[ExplainedRule]:
+    for rule in RULES:
+        told = EXPLAINED[rule.id]
+        yield ExplainedRule(
+            id=rule.id,
+            title=rule.title,
+            asks=told.asks,
+            concludes=told.concludes,
+            example=told.example,
+        )
+
+
+def _words() -> Iterator[ExplainedWord]:
+    for about, group in word_groups():
+        for word, meaning in group.items():
+            yield ExplainedWord(word=word, about=about, meaning=meaning)
+
+
+def _in_full(document: ExplainDocument) -> list[RenderableType]:
+    parts: list[RenderableType] = []
+    for rule in document.rules:
+        parts += [
+            line(f"{rule.id}: {rule.title}", "bold"),
+            line(rule.asks),
+            line(f"What it may say: {rule.concludes}"),
+            line(f"Example: {rule.example}"),
+            line(""),
+        ]
+    for one in document.words:
+        parts += [line(f"{one.word} ({one.about})", "bold"), line(one.meaning), line("")]
+    return parts[:-1]
+
+
+def _listed(document: ExplainDocument) -> list[RenderableType]:
+    rows = [(rule.id, rule.title) for rule in document.rules]
+    words = ", ".join(dict.fromkeys(one.word for one in document.words))
+    return [Columns(("rule", "~looks at"), rows), line(""), line(f"Words: {words}.")]

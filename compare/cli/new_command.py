@@ -1,0 +1,62 @@
+"""What the command `new` takes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from .options import LIMIT
+
+
+def new(
+    out: Annotated[Path, typer.Argument(metavar="OUT.toml", help="New case file.")],
+    table: Annotated[
+        Path,
+        typer.Option(
+            "--from", metavar="TABLE.csv", help="One way-point a row, one joint a column."
+        ),
+    ],
+    position_unit: Annotated[str | None, typer.Option(metavar="rad|deg")] = None,
+    velocity: Annotated[str | None, typer.Option(help=LIMIT)] = None,
+    velocity_unit: Annotated[str | None, typer.Option(metavar="rad/s|deg/s")] = None,
+    acceleration: Annotated[str | None, typer.Option(help=LIMIT)] = None,
+    acceleration_unit: Annotated[str | None, typer.Option(metavar="rad/s^2|deg/s^2")] = None,
+    jerk: Annotated[str | None, typer.Option(help=LIMIT)] = None,
+    jerk_unit: Annotated[str | None, typer.Option(metavar="rad/s^3|deg/s^3")] = None,
+    time_unit: Annotated[str | None, typer.Option(metavar="s|ms")] = None,
+    case_id: Annotated[
+        str | None, typer.Option("--id", help="Id of the case.", show_default="the name of OUT")
+    ] = None,
+    family: Annotated[
+        str | None,
+        typer.Option(
+            help="Curve, as case files or the literature name it: 3-5-3, 4-3-4, natural-cubic, "
+            "cubic-b-spline, quintic-b-spline, quintic-polynomials...",
+            show_default="3-5-3 for four way-points, else a cubic spline",
+        ),
+    ] = None,
+    degree: Annotated[int | None, typer.Option(help="Of a curve that needs one.")] = None,
+    durations: Annotated[
+        str | None,
+        typer.Option(metavar="H1,H2,...", help="Printed durations of the segments: a claim."),
+    ] = None,
+    total: Annotated[str | None, typer.Option(help="Printed total time: a claim.")] = None,
+) -> int:
+    """Start a case file from a table of way-points.
+
+    Units that are not given are asked for.
+    """
+    from .scaffolding import new_case
+
+    units = {
+        "position": position_unit,
+        "velocity": velocity_unit,
+        "acceleration": acceleration_unit,
+        "jerk": jerk_unit,
+        "time": time_unit,
+    }
+    limits = {"velocity": velocity, "acceleration": acceleration, "jerk": jerk}
+    new_case(out, table, units, limits, case_id, family, degree, durations, total)
+    return 0

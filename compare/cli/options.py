@@ -1,0 +1,66 @@
+"""Arguments and options that several commands share, and what every help text ends with."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+LIMIT = "Limit of every joint, or one for each with commas between."
+"""Help of the three options of `new` that take limits."""
+ENDS = """\b
+Exit codes:
+  0    done
+  1    audit --strict, and a finding has severity error; verify, and a file is refused;
+       case diff, and the files differ; check --strict, and a motion does not pass
+  2    bad input; one line on standard error says how to fix it
+  3    solve --certify, and an interval is wider than asked for or nothing is proved
+  70   a fault of trajgap itself
+  130  interrupted
+"""
+"""What every command's --help ends with."""
+
+MOST = 10_000
+"""Largest number of starts, seeds and workers: what they make is kept in memory."""
+
+# Arguments and options that several commands share.
+Source = Annotated[
+    str,
+    typer.Argument(metavar="CASE|FILE", help="Id of a published case, suite:NAME, or a case file."),
+]
+AsJson = Annotated[
+    bool, typer.Option("--json", help="Print JSON (see docs/reference/command-line.md).")
+]
+Out = Annotated[
+    Path | None, typer.Option(metavar="FILE", help="Also write the JSON to this new file.")
+]
+ProblemId = Annotated[
+    str | None, typer.Option("--problem", metavar="ID", help="Only this problem of the case.")
+]
+ReadingId = Annotated[
+    str | None, typer.Option("--reading", metavar="ID", help="Only this reading of the case.")
+]
+Coupled = Annotated[
+    str | None,
+    typer.Option(
+        "--coupling", metavar="shared|per-joint", help="Instead of what the case file says."
+    ),
+]
+Workers = Annotated[
+    int,
+    typer.Option(
+        min=1,
+        max=MOST,
+        help="Processes for the replays; the result does not depend on it. Starting one takes "
+        "longer than a few dozen short replays.",
+    ),
+]
+Crate = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FILE.zip",
+        help="Also write an RO-Crate to this new file: case files, pages, JSON, certificates "
+        "and environment, for an archive.",
+    ),
+]

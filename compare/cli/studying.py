@@ -1,0 +1,197 @@
+"""The command `study`: many runs, each stored as it ends, and what they came to."""
+
+from __future__ import annotations
+
+import json
+import os
+import shlex
+import signal
+import sys
+import threading
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager
+from datetime import timedelta
+from itertools import groupby
+from math import inf
+from pathlib import Path
+from statistics import median
+
+from rich.console import RenderableType
+
+from ...problem import CaseError
+from ..gaps import (
+    Engine,
+    Row,
+    RowStatus,
+    Store,
+    StudyPlan,
+    StudySession,
+    check_export,
+    export_rows,
+    load_study,
+    on_dask,
+    on_this_machine,
+    run_study,
+    study_rows,
+)
+from .interrupt import INTERRUPTED
+from .output import progress, rendered, say
+from .table import Columns, line
+
+_ENDING = ".sqlite"
+"""Of the store beside a study file."""
+_MESSAGES = 5
+"""Different messages of failed runs that are printed: the store and the exports have all."""
+
+
+def conduct(
+    file: Path,
+    store: Path | None,
+    workers: int | None,
+    dask: str | None,
+    exports: Sequence[Path],
+    retry: bool,
+) -> int:
+    """Run what is left of a study, export its rows, and say what they came to."""
+    path = store or file.with_suffix(_ENDING)
+    if path == file:
+        raise CaseError(str(path), "--store", "is the study file itself; name another")
+    for one in exports:
+        check_export(one)
+        if exports.count(one) > 1:
+            raise CaseError(str(one), "--export", "is named twice; name it once")
+    plan = load_study(file)
+    again = ["trajgap", "study", str(file), *([] if store is None else ["--store", str(store)])]
+    with Store(path) as kept:
+        session = StudySession(total=len(plan), resumed=0)
+        try:
+            with _engine(workers, dask) as engine, progress("study", len(plan)) as step:
+                begun = time.monotonic()
+
+                def told(now: StudySession) -> None:
+                    nonlocal session
+                    session = now
+                    step(_going(now, time.monotonic() - begun))
+
+                step("the optima that gaps are set against")
+                with _interruptible():
+                    session = run_study(plan, kept, engine, retry=retry, told=told)
+        except KeyboardInterrupt:
+            print(f"\ntrajgap: {_interrupted(session, again)}", file=sys.stderr)
+            return INTERRUPTED
+        for one in exports:
+            export_rows(study_rows(plan, kept), one)
+        say(rendered(_summary(plan, kept, session, path, exports, again)))
+    return 0
+
+
+def _engine(workers: int | None, dask: str | None) -> AbstractContextManager[Engine]:
+    return on_dask(dask) if dask is not None else on_this_machine(workers or os.cpu_count() or 1)
+
+
+@contextmanager
+def _interruptible() -> Iterator[None]:
+    """Let Ctrl-C end the session with its tally, instead of the program at once."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        yield
+    except KeyboardInterrupt:
+        # What follows only ends processes; a second Ctrl-C would say the same again.
+        before = signal.SIG_IGN
+        raise
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def _going(now: StudySession, seconds: float) -> str:
+    done = now.resumed + now.run
+    words = f"{done:,} of {now.total:,} runs"
+    if now.run and seconds:
+        rate = now.run / seconds
+        left = timedelta(seconds=round(now.left / rate))
+        words += f", {rate:.3g} a second, {left} left"
+    return words + (f", {now.failed:,} failed" if now.failed else "")
+
+
+def _interrupted(session: StudySession, again: Sequence[str]) -> str:
+    done = session.resumed + session.run
+    return (
+        f"interrupted; {done:,} of {session.total:,} runs are stored, "
+        f"`{shlex.join(again)}` goes on from there"
+    )
+
+
+def _summary(
+    plan: StudyPlan,
+    kept: Store,
+    session: StudySession,
+    path: Path,
+    exports: Sequence[Path],
+    again: Sequence[str],
+) -> list[RenderableType]:
+    rows, messages, failed = [], dict[str, int](), 0
+    for (problem, reading, optimizer, settings, handling), group in groupby(
+        study_rows(plan, kept), _named
+    ):
+        runs = list(group)
+        bad = [row.message for row in runs if row.status is RowStatus.FAILED]
+        for message in bad:
+            messages[message] = messages.get(message, 0) + 1
+        failed += len(bad)
+        passed = sum(row.feasible for row in runs)
+        rows.append(
+            (problem, reading, optimizer, _readable(settings), handling, len(runs), len(bad),
+             passed, *_gaps(runs))
+        )  # fmt: skip
+    notes = dict.fromkeys(
+        f"{posed.name}, {posed.reading}: {note}" for posed in plan.problems for note in posed.notes
+    )
+    parts: list[RenderableType] = [
+        line(f"{path}: {session.run:,} runs done now, {session.resumed:,} were there", "bold"),
+        Columns(
+            ("problem", "reading", "optimiser", "~settings", "handling", ">runs", ">failed",
+             ">feasible", ">best gap %", ">median gap %"),
+            rows,
+        ),
+        line("A gap is that of the feasible time, (T − U)/U against the best known total U."),
+    ]  # fmt: skip
+    parts += [line(note) for note in notes]
+    for message, count in sorted(messages.items(), key=lambda one: -one[1])[:_MESSAGES]:
+        parts.append(line(f"failed, {count:,} times: {message}", "yellow"))
+    if len(messages) > _MESSAGES:
+        parts.append(line(f"and {len(messages) - _MESSAGES:,} other messages, in the exports"))
+    if session.run:
+        parts.append(line(f"{session.seconds / session.run:.3g} s a run", "dim"))
+    parts += [line(f"written: {one}") for one in exports]
+    if failed:
+        parts.append(line(f"run the failed ones again: {shlex.join([*again, '--retry'])}"))
+    if not exports:
+        name = f"{Path(plan.file).stem}.csv"
+        parts.append(line(f"next: {shlex.join([*again, '--export', name])}"))
+    return parts
+
+
+def _named(row: Row) -> tuple[str, str, str, str, str]:
+    return row.problem, row.reading, row.optimizer, row.settings, row.handling
+
+
+def _readable(settings: str) -> str:
+    """Settings of a row, which are JSON, in words that a narrow column can break between."""
+    each = json.loads(settings)
+    return ", ".join(f"{name} {json.dumps(value)}" for name, value in each.items()) or "its own"
+
+
+def _gaps(runs: Sequence[Row]) -> tuple[str, str]:
+    """Least and median gap in percent; a run without a feasible time counts as infinite."""
+    if all(row.reference_upper is None for row in runs):
+        return "no optimum", ""
+    found = [inf if row.feasible_gap is None else row.feasible_gap[0] for row in runs]
+    return _percent(min(found)), _percent(median(found))
+
+
+def _percent(gap: float) -> str:
+    return "none" if gap == inf else f"{100 * gap:+.3g}"

@@ -1,0 +1,238 @@
+"""What `bench` answers: how far each optimiser ends from the optimum, and how often."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .entry import Count, Document, Entry, OrWhy, Real, Why
+from .finding import Reference
+
+
+class TargetReached(Entry):
+    """How often and how soon the runs of an optimiser come within a gap of the optimum."""
+
+    gap: float
+    """Relative, above the upper end of the optimum."""
+    reached: Count
+    """Runs that come within it."""
+    rate: float
+    rate_lowest: float
+    rate_highest: float
+    """95 % interval of the rate (Wilson)."""
+    evaluations: OrWhy[float]
+    """Expected running time: all evaluations over the number of runs that reach the gap."""
+    evaluations_lowest: OrWhy[float]
+    evaluations_highest: OrWhy[float]
+    """95 % interval, by resampling runs; unbounded where samples hold no run that reaches it."""
+
+
+class Standing(Entry):
+    """Where the runs of one optimiser end."""
+
+    optimizer: str
+    """Its name in the tables: with its handling if that is another than was asked for."""
+    handling: str
+    """What happened to vectors that break a limit."""
+    settings: str
+    """As JSON; what is not in it has its default."""
+    runs: Count
+    failed: Count
+    """Runs that raised, hung or broke the rules; they count as runs without an answer."""
+    messages: tuple[str, ...]
+    """Why runs failed or have no feasible answer, each reason once with its number of runs."""
+    feasible: Count
+    """Runs whose answer passes `check`."""
+    best: OrWhy[float]
+    """Relative gap of the shortest answer to the upper end of the optimum; never clipped."""
+    lower_quartile: OrWhy[float]
+    median: OrWhy[float]
+    upper_quartile: OrWhy[float]
+    """Gaps of a quarter, half and three quarters of all runs; none if as many have no answer."""
+    median_total: OrWhy[float]
+    """s"""
+    median_highest: OrWhy[float]
+    """The median gap against the certified lower end of the optimum."""
+    evaluations: float
+    """Median number of evaluations."""
+    targets: tuple[TargetReached, ...]
+
+
+class PairCompared(Entry):
+    """Two optimisers, run against run."""
+
+    first: str
+    second: str
+    first_shorter: float
+    """Share of pairs of runs in which the first ends shorter."""
+    equal: float
+    """Share in which they tie: within the checker's tolerance, or both without an answer."""
+    vargha_delaney: float
+    """Probability that a run of the first is shorter, a tie counting half."""
+    lowest: float
+    highest: float
+    """95 % interval of it, by resampling runs."""
+    p_value: Real
+    """Of Mann and Whitney's test for independent samples, after Holm's correction."""
+
+
+class BenchResult(Entry):
+    """Optimisers on one problem under one reading."""
+
+    problem: str
+    """As rows call it: the case and its problem."""
+    reading: str
+    budget: Count
+    """Evaluations of each run."""
+    seeds: Count
+    optimum: Reference
+    notes: tuple[str, ...]
+    """What was chosen so that the optimisers could run."""
+    standings: tuple[Standing, ...]
+    """The smallest median gap first."""
+    pairs: tuple[PairCompared, ...]
+
+    @property
+    def title(self) -> str:
+        """The problem, with its reading where it has several."""
+        return ", ".join(part for part in (self.problem, self.reading) if part)
+
+    @property
+    def verdict(self) -> str:
+        """Which optimiser is closest, in a sentence."""
+        return closest(self.standings)
+
+    def __str__(self) -> str:
+        table = [BENCH_COLUMNS, *(bench_cells(one) for one in self.standings)]
+        widths = [max(map(len, column)) for column in zip(*table, strict=True)]
+        lines = [
+            "  ".join(
+                cell.ljust(width) if i == 0 else cell.rjust(width)
+                for i, (cell, width) in enumerate(zip(row, widths, strict=True))
+            ).rstrip()
+            for row in table
+        ]
+        said = [f"{one.optimizer}: {message}" for one in self.standings for message in one.messages]
+        return "\n".join([self.verdict, "", *lines, *said, *self.notes])
+
+
+class OverallTarget(Entry):
+    """How often an optimiser comes within a gap, over all problems of a bench."""
+
+    gap: float
+    """Relative, above the upper end of each optimum."""
+    rate: float
+    """Mean over the problems of the share of runs that come within it."""
+    solved: Count
+    """Problems on which half of the runs or more do."""
+
+
+class OverallStanding(Entry):
+    """One optimiser over all problems of a bench, each counting alike."""
+
+    optimizer: str
+    problems: Count
+    first: Count
+    """Problems on which no other optimiser has a smaller median gap; ties count for each."""
+    median: OrWhy[float]
+    """Median over the problems of the median gap."""
+    worst: OrWhy[float]
+    """Largest median gap; none if half of the runs have no answer on some problem."""
+    failed: Count
+    """Runs that failed."""
+    targets: tuple[OverallTarget, ...]
+
+
+class BenchDocument(Document):
+    """What `trajgap bench --json` prints."""
+
+    results: tuple[BenchResult, ...]
+    overall: tuple[OverallStanding, ...] = ()
+    """Over all problems, the largest share of runs within 1 % first; empty for one problem."""
+
+
+OVERALL_COLUMNS = (
+    "optimizer", "median of median gaps", "worst", "first on", "runs ≤ 1 %", "runs ≤ 0.01 %",
+    "solved to 1 %", "solved to 0.01 %",
+)  # fmt: skip
+"""What a table says of each optimiser over all problems."""
+
+
+def overall_cells(standing: OverallStanding) -> tuple[str, ...]:
+    """The row of an optimiser over all problems, as `OVERALL_COLUMNS`."""
+    shown = [t for t in standing.targets if t.gap in _SHOWN]
+    return (
+        standing.optimizer,
+        gap_cell(standing.median),
+        gap_cell(standing.worst),
+        str(standing.first),
+        *(f"{100 * target.rate:.0f} %" for target in shown),
+        *(f"{target.solved} of {standing.problems}" for target in shown),
+    )
+
+
+BENCH_COLUMNS = (
+    "optimizer", "median gap", "quartiles", "best", "feasible", "≤ 1 %", "≤ 0.01 %",
+    "evaluations to 1 %", "evaluations to 0.01 %",
+)  # fmt: skip
+"""What a table says of each optimiser. Of the five targets two are shown: what a paper's digits can
+tell apart, and what they cannot; the JSON has all."""
+
+
+def bench_cells(standing: Standing) -> tuple[str, ...]:
+    """The row of an optimiser in a table, as `BENCH_COLUMNS`."""
+    shown = [t for t in standing.targets if t.gap in _SHOWN]
+    return (
+        standing.optimizer,
+        gap_cell(standing.median),
+        f"{gap_cell(standing.lower_quartile)} to {gap_cell(standing.upper_quartile)}",
+        gap_cell(standing.best),
+        f"{standing.feasible} of {standing.runs}",
+        *(f"{100 * target.rate:.0f} %" for target in shown),
+        *(_evaluations(target) for target in shown),
+    )
+
+
+_SHOWN = (0.01, 1e-4)
+"""Gaps of the targets in a table."""
+
+
+def gap_cell(gap: float | Why) -> str:
+    """A gap in a table."""
+    return "none" if isinstance(gap, Why) else percent(gap)
+
+
+def _evaluations(target: TargetReached) -> str:
+    """Expected evaluations with their interval; an end without bound is ∞."""
+    ends = (target.evaluations_lowest, target.evaluations_highest)
+    if isinstance(target.evaluations, Why):
+        return "never"
+    low, high = ("∞" if isinstance(end, Why) else f"{end:.0f}" for end in ends)
+    return f"{target.evaluations:.0f} ({low} to {high})"
+
+
+def closest(standings: tuple[Standing, ...]) -> str:
+    """Which optimiser is closest to the optimum by its median gap, in a sentence."""
+    known = [(s.median, s) for s in standings if isinstance(s.median, float)]
+    if not known:
+        return "No optimiser found a feasible answer in half of its runs."
+    median, first = known[0]
+    said = f"Closest: {first.optimizer}, median gap {percent(median)} of {first.runs} runs"
+    if len(known) > 1:
+        second = known[1]
+        said += f"; next {second[1].optimizer} with {percent(second[0])}"
+    return f"{said}."
+
+
+def percent(gap: float) -> str:
+    """A relative gap in percent, with two digits that count."""
+    value = 100 * gap
+    if value == 0 or abs(value) < _UNSEEN:
+        return "0 %"
+    shown = f"{value:.0f}"
+    if abs(value) < 10:
+        shown = np.format_float_positional(value, precision=2, fractional=False, trim="-")
+    return shown.replace("-", "−") + " %"
+
+
+_UNSEEN = 1e-7
+"""Percent: the checker's tolerance of 1e-9, below which the gap of an answer says nothing."""

@@ -1,0 +1,376 @@
+"""Optimisers on one problem: many seeds each, at one budget, against the optimum."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ...heuristics import (
+    BASELINES,
+    KINDS,
+    Bounds,
+    Handling,
+    find_optimizer,
+    from_settings,
+    judge_of,
+    search_box,
+)
+from ...nlp import Solution
+from ...problem import Problem, TrajgapError
+from ..documents import BenchResult, Reference
+from .engines import Engine, outcomes
+from .rows import Row, RowStatus, Trial, against, canonical
+from .standings import bench_result
+from .store import Store
+from .trial_process import TrialOutcome
+from .trials import origin_of, run_trial
+
+SEEDS = 30
+"""Runs of each optimiser by default: as many as papers of this field report."""
+BUDGET = 6000
+"""Evaluations of each run by default: 30 particles × 200 iterations."""
+SECONDS = 300.0
+"""Time limit of one run by default: thousands of times what the budget usually takes."""
+
+WITHOUT_DRAWS = frozenset({"rescale", "scipy:direct", "scipy:shgo"})
+"""Optimisers that draw no random numbers: every seed gives the same run, so one is made."""
+_FIRST_RANGES = ("position_initial", "position_range")
+"""Settings of the papers' algorithms that say where their first positions are drawn."""
+
+Named = str | Callable[..., object]
+"""An optimiser's name, or a function ``f(fun, bounds, budget, rng)`` of a module."""
+
+
+@dataclass(frozen=True)
+class Entrant:
+    """An optimiser as it takes part.
+
+    Attributes
+    ----------
+    optimizer : str
+        As `find_optimizer` takes it.
+    settings : mapping
+        What is set; the rest has its default.
+    handling : str
+        What happens to vectors that break a limit.
+    label : str
+        Its name in tables and pictures.
+    """
+
+    optimizer: str
+    settings: Mapping[str, Any]
+    handling: str
+    label: str
+
+    @property
+    def identity(self) -> tuple[str, str, str]:
+        """Optimiser, settings and handling, as rows have them."""
+        return self.optimizer, canonical(dict(self.settings)), str(self.handling)
+
+    @property
+    def stream(self) -> int:
+        """Key of its random stream under every seed.
+
+        Optimisers of equal seeds would begin with the same draws, so that their runs were no
+        independent samples. The key depends on nothing but the entrant, so that its rows are the
+        same in any company.
+        """
+        told = hashlib.sha256(canonical(self.identity).encode()).digest()
+        return int.from_bytes(told[:4], "big")
+
+
+@dataclass(frozen=True, eq=False)
+class BenchPlan:
+    """The runs of a bench before they are made.
+
+    Attributes
+    ----------
+    problem : Problem
+        As stated.
+    name, reading : str
+        What rows call it.
+    entrants : tuple of Entrant
+    trials : tuple of Trial
+        By entrant, then by seed.
+    budget, seeds : int
+    notes : tuple of str
+        What was chosen so that the optimisers can run.
+    """
+
+    problem: Problem
+    name: str
+    reading: str
+    entrants: tuple[Entrant, ...]
+    trials: tuple[Trial, ...]
+    budget: int
+    seeds: int
+    notes: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Runs:
+    """What a bench leaves: a row for each of its trials, in their order."""
+
+    plan: BenchPlan
+    rows: tuple[Row, ...]
+
+    @property
+    def by_label(self) -> dict[str, tuple[Row, ...]]:
+        """Rows of each entrant, by its label."""
+        labels = {one.identity: one.label for one in self.plan.entrants}
+        found: dict[str, tuple[Row, ...]] = {one.label: () for one in self.plan.entrants}
+        for row in self.rows:
+            found[labels[row.optimizer, row.settings, row.handling]] += (row,)
+        return found
+
+
+def bench(
+    problem: Problem,
+    optimizers: Named | Iterable[Named],
+    *,
+    engine: Engine | None = None,
+    progress: Callable[[Row], None] | None = None,
+    **options: Any,
+) -> Runs:
+    """Run optimisers on a problem, each with many seeds, at one budget of evaluations.
+
+    Parameters
+    ----------
+    problem : Problem
+    optimizers : str, callable, or iterable of them
+    engine : Engine, optional
+        Where the runs are made, such as `on_this_machine`; by default here, one by one.
+    progress : callable, optional
+        Called with each row as it comes.
+    **options
+        ``seeds``, ``budget``, ``handling``, ``settings``, ``baselines``, ``seconds``, ``name`` and
+        ``reading``, as `plan_bench` takes them.
+
+    Returns
+    -------
+    Runs
+        For `measure_gaps`.
+
+    Raises
+    ------
+    TrajgapError
+        As `plan_bench`. What an optimiser does wrong while it runs is in its rows.
+    """
+    return run_bench(plan_bench(problem, optimizers, **options), engine, progress)
+
+
+def plan_bench(
+    problem: Problem,
+    optimizers: Named | Iterable[Named],
+    *,
+    seeds: int = SEEDS,
+    budget: int = BUDGET,
+    handling: str = Handling.DEATH_PENALTY,
+    settings: Mapping[str, Mapping[str, Any]] | None = None,
+    baselines: bool = True,
+    seconds: float = SECONDS,
+    name: str = "",
+    reading: str = "",
+) -> BenchPlan:
+    """Lay out the runs of a bench.
+
+    Parameters
+    ----------
+    problem : Problem
+        Searched with one duration vector for all its joints. Where it has no upper bound on a
+        duration, searches look within the total that equal durations reach; the notes say so.
+    optimizers : str, callable, or iterable of them
+        As `find_optimizer` takes them; a callable must be a function of a module.
+    seeds : int
+        Runs of each optimiser; one of those that draw no random numbers.
+    budget : int
+        Evaluations of each run; the objective stops a run that asks for more.
+    handling : str
+        "death-penalty", "stretch" or "rescale".
+    settings : mapping, optional
+        Settings of an optimiser, by its name.
+    baselines : bool
+        Whether random search, one shared duration, local searches from many starts, and CMA-ES
+        with repair (if pycma is installed) take part.
+    seconds : float
+        Time limit of one run; a run that takes longer has failed.
+    name, reading : str
+        What rows call the problem.
+
+    Returns
+    -------
+    BenchPlan
+
+    Raises
+    ------
+    TrajgapError
+        If an optimiser or setting is unknown, a package is missing, or the objective cannot judge
+        the problem.
+
+    Notes
+    -----
+    Each optimiser has a random stream of its own under each seed (`Entrant.stream`): runs of
+    different optimisers are independent samples, also where their seeds are called alike.
+    """
+    judge_of(problem, float("inf"), handling)  # one line now, instead of one in every row
+    names = [optimizers] if isinstance(optimizers, str) or callable(optimizers) else optimizers
+    box = search_box(problem)
+    entrants, notes = enter(box, list(names), handling, settings or {}, baselines)
+    first = Trial(problem, name or problem.name, reading, "", budget=budget, seconds=seconds)
+    trials = tuple(
+        replace(
+            first,
+            optimizer=one.optimizer,
+            settings=canonical(dict(one.settings)),
+            handling=one.handling,
+            seed=seed,
+            stream=(one.stream,),
+            origin=origin_of(one.optimizer),
+        )
+        for one in entrants
+        for seed in range(1 if one.optimizer in WITHOUT_DRAWS else seeds)
+    )
+    return BenchPlan(
+        problem, first.name, reading, entrants, trials, budget, seeds,
+        (*bounds_note(problem), *notes),
+    )  # fmt: skip
+
+
+def bounds_note(problem: Problem) -> tuple[str, ...]:
+    """What is said where a problem does not bound every duration: where searches look."""
+    if np.isfinite(problem.duration_upper).all():
+        return ()
+    box = search_box(problem)
+    sides = zip(box.lower, box.upper, strict=True)
+    said = ", ".join(dict.fromkeys(f"{low:g} to {high:g} s" for low, high in sides))
+    return (
+        f"Not every duration has an upper bound. Searched: {said} for each; equal durations reach "
+        "a total of that size, so no shorter motion has a longer one.",
+    )
+
+
+def run_bench(
+    plan: BenchPlan,
+    engine: Engine | None = None,
+    progress: Callable[[Row], None] | None = None,
+    store: Store | None = None,
+) -> Runs:
+    """Make the runs of a bench; parameters as `bench`. The rows are the same on every engine.
+
+    With a store, runs that it holds are not made again, and each new one is in it as it ends.
+    """
+    told = progress or (lambda _: None)
+    found: dict[str, Row] = {}
+    for trial in plan.trials if store is not None else ():
+        row = None if store is None else store.row(trial.key)
+        if row is not None and row.status is RowStatus.FINISHED:
+            found[row.key] = against(row, trial.reference)
+            told(row)
+    left = [trial for trial in plan.trials if trial.key not in found]
+    made = (
+        (TrialOutcome(run_trial(trial), 0.0) for trial in left)
+        if engine is None
+        else outcomes(left, engine)
+    )
+    for outcome in made:
+        found[outcome.row.key] = outcome.row
+        if store is not None:
+            store.put(outcome.row, outcome.seconds)
+        told(outcome.row)
+    return Runs(plan, tuple(found[trial.key] for trial in plan.trials))
+
+
+def measure_gaps(runs: Runs, optimum: Solution | Reference | float) -> BenchResult:
+    """Gap quantiles, success rates and comparisons of what a bench left.
+
+    Parameters
+    ----------
+    runs : Runs
+    optimum : Solution, Reference or float
+        Of the same problem: what `solve` returned, or its total, s.
+
+    Returns
+    -------
+    BenchResult
+        Its text is a table.
+
+    Raises
+    ------
+    TrajgapError
+        If the optimum is no positive finite time.
+    """
+    plan = runs.plan
+    return bench_result(
+        runs.by_label, optimum, problem=plan.name, reading=plan.reading, budget=plan.budget,
+        seeds=plan.seeds, notes=plan.notes,
+    )  # fmt: skip
+
+
+def enter(
+    box: Bounds,
+    optimizers: Sequence[Named],
+    handling: str,
+    settings: Mapping[str, Mapping[str, Any]],
+    baselines: bool,
+) -> tuple[tuple[Entrant, ...], tuple[str, ...]]:
+    """Entrants of a bench with their settings, and what was chosen for them.
+
+    Raises
+    ------
+    TrajgapError
+        If an optimiser or a setting is unknown, a package is missing, or a setting is for none of
+        the optimisers.
+    """
+    notes: list[str] = []
+    entrants: dict[str, Entrant] = {}
+    for one in optimizers:
+        name = one if isinstance(one, str) else _path(one)
+        own = dict(settings.get(name, {}))
+        drawn = first_range(name, own, box)
+        if drawn:
+            own |= drawn
+            low, high = next(iter(drawn.values()))
+            notes.append(f"{name}: first positions drawn from {low:g} to {high:g} s, the bounds.")
+        find_optimizer(name, **own)
+        entrants[name] = Entrant(name, own, str(handling), name)
+    for name in settings:
+        if name not in entrants:
+            raise TrajgapError(f"settings of {name!r}: it does not take part; name it too")
+    if baselines:
+        for name in BASELINES:
+            entrants.setdefault(name, Entrant(name, {}, str(handling), name))
+        try:
+            find_optimizer("cma")
+        except TrajgapError as error:
+            notes.append(f"Left out: {error}.")
+        else:
+            repaired = Entrant("cma", {}, str(Handling.STRETCH), "cma, stretch")
+            if handling == Handling.STRETCH:
+                repaired = replace(repaired, label="cma")
+            entrants.setdefault(repaired.label, repaired)
+    return tuple(entrants.values()), tuple(notes)
+
+
+def first_range(name: str, own: Mapping[str, Any], box: Bounds) -> dict[str, tuple[float, float]]:
+    """Where a paper's algorithm draws its first positions, unless that is set: in the bounds."""
+    if name not in KINDS:
+        return {}
+    low, high = float(box.lower.max()), float(box.upper.min())
+    algorithm = from_settings(name, {})
+    fields = [one for one in _FIRST_RANGES if hasattr(algorithm, one) and one not in own]
+    return {one: (low, high) for one in fields if low < high}
+
+
+def _path(function: Callable[..., object]) -> str:
+    """Name under which another process finds a function."""
+    module, name = getattr(function, "__module__", ""), getattr(function, "__qualname__", "")
+    if not module or not name or "<" in name:
+        raise TrajgapError(
+            f"optimizer {name or function!r}: give a function that is defined at the top of a "
+            "module, so that it can be found again"
+        )
+    return f"{module}:{name}"

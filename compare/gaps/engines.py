@@ -1,0 +1,175 @@
+"""Where trials run: anything that is a ``concurrent.futures.Executor``, near or far."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+from ...problem import ProcessError, TrajgapError
+from .rows import Trial, failed
+from .trial_process import Crew, TrialOutcome, run_apart
+
+_AHEAD = 2
+"""Trials handed out for each worker: the next one is there when it ends one."""
+_PATIENCE = 30
+"""Seconds in which a scheduler must answer."""
+
+
+@dataclass(frozen=True)
+class Engine:
+    """An executor, and how many trials it runs at a time.
+
+    Attributes
+    ----------
+    executor : concurrent.futures.Executor
+    slots : callable
+        Number of workers at the moment.
+    name : str
+        Words for people.
+    run : callable
+        What the executor is given with each trial.
+    """
+
+    executor: Executor
+    slots: Callable[[], int]
+    name: str
+    run: Callable[[Trial], TrialOutcome] = run_apart
+
+
+@contextmanager
+def on_this_machine(workers: int) -> Iterator[Engine]:
+    """Run trials in processes of this machine.
+
+    Each worker is a thread that owns a process, so that the death of one process loses nothing
+    but its trial, which is done again.
+
+    Parameters
+    ----------
+    workers : int
+        1 runs one trial after another, in a process of its own all the same.
+
+    Yields
+    ------
+    Engine
+    """
+    with ExitStack() as stack:
+        crew = Crew()
+        # The processes end first: a thread that waits for an answer could not be joined.
+        pool = ThreadPoolExecutor(workers, thread_name_prefix="trial")
+        stack.callback(pool.shutdown, wait=True, cancel_futures=True)
+        stack.callback(crew.end)
+        processes = "process" if workers == 1 else "processes"
+        yield Engine(pool, lambda: workers, f"{workers} {processes}", crew.run)
+
+
+@contextmanager
+def on_dask(address: str) -> Iterator[Engine]:
+    """Run trials on a Dask cluster.
+
+    Parameters
+    ----------
+    address : str
+        Of the scheduler, such as "tcp://node1:8786".
+
+    Yields
+    ------
+    Engine
+
+    Raises
+    ------
+    ProcessError
+        If Dask is not installed or no scheduler answers.
+    """
+    try:
+        from distributed import Client
+    except ImportError:
+        raise ProcessError(
+            'dask: is not installed; run `python -m pip install "trajgap[dask]"`'
+        ) from None
+    try:
+        client = Client(address, timeout=_PATIENCE, set_as_default=False)
+    except (OSError, ValueError) as error:
+        said = " ".join(str(error).split())
+        raise ProcessError(
+            f"dask: no scheduler answers at {address} ({said}); check the address"
+        ) from None
+    with client:
+        yield Engine(client.get_executor(), lambda: _threads(client), f"Dask at {address}")
+
+
+def _threads(client: Any) -> int:
+    return max(1, sum(int(threads) for threads in client.nthreads().values()))
+
+
+def outcomes(trials: Iterable[Trial], engine: Engine) -> Iterator[TrialOutcome]:
+    """Run trials; outcomes come as they finish, in any order.
+
+    Only a few trials are handed out at a time, so that memory does not grow with their number.
+
+    Parameters
+    ----------
+    trials : iterable of Trial
+        Read as workers become free.
+    engine : Engine
+
+    Yields
+    ------
+    TrialOutcome
+
+    Raises
+    ------
+    ProcessError
+        If the engine itself fails; trials that have not come back are then not done.
+    """
+    pending: dict[Future[TrialOutcome], Trial] = {}
+    room = _AHEAD * engine.slots()
+    try:
+        for trial in trials:
+            if len(pending) >= room:
+                yield from _finished(pending, engine)
+                room = _AHEAD * engine.slots()
+            pending[_submitted(engine, trial)] = trial
+        while pending:
+            yield from _finished(pending, engine)
+    finally:
+        for future in pending:
+            future.cancel()
+
+
+def _submitted(engine: Engine, trial: Trial) -> Future[TrialOutcome]:
+    try:
+        return engine.executor.submit(engine.run, trial)
+    except RuntimeError as error:
+        raise _lost(engine, error) from None
+
+
+def _finished(pending: dict[Future[TrialOutcome], Trial], engine: Engine) -> Iterator[TrialOutcome]:
+    """Wait until something is finished, and hand it over."""
+    done, _ = wait(pending, return_when=FIRST_COMPLETED)
+    for future in done:
+        trial = pending.pop(future)
+        error = None if future.cancelled() else future.exception()
+        if future.cancelled() or isinstance(error, OSError | TimeoutError | RuntimeError):
+            raise _lost(engine, error)
+        if error is None:
+            yield future.result()
+        elif type(error).__name__ == "KilledWorker":
+            # Dask has tried on several workers, and each has died.
+            yield TrialOutcome(
+                failed(trial, f"{trial.optimizer}: workers died at it, several times"), 0
+            )
+        elif isinstance(error, TrajgapError):
+            raise error
+        else:
+            raise _lost(engine, error)
+
+
+def _lost(engine: Engine, error: BaseException | None) -> ProcessError:
+    said = "cancelled" if error is None else f"{type(error).__name__}: {error}"
+    return ProcessError(
+        f"{engine.name}: lost ({' '.join(said.split())}); what is finished is stored, the same "
+        "command goes on"
+    )

@@ -1,0 +1,262 @@
+"""Rows for other programs: CSV, Parquet, and the folders of IOHprofiler."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import re
+import shutil
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
+from itertools import groupby, islice
+from pathlib import Path
+from typing import Any
+from uuid import uuid4
+
+from ...problem import CaseError
+from .rows import Row, canonical
+
+COLUMNS: dict[str, str] = {
+    "key": "text",
+    "problem": "text",
+    "reading": "text",
+    "problem_sha256": "text",
+    "optimizer": "text",
+    "settings": "text",
+    "origin": "text",
+    "handling": "text",
+    "seed": "count",
+    "stream": "counts",
+    "budget": "count",
+    "segments": "count",
+    "status": "text",
+    "message": "text",
+    "evaluations": "count",
+    "durations": "numbers",
+    "reported_time": "number",
+    "verdict": "text",
+    "worst_ratio": "number",
+    "feasible_time": "number",
+    "feasible_why": "text",
+    "reference_upper": "number",
+    "reference_lower": "number",
+    "reported_gap_lowest": "number",
+    "reported_gap_highest": "number",
+    "feasible_gap_lowest": "number",
+    "feasible_gap_highest": "number",
+    "trace_evaluations": "counts",
+    "trace_totals": "numbers",
+}
+"""Columns of a table of rows, and what each holds; the meaning is that of `Row`."""
+_BATCH = 1_000
+"""Rows of a Parquet file that are in memory at a time."""
+_NOTHING = sys.float_info.max
+"""Total that IOHprofiler's files state before anything feasible is known: they have no infinity."""
+
+
+def export_rows(rows: Iterable[Row], path: Path) -> int:
+    """Write rows in the format that a name ends with; the file appears at once and complete.
+
+    Parameters
+    ----------
+    rows : iterable of Row
+        Read one by one.
+    path : Path
+        Ends with ".csv" or ".parquet"; or with ".ioh", a folder in IOHprofiler's format.
+
+    Returns
+    -------
+    int
+        Rows written. IOHprofiler's format has no place for a run that judged nothing.
+
+    Raises
+    ------
+    CaseError
+        If the name has another ending or is taken, the file cannot be written, or the package
+        for the format is missing.
+    """
+    check_export(path)
+    with _drafted(path) as draft:
+        return _WRITERS[path.suffix](rows, draft)
+
+
+def check_export(path: Path) -> None:
+    """Find out whether rows could be exported to a path, before anything is computed.
+
+    Raises
+    ------
+    CaseError
+    """
+    name = str(path)
+    if path.suffix not in _WRITERS:
+        raise CaseError(name, "--export", f"has no known ending; use {', '.join(_WRITERS)}")
+    if os.path.lexists(path):
+        raise CaseError(name, "--export", "exists already; name another or delete this one")
+    if not path.parent.is_dir():
+        raise CaseError(name, "--export", "its folder is not there; make it first")
+    if path.suffix == ".parquet":
+        _arrow(name)
+
+
+@contextmanager
+def _drafted(path: Path) -> Iterator[Path]:
+    draft = path.with_name(f".trajgap-{uuid4().hex}{path.suffix}")
+    try:
+        yield draft
+        os.rename(draft, path)
+    except OSError as error:
+        reason = error.strerror or type(error).__name__
+        raise CaseError(
+            str(path), "--export", f"cannot be written ({reason}); name a place that can"
+        ) from None
+    finally:
+        with suppress(OSError):
+            draft.unlink()
+        shutil.rmtree(draft, ignore_errors=True)
+
+
+def flat(row: Row) -> dict[str, Any]:
+    """Values of `COLUMNS`; None where there is none."""
+    found = {name: getattr(row, name) for name in COLUMNS if hasattr(row, name)}
+    for name in ("reported_gap", "feasible_gap"):
+        low, high = getattr(row, name) or (None, None)
+        found |= {f"{name}_lowest": low, f"{name}_highest": high}
+    found["trace_evaluations"] = [at for at, _ in row.trace]
+    found["trace_totals"] = [total for _, total in row.trace]
+    found["status"] = str(row.status)
+    return {name: found[name] for name in COLUMNS}
+
+
+def _write_csv(rows: Iterable[Row], path: Path) -> int:
+    count = 0
+    lists = [name for name, kind in COLUMNS.items() if kind.endswith("s")]
+    with path.open("w", encoding="utf-8", newline="") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(COLUMNS)
+        for row in rows:
+            values = flat(row)
+            for name in lists:
+                # A list is one cell of JSON.
+                values[name] = None if values[name] is None else canonical(list(values[name]))
+            table.writerow(values.values())
+            count += 1
+    return count
+
+
+def _arrow(name: str) -> Any:
+    try:
+        import pyarrow.parquet
+    except ImportError:
+        raise CaseError(
+            name,
+            "--export",
+            'pyarrow is not installed; run `python -m pip install "trajgap[parquet]"`',
+        ) from None
+    return pyarrow
+
+
+def _write_parquet(rows: Iterable[Row], path: Path) -> int:
+    arrow = _arrow(str(path))
+    kinds = {
+        "text": arrow.string(),
+        "count": arrow.int64(),
+        "number": arrow.float64(),
+        "counts": arrow.list_(arrow.int64()),
+        "numbers": arrow.list_(arrow.float64()),
+    }
+    schema = arrow.schema([(name, kinds[kind]) for name, kind in COLUMNS.items()])
+    count, left = 0, iter(rows)
+    with arrow.parquet.ParquetWriter(path, schema) as writer:
+        while batch := [flat(row) for row in islice(left, _BATCH)]:
+            writer.write_table(arrow.Table.from_pylist(batch, schema=schema))
+            count += len(batch)
+    return count
+
+
+# --- IOHprofiler ----------------------------------------------------------------------------------
+
+
+@dataclass
+class _Numbered:
+    """Names in the order in which they come, numbered from 1."""
+
+    known: dict[Any, int] = field(default_factory=dict)
+
+    def __call__(self, name: Any) -> int:
+        return self.known.setdefault(name, len(self.known) + 1)
+
+
+def _write_ioh(rows: Iterable[Row], folder: Path) -> int:
+    """One folder for each algorithm, and in it one description and one table for each problem.
+
+    An algorithm is an optimiser with its settings and handling, a function is a problem under a
+    reading. The values are the totals of the objective, s.
+    """
+    algorithms, functions = _Numbered(), _Numbered()
+    count = 0
+    folder.mkdir()
+    useful = (row for row in rows if row.evaluations)
+    for (ours, theirs), runs in groupby(useful, lambda row: (_algorithm(row), _function(row))):
+        optimizer, settings, handling, origin = ours
+        words = re.sub(r"[^A-Za-z0-9.-]+", "-", f"{optimizer}-{handling}")
+        home = folder / f"{algorithms(ours)}-{words}"
+        number = functions(theirs)
+        table = f"data_f{number}/IOHprofiler_f{number}_DIM{theirs[2]}.dat"
+        (home / table).parent.mkdir(parents=True, exist_ok=True)
+        described = list(_write_runs(runs, home / table))
+        count += len(described)
+        document = {
+            "version": "0.3.22",
+            "suite": "trajgap",
+            "function_id": number,
+            "function_name": f"{theirs[0]}, {theirs[1]}",
+            "maximization": False,
+            "algorithm": {
+                "name": f"{optimizer}, {handling}, {settings}",
+                "info": origin or "trajgap",
+            },
+            "attributes": ["evaluations", "raw_y"],
+            "scenarios": [{"dimension": theirs[2], "path": table, "runs": described}],
+        }
+        text = json.dumps(document, indent=1, allow_nan=False) + "\n"
+        (home / f"IOHprofiler_f{number}.json").write_text(text, encoding="utf-8", newline="")
+    return count
+
+
+def _algorithm(row: Row) -> tuple[str, str, str, str]:
+    return row.optimizer, row.settings, row.handling, row.origin
+
+
+def _function(row: Row) -> tuple[str, str, int]:
+    return row.problem, row.reading, row.segments
+
+
+def _write_runs(rows: Iterable[Row], path: Path) -> Iterator[dict[str, Any]]:
+    """Write the traces of one algorithm on one problem; say of each run what it came to."""
+    with path.open("w", encoding="utf-8", newline="") as file:
+        for row in rows:
+            points = list(row.trace)
+            # Readers find a run by its first evaluation, and its budget by the last.
+            if not points or points[0][0] > 1:
+                points.insert(0, (1, _NOTHING))
+            if points[-1][0] < row.evaluations:
+                points.append((row.evaluations, points[-1][1]))
+            file.write("evaluations raw_y\n")
+            file.writelines(f"{at} {total!r}\n" for at, total in points)
+            best = row.trace[-1] if row.trace else (row.evaluations, _NOTHING)
+            yield {
+                "instance": 1,
+                "evals": row.evaluations,
+                "best": {"evals": best[0], "y": best[1], "x": list(row.durations or ())},
+            }
+
+
+_WRITERS: dict[str, Callable[[Iterable[Row], Path], int]] = {
+    ".csv": _write_csv,
+    ".parquet": _write_parquet,
+    ".ioh": _write_ioh,
+}
+"""Writers by the ending of the name; each takes the rows and a path that is not there yet."""

@@ -1,0 +1,101 @@
+"""Optimisers over many problems: each problem counts alike, gaps are relative to its optimum."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ..documents import BenchResult, OverallStanding, OverallTarget, Standing, Why, given
+from .benching import Runs
+from .rows import Row
+
+_ALIKE = 1e-9
+"""Median gaps so near each other are a tie: the checker's tolerance."""
+_HALF_WITHOUT = "half of the runs have no answer on so many problems"
+"""Why a median over the problems is missing."""
+_FIRST_TARGET = 0.01
+"""Gap by which optimisers are put in order: what a paper's digits can tell apart."""
+
+
+def overall(results: Sequence[BenchResult]) -> tuple[OverallStanding, ...]:
+    """Every optimiser over all problems, the largest share of runs within 1 % first.
+
+    Parameters
+    ----------
+    results : sequence of BenchResult
+        Of the same optimisers.
+
+    Returns
+    -------
+    tuple of OverallStanding
+        Empty for a single problem.
+    """
+    if len(results) < 2:
+        return ()
+    least = [min(_median(one) for one in result.standings) for result in results]
+    by_name: dict[str, list[Standing]] = {}
+    firsts: dict[str, int] = {}
+    for result, best in zip(results, least, strict=True):
+        for one in result.standings:
+            by_name.setdefault(one.optimizer, []).append(one)
+            tied = _median(one) <= best + _ALIKE and np.isfinite(best)
+            firsts[one.optimizer] = firsts.get(one.optimizer, 0) + tied
+    found = [_standing(name, own, firsts[name]) for name, own in by_name.items()]
+    return tuple(sorted(found, key=_order))
+
+
+def _median(standing: Standing) -> float:
+    known = given(standing.median)
+    return np.inf if known is None else known
+
+
+def _standing(name: str, own: Sequence[Standing], first: int) -> OverallStanding:
+    medians = np.array([_median(one) for one in own])
+    targets = []
+    for same in zip(*(one.targets for one in own), strict=True):
+        rates = np.array([target.rate for target in same])
+        targets.append(
+            OverallTarget(
+                gap=same[0].gap, rate=float(rates.mean()), solved=int((rates >= 0.5).sum())
+            )
+        )
+    return OverallStanding(
+        optimizer=name,
+        problems=len(own),
+        first=first,
+        median=_gap(float(np.quantile(medians, 0.5, method="inverted_cdf"))),
+        worst=_gap(float(medians.max())),
+        failed=sum(one.failed for one in own),
+        targets=tuple(targets),
+    )
+
+
+def _gap(value: float) -> float | Why:
+    return value if np.isfinite(value) else Why(_HALF_WITHOUT)
+
+
+def _order(standing: OverallStanding) -> tuple[float, float]:
+    rate = next(target.rate for target in standing.targets if target.gap == _FIRST_TARGET)
+    return -rate, given(standing.median) or np.inf
+
+
+def relative_rows(results: Iterable[tuple[BenchResult, Runs]]) -> dict[str, list[Row]]:
+    """Rows of every optimiser over all problems, times as multiples of each optimum.
+
+    What is asked of one problem, such as `share_of_targets`, can so be asked of all together, with
+    an optimum of 1.
+    """
+    found: dict[str, list[Row]] = {}
+    for result, runs in results:
+        unit = result.optimum.upper
+        for label, rows in runs.by_label.items():
+            found.setdefault(label, []).extend(_relative(row, unit) for row in rows)
+    return found
+
+
+def _relative(row: Row, unit: float) -> Row:
+    feasible = None if row.feasible_time is None else row.feasible_time / unit
+    trace = tuple((at, total / unit) for at, total in row.trace)
+    return replace(row, feasible_time=feasible, trace=trace)

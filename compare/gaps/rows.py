@@ -1,0 +1,324 @@
+"""A trial, which is all that determines a run, and the row that the run leaves behind."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, fields, replace
+from enum import StrEnum
+from functools import lru_cache
+from typing import Any
+
+from ...heuristics import Handling
+from ...problem import Array, Problem, TrajgapError, Verdict
+
+ROW_FORMAT = 1
+"""Version of keys and rows: whatever changes a run or the meaning of a field raises it."""
+
+_PER_DECADE = 32
+"""Points of a trace for every tenfold of evaluations: 7 % apart, finer than two seeds differ."""
+_APART = ("problem", "reference", "seconds")
+"""Fields of a trial that are not hashed: the problem enters by its own hash, the reference is what
+gaps are set against, and the time limit alters no run that ends within it."""
+
+
+class RowStatus(StrEnum):
+    """How a run ended."""
+
+    FINISHED = "finished"
+    """By itself, or because its budget was spent."""
+    FAILED = "failed"
+    """It raised, judged nothing, ran too long, or its process ended; the message says which."""
+
+
+@dataclass(frozen=True)
+class Bracket:
+    """Where the optimum lies, s.
+
+    Attributes
+    ----------
+    upper : float
+        Total of a feasible trajectory.
+    lower : float or None
+        Certified lower bound; None where there is none.
+    """
+
+    upper: float
+    lower: float | None = None
+
+    def __post_init__(self) -> None:
+        if not 0 < self.upper < float("inf"):
+            raise TrajgapError(f"reference: {self.upper} s is not a positive finite time")
+        if self.lower is not None and not 0 < self.lower <= self.upper:
+            raise TrajgapError(f"reference: {self.lower} s is no lower bound of {self.upper} s")
+
+    def gap(self, time: float) -> tuple[float, float]:
+        """Relative distance of a time, [(T − U)/U, (T − L)/L]; negative values are kept.
+
+        Without a certified lower bound both ends are set against U.
+        """
+        base = self.upper if self.lower is None else self.lower
+        return (time - self.upper) / self.upper, (time - base) / base
+
+
+def canonical(value: object) -> str:
+    """JSON text that is the same for the same content: keys in order, no blanks, no NaN.
+
+    Raises
+    ------
+    TrajgapError
+        If something in it is no JSON.
+    """
+    try:
+        return json.dumps(
+            value, sort_keys=True, separators=(",", ":"), ensure_ascii=True, allow_nan=False
+        )
+    except (TypeError, ValueError) as error:
+        raise TrajgapError(
+            f"settings: {error}; use finite numbers, texts, lists and tables"
+        ) from None
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """All that determines one run of one optimiser.
+
+    Parameters
+    ----------
+    problem : Problem
+        Searched with one duration vector for all its joints, whatever its coupling.
+    name, reading : str
+        What rows call it, such as "puma560-mnam-pso-353/six-joints" and "durations-positive".
+    optimizer : str
+        As `find_optimizer` takes it.
+    settings : str
+        Its settings as `canonical` JSON.
+    handling : str
+        What happens to vectors that break a limit; see `Handling`.
+    seed : int
+    budget : int
+        Evaluations; the objective enforces it.
+    stream : tuple of int
+        Spawn key under the seed; (j,) for joint j searched by itself, as `run_per_joint` does.
+    origin : str
+        Where the optimiser comes from: a package with its version, or a hash of its source.
+    reference : Bracket or None
+        What the gaps of the row are set against.
+    seconds : float
+        A run that takes longer has failed.
+    problem_sha256 : str
+        Hash of the problem's own numbers, as certificates seal theirs; found if left empty.
+
+    Raises
+    ------
+    TrajgapError
+        If the handling is unknown, the seed negative or the budget not positive.
+    """
+
+    problem: Problem
+    name: str
+    reading: str
+    optimizer: str
+    settings: str = "{}"
+    handling: str = Handling.DEATH_PENALTY
+    seed: int = 0
+    budget: int = 6000
+    stream: tuple[int, ...] = ()
+    origin: str = ""
+    reference: Bracket | None = None
+    seconds: float = float("inf")
+    problem_sha256: str = ""
+
+    def __post_init__(self) -> None:
+        if self.handling not in tuple(Handling):
+            raise TrajgapError(
+                f"handling: {self.handling!r} is unknown; choose {', '.join(Handling)}"
+            )
+        if self.seed < 0 or self.budget < 1:
+            raise TrajgapError("trial: give a seed of 0 or more and a budget of 1 or more")
+        object.__setattr__(self, "handling", str(self.handling))
+        if not self.problem_sha256:
+            # Here alone, so that processes that get trials ready-made start in two thirds of it.
+            from ...nlp import problem_seal
+
+            object.__setattr__(self, "problem_sha256", problem_seal(self.problem))
+
+    @property
+    def key(self) -> str:
+        """SHA-256 of all that determines the run."""
+        told = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in _APART}
+        text = canonical({"format": ROW_FORMAT, **told})
+        return hashlib.sha256(text.encode()).hexdigest()
+
+
+@dataclass(frozen=True)
+class Row:
+    """What one run leaves behind; nothing is clipped, and no clock enters.
+
+    Attributes
+    ----------
+    key : str
+        Of the trial.
+    problem, reading, problem_sha256, optimizer, settings, origin, handling, seed, stream, budget
+        Of the trial; ``problem`` is its name.
+    segments : int
+        Number of durations.
+    status : RowStatus
+    message : str
+        Why it failed; empty otherwise.
+    evaluations : int
+        Duration vectors judged, at most the budget.
+    durations : tuple of float or None
+        What the best position stands for, s; None if nothing feasible was judged.
+    reported_time : float or None
+        Its total by the objective, s.
+    verdict : str or None
+        Of `trajgap.problem.check` on the durations.
+    worst_ratio : float or None
+        Largest ratio of a value to its limit; None if nothing is limited.
+    feasible_time : float or None
+        T·max(1, c*) as `check` finds it, s.
+    feasible_why : str
+        Why there is none; empty otherwise.
+    reference_upper, reference_lower : float or None
+        What the gaps are set against, s.
+    reported_gap, feasible_gap : (float, float) or None
+        Of either time, [(T − U)/U, (T − L)/L]. That of the reported time is an optimality gap
+        only if the verdict is "pass", else a difference of reported time.
+    trace : tuple of (int, float)
+        Best total by the objective after so many evaluations, s, at log-spaced numbers of them
+        and only where it changed: the last entry at or before an evaluation holds there, and
+        before the first nothing feasible was known.
+    """
+
+    key: str
+    problem: str
+    reading: str
+    problem_sha256: str
+    optimizer: str
+    settings: str
+    origin: str
+    handling: str
+    seed: int
+    stream: tuple[int, ...]
+    budget: int
+    segments: int
+    status: RowStatus = RowStatus.FINISHED
+    message: str = ""
+    evaluations: int = 0
+    durations: tuple[float, ...] | None = None
+    reported_time: float | None = None
+    verdict: str | None = None
+    worst_ratio: float | None = None
+    feasible_time: float | None = None
+    feasible_why: str = ""
+    reference_upper: float | None = None
+    reference_lower: float | None = None
+    reported_gap: tuple[float, float] | None = None
+    feasible_gap: tuple[float, float] | None = None
+    trace: tuple[tuple[int, float], ...] = field(default=())
+
+    @classmethod
+    def begun(cls, trial: Trial) -> Row:
+        """The row of a trial before anything is known of its run."""
+        bare = cls(
+            key=trial.key,
+            problem=trial.name,
+            reading=trial.reading,
+            problem_sha256=trial.problem_sha256,
+            optimizer=trial.optimizer,
+            settings=trial.settings,
+            origin=trial.origin,
+            handling=trial.handling,
+            seed=trial.seed,
+            stream=trial.stream,
+            budget=trial.budget,
+            segments=trial.problem.segments,
+        )
+        return against(bare, trial.reference)
+
+    @property
+    def feasible(self) -> bool:
+        """Whether `check` passed the durations."""
+        return self.verdict == Verdict.PASS
+
+    def text(self) -> str:
+        """The row as one line of canonical JSON: the same bytes for the same run."""
+        return canonical(asdict(self))
+
+    @classmethod
+    def read(cls, text: str) -> Row:
+        """The row of its `text`.
+
+        Raises
+        ------
+        TrajgapError
+            If it is no such text.
+        """
+        try:
+            found: dict[str, Any] = json.loads(text)
+            found["status"] = RowStatus(found["status"])
+            found["stream"] = tuple(found["stream"])
+            found["trace"] = tuple((int(at), float(total)) for at, total in found["trace"])
+            for name in ("durations", "reported_gap", "feasible_gap"):
+                found[name] = None if found[name] is None else tuple(found[name])
+            return cls(**found)
+        except (ValueError, TypeError, KeyError) as error:
+            raise TrajgapError(f"row: cannot be read ({error}); was the file altered?") from None
+
+
+@lru_cache(maxsize=64)
+def checkpoints(evaluations: int) -> tuple[int, ...]:
+    """Log-spaced numbers of evaluations from 1 to the last, which is always among them."""
+    if evaluations < 1:
+        return ()
+    steps = math.floor(math.log10(evaluations) * _PER_DECADE)
+    spaced = {round(10 ** (k / _PER_DECADE)) for k in range(steps + 1)}
+    return tuple(sorted({min(point, evaluations) for point in spaced} | {evaluations}))
+
+
+def trace_of(totals: Array) -> tuple[tuple[int, float], ...]:
+    """Best totals at `checkpoints`, finite ones only, where they changed.
+
+    Parameters
+    ----------
+    totals : ndarray, shape (evaluations,)
+        Best total after each evaluation, s; inf while nothing feasible is known.
+    """
+    found: list[tuple[int, float]] = []
+    best = math.inf
+    for point in checkpoints(totals.size):
+        total = float(totals[point - 1])
+        if total < best:
+            found.append((point, total))
+            best = total
+    return tuple(found)
+
+
+def failed(trial: Trial, message: str) -> Row:
+    """The row of a trial whose run came to nothing."""
+    return replace(Row.begun(trial), status=RowStatus.FAILED, message=message)
+
+
+def against(row: Row, reference: Bracket | None) -> Row:
+    """The same row with its gaps set against another reference, or against none."""
+    if reference is None:
+        return replace(
+            row, reference_upper=None, reference_lower=None, reported_gap=None, feasible_gap=None
+        )
+    reported, feasible = row.reported_time, row.feasible_time
+    return replace(
+        row,
+        reference_upper=reference.upper,
+        reference_lower=reference.lower,
+        reported_gap=None if reported is None else reference.gap(reported),
+        feasible_gap=None if feasible is None else reference.gap(feasible),
+    )
+
+
+def settings_of(row: Row | Trial) -> Mapping[str, Any]:
+    """Settings as a table again."""
+    found: Mapping[str, Any] = json.loads(row.settings)
+    return found

@@ -1,0 +1,130 @@
+"""One session of a study: what is left is run, and each row is stored as it comes."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, version
+
+from .engines import Engine, outcomes
+from .rows import Row, RowStatus, Trial
+from .store import Store
+from .studies import StudyPlan
+
+_SOFTWARE = ("trajgap", "numpy", "scipy", "casadi", "numba")
+"""Packages whose versions are kept with the rows: they can change the last digit of a run."""
+
+
+@dataclass(frozen=True)
+class StudySession:
+    """How a session stands.
+
+    Attributes
+    ----------
+    total : int
+        Trials of the study.
+    resumed : int
+        Of them in the store before the session began.
+    run : int
+        Of them run since then.
+    failed : int
+        Runs of this session that failed.
+    seconds : float
+        That the runs of this session took together.
+    """
+
+    total: int
+    resumed: int
+    run: int = 0
+    failed: int = 0
+    seconds: float = 0.0
+
+    @property
+    def left(self) -> int:
+        """Trials that are not in the store yet."""
+        return self.total - self.resumed - self.run
+
+
+def unfinished(study: StudyPlan, store: Store, retry: bool = False) -> Iterator[Trial]:
+    """Trials without a row in the store.
+
+    Parameters
+    ----------
+    study : StudyPlan
+    store : Store
+    retry : bool
+        Whether those with a failed row are among them.
+    """
+    for trial in study.trials(store):
+        status = store.status(trial.key)
+        if status is None or (retry and status is RowStatus.FAILED):
+            yield trial
+
+
+def run_study(
+    study: StudyPlan,
+    store: Store,
+    engine: Engine,
+    *,
+    retry: bool = False,
+    told: Callable[[StudySession], None] = lambda _: None,
+) -> StudySession:
+    """Run what the store does not hold yet.
+
+    Whatever ends the session, a row that came back is in the store, and the next session goes on.
+
+    Parameters
+    ----------
+    study : StudyPlan
+    store : Store
+    engine : Engine
+    retry : bool
+        Run the failed ones again.
+    told : callable
+        Called before the first run and after each.
+
+    Returns
+    -------
+    StudySession
+
+    Raises
+    ------
+    ProcessError
+        If the engine fails.
+    CaseError
+        If the store does.
+    """
+    store.note("software", _software())
+    left = sum(1 for _ in unfinished(study, store, retry))
+    session = StudySession(total=len(study), resumed=len(study) - left)
+    told(session)
+    for outcome in outcomes(unfinished(study, store, retry), engine):
+        store.put(outcome.row, outcome.seconds)
+        session = StudySession(
+            total=session.total,
+            resumed=session.resumed,
+            run=session.run + 1,
+            failed=session.failed + (outcome.row.status is RowStatus.FAILED),
+            seconds=session.seconds + outcome.seconds,
+        )
+        told(session)
+    return session
+
+
+def study_rows(study: StudyPlan, store: Store) -> Iterator[Row]:
+    """Rows of a study that are in the store, one by one, in the order of its trials."""
+    for trial in study.trials(store):
+        row = store.row(trial.key)
+        if row is not None:
+            yield row
+
+
+def _software() -> str:
+    found = [f"Python {platform.python_version()}", platform.platform()]
+    for name in _SOFTWARE:
+        try:
+            found.append(f"{name} {version(name)}")
+        except PackageNotFoundError:
+            continue
+    return ", ".join(found)

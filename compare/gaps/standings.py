@@ -1,0 +1,159 @@
+"""From rows to standings: gap quantiles, targets reached, and who is shorter than whom."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from ...nlp import Solution
+from ...problem import Array
+from ..documents import (
+    BenchResult,
+    Reference,
+    Standing,
+    TargetReached,
+    Why,
+    given,
+    known,
+)
+from .optimality_gap import gap
+from .pairs import compare_pairs
+from .rows import Row, RowStatus
+from .targets import (
+    TARGETS,
+    expected_running_time,
+    hit,
+    running_time_interval,
+    success_interval,
+)
+
+_QUANTILES = (0.0, 0.25, 0.5, 0.75)
+"""Best, lower quartile, median, upper quartile; each is a run, since some may have no answer."""
+_NO_ANSWER = "as many runs found no feasible answer"
+"""Why a quantile is missing."""
+_NEVER = "no run reached it"
+"""Why a running time is missing."""
+_UNBOUNDED = "in some samples of the runs none reached it"
+"""Why an end of a running time's interval is missing."""
+
+
+def totals_of(rows: Sequence[Row]) -> Array:
+    """Feasible times of runs, s; inf for a run without answer.
+
+    The feasible time is T·max(1, c*) as `trajgap.problem.check` finds it, whatever the optimiser
+    reports.
+    """
+    times = [row.feasible_time for row in rows]
+    return np.array([np.inf if time is None else time for time in times])
+
+
+def bench_result(
+    rows: Mapping[str, Sequence[Row]],
+    optimum: Solution | Reference | float,
+    *,
+    problem: str,
+    reading: str,
+    budget: int,
+    seeds: int,
+    notes: tuple[str, ...] = (),
+) -> BenchResult:
+    """Standings of optimisers on one problem, the smallest median gap first.
+
+    Parameters
+    ----------
+    rows : mapping of str to sequence of Row
+        Of each optimiser, by its label.
+    optimum : Solution, Reference or float
+    problem, reading : str
+    budget, seeds : int
+    notes : tuple of str
+
+    Returns
+    -------
+    BenchResult
+    """
+    reference = gap(1.0, optimum).reference
+    standings = [_standing(label, one, reference) for label, one in rows.items()]
+    standings.sort(key=_order)
+    totals = {s.optimizer: totals_of(rows[s.optimizer]) for s in standings}
+    return BenchResult(
+        problem=problem,
+        reading=reading,
+        budget=budget,
+        seeds=seeds,
+        optimum=reference,
+        notes=notes,
+        standings=tuple(standings),
+        pairs=compare_pairs(totals),
+    )
+
+
+def _order(standing: Standing) -> tuple[float, float]:
+    median, best = given(standing.median), given(standing.best)
+    return np.inf if median is None else median, np.inf if best is None else best
+
+
+def _standing(label: str, rows: Sequence[Row], reference: Reference) -> Standing:
+    totals = totals_of(rows)
+    ends = np.quantile(totals, _QUANTILES, method="inverted_cdf")
+    best, low, median, high = (_gap(total, reference.upper) for total in ends)
+    base = given(reference.lower)
+    failed = [row for row in rows if row.status is RowStatus.FAILED]
+    return Standing(
+        optimizer=label,
+        handling=rows[0].handling,
+        settings=rows[0].settings,
+        runs=len(rows),
+        failed=len(failed),
+        messages=_messages(rows),
+        feasible=sum(row.feasible for row in rows),
+        best=best,
+        lower_quartile=low,
+        median=median,
+        upper_quartile=high,
+        median_total=known(float(ends[2]) if np.isfinite(ends[2]) else None, _NO_ANSWER),
+        median_highest=Why("no lower bound is certified") if base is None else _gap(ends[2], base),
+        evaluations=float(np.median([row.evaluations for row in rows])),
+        targets=tuple(_target(rows, reference.upper, one) for one in TARGETS),
+    )
+
+
+def _messages(rows: Sequence[Row]) -> tuple[str, ...]:
+    said = [
+        f"failed: {row.message}"
+        if row.status is RowStatus.FAILED
+        else f"without a feasible answer: {row.feasible_why}"
+        for row in rows
+        if row.feasible_time is None
+    ]
+    return tuple(f"{n} of {len(rows)} runs {why}" for why, n in Counter(said).items())
+
+
+def _gap(total: float, base: float) -> float | Why:
+    return float(total / base - 1) if np.isfinite(total) else Why(_NO_ANSWER)
+
+
+def _target(rows: Sequence[Row], optimum: float, wanted: float) -> TargetReached:
+    hits = np.array([hit(row, optimum * (1 + wanted)) for row in rows])
+    # A failed run says no longer what it spent: all of its budget, so that failing is not cheap.
+    ended = [row.budget if row.status is RowStatus.FAILED else row.evaluations for row in rows]
+    spent = np.array(ended, dtype=np.float64)
+    reached = int(np.isfinite(hits).sum())
+    lowest, highest = success_interval(reached, len(rows))
+    low, high = running_time_interval(hits, spent)
+    return TargetReached(
+        gap=wanted,
+        reached=reached,
+        rate=reached / len(rows),
+        rate_lowest=lowest,
+        rate_highest=highest,
+        evaluations=_finite(expected_running_time(hits, spent), _NEVER),
+        evaluations_lowest=_finite(low, _NEVER),
+        evaluations_highest=_finite(high, _NEVER if not reached else _UNBOUNDED),
+    )
+
+
+def _finite(value: float, why: str) -> float | Why:
+    return value if np.isfinite(value) else Why(why)

@@ -1,0 +1,374 @@
+"""A study file: problems × optimisers × settings × handlings × seeds, in one fixed order."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from decimal import Decimal
+from functools import partial
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field, ValidationError
+
+from ...heuristics import Bounds, DeathPenalty, Handling, Stretch, find_optimizer, search_box
+from ...problem import (
+    Case,
+    CaseError,
+    Coupling,
+    Problem,
+    Strict,
+    TrajgapError,
+    load_case,
+    parse_toml,
+    published_ids,
+    read_text,
+)
+from ...problem.cases import SUITE_PREFIX, Statement, all_faults, refusal
+from ...problem.suite import instance_of, select_instances
+from .benching import WITHOUT_DRAWS, Entrant, bounds_note, first_range
+from .references import bracket_of
+from .rows import Bracket, Trial, canonical
+from .store import Store
+from .trials import origin_of
+
+STUDY_FORMAT = 1
+"""The version of the study file format that this module reads."""
+_MOST = 1_000_000
+"""Largest number of seeds: more runs than anybody has stored."""
+_LONGEST = 86_400.0
+"""Largest time limit of one run, s: a day."""
+_SECONDS = 600.0
+"""Time limit of one run, s: thousands of times what a paper's budget takes."""
+
+
+def _several(raw: object) -> object:
+    """One value stands for a list of one."""
+    return raw if isinstance(raw, list | tuple) else [raw]
+
+
+def _plain(raw: object) -> object:
+    """Numbers as JSON knows them: the reader of TOML leaves decimals exact."""
+    if isinstance(raw, Decimal):
+        return float(raw)
+    if isinstance(raw, dict):
+        return {str(key): _plain(value) for key, value in raw.items()}
+    return [_plain(value) for value in raw] if isinstance(raw, list) else raw
+
+
+Ids = Annotated[tuple[str, ...], BeforeValidator(_several), Field(min_length=1)]
+"""One id, or several."""
+Settings = Annotated[
+    tuple[Annotated[dict[str, Any], BeforeValidator(_plain)], ...],
+    BeforeValidator(_several),
+    Field(min_length=1),
+]
+"""One table of settings, or several: each is run."""
+
+
+class ProblemsBlock(Strict):
+    """Problems of one case that are searched."""
+
+    case: Annotated[str, Field(min_length=1)]
+    """Id of a published case, instances as "suite:353-*", or path of a case file, from the folder
+    of the study file."""
+    problems: Ids | None = None
+    """Ids of its problems; all by default."""
+    readings: Ids | None = None
+    """Ids of its readings; all by default."""
+    coupling: Coupling | None = None
+    """Instead of what the case says. Under "per-joint" each joint is a problem of its own."""
+
+
+class OptimizerBlock(Strict):
+    """An optimiser, under one or several settings."""
+
+    name: Annotated[str, Field(min_length=1)]
+    """As `trajgap bench --optimizer` takes it."""
+    settings: Settings = ({},)
+    """What is left out takes the optimiser's own default."""
+
+
+class StudyFile(Strict):
+    """The content of a study file."""
+
+    format: Literal[1]
+    """Version of the format."""
+    problems: Annotated[tuple[ProblemsBlock, ...], Field(min_length=1)]
+    """Problems to search."""
+    optimizers: Annotated[tuple[OptimizerBlock, ...], Field(min_length=1)]
+    """Optimisers to run on each of them."""
+    handlings: Annotated[tuple[Handling, ...], BeforeValidator(_several), Field(min_length=1)] = (
+        Handling.DEATH_PENALTY,
+    )
+    """What happens to vectors that break a limit."""
+    seeds: Annotated[int, Field(strict=True, ge=1, le=_MOST)] = 30
+    """Number of seeds: independent runs of each combination."""
+    first_seed: Annotated[int, Field(strict=True, ge=0, le=2**62)] = 0
+    """The first of them; the others follow it."""
+    budget: Annotated[int, Field(strict=True, ge=1, le=10**9)] = 6000
+    """Evaluations of each run; the objective enforces it."""
+    seconds: Annotated[float, Field(gt=0, le=_LONGEST)] = _SECONDS
+    """A run that takes longer has failed."""
+
+
+@dataclass(frozen=True, eq=False)
+class PosedProblem:
+    """One problem of a study.
+
+    Attributes
+    ----------
+    name, reading : str
+        As rows state them.
+    problem : Problem
+        As stated.
+    box : Bounds
+        Where searches look for durations.
+    stream : tuple of int
+        Part of the spawn key of its random numbers: (j,) for joint j of several.
+    solve : callable
+        Finds where the optimum of the problem as stated lies.
+    notes : tuple of str
+        What was chosen so that optimisers can search it.
+    """
+
+    name: str
+    reading: str
+    problem: Problem
+    box: Bounds
+    stream: tuple[int, ...]
+    solve: Callable[[], Bracket | None]
+    notes: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class StudyPlan:
+    """What a study file asks for.
+
+    Attributes
+    ----------
+    file : str
+    document : StudyFile
+    problems : tuple of PosedProblem
+    """
+
+    file: str
+    document: StudyFile
+    problems: tuple[PosedProblem, ...]
+
+    def __len__(self) -> int:
+        """Number of its trials."""
+        asked = self.document
+        runs = sum(len(one.settings) * _seeds(one.name, asked) for one in asked.optimizers)
+        return len(self.problems) * len(asked.handlings) * runs
+
+    def trials(self, store: Store | None = None) -> Iterator[Trial]:
+        """Every trial, one by one, in an order that the file alone determines.
+
+        Parameters
+        ----------
+        store : Store, optional
+            Knows or keeps the optima that gaps are set against; without it, rows have no gaps.
+        """
+        asked = self.document
+        for posed in self.problems:
+            bare = Trial(posed.problem, posed.name, posed.reading, "")
+            reference = None
+            if store is not None:
+                reference = store.optimum(bare.problem_sha256, posed.solve)
+            for name, settings, handling in self._entrants():
+                own = {**settings, **first_range(name, settings, posed.box)}
+                entrant = Entrant(name, own, handling, name)
+                first = replace(
+                    bare,
+                    optimizer=name,
+                    settings=canonical(own),
+                    handling=handling,
+                    seed=asked.first_seed,
+                    budget=asked.budget,
+                    stream=(entrant.stream, *posed.stream),
+                    origin=origin_of(name),
+                    reference=reference,
+                    seconds=asked.seconds,
+                )
+                for seed in range(_seeds(name, asked)):
+                    yield replace(first, seed=asked.first_seed + seed)
+
+    def _entrants(self) -> Iterator[tuple[str, dict[str, Any], str]]:
+        for optimizer in self.document.optimizers:
+            for settings in optimizer.settings:
+                for handling in self.document.handlings:
+                    yield optimizer.name, settings, str(handling)
+
+
+def _seeds(name: str, asked: StudyFile) -> int:
+    """Runs of each combination: one of an optimiser that draws no random numbers."""
+    return 1 if name in WITHOUT_DRAWS else asked.seeds
+
+
+def load_study(path: Path) -> StudyPlan:
+    """Read a study file, and everything that it names.
+
+    Parameters
+    ----------
+    path : Path
+
+    Returns
+    -------
+    StudyPlan
+
+    Raises
+    ------
+    CaseError
+        One line: the file, the field, and how to fix it.
+    """
+    return parse_study(read_text(path), str(path), path.parent)
+
+
+def parse_study(text: str, file: str, folder: Path) -> StudyPlan:
+    """Read the text of a study file.
+
+    Parameters
+    ----------
+    text : str
+        TOML.
+    file : str
+        Name for messages.
+    folder : Path
+        Where the paths in it start.
+
+    Returns
+    -------
+    StudyPlan
+
+    Raises
+    ------
+    CaseError
+        As `load_study`.
+    """
+    raw = parse_toml(text, file)
+    version = raw.get("format")
+    if version != STUDY_FORMAT or isinstance(version, bool):
+        given = "is missing" if version is None else f"is {version!r}"
+        raise CaseError(file, "format", f"{given}; write `format = {STUDY_FORMAT}`")
+    try:
+        document = StudyFile.model_validate(raw)
+    except ValidationError as error:
+        raise refusal(file, all_faults(error)) from None
+    _check_optimizers(document, file)
+    problems = tuple(
+        posed
+        for at, block in enumerate(document.problems)
+        for posed in _posed(block, document.handlings, file, f"problems[{at}]", folder)
+    )
+    _check_repeats(problems, document, file)
+    return StudyPlan(file, document, problems)
+
+
+def _check_repeats(problems: tuple[PosedProblem, ...], document: StudyFile, file: str) -> None:
+    """Refuse what would be run twice under the same key."""
+    asked = [
+        ("problems", [f"{one.name}, {one.reading}" for one in problems]),
+        (
+            "optimizers",
+            [f"{b.name} {canonical(s)}" for b in document.optimizers for s in b.settings],
+        ),
+        ("handlings", [str(handling) for handling in document.handlings]),
+    ]
+    for field, names in asked:
+        for name in names:
+            if names.count(name) > 1:
+                raise CaseError(file, field, f"{name} is named twice; name it once")
+
+
+def _check_optimizers(document: StudyFile, file: str) -> None:
+    for at, block in enumerate(document.optimizers):
+        for place, settings in enumerate(block.settings):
+            field = f"optimizers[{at}]"
+            if settings:
+                field += f".settings[{place}]" if len(block.settings) > 1 else ".settings"
+            try:
+                canonical(settings)
+                find_optimizer(block.name, document.budget, **settings)
+            except TrajgapError as error:
+                raise CaseError(file, field, str(error)) from None
+            except TypeError as error:
+                raise CaseError(file, field, f"{error}; see the optimiser's manual") from None
+
+
+def _posed(
+    block: ProblemsBlock, handlings: tuple[Handling, ...], file: str, field: str, folder: Path
+) -> Iterator[PosedProblem]:
+    """Problems that a block names, joint by joint where each is searched by itself."""
+    try:
+        if block.case.startswith(SUITE_PREFIX) or block.case == SUITE_PREFIX.rstrip(":"):
+            cases = [one.case() for one in select_instances(block.case)]
+        else:
+            known = block.case in published_ids()
+            cases = [load_case(block.case if known else str(folder / block.case))]
+    except TrajgapError as error:
+        raise CaseError(file, f"{field}.case", str(error)) from None
+    for case in cases:
+        yield from _posed_of(case, block, handlings, file, field)
+
+
+def _posed_of(
+    case: Case, block: ProblemsBlock, handlings: tuple[Handling, ...], file: str, field: str
+) -> Iterator[PosedProblem]:
+    try:
+        pairs = _pairs(case, block)
+        problems = [case.problem(*pair, block.coupling) for pair in pairs]
+    except CaseError as error:
+        raise CaseError(file, f"{field}.case", str(error)) from None
+    for (pid, rid), problem in zip(pairs, problems, strict=True):
+        apart = problem.coupling is Coupling.PER_JOINT and len(problem.joints) > 1
+        for joint in range(len(problem.joints)) if apart else (None,):
+            one = problem if joint is None else problem.joint(joint)
+            label = "" if joint is None else f", joint {problem.joints[joint]}"
+            try:
+                box = search_box(one)
+                for handling in handlings:
+                    _check_judged(one, handling)
+            except TrajgapError as error:
+                raise CaseError(file, field, f"{pid}, {rid}{label}: {error}") from None
+            yield PosedProblem(
+                name=f"{case.id}/{pid}{label}",
+                reading=rid,
+                problem=one,
+                box=box,
+                stream=() if joint is None else (joint,),
+                solve=partial(_bracket, case, one, case.statement(pid, rid), joint),
+                notes=bounds_note(one),
+            )
+
+
+def _bracket(
+    case: Case, problem: Problem, statement: Statement, joint: int | None
+) -> Bracket | None:
+    """What the suite knows of its own instances; the rest is solved."""
+    known = instance_of(case) if joint is None else None
+    if known is None:
+        return bracket_of(problem, statement, joint)
+    return Bracket(known.upper, known.lower or None)
+
+
+def _pairs(case: Case, block: ProblemsBlock) -> list[tuple[str, str]]:
+    """Problems and readings that are asked for and stated in full, each once."""
+    found = {
+        pair: None
+        for pid in block.problems or (None,)
+        for rid in block.readings or (None,)
+        for pair in case.selections(pid, rid)
+    }
+    stated = [pair for pair in found if case.statement(*pair).complete]
+    if not stated:
+        raise CaseError(case.file, "", "states no problem in full; name another case")
+    return stated
+
+
+def _check_judged(problem: Problem, handling: Handling) -> None:
+    """Find out whether the objective can judge a problem before anything is run."""
+    if handling is Handling.DEATH_PENALTY:
+        DeathPenalty(problem)
+    else:
+        Stretch(problem)

@@ -1,0 +1,166 @@
+"""How often and how soon runs come within given gaps of the optimum."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from ...problem import Array
+from .rows import Row
+
+TARGETS = (0.1, 0.01, 1e-3, 1e-4, 1e-6)
+"""Relative gaps that are asked for: 10 % is a poor answer, 1 % and 0.1 % are what papers' printed
+digits can tell apart, 0.01 % is below them, 1e-6 is a solver's answer."""
+
+_SAMPLES = 2000
+"""Bootstrap samples of an interval: its ends move by about 1 % of its width with the seed."""
+_CURVE = tuple(float(g) for g in np.logspace(0, -6, 61))
+"""Targets of the share of targets reached, ten for every tenfold: from twice the optimum to a
+millionth above it."""
+
+
+def hit(row: Row, total: float) -> float:
+    """Evaluations after which a run knew a total at most this large, s; inf if it never did.
+
+    Counted at the log-spaced evaluations of the row's trace, so up to 7.5 % too many and never
+    too few. A run whose answer fails `trajgap.problem.check` never hits.
+
+    Parameters
+    ----------
+    row : Row
+    total : float
+    """
+    if not row.feasible:
+        return np.inf
+    return next((float(at) for at, best in row.trace if best <= total), np.inf)
+
+
+def expected_running_time(hits: Array, evaluations: Array) -> float:
+    """Evaluations that independent restarts need on average until the first one hits.
+
+    The evaluations of all runs, up to the hit where there is one, over the number of hits. Source:
+    Hansen, Auger, Ros, Mersmann, Tušar, Brockhoff, "COCO: a platform for comparing continuous
+    optimizers in a black-box setting", 2021, section 5.
+
+    Parameters
+    ----------
+    hits : ndarray, shape (runs,)
+        Evaluations at the hit; inf where there is none.
+    evaluations : ndarray, shape (runs,)
+        Evaluations of the whole run.
+
+    Returns
+    -------
+    float
+        inf if no run hits.
+
+    Examples
+    --------
+    >>> expected_running_time(np.array([100.0, np.inf, 300.0]), np.array([500.0, 500.0, 500.0]))
+    450.0
+    """
+    reached = np.isfinite(hits)
+    if not reached.any():
+        return float("inf")
+    return float(np.where(reached, hits, evaluations).sum() / reached.sum())
+
+
+def running_time_interval(hits: Array, evaluations: Array) -> tuple[float, float]:
+    """95 % interval of `expected_running_time`, by resampling runs; inf where samples miss.
+
+    Percentiles of 2,000 samples, with a fixed seed.
+    """
+    rng = np.random.Generator(np.random.PCG64(0))
+    drawn = rng.integers(hits.size, size=(_SAMPLES, hits.size))
+    reached = np.isfinite(hits)
+    spent = np.where(reached, hits, evaluations)[drawn].sum(axis=1)
+    count = reached[drawn].sum(axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):  # both where a sample has no hit
+        times = np.where(count > 0, spent / count, np.inf)
+    # Quantiles that are samples: between a number and infinity there is no mean.
+    low, high = np.quantile(times, (0.025, 0.975), method="inverted_cdf")
+    return float(low), float(high)
+
+
+def success_interval(successes: int, runs: int) -> tuple[float, float]:
+    """95 % interval of a success rate (Wilson)."""
+    from scipy.stats import binomtest  # half a second, and few need it
+
+    found = binomtest(successes, runs).proportion_ci(method="wilson")
+    return float(found.low), float(found.high)
+
+
+def share_of_targets(
+    rows: Sequence[Row], optimum: float, targets: Iterable[float] = _CURVE
+) -> tuple[Array, Array]:
+    """Share of pairs of run and target that are reached after so many evaluations (ECDF).
+
+    Parameters
+    ----------
+    rows : sequence of Row
+        Of one optimiser, on one problem; for several problems average the shares.
+    optimum : float
+        s.
+    targets : iterable of float
+        Relative gaps.
+
+    Returns
+    -------
+    evaluations, shares : ndarray
+        Steps: the share holds from its evaluation on.
+    """
+    wanted = list(targets)
+    hits = np.array([hit(row, optimum * (1 + g)) for row in rows for g in wanted])
+    steps, counts = np.unique(hits[np.isfinite(hits)], return_counts=True)
+    return steps, np.cumsum(counts) / hits.size
+
+
+def share_within(totals: Array, optimum: float) -> tuple[Array, Array]:
+    """Performance profile against the optimum: share of runs that end within each ratio to it.
+
+    Unlike a profile against the best of the optimisers compared, it does not change with their
+    company.
+
+    Parameters
+    ----------
+    totals : ndarray, shape (runs,)
+        s; inf for a run without answer.
+    optimum : float
+
+    Returns
+    -------
+    ratios, shares : ndarray
+        Steps: the share holds from its ratio on.
+    """
+    ratios, counts = np.unique(totals[np.isfinite(totals)] / optimum, return_counts=True)
+    return ratios, np.cumsum(counts) / totals.size
+
+
+def band(rows: Sequence[Row], optimum: float, levels: Sequence[float]) -> tuple[Array, Array]:
+    """Quantiles over the runs of the gap of the best so far, at log-spaced evaluations.
+
+    Parameters
+    ----------
+    rows : sequence of Row
+        Of one optimiser; one that failed counts as a run without answer.
+    optimum : float
+        s.
+    levels : sequence of float
+        In 0..1.
+
+    Returns
+    -------
+    evaluations : ndarray, shape (points,)
+    gaps : ndarray, shape (levels, points)
+        Relative; inf where too few runs know an answer.
+    """
+    points = sorted({at for row in rows for at, _ in row.trace} | {max(r.budget for r in rows)})
+    known = np.full((len(rows), len(points)), np.inf)
+    for i, row in enumerate(rows):
+        at = np.searchsorted(points, [when for when, _ in row.trace]).tolist()
+        for (start, end), (_, best) in zip(pairwise([*at, len(points)]), row.trace, strict=True):
+            known[i, start:end] = best
+    gaps = np.quantile(known / optimum - 1, levels, axis=0, method="inverted_cdf")
+    return np.array(points, dtype=np.float64), gaps

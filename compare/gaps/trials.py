@@ -1,0 +1,127 @@
+"""Run one trial: whatever its optimiser does wrong becomes a row with its message."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import importlib.util
+import math
+import random
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from functools import lru_cache
+from hashlib import sha256
+from pathlib import Path
+
+import numpy as np
+
+from ...heuristics import BudgetedRun, find_optimizer, run_within
+from ...problem import TrajgapError, check
+from .rows import Row, Trial, against, failed, settings_of, trace_of
+
+_LONGEST_MESSAGE = 300
+"""Characters of a message that are kept: optimisers may print whole arrays into theirs."""
+
+LIBRARIES = {"scipy": "scipy", "mealpy": "mealpy", "pymoo": "pymoo", "pygmo": "pygmo", "cma": "cma"}
+"""Distribution that an optimiser's prefix names: its version can change what a run finds."""
+
+
+@lru_cache(maxsize=256)
+def origin_of(optimizer: str) -> str:
+    """Where an optimiser comes from: a package with its version, or a hash of its source.
+
+    Parameters
+    ----------
+    optimizer : str
+        As `find_optimizer` takes it.
+
+    Returns
+    -------
+    str
+        "mealpy 3.0.1", "sha256:…" of the module's file for "module:function", else "trajgap 0.1.0".
+    """
+    prefix, _, rest = optimizer.partition(":")
+    try:
+        if prefix in LIBRARIES:
+            return f"{prefix} {importlib.metadata.version(LIBRARIES[prefix])}"
+        found = importlib.util.find_spec(prefix) if rest else None
+        if found is not None and found.origin is not None:
+            return f"sha256:{sha256(Path(found.origin).read_bytes()).hexdigest()}"
+        return f"trajgap {importlib.metadata.version('trajgap')}"
+    except (ImportError, ValueError, OSError):
+        return ""
+
+
+@contextmanager
+def _alone(trial: Trial) -> Iterator[None]:
+    """Seed the global generators, for optimisers that draw from them, and put them back."""
+    state, legacy = random.getstate(), np.random.get_state()  # noqa: NPY002
+    words = np.random.SeedSequence(trial.seed, spawn_key=(*trial.stream, 1)).generate_state(4)
+    random.seed(words.tobytes())
+    np.random.seed(words)  # noqa: NPY002
+    try:
+        with warnings.catch_warnings():
+            # A run must not depend on the filters that its process happens to have.
+            warnings.simplefilter("ignore")
+            yield
+    finally:
+        random.setstate(state)
+        np.random.set_state(legacy)  # noqa: NPY002
+
+
+def run_trial(trial: Trial) -> Row:
+    """Run a trial in this process.
+
+    Parameters
+    ----------
+    trial : Trial
+
+    Returns
+    -------
+    Row
+        Failed, with a message, if the optimiser is not found, raises, judges nothing, leaves the
+        rules or takes too long. One that hangs in compiled code, or ends the process, is caught
+        by the engines alone.
+    """
+    try:
+        with _alone(trial):
+            found = run_within(
+                find_optimizer(trial.optimizer, trial.budget, **settings_of(trial)),
+                trial.problem,
+                trial.seed,
+                trial.budget,
+                trial.handling,
+                trial.seconds if math.isfinite(trial.seconds) else None,
+                trial.stream,
+            )
+    except KeyboardInterrupt:
+        raise
+    except TrajgapError as error:
+        return failed(trial, shortened(str(error)))
+    except BaseException as error:  # an optimiser may even ask the interpreter to exit
+        return failed(trial, shortened(f"{type(error).__name__}: {error}"))
+    return _row(trial, found)
+
+
+def shortened(message: str) -> str:
+    """A message in one line of bounded length."""
+    text = " ".join(message.split()).removesuffix(":")
+    return text if len(text) <= _LONGEST_MESSAGE else text[: _LONGEST_MESSAGE - 1] + "…"
+
+
+def _row(trial: Trial, found: BudgetedRun) -> Row:
+    row = replace(Row.begun(trial), evaluations=found.evaluations, trace=trace_of(found.totals))
+    if not math.isfinite(found.reported_time):
+        return replace(row, feasible_why="nothing feasible was judged")
+    row = replace(row, durations=tuple(found.durations.tolist()), reported_time=found.reported_time)
+    judged = check(trial.problem, found.durations)
+    worst = judged.worst
+    row = replace(
+        row,
+        verdict=str(judged.verdict),
+        worst_ratio=None if worst is None or math.isinf(worst.ratio) else worst.ratio,
+        feasible_time=judged.feasible_time,
+        feasible_why=judged.feasible_why or "",
+    )
+    return against(row, trial.reference)

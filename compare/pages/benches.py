@@ -1,0 +1,401 @@
+"""Writes what a bench found: one page with pictures, and rows, traces and JSON beside it."""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict
+from pathlib import Path
+
+from ...problem import CaseError, file_name, recover_folder, replace_folder
+from ..audits import package_version
+from ..documents import (
+    BENCH_COLUMNS,
+    OVERALL_COLUMNS,
+    BenchDocument,
+    BenchResult,
+    OverallStanding,
+    PairCompared,
+    Reference,
+    Standing,
+    TargetReached,
+    Why,
+    bench_cells,
+    gap_cell,
+    given,
+    json_text,
+    overall_cells,
+    percent,
+)
+from ..gaps import (
+    Row,
+    Runs,
+    band,
+    canonical,
+    overall,
+    relative_rows,
+    share_of_targets,
+    share_within,
+    totals_of,
+)
+from ..pictures import Anytime, Picture, gap_picture, profile_picture, svg, themed
+from .blocks import Block, Cell, Drawn, Folded, Grid, Page, Prose, Section, Terms, number, text
+from .writer import page_text
+
+_QUARTILES = (0.25, 0.5, 0.75)
+"""Of the runs, in the picture of the gaps."""
+_PAGE = "index.html"
+"""The page; like the next three a file of a bench, and a folder that holds others is kept."""
+_MARK = "bench.json"
+"""The document, by which the folder of an earlier bench is known."""
+_ROWS = "rows.csv"
+"""Every run."""
+_ONE_BY_ONE = 6
+"""Problems up to which each has its own tables and pictures on the page; JSON and CSV have all."""
+_TOLD = 0.01
+"""Gap of the sentence that leads over many problems: what a paper's digits can tell apart."""
+_PICTURES = "pictures/bench-"
+"""What its pictures begin with."""
+
+
+def write_bench(results: Sequence[tuple[BenchResult, Runs]], out: Path) -> None:
+    """Write the page of a bench into a folder; all of it appears together.
+
+    Parameters
+    ----------
+    results : sequence of (BenchResult, Runs)
+        One for each problem.
+    out : Path
+        A new or an empty folder, or one with an earlier bench, which is replaced. It gets
+        ``index.html``, ``bench.json``, ``rows.csv`` and ``pictures/``.
+
+    Raises
+    ------
+    CaseError
+        If the folder holds anything else, or cannot be written.
+    """
+    check_bench_folder(out)
+    page = _page(results)
+    files = {
+        _PAGE: page_text(page),
+        _MARK: json_text(bench_document(results)),
+        _ROWS: rows_text(row for _, runs in results for row in runs.rows),
+    }
+    for drawn in page.pictures:
+        files[page.picture(drawn)] = themed(drawn.document)
+    try:
+        replace_folder(Path(out), files)
+    except OSError as error:
+        raise _unwritten(out, error) from None
+
+
+def bench_document(results: Sequence[tuple[BenchResult, Runs]]) -> BenchDocument:
+    """What `trajgap bench --json` prints."""
+    found = tuple(result for result, _ in results)
+    return BenchDocument(results=found, overall=overall(found))
+
+
+def check_bench_folder(out: Path) -> None:
+    """Find out whether a bench can be written to a folder, before it is computed.
+
+    Raises
+    ------
+    CaseError
+        If it holds anything but an earlier bench.
+    """
+    try:
+        recover_folder(out)
+        if os.path.lexists(out) and not out.is_dir():
+            raise CaseError(str(out), "--out", "is a file; name a folder")
+        there = sorted(p.relative_to(out).as_posix() for p in out.rglob("*") if not p.is_dir())
+    except OSError as error:
+        raise _unwritten(out, error) from None
+    for name in there:
+        if name not in (_PAGE, _MARK, _ROWS) and not name.startswith(_PICTURES):
+            raise CaseError(
+                str(out), "--out", f"holds {name}, which is no bench; name a new or an empty folder"
+            )
+    if there and _MARK not in there:
+        raise CaseError(str(out), "--out", "holds no bench; name a new or an empty folder")
+
+
+def _unwritten(out: Path, error: OSError) -> CaseError:
+    reason = error.strerror or type(error).__name__
+    return CaseError(str(out), "--out", f"cannot be written ({reason}); name another place")
+
+
+def rows_text(rows: Iterable[Row]) -> str:
+    """Rows as CSV: one line a run; lists and pairs are JSON in one cell."""
+    table = io.StringIO()
+    writer = csv.writer(table, lineterminator="\n")
+    head: list[str] = []
+    for row in rows:
+        values = asdict(row)
+        if not head:
+            head = list(values)
+            writer.writerow(head)
+        cells = (values[name] for name in head)
+        writer.writerow(canonical(c) if isinstance(c, list | tuple) else c for c in cells)
+    return table.getvalue()
+
+
+def bench_picture(result: BenchResult, runs: Runs) -> Picture:
+    """Anytime gap bands of every optimiser, and the targets that they reach.
+
+    Parameters
+    ----------
+    result : BenchResult
+        What `measure_gaps` returned for the runs.
+    runs : Runs
+    """
+    upper, lower = result.optimum.upper, given(result.optimum.lower)
+    optimisers = []
+    for standing in result.standings:
+        rows = runs.by_label[standing.optimizer]
+        steps, shares = share_of_targets(rows, upper)
+        known = band(rows, upper, _QUARTILES)
+        optimisers.append(Anytime(standing.optimizer, *known, steps, shares, len(rows)))
+    return gap_picture(
+        optimisers,
+        title=f"Gap to the optimum over the evaluations: {result.title}",
+        uncertainty=None if lower is None else 1 - lower / upper,
+        budget=result.budget,
+    )
+
+
+def _page(results: Sequence[tuple[BenchResult, Runs]]) -> Page:
+    first = results[0][0]
+    trail = (
+        f"{first.budget} evaluations a run, {first.seeds} seeds. "
+        f"trajgap {package_version('trajgap')}."
+    )
+    links = (("JSON", _MARK), ("rows (CSV)", _ROWS))
+    title = f"Optimisers against the optimum: {first.problem}"
+    many = len(results) > _ONE_BY_ONE
+    sections = _all_sections(results) if len(results) > 1 else []
+    if many:
+        title = f"Optimisers against the optimum: {len(results)} problems"
+    else:
+        sections += [
+            section
+            for i, (result, runs) in enumerate(results)
+            for section in _sections(i, result, runs)
+        ]
+    return Page("bench", title, (*sections, _reading()), trail=trail, links=links).filled
+
+
+def _all_sections(results: Sequence[tuple[BenchResult, Runs]]) -> list[Section]:
+    """What the runs say over all problems, and a line for each problem."""
+    standings = overall([result for result, _ in results])
+    rows = relative_rows(results)
+    first = results[0][0]
+    head = f"All {len(results)} problems"
+    optimisers = [
+        Anytime(one.optimizer, *band(own, 1.0, _QUARTILES), *share_of_targets(own, 1.0), len(own))
+        for one in standings
+        for own in (rows[one.optimizer],)
+    ]
+    gaps = gap_picture(
+        optimisers,
+        title=f"Gap to the optimum over the evaluations: {len(results)} problems",
+        uncertainty=max(_width(result) for result, _ in results),
+        budget=first.budget,
+    )
+    profiles = {
+        one.optimizer: share_within(totals_of(rows[one.optimizer]), 1.0) for one in standings
+    }
+    profile = profile_picture(profiles, title=f"Where runs end: {len(results)} problems")
+    notes = dict.fromkeys(note for result, _ in results for note in result.notes)
+    messages = tuple(
+        Prose(f"{result.problem}: {one.optimizer}: {message}", "note")
+        for result, _ in results
+        for one in result.standings
+        for message in one.messages
+    )
+    chosen = tuple(Prose(note, "note") for note in notes)
+    said = (("What was chosen", chosen), ("Runs without an answer", messages))
+    return [
+        Section(
+            "overall",
+            head,
+            (
+                Prose(most_solved(standings), "lead"),
+                _overall_table(standings),
+                _drawn("all", "gaps", gaps),
+                Folded("Where runs end", (_drawn("all", "profile", profile),)),
+                *(Folded(head, blocks) for head, blocks in said if blocks),
+            ),
+        ),
+        Section("problems", "Problem by problem", (_by_problem(results, standings),)),
+    ]
+
+
+def _width(result: BenchResult) -> float:
+    lower = given(result.optimum.lower)
+    return 0.0 if lower is None else 1 - lower / result.optimum.upper
+
+
+def most_solved(standings: Sequence[OverallStanding]) -> str:
+    """Which optimiser comes within 1 % most often, in a sentence."""
+    first = standings[0]
+    target = next(one for one in first.targets if one.gap == _TOLD)
+    said = (
+        f"Within 1 % of the optimum most often: {first.optimizer}, in {100 * target.rate:.0f} % of "
+        f"its runs over {first.problems} problems"
+    )
+    if len(standings) > 1:
+        second = next(one for one in standings[1].targets if one.gap == _TOLD)
+        said += f"; next {standings[1].optimizer} with {100 * second.rate:.0f} %"
+    return f"{said}."
+
+
+def _overall_table(standings: Sequence[OverallStanding]) -> Grid:
+    rows = tuple(
+        tuple(text(cell) if i == 0 else number(cell) for i, cell in enumerate(overall_cells(one)))
+        for one in standings
+    )
+    return Grid(OVERALL_COLUMNS, rows)
+
+
+def _by_problem(
+    results: Sequence[tuple[BenchResult, Runs]], standings: Sequence[OverallStanding]
+) -> Grid:
+    names = [one.optimizer for one in standings]
+    rows = []
+    for result, _ in results:
+        medians = {one.optimizer: gap_cell(one.median) for one in result.standings}
+        width = f"{_width(result):.1e}" if _width(result) else "no bound"
+        rows.append(
+            (
+                text(result.title),
+                number(f"{result.optimum.upper:.6g}"),
+                number(width),
+                *(number(medians[name]) for name in names),
+            )
+        )
+    columns = ("problem", "optimum (s)", "its width", *names)
+    return Grid(columns, tuple(rows), "Median gap of each optimiser")
+
+
+def _sections(at: int, result: BenchResult, runs: Runs) -> list[Section]:
+    head = result.title
+    blocks: list[Block] = [Prose(result.verdict, "lead"), Prose(optimum_said(result.optimum))]
+    blocks.append(_table(result.standings))
+    blocks.append(_drawn(at, "gaps", bench_picture(result, runs)))
+    blocks += [Prose(note, "note") for note in result.notes]
+    blocks += [
+        Prose(f"{one.optimizer}: {message}", "note")
+        for one in result.standings
+        for message in one.messages
+    ]
+    profiles = {
+        one.optimizer: share_within(totals_of(runs.by_label[one.optimizer]), result.optimum.upper)
+        for one in result.standings
+    }
+    profile = profile_picture(profiles, title=f"Where runs end: {head}")
+    blocks.append(Folded("Where runs end", (_drawn(at, "profile", profile),)))
+    blocks.append(Folded("Every target", (_targets(result.standings),)))
+    if result.pairs:
+        blocks.append(Folded("Run against run", (_pairs(result.pairs),)))
+    blocks.append(Folded("Settings", (_settings(result.standings),)))
+    return [Section(f"result-{at}", head, tuple(blocks))]
+
+
+def optimum_said(optimum: Reference) -> str:
+    """What is known of the optimum, in a sentence."""
+    lower = given(optimum.lower)
+    if lower is None:
+        return f"Optimum: {optimum.upper:.6f} s, {optimum.evidence}; true gaps may be larger."
+    width = percent(1 - lower / optimum.upper)
+    return (
+        f"Optimum: {lower:.7f} to {optimum.upper:.7f} s, {optimum.evidence}; it may lie up to "
+        f"{width} below the value that gaps are set against."
+    )
+
+
+def _table(standings: Sequence[Standing]) -> Grid:
+    rows = tuple(
+        tuple(text(cell) if i == 0 else number(cell) for i, cell in enumerate(bench_cells(one)))
+        for one in standings
+    )
+    return Grid(BENCH_COLUMNS, rows)
+
+
+def _targets(standings: Sequence[Standing]) -> Grid:
+    rows = tuple(
+        (text(one.optimizer), number(percent(target.gap)), *_target(one, target))
+        for one in standings
+        for target in one.targets
+    )
+    columns = (
+        "optimizer",
+        "gap",
+        "runs",
+        "rate, 95 % interval",
+        "expected evaluations",
+        "interval",
+    )
+    return Grid(columns, rows, "Expected evaluations with restarts, until the gap is reached")
+
+
+def _target(one: Standing, target: TargetReached) -> tuple[Cell, ...]:
+    low, high = 100 * target.rate_lowest, 100 * target.rate_highest
+    ends = (target.evaluations_lowest, target.evaluations_highest)
+    shown = " to ".join("∞" if isinstance(end, Why) else f"{end:.0f}" for end in ends)
+    never = isinstance(target.evaluations, Why)
+    return (
+        number(f"{target.reached} of {one.runs}"),
+        number(f"{low:.0f} to {high:.0f} %"),
+        number("never" if isinstance(target.evaluations, Why) else f"{target.evaluations:.0f}"),
+        number("" if never else shown),
+    )
+
+
+def _pairs(pairs: Sequence[PairCompared]) -> Grid:
+    rows = tuple(
+        (
+            text(one.first),
+            text(one.second),
+            number(f"{100 * one.first_shorter:.0f} %"),
+            number(f"{100 * one.equal:.0f} %"),
+            number(f"{one.vargha_delaney:.3f}"),
+            number(f"{one.lowest:.3f} to {one.highest:.3f}"),
+            number(f"{one.p_value:.2g}"),
+        )
+        for one in pairs
+    )
+    columns = ("first", "second", "first is shorter", "tie", "A₁₂", "95 % interval", "p, Holm")
+    return Grid(columns, rows)
+
+
+def _settings(standings: Sequence[Standing]) -> Terms:
+    return Terms(
+        tuple(
+            (
+                one.optimizer,
+                f"{one.handling}; {one.settings if one.settings != '{}' else 'its own'}",
+            )
+            for one in standings
+        )
+    )
+
+
+def _drawn(at: int | str, name: str, picture: Picture) -> Drawn:
+    return Drawn(file_name(name, str(at)), svg(picture), picture.title)
+
+
+def _reading() -> Section:
+    said = (
+        ("median gap", "gap of the middle run to the upper end of the optimum, (T − U)/U"),
+        ("T", "the total that `check` finds for the answer, stretched if it broke a limit"),
+        ("≤ 1 %", "share of runs that come within that gap"),
+        ("evaluations to 1 %", "expected running time: all evaluations of all runs over the "
+         "number of runs that reach the gap; in brackets a 95 % interval"),
+        ("targets reached", "share of pairs of a run and one of 61 gaps from 100 % to 0.0001 %"),
+        ("A₁₂", "probability that a run of the first is shorter than one of the second"),
+        ("p, Holm", "Mann and Whitney's test; every optimiser draws from a random stream of its "
+         "own, so runs are independent and not paired"),
+    )  # fmt: skip
+    return Section("reading", "How to read it", (Terms(said),), folded=True)

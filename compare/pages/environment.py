@@ -1,0 +1,45 @@
+"""Templates and style of all pages, and how text becomes safe in them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
+
+from ...problem import visible
+from ..pictures import embedded
+from .blocks import link, slug
+
+_TEMPLATES = Path(__file__).parent / "templates"
+"""Where the pages' templates and style lie, as package data."""
+
+
+def style() -> str:
+    """The style sheet that every page carries."""
+    return (_TEMPLATES / "style.css").read_text(encoding="utf-8")
+
+
+def environment() -> Environment:
+    """The templates, with what they call."""
+    found = Environment(
+        loader=FileSystemLoader(_TEMPLATES),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+        finalize=_visible,
+    )
+    found.filters["slug"] = slug
+    found.filters["link"] = link
+    found.filters["inline"] = lambda drawn: Markup(embedded(drawn.document, drawn.name))
+    found.filters["unescaped"] = Markup
+    return found
+
+
+def _visible(value: object) -> object:
+    """What a page prints: plain text with every character visible, markup of ours as it is."""
+    if isinstance(value, str) and not isinstance(value, Markup):
+        return visible(value, keep="\n")
+    return value

@@ -1,0 +1,5 @@
+"""A Sphinx extension: audits, bench results and certificates in any documentation."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,0 +1,240 @@
+"""Directives: a verdict card, claims, a waterfall, the table of papers, a certificate."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from pathlib import Path
+from typing import Any, ClassVar
+
+from docutils import nodes
+from docutils.parsers.rst import directives
+from sphinx.util.docutils import SphinxDirective
+
+from ...problem import TrajgapError, file_name
+from ..documents import ClaimVerdict, more_errors, worth
+from ..pictures import waterfall_picture
+from .parts import badge, paragraph, picture, table
+from .proofs import proved_again
+from .results import Results, distance_of, waterfall_of
+from .suite import InstanceShown, SuiteTable
+
+_WORDS = tuple(map(str, ClaimVerdict))
+"""Verdicts on claims, in the order in which a table counts them."""
+
+
+class FromResults(SphinxDirective, ABC):
+    """A directive that reads results; what is wrong is one error with its place."""
+
+    required_arguments = 1
+
+    @property
+    def results(self) -> Results:
+        """The folder that conf.py names."""
+        return Results(Path(self.env.srcdir, self.config.trajgap_results))
+
+    def run(self) -> list[nodes.Node]:
+        """The nodes, or an error of the build."""
+        results = self.results
+        for name in self.arguments[:1]:
+            self.env.note_dependency(str(results.folder / f"{name}.json"))
+        try:
+            return self.made(results)
+        except TrajgapError as error:
+            raise self.error(str(error)) from None
+
+    @abstractmethod
+    def made(self, results: Results) -> list[nodes.Node]:
+        """What the directive puts into the page."""
+
+
+class Card(FromResults):
+    """``{trajgap-card} CASE``: the verdict in at most 80 words."""
+
+    def made(self, results: Results) -> list[nodes.Node]:
+        """One paragraph a sentence; errors marked."""
+        card = results.case(self.arguments[0])["card"]
+        box = nodes.container(classes=["trajgap-card"])
+        for key in ("limits", "optimum", "improvement"):
+            if card[key]:
+                box += paragraph(card[key])
+        for said in card["errors"]:
+            box += paragraph(said, "trajgap-against")
+        if card["more"]:
+            box += paragraph(more_errors(card["more"]), "trajgap-against")
+        if card["explanation"]:
+            box += paragraph(card["explanation"], "trajgap-beside")
+        return [box]
+
+
+class Claims(FromResults):
+    """``{trajgap-claims} CASE``: every claim with its place, digits, word and reason."""
+
+    option_spec: ClassVar[dict[str, Any]] = {"verdict": directives.unchanged}
+
+    def made(self, results: Results) -> list[nodes.Node]:
+        """The claims with one of the words asked for, all without the option."""
+        case = results.case(self.arguments[0])
+        wanted = [w.strip() for w in self.options.get("verdict", "").split(",") if w.strip()]
+        stated = {one["claim"]: one for one in case["claims"]}
+        found: list[nodes.Node] = []
+        for verdict in case["verdicts"]:
+            if wanted and verdict["verdict"] not in wanted:
+                continue
+            claim = stated[verdict["claim"]]
+            box = nodes.container(classes=["trajgap-claim"])
+            head = nodes.paragraph(classes=["trajgap-said"])
+            head += badge(verdict["verdict"])
+            head += nodes.Text(f" {claim['text']}")
+            place = ". ".join(filter(None, (claim["where"], claim["printed"], _holds(verdict))))
+            box += [head, paragraph(place, "trajgap-beside"), paragraph(verdict["why"])]
+            for caveat in verdict["caveats"]:
+                box += paragraph(f"{caveat[:1].upper()}{caveat[1:]}", "trajgap-beside")
+            found.append(box)
+        return found or [paragraph("None.")]
+
+
+def _holds(verdict: dict[str, Any]) -> str:
+    """Under which readings a verdict holds, what kind of proof it is, and its reference value."""
+    words = list(verdict["readings"].values())
+    each = [f"{word} under {words.count(word)}" for word in dict.fromkeys(words)]
+    parts = [f"{', '.join(each)} of {len(words)} readings"] if len(words) > 1 else []
+    if verdict["evidence"] != "none":
+        parts.append(f"reference {verdict['evidence']}")
+    parts += [verdict["confidence"]] if verdict["confidence"] else []
+    said = "; ".join(parts)
+    return f"{said[:1].upper()}{said[1:]}"
+
+
+class WaterfallShown(FromResults):
+    """``{trajgap-waterfall} CASE``: where the time goes, as a picture."""
+
+    option_spec: ClassVar[dict[str, Any]] = {
+        "problem": directives.unchanged,
+        "reading": directives.unchanged,
+    }
+
+    def made(self, results: Results) -> list[nodes.Node]:
+        """The first waterfall that fits the options."""
+        name = self.arguments[0]
+        case = results.case(name)
+        asked = {key: self.options[key] for key in ("problem", "reading") if key in self.options}
+        for entry in case["waterfalls"]:
+            if all(entry[key] == value for key, value in asked.items()):
+                drawn = waterfall_picture(waterfall_of(entry), title=case["title"])
+                place = file_name("waterfall", name, entry["problem"], entry["reading"])
+                return picture(drawn, place)
+        raise TrajgapError(f"{name}: no waterfall of {asked or 'any problem'}; look into the JSON")
+
+
+class Papers(FromResults):
+    """``{trajgap-papers}``: all audited cases, one a row."""
+
+    required_arguments = 0
+    option_spec: ClassVar[dict[str, Any]] = {"pages": directives.unchanged}
+
+    def made(self, results: Results) -> list[nodes.Node]:
+        """Claimed total, whether limits are kept, optimum, distance, evidence; sortable."""
+        rows = []
+        for name in results.names:
+            document = results.document(name)
+            if "cases" not in document:
+                continue
+            self.env.note_dependency(str(results.folder / f"{name}.json"))
+            case = results.case(name)
+            *best, evidence = distance_of(case)
+            word = badge(evidence) if evidence else ""
+            paper = self._linked(name, case["title"])
+            rows.append([paper, *best, word, case["card"]["limits"], _counted(case)])
+        columns = ("paper", "printed, s", "optimum, s", "above it", "evidence", "limits", "claims")
+        return [table(columns, rows, "trajgap-sortable")]
+
+    def _linked(self, name: str, title: str) -> nodes.Node:
+        pages = self.options.get("pages")
+        if pages is None:
+            return nodes.inline("", title)
+        from sphinx.addnodes import pending_xref
+
+        target = pending_xref(
+            "", nodes.inline("", title), refdomain="std", reftype="doc",
+            reftarget=f"/{pages}/{name}", refexplicit=True, refwarn=True,
+        )  # fmt: skip
+        return target
+
+
+def _counted(case: dict[str, Any]) -> str:
+    words = [v["verdict"] for v in case["verdicts"]]
+    return ", ".join(f"{words.count(word)} {word}" for word in _WORDS if word in words)
+
+
+class SourceShown(FromResults):
+    """``{trajgap-source} CASE``: what was read, and how to cite the audit and make it again."""
+
+    def made(self, results: Results) -> list[nodes.Node]:
+        """Source, date, versions, hashes, command and BibTeX entry."""
+        case = results.case(self.arguments[0])
+        source, made = case["source"], case["provenance"]
+        parts = (source["authors"], source["title"], source["journal"], source["year"])
+        printed = ", ".join(str(p) for p in parts if p)
+        said = paragraph(f"{printed or 'Source not named in the text'}. ")
+        if source.get("doi"):
+            link = f"https://doi.org/{source['doi']}"
+            said += nodes.reference("", f"doi:{source['doi']}", refuri=link)
+        rows = [
+            ["audited", f"{made['date']} with trajgap {made['trajgap']}"],
+            ["case file, SHA-256", str(made["case_sha256"])],
+            ["made again by", nodes.literal("", made["command"])],
+        ]
+        cite = nodes.literal_block(made["citation"], made["citation"], language="bibtex")
+        return [said, table(("", ""), rows, "trajgap-facts"), *self._proofs(made), cite]
+
+    def _proofs(self, made: dict[str, Any]) -> list[nodes.Node]:
+        """The certificates that the audit rests on, each proved again where conf.py has them."""
+        if not (made["certificates"] and self.config.trajgap_certificates):
+            return []
+        folder = Path(self.env.srcdir, self.config.trajgap_certificates)
+        rows = []
+        for one in made["certificates"]:
+            path = folder / one["file"]
+            self.env.note_dependency(str(path))
+            verdict = proved_again(path, one["sha256"])
+            rows.append([nodes.literal("", one["file"]), badge(worth(verdict)), verdict.reason])
+        told = paragraph("Certificates, each proved again when this page was built:")
+        return [told, table(("file", "", "what it proves"), rows)]
+
+
+class CertificateShown(SphinxDirective):
+    """``{trajgap-certificate} FILE``: what a certificate proves, proved again by the build.
+
+    A name that begins with a slash starts at the folder of conf.py.
+    """
+
+    required_arguments = 1
+
+    def run(self) -> list[nodes.Node]:
+        """The interval, or an error of the build if the certificate does not prove it."""
+        name = self.arguments[0]
+        folder = "" if name.startswith("/") else self.config.trajgap_certificates
+        path = Path(self.env.srcdir, folder, name.removeprefix("/"))
+        self.env.note_dependency(str(path))
+        try:
+            verdict = proved_again(path)
+        except TrajgapError as error:
+            raise self.error(str(error)) from None
+        head = nodes.paragraph()
+        head += badge(worth(verdict))
+        said = f"{verdict.reason[:1].upper()}{verdict.reason[1:]}"
+        head += nodes.Text(f" {said}. Proved again when this page was built ({path.name}).")
+        return [head]
+
+
+DIRECTIVES: dict[str, type[SphinxDirective]] = {
+    "trajgap-card": Card,
+    "trajgap-claims": Claims,
+    "trajgap-waterfall": WaterfallShown,
+    "trajgap-papers": Papers,
+    "trajgap-source": SourceShown,
+    "trajgap-certificate": CertificateShown,
+    "trajgap-suite": SuiteTable,
+    "trajgap-instance": InstanceShown,
+}
+"""Directives by the name that a page calls them."""

@@ -1,0 +1,43 @@
+"""Pictures of trajgap in a gallery of examples made by sphinx-gallery."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from ..pictures import Picture, svg
+
+SAVED = "_trajgap_saved"
+"""Name under which an example keeps the pictures that stand on its page already."""
+
+
+def scrape_pictures(_block: object, block_vars: dict[str, Any], gallery_conf: Any) -> str:
+    """Save the pictures that a block of an example made, as vectors.
+
+    List ``"trajgap.compare.sphinx.gallery.scrape_pictures"`` in ``image_scrapers`` of
+    ``sphinx_gallery_conf``. A picture counts once it has a name, or is what the block ends with.
+
+    Parameters
+    ----------
+    _block : tuple
+        Not needed.
+    block_vars, gallery_conf : mapping
+        As sphinx-gallery passes them.
+
+    Returns
+    -------
+    str
+        reStructuredText that shows them, each with its description in words.
+    """
+    from sphinx_gallery.scrapers import figure_rst
+
+    names = block_vars["example_globals"]
+    saved = names.setdefault(SAVED, [])
+    shown = []
+    for picture in [one for one in names.values() if isinstance(one, Picture)]:
+        if not any(picture is one for one in saved):
+            saved.append(picture)
+            path = Path(next(block_vars["image_path_iterator"])).with_suffix(".svg")
+            path.write_text(svg(picture), encoding="utf-8")
+            shown.append(figure_rst([str(path)], gallery_conf["src_dir"], picture.description))
+    return "\n".join(shown)

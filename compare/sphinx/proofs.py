@@ -1,0 +1,42 @@
+"""Certificates on a page: each is proved again by the build, or the build fails."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+
+from ...problem import TrajgapError
+from ...verify import CertificateVerdict, Refused, read_document, verify_certificate
+
+
+def proved_again(path: Path, sha256: str | None = None) -> CertificateVerdict:
+    """What a certificate proves.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    sha256 : str, optional
+        Of the file that a result or a table was made from.
+
+    Returns
+    -------
+    CertificateVerdict
+        One that proves its claim.
+
+    Raises
+    ------
+    TrajgapError
+        If it is another file, is none, or does not prove what it claims.
+    """
+    try:
+        if sha256 is not None and hashlib.sha256(path.read_bytes()).hexdigest() != sha256:
+            raise TrajgapError(
+                f"{path}: is not the certificate with SHA-256 {sha256}; make the result again"
+            )
+        verdict = verify_certificate(read_document(path))
+    except (Refused, OSError) as error:
+        raise TrajgapError(f"{path}: {error}") from None
+    if not verdict.proves:
+        raise TrajgapError(f"{path}: is not proved: {verdict.reason}")
+    return verdict

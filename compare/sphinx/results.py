@@ -1,0 +1,149 @@
+"""Committed results, and single values of them by key."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from ...problem import TrajgapError
+from ..documents import PUBLISHED, SHARED_OPTIMUM, Step, Waterfall, Why
+
+LOCK = "lock.json"
+"""File beside the results with the hash of each, and of what they were made from."""
+
+
+@dataclass(frozen=True)
+class Results:
+    """A folder of JSON documents that `trajgap` printed.
+
+    Attributes
+    ----------
+    folder : Path
+        Holds ``NAME.json``, one document each: what `trajgap audit --json` prints for one case.
+    """
+
+    folder: Path
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """Names of the documents, in order."""
+        return tuple(sorted(p.stem for p in self.folder.glob("*.json") if p.name != LOCK))
+
+    def document(self, name: str) -> dict[str, Any]:
+        """One document.
+
+        Raises
+        ------
+        TrajgapError
+            If there is none of that name, or it is no JSON.
+        """
+        path = self.folder / f"{name}.json"
+        if name not in self.names:
+            known = ", ".join(self.names) or "none"
+            raise TrajgapError(f"{path}: there is no such result; there are: {known}")
+        try:
+            read = json.loads(path.read_text(encoding="utf-8"))
+        except ValueError:
+            raise TrajgapError(f"{path}: is no JSON; make it again") from None
+        if not isinstance(read, dict):
+            raise TrajgapError(f"{path}: is no document of trajgap; make it again")
+        return read
+
+    def case(self, name: str) -> dict[str, Any]:
+        """The audit of one case.
+
+        Raises
+        ------
+        TrajgapError
+            If the document holds none.
+        """
+        cases = self.document(name).get("cases")
+        if not isinstance(cases, list) or len(cases) != 1:
+            raise TrajgapError(
+                f"{self.folder / name}.json: holds no audit of one case; "
+                "print it with `trajgap audit CASE --json`"
+            )
+        found: dict[str, Any] = cases[0]
+        return found
+
+    def value(self, key: str) -> Any:
+        """One value, such as ``"puma560-mnam-pso-353:card.optimum"``.
+
+        After the name of the document stand keys, and in lists places from 0 or
+        ``[key=value]`` for the one entry that says so.
+
+        Raises
+        ------
+        TrajgapError
+            If nothing stands there.
+        """
+        name, _, path = key.partition(":")
+        here: Any = self.document(name)
+        if isinstance(here.get("cases"), list) and len(here["cases"]) == 1:
+            here = here["cases"][0]
+        for part in filter(None, path.split(".")):
+            here = _inside(here, part, key)
+        return here
+
+    @cached_property
+    def hashes(self) -> dict[str, str]:
+        """SHA-256 of each document."""
+        return {
+            name: hashlib.sha256((self.folder / f"{name}.json").read_bytes()).hexdigest()
+            for name in self.names
+        }
+
+
+def _inside(here: Any, part: str, key: str) -> Any:
+    try:
+        if isinstance(here, Mapping):
+            return here[part]
+        if part.startswith("[") and part.endswith("]"):
+            name, _, wanted = part[1:-1].partition("=")
+            (found,) = [one for one in here if str(one[name]) == wanted]
+            return found
+        return here[int(part)]
+    except (KeyError, IndexError, TypeError, ValueError):
+        raise TrajgapError(f"{key}: nothing stands at {part!r}; look into the JSON") from None
+
+
+def waterfall_of(entry: Mapping[str, Any]) -> Waterfall:
+    """A waterfall as it was before it was printed."""
+    steps = tuple(
+        Step(**{name: _read(step, name) for name in Step.model_fields if name in step})
+        for step in entry["steps"]
+    )
+    given = {name: entry[name] for name in Waterfall.model_fields if name != "steps"}
+    return Waterfall(**given, steps=steps)
+
+
+def _read(entry: Mapping[str, Any], name: str) -> Any:
+    why = entry.get(f"{name}_why")
+    return Why(why) if entry[name] is None and why else entry[name]
+
+
+def distance_of(case: dict[str, Any]) -> tuple[str, str, str, str]:
+    """Printed total, optimum with shared durations, distance and evidence, of the first problem.
+
+    Parameters
+    ----------
+    case : dict
+        As `Results.case` returns it.
+
+    Returns
+    -------
+    tuple of str
+        Dashes where no problem is posed, or no total is printed.
+    """
+    for entry in case["waterfalls"]:
+        steps = {step["name"]: step for step in entry["steps"] if step["time"] is not None}
+        if PUBLISHED in steps and SHARED_OPTIMUM in steps:
+            printed, best = steps[PUBLISHED]["time"], steps[SHARED_OPTIMUM]
+            share = printed / best["time"] - 1
+            return f"{printed:g}", f"{best['time']:.4f}", f"{share:.1%}", best["evidence"]
+    return "–", "–", "–", ""

@@ -1,0 +1,24 @@
+// Tables that sort by the column whose heading is pressed; without the script they stay as printed.
+for (const table of document.querySelectorAll("table.trajgap-sortable")) {
+  table.querySelectorAll("thead th").forEach((heading, column) => {
+    const button = document.createElement("button");
+    button.type = "button";
+    button.textContent = heading.textContent.trim();
+    heading.replaceChildren(button);
+    button.addEventListener("click", () => {
+      const down = heading.getAttribute("aria-sort") === "ascending";
+      table.querySelectorAll("thead th").forEach((other) => other.removeAttribute("aria-sort"));
+      heading.setAttribute("aria-sort", down ? "descending" : "ascending");
+      const text = (row) => row.cells[column].textContent.trim();
+      const rows = [...table.tBodies[0].rows];
+      const number = (said) => (/^-?\d+(\.\d+)?(e[-+]?\d+)?\s?%?$/.test(said) ? parseFloat(said) : NaN);
+      const order = (a, b) => {
+        const apart = number(a) - number(b);
+        return Number.isNaN(apart) ? a.localeCompare(b, "en", { numeric: true }) : apart;
+      };
+      rows.sort((a, b) => order(text(a), text(b)));
+      if (down) rows.reverse();
+      table.tBodies[0].append(...rows);
+    });
+  });
+}

@@ -1,0 +1,152 @@
+"""From a name to an optimiser that can be run within a budget of evaluations."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import partial
+from typing import Annotated, Any, cast
+
+import numpy as np
+
+from ...problem import Array, TrajgapError
+from ..algorithm import Algorithm, Search
+from ..algorithms import KINDS, from_settings
+from ..objective import Bounds, Counted
+from ..settings import checked, nearest, whole
+from .baselines import rescale_equal, search_locally, search_randomly
+from .borrowed import Borrowed, BorrowedTask
+from .callables import call_function, call_given, load_function
+from .libraries import (
+    check_cma,
+    check_mealpy,
+    check_pygmo,
+    check_pymoo,
+    minimise_by_cma,
+    minimise_by_mealpy,
+    minimise_by_pygmo,
+    minimise_by_pymoo,
+)
+from .scipy_methods import check_scipy, minimise_by_scipy
+
+Searching = Callable[[Mapping[str, Any], BorrowedTask], object]
+"""A search with its settings."""
+
+BUDGET = 6000
+"""Evaluations by default: the papers' 30 particles × 200 iterations."""
+
+_BUDGET = Annotated[int, whole(1)]
+"""What a budget may be."""
+
+_BASELINES: dict[str, Searching] = {
+    "random": search_randomly,
+    "rescale": rescale_equal,
+    "multistart": search_locally,
+}
+"""Searches that need nothing but this package."""
+
+_LIBRARIES: dict[
+    str, tuple[Callable[[str], None], Callable[[str, Mapping[str, Any], BorrowedTask], object]]
+] = {
+    "scipy": (check_scipy, minimise_by_scipy),
+    "mealpy": (check_mealpy, minimise_by_mealpy),
+    "pymoo": (check_pymoo, minimise_by_pymoo),
+    "pygmo": (check_pygmo, minimise_by_pygmo),
+}
+"""By what stands before the colon: whether a name is known, and the search of that name."""
+
+BASELINES: tuple[str, ...] = tuple(_BASELINES)
+"""What every comparison includes."""
+
+
+def find_optimizer(
+    name: str | Callable[..., object], budget: int = BUDGET, **settings: object
+) -> Algorithm[Any] | Search:
+    """Optimiser of a name, ready to be run within a budget of evaluations.
+
+    Parameters
+    ----------
+    name : str or callable
+        One of the papers' algorithms (`KINDS`), such as "pso"; a baseline: "random", "rescale",
+        "multistart"; "cma"; one of scipy's, mealpy's, pymoo's or pygmo's:
+        "scipy:differential_evolution", "mealpy:OriginalWOA", "pymoo:DE", "pygmo:sade"; your own
+        function
+        ``f(fun, bounds, budget, rng, **settings)``, as "module:function" or itself. Its ``fun``
+        takes one vector or a batch, ``bounds`` has shape (dimensions, 2), s.
+    budget : int
+        Evaluations. An algorithm that counts iterations gets as many as use it up, unless the
+        settings name ``iterations``.
+    **settings
+        Of the optimiser; what is left out takes its own default.
+
+    Returns
+    -------
+    Algorithm or Search
+
+    Raises
+    ------
+    TrajgapError
+        If the name or a setting is unknown, or a package is missing.
+
+    Examples
+    --------
+    >>> find_optimizer("pso", 3000, particles=20).iterations
+    149
+    >>> find_optimizer("scipy:dual_annealing").kind
+    'scipy:dual_annealing'
+    """
+    budget = checked(_BUDGET, "budget", budget)
+    if callable(name):
+        said = f"{getattr(name, '__module__', '?')}:{getattr(name, '__qualname__', name)}"
+        return _borrowed(said, partial(call_given, name), budget, settings)
+    if name in KINDS:
+        algorithm = from_settings(name, settings)
+        return algorithm if "iterations" in settings else _fitted(algorithm, budget)
+    if name in _BASELINES:
+        return _borrowed(name, _BASELINES[name], budget, settings)
+    if name == "cma":
+        check_cma()
+        return _borrowed(name, minimise_by_cma, budget, settings)
+    source, colon, rest = name.partition(":")
+    if not colon:
+        raise TrajgapError(
+            f"optimizer {name!r}: unknown; {nearest(name, [*KINDS, *_BASELINES, 'cma'])} "
+            "Your own function is module:function"
+        )
+    if source in _LIBRARIES:
+        check, minimise = _LIBRARIES[source]
+        check(rest)
+        return _borrowed(name, partial(minimise, rest), budget, settings)
+    load_function(name)
+    return _borrowed(name, partial(call_function, name), budget, settings)
+
+
+def _borrowed(
+    kind: str, searching: Searching, budget: int, settings: Mapping[str, object]
+) -> Borrowed:
+    given = dict(settings)
+    return Borrowed(kind, partial(searching, given), iterations=budget - 1, options=given)
+
+
+def _fitted(algorithm: Algorithm[Any], budget: int) -> Algorithm[Any]:
+    """The algorithm with as many iterations as a budget pays for, found by trying two.
+
+    Schedules that run over the iterations then end where the budget does. What remains of the
+    budget is less than one iteration.
+    """
+    counted = Counted(_sums)
+    rng = np.random.Generator(np.random.PCG64(0))
+    bounds = Bounds(np.zeros(2), np.full(2, np.inf))
+    two = cast(Algorithm[Any], replace(cast(Any, algorithm), iterations=2))
+    with np.errstate(over="ignore", invalid="ignore"):
+        state = two.init(bounds, rng, counted)
+        first = counted.evaluations
+        two.step(state, bounds, rng, counted)
+    each = max(1, counted.evaluations - first)
+    iterations = max(0, (budget - first) // each)
+    return cast(Algorithm[Any], replace(cast(Any, algorithm), iterations=iterations))
+
+
+def _sums(positions: Array) -> Array:
+    totals: Array = np.abs(positions).sum(axis=1)
+    return totals

@@ -1,0 +1,70 @@
+"""scipy's global optimisers, with scipy's own settings; the budget alone ends them early."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from ...problem import Array, TrajgapError
+from ..settings import nearest
+from .borrowed import BorrowedTask
+
+_UNENDING = 10**6
+"""Iterations that no budget reaches."""
+ENDED_BY_BUDGET: dict[str, Mapping[str, Any]] = {
+    "basinhopping": {"niter": _UNENDING},
+    "differential_evolution": {"maxiter": _UNENDING},
+    "direct": {"maxiter": _UNENDING, "maxfun": _UNENDING},
+    "dual_annealing": {"maxiter": _UNENDING},
+    "shgo": {},
+}
+"""Functions of scipy.optimize, with the settings that leave the end to the budget."""
+
+
+def check_scipy(name: str) -> None:
+    """Find out whether scipy's function is known.
+
+    Raises
+    ------
+    TrajgapError
+        If it is not; names the nearest.
+    """
+    if name not in ENDED_BY_BUDGET:
+        raise TrajgapError(f"scipy:{name}: unknown; {nearest(name, ENDED_BY_BUDGET)}")
+
+
+def minimise_by_scipy(name: str, options: Mapping[str, Any], task: BorrowedTask) -> object:
+    """Run one of scipy's optimisers."""
+    from scipy import optimize
+
+    function = getattr(optimize, name)
+    kept = {**ENDED_BY_BUDGET[name], **_random(function, task.rng), **options}
+    if name == "basinhopping":
+        local = {"method": "L-BFGS-B", "bounds": task.box}
+        return _hop(function, task, {"minimizer_kwargs": local, **kept})
+    fun: Callable[[Array], Any] = task.fun
+    if kept.get("vectorized"):
+
+        def fun(x: Array) -> Any:  # a generation comes as columns
+            return task.fun(x.T)
+
+    return function(fun, [tuple(side) for side in task.box.tolist()], **kept)
+
+
+def _hop(function: Callable[..., object], task: BorrowedTask, kept: Mapping[str, Any]) -> object:
+    def within(x_new: Array, **_: object) -> bool:
+        return bool((x_new >= task.lower).all() and (x_new <= task.upper).all())
+
+    def held(x: Array) -> Any:  # the hop itself knows no bounds
+        return task.fun(np.clip(x, task.lower, task.upper))
+
+    return function(held, task.draw(1)[0], accept_test=within, **kept)
+
+
+def _random(function: Callable[..., object], rng: np.random.Generator) -> dict[str, object]:
+    # scipy 1.15 renamed the keyword; shgo and direct draw no random numbers.
+    known = inspect.signature(function).parameters
+    return next(({name: rng} for name in ("rng", "seed") if name in known), {})

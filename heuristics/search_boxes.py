@@ -1,0 +1,47 @@
+"""The finite box in which searches that need one look for durations."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..problem import Problem, TrajgapError
+from .baseline import uniform_rescaling
+from .objective import Bounds
+
+_DIGITS = 3
+"""Significant digits of a bound that is found: rounded up, so that it still holds."""
+
+
+def search_box(problem: Problem) -> Bounds:
+    """Duration bounds of a problem, finite ones in the place of those that it does not state.
+
+    Equal durations, stretched until they keep every limit, have some total T; no segment of a
+    shorter motion takes T or longer. So T bounds every duration and cuts off no optimum. It bounds
+    where a search looks, not what is admissible: a vector that is stretched beyond it still counts.
+
+    Parameters
+    ----------
+    problem : Problem
+
+    Returns
+    -------
+    Bounds
+
+    Raises
+    ------
+    TrajgapError
+        If no equal durations keep the limits.
+    """
+    if np.isfinite(problem.duration_upper).all():
+        return Bounds.of(problem)
+    try:
+        total = float(uniform_rescaling(problem).sum())
+    except TrajgapError as error:
+        raise TrajgapError(
+            f"durations: have no upper bound and none can be derived ({error}); give them one"
+        ) from None
+    scale = 10.0 ** (math.floor(math.log10(total)) - _DIGITS + 1)
+    bound = round(math.ceil(total / scale) * scale, 9)
+    return Bounds(problem.duration_lower, np.minimum(problem.duration_upper, bound))

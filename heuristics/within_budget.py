@@ -1,0 +1,136 @@
+"""One search within a budget of evaluations, whatever it counts itself."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+import numpy as np
+
+from ..problem import Array, Problem, TrajgapError
+from .algorithm import Algorithm, Search
+from .budget import Budgeted, BudgetSpent
+from .loop import states
+from .objective import Bounds
+from .repair import Handling, judge_of
+from .search_boxes import search_box
+from .settings import checked, whole
+from .time_limit import TimeSpent, time_limit
+
+_COUNT = Annotated[int, whole(1)]
+"""What a budget may be."""
+_SEED = Annotated[int, whole(0)]
+"""What numpy takes as entropy."""
+
+
+@dataclass(frozen=True, eq=False)
+class BudgetedRun:
+    """What one search found within its budget, by the objective's own account.
+
+    Attributes
+    ----------
+    durations : ndarray, shape (segments,)
+        Of the best position judged, s; under a stretch, what it stands for.
+    reported_time : float
+        Its fitness, s; inf if nothing feasible was judged.
+    totals : ndarray, shape (evaluations,)
+        Best fitness after each evaluation, s; inf before anything feasible was judged.
+    """
+
+    durations: Array
+    reported_time: float
+    totals: Array
+
+    @property
+    def evaluations(self) -> int:
+        """Positions that were judged."""
+        return self.totals.size
+
+
+def run_within(
+    method: Algorithm[Any] | Search,
+    problem: Problem,
+    seed: int,
+    budget: int,
+    objective: str = Handling.DEATH_PENALTY,
+    seconds: float | None = None,
+    stream: tuple[int, ...] = (),
+) -> BudgetedRun:
+    """Search until the method ends by itself or its budget is spent.
+
+    The objective counts: a method cannot see more evaluations than its budget, and its answer is
+    the best position that it had judged, whatever it reports.
+
+    Parameters
+    ----------
+    method : Algorithm or Search
+        From `find_optimizer`, for the same budget.
+    problem : Problem
+        All joints share one duration vector. Where it states no upper bound, a search that owns its
+        loop looks within `search_box`.
+    seed : int
+    budget : int
+        Evaluations.
+    objective : str
+        "death-penalty", "stretch" or "rescale", see `Handling`.
+    seconds : float, optional
+        Interrupts a search that takes longer; see `time_limit`.
+    stream : tuple of int
+        Spawn key under the seed; (j,) is what `run_per_joint` gives to joint j.
+
+    Returns
+    -------
+    BudgetedRun
+
+    Raises
+    ------
+    TrajgapError
+        If the objective cannot judge the problem, or the search judged nothing, went on after its
+        budget was spent, or took too long.
+
+    Examples
+    --------
+    >>> from trajgap.heuristics import find_optimizer
+    >>> from trajgap.problem import Limits, Problem, three_five_three
+    >>> waypoints = [[0.1], [0.7], [1.2], [0.9]]
+    >>> problem = Problem(waypoints, Limits(6.0, 8.0), three_five_three(), 0.1, 3.0)
+    >>> found = run_within(find_optimizer("random", 500), problem, seed=1, budget=500)
+    >>> found.evaluations, len(found.totals)
+    (500, 500)
+    """
+    budget = checked(_COUNT, "budget", budget)
+    judge = judge_of(problem, method.penalty, objective)
+    # The papers' algorithms run as printed, within the stated bounds alone.
+    bounds = search_box(problem) if isinstance(method, Search) else Bounds.of(problem)
+    # The same stream as `run`: the same seed gives the same search.
+    sequence = np.random.SeedSequence(checked(_SEED, "seed", seed), spawn_key=stream)
+    rng = np.random.Generator(np.random.PCG64(sequence))
+    budgeted = Budgeted(judge, problem.segments, budget)
+    try:
+        with time_limit(seconds):
+            if isinstance(method, Search):
+                method.search(bounds, rng, budgeted)
+            else:
+                for _ in states(method, budgeted, bounds, rng):
+                    pass
+    except BudgetSpent:
+        pass
+    except TimeSpent:
+        raise TrajgapError(
+            f"{method.kind}: took longer than {seconds:g} s; raise the time limit, or look where "
+            "it hangs"
+        ) from None
+    if budgeted.refused > 1:
+        raise TrajgapError(
+            f"{method.kind}: went on after its budget of {budget} evaluations was spent; let the "
+            "exception of the objective pass"
+        )
+    if budgeted.best is None:
+        raise TrajgapError(f"{method.kind}: judged no position; call the function that it is given")
+    totals = budgeted.totals
+    totals[totals >= method.penalty] = np.inf
+    return BudgetedRun(
+        durations=judge.decode(budgeted.best[None])[0],
+        reported_time=float(totals[-1]),
+        totals=totals,
+    )

@@ -1,0 +1,38 @@
+"""What is asked of `solve`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ...problem import Array, Problem, TrajgapError
+from .formulation import Form
+
+
+@dataclass(frozen=True, eq=False)
+class Ask:
+    """The arguments of `solve`."""
+
+    starts: int
+    seed: int
+    initial: Array | None
+    known: Array
+    known_nodal: Array | None
+    form: Form | None
+    until: float
+    """Reading of the monotonic clock after which no further start is begun."""
+
+
+def vectors(problem: Problem, name: str, given: ArrayLike) -> Array:
+    """Durations that are given to `solve`, shape (vectors, segments), or a clear refusal."""
+    points = np.atleast_2d(np.asarray(given, dtype=np.float64))
+    if points.size == 0:
+        return np.empty((0, problem.segments))
+    if points.shape[1:] != (problem.segments,) or not (np.isfinite(points) & (points > 0)).all():
+        raise TrajgapError(
+            f"{name}: expected shape (starts, {problem.segments}) of positive durations, "
+            f"got {np.asarray(given).shape}"
+        )
+    return points

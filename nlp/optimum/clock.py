@@ -1,0 +1,56 @@
+"""A time limit that every step of a local search looks at, however deep it lies.
+
+A search that is stopped returns the best that it has. Nothing is interrupted: where no limit is
+set, no search depends on the clock.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+
+_END: ContextVar[float] = ContextVar("end", default=math.inf)
+"""Reading of the clock at which the searches of this thread end: none without `stopping_after`."""
+CAPS = (0.25, 2.0, 16.0, 128.0)
+"""Seconds that one call of IPOPT may take: it cannot be told to stop, and its limit is compiled in.
+A factor of 8 apart, so that a long run compiles few; below the first, a call ends anyway."""
+
+
+@contextmanager
+def stopping_after(seconds: float) -> Iterator[None]:
+    """Let every local search within end after so many seconds, at its next step.
+
+    A limit within another one ends with the earlier.
+
+    Parameters
+    ----------
+    seconds : float
+        0 or less: at the first step.
+    """
+    token = _END.set(min(_END.get(), time.perf_counter() + seconds))
+    try:
+        yield
+    finally:
+        _END.reset(token)
+
+
+def seconds_left() -> float:
+    """Time until the searches of this thread end, s; infinite without a limit."""
+    end = _END.get()
+    return end - time.perf_counter() if end < math.inf else math.inf
+
+
+def time_up() -> bool:
+    """Whether the searches of this thread are to end."""
+    return seconds_left() <= 0.0
+
+
+def call_cap() -> float | None:
+    """Longest time of a call of IPOPT that begins now, s; None without a limit."""
+    left = seconds_left()
+    if left == math.inf:
+        return None
+    return max((cap for cap in CAPS if cap <= left), default=CAPS[0])

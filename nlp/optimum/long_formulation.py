@@ -1,0 +1,251 @@
+"""The NLP of many segments in whole-array operations: durations and derivatives at left ends.
+
+The derivatives q⁽ʳ⁾, r = 1..d, at the left end of a segment determine its polynomial; its Taylor
+series gives the values at the right end. Limits at breaks are then bounds on variables, and only
+extrema inside segments need rows. Every matrix is (segments, joints): no expression is written once
+a segment, so that building takes a tenth of a second at a thousand segments.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...problem import Array, Problem
+from ...problem.curves import ConditionKind, Places, layout
+from .symbolic import ca
+
+Indices = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """Limits inside segments: one side of one derivative of one joint at a place that moves.
+
+    Attributes
+    ----------
+    places : Places
+    sign : ndarray
+        Side of the limit.
+    weight : ndarray
+        Newton weight: the place moves by −w f′, f the derivative as a function of s.
+    """
+
+    places: Places
+    sign: Array
+    weight: Array
+
+
+class LongProgram:
+    """A problem of many segments in units of order one, with the expressions of its NLP.
+
+    Parameters
+    ----------
+    problem : Problem
+        With a determined piecewise polynomial.
+    unit : float
+        Time unit, s.
+    floor : ndarray, shape (segments,)
+        Least durations, s.
+    """
+
+    def __init__(self, problem: Problem, unit: float, floor: Array) -> None:
+        plan = layout(problem.piecewise)
+        self.problem, self.unit, self._floor = problem, unit, floor
+        self.degrees, self.joints = plan.degrees, problem.waypoints.shape[1]
+        self.top = int(plan.degrees.max())
+        steps = np.abs(np.diff(problem.waypoints, axis=0)).mean(axis=0)
+        self.angle = np.where(steps > 0, steps, 1.0)
+        limits = problem.limits.derivatives * unit ** np.arange(1, 4) / self.angle[:, None]
+        self.limits = np.where(limits > 0, limits, np.inf)
+        self._plan = plan
+        self._held = {r: np.flatnonzero(plan.degrees >= r) for r in range(1, self.top + 1)}
+        self._row = {r: _inverted(k, problem.segments) for r, k in self._held.items()}
+        self._virtual = np.array(problem.piecewise.virtual, dtype=np.int64)
+        self._declare()
+        self.equalities = self._equalities()
+        self.ends = self._end_places()
+
+    def _declare(self) -> None:
+        n, joints = self.problem.segments, self.joints
+        self._h = ca.MX.sym("h", n)
+        self._d = {r: ca.MX.sym(f"d{r}", len(k), joints) for r, k in self._held.items()}
+        free = ca.MX.sym("q", self._virtual.size, joints)
+        breaks = list(self.problem.curve.waypoint_breaks)
+        shifted = (self.problem.waypoints - self.problem.waypoints[0]) / self.angle
+        fixed = np.zeros((n + 1, joints))
+        fixed[breaks] = shifted
+        self._q = ca.MX(ca.DM(fixed))
+        if self._virtual.size:
+            self._q[self._virtual.tolist(), :] = free
+        parts = [ca.vec(self._d[r]) for r in range(1, self.top + 1)]
+        self.variables = ca.vertcat(self._h, *parts, ca.vec(free))
+        sizes = [n, *(len(k) * joints for k in self._held.values()), self._virtual.size * joints]
+        self._offset = np.concatenate([[0], np.cumsum(sizes)])
+
+    @property
+    def durations(self) -> Any:
+        """The expressions of the durations, in units of time."""
+        return self._h
+
+    def _taylor(self, order: int, k: Indices) -> Any:
+        """Derivative of some segments of one degree at their ends; of order 0 their way."""
+        h = self._h if k.size == self.problem.segments else self._h[k.tolist()]
+        t = ca.repmat(h, 1, self.joints)
+        return self._series(order, int(self.degrees[k[0]]), t, lambda r: self._left(r, k))
+
+    def _series(self, order: int, degree: int, t: Any, left: Any) -> Any:
+        value: Any = 0
+        for m in range(degree, max(order, 1) - 1, -1):
+            value = value * t + left(m) / math.factorial(m - order)
+        return value * t if order == 0 else value
+
+    def _left(self, r: int, k: Indices) -> Any:
+        if k.size == self._held[r].size:
+            return self._d[r]
+        return self._d[r][self._row[r][k].tolist(), :]
+
+    def _equalities(self) -> Any:
+        """What the declaration says of right ends: values, and matches with the next segment."""
+        plan, unit = self._plan, self.unit
+        rows = np.flatnonzero(plan.kinds != ConditionKind.RIGHT_VALUE)
+        keys = np.stack([plan.kinds[rows], plan.orders[rows], self.degrees[plan.breaks[rows] - 1]])
+        found = []
+        for kind, r, degree in np.unique(keys, axis=1).T.tolist():
+            i = rows[(keys == np.array([[kind], [r], [degree]])).all(axis=0)]
+            b = plan.breaks[i]
+            value = self._taylor(r, b - 1)
+            if r == 0:
+                wanted = self._q[b.tolist(), :] - self._q[(b - 1).tolist(), :]
+            elif kind == ConditionKind.LEFT_VALUE:
+                given = plan.prescribed[i, None] * unit**r / self.angle
+                wanted = ca.DM(given)
+            else:
+                there = self.degrees[b] >= r
+                if there.all():
+                    wanted = self._left(r, b)
+                else:
+                    wanted = ca.MX.zeros(b.size, self.joints)
+                    if there.any():
+                        wanted[np.flatnonzero(there).tolist(), :] = self._left(r, b[there])
+            found.append(ca.vec(value - wanted))
+        return ca.vertcat(*found)
+
+    def _end_places(self) -> Places:
+        """Right ends at which a limited derivative is neither given nor bounded on the left."""
+        curve = self.problem.piecewise
+        found: list[tuple[int, int, int]] = []
+        for r in (1, 2, 3):
+            joints = np.flatnonzero(np.isfinite(self.limits[:, r - 1]))
+            smooth = np.array([*curve.continuity, -1])
+            open_ = (self.degrees > r) & (smooth < r)
+            for k in np.flatnonzero(open_).tolist():
+                given = any(order == r for order, _ in curve.prescribed_at(k + 1))
+                found += [] if given else [(int(j), k, r) for j in joints]
+        whole = np.array(found, dtype=np.int64).reshape(-1, 3)
+        places = Places(whole[:, 0], whole[:, 1], whole[:, 2], np.ones(len(whole)))
+        at = self.order_of_rows(places)
+        return replace(places, joint=whole[at, 0], segment=whole[at, 1], order=whole[at, 2])
+
+    def at_places(self, places: Places, weight: Array) -> Any:
+        """Derivatives at places that follow their extremum, over their limits (positions plain)."""
+        found = []
+        for r, degree in sorted(set(zip(places.order, self.degrees[places.segment], strict=True))):
+            i = (places.order == r) & (self.degrees[places.segment] == degree)
+            found.append(self._some(places, weight, np.flatnonzero(i), int(r), int(degree)))
+        return ca.vertcat(*found) if found else ca.MX(0, 1)
+
+    def order_of_rows(self, places: Places) -> Indices:
+        """The order in which `at_places` answers."""
+        return np.lexsort(
+            (np.arange(places.s.size), self.degrees[places.segment], places.order)
+        ).astype(np.int64)
+
+    def _some(self, places: Places, weight: Array, i: Indices, r: int, degree: int) -> Any:
+        k, j = places.segment[i], places.joint[i]
+        h = self._h[k.tolist()]
+        flat = {
+            m: ca.vec(self._d[m])[(self._row[m][k] + self._held[m].size * j).tolist()]
+            for m in range(max(r, 1), degree + 1)
+        }
+        s, w = ca.DM(places.s[i]), weight[i]
+        if w.any():
+            # f′(s) is h times the next derivative in time.
+            s = s - ca.DM(w) * h * self._series(r + 1, degree, s * h, flat.__getitem__)
+        value = self._series(r, degree, s * h, flat.__getitem__)
+        if r == 0:
+            return value + ca.vec(self._q)[(k + (self.degrees.size + 1) * j).tolist()]
+        return value / ca.DM(self.limits[j, r - 1])
+
+    def bounds(self) -> tuple[Array, Array]:
+        """Bounds on the variables: durations, limits at left ends, given derivatives."""
+        problem, plan, unit = self.problem, self._plan, self.unit
+        low = [np.maximum(problem.duration_lower, self._floor) / unit]
+        high = [np.maximum(problem.duration_upper / unit, low[0])]
+        right = plan.kinds == ConditionKind.RIGHT_VALUE
+        for r, held in self._held.items():
+            width = self.limits[:, r - 1] if r <= 3 else np.full(self.joints, np.inf)
+            upper = np.tile(width, (held.size, 1))
+            lower = -upper
+            i = np.flatnonzero(right & (plan.orders == r))
+            at = self._row[r][plan.breaks[i]]
+            lower[at] = upper[at] = plan.prescribed[i, None] * unit**r / self.angle
+            low.append(lower.ravel("F"))
+            high.append(upper.ravel("F"))
+        first = problem.waypoints[0]
+        for bound, out in (
+            (problem.limits.position_lower, low),
+            (problem.limits.position_upper, high),
+        ):
+            out.append(np.tile((bound - first) / self.angle, (self._virtual.size, 1)).ravel("F"))
+        return np.concatenate(low), np.concatenate(high)
+
+    def rooms(self, places: Places, sign: Array) -> Array:
+        """Limits of rows: 1 for derivatives, which are in shares of theirs; positions in angles."""
+        limits, first = self.problem.limits, self.problem.waypoints[0]
+        j = places.joint
+        at = np.where(sign > 0, limits.position_upper[j], limits.position_lower[j])
+        return np.where(places.order == 0, (at - first[j]) / self.angle[j], sign)
+
+    def pack(self, durations: Array, scaled: Array) -> Array:
+        """Variables at a trajectory with coefficients ``scaled`` in the segments' parameter."""
+        parts = [durations / self.unit]
+        for r, held in self._held.items():
+            rate = math.factorial(r) / (durations[held] / self.unit) ** r
+            parts.append((scaled[held, r] * rate[:, None] / self.angle).ravel("F"))
+        at = scaled[self._virtual, 0] - self.problem.waypoints[0]
+        return np.concatenate([*parts, (at / self.angle).ravel("F")])
+
+    def left_places(self) -> tuple[Places, Indices]:
+        """Limits that are bounds on variables, as places, and the variables' numbers."""
+        found: list[tuple[Indices, Indices, Indices, Indices]] = []
+        for r, held in self._held.items():
+            if r > 3:
+                break
+            j = np.flatnonzero(np.isfinite(self.limits[:, r - 1]))
+            joint, row = np.repeat(j, held.size), np.tile(np.arange(held.size), j.size)
+            number = self._offset[r] + joint * held.size + row
+            found.append((joint, held[row], np.full(joint.size, r), number))
+        count = self._virtual.size
+        joint, row = (
+            np.repeat(np.arange(self.joints), count),
+            np.tile(np.arange(count), self.joints),
+        )
+        number = self._offset[-2] + joint * count + row
+        found.append((joint, self._virtual[row], np.zeros(joint.size, dtype=np.int64), number))
+        joint, segment, order, number = (np.concatenate([f[i] for f in found]) for i in range(4))
+        low, high = self.bounds()
+        at = np.flatnonzero(low[number] < high[number])  # what is given is no limit
+        places = Places(joint[at], segment[at], order[at], np.zeros(at.size))
+        return places, np.asarray(number[at])
+
+
+def _inverted(held: Indices, size: int) -> Indices:
+    """Row of each segment among those held; −1 elsewhere."""
+    out = np.full(size, -1, dtype=np.int64)
+    out[held] = np.arange(held.size)
+    return out

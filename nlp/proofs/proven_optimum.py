@@ -1,0 +1,149 @@
+"""The solver's answer with what a shipped certificate proves of the same problem."""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ...problem import Array, Problem
+from ...verify import Refused, Subject, verify_certificate
+from .. import optimum
+from ..optimum import STARTS, Form, Solution
+from .document import all_shipped, problem_document, question, suite_documents
+from .evidence import ProvedInterval, narrow, with_interval
+from .exact import exact_problem
+
+_ROUNDED = 8 * np.finfo(np.float64).eps
+"""Relative distance within which floats are those of the printed numbers: a conversion of units
+rounds three times, by half a unit of the last place each."""
+_ANGLES = ("waypoints", "limits", "position_lower", "position_upper")
+"""Parts of a problem in its unit of angle, some per power of a second."""
+_TIMES = ("duration_lower", "duration_upper")
+"""Parts of a problem in seconds."""
+
+
+def solve(
+    problem: Problem,
+    *,
+    starts: int = STARTS,
+    seed: int = 0,
+    initial: ArrayLike | None = None,
+    known: ArrayLike | None = None,
+    known_nodal: ArrayLike | None = None,
+    form: Form | None = None,
+    seconds: float = math.inf,
+) -> Solution:
+    """Shortest total time with shared durations: from an exact NLP, and proved where it can be.
+
+    Where a certificate that ships with the package is about this very problem, it is proved again,
+    and its lower bound stands beside the answer: then the evidence is *certified*.
+
+    Parameters
+    ----------
+    problem : Problem
+        Its coupling is not looked at: durations are shared by all joints of the problem. See
+        `solve_per_joint` for the other procedure.
+    starts, seed, initial, known, known_nodal, form, seconds
+        As in `trajgap.nlp.optimum.solve`.
+
+    Returns
+    -------
+    Solution
+        Never raises for a problem without answer: the status says so.
+
+    Raises
+    ------
+    TrajgapError
+        If ``initial`` or ``known`` has the wrong shape.
+    """
+    found = optimum.solve(
+        problem,
+        starts=starts,
+        seed=seed,
+        initial=initial,
+        known=known,
+        known_nodal=known_nodal,
+        form=form,
+        seconds=seconds,
+    )
+    size = len(problem.waypoints), len(problem.joints)
+    place = _place(problem, *size)
+    return found if place is None else with_interval(found, _proved(*size, place))
+
+
+def _place(problem: Problem, waypoints: int, joints: int) -> int | None:
+    """Which of the certificates of its size is about a problem, whatever it is called, if any.
+
+    A problem in floats is that of a certificate if each of its numbers is the printed one, rounded.
+    """
+    wanted = None
+    for place, (_, stated) in enumerate(_stated(waypoints, joints)):
+        if not _near(problem, stated):
+            continue
+        if wanted is None:
+            try:
+                wanted = question(problem_document(exact_problem(problem)))
+            except Refused:  # a number with more digits than a certificate may state
+                return None
+        if _same(stated, wanted):
+            return place
+    return None
+
+
+def _near(problem: Problem, stated: dict[str, Any]) -> bool:
+    """Whether the way-points agree in floats, which says *no* of nearly every problem at once."""
+    turn = math.pi / 180 if stated["unit"] == "deg" else 1.0
+    angles = _floats(stated["waypoints"]).reshape(problem.waypoints.shape) * turn
+    return bool(np.isclose(angles, problem.waypoints, 2.0 * _ROUNDED, 0.0).all())
+
+
+@lru_cache(maxsize=64)
+def _stated(waypoints: int, joints: int) -> tuple[tuple[dict[str, Any], dict[str, Any]], ...]:
+    """Certificates about declared curves of one size, each with its problem in rationals."""
+    every = (*all_shipped(), *suite_documents(waypoints - 1, joints))
+    declared = [one for one in every if one["claim"]["subject"] == Subject.DECLARED]
+    posed = [(one, question(one["problem"])) for one in declared]
+    return tuple(
+        (one, stated)
+        for one, stated in posed
+        if (len(stated["waypoints"]), len(stated["joints"])) == (waypoints, joints)
+    )
+
+
+@lru_cache(maxsize=256)
+def _proved(waypoints: int, joints: int, place: int) -> ProvedInterval | None:
+    """What one of `_stated` proves, proved again once a process."""
+    document, _ = _stated(waypoints, joints)[place]
+    return narrow(document, verify_certificate(document))
+
+
+def _same(stated: dict[str, Any], wanted: dict[str, Any]) -> bool:
+    """Whether a certificate's problem is one in radians and seconds; names do not matter."""
+    if stated.keys() != wanted.keys():
+        return False
+    turn = math.pi / 180 if stated["unit"] == "deg" else 1.0
+    for key in stated.keys() - {"unit", "joints"}:
+        if key in _ANGLES or key in _TIMES:
+            one = _floats(stated[key]) * (turn if key in _ANGLES else 1.0)
+            other = _floats(wanted[key])
+            alike = one.shape == other.shape
+            if not alike or not np.isclose(one, other, _ROUNDED, 0.0, equal_nan=True).all():
+                return False
+        elif stated[key] != wanted[key]:
+            return False
+    return True
+
+
+def _floats(part: Any) -> Array:
+    """A part of a problem as one row of floats; nan where there is none."""
+    if isinstance(part, list):
+        return np.concatenate([_floats(x) for x in part]) if part else np.empty(0)
+    if part is None:
+        return np.array([np.nan])
+    if isinstance(part, tuple):  # a number with a power of π
+        return np.array([float(part[0]) * math.pi ** part[1]])
+    return np.array([float(part)])

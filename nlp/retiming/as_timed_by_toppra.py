@@ -1,0 +1,77 @@
+"""The motion that TOPPRA makes of a trajectory's path, so that it can be written and checked."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...problem import Array, Limits, Trajectory, TrajgapError
+from ...problem.motions import Interpolation, Motion, Samples, interpolated
+from .grid import measure, sample
+from .path import pieces
+from .toppra_check import excess, not_applicable
+
+CELLS = 2000
+"""Cells of each piece of up to five segments: the finest grid of the comparison."""
+
+
+def retimed_motion(
+    trajectory: Trajectory, limits: Limits, joints: tuple[str, ...] = (), cells: int = CELLS
+) -> Motion:
+    """The fastest motion on a path under velocity and acceleration limits, as TOPPRA finds it.
+
+    Between grid points the path speed's square is linear in arc length, as in TOPPRA; the motion is
+    given by cubic Hermite polynomials between grid points, whose acceleration may exceed the limits
+    by an error of the grid's order: `check_motion` says by how much.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        Its path counts, and its path speeds at the two ends.
+    limits : Limits
+        Velocity and acceleration.
+    joints : tuple of str, optional
+        Labels.
+    cells : int
+        Of each piece between standstills, of up to five segments.
+
+    Returns
+    -------
+    Motion
+
+    Raises
+    ------
+    TrajgapError
+        If TOPPRA does not apply, or finds nothing on this grid.
+    """
+    reason = not_applicable(trajectory, limits)
+    if reason is not None:
+        raise TrajgapError(f"TOPPRA on this path: not applicable, {reason}")
+    from .toppra_piece import optimal_speeds  # toppra takes a second to import
+
+    _, stretch = excess(trajectory, limits)
+    parts, _ = pieces(trajectory)
+    times = [0.0]
+    positions: list[Array] = []
+    velocities: list[Array] = []
+    for number, piece in enumerate(parts, 1):
+        path = sample(piece, measure(piece), cells)
+        expected = (stretch or 1.0) * piece.duration
+        found = optimal_speeds(
+            path, limits.velocity, limits.acceleration, path.end_speeds(), expected
+        )
+        if found is None:
+            raise TrajgapError(
+                f"TOPPRA found no parametrisation of piece {number} on {cells} cells"
+            )
+        speeds = found[1]
+        if (speeds[1:] + speeds[:-1] <= 0).any():
+            raise TrajgapError(f"TOPPRA stands still inside piece {number}; take other limits")
+        steps = 2.0 * np.diff(path.s) / (speeds[1:] + speeds[:-1])
+        skip = 1 if positions else 0  # a standstill ends one piece and begins the next
+        times += (times[-1] + np.cumsum(steps)).tolist()
+        positions.append(path.position[skip:])
+        velocities.append((path.tangent * speeds[:, None])[skip:])
+    samples = Samples(
+        joints, np.array(times), np.concatenate(positions), np.concatenate(velocities)
+    )
+    return interpolated(samples, Interpolation.CUBIC)

@@ -1,0 +1,193 @@
+"""Compiled kernel of long motions: true extremes of every derivative over many pieces.
+
+A piece whose coefficients cannot reach past what is found already is left at once, so that a
+hundred thousand pieces cost little more than to look at them.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .kernel import MAX_COEFFICIENTS, compiled, roots_in_unit
+
+_EPS = 2.0**-52
+"""Spacing of float64 at 1."""
+_ROUNDING = 32 * 2.0**-52
+"""Relative to the sum of a polynomial's absolute terms: Horner's rounding for ten coefficients is
+20 · 2⁻⁵³, and that of the place of an extremum is of second order."""
+
+
+@compiled
+def _derived(scaled, k, j, order, perm, b):  # type: ignore[no-untyped-def]
+    """Coefficients of a derivative in s; returns their number, at least 1."""
+    powers = scaled.shape[1]
+    if order >= powers:
+        b[0] = 0.0
+        return 1
+    for p in range(order, powers):
+        b[p - order] = perm[p, order] * scaled[k, p, j]
+    return powers - order
+
+
+@compiled
+def _at(b, n, s):  # type: ignore[no-untyped-def]
+    value = b[n - 1]
+    for i in range(n - 2, -1, -1):
+        value = value * s + b[i]
+    return value
+
+
+@compiled
+def _turns(b, n, d, work, roots):  # type: ignore[no-untyped-def]
+    """Places in (0, 1) where a polynomial turns; returns their number."""
+    for i in range(1, n):
+        d[i - 1] = i * b[i]
+    return roots_in_unit(d, n - 2, work, roots) if n > 2 else 0
+
+
+@compiled
+def _error(b, n, order, perm, noise, clock, scale):  # type: ignore[no-untyped-def]
+    """Bound on the error of every value on a piece: rounding, coefficients, duration."""
+    terms, weights = 0.0, 0.0
+    for i in range(n):
+        terms += abs(b[i])
+        weights += perm[order + i, order]
+    return scale * (_ROUNDING * terms + noise * weights + 1.25 * order * clock * (terms + noise))
+
+
+@compiled
+def piece_extremes(scaled, durations, noise, clock, perm, found, place, outer):  # type: ignore[no-untyped-def]
+    """Least and largest value of derivatives 0 to 3 of every joint.
+
+    ``scaled[piece, power, joint]`` are ascending in s; ``noise[piece, joint]`` bounds the error of
+    each coefficient, ``clock[piece]`` the relative error of the duration. ``found[joint, order,
+    side]`` gets the values, ``place[..., 0 and 1]`` piece and s, and ``outer`` what no value is
+    beyond, errors included.
+    """
+    b, d = np.empty(MAX_COEFFICIENTS), np.empty(MAX_COEFFICIENTS)
+    roots = np.empty(MAX_COEFFICIENTS)
+    work = np.empty((MAX_COEFFICIENTS, MAX_COEFFICIENTS))
+    found[:, :, 0], found[:, :, 1] = np.inf, -np.inf
+    outer[:, :, 0], outer[:, :, 1] = np.inf, -np.inf
+    for k in range(scaled.shape[0]):
+        for j in range(scaled.shape[2]):
+            scale = 1.0
+            for r in range(4):
+                n = _derived(scaled, k, j, r, perm, b)
+                spread = 0.0
+                for i in range(1, n):
+                    spread += abs(b[i])
+                err = _error(b, n, r, perm, noise[k, j], clock[k], scale)
+                low, high = found[j, r, 0], found[j, r, 1]
+                if (b[0] + spread) * scale + err > high or (b[0] - spread) * scale - err < low:
+                    count = _turns(b, n, d, work, roots)
+                    for m in range(count + 2):
+                        s = 0.0 if m == 0 else (1.0 if m == count + 1 else roots[m - 1])
+                        value = _at(b, n, s) * scale
+                        if value < found[j, r, 0]:
+                            found[j, r, 0] = value
+                            place[j, r, 0, 0], place[j, r, 0, 1] = k, s
+                        if value > found[j, r, 1]:
+                            found[j, r, 1] = value
+                            place[j, r, 1, 0], place[j, r, 1, 1] = k, s
+                        outer[j, r, 0] = min(outer[j, r, 0], value - err)
+                        outer[j, r, 1] = max(outer[j, r, 1], value + err)
+                scale /= durations[k]
+
+
+@compiled
+def one_sided_extreme(scaled, durations, noise, clock, perm, j, sign, rest, place):  # type: ignore[no-untyped-def]
+    """Largest |acceleration| of a joint while its speed grows (``sign`` 1) or falls (−1).
+
+    Returns that and what it is not above, errors included. Below the speed ``rest`` a joint counts
+    as standing, and neither grows nor falls. ``place`` gets piece, s and the signed value.
+    """
+    b, d = np.empty(MAX_COEFFICIENTS), np.empty(MAX_COEFFICIENTS)
+    v = np.empty(MAX_COEFFICIENTS)
+    roots = np.empty(MAX_COEFFICIENTS)
+    cuts = np.empty(3 * MAX_COEFFICIENTS)
+    work = np.empty((MAX_COEFFICIENTS, MAX_COEFFICIENTS))
+    best, most = 0.0, 0.0
+    for k in range(scaled.shape[0]):
+        h = durations[k]
+        nv = _derived(scaled, k, j, 1, perm, v)
+        n = _derived(scaled, k, j, 2, perm, b)
+        size = 0.0
+        for i in range(n):
+            size += abs(b[i])
+        scale = 1.0 / (h * h)
+        err = _error(b, n, 2, perm, noise[k, j], clock[k], scale)
+        if size * scale + err <= best:
+            continue
+        cuts[0] = 0.0
+        count = 1
+        for one in range(3):
+            if one == 0:
+                m = roots_in_unit(v, nv - 1, work, roots)
+            elif one == 1:
+                m = roots_in_unit(b, n - 1, work, roots)
+            else:
+                m = _turns(b, n, d, work, roots)
+            for i in range(m):
+                cuts[count] = roots[i]
+                count += 1
+        cuts[count] = 1.0
+        count += 1
+        cuts[:count].sort()
+        for i in range(count - 1):
+            middle = 0.5 * (cuts[i] + cuts[i + 1])
+            speed = _at(v, nv, middle)
+            if abs(speed) <= rest * h or sign * speed * _at(b, n, middle) <= 0.0:
+                continue
+            for end in range(2):
+                signed = _at(b, n, cuts[i + end]) * scale
+                most = max(most, abs(signed) + err)
+                if abs(signed) > best:
+                    best = abs(signed)
+                    place[0], place[1], place[2] = k, cuts[i + end], signed
+    return best, most
+
+
+@compiled
+def divided_extremes(times, values, j, order, stride, noise, found):  # type: ignore[no-untyped-def]
+    """What divided differences of samples prove of a derivative, towards both sides.
+
+    ``found[side]`` gets, for the window that proves most, the value of ``order``! times the
+    divided difference, the bound of its error, and the middle of its window; returns the largest
+    error of all windows. Side 0 looks for small values, 1 for large ones.
+    """
+    count = times.size - order * stride
+    widest = 0.0
+    sure0, sure1 = np.inf, -np.inf
+    factorial = 1.0
+    for m in range(2, order + 1):
+        factorial *= m
+    for k in range(count):
+        first = values[k, j]
+        value, error, sizes, clock = 0.0, 0.0, 0.0, 0.0
+        for m in range(order + 1):
+            weight = factorial
+            here = times[k + m * stride]
+            for n in range(order + 1):
+                if n != m:
+                    other = times[k + n * stride]
+                    step = here - other
+                    weight /= step
+                    # Both times carry the rounding of their digits.
+                    clock = max(clock, _EPS * (abs(here) + abs(other)) / abs(step))
+            there = values[k + m * stride, j]
+            # Differences from the first value: the weights of a divided difference sum to 0.
+            term = weight * (there - first) if order > 0 else there
+            value += term
+            sizes += abs(term)
+            error += abs(weight) * (noise + _EPS * abs(there))
+        error += (16 * _EPS + 1.25 * order * clock) * sizes
+        widest = max(widest, error)
+        middle = 0.5 * (times[k] + times[k + order * stride])
+        if value + error < sure0:
+            sure0 = value + error
+            found[0, 0], found[0, 1], found[0, 2] = value, error, middle
+        if value - error > sure1:
+            sure1 = value - error
+            found[1, 0], found[1, 1], found[1, 2] = value, error, middle
+    return widest

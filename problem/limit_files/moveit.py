@@ -1,0 +1,101 @@
+"""MoveIt's joint_limits.yaml, and that of ros2_control, which has the same fields."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from ..errors import CaseError
+from ..motions import BRAKING, read_yaml
+from .precedence import Range, StatedLimits
+
+_SIZES = ("velocity", "acceleration", BRAKING, "jerk")
+"""Quantities with ``has_X_limits`` and ``max_X``; the smallest value is minus the largest."""
+
+
+def read_moveit(path: Path) -> StatedLimits:
+    """Read limits from MoveIt's joint_limits.yaml.
+
+    Parameters
+    ----------
+    path : Path
+        Under ``joint_limits``, for each joint: ``has_velocity_limits`` and ``max_velocity``, the
+        same of acceleration, deceleration and jerk, and ``has_position_limits`` with
+        ``min_position`` and ``max_position``; rad, or m. A ``has_...`` that is false says that
+        there is no limit; one that is missing is taken from what stands beside it. The default
+        scaling factors of planners are no limits and are left aside.
+
+    Returns
+    -------
+    StatedLimits
+
+    Raises
+    ------
+    CaseError
+        If it is no such file.
+    """
+    name = str(path)
+    documents = read_yaml(path)
+    found = documents[0] if documents else None
+    # As a file of ROS parameters it is wrapped: node, ros__parameters, robot_description_planning.
+    for _ in range(4):
+        if isinstance(found, Mapping) and "joint_limits" not in found and len(found) == 1:
+            found = next(iter(found.values()))
+    if not isinstance(found, Mapping) or not isinstance(found.get("joint_limits"), Mapping):
+        raise CaseError(name, "joint_limits", "is missing; give MoveIt's joint_limits.yaml")
+    ranges: dict[str, dict[str, Range]] = {}
+    for joint, block in found["joint_limits"].items():
+        if not isinstance(joint, str) or not isinstance(block, Mapping):
+            raise CaseError(name, f"joint_limits.{joint}", "is no block of limits; see MoveIt")
+        ranges[joint] = _ranges(name, f"joint_limits.{joint}", block)
+    if not ranges:
+        raise CaseError(name, "joint_limits", "holds no joint; name the joints of the arm")
+    return StatedLimits(name, ranges)
+
+
+def _ranges(name: str, field: str, block: Mapping[Any, Any]) -> dict[str, Range]:
+    ranges: dict[str, Range] = {}
+    for quantity in _SIZES:
+        top = _number(name, field, block, f"max_{quantity}")
+        if _has(name, field, block, f"has_{quantity}_limits", top is not None):
+            if top is None:
+                raise CaseError(
+                    name, f"{field}.max_{quantity}", f"is missing; has_{quantity}_limits is true"
+                )
+            if top < 0:
+                raise CaseError(name, f"{field}.max_{quantity}", "is negative; give a size")
+            ranges[quantity] = (-top, top)
+        elif f"has_{quantity}_limits" in block:
+            ranges[quantity] = (-math.inf, math.inf)
+    low, high = (_number(name, field, block, f"{side}_position") for side in ("min", "max"))
+    if _has(name, field, block, "has_position_limits", low is not None and high is not None):
+        if low is None or high is None:
+            raise CaseError(name, field, "has_position_limits needs min_position and max_position")
+        ranges["position"] = (low, high)
+    elif "has_position_limits" in block:
+        ranges["position"] = (-math.inf, math.inf)
+    return ranges
+
+
+def _has(name: str, field: str, block: Mapping[Any, Any], key: str, otherwise: bool) -> bool:
+    value = block.get(key, otherwise)
+    if not isinstance(value, bool):
+        raise CaseError(name, f"{field}.{key}", f"{str(value)[:40]!r} is neither true nor false")
+    return value
+
+
+def _number(name: str, field: str, block: Mapping[Any, Any], key: str) -> float | None:
+    value = block.get(key)
+    if value is None:
+        return None
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise CaseError(name, f"{field}.{key}", f"{str(value)[:40]!r} is no number; fix it")
+    try:
+        found = float(value)
+    except OverflowError:
+        found = math.inf
+    if math.isnan(found):
+        raise CaseError(name, f"{field}.{key}", "is NaN; leave it out where there is no limit")
+    return found

@@ -1,0 +1,122 @@
+"""Limits as one source states them, and what holds where several do."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import CaseError, TrajgapError
+from ..fields import nearest
+from ..motions import BRAKING, ORDERS, JointLimits, check_range
+
+STATED = (*ORDERS, BRAKING)
+"""Quantities that a source may limit."""
+Range = tuple[float, float]
+"""Lower and upper limit, rad and s; infinite where that side has none."""
+
+
+@dataclass(frozen=True)
+class StatedLimits:
+    """What one source states: ranges by joint and quantity, and nothing of the rest.
+
+    Attributes
+    ----------
+    source : str
+        The file or flag, for every verdict.
+    ranges : mapping
+        Joint to quantity to (lower, upper), rad and s.
+    named : bool
+        Whether the joints are named by the source itself, so that an unknown name is a fault.
+    """
+
+    source: str
+    ranges: Mapping[str, Mapping[str, Range]]
+    named: bool = True
+
+    def __post_init__(self) -> None:
+        for joint, quantities in self.ranges.items():
+            for quantity, (low, high) in quantities.items():
+                try:
+                    check_range(low, high, quantity, joint)
+                except TrajgapError as error:
+                    raise CaseError(self.source, joint, str(error)) from None
+
+    def for_joints(self, joints: Sequence[str]) -> JointLimits:
+        """Limits of some joints, in their order.
+
+        Raises
+        ------
+        CaseError
+            If none of them is known here.
+        """
+        return merge(joints, [self])
+
+
+def read_limits(path: Path) -> StatedLimits:
+    """Read a URDF (``.urdf``, ``.xml``), or MoveIt's joint_limits.yaml.
+
+    Raises
+    ------
+    CaseError
+        If it is neither.
+    """
+    from .moveit import read_moveit
+    from .urdf import read_urdf
+
+    return (read_urdf if path.suffix.lower() in (".urdf", ".xml") else read_moveit)(path)
+
+
+def merge(joints: Sequence[str], sources: Sequence[StatedLimits]) -> JointLimits:
+    """The limits of joints: of sources that state the same one the first counts.
+
+    Parameters
+    ----------
+    joints : sequence of str
+    sources : sequence of StatedLimits
+        In order of precedence.
+
+    Returns
+    -------
+    JointLimits
+
+    Raises
+    ------
+    CaseError
+        If a source names joints, and none of these.
+    """
+    count = len(joints)
+    lower, upper = np.full((count, 4), -np.inf), np.full((count, 4), np.inf)
+    braking = np.full(count, np.inf)
+    said: dict[tuple[str, str], str] = {}
+    for one in sources:
+        if one.named and not set(joints) & set(one.ranges):
+            known = nearest(joints[0], one.ranges)
+            raise CaseError(one.source, "", f"names none of the joints {_few(joints)}; {known}")
+        for j, joint in enumerate(joints):
+            stated = one.ranges.get(joint, {})
+            # Acceleration alone is meant of braking too, whatever a later source says of that.
+            both = (joint, "acceleration") in said
+            for quantity, (low, high) in stated.items():
+                if (joint, quantity) in said or (quantity == BRAKING and both):
+                    continue
+                said[joint, quantity] = one.source
+                if quantity == BRAKING:
+                    braking[j] = high
+                else:
+                    r = ORDERS.index(quantity)
+                    lower[j, r], upper[j, r] = low, high
+    for j, joint in enumerate(joints):
+        if np.isfinite(braking[j]) and lower[j, 2] != -upper[j, 2]:
+            raise CaseError(
+                said[joint, BRAKING],
+                BRAKING,
+                f"joint {joint} has two-sided acceleration limits beside it; state one of the two",
+            )
+    return JointLimits(tuple(joints), lower, upper, braking, said)
+
+
+def _few(words: Sequence[str]) -> str:
+    return ", ".join(words[:3]) + (", ..." if len(words) > 3 else "")

@@ -1,0 +1,152 @@
+"""What samples prove without an interpolation: divided differences against the limits.
+
+By the mean value theorem r! times the divided difference of r + 1 samples is a value that the r-th
+derivative takes between them, or lies between values that it takes where it jumps. So if it leaves
+the limit by more than the noise and the rounding allow, every motion through the samples breaks
+that limit; no such motion is accused otherwise. Wider windows see less noise: strides 1, 2, 4, ...
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..checker import Verdict
+from ..curves import divided_extremes
+from .joint_limits import BRAKING, ORDERS, JointLimits
+from .judged import (
+    MOTION_TOLERANCE,
+    MotionCheck,
+    MotionPeak,
+    check_same_joints,
+    half_range,
+    joined,
+    peak,
+    slow_down,
+)
+from .samples import Samples
+
+_EXACTLY = "The numbers are taken exactly: state --noise for what rounding or measuring may change."
+"""Said where no noise is stated: digits may be rounded, and a last digit accuses nobody."""
+_STRIDES = 12
+"""Doublings of the stride: at 4,096 samples noise is as small as any limit can ask for."""
+
+
+def check_samples(
+    samples: Samples, limits: JointLimits, tolerance: float = MOTION_TOLERANCE
+) -> MotionCheck:
+    """Judge every motion through samples, whatever happens between them.
+
+    Parameters
+    ----------
+    samples : Samples
+    limits : JointLimits
+        For the same joints in the same order.
+    tolerance : float
+        Relative excess over a limit that still counts as keeping it.
+
+    Returns
+    -------
+    MotionCheck
+        Its verdict is *violated* where every such motion breaks a limit, else *undecided*: no
+        samples show that a motion keeps its limits between them.
+    """
+    check_same_joints(samples.joints, limits)
+    peaks: list[MotionPeak] = []
+    for j in range(len(samples.joints)):
+        for r in range(4):
+            sides = _peaks(samples, limits, j, r)
+            if sides:
+                peaks.append(joined(sides))
+    broken = any(p.least_ratio > 1 + tolerance for p in peaks)
+    verdict = Verdict.VIOLATED if broken else Verdict.UNDECIDED
+    proven = [replace(p, ratio=max(0.0, p.least_ratio)) for p in peaks]
+    stretch, why = slow_down(proven, tolerance)
+    total = float(samples.time[-1] - samples.time[0])
+    states = "positions" + "".join(
+        f", {word}" for word, r in (("velocities", 1), ("accelerations", 2)) if samples.has(r).any()
+    )
+    if broken:
+        concluded = "Every motion through these samples breaks a limit, whatever lies between them."
+    else:
+        concluded = f"The samples ({states}) prove no limit broken."
+    return MotionCheck(
+        verdict=verdict,
+        limits=verdict,
+        worst=max(peaks, key=lambda p: p.least_ratio, default=None),
+        peaks=tuple(peaks),
+        jumps=(),
+        total_time=total,
+        stretch=stretch,
+        feasible_time=None,
+        feasible_why=why
+        or "what lies between the samples is not known"
+        + (f"; slower by {stretch:.6g} is not enough" if stretch > 1 else ""),
+        floor=None,
+        floor_why="samples alone do not show where the motion stands still",
+        concluded=(concluded,),
+        open=(
+            "Between the samples nothing can be checked: state an --interpolation for a verdict "
+            "for all t.",
+            *(() if samples.margin.any() else (_EXACTLY,)),
+        ),
+        tolerance=tolerance,
+    )
+
+
+def _proven(samples: Samples, j: int, r: int, enough: float) -> list[tuple[float, float, float]]:
+    """Value, error and time that prove most of a derivative, towards the lower and upper side.
+
+    A wider window lowers the error alone: where that is below ``enough`` nothing is to be gained.
+    """
+    best: list[tuple[float, float, float]] = []
+    given = (samples.position, samples.velocity, samples.acceleration)
+    for order in range(min(r, 2) + 1):
+        values, rows = given[order], samples.has(order)
+        differences = r - order
+        if values is None or rows.sum() <= differences:
+            continue
+        noise = float(samples.margin[j]) if order == 0 else 0.0
+        times = samples.time
+        if not rows.all():
+            times, values = times[rows], values[rows]
+        for stride in (1 << n for n in range(_STRIDES)):
+            if differences * stride >= times.size:
+                break
+            found = np.zeros((2, 3))
+            error = divided_extremes(times, values, j, differences, stride, noise, found)
+            here = [(float(a), float(b), float(c)) for a, b, c in found]
+            if not best:
+                best = here
+            if here[0][0] + here[0][1] < best[0][0] + best[0][1]:
+                best[0] = here[0]
+            if here[1][0] - here[1][1] > best[1][0] - best[1][1]:
+                best[1] = here[1]
+            if error <= enough or differences == 0:
+                break
+    return best
+
+
+def _peaks(samples: Samples, limits: JointLimits, j: int, r: int) -> list[MotionPeak]:
+    """What is proved of one quantity of one joint, beside each limit it has."""
+    lower, upper = limits.lower[j, r], limits.upper[j, r]
+    quantity, source = ORDERS[r], limits.source(limits.joints[j], ORDERS[r])
+    if r == 2 and np.isfinite(limits.deceleration[j]):
+        # No motion may pass both, speeding up or braking.
+        if limits.deceleration[j] >= upper:
+            source = limits.source(limits.joints[j], BRAKING)
+        lower = min(lower, -limits.deceleration[j])
+        upper = max(upper, limits.deceleration[j])
+    if not (np.isfinite(lower) or np.isfinite(upper)):
+        return []
+    sizes = [abs(x) for x in (lower, upper) if np.isfinite(x)]
+    proven = _proven(samples, j, r, 1e-7 * min(sizes))
+    half = half_range(lower, upper, lower if np.isfinite(lower) else upper) if r == 0 else None
+    return [
+        replace(peak(limits, j, quantity, time, value, limit, error, side, half), source=source)
+        for side, (limit, (value, error, time)) in enumerate(
+            zip((lower, upper), proven, strict=False)
+        )
+        if np.isfinite(limit)
+    ]

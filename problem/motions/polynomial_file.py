@@ -1,0 +1,93 @@
+"""Piecewise polynomials as JSON: ``breaks`` and coefficients as scipy's PPoly has them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..arrays import Array
+from ..curves import MAX_COEFFICIENTS
+from ..errors import CaseError, TrajgapError
+from .motion import MOST_VALUES, Motion
+
+POLYNOMIAL_FORMAT = "trajgap-motion/1"
+"""Key `format` of such a file, so that a later form can be told from this one."""
+
+
+def motion_of_json(found: Any, name: str, factors: Array | float = 1.0) -> Motion:
+    """The motion of a file of polynomials.
+
+    Parameters
+    ----------
+    found : object
+        ``{"breaks": [t0, ..., tn], "coefficients": [[[...], ...], ...], "joints": [...]}``:
+        coefficients by piece, then by power of t − t_k **descending**, then by joint; or, as
+        scipy's arrays ``x`` and ``c``, by power, piece and joint.
+    name : str
+        The file, for messages.
+    factors : float or ndarray, shape (joints,)
+        What a number of the file is in rad.
+
+    Returns
+    -------
+    Motion
+
+    Raises
+    ------
+    CaseError
+        If it is no such file.
+    """
+    from scipy.interpolate import PPoly
+
+    if "coefficients" in found:
+        key, axes = "coefficients", (1, 0, 2)
+    else:
+        key, axes = "c", (0, 1, 2)
+    breaks = _array(name, "breaks" if "breaks" in found else "x", found, 1)
+    c = _array(name, key, found, 3)
+    if c.size > 10 * MOST_VALUES:
+        raise CaseError(name, key, f"{c.size} coefficients are more than is read; keep fewer")
+    labels = found.get("joints") or ()
+    if not isinstance(labels, list | tuple) or not all(isinstance(x, str) and x for x in labels):
+        raise CaseError(name, "joints", "is no list of names; give one name per joint")
+    c = c.transpose(axes)
+    if c.shape[0] == 0 or c.shape[1] != breaks.size - 1:
+        raise CaseError(
+            name, key, f"{c.shape[1]} pieces for {breaks.size} breaks; give one break more"
+        )
+    if c.shape[0] > MAX_COEFFICIENTS and c[: c.shape[0] - MAX_COEFFICIENTS].any():
+        raise CaseError(name, key, f"degree {c.shape[0] - 1}; at most 9 is judged")
+    try:
+        return Motion.of_polynomial(PPoly(c * factors, breaks), tuple(labels))
+    except (TrajgapError, ValueError) as error:
+        raise CaseError(name, "", str(error)) from None
+
+
+def _array(name: str, key: str, found: Any, axes: int) -> Array:
+    value = found.get(key)
+    if value is None:
+        raise CaseError(name, key, "is missing; give breaks and coefficients")
+    try:
+        array = np.array(value, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError):
+        raise CaseError(name, key, "is ragged or holds no numbers; give a full table") from None
+    if array.ndim != axes:
+        raise CaseError(
+            name, key, f"{array.ndim} levels of lists, {axes} are needed; see the guide"
+        )
+    if not np.isfinite(array).all():
+        raise CaseError(name, key, "holds a number that is not finite; give finite ones")
+    return array
+
+
+def polynomial_json(motion: Motion) -> dict[str, Any]:
+    """A motion in the form that `motion_of_json` reads, rad and s."""
+    plain = np.asarray(motion.polynomial.c).transpose(1, 0, 2)
+    return {
+        "format": POLYNOMIAL_FORMAT,
+        "joints": list(motion.joints),
+        "units": {"time": "s", "position": "rad"},
+        "breaks": motion.breaks.tolist(),
+        "coefficients": plain.tolist(),
+    }

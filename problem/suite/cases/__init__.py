@@ -1,0 +1,1 @@
+"""One case file per instance of the suite."""

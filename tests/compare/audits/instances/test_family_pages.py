@@ -1,0 +1,293 @@
+"""Families of instances in findings, pages and documents, and what is refused of them."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from support.checkout import ROOT
+from support.documents import SCHEMA, validator
+from support.families import SMALL, WHALE, small
+from trajgap.compare import audit
+from trajgap.compare.audits.case_audit import audit_case
+from trajgap.compare.audits.instances.pose import printed_reduction
+from trajgap.compare.audits.instances.result import (
+    MIDDLE,
+    InstancesResult,
+    distribution,
+    reproduced,
+)
+from trajgap.compare.audits.rules.on_instances import judge_instances
+from trajgap.compare.audits.study import Study
+from trajgap.compare.documents import Effect, json_text
+from trajgap.compare.pages.markdown_text import markdown
+from trajgap.compare.pages.writer import case_page
+from trajgap.compare.pictures.drawing import svg
+from trajgap.compare.pictures.instances import instances_picture
+from trajgap.compare.sphinx import Results
+from trajgap.problem import (
+    CaseError,
+    load_case,
+    parse_case,
+)
+
+
+def test_findings_inform_and_decide_nothing() -> None:
+    study = Study(small(), seeds=2, certify_seconds=0)
+    found = list(judge_instances(study))
+    assert [(f.claim, f.reading) for f in found] == [
+        ("better", None), ("better", "as-printed"), ("better", "joined"), ("settles", None),
+    ]  # fmt: skip
+    for f in found:
+        assert (f.rule, str(f.severity), str(f.verdict)) == ("TG404", "info", "not checkable")
+        assert not f.decides
+        assert "refuted" not in f.message
+    assert (
+        "On 4 instances drawn from the robot's workspace, the printed reduction" in found[0].message
+    )
+    assert "These are not the paper's instances, so they decide nothing" in found[0].message
+    assert "4 instances, at steps of 0.3, 0.9 rad, with 2 runs each" in found[1].message
+    assert "at the best known optima: median 0.0 % (0.0 to 0.0 %)." in found[2].message
+    assert "By iteration 10 of 12" in found[3].message
+    assert "% under as-printed, " in found[3].message
+    assert "95 % interval, instances resampled" in found[1].message
+    assert "Where 2.00 s is printed, the procedure" in found[1].message
+    # Readings are named and never counted.
+    assert not any(re.search(r"in \d+ of \d+ readings", f.message) for f in found)
+    one = audit_case(study)
+    verdicts = {j.claim: str(j.verdict) for j in one.judgements}
+    assert verdicts == {
+        "old-total": "not checkable", "new-total": "not checkable", "better": "not checkable",
+        "settles": "not checkable",
+    }  # fmt: skip
+
+
+def test_without_a_pair_of_answers_the_words_say_so() -> None:
+    found = list(
+        judge_instances(
+            Study(
+                small(
+                    ("upper = 8", "upper = 0.05"),
+                    ("position_initial = [0, 8]", "position_initial = [0, 0.05]"),
+                    ("instances = 2", "instances = 1"),
+                ),
+                seeds=2,
+            )
+        )
+    )
+    assert "unusual under as-printed, joined (no pair of answers)" in found[0].message
+    assert found[0].computed == "no pair of answers"
+    assert "12 runs found nothing that keeps its limits" in found[1].message
+
+
+def test_one_problem_or_reading_selects() -> None:
+    assert Study(small(), seeds=2, problem="spline", certify_seconds=0).instance_blocks == ()
+    study = Study(small(), seeds=2, reading="joined", certify_seconds=0)
+    assert study.instances(study.instance_blocks[0]).readings == ("joined",)
+    unknown = small(('kind = "woa"', 'kind = "not-written"'))
+    assert Study(unknown, seeds=2, certify_seconds=0).instance_blocks == ()
+
+
+# --- page, document, picture ----------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def report():
+    return audit(small(), seeds=2, certify_seconds=0)
+
+
+def test_the_page_has_the_comparison(report) -> None:
+    page = case_page(report.cases[0])
+    (section,) = (s for s in page.sections if s.id == "families")
+    text = markdown(replace(page, sections=(section,)))
+    assert "refuted" not in text
+    assert "![Reduction of the total, better, on 4 instances]" in text
+    assert "4 for each step" not in text
+    assert "2 for each step of 0.3, 0.9 rad (largest change of any joint)" in text
+    assert "| as-printed | 0.9 | 2 |" in text
+    block = SMALL[SMALL.index("[[families]]") : SMALL.index("[[claims]]")]
+    plain = audit(small((block, "")), seeds=2, certify_seconds=0)
+    assert "families" not in [s.id for s in case_page(plain.cases[0]).sections]
+
+
+def test_the_document_is_valid_and_whole(report) -> None:
+    document = json.loads(json_text(report.document))
+    validator().validate(document)
+    (one,) = document["cases"][0]["families"]
+    assert SCHEMA["$defs"]["effect"]["enum"] == [str(effect) for effect in Effect]
+    assert set(one) <= set(SCHEMA["$defs"]["examined_instances"]["properties"])
+    whole = [r for r in one["reductions"] if r["step"] is None]
+    assert len(whole) == 2 * (2 + 2 + 1)
+    assert len(one["instances"]) == 4
+    assert all(len(i["readings"]) == 2 for i in one["instances"])
+    totals = one["instances"][0]["readings"][0]["totals"]
+    assert [t["objective"] for t in totals] == ["death-penalty", "stretch"]
+    assert len(totals[0]["faster"]) == 2
+    assert one["printed_lowest"] == pytest.approx(1 - 1.505 / 1.995)
+
+
+def test_the_picture_shows_every_pair(result: InstancesResult) -> None:
+    picture = instances_picture(result, title="saved")
+    assert svg(picture) == svg(instances_picture(result, title="saved"))
+    both, alone, curve = picture.axes
+    points = np.concatenate([c.get_offsets() for c in both.collections if len(c.get_offsets())])
+    shown = np.sort(points[:, 0])
+    values = [result.reductions(r, Effect.BOTH, at) for r in result.readings for at in (0, 1)]
+    np.testing.assert_allclose(shown, np.sort(100 * np.concatenate(values)), rtol=1e-12)
+    assert [t.get_text() for t in both.get_yticklabels()] == list(result.readings)
+    assert sum(len(c.get_offsets()) for c in curve.collections) == len(result.samples)
+    assert alone.get_title(loc="left") == "algorithm alone"
+    assert "as-printed: both together median" in picture.description
+    assert "printed: 24.56 to 25.44 %" in picture.description
+
+
+# --- a user finds the way-points ------------------------------------------------------------------
+
+
+@pytest.mark.slow
+def test_way_points_dropped_into_the_file_get_the_full_audit() -> None:
+    text = (ROOT / "problem" / "published" / f"{WHALE}.toml").read_text(encoding="utf-8")
+    start, end = text.index("not_printed = "), text.index("[limits]")
+    angles = [
+        [f"{0.31 * (j + 1) * (-1) ** k - 0.17 * j * k:.4f}" for k in range(4)] for j in range(6)
+    ]
+    table = "joint_rows = [\n" + ",\n".join(f"  {json.dumps(row)}" for row in angles) + "\n]\n\n"
+    # Fewer way-points and moves than the paper's, for speed; nothing else is touched.
+    text = (text[:start] + table + text[end:]).replace("iterations = 500", "iterations = 15")
+    text = text.replace("steps = [0.1, 0.2, 0.3]\ninstances = 3", "steps = [0.2]\ninstances = 1")
+    report = audit(
+        parse_case(text, "found.toml"), seeds=2, reading="v-deg-a-deg", certify_seconds=0
+    )
+    (one,) = report.cases
+    assert one.study.problems == ("b-spline", "quintic")
+    rules = {(f.rule, f.claim) for f in one.findings}
+    for claim in ("b-spline-total", "quintic-total"):
+        assert {("TG302", claim), ("TG402", claim)} <= rules
+        assert ("TG501", claim) not in rules
+    assert {("TG103", "improvement"), ("TG403", "convergence"), ("TG404", "improvement")} <= rules
+    assert [w.problem for w in one.waterfalls] == ["b-spline", "quintic"]
+    assert all(w.steps[0].name for w in one.waterfalls)
+    for pid in one.study.problems:
+        assert one.study.optimum(pid, "v-deg-a-deg").check is not None
+    (limits,) = (j for j in one.judgements if j.claim == "limits-kept")
+    assert "and no durations: whether its motion keeps the limits" in limits.why
+    assert [s.id for s in case_page(one).sections].count("families") == 1
+
+
+def documented() -> str:
+    """The page about families, as far as it shows an audit's own instances."""
+    page = ROOT / "docs" / "measurements" / "families.md"
+    return page.read_text(encoding="utf-8").partition("\n\n## Sixty instances")[0]
+
+
+DOCUMENTED = re.compile(r"^\| `([\w-]+)` \| (.*) \|$", re.MULTILINE)
+"""A reading in the table of the documentation, and the keys of its medians."""
+KEYS = re.compile(r"`([^`|]+)\.median\\\|\.1%`")
+OBJECTIVES = ("death-penalty", "stretch")
+"""In the order of the table."""
+
+
+# --- the page of the documentation ----------------------------------------------------------------
+
+
+def test_the_documented_digits_are_those_of_the_case_and_the_rule() -> None:
+    page = documented()
+    study = Study(load_case(WHALE), seeds=2, certify_seconds=0)
+    (block,) = study.case.instances
+    claim = study.case.claim(block.claim)
+    for side, name in ((claim.slower, "quintic"), (claim.faster, "b-spline")):
+        total = study.case.claim(side)
+        assert (total.problem, f"{total.value} s" in page) == (name, True)
+    shown = Results(ROOT / "docs" / "results")
+    keys = [f"{WHALE}:families.0.printed_{end}" for end in ("lowest", "highest")]
+    assert all(f"{{trajgap}}`{key}|.2%`" in page for key in keys)
+    assert [shown.value(key) for key in keys] == pytest.approx(printed_reduction(study, block))
+    assert f"{100 * MIDDLE:g} %" in page
+    assert [reading for reading, _ in DOCUMENTED.findall(page)] == list(block.readings)
+
+
+def test_the_documented_medians_are_keys_of_their_reading_effect_and_objective() -> None:
+    page = documented()
+    shown = Results(ROOT / "docs" / "results")
+    effects = [(e, o) for e in ("both together", "algorithm alone") for o in OBJECTIVES]
+    rows = DOCUMENTED.findall(page)
+    assert len(rows) == 5
+    for reading, row in rows:
+        found = [shown.value(key) for key in KEYS.findall(row)]
+        assert {one["reading"] for one in found} == {reading}
+        assert [(one["effect"], one["objective"]) for one in found[:4]] == effects
+        assert found[4]["effect"] == "curve alone"
+        assert {one["step"] for one in found} == {None}
+
+
+@pytest.mark.slow
+def test_the_documented_medians_are_those_of_the_shipped_family() -> None:
+    study = Study(load_case(WHALE), seeds=2, certify_seconds=0)
+    found = study.instances(study.instance_blocks[0])
+    columns = [(e, at) for e in (Effect.BOTH, Effect.ALGORITHM) for at in (0, 1)]
+    columns.append((Effect.CURVE, 0))
+    page = documented()
+    rows = DOCUMENTED.findall(page)
+    shown = Results(ROOT / "docs" / "results")
+    assert [reading for reading, _ in rows] == list(found.readings)
+    for reading, row in rows:
+        printed = [100 * shown.value(f"{key}.median") for key in KEYS.findall(row)]
+        computed = [100 * distribution(found.reductions(reading, *c)).median for c in columns]
+        assert printed == pytest.approx(computed, abs=0.0501)
+        assert abs(computed[3]) < 3
+    missed = [r for r in found.readings if not reproduced(found, r)]
+    assert missed == ["v-deg-a-deg", "v-rad-a-deg"]
+    assert all(f"`{reading}`" in page.split("\n\n")[-1] for reading in missed)
+
+
+# --- what is refused ------------------------------------------------------------------------------
+
+
+def test_instances_are_resampled_and_not_pairs_of_runs(result: InstancesResult) -> None:
+    reading = result.readings[0]
+    each = [distribution(s.reductions(Effect.BOTH)).median for s in result.of(reading)]
+    low, high = result.median_interval(reading, Effect.BOTH)
+    assert min(each) <= low <= np.median(each) <= high <= max(each)
+    # With two instances, half of all samples draw one of them twice: the ends are the two.
+    two = replace(result, samples=result.of(reading)[:2])
+    ends = sorted(distribution(s.reductions(Effect.BOTH)).median for s in two.samples)
+    assert two.median_interval(reading, Effect.BOTH) == pytest.approx(ends)
+    assert np.isnan(
+        replace(result, samples=result.of(reading)[:1]).median_interval(reading, Effect.BOTH)[0]
+    )
+    # The same runs twice on each instance tell nothing new.
+    doubled = replace(
+        result,
+        samples=tuple(
+            replace(s, totals=np.concatenate([s.totals, s.totals], axis=2)) for s in result.samples
+        ),
+    )
+    assert doubled.median_interval(reading, Effect.BOTH) == pytest.approx((low, high))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('claim = "better"', 'claim = "bettr"',
+         "families[0].claim: 'bettr' is not the id of any of the claims; did you mean 'better'?"),
+        ('claim = "better"', 'claim = "settles"',
+         "families[0].claim: 'settles' is a claim of quantity 'convergence'; name an improvement"),
+        ('algorithm = "plain"\n', "",
+         "families[0].claim: claim 'old-total' does not name its problem and its algorithm; add"),
+        ("samples = 50", 'readings = ["joined", "x"]',
+         "families[0].readings[1]: 'x' is not the id"),
+        ("[0.3, 0.9]", "[0.3, 0]", "families[0].steps[1]: is 0; a step moves something, give more"),
+        ("[0.3, 0.9]", "[0.3, 0.30]", "families[0].steps[1]: 0.30 is given twice; leave one out"),
+        ("instances = 2", "instances = 0", "families[0].instances:"),
+        ('kind = "joint"', 'kind = "wrist"', "families[0].kind:"),
+        ("samples = 50", 'objectives = ["mercy"]', "families[0].objectives[0]:"),
+        (SMALL[SMALL.index("[robot.dh]") : SMALL.index("[units]")], "",
+         "families[0].id: way-points are drawn from the robot's workspace; add robot.dh"),
+    ],
+)  # fmt: skip
+def test_faults_of_a_family(old: str, new: str, message: str) -> None:
+    with pytest.raises(CaseError, match=re.escape(f"small.toml: {message}")):
+        small((old, new))

@@ -1,0 +1,135 @@
+"""Advice to an author: what it tells to print must hold, and a sound draft needs none."""
+
+import re
+
+import pytest
+from support.studies import EVERY, audited_alone
+from trajgap.compare.audits import audit
+from trajgap.compare.audits.draft import advise
+from trajgap.compare.audits.study import Study
+from trajgap.compare.documents import Urgency, Why
+from trajgap.problem import Verdict, check, parse_case
+
+DRAFT = """
+format = 1
+id = "draft"
+title = "A draft"
+[source]
+year = 2026
+[robot]
+name = "one joint"
+joints = ["1"]
+[units]
+position = "rad"
+velocity = "rad/s"
+acceleration = "rad/s^2"
+time = "s"
+[waypoints]
+joint_rows = [["0.1000", "0.7000", "1.2000", "0.9000"]]
+[limits]
+velocity = 6
+acceleration = 8
+[interpolant]
+family = "3-5-3"
+[[claims]]
+id = "best"
+quantity = "durations"
+where = "Table 1"
+durations = [{h}]
+total = "{total}"
+[[claims]]
+id = "kept"
+quantity = "statement"
+where = "the abstract"
+text = "The motion keeps the limits."
+checks = "within_limits"
+of = ["best"]
+[[claims]]
+id = "optimal"
+quantity = "statement"
+where = "the conclusion"
+text = "The motion is time-optimal."
+checks = "optimal"
+of = ["best"]
+"""
+
+
+def drafted(durations, total):
+    case = parse_case(
+        DRAFT.format(h=", ".join(f'"{h}"' for h in durations), total=total), "draft.toml"
+    )
+    return case, audit(case, certify_seconds=0, draft=True).cases[0]
+
+
+def numbers(change):
+    """The durations that an advice tells to print."""
+    found = re.search(r"((?:\d+\.\d+, )+\d+\.\d+) s \(total (\d+\.\d+) s\)", change)
+    assert found, change
+    return [float(x) for x in found[1].split(", ")], float(found[2])
+
+
+def test_durations_that_break_a_limit_are_lengthened_until_they_keep_it():
+    case, one = drafted(["0.300", "0.400", "0.350"], "1.050")
+    advice = next(a for a in one.advice if a.claim == "best")
+    assert advice.urgency is Urgency.CONTRADICTED
+    durations, total = numbers(advice.change)
+    assert check(case.problem(), durations).verdict is Verdict.PASS
+    assert total == pytest.approx(sum(durations), abs=1e-12)
+    # As many decimals as the draft prints, and no more than they need: all scaled by one factor.
+    assert all(h == round(h, 3) for h in durations)
+    factor = check(case.problem(), [0.3, 0.4, 0.35]).stretch
+    assert durations == pytest.approx([factor * h for h in (0.3, 0.4, 0.35)], abs=0.003)
+
+
+def test_a_motion_called_optimal_gets_a_shorter_one_that_keeps_the_limits():
+    case, one = drafted(["1.000", "1.000", "1.000"], "3.000")
+    advice = next(a for a in one.advice if a.claim == "optimal")
+    durations, total = numbers(advice.change)
+    assert check(case.problem(), durations).verdict is Verdict.PASS
+    assert total < 3.0
+
+
+def test_a_wrong_sum_is_told_with_the_right_one():
+    _, one = drafted(["1.000", "1.000", "1.000"], "2.500")
+    found = [a for a in one.advice if "add up" in a.says]
+    assert len(found) == 1
+    assert "3.0" in found[0].change
+
+
+def test_a_sound_draft_without_open_points_needs_nothing():
+    case, _ = drafted(["1.000", "1.000", "1.000"], "3.000")
+    called = next(a for a in drafted(["1.000"] * 3, "3.000")[1].advice if a.claim == "optimal")
+    shorter, total = numbers(called.change)
+    _, one = drafted([f"{h:.3f}" for h in shorter], f"{total:.3f}")
+    assert [a for a in one.advice if a.urgency is not Urgency.OPEN] == []
+    assert case.id == "draft"
+
+
+def test_an_optimum_whose_digits_were_rounded_up_is_not_refuted_and_a_longer_one_is():
+    called = next(a for a in drafted(["1.000"] * 3, "3.000")[1].advice if a.claim == "optimal")
+    up, _ = numbers(called.change)
+    for more, word in ((0.0, "supported"), (0.002, "refuted")):
+        h = [f"{x + more:.3f}" for x in up]
+        _, one = drafted(h, f"{sum(map(float, h)):.3f}")
+        judged = {j.claim: j for j in one.judgements}
+        assert judged["optimal"].verdict == word
+        assert ("digits rounded up" in judged["optimal"].why) == (more == 0.0)
+
+
+def test_advice_is_there_on_request_alone():
+    _, one = drafted(["1.000", "1.000", "1.000"], "3.000")
+    assert one.document.advice == one.advice
+    assert audited_alone("irb460-pso-353").document.advice == Why("not audited as a draft")
+
+
+@pytest.mark.parametrize("case_id", EVERY)
+def test_every_cause_has_its_advice_in_plain_words(case_id):
+    one = audited_alone(case_id)
+    study: Study = one.study
+    found = advise(study, one.causes, one.judgements)
+    assert len([a for a in found if a.urgency is not Urgency.OPEN]) >= len(one.causes)
+    for advice in found:
+        assert advice.says
+        assert advice.change
+        assert "None as" not in advice.change
+        assert "Print None" not in advice.change

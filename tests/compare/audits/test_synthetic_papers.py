@@ -1,0 +1,133 @@
+"""Papers made up by a second route: clean ones are accused of nothing, planted faults are seen.
+
+The rates, over many more, are those of docs/measurements/auditor-errors.md.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+from scipy.stats import binomtest
+from support.papers.claims import draw
+from support.papers.drafts import fitted, keeps
+from support.papers.motions import FAMILIES
+from support.papers.planted import FAULTS, planted
+from trajgap.compare import ClaimVerdict, audit
+from trajgap.compare.audits import CaseAudit
+from trajgap.problem import extrema, fit, parse_case
+
+BENCHMARK = Path(__file__).parents[3] / "benchmarks" / "auditor_errors.py"
+AGAINST = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT)
+
+
+def audited(text: str) -> CaseAudit:
+    return audit(parse_case(text, "paper.toml"), certify_seconds=0).cases[0]
+
+
+@pytest.fixture(scope="module")
+def errors() -> ModuleType:
+    spec = importlib.util.spec_from_file_location("auditor_errors", BENCHMARK)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module  # dataclasses look their module up
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.mark.parametrize("name", FAMILIES)
+def test_both_routes_know_the_same_curves(name: str) -> None:
+    draft = draw(10**6, (name,))
+    found = next(a for a in draft.answers.values())
+    problem = parse_case(draft.text(), "paper.toml").problem()
+    joints = slice(None) if found.joint is None else [found.joint]
+    trajectory = fit(problem.curve, draft.true_points[:, joints], found.durations)
+    for order in (1, 2, 3):
+        ours = [
+            max(abs(top.value) for top in extrema(trajectory, j, order))
+            for j in range(draft.true_points[:, joints].shape[1])
+        ]
+        np.testing.assert_allclose(found.motion.peaks(order), ours, rtol=2e-6)
+
+
+def test_a_paper_is_its_seed_alone_and_its_answers_keep_its_limits() -> None:
+    assert draw(5).text() == draw(5).text() != draw(6).text()
+    for draft in map(draw, range(300, 320)):
+        kept = [c for c in draft.claims if c.get("checks") == "within_limits"]
+        for name in [name for claim in kept for name in claim["of"]]:
+            found = draft.answers[name]
+            assert keeps(draft, found.durations * (1 + 1e-9), found.joint)
+            assert fitted(draft, found.durations, found.joint).total == pytest.approx(found.total)
+
+
+@pytest.mark.parametrize("seed", [7, 20, 33, 1680])
+def test_clean_papers_are_accused_of_nothing(seed: int) -> None:
+    one = audited(draw(seed).text())
+    assert one.errors == 0
+    assert {j.claim: j.why for j in one.judgements if j.verdict in AGAINST} == {}
+    assert any(j.verdict is ClaimVerdict.SUPPORTED for j in one.judgements)
+
+
+@pytest.mark.parametrize("fault", ["sum", "control vertex digit", "limit exceeded"])
+def test_a_fault_beyond_what_digits_hide_is_seen(fault: str) -> None:
+    found = (planted(fault, seed) for seed in range(50))
+    one = next(p for p in found if p.size > p.room)
+    assert any(j.verdict in AGAINST for j in audited(one.draft.text()).judgements)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(1000, 1060))
+def test_many_clean_papers_are_accused_of_nothing(seed: int) -> None:
+    one = audited(draw(seed).text())
+    assert one.errors == 0
+    assert {j.claim: j.why for j in one.judgements if j.verdict in AGAINST} == {}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("fault", FAULTS)
+def test_every_fault_is_seen_where_the_digits_show_it_clearly(fault: str) -> None:
+    clear = [p for p in (planted(fault, seed) for seed in range(12)) if p.size > 2 * p.room]
+    assert clear
+    for one in clear:
+        assert any(j.verdict in AGAINST for j in audited(one.draft.text()).judgements)
+
+
+def test_limits_of_rates_are_those_of_clopper_and_pearson(errors: ModuleType) -> None:
+    for found, tried in ((0, 10), (3, 50), (50, 50)):
+        test = binomtest(found, tried).proportion_ci(0.9, "exact")
+        assert errors.upper_limit(found, tried) == pytest.approx(test.high)
+        assert errors.lower_limit(found, tried) == pytest.approx(test.low)
+
+
+def test_a_run_goes_on_where_its_file_ends(
+    errors: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[int] = []
+
+    def examined(code: str, fault: str, seed: int) -> object:
+        asked.append(seed)
+        return errors.Row(code, fault, seed, "3-5-3", "", "", 3, 2, 0, 0, 0, 1, 0, 0, "", 7)
+
+    monkeypatch.setattr(errors, "examined", examined)
+    path = tmp_path / "rows.csv"
+    errors.run([""], range(0, 4, 2), path, "abc")
+    errors.run([""], range(4), path, "abc")
+    assert asked == [0, 2, 1, 3]
+    rows = errors.read_rows([path])
+    assert [row.seed for row in rows] == [0, 1, 2, 3]
+    assert "| papers with a false error | 0 | 4 | 0.000% | 52.713% |" in errors.clean_table(rows)
+
+
+def test_the_page_shows_the_committed_rows(errors: ModuleType) -> None:
+    page = errors.PAGE.read_text("utf-8")
+    assert errors.page_with(page, errors.tables()) == page
+    for path in (errors.CLEAN, errors.FAULTY):
+        rows = errors.read_rows([path])
+        judged = ("supported", "refuted", "inconsistent", "depends", "unchecked")
+        assert rows
+        assert all(row.claims == sum(getattr(row, key) for key in judged) for row in rows)

@@ -1,0 +1,196 @@
+"""`trajgap check FILE` from the command line: verdict, units, precedence, one line of fault."""
+
+import json
+import time
+
+import numpy as np
+import pytest
+from support.documents import assert_valid
+from trajgap.compare.cli import main
+
+URDF = """<robot name="a">
+  <joint name="j1" type="revolute"><limit lower="-1" upper="3" velocity="1" effort="1"/></joint>
+  <joint name="j2" type="revolute"><limit lower="-9" upper="9" velocity="5" effort="1"/></joint>
+</robot>"""
+
+
+@pytest.fixture
+def files(tmp_path, monkeypatch):
+    """A rest-to-rest quintic of two joints: speed 15/8 · way / time at the middle."""
+    monkeypatch.chdir(tmp_path)
+    s = np.linspace(0.0, 1.0, 101)
+    shape = [
+        10 * s**3 - 15 * s**4 + 6 * s**5,
+        (30 * s**2 - 60 * s**3 + 30 * s**4) / 2.0,
+        (60 * s - 180 * s**2 + 120 * s**3) / 4.0,
+    ]
+    ways = [1.0, -2.0]
+    columns = [2.0 * s, *(way * one for one in shape for way in ways)]
+    names = ["j1", "j2", "j1 velocity", "j2 velocity", "j1 acceleration", "j2 acceleration"]
+    header = ",".join(["time", *names])
+    np.savetxt("m.csv", np.column_stack(columns), delimiter=",", header=header, comments="")
+    (tmp_path / "arm.urdf").write_text(URDF)
+    return tmp_path
+
+
+def run(capsys, *arguments, code=0):
+    assert main([str(x) for x in arguments]) == code
+    said = capsys.readouterr()
+    assert (said.err == "") == (code != 2)
+    return said.err if code == 2 else said.out
+
+
+def document(capsys, *arguments, code=0, kind=None):
+    found = json.loads(run(capsys, *arguments, "--json", code=code))
+    if kind is not None:  # the schema takes as long as the command
+        assert_valid(found, kind)
+    return found
+
+
+def test_a_verdict_for_all_t_with_its_repair(files, capsys):
+    flags = ["--urdf", "arm.urdf", "--interpolation", "quintic"]
+    found = document(capsys, "check", "m.csv", *flags, kind="motion_check")
+    result = found["result"]
+    assert result["verdict"] == "pass"
+    assert result["slow_down"] == 1.0
+    slower = document(capsys, "check", "m.csv", "--velocity", "0.75", "--interpolation", "quintic")[
+        "result"
+    ]
+    assert slower["verdict"] == "violated"
+    assert slower["worst"]["joint"] == "j2"
+    assert slower["worst"]["value"] == pytest.approx(-1.875)
+    assert slower["worst"]["time"] == pytest.approx(1.0)
+    assert slower["slow_down"] == pytest.approx(2.5)
+    assert slower["feasible_time"] == pytest.approx(5.0)
+    assert slower["floor"]["time"] == pytest.approx(2.0 / 0.75)
+
+
+def test_without_interpolation_only_what_is_proved(files, capsys):
+    found = document(capsys, "check", "m.csv", "--velocity", "1.9")
+    assert found["interpolation"] == "none"
+    assert found["result"]["verdict"] == "undecided"
+    assert "state an --interpolation" in found["result"]["open"][0]
+    proved = document(capsys, "check", "m.csv", "--velocity", "1.8")["result"]
+    assert proved["verdict"] == "violated"
+    assert proved["feasible_time"] is None
+
+
+def test_the_terminal_speaks_in_the_units_of_the_file(files, capsys):
+    flags = ["--velocity", "2,5", "--units", "deg,mm", "--interpolation", "quintic"]
+    said = run(capsys, "check", "m.csv", *flags)
+    assert "joint j1, velocity 0.9375 deg/s against 2 deg/s at 1 s (limit from flags)" in said
+    assert "mm/s" in said
+    found = document(capsys, "check", "m.csv", *flags)
+    assert found["units"] == ["deg", "mm"]
+    peaks = {p["joint"]: p["value"] for p in found["result"]["peaks"]}
+    assert peaks == {"j1": pytest.approx(0.9375 * np.pi / 180), "j2": pytest.approx(-0.001875)}
+
+
+def test_flag_file_urdf_in_this_order(files, capsys):
+    (files / "l.yaml").write_text("joint_limits: {j2: {max_velocity: 3.0, max_jerk: 500}}\n")
+    sources = ["--urdf", "arm.urdf", "--limits", "l.yaml", "--jerk", "400"]
+    found = document(capsys, "check", "m.csv", *sources, "--interpolation", "quintic")
+    said = {
+        (p["joint"], p["quantity"]): (p["limit"], p["source"]) for p in found["result"]["peaks"]
+    }
+    assert said["j2", "velocity"] == (-3.0, "l.yaml")
+    assert said["j1", "velocity"] == (1.0, "arm.urdf")
+    assert said["j2", "jerk"][1] == "flags"
+    assert said["j1", "position"][1] == "arm.urdf"
+
+
+def test_strict_is_for_scripts(files, capsys):
+    flags = ["check", "m.csv", "--interpolation", "quintic", "--strict", "--velocity"]
+    assert main([*flags, "2"]) == 0
+    assert main([*flags, "1"]) == 1
+    capsys.readouterr()
+
+
+@pytest.mark.slow
+def test_a_hundred_thousand_samples_of_seven_joints(files, capsys):
+    rng = np.random.default_rng(1)
+    t = np.linspace(0.0, 100.0, 100_001)
+    speed, phase = rng.uniform(0.5, 2.0, 7), rng.uniform(0, 6, 7)
+    q = np.sin(speed * t[:, None] + phase)
+    v = speed * np.cos(speed * t[:, None] + phase)
+    header = "time," + ",".join([f"j{k}" for k in range(7)] + [f"j{k} velocity" for k in range(7)])
+    np.savetxt("long.csv", np.column_stack([t, q, v]), "%.12g", ",", header=header, comments="")
+    command = ["check", "long.csv", "--velocity", "2.1", "--interpolation", "cubic", "--json"]
+    begun = time.process_time()
+    assert main(command) == 0
+    taken = time.process_time() - begun
+    found = json.loads(capsys.readouterr().out)["result"]
+    assert found["verdict"] == "pass"
+    sizes = [abs(p["value"]) for p in found["peaks"]]
+    np.testing.assert_allclose(sizes, speed, rtol=1e-6)
+    assert taken < 10.0  # 1 s; the rest is for a loaded machine
+
+
+@pytest.mark.parametrize(
+    ("arguments", "wanted"),
+    [
+        (["m.csv"], "none are given; add --velocity"),
+        (["none.csv", "--velocity", "1"], "none.csv: no such file"),
+        (["m.csv", "--velocity", "1", "--interpolation", "best"], "'best' is unknown; use none"),
+        (["m.csv", "--velocity", "1", "--noise", "much"], "--noise: 'much' is no number"),
+        (["m.csv", "--velocity", "1,2,3"], "3 limits for 2 joints"),
+        (["m.csv", "--urdf", "m.csv"], "m.csv: line 1: not valid XML"),
+        (["m.csv", "--limits", "arm.urdf", "--urdf", "m.csv"], "line 1: not valid XML"),
+        (["m.csv", "--joints", "a,b", "--urdf", "arm.urdf"], "names none of the joints a, b"),
+        (["m.csv", "--durations", "1,1,1"], "m.csv: "),
+        (["m.csv", "--problem", "x", "--velocity", "1"], "--problem is of a case"),
+        (["puma560-mnam-pso-353"], "Missing option '--durations'"),
+        (["puma560-mnam-pso-353", "--durations", "1,1,1", "--urdf", "x"], "--urdf is of a motion"),
+        (["m.csv", "--velocity", "1", "--out", "m.csv"], "exists already"),
+    ],
+)
+def test_one_line_says_how_to_fix_it(files, capsys, arguments, wanted):
+    said = run(capsys, "check", *arguments, code=2)
+    assert wanted in said
+    assert said.count("\n") == 1
+
+
+SLOW = pytest.mark.slow
+
+
+@pytest.mark.parametrize(
+    "form", [pytest.param("csv", marks=SLOW), "ros", pytest.param("ppoly", marks=SLOW)]
+)
+def test_the_motion_of_an_answer_is_written_and_read_back(tmp_path, monkeypatch, capsys, form):
+    own = tmp_path / "own"
+    own.mkdir()
+    monkeypatch.chdir(own)
+    found = document(
+        capsys, "solve", "irb460-pso-353", "--problem", "limit-80", "--reading", "waypoints-deg",
+        "--samples", "out.json", "--format", form, "--rate", "250", kind="solve",
+    )  # fmt: skip
+    written = found["written"]
+    assert (written["file"], written["form"], written["rate"]) == ("out.json", form, 250.0)
+    assert written["result"]["limits_verdict"] == "pass"
+    assert written["result"]["worst"]["ratio"] == pytest.approx(1.0, abs=1e-6)
+    assert written["result"]["total_time"] == pytest.approx(found["results"][0]["total_time"])
+    if form != "csv":
+        again = document(
+            capsys, "check", "out.json", "--velocity", "1.3962634", "--tolerance", "1e-6"
+        )
+        assert again["result"]["limits_verdict"] == "pass"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "wanted"),
+    [
+        (["--rate", "100"], "--rate needs --samples"),
+        (["--format", "csv"], "--format needs --samples"),
+        (["--retimed"], "--retimed needs --samples"),
+        (["--samples", "x", "--certify"], "leave --certify out"),
+        (["--samples", "x", "--format", "mp3"], "'mp3' is unknown; use csv, ros, ppoly"),
+        (["--samples", "x"], "add --problem"),
+    ],
+)
+def test_what_cannot_be_written_is_said(tmp_path, monkeypatch, capsys, arguments, wanted):
+    own = tmp_path / "own"
+    own.mkdir()
+    monkeypatch.chdir(own)
+    said = run(capsys, "solve", "irb460-pso-353", *arguments, code=2)
+    assert wanted in said
+    assert not list(own.iterdir())

@@ -1,0 +1,131 @@
+import csv
+import os
+import signal
+import sqlite3
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from support.command_line import START, Run, assert_refused, on_terminal
+from support.small_studies import HEAD, STUDY
+
+SMALL = (
+    HEAD.replace("seeds = 4", "seeds = 2")
+    + """
+[[optimizers]]
+name = "pso"
+settings = { particles = 10 }
+
+[[optimizers]]
+name = "support.optimizers:raises"
+"""
+)
+
+
+@pytest.fixture(autouse=True)
+def study(folder: Path) -> Path:
+    path = folder / "few.toml"
+    path.write_text(SMALL, encoding="utf-8")
+    return path
+
+
+def test_a_study_is_run_exported_and_gone_on_with(run: Run) -> None:
+    code, out, err = run("study", "few.toml", "--workers", "1", "--export", "few.csv")
+    assert (code, err) == (0, "")
+    lines = out.splitlines()
+    assert lines[0] == "few.sqlite: 8 runs done now, 0 were there"
+    assert out.count("support.optimizers:raises") >= 2
+    assert "failed, 4 times: ZeroDivisionError: one over nothing" in " ".join(out.split())
+    assert "mine/main, plain: Not every duration has an upper bound." in out
+    assert "particles 10" in out
+    assert "{" not in out
+    assert "written: few.csv" in lines
+    assert "run the failed ones again: trajgap study few.toml --retry" in lines
+    with open("few.csv", encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 8
+
+    code, out, _ = run("study", "few.toml", "--workers", "1", "--store", "few.sqlite")
+    assert code == 0
+    assert out.splitlines()[0] == "few.sqlite: 0 runs done now, 8 were there"
+    assert out.splitlines()[-1] == (
+        "next: trajgap study few.toml --store few.sqlite --export few.csv"
+    )
+    gaps = [float(row["feasible_gap_lowest"]) for row in rows[:2]]
+    shown = next(line for line in out.splitlines() if " pso " in line).split()
+    assert shown[-2:] == [f"{100 * min(gaps):+.3g}", f"{50 * sum(gaps):+.3g}"]
+
+
+@pytest.mark.slow
+def test_failed_runs_are_run_again_when_asked(run: Run) -> None:
+    run("study", "few.toml", "--workers", "1")
+    code, out, _ = run("study", "few.toml", "--workers", "1", "--retry")
+    assert code == 0
+    assert out.splitlines()[0] == "few.sqlite: 4 runs done now, 4 were there"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("none.toml",), ("none.toml", "no such file")),
+        (("few.toml", "--store", "few.toml"), ("few.toml: --store: is the study file itself",)),
+        (("few.toml", "--store", "mine.toml"), ("mine.toml: is no store of trajgap",)),
+        (("few.toml", "--export", "a.txt"), ("a.txt: --export: has no known ending",)),
+        (("few.toml", "--export", "mine.csv"), ("mine.csv: --export: exists already",)),
+        (("few.toml", "--export", "a.csv", "--export", "a.csv"), ("is named twice",)),
+        (("few.toml", "--workers", "0"), ("workers",)),
+        (("few.toml", "--workers", "2", "--dask", "tcp://a:1"), ("--workers does not go with",)),
+        (("mine.toml",), ("mine.toml", "unknown key")),
+    ],
+)
+def test_bad_input_is_one_line(
+    run: Run, arguments: tuple[str, ...], words: tuple[str, ...]
+) -> None:
+    Path("mine.csv").touch()
+    assert_refused(run("study", *arguments), *words)
+
+
+@pytest.mark.slow
+def test_ctrl_c_keeps_what_is_finished_and_says_how_to_go_on(study: Path) -> None:
+    study.write_text(
+        STUDY.replace("support.optimizers:raises", "support.optimizers:sleeps"), encoding="utf-8"
+    )
+    paths = os.pathsep.join(filter(None, sys.path))
+    process = subprocess.Popen(
+        [sys.executable, "-c", START, "study", "few.toml", "--workers", "1"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env={**os.environ, "PYTHONPATH": paths},
+    )
+    while stored() < 24:
+        assert process.poll() is None
+        signal.sigtimedwait([], 0.1)
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=120)
+    assert (process.returncode, out) == (130, "")
+    assert err.strip() == (
+        "trajgap: interrupted; 24 of 32 runs are stored, `trajgap study few.toml` goes on from "
+        "there"
+    )
+    assert stored() == 24
+
+
+def stored() -> int:
+    try:
+        with sqlite3.connect("file:few.sqlite?mode=ro", uri=True) as data:
+            (found,) = data.execute("SELECT count(*) FROM runs").fetchone()
+            return int(found)
+    except sqlite3.Error:
+        return 0
+
+
+@pytest.mark.slow
+def test_a_terminal_shows_how_it_goes(study: Path) -> None:
+    paths = os.pathsep.join(filter(None, sys.path))
+    code, seen = on_terminal(["study", "few.toml", "--workers", "1"], PYTHONPATH=paths)
+    assert code == 0
+    assert "8 runs done now" in seen
+    assert "a second" in seen
+    assert " left" in seen

@@ -1,0 +1,252 @@
+"""Odd but correct problems, terminals, pipes, signals, and the schema of what is printed."""
+
+from __future__ import annotations
+
+import io
+import json
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import jsonschema
+import pytest
+from rich.cells import cell_len
+from support.checkout import ROOT
+from support.command_line import CASE, IRB, PUMA, START, Run, on_terminal, strict
+from support.documents import SCHEMA, assert_valid
+from trajgap.compare.cli import main
+from trajgap.compare.cli import output as cli_output
+from trajgap.compare.cli import table as cli_table
+
+# --- odd but correct problems ---------------------------------------------------------------------
+
+ROWS = 'waypoint_rows = [["0.3", "-1.0"], ["1.1", "0.4"], ["0.9", "1.7"], ["2.0", "1.2"]]'
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "status"),
+    [
+        ("velocity = [2, 3]", "velocity = 0", "infeasible"),
+        ("velocity = [2, 3]\nacceleration = 5", "velocity = inf", "not_attained"),
+        (ROWS, 'waypoint_rows = [["1", "2"], ["1", "2"], ["1", "2"], ["1", "2"]]', "not_attained"),
+        (
+            f'interpolant = {{ family = "3-5-3" }}\n\n[waypoints]\n{ROWS}',
+            'interpolant = { family = "quintic-spline" }\n\n[waypoints]\n'
+            'waypoint_rows = [["0.3", "1.0"], ["1.1", "1.0"]]',
+            "optimal",
+        ),
+    ],
+    ids=["limit 0", "limit inf", "way-points repeated", "one segment, one joint still"],
+)
+def test_odd_problems_have_a_correct_result(run: Run, old: str, new: str, status: str) -> None:
+    assert old in CASE
+    Path("odd.toml").write_text(CASE.replace(old, new), encoding="utf-8")
+    code, out, err = run("solve", "odd.toml", "--coupling", "shared", "--json")
+    assert (code, err) == (0, "")
+    assert_valid(strict(out), "solve")
+    assert strict(out)["results"][0]["status"] == status
+    assert run("solve", "odd.toml", "--coupling", "shared")[0] == 0
+
+
+# --- terminals, pipes, signals --------------------------------------------------------------------
+
+
+def test_colours_and_progress_only_on_a_terminal(run: Run) -> None:
+    arguments = ["check", "mine.toml", "--durations", "300,400,250"]
+    code, seen = on_terminal(arguments)
+    assert code == 0
+    assert "\x1b[33mviolated" in seen
+    assert "\x1b[?25l" in seen
+    code, out, err = run(*arguments)
+    assert (code, err) == (0, "")
+    assert "\x1b" not in out
+
+
+def test_no_color(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
+    monkeypatch.setenv("TERM", "xterm")
+    assert "\x1b[1m" in run("show", "mine.toml")[1]
+    monkeypatch.setenv("NO_COLOR", "1")
+    assert "\x1b" not in run("show", "mine.toml")[1]
+
+
+def test_colours_stay_off_in_a_pipe(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    assert "\x1b" not in run("cases")[1]
+
+
+def test_no_digit_is_cut_off_in_a_narrow_window(monkeypatch: pytest.MonkeyPatch) -> None:
+    rows = [("name", "3.296695", "prose " * 40)]
+    for width in (20, 40, 200):
+        monkeypatch.setenv("COLUMNS", str(width))
+        text = cli_output.rendered([cli_table.Columns(("a", ">total s", "…why"), rows)])
+        assert "name" in text
+        assert "3.296695" in text
+        assert "…" in text
+        assert max(map(cell_len, text.splitlines())) == max(width, 4 + 2 + 8 + 2 + 16)
+
+
+def test_nothing_from_a_file_steers_the_terminal(run: Run) -> None:
+    Path("evil.toml").write_text(
+        CASE.replace('"Mine"', '"[red]x\\u001b[31m\\u0007"'), encoding="utf-8"
+    )
+    code, out, _ = run("show", "evil.toml")
+    assert code == 0
+    assert "[red]x<U+001B>[31m<U+0007>" in out
+    assert "\x1b" not in out
+    assert "\x07" not in out
+
+
+def test_narrow_encodings(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    wide = strict(run("show", IRB, "--json")[1])
+    assert "°" in json.dumps(wide, ensure_ascii=False)
+    for arguments in (("show", IRB, "--json"), ("show", IRB)):
+        narrow = io.TextIOWrapper(io.BytesIO(), encoding="ascii")
+        monkeypatch.setattr(sys, "stdout", narrow)
+        assert main(arguments) == 0
+        monkeypatch.undo()
+        text = narrow.buffer.getvalue().decode("ascii")  # type: ignore[attr-defined]
+        assert "limit-80" in text
+        if "--json" in arguments:
+            assert strict(text) == wide
+
+
+def test_a_closed_pipe_is_no_fault() -> None:
+    process = subprocess.Popen(
+        [sys.executable, "-c", START, "show", PUMA, "--json"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )
+    assert process.stdout is not None
+    process.stdout.close()
+    assert process.stderr is not None
+    assert process.stderr.read() == b""
+    process.stderr.close()
+    assert process.wait() == 141
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no full device here")
+@pytest.mark.parametrize("arguments", [("cases",), ("--help",)])
+def test_a_full_disk(arguments: tuple[str, ...]) -> None:
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(
+            [sys.executable, "-c", START, *arguments],
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+    assert done.returncode == 2
+    assert done.stderr.startswith("trajgap: standard output: cannot be written (No space")
+    assert done.stderr.count("\n") == 1
+
+
+def test_interrupted() -> None:
+    # CasADi swallows a KeyboardInterrupt and would go on with a solve that was cut short.
+    started = (
+        "import sys, trajgap.compare.cli.solving as c; from trajgap.compare.cli import main\n"
+        "solve = c.solve_per_joint\n"
+        "def slow(*a, **k):\n"
+        "    print('solving', file=sys.stderr, flush=True)\n"
+        "    while True: solve(*a, **k)\n"
+        "c.solve_per_joint = slow\n"
+        "sys.exit(main())"
+    )
+    process = subprocess.Popen(
+        [sys.executable, "-c", started, "solve", "mine.toml", "--out", "answer.json"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    assert process.stderr is not None
+    assert process.stderr.readline() == "solving\n"
+    assert any(p.name.startswith(".trajgap") for p in Path().iterdir())
+    time.sleep(1.0)
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=20)
+    assert (process.returncode, out, err) == (130, "", "trajgap: interrupted\n")
+    assert sorted(p.name for p in Path().iterdir()) == ["mine.toml"]
+
+
+@pytest.mark.slow
+def test_interrupted_while_pages_are_written() -> None:
+    # What a finalizer raises is printed and lost: an exception cannot end the program there.
+    started = (
+        "import os, signal, sys\n"
+        "from trajgap.compare.cli import main\n"
+        "import trajgap.compare.pages.writer as w\n"
+        "class Gone:\n"
+        "    def __del__(self):\n"
+        "        os.kill(os.getpid(), signal.SIGINT)\n"
+        "        for _ in range(1000): pass\n"
+        "class Files(dict):\n"
+        "    def items(self):\n"
+        "        for item in super().items():\n"
+        "            yield item\n"
+        "            Gone()\n"
+        "replace = w.replace_folder\n"
+        "w.replace_folder = lambda out, files: replace(out, Files(files))\n"
+        "sys.exit(main())"
+    )
+    arguments = ["audit", "mine.toml", "--seeds", "2", "--reading", "plain", "--out", "pages"]
+    arguments += ["--certify-seconds", "0"]
+    done = subprocess.run(
+        [sys.executable, "-c", started, *arguments], capture_output=True, text=True
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "trajgap: interrupted\n")
+    assert sorted(p.name for p in Path().iterdir()) == ["mine.toml"]
+
+
+def test_interrupted_inside_a_library(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    def stop(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("trajgap.compare.cli.solving.solve_per_joint", stop)
+    ended = run("solve", "mine.toml", "--out", "answer.json")
+    assert ended == (130, "", "trajgap: interrupted\n")
+    assert sorted(p.name for p in Path().iterdir()) == ["mine.toml"]
+
+
+def test_a_fault_of_ours_is_told_apart(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(*_: object, **__: object) -> None:
+        raise ZeroDivisionError
+
+    monkeypatch.setattr("trajgap.compare.cli.solving.solve_per_joint", fail)
+    code, out, err = run("solve", "mine.toml", "--out", "answer.json")
+    assert (code, out) == (70, "")
+    assert err.endswith("trajgap: a fault of trajgap itself, please report the lines above\n")
+    assert not Path("answer.json").exists()
+
+
+# --- documents ------------------------------------------------------------------------------------
+
+
+def test_every_enum_is_documented() -> None:
+    page = (ROOT / "docs" / "reference" / "command-line.md").read_text("utf-8")
+    for name, schema in SCHEMA["$defs"].items():
+        for value in schema.get("enum", ()):
+            assert f"`{value}`" in page, f"{name}: {value}"
+
+
+def test_the_schema_knows_each_document() -> None:
+    for name in ("cases", "show", "check", "solve", "certify", "verify", "audit"):
+        assert {"$ref": f"#/$defs/{name}"} in SCHEMA["anyOf"]
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate({"schema": "trajgap/1"}, SCHEMA)
+
+
+def test_two_transcriptions_are_compared(run: Run, tmp_path: Path) -> None:
+    first, second = tmp_path / "a.toml", tmp_path / "b.toml"
+    first.write_text(CASE)
+    second.write_text(CASE.replace('"1.7"', '"1.70"'))
+    code, out, _ = run("case", "diff", str(first), str(first))
+    assert (code, out) == (0, "The two transcriptions agree.\n")
+    code, out, _ = run("case", "diff", str(first), str(second), "--json")
+    assert code == 1
+    assert strict(out)["differences"] == [
+        {"field": "waypoints.waypoint_rows[2][1]", "first": '"1.7"', "second": '"1.70"'}
+    ]
+    code, out, _ = run("case", "diff", str(first), str(second))
+    assert code == 1
+    assert '"1.70"' in out

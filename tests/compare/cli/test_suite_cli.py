@@ -1,0 +1,142 @@
+"""The commands of `trajgap suite`."""
+
+from __future__ import annotations
+
+import json
+import re
+import runpy
+from pathlib import Path
+
+import pytest
+from support.command_line import Run, assert_refused, strict
+from support.documents import validator
+from trajgap.problem.suite import list_instances, load_instance, plain_text, suite_version
+
+
+def test_the_table_lists_every_instance(run: Run) -> None:
+    code, out, err = run("suite")
+    assert (code, err) == (0, "")
+    for one in list_instances():
+        (row,) = [line for line in out.splitlines() if line.startswith(f"{one.name} ")]
+        assert f"{one.lower!r}" in row
+        assert f"{one.upper!r}" in row
+        assert row.endswith(one.evidence)
+    certified = sum(one.evidence == "certified" for one in list_instances())
+    last = out.strip().splitlines()[-1]
+    assert last == (
+        f"suite {suite_version()}: {len(list_instances())} instances, {certified} certified to "
+        "1 % or better"
+    )
+
+
+def test_one_kind_of_curve(run: Run) -> None:
+    code, out, _ = run("suite", "--curve", "Quintic")
+    assert code == 0
+    shown = [line.split()[0] for line in out.splitlines() if "quintic-" in line]
+    assert shown == [one.name for one in list_instances() if one.name.startswith("quintic-")]
+
+
+def test_json_of_the_table_and_of_one(run: Run, folder: Path) -> None:
+    code, out, _ = run("suite", "--json", "--out", "table.json")
+    document = strict(out)
+    validator().validate(document)
+    assert code == 0
+    assert [one["name"] for one in document["instances"]] == [o.name for o in list_instances()]
+    assert strict((folder / "table.json").read_text("utf-8")) == document
+    code, out, _ = run("suite", "show", "suite:353-puma560", "--json")
+    shown = strict(out)
+    validator().validate(shown)
+    one = load_instance("353-puma560")
+    assert (code, shown["instance"]["lower"], shown["instance"]["upper"]) == (
+        0,
+        one.lower,
+        one.upper,
+    )
+    assert shown["verify"].startswith("python -m trajgap.verify ")
+
+
+def test_show_says_how_to_verify_and_the_command_does(run: Run) -> None:
+    code, out, _ = run("suite", "show", "353-irb460")
+    assert code == 0
+    one = load_instance("353-irb460")
+    assert f"between {one.lower!r} and {one.upper!r} s" in out
+    file = one.certificate_file()
+    code, out, _ = run("verify", str(file), "--case", "suite:353-irb460")
+    assert code == 0
+    assert out.startswith(str(file))
+
+
+def test_an_export_is_whole_and_needs_no_trajgap(run: Run, folder: Path) -> None:
+    code, out, _ = run("suite", "export", "all")
+    assert (code, out) == (0, f"{len(list_instances())} instances: all\n")
+    there = {p.relative_to(folder / "all").as_posix() for p in (folder / "all").rglob("*.*")}
+    wanted = {"load_instance.py", "suite.json", "suite.csv"}
+    for one in list_instances():
+        wanted |= {f"instances/{one.name}.toml", f"cases/{one.name}.toml"}
+        wanted |= {f"certificates/{one.name}.json"} if one.certificate else set()
+    assert there == wanted
+    loader = runpy.run_path(str(folder / "all" / "load_instance.py"))
+    plain = loader["load"](folder / "all" / "instances" / "353-irb460.toml")
+    assert loader["peaks"](plain, plain["durations"]).max() == pytest.approx(1, abs=1e-7)
+    assert run("suite", "export", "all")[0] == 0, "an earlier export is replaced"
+
+
+def test_pages_of_every_instance(run: Run, folder: Path) -> None:
+    code, out, _ = run("suite", "pages", "pages")
+    assert (code, out) == (0, "pages: pages/index.html\n")
+    index = (folder / "pages" / "index.html").read_text("utf-8")
+    for one in list_instances():
+        assert f'href="{one.name}.html"' in index
+        page = (folder / "pages" / f"{one.name}.html").read_text("utf-8")
+        assert f"{one.lower!r} s" in page
+        assert one.case_sha256 in page or one.certificate is None
+        assert f"{one.segments} segments between way-points, {one.joints} joints" in page
+        assert one.curve in page
+        hard = one.hardness
+        assert hard is not None
+        assert page.count("evaluations end within 1 %") == len(hard.baselines)
+        assert len(page) < 40_000
+        assert not re.search(r"https?://", page)
+        linked = set(re.findall(r'href="([^"#]+)"', page))
+        assert all((folder / "pages" / name).is_file() for name in linked), linked
+        plain = (folder / "pages" / f"{one.name}.toml").read_text("utf-8")
+        assert plain == plain_text(one)
+    assert json.loads((folder / "pages" / "suite.json").read_text("utf-8"))["schema"] == "trajgap/1"
+
+
+def test_what_is_there_is_not_overwritten(run: Run, folder: Path) -> None:
+    (folder / "mine").mkdir()
+    (folder / "mine" / "letter.txt").write_text("dear", encoding="utf-8")
+    for command in ("export", "pages"):
+        assert_refused(run("suite", command, "mine"), "mine: FOLDER", "holds letter.txt")
+        assert_refused(run("suite", command, "mine.toml"), "is no folder; name a new one")
+    assert (folder / "mine" / "letter.txt").read_text("utf-8") == "dear"
+
+
+def test_a_folder_that_cannot_be_written_is_told(run: Run) -> None:
+    assert_refused(run("suite", "export", "mine.toml/in"), "cannot be written")
+
+
+def test_unknown_words_are_told(run: Run) -> None:
+    assert_refused(run("suite", "show", "353-puma"), "did you mean '353-puma560'?")
+    assert_refused(run("suite", "--curve", "spiral"), "no curve is called 'spiral'", "3-5-3")
+    assert_refused(run("show", "suite:nothing-like-it"), "`trajgap suite` lists them")
+
+
+def test_other_commands_take_an_instance(run: Run) -> None:
+    code, out, _ = run("check", "suite:septic-fang2020-task1", "--durations", "4.7177", "--json")
+    assert code == 0
+    assert strict(out)["results"][0]["case"] == "septic-fang2020-task1"
+
+
+def test_the_command_of_an_instance_makes_its_certificate(run: Run, folder: Path) -> None:
+    one = load_instance("septic-fang2020-task1")
+    arguments = one.command.split()
+    assert arguments.pop(0) == "trajgap"
+    code, _, _ = run(*arguments, "--certificates", "made")
+    assert code == 0
+    (made,) = (folder / "made").iterdir()
+    own, shipped = strict(made.read_text("utf-8")), one.certificate_file()
+    assert shipped is not None
+    assert own["question"]["case_sha256"] == one.case_sha256
+    assert own["claim"] == strict(shipped.read_text("utf-8"))["claim"]

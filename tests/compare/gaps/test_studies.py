@@ -1,0 +1,270 @@
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from support.small_studies import HEAD, OPTIMIZERS, RUNS, STUDY, written
+from trajgap.compare.gaps import (
+    Bracket,
+    Engine,
+    RowStatus,
+    Store,
+    StudyPlan,
+    StudySession,
+    export_rows,
+    load_study,
+    on_dask,
+    on_this_machine,
+    parse_study,
+    run_study,
+    study_rows,
+)
+from trajgap.nlp import solve
+from trajgap.problem import CaseError, ProcessError, load_case
+from trajgap.problem.suite import load_instance
+
+
+@pytest.fixture(scope="module")
+def plan(tmp_path_factory: pytest.TempPathFactory) -> StudyPlan:
+    return load_study(written(tmp_path_factory.mktemp("study")))
+
+
+@pytest.fixture(scope="module")
+def engine() -> Iterator[Engine]:
+    with on_this_machine(1) as one:
+        yield one
+
+
+@pytest.fixture(scope="module")
+def whole(plan: StudyPlan, engine: Engine, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The store of a study that ran through without interruption."""
+    path = tmp_path_factory.mktemp("whole") / "few.sqlite"
+    with Store(path) as store:
+        run_study(plan, store, engine)
+    return path
+
+
+def texts(plan: StudyPlan, path: Path) -> list[str]:
+    with Store(path) as store:
+        return [row.text() for row in study_rows(plan, store)]
+
+
+def test_every_combination_is_a_row_in_the_order_of_the_file(plan: StudyPlan, whole: Path) -> None:
+    with Store(whole) as store:
+        rows = list(study_rows(plan, store))
+        assert store.tally() == {RowStatus.FINISHED: 24, RowStatus.FAILED: 8}
+        assert "numpy" in store.notes()["software"]
+    assert len(rows) == len(plan) == RUNS
+    assert [row.seed for row in rows[:4]] == [0, 1, 2, 3]
+    assert [row.handling for row in rows[:8]] == ["death-penalty"] * 4 + ["stretch"] * 4
+    assert [row.optimizer for row in rows[::8]] == [
+        "pso", "pso", "support.optimizers:draws", "support.optimizers:raises",
+    ]  # fmt: skip
+    assert {row.budget for row in rows} == {120}
+    assert len({row.key for row in rows}) == RUNS
+    bad = [row for row in rows if row.status is RowStatus.FAILED]
+    assert {row.optimizer for row in bad} == {"support.optimizers:raises"}
+
+
+def test_runs_of_different_optimisers_draw_from_different_streams(plan: StudyPlan) -> None:
+    trials = list(plan.trials())
+    assert len({(trial.seed, trial.stream) for trial in trials}) == RUNS
+
+
+def test_gaps_are_set_against_the_optimum_of_the_case(plan: StudyPlan, whole: Path) -> None:
+    case = load_case(Path(plan.file).parent / "mine.toml")
+    best = solve(case.problem("main", "plain", "shared")).best
+    with Store(whole) as store:
+        rows = [row for row in study_rows(plan, store) if row.feasible_time is not None]
+    assert rows
+    for row in rows:
+        assert row.feasible_time is not None
+        assert row.feasible_gap is not None
+        assert row.reference_upper == pytest.approx(best, rel=1e-9)
+        assert row.feasible_gap[0] == pytest.approx(row.feasible_time / best - 1, rel=1e-6)
+        assert row.feasible_gap[0] > 0
+
+
+def test_a_study_that_is_done_runs_nothing(plan: StudyPlan, engine: Engine, whole: Path) -> None:
+    before = texts(plan, whole)
+    with Store(whole) as store:
+        session = run_study(plan, store, engine)
+        assert session == StudySession(total=RUNS, resumed=RUNS)
+        again = run_study(plan, store, engine, retry=True)
+        assert (again.resumed, again.run, again.failed) == (RUNS - 8, 8, 8)
+    assert texts(plan, whole) == before
+
+
+def test_a_session_that_ends_early_is_gone_on_with(
+    plan: StudyPlan, engine: Engine, whole: Path, tmp_path: Path
+) -> None:
+    path = tmp_path / "few.sqlite"
+
+    def stop(session: StudySession) -> None:
+        assert session.left == RUNS - session.resumed - session.run
+        if session.run == 5:
+            raise KeyboardInterrupt
+
+    with Store(path) as store, pytest.raises(KeyboardInterrupt):
+        run_study(plan, store, engine, told=stop)
+    assert len(texts(plan, path)) == 5
+    with Store(path) as store:
+        session = run_study(plan, store, engine)
+    assert (session.resumed, session.run, session.left) == (5, RUNS - 5, 0)
+    assert texts(plan, path) == texts(plan, whole)
+
+
+def test_a_longer_study_runs_only_what_is_new(
+    plan: StudyPlan, engine: Engine, whole: Path, tmp_path: Path
+) -> None:
+    folder = Path(plan.file).parent
+    longer = parse_study(STUDY.replace("seeds = 4", "seeds = 5"), "longer.toml", folder)
+    path = tmp_path / "few.sqlite"
+    path.write_bytes(whole.read_bytes())
+    with Store(path) as store:
+        session = run_study(longer, store, engine)
+    assert (session.resumed, session.run) == (RUNS, len(longer) - RUNS)
+
+
+def exported(plan: StudyPlan, store: Path, folder: Path) -> dict[str, bytes]:
+    """Bytes of every file of every export."""
+    pytest.importorskip("pyarrow")
+    folder.mkdir()
+    with Store(store) as kept:
+        for name in ("rows.csv", "rows.parquet", "rows.ioh"):
+            export_rows(study_rows(plan, kept), folder / name)
+    files = (path for path in folder.rglob("*") if path.is_file())
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore")  # Dask's own, of its ports and its closing connections
+def test_exports_are_the_same_bytes_on_one_process_three_and_dask(
+    plan: StudyPlan, whole: Path, tmp_path: Path
+) -> None:
+    distributed = pytest.importorskip("distributed")
+    wanted = exported(plan, whole, tmp_path / "one")
+    assert len(wanted) > 8
+    with on_this_machine(3) as engine, Store(tmp_path / "three.sqlite") as store:
+        run_study(plan, store, engine)
+    assert exported(plan, tmp_path / "three.sqlite", tmp_path / "three") == wanted
+    with (
+        distributed.LocalCluster(
+            n_workers=2,
+            threads_per_worker=1,
+            dashboard_address=None,
+            local_directory=str(tmp_path),
+        ) as cluster,
+        on_dask(cluster.scheduler_address) as engine,
+        Store(tmp_path / "dask.sqlite") as store,
+    ):
+        run_study(plan, store, engine)
+    assert exported(plan, tmp_path / "dask.sqlite", tmp_path / "dask") == wanted
+
+
+def test_each_joint_is_a_problem_where_the_case_says_so(tmp_path: Path) -> None:
+    text = STUDY.replace('coupling = "shared"\n', "")
+    plan = load_study(written(tmp_path, text))
+    assert [posed.name for posed in plan.problems] == ["mine/main, joint a", "mine/main, joint b"]
+    first, *_, last = plan.trials()
+    assert (len(first.problem.joints), first.stream[1:], last.stream[1:]) == (1, (0,), (1,))
+    assert len(plan) == 2 * RUNS
+    assert "Not every duration has an upper bound" in plan.problems[0].notes[0]
+
+
+def test_optimisers_without_draws_run_once(tmp_path: Path) -> None:
+    text = HEAD + '[[optimizers]]\nname = "rescale"\n'
+    plan = load_study(written(tmp_path, text))
+    assert [trial.seed for trial in plan.trials()] == [0, 0]
+    assert len(plan) == 2
+
+
+def test_instances_of_the_suite_are_problems_with_their_own_bounds(tmp_path: Path) -> None:
+    text = STUDY.replace("mine.toml", "suite:septic-puma*,353-puma560")
+    found = parse_study(text, "study.toml", tmp_path)
+    assert [one.name for one in found.problems] == ["353-puma560/main", "septic-puma560/main"]
+    for one in found.problems:
+        known = load_instance(one.name.partition("/")[0])
+        assert one.solve() == Bracket(known.upper, known.lower)
+    with pytest.raises(CaseError, match=r"problems\[0\]\.case: .*no instance 'x-353'"):
+        parse_study(text.replace("353-puma560", "x-353"), "study.toml", tmp_path)
+
+
+def test_published_cases_are_named_by_their_ids(tmp_path: Path) -> None:
+    text = HEAD.replace("mine.toml", "puma560-mnam-pso-353") + OPTIMIZERS
+    text = text.replace('coupling = "shared"', 'readings = "durations-positive"')
+    plan = load_study(written(tmp_path, text))
+    assert {posed.reading for posed in plan.problems} == {"durations-positive"}
+    assert len(plan.problems) == 6
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("format = 1", "", "format: is missing; write `format = 1`"),
+        ("format = 1", "format = 2", "format: is 2; write `format = 1`"),
+        ("format = 1", "format = [", "not valid TOML"),
+        ("budget = 120", "budgets = 120", "budgets: unknown key; did you mean 'budget'?"),
+        ("budget = 120", "budget = 0", "budget: 0 is out of range; give at least 1"),
+        ("budget = 120", "budget = 1.5", "budget: "),
+        ("seeds = 4", "seeds = true", "seeds: "),
+        ("seeds = 4", "seeds = 0", "seeds: 0 is out of range; give at least 1"),
+        ("seconds = 60", "seconds = 0", "seconds: "),
+        ('"stretch"]', '"squeeze"]', "handlings[1]: 'squeeze' is not allowed; use"),
+        ('"stretch"]', '"death-penalty"]', "handlings: death-penalty is named twice; name it once"),
+        ('case = "mine.toml"', "", "problems[0].case: is missing; add it"),
+        ("mine.toml", "mine.tml", "mine.tml: no such file; check the path"),
+        ('coupling = "shared"', 'problems = "x"', "problems[0].case: "),
+        ('coupling = "shared"', 'readings = ["plain", "other"]', "reading"),
+        ('coupling = "shared"', "coupling = 1", "problems[0].coupling: "),
+        ('name = "pso"', 'name = "psso"', "optimizers[0].settings[0]: "),
+        ('name = "pso"', 'nam = "pso"', "optimizers[0].nam: unknown key; did you mean 'name'?"),
+        ("particles = 12", "particls = 12", "optimizers[0].settings[1]: pso: particls: unknown"),
+        ("particles = 12", "particles = nan", "optimizers[0].settings[1]: "),
+        ("{ particles = 12 }", "{ particles = 10, inertia = 0.65 }", "optimizers: pso {"),
+        ("optimizers:draws", "optimizers:drws", "optimizers[1]: "),
+        ("support.optimizers:draws", "pymop:DE", "optimizers[1]: "),
+    ],
+)
+def test_bad_input_is_one_line_with_file_and_field(
+    tmp_path: Path, old: str, new: str, said: str
+) -> None:
+    assert old in STUDY
+    path = written(tmp_path, STUDY.replace(old, new))
+    with pytest.raises(CaseError, match=re.escape(said)) as told:
+        load_study(path)
+    assert str(told.value).startswith(str(path))
+    assert "\n" not in str(told.value)
+
+
+def test_a_problem_that_the_objective_cannot_judge_is_refused(tmp_path: Path) -> None:
+    path = written(tmp_path)
+    case = (tmp_path / "mine.toml").read_text()
+    (tmp_path / "mine.toml").write_text(
+        case.replace("[limits]", "[limits]\nposition_upper = 3") + "durations = { upper = 9000 }\n"
+    )
+    with pytest.raises(CaseError, match=r"problems\[0\]: main, plain: limits.position: the heur"):
+        load_study(path)
+
+
+def test_a_lost_engine_leaves_what_is_finished(plan: StudyPlan, tmp_path: Path) -> None:
+    path = tmp_path / "few.sqlite"
+    with on_this_machine(1) as engine, Store(path) as store:
+
+        def lose(session: StudySession) -> None:
+            if session.run == 3:
+                engine.executor.shutdown(wait=False)
+
+        with pytest.raises(ProcessError, match=r"1 process: lost \(.*the same command goes on"):
+            run_study(plan, store, engine, told=lose)
+    assert len(texts(plan, path)) >= 3
+
+
+def test_rows_against_a_session_without_a_store_have_no_gaps(plan: StudyPlan) -> None:
+    first = next(plan.trials())
+    with Store(Path(plan.file).with_suffix(".other")) as store:
+        known = next(plan.trials(store))
+    assert first.reference is None
+    assert known.reference is not None
+    assert replace(known, reference=None).key == first.key

@@ -1,0 +1,106 @@
+import os
+import signal
+import sys
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from support.small_studies import small_trial
+from trajgap.compare.gaps import RowStatus, canonical, run_trial, trial_process
+from trajgap.compare.gaps.trial_process import Crew
+from trajgap.problem import ProcessError
+
+
+@pytest.fixture
+def crew() -> Iterator[Crew]:
+    found = Crew()
+    yield found
+    found.end()
+
+
+def test_a_trial_gives_the_same_row_in_a_process_of_its_own(crew: Crew) -> None:
+    outcome = crew.run(small_trial())
+    assert outcome.row == run_trial(small_trial())
+    assert outcome.row.status is RowStatus.FINISHED
+    assert outcome.seconds > 0
+
+
+def test_one_process_runs_many_trials(crew: Crew) -> None:
+    crew.run(small_trial())
+    first = crew._own.child
+    crew.run(small_trial("support.optimizers:raises"))
+    assert crew._own.child is first
+
+
+def test_what_an_optimiser_prints_and_reads_is_not_ours(crew: Crew) -> None:
+    assert crew.run(small_trial("support.optimizers:prints")).row.status is RowStatus.FINISHED
+
+
+@pytest.mark.slow
+def test_a_run_whose_process_dies_is_done_again(crew: Crew, tmp_path: Path) -> None:
+    settings = canonical({"mark": str(tmp_path / "mark")})
+    row = crew.run(small_trial("support.optimizers:dies_once", settings=settings)).row
+    assert row.status is RowStatus.FINISHED
+    assert row.durations == run_trial(small_trial("support.optimizers:draws")).durations
+
+
+def test_a_run_at_which_two_processes_die_is_reported(crew: Crew) -> None:
+    row = crew.run(small_trial("support.optimizers:dies")).row
+    assert row.status is RowStatus.FAILED
+    assert row.message == "support.optimizers:dies: its process ended 2 times (SIGKILL)"
+    assert crew.run(small_trial()).row.status is RowStatus.FINISHED
+
+
+def test_a_search_that_catches_everything_is_ended_from_outside(
+    crew: Crew, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(trial_process, "_GRACE", 0.5)
+    row = crew.run(small_trial("support.optimizers:hangs", seconds=0.5)).row
+    assert row.status is RowStatus.FAILED
+    assert row.message.startswith("support.optimizers:hangs: took longer than 0.5 s; raise")
+    assert crew.run(small_trial()).row.status is RowStatus.FINISHED
+
+
+@pytest.mark.slow
+def test_a_process_that_is_killed_between_trials_is_replaced(crew: Crew) -> None:
+    crew.run(small_trial())
+    os.kill(crew._own.child._process.pid, signal.SIGKILL)
+    assert crew.run(small_trial()).row == run_trial(small_trial())
+
+
+def test_a_process_does_not_outlive_its_parent(crew: Crew) -> None:
+    crew.run(small_trial())
+    child = crew._own.child
+    child._process.stdin.close()
+    assert child._process.wait(60) == 0
+
+
+def test_a_process_that_cannot_start_is_told(crew: Crew, monkeypatch: pytest.MonkeyPatch) -> None:
+    said: list[str] = []
+
+    def try_starting() -> None:
+        try:
+            crew.run(small_trial())
+        except ProcessError as error:
+            said.append(str(error))
+
+    def in_a_thread_of_its_own() -> str:
+        thread = threading.Thread(target=try_starting)
+        thread.start()
+        thread.join()
+        return said.pop()
+
+    monkeypatch.setattr(trial_process, "_PROGRAM", "raise SystemExit(3)")
+    assert in_a_thread_of_its_own().startswith("workers: a process ends at once; see why: python")
+    monkeypatch.setattr(sys, "executable", "/no/such/python")
+    assert in_a_thread_of_its_own().startswith("workers: a process cannot be started (")
+
+
+def test_a_crew_that_has_ended_starts_nothing(crew: Crew) -> None:
+    crew.run(small_trial())
+    child = crew._own.child
+    crew.end()
+    assert child._process.returncode == -signal.SIGKILL
+    with pytest.raises(ProcessError, match=r"workers: stopped"):
+        crew.run(small_trial())

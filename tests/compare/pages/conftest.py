@@ -1,0 +1,24 @@
+"""Fixtures that several tests here share."""
+
+from pathlib import Path
+
+import pytest
+from support.hostile import ID, Seen, hostile_case
+from trajgap.compare import AuditReport, audit, write_report
+
+
+@pytest.fixture(scope="session")
+def report() -> AuditReport:
+    return audit(hostile_case(), seeds=2, certify_seconds=0)
+
+
+@pytest.fixture(scope="session")
+def folder(report: AuditReport, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("report") / "deep" / "audit"
+    write_report(report, out)
+    return out
+
+
+@pytest.fixture(scope="session")
+def page(folder: Path) -> Seen:
+    return Seen((folder / f"{ID}.html").read_text(encoding="utf-8"))

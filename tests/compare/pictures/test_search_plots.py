@@ -1,0 +1,240 @@
+"""Waterfalls, searches and landscapes as pictures; the two themes."""
+
+import re
+import xml.etree.ElementTree as ElementTree
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from matplotlib.text import Text
+from support.checkout import ROOT
+from support.drawn import DURATIONS, STEPS, fall
+from trajgap.compare.documents import Step, Why
+from trajgap.compare.pictures.drawing import (
+    DARK,
+    THEME,
+    Picture,
+    svg,
+    themed,
+)
+from trajgap.compare.pictures.searches import convergence, endings
+from trajgap.compare.pictures.totals_map import landscape, tight_total
+from trajgap.compare.pictures.waterfall import seconds, waterfall_picture
+from trajgap.heuristics import JointRuns, Run
+from trajgap.nlp import Solution, Status
+from trajgap.problem import (
+    Limits,
+    Problem,
+    TrajgapError,
+    check,
+    quintic_spline,
+)
+
+
+def words(picture: Picture) -> str:
+    return "\n".join(t.get_text() for t in picture.findobj(Text) if t.get_visible())
+
+
+# --- waterfall ------------------------------------------------------------------------------------
+
+
+def test_the_waterfall_writes_every_value_and_every_reason(pictures: dict[str, Picture]) -> None:
+    text = words(pictures["waterfall"])
+    for step in STEPS:
+        assert (step.note if isinstance(step.time, Why) else seconds(step)) in text
+    assert "1.9000 s (1.8950 to 1.9050)" in text
+    # The first step, 1.9 s, beside 2.1 s, 1.5 s and 0.012 s.
+    assert "−0.2000 s" in text
+    assert "−9.5 %" in text
+    assert "+0.4000 s" in text
+    assert "+26.7 %" in text
+    assert "158.3 ×" in text
+    assert text.count("the first beside this one") == 1
+
+
+def test_evidence_is_told_by_hatching(pictures: dict[str, Picture]) -> None:
+    (axes,) = pictures["waterfall"].axes
+    hatches = [bar.get_hatch() or "" for container in axes.containers for bar in container]
+    assert hatches == ["", "", "////", "", "////"]
+    legend = [t.get_text() for t in axes.get_legend().get_texts()]
+    assert legend == ["certified", "best known", "printed, or derived from it"]
+
+
+def test_bars_start_at_zero_and_end_at_their_value(pictures: dict[str, Picture]) -> None:
+    (axes,) = pictures["waterfall"].axes
+    bars = [bar for container in axes.containers for bar in container]
+    assert [bar.get_x() for bar in bars] == [0] * 5
+    assert [bar.get_width() for bar in bars] == [
+        s.time for s in STEPS if not isinstance(s.time, Why)
+    ]
+
+
+def test_a_step_of_no_time_is_drawn() -> None:
+    steps = (Step(name="published", time=1.0), Step(name="optimum", time=0.0))
+    back = (Step(name="published", time=0.0), Step(name="optimum", time=1.0))
+    for order in (steps, back, (steps[1], back[0])):
+        assert svg(waterfall_picture(fall(*order), title="Where the time goes"))
+
+
+@pytest.mark.parametrize("steps", [(), (STEPS[4],)])
+def test_a_waterfall_without_any_value_is_still_drawn(steps: tuple[Step, ...]) -> None:
+    ElementTree.fromstring(svg(waterfall_picture(fall(*steps), title="Nothing")))
+
+
+# --- searches -------------------------------------------------------------------------------------
+
+
+def test_nothing_is_clipped_at_the_optimum(runs: dict[str, list[Run]]) -> None:
+    too_long = 1.5 * min(r.reported_time for r in runs["swarm"])
+    picture = convergence(runs, too_long, {"low": 0.5 * too_long}, title="Runs")
+    (axes,) = picture.axes
+    low, high = axes.get_ylim()
+    drawn = np.concatenate([s[:, 1] for c in axes.collections[:1] for s in c.get_segments()])
+    assert drawn.min() < -10
+    assert low < min(drawn.min(), -50)
+    assert high > drawn.max()
+
+
+@pytest.mark.parametrize("share", [1 - 5e-5, 1 - 5e-7])
+def test_a_printed_total_just_below_the_optimum_is_in_the_picture(
+    runs: dict[str, list[Run]], optimum: Solution, share: float
+) -> None:
+    total = optimum.total_time
+    (axes,) = convergence(runs, total, {"p": share * total}, rounding=1e-5, title="Runs").axes
+    assert axes.get_ylim()[0] < 100 * (share - 1 - 1e-5 / total)
+
+
+def test_best_so_far_median_and_quartiles(runs: dict[str, list[Run]], optimum: Solution) -> None:
+    (axes,) = convergence(runs, optimum.total_time, {}, title="Runs").axes
+    gaps = 100 * (np.array([r.trace for r in runs["swarm"]]) / optimum.total_time - 1)
+    middle = np.quantile(gaps, 0.5, axis=0, method="inverted_cdf")
+    medians = [a for a in axes.lines if a.get_drawstyle() == "steps-post"]
+    known = np.isfinite(middle)
+    assert medians[0].get_ydata()[known] == pytest.approx(middle[known])
+    segments = axes.collections[0].get_segments()
+    for gap, segment in zip(gaps, segments, strict=True):
+        first = int(np.argmax(np.isfinite(gap)))
+        assert segment[0].tolist() == pytest.approx([first, gap[first]])
+        assert segment[-1].tolist() == pytest.approx([gap.size - 1, gap[-1]])
+
+
+def test_runs_without_an_answer_are_counted_not_drawn(runs: dict[str, list[Run]]) -> None:
+    one = runs["swarm"][0]
+    lost = replace(one, trace=np.full(one.trace.size, np.inf), reported_time=np.inf)
+    picture = convergence({"swarm": [one, lost], "lost": [lost]}, 1.0, {}, title="Runs")
+    assert "1 without answer" in picture.description
+    assert "lost: no feasible answer in 1 runs" in picture.description
+    picture = endings({"swarm": [one, lost], "lost": [lost]}, {}, {}, title="Ends")
+    assert "2 runs" in words(picture)
+    assert "1 without answer" in words(picture)
+    assert "1 runs, none with an answer" in words(picture)
+
+
+def test_one_panel_for_each_joint(joint_runs: dict[str, list[JointRuns]]) -> None:
+    picture = convergence(joint_runs, [1.2, 1.3], {}, title="Joints", joints=("x", "y"))
+    titles = [a.get_title(loc="left") for a in picture.axes if a.get_visible()]
+    assert titles == [
+        "joint x: best known optimum 1.200000 s",
+        "joint y: best known optimum 1.300000 s",
+    ]
+
+
+def test_convergence_needs_runs_and_one_optimum_for_each_problem(
+    joint_runs: dict[str, list[JointRuns]],
+) -> None:
+    with pytest.raises(TrajgapError, match="convergence: no runs to draw"):
+        convergence({}, 1.0, {}, title="Runs")
+    with pytest.raises(TrajgapError, match="1 optima for 2 searched problems; give one each"):
+        convergence(joint_runs, 1.0, {}, title="Runs")
+    with pytest.raises(TrajgapError, match="no gap is a share of it"):
+        convergence(joint_runs, [0.0, 1.0], {}, title="Runs")
+
+
+def test_endings_show_every_run_and_reference(pictures: dict[str, Picture]) -> None:
+    (axes,) = pictures["endings"].axes
+    assert [len(c.get_offsets()) for c in axes.collections] == [4, 4]
+    assert "printed: a, " in words(pictures["endings"])
+    assert "optimum, " in words(pictures["endings"])
+
+
+# --- landscape ------------------------------------------------------------------------------------
+
+
+def test_the_tight_total_is_that_of_the_checker(problem: Problem) -> None:
+    shares = np.random.default_rng(3).dirichlet((2, 2, 2), 5)
+    expected = [check(problem, 3 * s).tight_time for s in shares]
+    assert tight_total(problem, shares) == pytest.approx(expected, rel=1e-9)
+
+
+def test_points_stand_at_their_shares(
+    problem: Problem, optimum: Solution, pictures: dict[str, Picture]
+) -> None:
+    whole = pictures["landscape"].axes[0]
+    named = [c for c in whole.collections if c.get_label()[:1] != "_"]
+    marks = {c.get_label(): np.asarray(c.get_offsets()) for c in named}
+    h = DURATIONS / DURATIONS.sum()
+    # Barycentric coordinates: h1 left, h2 right, h3 top.
+    assert marks["printed: t"][0] == pytest.approx([h[1] + h[2] / 2, h[2] * np.sqrt(0.75)])
+    s = optimum.durations / optimum.durations.sum()
+    assert marks["optimum"][0] == pytest.approx([s[1] + s[2] / 2, s[2] * np.sqrt(0.75)])
+    assert len(marks["4 runs of swarm"]) == 4
+
+
+def test_every_point_lies_in_the_enlarged_part(pictures: dict[str, Picture]) -> None:
+    part = pictures["landscape"].axes[1]
+    for c in part.collections:
+        if c.get_label()[:1] != "_":
+            x, y = np.asarray(c.get_offsets()).T
+            assert (y > 0).all()
+            assert (y < np.sqrt(3) * np.minimum(x, 1 - x)).all()
+
+
+def test_bounds_on_the_durations_are_hatched(problem: Problem, optimum: Solution) -> None:
+    bounded = landscape(problem, optimum, [], {}, title="Bounded")
+    free = landscape(replace(problem, duration_lower=0.0), optimum, [], {}, title="Free")
+    assert any(c.hatches[0] for c in bounded.axes[0].collections if hasattr(c, "hatches"))
+    assert "Hatched" in words(bounded)
+    assert "Hatched" not in words(free)
+
+
+def test_totals_below_the_optimum_are_shown(problem: Problem, optimum: Solution) -> None:
+    worse = replace(optimum, durations=1.2 * np.asarray(optimum.durations))
+    assert "White: below the optimum" in words(landscape(problem, worse, [], {}, title="Below"))
+    assert "White" not in words(landscape(problem, optimum, [], {}, title="Not below"))
+
+
+def test_durations_that_are_no_times_are_left_out(problem: Problem, optimum: Solution) -> None:
+    ends = {"swarm": [[0.5, 0.5, 0.5], [-1.0, 0.5, 0.5]]}
+    ElementTree.fromstring(svg(landscape(problem, optimum, [], ends, title="Shares")))
+
+
+def test_the_landscape_says_what_it_cannot_draw(problem: Problem, optimum: Solution) -> None:
+    four = Problem(np.linspace(0, 1, 5)[:, None], Limits(1.0, joints=1), quintic_spline(4))
+    with pytest.raises(TrajgapError, match="drawn for 3 segments, the problem has 4"):
+        landscape(four, optimum, [], {}, title="Four")
+    nothing = Solution(problem, Status.INFEASIBLE, "a limit is 0")
+    with pytest.raises(TrajgapError, match="has no optimum to compare with"):
+        landscape(problem, nothing, [], {}, title="None")
+    vanishing = replace(optimum, infimum=0.0)
+    with pytest.raises(TrajgapError, match="the totals approach 0"):
+        landscape(problem, vanishing, [], {}, title="None")
+
+
+# --- themes ---------------------------------------------------------------------------------------
+
+
+def test_the_dark_colours_are_those_of_the_pages() -> None:
+    style = (ROOT / "compare/pages/templates/style.css").read_text(encoding="utf-8")
+    dark = style.split("prefers-color-scheme: dark")[1].split("}")[0]
+    for name, colour in DARK.items():
+        assert f"--{name}: {colour};" in dark
+    assert DARK.keys() == THEME.keys()
+
+
+def test_a_themed_file_keeps_its_own_colours(pictures: dict[str, Picture]) -> None:
+    plain = svg(pictures["waterfall"])
+    text = themed(plain)
+    ElementTree.fromstring(text)
+    (style,) = re.findall(r"<style>@media[^<]*</style>", text)
+    assert text.replace(f"\n {style}", "") == plain
+    assert f'[style*="fill: {THEME["ink"]}"]{{fill:{DARK["ink"]} !important}}' in style

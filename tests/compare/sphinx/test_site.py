@@ -1,0 +1,379 @@
+"""The site: results are fresh, every figure in prose is a key into them, and a wrong key fails."""
+
+import importlib.util
+import json
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from support.checkout import ROOT
+from trajgap.compare.audits import RULES
+from trajgap.compare.pictures import tent_picture, tent_scatter
+from trajgap.compare.sphinx import Results
+from trajgap.compare.sphinx.gallery import scrape_pictures
+from trajgap.compare.sphinx.proofs import proved_again
+from trajgap.compare.sphinx.suite import PROVED_WITHIN
+from trajgap.problem import TrajgapError, case_schema, file_name, published_ids
+from trajgap.problem.suite import list_instances
+
+SITE = ROOT / "docs"
+RESULTS = Results(SITE / "results")
+ROLE = re.compile(r"\{trajgap\}`([^`|\s]+)(?:\|([^`]+))?`")
+PROSE = [
+    ROOT / "README.md",
+    *sorted(path for path in SITE.rglob("*.md") if "generated" not in path.parts),
+]
+"""Every page but those that the build makes."""
+FIGURE = re.compile(r"(?<![\w.])\d+(?:\.\d+)?\s?%|(?<![\w.])\d+\.\d+(?:e-?\d+)?(?:\s?m?s\b)?")
+"""A percentage, or a number with decimals; whole numbers count things on the page itself."""
+NO_RESULT = {"3.11": "the least Python, held by test_house", "1.0.0": "a version"}
+"""Numbers with a point that are no figures."""
+
+
+def program(name):
+    spec = importlib.util.spec_from_file_location(name, SITE / f"{name}.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def rebuilding():
+    return program("rebuild")
+
+
+def tables():
+    return program("tables")
+
+
+def test_the_results_are_fresh():
+    made = rebuilding()
+    lock = json.loads((SITE / "results" / "lock.json").read_text(encoding="utf-8"))
+    assert lock["results"] == RESULTS.hashes, "a result was edited; run docs/rebuild.py"
+    assert lock["code"] == made.code_hash(), "the code has changed; run docs/rebuild.py"
+
+
+def test_the_table_of_papers_in_the_readme_is_made_from_the_results():
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert text == rebuilding().readme(text)
+    assert text.count("](docs/reports/") == len(RESULTS.names)
+
+
+def test_a_comment_makes_no_result_stale_and_code_does():
+    plain = rebuilding().plain
+    assert plain("x = 1  # why\n") == plain('"""Doc."""\nx = 1\n')
+    assert plain("x = 1\n") != plain("x = 2\n")
+
+
+def test_every_published_case_has_its_result_and_page():
+    examples = [path.stem for path in (SITE / "examples").glob("*.toml")]
+    assert set(RESULTS.names) == {file_name(case) for case in (*published_ids(), *examples)}
+    for name in RESULTS.names:
+        page = (SITE / "reports" / f"{name}.md").read_text(encoding="utf-8")
+        assert page.startswith(f"# {RESULTS.case(name)['title']}\n")
+        assert name in (SITE / "reports" / "index.md").read_text(encoding="utf-8")
+
+
+MARKS = (
+    "csv", "table", "counts", "attacks", "solver errors", "clean", "families", "faults", "rooms",
+    "results", "measured", "hardness",
+)  # fmt: skip
+GENERATED = re.compile(rf"<!-- ({'|'.join(MARKS)})\b.*?<!-- [^>]*\bend\b", re.S)
+"""Tables that a program writes from results, code or CSV; a test of each compares them."""
+
+
+def prose(text):
+    """What a reader reads as prose: no code, no keys, no addresses, no comments, no such table."""
+    text = re.sub(r"^(`{3,4}).*?^\1$", "", text, flags=re.MULTILINE | re.DOTALL)
+    text = GENERATED.sub("<!-- end", text)
+    text = re.sub(r"<!--.*?-->", "", text, flags=re.DOTALL)
+    text = re.sub(r"\{\w+\}`[^`]*`|``.*?``|`[^`\n]*`", "", text)
+    return re.sub(r"\]\([^)]*\)|https?://\S+", "", text)
+
+
+FIGURES = json.loads((SITE / "figures.json").read_text(encoding="utf-8"))
+"""For each document the figures in its prose, each with the key into the results that says so, or
+with the reason why it has none; `explained` knows the reasons."""
+
+
+@pytest.mark.parametrize("path", PROSE, ids=lambda path: path.relative_to(ROOT).as_posix())
+def test_no_figure_stands_in_prose_without_its_key(path):
+    name = path.relative_to(ROOT).as_posix()
+    found = set(FIGURE.findall(prose(path.read_text(encoding="utf-8")))) - NO_RESULT.keys()
+    assert found == set(FIGURES.get(name, {}))
+
+
+def test_each_document_with_figures_is_there():
+    assert set(FIGURES) <= {path.relative_to(ROOT).as_posix() for path in PROSE}
+
+
+def digits(figure):
+    return re.match(r"[\d.e-]+", figure)[0]
+
+
+def explained(document, figure, said):
+    """Whether a figure without a key stands where its reason says."""
+    kind, _, place = said.partition(": ")
+    if kind == "table":
+        return digits(figure) in tables().markdown(place) and f"<!-- csv: {place} -->" in document
+    if kind == "test":  # reads the page, or says why the value is so
+        path = ROOT / place
+        return place.startswith("tests/") and path.exists()
+    if kind == "code":
+        return digits(figure) in (ROOT / place).read_text(encoding="utf-8")
+    if kind == "printed":
+        folders = (ROOT / "problem" / "published", ROOT / "problem" / "robots")
+        (path,) = [f / f"{place}.toml" for f in folders if (f / f"{place}.toml").exists()]
+        return f'"{digits(figure)}"' in path.read_text(encoding="utf-8")
+    if kind == "once":  # measured once, by a command that is still there
+        script = re.search(r"(?:benchmarks|tests)[\w/.]*", place)
+        return script is not None and (ROOT / script[0]).exists()
+    return kind == "defined" and len(place.split()) >= 2
+
+
+EXPLAINED = [(d, f, s) for d, known in FIGURES.items() for f, s in known.items() if ": " in s]
+KEYED = [(d, f, s) for d, known in FIGURES.items() for f, s in known.items() if ": " not in s]
+
+
+def test_a_figure_without_a_key_has_a_reason_that_holds():
+    for name, figure, said in EXPLAINED:
+        document = (ROOT / name).read_text(encoding="utf-8")
+        assert explained(document, figure, said), (name, figure, said)
+    assert len(EXPLAINED) > 50
+
+
+@pytest.mark.parametrize(
+    ("figure", "said"),
+    [
+        ("0.731", "table: study-cost"),
+        ("0.731", "printed: irb460"),
+        ("0.731", "code: heuristics/hazards.py"),
+        ("0.731", "test: tests/no_such_test.py"),
+        ("0.731", "once: python benchmarks/no_such.py"),
+        ("0.731", "defined: "),
+        ("0.731", "because: it is so"),
+    ],
+)
+def test_a_reason_that_does_not_hold_is_seen(figure, said):
+    assert not explained("<!-- csv: study-cost -->", figure, said)
+
+
+@pytest.mark.parametrize(("figure", "key"), [(figure, key) for _, figure, key in KEYED])
+def test_a_figure_in_prose_is_what_the_result_says(figure, key):
+    key, _, form = key.partition("|")
+    said = format(RESULTS.value(key), form)
+    assert figure.replace(" ", "").rstrip("s%") in said.replace(" ", "")
+
+
+def test_tables_of_measurements_are_those_of_their_files():
+    made, named = tables(), []
+    for path in PROSE:
+        text = path.read_text(encoding="utf-8")
+        assert made.filled(text) == text, f"{path.name}: run `python docs/tables.py`"
+        named += re.findall(r"<!-- csv: (\S+) -->", text)
+    assert sorted(named) == sorted(path.stem for path in made.TABLES.glob("*.csv"))
+    for name in named:
+        script = re.search(r"(?:benchmarks|tests)/[\w/]+\.py", made.command(name))
+        assert (ROOT / script[0]).exists() if script else made.command(name).startswith("trajgap ")
+
+
+def test_a_printed_table_is_taken_as_it_stands():
+    made = tables()
+    printed = 'Told before.\n| a | b, c |\n|---|---|\n| 1.5 | `x` |\n|  | "y" |\n'
+    text = made.taken(printed, "python benchmarks/x.py")
+    assert text == '# python benchmarks/x.py\na,"b, c"\n1.5,`x`\n,"""y"""\n'
+    altered = made.filled("<!-- csv: study-cost -->\n| 1 |\n<!-- end -->\n")
+    assert altered.splitlines()[1] == "| " + " | ".join(made.cells("study-cost")[0]) + " |"
+
+
+def keys():
+    for path in PROSE:
+        shown = re.sub(r"^(`{3,4}).*?^\1$", "", path.read_text("utf-8"), flags=re.M | re.S)
+        # In a table's cell the bar is escaped.
+        for key, form in ROLE.findall(re.sub(r"`` .*? ``", "", shown).replace("\\|", "|")):
+            yield path.name, key, form
+    for document, _, said in KEYED:
+        key, _, form = said.partition("|")
+        yield Path(document).name, key, form
+
+
+@pytest.mark.parametrize(("page", "key", "form"), sorted(set(keys())))
+def test_each_key_on_the_site_says_something_and_no_altered_one_does(page, key, form):
+    assert page
+    assert format(RESULTS.value(key), form)
+    name, _, path = key.partition(":")
+    parts = path.split(".")
+    for k, part in enumerate(parts):
+        wrong = "999" if part.isdigit() else f"{part}x"
+        with pytest.raises(TrajgapError, match="nothing stands at"):
+            RESULTS.value(f"{name}:{'.'.join([*parts[:k], wrong, *parts[k + 1 :]])}")
+    with pytest.raises(TrajgapError, match="there is no such result"):
+        RESULTS.value(f"{name}x:{path}")
+
+
+FOREIGN = """
+# A thesis
+
+```{trajgap-card} irb460-pso-353
+```
+
+```{trajgap-claims} irb460-pso-353
+:verdict: refuted
+```
+
+```{trajgap-waterfall} irb460-pso-353
+:problem: limit-80
+```
+
+```{trajgap-papers}
+```
+
+```{trajgap-certificate} proof.json
+```
+
+```{trajgap-suite}
+:curve: 3-5-3
+```
+
+```{trajgap-instance} 353-puma560
+```
+
+The audit was made on {trajgap}`irb460-pso-353:provenance.date`.
+"""
+
+
+def foreign(folder, text=FOREIGN, alter=None):
+    """A small project of somebody else's, built with warnings as errors."""
+    pytest.importorskip("sphinx")
+    pytest.importorskip("myst_parser")
+    (folder / "results").mkdir(parents=True)
+    shutil.copy(SITE / "results" / "irb460-pso-353.json", folder / "results")
+    (shipped,) = (ROOT / "nlp" / "certificates").glob("irb460*limit-80*rad.json")
+    proof = shipped.read_text(encoding="utf-8")
+    (folder / "proof.json").write_text(alter(proof) if alter else proof, encoding="utf-8")
+    (folder / "conf.py").write_text(
+        'extensions = ["myst_parser", "trajgap.compare.sphinx"]\n', encoding="utf-8"
+    )
+    (folder / "index.md").write_text(text, encoding="utf-8")
+    built = subprocess.run(
+        [sys.executable, "-m", "sphinx", "-W", "-q", "-b", "html", folder, folder / "out"],
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    page = folder / "out" / "index.html"
+    return built, page.read_text(encoding="utf-8") if page.exists() else ""
+
+
+def test_a_foreign_project_shows_an_audit(tmp_path):
+    built, page = foreign(tmp_path / "thesis")
+    assert built.returncode == 0, built.stderr
+    case = RESULTS.case("irb460-pso-353")
+    assert case["card"]["errors"][0].split(":")[0] in page
+    assert case["provenance"]["date"] in page
+    assert "<svg" in page
+    assert 'aria-labelledby="' in page
+    assert "Proved again when this page was built" in page
+    assert page.count("certified</span>") > 40  # the suite's table, of 46
+    assert ">353-puma560<" in page
+    assert "basins" in page
+    assert "http://" not in re.sub(r"<svg.*?</svg>", "", page, flags=re.DOTALL)
+    assert (tmp_path / "thesis" / "out" / "_static" / "trajgap.css").exists()
+
+
+@pytest.mark.parametrize(
+    ("text", "alter", "said"),
+    [
+        pytest.param(
+            "# T\n\n{trajgap}`irb460-pso-353:card.optimun`\n",
+            None,
+            "nothing stands at",
+            marks=pytest.mark.slow,
+        ),
+        pytest.param(
+            "# T\n\n```{trajgap-card} irb461\n```\n",
+            None,
+            "there is no such result",
+            marks=pytest.mark.slow,
+        ),
+        (
+            "# T\n\n```{trajgap-certificate} proof.json\n```\n",
+            lambda text: re.sub(r'("lower":\s*")(\d+)', r"\g<1>9\2", text),
+            "not proved",
+        ),
+    ],
+)
+def test_a_page_that_lies_does_not_build(tmp_path, text, alter, said):
+    built, _ = foreign(tmp_path / "thesis", text, alter)
+    assert built.returncode != 0
+    assert said in built.stderr
+
+
+def test_every_certified_value_of_a_report_has_a_certificate_that_the_build_proves_again():
+    for name in RESULTS.names:
+        case = RESULTS.case(name)
+        steps = [step for entry in case["waterfalls"] for step in entry["steps"]]
+        listed = {one["file"] for one in case["provenance"]["certificates"]}
+        page = (SITE / "reports" / f"{name}.md").read_text(encoding="utf-8")
+        shown = set(re.findall(r"\{trajgap-certificate\} (\S+)", page))
+        assert f"{{trajgap-source}} {name}\n" in page
+        assert listed or shown or not any(step["evidence"] == "certified" for step in steps), name
+
+
+@pytest.mark.parametrize(
+    ("alter", "said"),
+    [
+        (lambda path: path.write_text("{}", encoding="utf-8"), "is not the certificate with SHA"),
+        (lambda path: path.unlink(), "No such file"),
+    ],
+)
+def test_a_report_whose_certificate_is_another_does_not_build(tmp_path, alter, said):
+    case = RESULTS.case("irb460-pso-353")
+    one = case["provenance"]["certificates"][0]
+    path = tmp_path / one["file"]
+    shutil.copy(ROOT / "nlp" / "certificates" / one["file"], path)
+    assert proved_again(path, one["sha256"]).proves
+    alter(path)
+    with pytest.raises(TrajgapError, match=said):
+        proved_again(path, one["sha256"])
+
+
+def test_few_proofs_of_the_suite_are_left_out():
+    known = list_instances()
+    slow = [one for one in known if (one.verify_seconds or 0) > PROVED_WITHIN]
+    assert len(slow) < len(known) / 6  # as its comment says
+
+
+def test_made_pages_hold_every_rule_word_key_and_instance(tmp_path):
+    (tmp_path / "reference").mkdir()
+    (tmp_path / "suite").mkdir()
+    program("made_pages").write_pages(tmp_path)
+    made = {path.name: path.read_text("utf-8") for path in tmp_path.rglob("generated/*")}
+    assert all(f"## {rule.id}: " in made["rules.md"] for rule in RULES)
+    assert made["rules.md"].count("**Example.** ") == len(RULES)
+    assert all(word in made["words.md"] for word in ("not checkable", "best known", "TOPPRA"))
+    schema = case_schema()
+    for shape in (schema, *schema["$defs"].values()):
+        assert all(f"| `{key}` | " in made["case-keys.md"] for key in shape.get("properties", ()))
+    open_keys = [line for line in made["case-keys.md"].splitlines() if "anything" in line]
+    assert {line.split("`")[1] for line in open_keys} == {"settings", "chosen"}
+    pages = "".join(text for name, text in made.items() if name.endswith(".md"))
+    for one in list_instances():
+        assert f"```{{trajgap-instance}} {one.name}\n" in pages
+        assert made[f"{one.name}.toml"].startswith("format = ")
+
+
+def test_a_gallery_shows_each_picture_once(tmp_path):
+    pytest.importorskip("sphinx_gallery")
+    scatter = tent_scatter(members=5, dimensions=2, bounds=(0.0, 1.0), beta=0.5)
+    names = {"___": tent_picture(scatter, unit="s", title="T"), "other": 1}
+    block = {
+        "example_globals": names,
+        "image_path_iterator": iter([str(tmp_path / "one.png"), str(tmp_path / "two.png")]),
+    }
+    told = scrape_pictures((), block, {"src_dir": str(tmp_path)})
+    assert "one.svg" in told
+    assert "In double precision" in told
+    assert (tmp_path / "one.svg").read_text(encoding="utf-8").startswith("<?xml")
+    assert scrape_pictures((), block, {"src_dir": str(tmp_path)}) == ""
+    assert not (tmp_path / "two.svg").exists()

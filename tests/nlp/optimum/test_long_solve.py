@@ -1,0 +1,205 @@
+"""Many segments: the sparse search beside the tracked NLP, identities, every status."""
+
+import numpy as np
+import pytest
+from trajgap.nlp import Status, solve
+from trajgap.nlp.optimum import long_search as long_search_module
+from trajgap.nlp.optimum import solver
+from trajgap.nlp.optimum.formulation import Form
+from trajgap.nlp.optimum.long_formulation import LongProgram, Rows
+from trajgap.nlp.optimum.long_search import along, long_search, near_rows, way_start
+from trajgap.nlp.optimum.long_solve import long_enough
+from trajgap.nlp.optimum.optimality import kkt
+from trajgap.problem import (
+    Interpolant,
+    Limits,
+    Problem,
+    Verdict,
+    check,
+    cubic_spline,
+    cubic_spline_virtual,
+    extrema,
+    fit,
+    piecewise,
+    quintic_spline,
+)
+
+SEGMENTS = 26
+
+
+def posed(curve: Interpolant, seed: int = 3, **changes: object) -> Problem:
+    rng = np.random.default_rng(seed)
+    count = len(curve.waypoint_breaks)
+    q = np.cumsum(rng.normal(size=(count, 2)) * [0.4, 0.9], axis=0) - 5.0
+    limits = changes.pop("limits", Limits([1.5, 3.0], [6.0, 15.0], [np.inf, 90.0]))
+    return Problem(q, limits, curve, **changes)  # type: ignore[arg-type]
+
+
+CURVES = {
+    "cubic": cubic_spline(SEGMENTS),
+    "quintic": quintic_spline(SEGMENTS),
+    "virtual": cubic_spline_virtual(SEGMENTS - 1),
+    "degrees of two kinds": piecewise((4, *(3,) * (SEGMENTS - 2), 4), 2),
+    "moving ends": cubic_spline(SEGMENTS, ((1, 0.25),)),
+}
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_the_answer_is_optimal_by_the_dense_conditions(name: str) -> None:
+    problem = posed(CURVES[name])
+    answer = solve(problem)
+    assert answer.status is Status.OPTIMAL
+    assert answer.durations is not None
+    assert answer.check is not None
+    assert answer.check.verdict is Verdict.PASS
+    assert answer.kkt_residual is not None
+    assert answer.kkt_residual <= 1e-8
+    dense = kkt(problem, answer.durations, active=1e-6)
+    assert dense.residual <= 1e-6
+    mine = {(a.joint, a.quantity, round(a.time or 0.0, 4)): a.multiplier for a in answer.active}
+    big = [a for a in dense.active if a.multiplier > 1e-3]
+    assert len(big) > 5
+    for a in big:
+        near = mine[a.joint, a.quantity, round(a.time or 0.0, 4)]
+        assert near == pytest.approx(a.multiplier, rel=1e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["cubic", "quintic"])
+@pytest.mark.parametrize("seed", [1, 2])
+def test_the_tracked_formulation_ends_at_the_same_total(name: str, seed: int) -> None:
+    problem = posed(CURVES[name], seed)
+    tracked = solve(problem, form=Form.LIFTED)
+    assert solve(problem).total_time == pytest.approx(tracked.total_time, rel=1e-8)
+
+
+def test_time_scaling_and_mirror() -> None:
+    problem = posed(CURVES["quintic"])
+    total = solve(problem).total_time
+    slower = problem.limits.with_derivatives(problem.limits.derivatives / 3.0 ** np.arange(1, 4))
+    scaled = solve(Problem(problem.waypoints, slower, problem.curve)).total_time
+    assert scaled == pytest.approx(3.0 * total, rel=1e-8)
+    mirrored = solve(Problem(1.0 - problem.waypoints[::-1], problem.limits, problem.curve))
+    assert mirrored.total_time == pytest.approx(total, rel=1e-8)
+
+
+def test_bounds_on_durations_and_positions_are_kept_and_priced() -> None:
+    curve = CURVES["cubic"]
+    free = solve(posed(curve))
+    assert free.durations is not None
+    trajectory = fit(curve, posed(curve).waypoints, free.durations)
+    top = max(extrema(trajectory, 1, 0), key=lambda e: e.value)
+    edge = max(float(posed(curve).waypoints[:, 1].max()), 0.5 * (top.value + top.value)) - 1e-3
+    edge = max(edge, float(posed(curve).waypoints[:, 1].max()) + 1e-4)
+    limits = Limits([1.5, 3.0], [6.0, 15.0], [np.inf, 90.0], -np.inf, [np.inf, edge])
+    lower = np.zeros(SEGMENTS)
+    lower[7] = 1.3 * free.durations[7]
+    problem = posed(curve, limits=limits, duration_lower=lower)
+    answer = solve(problem)
+    assert answer.status is Status.OPTIMAL
+    assert answer.durations is not None
+    assert answer.check is not None
+    assert answer.check.verdict is Verdict.PASS
+    assert answer.total_time > free.total_time
+    walls = [a for a in answer.active if a.quantity == "duration"]
+    assert [a.segment for a in walls] == [7]
+    longer = lower.copy()
+    longer[7] *= 1.0001
+    more = solve(posed(curve, limits=limits, duration_lower=longer))
+    slope = (more.total_time - answer.total_time) / np.log(1.0001)
+    assert walls[0].multiplier == pytest.approx(slope, rel=1e-3)
+
+
+def test_a_known_motion_is_never_lost() -> None:
+    problem = posed(CURVES["cubic"])
+    answer = solve(problem)
+    assert answer.durations is not None
+    slow = solve(problem, known=answer.durations[None] * 1.01)
+    assert slow.total_time == pytest.approx(answer.total_time, rel=1e-9)
+    stopped = solve(problem, known=answer.durations[None], seconds=0.0)
+    assert stopped.total_time <= answer.total_time * (1 + 1e-9)
+
+
+def test_out_of_time_the_best_motion_so_far_is_the_answer() -> None:
+    problem = posed(CURVES["quintic"])
+    answer = solve(problem, seconds=0.0)
+    assert answer.status is Status.FEASIBLE
+    assert answer.check is not None
+    assert answer.check.verdict is Verdict.PASS
+    assert answer.why == "the search ended before it met the conditions of an optimum"
+
+
+def test_a_round_that_fails_begins_again_from_the_best_motion(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    problem = posed(CURVES["cubic"])
+    total = solve(problem).total_time
+    round_ = long_search_module._round
+    calls: list[int] = []
+
+    def failing(
+        program: LongProgram, rows: Rows, state: object, turn: int
+    ) -> tuple[np.ndarray, bool, int, float]:
+        duals, success, count, seconds = round_(program, rows, state, turn)  # type: ignore[arg-type]
+        calls.append(turn)
+        return duals, success and len(calls) != 2, count, seconds
+
+    monkeypatch.setattr(long_search_module, "_round", failing)
+    again = solve(problem)
+    assert calls[:4] == [0, 1, 0, 1]
+    assert again.status is Status.OPTIMAL
+    # From another start it may end at a neighbouring optimum: these two are 1.6e-7 apart.
+    assert again.total_time == pytest.approx(total, rel=1e-6)
+
+
+@pytest.mark.slow
+def test_what_does_not_settle_is_searched_as_before() -> None:
+    q = posed(CURVES["cubic"]).waypoints.copy()
+    q[14] = q[13] + 1e-9
+    problem = Problem(q, Limits([1.5, 3.0], [np.inf, np.inf]), CURVES["cubic"])
+    answer = solve(problem)
+    tracked = solve(problem, form=Form.LIFTED)
+    assert answer.total_time == pytest.approx(tracked.total_time, rel=1e-6)
+    assert answer.check is not None
+    assert answer.check.verdict is Verdict.PASS
+
+
+def test_what_is_not_searched_here(monkeypatch: pytest.MonkeyPatch) -> None:
+    seen: list[Problem] = []
+    standing = np.repeat(posed(CURVES["cubic"]).waypoints[:9], 3, axis=0)
+    monkeypatch.setattr(solver, "solve_long", lambda problem, _: seen.append(problem))
+    for problem in (
+        posed(cubic_spline(24)),
+        posed(piecewise((5,) * 26, 2)),
+        Problem(standing, Limits(1.0, 5.0, joints=2), CURVES["cubic"]),
+    ):
+        ask = solver.Ask(4, 0, None, np.empty((0, 0)), None, None, np.inf)
+        assert not long_enough(problem, ask)
+    solve(posed(cubic_spline(24)), starts=1)
+    assert seen == []
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_expressions_are_those_of_the_fitted_curve(name: str) -> None:
+    import casadi as ca
+
+    problem = posed(CURVES[name])
+    h = way_start(problem) * np.random.default_rng(1).uniform(0.7, 1.4, SEGMENTS)
+    program = LongProgram(problem, float(h.mean()), np.zeros(SEGMENTS))
+    trajectory = fit(problem.curve, problem.waypoints, h)
+    rows: Rows = near_rows(program, trajectory, 0.1)
+    x = program.pack(h, trajectory.scaled)
+    values = program.at_places(rows.places, rows.weight)
+    ends = program.at_places(program.ends, np.zeros(program.ends.s.size))
+    evaluated = ca.Function("f", [program.variables], [program.equalities, values, ends])
+    equal, inside, last = (np.asarray(v).ravel() for v in evaluated(x))
+    np.testing.assert_allclose(equal, 0.0, atol=1e-9)
+    for places, found in ((rows.places, inside), (program.ends, last)):
+        rate = h[places.segment] ** places.order
+        limit = problem.limits.derivatives[places.joint, places.order - 1]
+        truth = along(trajectory, places, 0) / rate / limit
+        np.testing.assert_allclose(found, truth, rtol=1e-7, atol=1e-9)
+    assert rows.places.s.size > 10
+    local = long_search(problem, way_start(problem), np.full(SEGMENTS, 1e-4), np.inf)
+    assert local is not None
+    assert check(problem, local.durations).max_violation <= 1e-9

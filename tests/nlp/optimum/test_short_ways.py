@@ -1,0 +1,141 @@
+"""Way-points that nearly coincide: a second optimum lies decades away in one duration."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from trajgap.nlp import Status, solve
+from trajgap.nlp.optimum.short_ways import short_ways, shortened
+from trajgap.problem import (
+    Array,
+    Interpolant,
+    Limits,
+    Problem,
+    Verdict,
+    check,
+    cubic_spline,
+    cubic_spline_virtual,
+    rest_to_rest,
+    three_five_three,
+)
+
+THREE_JOINTS = Problem(
+    np.array(
+        [
+            [-0.006703151918133349, 0.02357311255660433, 0.03627987010293906],
+            [-0.006703151918133349, 0.023814851003725396, 0.011674082939601095],
+            [-0.006703151918133349, 0.035318238530796055, 0.014810366468128482],
+            [-0.006703151918133349, 0.03531831894428825, 0.014810440812788738],
+            [-0.006703151918133349, 0.0013402147961412833, 0.0201109695020113],
+        ]
+    ),
+    Limits(acceleration=np.array([3.25e-10, 1.1164833816598415e-09, 4.4896859571091743e-10])),
+    cubic_spline(4),
+)
+"""Seed 6324 of `benchmarks/solver_errors.py`."""
+ONE_JOINT = Problem(
+    np.array(
+        [
+            [2.200242341611587],
+            [0.7581331027593896],
+            [-0.7425996728356407],
+            [1.2816131917152613],
+            [1.2816736504180204],
+        ]
+    ),
+    Limits(
+        0.2267718671895878,
+        0.10012727191372049,
+        0.3337143830794538,
+        position_lower=-1.289477474315656,
+        position_upper=2.3673380891093343,
+        joints=1,
+    ),
+    cubic_spline(4),
+)
+"""Seed 6821 of the same benchmark."""
+FOUND = {
+    "three joints": (
+        THREE_JOINTS,
+        [18133.716463027973, 5891.3221114083035, 0.2708153744313308, 14055.006461182671],
+        38115.9353,
+    ),
+    "one joint": (
+        ONE_JOINT,
+        [10.169164080186285, 10.834980580078096, 12.577021294959078, 0.040084570343837576],
+        33.8391,
+    ),
+}
+"""A problem, what differential evolution found, and the total of the other optimum, s."""
+
+ROUNDED = 1 + 1e-9
+"""Two searches that end in one optimum differ by rounding."""
+
+
+@pytest.mark.parametrize("name", FOUND)
+def test_the_optimum_with_a_far_shorter_segment_is_found(name: str) -> None:
+    problem, durations, other = FOUND[name]
+    h = np.array(durations)
+    assert check(problem, h).verdict is Verdict.PASS
+    assert h.sum() < 0.9995 * other
+    solution = solve(problem)
+    assert solution.status is Status.OPTIMAL
+    assert solution.total_time <= h.sum() * ROUNDED
+    assert solution.check is not None
+    assert solution.check.verdict is Verdict.PASS
+
+
+@pytest.mark.parametrize("seed", [0, 1, *(pytest.param(k, marks=pytest.mark.slow) for k in (2, 3))])
+@pytest.mark.parametrize("name", FOUND)
+def test_whatever_the_seed_of_the_search(name: str, seed: int) -> None:
+    problem, durations, _ = FOUND[name]
+    assert solve(problem, seed=seed).total_time <= sum(durations) * ROUNDED
+
+
+def test_the_same_reversed_in_time() -> None:
+    problem, durations, _ = FOUND["one joint"]
+    turned = replace(problem, waypoints=problem.waypoints[::-1])
+    assert solve(turned).total_time <= sum(durations) * ROUNDED
+
+
+@pytest.mark.parametrize(
+    ("rows", "curve", "segments"),
+    [
+        ([[0, 0], [1, 2], [1.01, 2.02], [3, 4]], cubic_spline(3), [1]),
+        ([[0, 0], [1, 2], [1.01, 2.2], [3, 4]], cubic_spline(3), []),
+        ([[0, 0], [0, 2], [0, 2], [0, 4]], cubic_spline(3), [1]),
+        ([[0, 0], [1, 2], [1.01, 2.02], [3, 4]], three_five_three(), [1]),
+        # A cubic spline with virtual breaks: the first and the last way lie over two segments.
+        ([[0, 0], [0.01, 0.01], [1, 2], [1.01, 2.02], [3, 4]], cubic_spline_virtual(5), [3]),
+    ],
+)
+def test_ways_that_are_short(
+    rows: list[list[float]], curve: Interpolant, segments: list[int]
+) -> None:
+    problem = Problem(np.array(rows, dtype=float), Limits(1.0, joints=2), curve)
+    assert short_ways(problem) == segments
+
+
+def test_starts_are_much_shorter_there_and_about_as_long_in_all() -> None:
+    answer = np.array([10.16655583, 10.83811028, 12.54426111, 0.2902423])
+    (start,) = shortened(ONE_JOINT, answer, np.full(4, 1e-5), 0)
+    assert start[3] <= 0.2902423 / 3 * (1 + 1e-12)
+    assert start.sum() < 1.05 * answer.sum()
+
+
+def test_no_start_where_nothing_comes_near_the_answer() -> None:
+    problem = replace(ONE_JOINT, duration_lower=np.array([0.0, 0.0, 0.0, 0.2]))
+    answer = np.array([10.16655583, 10.83811028, 12.54426111, 0.2902423])
+    assert shortened(problem, answer, np.full(4, 1e-5), 0).shape == (0, 4)
+    assert shortened(ONE_JOINT, 0.5 * answer, np.full(4, 1e-5), 0).shape == (0, 4)
+
+
+def test_segments_that_stand_alone_are_not_searched_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    def never(*_: object) -> Array:
+        raise AssertionError("searched")
+
+    monkeypatch.setattr("trajgap.nlp.optimum.solver.shortened", never)
+    rows = np.array([[0.0], [1.0], [1.0001], [2.0]])
+    assert solve(Problem(rows, Limits(1.0, 1.0, joints=1), rest_to_rest(3, 5))).total_time > 0

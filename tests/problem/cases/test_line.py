@@ -1,0 +1,85 @@
+"""Way-points on a straight line of the robot's end, stated by the angles at its ends."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from trajgap.problem import CaseError, ctraj, forward_kinematics, load_robot, parse_case
+
+FIRST = [0.1, -0.6, 0.4, 0.2, 0.5, 0.1]
+LAST = [0.3, -0.5, 0.3, 0.2, 0.4, 0.2]
+TEXT = """
+format = 1
+id = "line"
+title = "a straight move of the PUMA 560"
+[source]
+year = 2024
+[robot]
+name = "PUMA 560"
+joints = ["1", "2", "3", "4", "5", "6"]
+model = "puma560"
+[units]
+position = "{unit}"
+velocity = "rad/s"
+[waypoints]
+line = {{ first = {first}, last = {last}, points = 4 }}
+[limits]
+velocity = 1
+[interpolant]
+family = "3-5-3"
+"""
+
+
+def case_text(first: object = FIRST, last: object = LAST, unit: str = "rad") -> str:
+    return TEXT.format(first=first, last=last, unit=unit)
+
+
+def test_its_waypoints_are_those_of_ctraj_and_lie_on_the_line() -> None:
+    problem = parse_case(case_text(), "line.toml").problem()
+    arm = load_robot("puma560")
+    poses = forward_kinematics(arm, np.array([FIRST, LAST]))
+    line = ctraj(arm, *poses, 4, guess=FIRST)
+    np.testing.assert_allclose(problem.waypoints, line.waypoints, atol=1e-9)
+    np.testing.assert_array_equal(problem.waypoints[[0, -1]], [FIRST, LAST])
+    ends = forward_kinematics(arm, problem.waypoints)[:, :3, 3]
+    for k, share in enumerate(np.linspace(0, 1, 4)):
+        np.testing.assert_allclose(ends[k], ends[0] + share * (ends[3] - ends[0]), atol=1e-9)
+
+
+def test_its_angles_are_in_the_unit_of_the_file() -> None:
+    degrees = [np.rad2deg(ends).tolist() for ends in (FIRST, LAST)]
+    case = parse_case(case_text(*degrees, unit="deg"), "line.toml")
+    other = parse_case(case_text(), "line.toml").problem()
+    np.testing.assert_allclose(case.problem().waypoints, other.waypoints, atol=1e-9)
+    statement = case.statement()
+    assert statement.complete
+    assert statement.waypoints is case.statement().waypoints  # computed once
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (
+            "first = [0.1,",
+            'first = ["0.1",',
+            "waypoints.line.first: angles between the ends",
+        ),
+        (", 0.2]", "]", "waypoints.line.last: 5 angles for the 6 joints of the robot; give one"),
+        ("points = 4", "points = 1", "waypoints.line.points: 1 is out of range; give at least 2"),
+        ('"5", "6"]', '"6", "5"]', "waypoints.line: needs the robot's table, and all its joints"),
+        ('model = "puma560"', "", "waypoints.line: needs the robot's table, and all its joints in"),
+        ('position = "rad"', "", "units.position: is missing; add one of rad, deg"),
+        (
+            "line =",
+            "joint_rows = [[1]]\nline =",
+            "waypoints: needs one of joint_rows, waypoint_rows",
+        ),
+        ("-0.5, 0.3, 0.2,", "-0.5, 2.8, 0.2,", "waypoints.line: "),
+    ],
+)
+def test_lines_that_are_refused(old: str, new: str, message: str) -> None:
+    text = case_text()
+    assert old in text
+    with pytest.raises(CaseError) as caught:
+        parse_case(text.replace(old, new, 1), "line.toml")
+    assert str(caught.value).startswith(f"line.toml: {message}")

@@ -1,0 +1,123 @@
+"""The compiled search over many pieces finds the very extrema of the search piece by piece."""
+
+import numpy as np
+import pytest
+from support.samples import DECLARATIONS, posed
+from trajgap.problem import (
+    Extremum,
+    Limits,
+    Peak,
+    Problem,
+    Verdict,
+    check,
+    checker,
+    cubic_spline,
+    extrema,
+    fit,
+    quintic_spline,
+    rest_to_rest,
+)
+from trajgap.problem.curves import near_extrema, step_sizes, tops
+
+NAMES = ("3-5-3", "cubic", "quintic", "rest 7", "4-2-3", "lines", "uneven")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_tops_are_the_largest_of_all_extrema(name: str) -> None:
+    problem, h = posed(DECLARATIONS[name], 11)
+    found = problem.curve.enclosed(problem.waypoints, h)
+    curve, error = (
+        found.trajectory,
+        found.error + np.random.default_rng(1).random(found.error.shape),
+    )
+    for j in range(3):
+        for r in range(4):
+            points = extrema(curve, j, r)
+            top = tops(curve, error, j, r)
+            same(top.size, max(points, key=lambda e: abs(e.value)))
+            same(top.highest, max(points, key=lambda e: e.value))
+            same(top.lowest, max(points, key=lambda e: -e.value))
+            reach = max(abs(e.value) + error[e.segment, r, j] for e in points)
+            assert top.reach == pytest.approx(reach, rel=1e-15)
+
+
+def same(one: Extremum | Peak, other: Extremum | Peak) -> None:
+    assert (one.joint, one.segment, one.time) == (other.joint, other.segment, other.time)
+    assert one.value == pytest.approx(other.value, rel=1e-14)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_near_extrema_are_those_beyond_the_two_values(name: str) -> None:
+    problem, h = posed(DECLARATIONS[name], 12)
+    curve = fit(problem.curve, problem.waypoints, h)
+    for r in range(4):
+        points = extrema(curve, 1, r)
+        high = float(np.quantile([e.value for e in points], 0.7))
+        low = float(np.quantile([e.value for e in points], 0.2))
+        pieces, places, values = near_extrema(curve, 1, r, low, high)
+        wanted = [(e.segment, e.s, e.value) for e in points if e.value <= low or e.value >= high]
+        assert list(zip(pieces.tolist(), places.tolist(), strict=True)) == [w[:2] for w in wanted]
+        np.testing.assert_allclose(values, [w[2] for w in wanted], rtol=1e-14)
+        assert near_extrema(curve, 1, r, -np.inf, -np.inf)[0].size == len(points)
+
+
+def test_step_sizes_are_those_of_the_two_sides() -> None:
+    problem, h = posed(DECLARATIONS["uneven"], 13)
+    curve = fit(problem.curve, problem.waypoints, h)
+    for order in range(4):
+        size, scale = step_sizes(curve, order)
+        for b in range(1, 3):
+            for j in range(3):
+                left, right, terms = curve.sides(b, j, order)
+                assert size[b - 1, j] == pytest.approx(right - left, abs=1e-14 * terms)
+                assert scale[b - 1, j] == pytest.approx(terms, rel=1e-14)
+
+
+def long_problem(kind: str, segments: int, seed: int = 4) -> tuple[Problem, np.ndarray]:
+    rng = np.random.default_rng(seed)
+    q = np.cumsum(rng.normal(size=(segments + 1, 2)) * [0.4, 1.1], axis=0) - 5.0
+    curve = cubic_spline(segments) if kind == "cubic" else quintic_spline(segments)
+    limits = Limits([2.0, 3.0], [9.0, 20.0], [80.0, np.inf], q.min(axis=0) - 0.1, [np.inf, 90.0])
+    return Problem(q, limits, curve), rng.uniform(0.4, 1.7, segments)
+
+
+@pytest.mark.parametrize("kind", ["cubic", "quintic"])
+def test_the_checker_says_the_same_by_both_searches(
+    kind: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    problem, h = long_problem(kind, 130)
+    found = check(problem, h)
+    monkeypatch.setattr(checker, "MANY_PIECES", 10**6)
+    for one, other in zip(found.peaks, check(problem, h).peaks, strict=True):
+        same(one, other)
+        assert one.ratio == pytest.approx(other.ratio, rel=1e-14)
+        assert one.error == pytest.approx(other.error, rel=1e-9)
+    jumping = Problem(problem.waypoints, problem.limits, rest_to_rest(130, 3))
+    one_by_one = check(jumping, h)
+    monkeypatch.undo()
+    together = check(jumping, h)
+    assert one_by_one.verdict is together.verdict
+    assert [(e.joint, e.order, e.break_index) for e in one_by_one.jumps] == [
+        (e.joint, e.order, e.break_index) for e in together.jumps
+    ]
+    assert len(together.jumps) > 200
+    np.testing.assert_allclose(
+        [e.size for e in one_by_one.jumps], [e.size for e in together.jumps], rtol=1e-9
+    )
+
+
+@pytest.mark.parametrize("kind", ["cubic", "quintic"])
+def test_long_checks_keep_time_scaling_and_mirrors(kind: str) -> None:
+    problem, h = long_problem(kind, 300)
+    free = Problem(problem.waypoints, Limits(2.0, 9.0, 80.0, joints=2), problem.curve)
+    found = check(free, h)
+    stretched = check(free, h * found.stretch)
+    assert stretched.stretch == pytest.approx(1.0, abs=1e-12)
+    assert stretched.verdict is Verdict.PASS
+    mirrored = Problem(-free.waypoints[::-1], free.limits, free.curve)
+    again = check(mirrored, h[::-1])
+    for one, other in zip(found.peaks, again.peaks, strict=True):
+        assert other.ratio == pytest.approx(one.ratio, rel=1e-11)
+        assert other.segment == 299 - one.segment or one.time == pytest.approx(
+            again.total_time - (other.time or 0.0), abs=1e-6
+        )

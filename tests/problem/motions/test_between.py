@@ -1,0 +1,125 @@
+"""What samples prove without interpolation: never a false accusation, and sharp where it can be."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from trajgap.problem import TrajgapError, Verdict
+from trajgap.problem.motions import JointLimits, Samples, check_samples
+
+NAMES = ("1", "2")
+
+
+def waves(rng, count=4):
+    """A smooth motion with its derivatives, and rigorous bounds of each."""
+    size, speed = rng.uniform(0.1, 2.0, (2, count)), rng.uniform(0.3, 9.0, (2, count))
+    phase = rng.uniform(0, 6, (2, count))
+
+    def value(t, order):
+        turn = speed * t[:, None, None] + phase + order * np.pi / 2
+        return (size * speed**order * np.sin(turn)).sum(axis=2)
+
+    dense = np.linspace(0.0, 6.0, 20_001)
+    steps = 6.0 / 20_000 / 2
+    bounds = [
+        np.abs(value(dense, r)).max(axis=0) + steps * (size * speed ** (r + 1)).sum(axis=1)
+        for r in range(4)
+    ]
+    return value, bounds
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.integers(0, 10**6))
+def test_a_motion_that_keeps_its_limits_is_never_accused(seed):
+    rng = np.random.default_rng(seed)
+    value, bounds = waves(rng)
+    rows = int(rng.integers(2, 400))
+    time = np.sort(rng.uniform(0.0, 6.0, rows)) + float(rng.choice([0.0, 1e3]))
+    time = time[np.append(True, np.diff(time) > 1e-7)]
+    if time.size < 2:
+        return
+    from_start = time - (1e3 if time[0] > 100 else 0.0)
+    noise = float(rng.choice([0.0, 1e-9, 1e-4, 1e-2]))
+    q = value(from_start, 0) + noise * rng.uniform(-1, 1, (time.size, 2))
+    more = [value(from_start, r) if rng.random() < 0.5 else None for r in (1, 2)]
+    limits = JointLimits.given(
+        NAMES, *(b * (1 + 1e-6) for b in bounds[1:]), (-bounds[0], bounds[0])
+    )
+    # Times that were shifted are rounded: what they stand for is off by their last digit.
+    found = check_samples(Samples(NAMES, time, q, *more, noise=noise + 2e-12), limits)
+    assert found.verdict is Verdict.UNDECIDED
+    assert found.stretch == pytest.approx(1.0, abs=1e-6)
+
+
+@pytest.mark.parametrize(("order", "word"), [(1, "velocity"), (2, "acceleration"), (3, "jerk")])
+def test_dense_samples_prove_a_violation_that_is_there(order, word):
+    rng = np.random.default_rng(order)
+    value, _ = waves(rng)
+    time = np.linspace(0.0, 6.0, 20_001)
+    peak = np.abs(value(time, order)).max(axis=0)
+    sizes = [np.inf] * 3
+    sizes[order - 1] = 0.999 * peak.min()
+    found = check_samples(Samples(NAMES, time, value(time, 0)), JointLimits.given(NAMES, *sizes))
+    assert found.verdict is Verdict.VIOLATED
+    assert found.worst.quantity == word
+    assert found.worst.ratio == pytest.approx(peak.max() / sizes[order - 1], rel=2e-3)
+    assert found.stretch == pytest.approx((peak.max() / sizes[order - 1]) ** (1 / order), rel=2e-3)
+    assert found.feasible_time is None
+
+
+def test_the_mean_value_is_that_of_the_divided_difference():
+    # 3 samples of t² at unequal times: 2! [q0, q1, q2] = 2 whatever the times are.
+    time = np.array([0.3, 1.1, 4.0])
+    limits = JointLimits.given(("1",), acceleration=1.9)
+    found = check_samples(Samples(("1",), time, time[:, None] ** 2), limits)
+    assert found.verdict is Verdict.VIOLATED
+    assert found.worst.value == pytest.approx(2.0, rel=1e-12)
+    assert found.stretch == pytest.approx(np.sqrt(2 / 1.9))
+
+
+def test_noise_is_averaged_over_wider_windows():
+    rng = np.random.default_rng(5)
+    time = np.linspace(0.0, 4.0, 4001)
+    q = 1.3 * time[:, None] + 1e-3 * rng.uniform(-1, 1, (4001, 1))
+    limits = JointLimits.given(("1",), velocity=1.28)
+    noisy = check_samples(Samples(("1",), time, q, noise=1e-3), limits)
+    assert noisy.verdict is Verdict.VIOLATED  # neighbours alone would allow 1.3 ± 2
+    as_if_exact = check_samples(Samples(("1",), time, q), JointLimits.given(("1",), velocity=1.6))
+    assert as_if_exact.verdict is Verdict.VIOLATED  # of the noise, which was not stated
+    loose = check_samples(
+        Samples(("1",), time, q, noise=1e-3), JointLimits.given(("1",), velocity=1.6)
+    )
+    assert loose.verdict is Verdict.UNDECIDED
+
+
+def test_stated_derivatives_are_judged_themselves():
+    time, q = np.array([0.0, 1.0, 2.0]), np.zeros((3, 1))
+    v = np.array([[0.0], [2.5], [0.0]])
+    found = check_samples(Samples(("1",), time, q, v), JointLimits.given(("1",), velocity=2.0))
+    assert (found.verdict, found.worst.value, found.worst.time) == (Verdict.VIOLATED, 2.5, 1.0)
+    rate = check_samples(Samples(("1",), time, q, v), JointLimits.given(("1",), acceleration=2.4))
+    assert abs(rate.worst.value) == pytest.approx(2.5)
+    assert check_samples(
+        Samples(("1",), time, q, v), JointLimits.given(("1",), acceleration=2.6)
+    ).worst.ratio == pytest.approx(2.5 / 2.6)
+
+
+def test_limits_are_of_the_same_joints():
+    with pytest.raises(TrajgapError, match="given for joints 1, the motion has 2; give them in"):
+        check_samples(Samples(("2",), [0.0, 1.0], [[0.0], [1.0]]), JointLimits.given(("1",), 1.0))
+
+
+def test_rows_without_derivatives_are_left_out():
+    v = np.array([[1.0], [np.nan], [3.0]])
+    samples = Samples(("1",), [0.0, 1.0, 2.0], np.zeros((3, 1)), v)
+    found = check_samples(samples, JointLimits.given(("1",), acceleration=0.9))
+    assert found.worst.value == pytest.approx(1.0)  # (3 − 1)/2
+
+
+def test_no_motion_may_pass_both_acceleration_and_deceleration():
+    time = np.linspace(0.0, 2.0, 5)
+    samples = Samples(("1",), time, 2.5 * time[:, None] ** 2)  # a = 5
+    both = JointLimits.given(("1",), acceleration=3.0, deceleration=6.0)
+    assert check_samples(samples, both).verdict is Verdict.UNDECIDED
+    less = JointLimits.given(("1",), acceleration=3.0, deceleration=4.0)
+    assert check_samples(samples, less).verdict is Verdict.VIOLATED

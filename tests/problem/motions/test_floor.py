@@ -1,0 +1,139 @@
+"""The floor between standstills, against closed forms, a linear program and ruckig."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import linprog
+from trajgap.problem.motions import (
+    Interpolation,
+    JointLimits,
+    Samples,
+    check_motion,
+    interpolated,
+    shortest,
+)
+
+INF = math.inf
+
+
+@pytest.mark.parametrize(
+    ("distance", "limits", "time"),
+    [
+        (3.0, (2.0, INF, INF), 1.5),
+        (2.0, (INF, 8.0, INF), 1.0),  # 2√(d/A)
+        (3.0, (2.0, 4.0, INF), 2.0),  # d/V + V/A
+        (0.5, (INF, INF, 2.0), 4 * (0.5 / 4) ** (1 / 3)),  # (32 d/J)^⅓
+        (10.0, (2.0, 4.0, 8.0), 10 / 2 + 2 / 4 + 4 / 8),
+        (-10.0, (2.0, 4.0, 8.0), 6.0),
+        (0.0, (1.0, 1.0, 1.0), 0.0),
+        (1.0, (0.0, 1.0, 1.0), INF),
+        (1.0, (INF, INF, INF), 0.0),
+    ],
+)
+def test_known_times(distance, limits, time):
+    assert shortest(distance, *limits) == pytest.approx(time, rel=1e-12)
+
+
+def furthest(time, velocity, acceleration, jerk, cells=400):
+    """How far rest to rest gets in a time with piecewise constant jerk, by a linear program."""
+    h = time / cells
+    to_a = np.tril(np.full((cells, cells), h))
+    to_v = np.tril(np.ones((cells, cells)), -1) @ to_a * h + np.eye(cells) * h * h / 2
+    to_v += np.tril(np.full((cells, cells), 0.0))
+    ends = np.vstack([to_a[-1], to_v[-1]])
+    lags = (np.arange(cells, 0, -1) - 0.5) * h
+    way = lags**2 / 2 * h + h**3 / 24
+    rows = np.vstack([to_a, -to_a, to_v, -to_v])
+    most = np.repeat([acceleration, acceleration, velocity, velocity], cells)
+    found = linprog(-way, rows, most, ends, [0.0, 0.0], bounds=(-jerk, jerk))
+    assert found.status == 0
+    return -found.fun
+
+
+@pytest.mark.parametrize(
+    "limits", [(2.0, 5.0, 40.0), (0.7, 5.0, 40.0), (2.0, 1.0, 40.0), (9.0, 9.0, 7.0)]
+)
+def test_a_linear_program_reaches_no_further(limits):
+    distance = 1.3
+    time = shortest(distance, *limits)
+    cells = 120
+    assert furthest(time, *limits, cells) <= distance * (1 + 1e-3)
+    assert furthest(1.03 * time, *limits, cells) >= distance
+
+
+def test_ruckig_takes_as_long():
+    ruckig = pytest.importorskip("ruckig")
+    rng = np.random.default_rng(2)
+    for _ in range(60):
+        limits = rng.uniform(0.3, 9.0, (3, 3)) * [[1.0], [3.0], [20.0]]
+        asked = ruckig.InputParameter(3)
+        asked.current_position, asked.target_position = rng.normal(size=(2, 3)).tolist()
+        asked.max_velocity, asked.max_acceleration, asked.max_jerk = limits.tolist()
+        answer = ruckig.Trajectory(3)
+        ruckig.Ruckig(3).calculate(asked, answer)
+        ways = np.subtract(asked.target_position, asked.current_position)
+        times = [shortest(d, *limits[:, j]) for j, d in enumerate(ways)]
+        assert answer.duration == pytest.approx(max(times), rel=1e-9)
+
+
+def trip(stops, hold=0.0):
+    """Rest-to-rest quintics of one second each between stops, with a pause at each."""
+    time, q = [0.0], [stops[0]]
+    for one in stops[1:]:
+        time.append(time[-1] + 1.0)
+        q.append(one)
+        if hold:
+            time.append(time[-1] + hold)
+            q.append(one)
+    zero = np.zeros((len(time), 2))
+    samples = Samples(("1", "2"), time, np.array(q), zero, zero)
+    return interpolated(samples, Interpolation.QUINTIC)
+
+
+def test_the_floor_sums_over_standstills_and_waits_nowhere():
+    limits = JointLimits.given(("1", "2"), 2.0, 8.0)
+    stops = np.array([[0.0, 1.0], [1.0, 0.5], [0.5, 2.0]])
+    floor = check_motion(trip(stops), limits).floor
+    by_hand = max(shortest(1.0, 2, 8, INF), shortest(0.5, 2, 8, INF)) + shortest(1.5, 2, 8, INF)
+    assert floor.time == pytest.approx(by_hand)
+    assert (floor.stops, floor.waiting) == (3, 0.0)
+    paused = check_motion(trip(stops, hold=0.3), limits).floor
+    assert paused.time == pytest.approx(by_hand)
+    assert paused.waiting == pytest.approx(0.6)
+    assert paused.above == pytest.approx(2.6 / by_hand - 1)
+
+
+def test_the_larger_side_counts():
+    uneven = JointLimits.given(("1", "2"), 2.0, 8.0)
+    lower = uneven.lower.copy()
+    lower[:, 1] = -4.0
+    wide = JointLimits(("1", "2"), lower, uneven.upper, uneven.deceleration)
+    stops = np.array([[0.0, 1.0], [1.0, 0.5]])
+    assert check_motion(trip(stops), wide).floor.time == pytest.approx(shortest(1.0, 4, 8, INF))
+
+
+@pytest.mark.parametrize(
+    ("v", "limits", "why"),
+    [
+        ([[0.5], [0.0]], JointLimits.given(("1",), 2.0), "starts moving"),
+        ([[0.0], [0.5]], JointLimits.given(("1",), 2.0), "ends moving"),
+        ([[0.0], [0.0]], JointLimits.given(("1",), position=(-5.0, 5.0)), "nothing is limited"),
+    ],
+)
+def test_why_there_is_no_floor(v, limits, why):
+    samples = Samples(("1",), [0.0, 1.0], [[0.0], [1.0]], v)
+    found = check_motion(interpolated(samples, Interpolation.CUBIC), limits)
+    assert found.floor is None
+    assert why in found.floor_why
+
+
+def test_acceleration_at_a_standstill_leaves_jerk_out():
+    # A cubic rest to rest has acceleration at its ends: with a limit of jerk alone its time says
+    # nothing, and the floor must not claim the profile that begins without acceleration.
+    samples = Samples(("1",), [0.0, 1.0], [[0.0], [1.0]], [[0.0], [0.0]])
+    limits = JointLimits.given(("1",), acceleration=6.0, jerk=12.0)
+    found = check_motion(interpolated(samples, Interpolation.CUBIC), limits)
+    assert found.limits == "pass"
+    assert found.floor.time == pytest.approx(shortest(1.0, INF, 6.0, INF))
+    assert found.floor.time < 1.0 < shortest(1.0, INF, 6.0, 12.0)

@@ -1,0 +1,279 @@
+"""The verdict on foreign motions against closed forms, scipy's roots and dense sampling."""
+
+import numpy as np
+import pytest
+from scipy.interpolate import BSpline, CubicSpline, PPoly, make_interp_spline
+from trajgap.problem import Limits, TrajgapError, Verdict
+from trajgap.problem.motions import (
+    Interpolation,
+    JointLimits,
+    Motion,
+    Samples,
+    as_motion,
+    check_motion,
+    interpolated,
+)
+
+NAMES = ("shoulder", "elbow", "wrist")
+WIDE = JointLimits.given(NAMES, 1e3, 1e3, 1e3, (-1e3, 1e3))
+"""Limits that nothing here reaches: every peak is then reported."""
+
+
+def random_polynomial(rng, degree, pieces=9):
+    """Unrelated polynomials on unequal pieces, starting away from 0."""
+    steps = rng.uniform(0.05, 0.9, pieces)
+    breaks = 3.0 + np.concatenate([[0.0], np.cumsum(steps)])
+    return PPoly(rng.normal(size=(degree + 1, pieces, 3)) * [1.0, 0.3, 2.0], breaks)
+
+
+def largest(polynomial, order):
+    """By scipy's own roots of the next derivative: another algorithm than ours."""
+    derived = polynomial.derivative(order)
+    found = []
+    for j in range(derived.c.shape[2]):
+        one = PPoly(derived.c[:, :, j], derived.x)
+        turns = one.derivative().roots(extrapolate=False, discontinuity=False)
+        turns = turns[np.isfinite(turns)]
+        ends = [np.polyval(one.c[:, k], h) for k, h in enumerate(np.diff(one.x))]
+        found.append(np.abs([*one(turns), *one.c[-1], *ends]).max())
+    return np.array(found)
+
+
+@pytest.mark.parametrize("degree", [1, 2, 3, 5, 7])
+def test_peaks_are_those_of_scipys_roots_and_never_below_samples(degree):
+    rng = np.random.default_rng(degree)
+    for _ in range(5):
+        polynomial = random_polynomial(rng, degree)
+        found = check_motion(Motion.of_polynomial(polynomial, NAMES), WIDE)
+        times = np.linspace(polynomial.x[0], polynomial.x[-1], 5001)
+        for order, word in enumerate(("position", "velocity", "acceleration", "jerk")):
+            peaks = [p for p in found.peaks if p.quantity == word]
+            assert [p.joint for p in peaks] == list(NAMES)
+            sizes = np.array([abs(p.value) for p in peaks])
+            np.testing.assert_allclose(sizes, largest(polynomial, order), rtol=1e-9)
+            inside = np.abs(polynomial(times, nu=order)).max(axis=0)
+            assert (sizes >= inside * (1 - 1e-12)).all()
+            for p in peaks:
+                assert p.least_ratio <= p.ratio <= p.most_ratio <= p.least_ratio + 1e-9
+
+
+def quintic(duration, way, rows, start=0.0):
+    """Rest to rest: peaks 15/8 d/T, 10/√3 d/T², 60 d/T³ (Biagiotti and Melchiorri, 2008)."""
+    s = np.linspace(0.0, 1.0, rows)
+    q = 10 * s**3 - 15 * s**4 + 6 * s**5
+    v = (30 * s**2 - 60 * s**3 + 30 * s**4) / duration
+    a = (60 * s - 180 * s**2 + 120 * s**3) / duration**2
+    return start + duration * s, np.outer(q, way), np.outer(v, way), np.outer(a, way)
+
+
+@pytest.mark.parametrize("rows", [2, 3, 150])
+def test_samples_of_a_quintic_are_that_quintic(rows):
+    duration, way = 1.7, np.array([0.8, -2.0, 0.1])
+    samples = Samples(NAMES, *quintic(duration, way, rows, start=5.0))
+    found = check_motion(interpolated(samples, Interpolation.QUINTIC), WIDE)
+    for factor, order in ((15 / 8, 1), (10 / np.sqrt(3), 2), (60.0, 3)):
+        sizes = [abs(p.value) for p in found.peaks[order::4]]
+        np.testing.assert_allclose(sizes, factor * np.abs(way) / duration**order, rtol=1e-7)
+    assert not found.jumps
+
+
+def test_the_slow_down_makes_the_motion_tight():
+    rng = np.random.default_rng(8)
+    spline = CubicSpline([0, 0.4, 1.1, 1.5, 2.2], rng.normal(size=(5, 3)), bc_type="clamped")
+    limits = JointLimits.given(NAMES, [1.0, 0.7, 2.0], 3.0, 20.0)
+    found = check_motion(as_motion(spline, NAMES), limits)
+    assert found.verdict is Verdict.VIOLATED
+    assert found.stretch > 1.2
+    slower = PPoly(
+        spline.c / found.stretch ** np.arange(3, -1, -1)[:, None, None], spline.x * found.stretch
+    )
+    again = check_motion(as_motion(slower, NAMES), limits)
+    assert again.limits is Verdict.PASS
+    assert again.worst.ratio == pytest.approx(1.0, abs=1e-9)
+    assert found.feasible_time == pytest.approx(again.total_time)
+
+
+def test_two_sides_and_absent_limits():
+    motion = Motion.of_polynomial(PPoly([[1.0, -3.0], [0.0, 2.0]], [0.0, 2.0, 2.5]))
+    free = JointLimits.given(("1",), velocity=5.0)
+    assert [p.quantity for p in check_motion(motion, free).peaks] == ["velocity"]
+    lower, upper = free.lower.copy(), free.upper.copy()
+    lower[0, 1], upper[0, 1] = -2.0, 1.5
+    found = check_motion(motion, JointLimits(("1",), lower, upper, free.deceleration))
+    (peak,) = found.peaks
+    assert (peak.value, peak.limit, peak.ratio) == (-3.0, -2.0, 1.5)
+    assert found.verdict is Verdict.VIOLATED
+
+
+def test_position_limits_are_two_sided_and_no_slow_down_repairs_them():
+    motion = Motion.of_polynomial(PPoly([[-1.0], [2.0], [0.0]], [0.0, 2.0]))  # up to 1 and back
+    inside = check_motion(motion, JointLimits.given(("1",), position=(-0.5, 1.0)))
+    assert inside.verdict is Verdict.PASS
+    beyond = check_motion(motion, JointLimits.given(("1",), position=(-0.5, 0.9)))
+    assert beyond.verdict is Verdict.VIOLATED
+    assert beyond.worst.value == pytest.approx(1.0)
+    assert beyond.worst.time == pytest.approx(1.0)
+    assert beyond.feasible_time is None
+    assert "does not move the path" in beyond.feasible_why
+
+
+def test_a_limit_of_zero_is_kept_by_standing_alone():
+    still = Motion.of_polynomial(PPoly([[0.0], [0.0], [3.0]], [0.0, 1.0]))
+    limits = JointLimits.given(("1",), 0.0, 0.0)
+    assert check_motion(still, limits).verdict is Verdict.PASS
+    moving = Motion.of_polynomial(PPoly([[1e-6], [3.0]], [0.0, 1.0]))
+    found = check_motion(moving, limits)
+    assert found.verdict is Verdict.VIOLATED
+    assert "must stand still" in found.feasible_why
+
+
+def brake(speed_up, slow_down, top=2.0, sign=1.0):
+    """Up to a speed and down to rest, with two accelerations."""
+    t1, t2 = top / speed_up, top / slow_down
+    c = [[speed_up / 2, -slow_down / 2], [0.0, top], [0.0, top * t1 / 2]]
+    return Motion.of_polynomial(PPoly(sign * np.array(c), [0.0, t1, t1 + t2]))
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_braking_may_have_a_limit_of_its_own(sign):
+    limits = JointLimits.given(("1",), acceleration=3.0, deceleration=8.0)
+    assert check_motion(brake(3.0, 8.0, sign=sign), limits).verdict is Verdict.PASS
+    hard = check_motion(brake(3.0, 8.1, sign=sign), limits)
+    assert hard.verdict is Verdict.VIOLATED
+    assert hard.worst.quantity == "deceleration"
+    assert hard.worst.value == pytest.approx(-8.1 * sign)
+    fast = check_motion(brake(3.1, 8.0, sign=sign), limits)
+    assert fast.worst.quantity == "acceleration"
+    assert fast.worst.ratio == pytest.approx(3.1 / 3.0)
+    assert fast.stretch == pytest.approx(np.sqrt(3.1 / 3.0))
+
+
+def test_braking_is_told_from_speeding_up_inside_a_piece():
+    # q = t³/6 − t²/2 brakes from v = 0 … : v = t²/2 − t, a = t − 1: speeds up until 1, brakes to 2.
+    motion = Motion.of_polynomial(PPoly([[1 / 6], [-0.5], [0.0], [0.0]], [0.0, 3.0]))
+    found = check_motion(motion, JointLimits.given(("1",), acceleration=9.0, deceleration=9.0))
+    by = {p.quantity: p for p in found.peaks}
+    assert by["deceleration"].value == pytest.approx(1.0)  # just before it turns back, at t = 2
+    assert by["deceleration"].time == pytest.approx(2.0)
+    assert by["acceleration"].value == pytest.approx(2.0)
+    assert by["acceleration"].time == pytest.approx(3.0)
+
+
+def test_jumps_are_told_with_place_and_number():
+    zigzag = Samples(("1",), [0.0, 1.0, 2.0, 4.0], [[0.0], [1.0], [0.0], [-6.0]])
+    found = check_motion(
+        interpolated(zigzag, Interpolation.LINEAR), JointLimits.given(("1",), velocity=5.0)
+    )
+    assert (found.verdict, found.limits) == (Verdict.DISCONTINUOUS, Verdict.PASS)
+    (jump,) = [one for one in found.jumps if one.quantity == "velocity"]
+    assert (jump.count, jump.time, jump.size) == (2, 1.0, -2.0)
+    assert found.feasible_time is None
+
+
+def test_a_jump_of_acceleration_counts_where_jerk_is_limited():
+    samples = Samples(("1",), [0.0, 1.0, 2.0], [[0.0], [1.0], [0.0]], [[0.0], [0.0], [1.0]])
+    motion = interpolated(samples, Interpolation.CUBIC)
+    free = JointLimits.given(("1",), acceleration=99.0)
+    assert check_motion(motion, free).verdict is Verdict.PASS
+    held = JointLimits.given(("1",), acceleration=99.0, jerk=999.0)
+    assert check_motion(motion, held).verdict is Verdict.DISCONTINUOUS
+
+
+def test_noise_makes_a_near_miss_undecided():
+    time, q, v, a = quintic(2.0, np.array([1.0]), 21)
+    limits = JointLimits.given(("1",), velocity=0.9375 * 1.0001)
+    exact = interpolated(Samples(("1",), time, q, v, a), Interpolation.QUINTIC)
+    assert check_motion(exact, limits).verdict is Verdict.PASS
+    loose = interpolated(Samples(("1",), time, q, v, a, noise=1e-3), Interpolation.QUINTIC)
+    assert check_motion(loose, limits).verdict is Verdict.UNDECIDED
+    # What noise may do is bounded: moving every second position by it stays inside.
+    moved = q + 1e-3 * (-1.0) ** np.arange(21)[:, None]
+    shaken = interpolated(Samples(("1",), time, moved, v, a), Interpolation.QUINTIC)
+    bounds, seen = check_motion(loose, WIDE_ONE), check_motion(shaken, WIDE_ONE)
+    for bound, one in zip(bounds.peaks, seen.peaks, strict=True):
+        assert bound.least_ratio - 1e-12 <= one.ratio <= bound.most_ratio + 1e-12
+
+
+WIDE_ONE = JointLimits.given(("1",), 1e3, 1e3, 1e3, (-1e3, 1e3))
+
+
+def test_a_b_spline_is_read_exactly():
+    rng = np.random.default_rng(3)
+    spline = make_interp_spline(np.linspace(1.0, 4.0, 9), rng.normal(size=(9, 3)), k=5)
+    motion = as_motion(spline, NAMES)
+    times = np.linspace(1.0, 4.0, 301)
+    for order in range(4):
+        np.testing.assert_allclose(
+            motion(times, order), spline(times, nu=order), rtol=1e-7, atol=1e-7
+        )
+    inner = BSpline(np.arange(12.0), rng.normal(size=(8, 3)), 3)  # its interval is 3 to 8
+    assert as_motion(inner, NAMES).breaks.tolist() == [3, 4, 5, 6, 7, 8]
+    assert check_motion(as_motion(inner, NAMES), WIDE).jumps == ()
+
+
+def test_symmetric_limits_imply_the_others():
+    limits = JointLimits(
+        ("1", "2"),
+        np.array([[-1.0, -2.0, -3.0, -np.inf], [-2.0, -1.0, -5.0, -7.0]]),
+        np.array([[2.0, 1.5, 4.0, np.inf], [3.0, 4.0, 5.0, 6.0]]),
+        np.array([np.inf, 4.5]),
+    )
+    plain = limits.symmetric
+    np.testing.assert_array_equal(plain.derivatives, [[1.5, 3.0, np.inf], [1.0, 4.5, 6.0]])
+    assert isinstance(plain, Limits)
+    back = JointLimits.of(plain, ("1", "2"))
+    assert (back.lower >= limits.lower).all()
+    assert (back.upper <= limits.upper).all()
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: Motion.of_polynomial(PPoly([[1.0]], [0.0, 1.0]), ("a", "b")), "2 names for 1"),
+        (lambda: Motion.of_polynomial(PPoly(np.ones((11, 1)), [0.0, 1.0])), "at most 9"),
+        (lambda: Motion.of_polynomial(PPoly([[np.inf]], [0.0, 1.0])), "not finite"),
+        (lambda: Motion.of_polynomial(PPoly([[1j]], [0.0, 1.0])), "complex"),
+        (lambda: Motion.of_polynomial(PPoly([[1.0]], [1e9, 1e9 + 1e-6])), "lost in the digits"),
+        (lambda: Samples(("a",), [0.0, 1.0, 1.0], [[1.0], [2.0], [3.0]]), "times must increase"),
+        (lambda: Samples(("a",), [0.0], [[1.0]]), "needs 2"),
+        (lambda: Samples(("a",), [0.0, 1.0], [[1.0], [np.nan]]), "joint a in sample 2"),
+        (lambda: Samples(("a",), [0.0, 1.0], [[1.0], ["x"]]), "not numbers"),
+        (lambda: Samples(("a",), [0.0, 1.0], [[1.0], [2.0]], [[1.0]]), "shape"),
+        (lambda: Samples(("a",), [0.0, 1.0], [[1.0], [2.0]], noise=-1.0), "noise"),
+        (lambda: Samples(("a", "a"), [0.0, 1.0], np.ones((2, 2))), "twice"),
+        (lambda: Samples(("a",), [0.0, np.inf], [[1.0], [2.0]]), "not finite"),
+        (lambda: check_motion(as_motion(PPoly([[1.0]], [0.0, 1.0])), WIDE), "in that order"),
+        (lambda: as_motion(object()), "no motion known"),
+        (lambda: JointLimits.given(("a",), np.nan), "NaN"),
+        (lambda: JointLimits.given(("a",), position=(2.0, 1.0)), "lies above"),
+        (lambda: JointLimits.given(("a",), deceleration=-1.0), "0 or more"),
+    ],
+)
+def test_what_is_no_motion_is_refused(make, message):
+    with pytest.raises(TrajgapError, match=message):
+        make()
+
+
+@pytest.mark.parametrize(
+    ("how", "message"),
+    [
+        ("none", "no motion"),
+        ("cubic", "sample 1 has no velocity"),
+        ("quintic", "sample 1 has no velocity"),
+        ("spline", "needs 4"),
+    ],
+)
+def test_an_interpolation_needs_its_data(how, message):
+    with pytest.raises(TrajgapError, match=message):
+        interpolated(Samples(("a",), [0.0, 1.0], [[1.0], [2.0]]), Interpolation(how))
+
+
+def test_the_spline_is_scipys():
+    rng = np.random.default_rng(4)
+    time, q = np.sort(rng.uniform(0, 5, 12)), rng.normal(size=(12, 3))
+    motion = interpolated(Samples(NAMES, time, q), Interpolation.SPLINE)
+    at = np.linspace(time[0], time[-1], 100)
+    np.testing.assert_allclose(motion(at, 2), CubicSpline(time, q)(at, 2), atol=1e-8)
+    assert not check_motion(motion, WIDE).jumps
+    with pytest.raises(TrajgapError, match="carries the noise"):
+        interpolated(Samples(NAMES, time, q, noise=1e-3), Interpolation.SPLINE)

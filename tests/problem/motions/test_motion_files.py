@@ -1,0 +1,348 @@
+"""Files with motions of every format, and one clear line for each that is none."""
+
+import json
+from itertools import pairwise
+
+import numpy as np
+import pytest
+import yaml
+from scipy.interpolate import CubicSpline, PPoly
+from trajgap.problem import CaseError
+from trajgap.problem.motions import Interpolation, Motion, interpolated, read_motion
+
+HEADER = "time,arm 1,arm 1 velocity,arm-2,arm-2 velocity\n"
+ROWS = "0,1,0,2,0\n0.5,1.5,2,1,-1\n1.25,2,0,3,0\n"
+
+
+def write(folder, name, text):
+    path = folder / name
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    return path
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("a.csv", HEADER + ROWS),
+        ("a.txt", "# exported\n\n" + (HEADER + ROWS).replace(",", ";")),
+        ("a.tsv", (HEADER + ROWS).replace(",", "\t")),
+        ("b.csv", "\ufeff" + HEADER.replace("arm 1 velocity", "vel/arm 1") + ROWS),
+        ("c.csv", "arm 1,arm-2,T,arm 1.qd,arm-2 vel\n1,2,0,0,0\n1.5,1,.5,2,-1\n2,3,1.25,0,0\n"),
+    ],
+)
+def test_tables(tmp_path, name, text):
+    read = read_motion(write(tmp_path, name, text))
+    samples = read.content
+    assert samples.joints == ("arm 1", "arm-2")
+    assert samples.time.tolist() == [0.0, 0.5, 1.25]
+    assert samples.position.tolist() == [[1.0, 2.0], [1.5, 1.0], [2.0, 3.0]]
+    assert samples.velocity.tolist() == [[0.0, 0.0], [2.0, -1.0], [0.0, 0.0]]
+    assert samples.acceleration is None
+    assert read.format == "CSV"
+
+
+def test_a_table_without_header_in_units_of_its_own(tmp_path):
+    path = write(tmp_path, "a.csv", "0 180 1000\n1 90 500\n")
+    samples = read_motion(path, ("deg", "mm"), (1.8, 2.0), ("turn", "slide")).content
+    assert samples.joints == ("turn", "slide")
+    np.testing.assert_allclose(samples.position, [[np.pi, 1.0], [np.pi / 2, 0.5]])
+    np.testing.assert_allclose(samples.margin, [np.pi / 100, 0.002])
+    assert read_motion(path).joints == ("1", "2")
+
+
+def test_parquet(tmp_path):
+    pyarrow = pytest.importorskip("pyarrow")
+    from pyarrow import parquet
+
+    columns = {"time": [0.0, 0.5], "a": [1, 2], "a velocity": [0.5, 0.25]}
+    parquet.write_table(pyarrow.table(columns), tmp_path / "a.parquet")
+    read = read_motion(tmp_path / "a.parquet")
+    assert read.format == "Parquet"
+    assert read.content.velocity.tolist() == [[0.5], [0.25]]
+    write(tmp_path, "b.parquet", b"PAR1 no")
+    with pytest.raises(CaseError, match="no Parquet table"):
+        read_motion(tmp_path / "b.parquet")
+    parquet.write_table(pyarrow.table({"time": ["x"], "a": [1]}), tmp_path / "c.parquet")
+    with pytest.raises(CaseError, match="no Parquet table"):
+        read_motion(tmp_path / "c.parquet")
+
+
+def spline():
+    rng = np.random.default_rng(6)
+    return CubicSpline([0.0, 0.3, 1.0, 1.6], rng.normal(size=(4, 2)))
+
+
+def test_polynomials_by_piece_and_as_scipy_has_them(tmp_path):
+    one = spline()
+    by_piece = {
+        "joints": ["x", "y"],
+        "breaks": one.x.tolist(),
+        "coefficients": one.c.transpose(1, 0, 2).tolist(),
+    }
+    by_power = {"x": one.x.tolist(), "c": one.c.tolist(), "joints": ["x", "y"]}
+    at = np.linspace(0.0, 1.6, 50)
+    for k, found in enumerate((by_piece, by_power)):
+        read = read_motion(write(tmp_path, f"{k}.json", json.dumps(found)))
+        assert isinstance(read.content, Motion)
+        assert read.joints == ("x", "y")
+        np.testing.assert_allclose(read.content(at), one(at), atol=1e-12)
+    degrees = read_motion(write(tmp_path, "d.json", json.dumps(by_piece)), ("deg",)).content
+    np.testing.assert_allclose(degrees(at), np.deg2rad(one(at)), atol=1e-12)
+
+
+def message(stamp):
+    point = {"positions": [0.1, 0.2], "velocities": [0.0, 0.0], "accelerations": [], "effort": []}
+    later = {**point, "positions": [0.4, 0.1], "time_from_start": stamp(1, 250_000_000)}
+    points = [{**point, "time_from_start": stamp(0, 0)}, later]
+    return {"joint_names": ["j1", "j2"], "points": points}
+
+
+STAMPS = {
+    "ROS 2": lambda s, n: {"sec": s, "nanosec": n},
+    "ROS 1": lambda s, n: {"secs": s, "nsecs": n},
+    "seconds": lambda s, n: s + n * 1e-9,
+}
+WRAPPED = {
+    "JointTrajectory": lambda m: m,
+    "FollowJointTrajectory": lambda m: {"trajectory": m, "path_tolerance": []},
+    "RobotTrajectory": lambda m: {"joint_trajectory": m},
+    "DisplayTrajectory": lambda m: {"model_id": "", "trajectory": [{"joint_trajectory": m}]},
+}
+
+
+@pytest.mark.parametrize("stamp", STAMPS.values(), ids=STAMPS)
+@pytest.mark.parametrize("wrap", WRAPPED.values(), ids=WRAPPED)
+@pytest.mark.parametrize("ending", ["json", "yaml"])
+def test_ros_messages(tmp_path, stamp, wrap, ending):
+    found = wrap(message(stamp))
+    text = json.dumps(found) if ending == "json" else yaml.safe_dump(found) + "---\n"
+    read = read_motion(write(tmp_path, f"m.{ending}", text))
+    assert read.controller
+    samples = read.content
+    assert samples.joints == ("j1", "j2")
+    assert samples.time.tolist() == [0.0, 1.25]
+    assert samples.position.tolist() == [[0.1, 0.2], [0.4, 0.1]]
+    assert samples.acceleration is None
+
+
+def controller(t, p0, v0, a0, p1, v1, a1, h):
+    """joint_trajectory_controller's formulas, of powers of time, as it prints them."""
+    if v0 is None or v1 is None:
+        return p0 + t * (p1 - p0) / h
+    if a0 is None or a1 is None:
+        c2 = (-3 * p0 + 3 * p1 - 2 * v0 * h - v1 * h) / h**2
+        c3 = (2 * p0 - 2 * p1 + v0 * h + v1 * h) / h**3
+        return p0 + v0 * t + c2 * t**2 + c3 * t**3
+    c3 = (-20 * p0 + 20 * p1 - 3 * a0 * h**2 + a1 * h**2 - 12 * v0 * h - 8 * v1 * h) / (2 * h**3)
+    c4 = (30 * p0 - 30 * p1 + 3 * a0 * h**2 - 2 * a1 * h**2 + 16 * v0 * h + 14 * v1 * h) / (
+        2 * h**4
+    )
+    c5 = (-12 * p0 + 12 * p1 - a0 * h**2 + a1 * h**2 - 6 * v0 * h - 6 * v1 * h) / (2 * h**5)
+    return p0 + v0 * t + a0 / 2 * t**2 + c3 * t**3 + c4 * t**4 + c5 * t**5
+
+
+def test_the_controllers_choice_between_each_pair(tmp_path):
+    rows = [  # time, position, velocity, acceleration
+        (0.0, 0.3, 0.0, 0.0),
+        (0.7, 1.0, 1.5, -0.5),
+        (1.0, 1.4, 0.2, None),
+        (1.9, 0.0, None, None),
+        (2.5, 0.5, 0.0, 1.0),
+    ]
+    points = [
+        {
+            "positions": [p],
+            "velocities": [] if v is None else [v],
+            "accelerations": [] if a is None else [a],
+            "time_from_start": {"sec": int(t), "nanosec": round((t - int(t)) * 1e9)},
+        }
+        for t, p, v, a in rows
+    ]
+    text = json.dumps({"joint_names": ["j"], "points": points})
+    samples = read_motion(write(tmp_path, "m.json", text)).content
+    motion = interpolated(samples, Interpolation.CONTROLLER)
+    for (t0, p0, v0, a0), (t1, p1, v1, a1) in pairwise(rows):
+        for part in (0.0, 0.2, 0.9):
+            h = t1 - t0
+            wanted = controller(part * h, p0, v0, a0, p1, v1, a1, h)
+            assert motion(t0 + part * h)[0] == pytest.approx(wanted, abs=1e-9)
+    assert motion.between.startswith("straight lines and cubic Hermite and quintic Hermite")
+
+
+def bomb(levels):
+    text = "a0: &a0 [x, x, x, x, x, x, x, x, x]\n"
+    for k in range(1, levels):
+        text += f"a{k}: &a{k} [" + ", ".join([f"*a{k - 1}"] * 9) + "]\n"
+    return text + f"joint_names: *a{levels - 1}\npoints: *a{levels - 1}\n"
+
+
+def merges(levels):
+    text = "a0: &a0 {x: 1}\n"
+    for k in range(1, levels):
+        text += f"a{k}: &a{k}\n  <<: [" + ", ".join([f"*a{k - 1}"] * 9) + "]\n"
+    return text
+
+
+FAULTS = {
+    "empty.csv": ("", "holds no rows"),
+    "comment.csv": ("# nothing\n", "holds no rows"),
+    "header.csv": ("time,a\n", "no rows of numbers"),
+    "one.csv": ("0,1\n", "a motion needs 2"),
+    "column.csv": ("0\n1\n", "has one column"),
+    "ragged.csv": ("0,1\n1,2,3\n", "line 2: 3 cells, the first line has 2"),
+    "short.csv": ("time,a,b\n0,1,2\n1,2\n", "line 3: 2 cells"),
+    "word.csv": ("time,a\n0,1\n1,fast\n", "line 3, column 2: 'fast' is no number"),
+    "comma.csv": ("time;a\n0;1\n1;2,5\n", "write a decimal point"),
+    "nan.csv": ("time,a\n0,1\n1,nan\n", "joint a in sample 2 is not finite"),
+    "inf.csv": ("time,a\n0,1\ninf,2\n", "not finite"),
+    "back.csv": ("time,a\n0,1\n1,2\n0.5,3\n", "times must increase"),
+    "same.csv": ("time,a\n0,1\n0,2\n", "times must increase"),
+    "notime.csv": ("a,b\n0,1\n1,2\n", "no column is named time"),
+    "times.csv": ("time,t\n0,1\n1,2\n", "several columns are named time"),
+    "twice.csv": ("time,a,a\n0,1,2\n1,2,3\n", "two columns are named 'a'"),
+    "partial.csv": ("time,a,b,a velocity\n0,1,2,3\n1,2,3,4\n", "no velocity of joint b"),
+    "orphan.csv": ("time,a velocity\n0,1\n1,2\n", "no position of joint a"),
+    "unnamed.csv": ("time,a,\n0,1,2\n1,2,3\n", "column 3 has no name"),
+    "binary.csv": (b"time,a\n0,\0\n", "binary"),
+    "latin.csv": (b"time,gelenk-\xe4\n0,1\n", "not UTF-8"),
+    "huge.csv": ("0,1e999\n1,2\n", "not finite"),
+    "wide.csv": (",".join(["1"] * 500) + "\n", "more than is read"),
+    "broken.json": ("{", "not valid JSON"),
+    "nan.json": ('{"x": [0, NaN], "c": []}', "holds NaN"),
+    "deep.json": ("[" * 200_000, "nested too deeply"),
+    "list.json": ("[1, 2]", "holds no trajectory"),
+    "number.json": ("7", "holds no trajectory"),
+    "ragged.json": ('{"breaks": [0, 1], "coefficients": [[[1], [1, 2]]]}', "ragged"),
+    "flat.json": ('{"breaks": [0, 1], "coefficients": [1, 2]}', "3 are needed"),
+    "pieces.json": ('{"breaks": [0, 1, 2], "coefficients": [[[1]]]}', "1 pieces for 3 breaks"),
+    "nobreaks.json": ('{"coefficients": [[[1]]]}', "x: is missing"),
+    "labels.json": ('{"breaks": [0, 1], "coefficients": [[[1]]], "joints": "ab"}', "list of names"),
+    "degree.json": (
+        json.dumps({"breaks": [0, 1], "coefficients": [[[1]] * 14]}),
+        "at most 9 is judged",
+    ),
+    "backward.json": ('{"breaks": [1, 0], "coefficients": [[[1]]]}', "increase"),
+    "names.yaml": ("joint_names: 3\npoints: []\n", "joint_names: is no list"),
+    "points.yaml": ("joint_names: [a]\npoints: [1]\n", "fewer than two"),
+    "point.yaml": ("joint_names: [a]\npoints: [1, 2]\n", "is no point"),
+    "stamp.yaml": (
+        "joint_names: [a]\npoints: [{positions: [1]}, {}]\n",
+        "time_from_start: is missing",
+    ),
+    "sec.yaml": (
+        "joint_names: [a]\npoints: [{positions: [1], time_from_start: {s: 1}}, {}]\n",
+        "has no sec",
+    ),
+    "text.yaml": (
+        "joint_names: [a]\npoints: [{positions: [x], time_from_start: 0}, {}]\n",
+        "'x' is no number",
+    ),
+    "count.yaml": (
+        "joint_names: [a, b]\npoints: [{positions: [1], time_from_start: 0}, {}]\n",
+        "1 for 2 joints",
+    ),
+    "none.yaml": (
+        "joint_names: [a]\npoints: [{positions: [], time_from_start: 0}, {}]\n",
+        "positions: is empty",
+    ),
+    "infinite.yaml": (
+        "joint_names: [a]\npoints: [{positions: [.inf], time_from_start: 0}, {}]\n",
+        "is not finite",
+    ),
+    "bomb.yaml": (bomb(12), "joint_names: is no list"),
+    "merge.yaml": (merges(12), "a merge key"),
+    "tag.yaml": ("!!python/object/apply:os.system ['true']\n", "not valid YAML"),
+    "deep.yaml": ("[" * 100_000, "nested too deeply"),
+    "indent.yaml": ("\n".join(" " * k + "a:" for k in range(3000)), "nested too deeply"),
+    "dashes.yaml": ("- " * 100_000, "nested too deeply"),
+    "tab.yaml": ("a:\n\t- b\n", "not valid YAML"),
+    "odd.yaml": ("? [a]\n: b\n", "not valid YAML"),
+    "long.yaml": ("a: " + "9" * 10_000, "."),
+    "latin.yaml": (b"a: \xe4\n", "not UTF-8"),
+    "control.yaml": ("a: \x07\n", "not valid YAML"),
+}
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_one_clear_line(tmp_path, name):
+    text, wanted = FAULTS[name]
+    path = write(tmp_path, name, text)
+    with pytest.raises(CaseError) as caught:
+        read_motion(path)
+    said = str(caught.value)
+    assert said.startswith(str(path))
+    assert wanted in said
+    assert "\n" not in said
+    assert len(said) < 600
+
+
+@pytest.mark.parametrize("ending", ["csv", "json", "yaml", "parquet", "bag"])
+def test_what_is_no_file(tmp_path, ending):
+    import os
+
+    path = tmp_path / f"x.{ending}"
+    with pytest.raises(CaseError, match="no such file"):
+        read_motion(path)
+    os.mkfifo(path)
+    with pytest.raises(CaseError, match="not a regular file"):
+        read_motion(path)
+
+
+def test_units_and_noise_are_checked(tmp_path):
+    path = write(tmp_path, "a.csv", "0,1,2\n1,2,3\n")
+    ros = write(tmp_path, "m.json", json.dumps(message(STAMPS["ROS 2"])))
+    poly = write(tmp_path, "p.json", '{"breaks": [0, 1], "coefficients": [[[1]]]}')
+    for given, wanted in (
+        ((path, ("turn",)), "--units: 'turn' is unknown"),
+        ((path, ("deg", "deg", "mm")), "3 units for 2 joints"),
+        ((path, ("deg",), (1.0, 2.0, 3.0)), "3 numbers for 2 joints"),
+        ((path, ("deg",), (-1.0,)), "noise"),
+        ((ros, ("deg",)), "in rad and m"),
+        ((poly, ("deg",), (0.1,)), "is of samples"),
+    ):
+        with pytest.raises(CaseError, match=wanted):
+            read_motion(*given)
+
+
+def test_a_bag_needs_its_library_or_is_read(tmp_path):
+    pytest.importorskip("rosbags")
+    from rosbags.rosbag2 import Writer
+    from rosbags.typesys import Stores, get_typestore
+
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    kind = "trajectory_msgs/msg/JointTrajectory"
+    types = store.types
+    time = types["builtin_interfaces/msg/Time"](0, 0)
+    points = [
+        types["trajectory_msgs/msg/JointTrajectoryPoint"](
+            positions=np.array([0.5 * k, 1.0]),
+            velocities=np.zeros(2),
+            accelerations=np.zeros(0),
+            effort=np.zeros(0),
+            time_from_start=types["builtin_interfaces/msg/Duration"](k, 500_000_000),
+        )
+        for k in range(3)
+    ]
+    header = types["std_msgs/msg/Header"](time, "")
+    sent = types[kind](header, ["j1", "j2"], points)
+    with Writer(tmp_path / "bag", version=9) as writer:
+        connection = writer.add_connection("/plan", kind, typestore=store)
+        writer.write(connection, 1, store.serialize_cdr(sent, kind))
+    samples = read_motion(tmp_path / "bag").content
+    assert samples.joints == ("j1", "j2")
+    assert samples.time.tolist() == [0.5, 1.5, 2.5]
+    assert samples.position[:, 0].tolist() == [0.0, 0.5, 1.0]
+    with pytest.raises(CaseError, match="no topic with a trajectory; topics: /plan"):
+        read_motion(tmp_path / "bag", topic="/other")
+    for one in (tmp_path / "bag").glob("*.db3"):
+        one.write_bytes(b"not a data base")
+    with pytest.raises(CaseError, match="no readable bag"):
+        read_motion(tmp_path / "bag")
+
+
+def test_a_polynomial_file_is_no_more_than_it_says(tmp_path):
+    found = {"breaks": [0, 2], "coefficients": [[[1, 2]] * 3], "units": {"position": "deg"}}
+    read = read_motion(write(tmp_path, "p.json", json.dumps(found)))
+    assert read.units == ("deg", "deg")
+    wanted = PPoly(np.array([[[1.0, 2.0]]] * 3), [0.0, 2.0])
+    np.testing.assert_allclose(read.content(1.5), np.deg2rad(wanted(1.5)))

@@ -1,0 +1,143 @@
+"""What is written is read back as the same motion, in every format."""
+
+import json
+
+import numpy as np
+import pytest
+import yaml
+from scipy.interpolate import CubicSpline
+from trajgap.nlp import Solution, Status
+from trajgap.problem import (
+    Limits,
+    Problem,
+    TrajgapError,
+    check,
+    fit,
+    piecewise,
+    three_five_three,
+    uniform_cubic_b_spline,
+)
+from trajgap.problem.motions import (
+    JointLimits,
+    MotionForm,
+    as_motion,
+    check_motion,
+    csv_text,
+    motion_text,
+    read_back,
+    sampled,
+)
+
+WAYPOINTS = np.array([[0.1, -2.0], [0.9, -1.2], [1.4, 0.4], [0.7, 1.0]])
+H = np.array([0.71, 1.037, 0.553])
+NAMES = ("j1", "j2")
+
+
+def motion():
+    return fit(three_five_three(), WAYPOINTS, H)
+
+
+@pytest.mark.parametrize("form", MotionForm)
+@pytest.mark.parametrize("step", [0.01, 0.0123, 0.7])
+def test_the_motion_comes_back(form, step):
+    truth = motion()
+    back = read_back(motion_text(truth, form, step, NAMES), form, "x")
+    assert back.joints == NAMES
+    assert back.total_time == pytest.approx(truth.total_time, abs=2e-9)
+    at = np.linspace(0.0, truth.total_time * (1 - 1e-9), 400)
+    exact = form is not MotionForm.CSV
+    for order, loose in ((0, 1e-7), (1, 1e-7), (2, 1e-5)):
+        error = np.abs(back(at, order) - truth(at, order)).max()
+        # Rows between breaks alone round the corners of acceleration at the breaks.
+        assert error < (loose if exact else 2.0 * step ** (3 - order) * 60)
+
+
+@pytest.mark.parametrize("form", [MotionForm.ROS, MotionForm.PPOLY])
+def test_the_verdict_is_that_of_the_case(form):
+    problem = Problem(WAYPOINTS, Limits(3.0, 9.0, 90.0), three_five_three(), joints=NAMES)
+    own = check(problem, H)
+    back = read_back(motion_text(motion(), form, 0.002, NAMES), form, "x")
+    found = check_motion(back, JointLimits.of(problem.limits, NAMES))
+    assert found.limits == own.verdict
+    peaks = {(p.joint, p.quantity): abs(p.value) for p in found.peaks}
+    for p in own.peaks:
+        if p.quantity in ("velocity", "acceleration"):
+            assert peaks[p.joint, p.quantity] == pytest.approx(abs(p.value), rel=1e-6)
+    assert found.stretch == pytest.approx(max(1.0, own.stretch), rel=1e-6)
+
+
+def test_rows_are_a_grid_with_the_end():
+    rows = sampled(motion(), 0.01, NAMES)
+    assert rows.time[0] == 0.0
+    assert rows.time[-1] == motion().total_time
+    np.testing.assert_allclose(np.diff(rows.time)[:-1], 0.01, rtol=1e-9)
+    assert 0.003 <= np.diff(rows.time)[-1] <= 0.013
+    np.testing.assert_array_equal(rows.velocity, motion()(rows.time, 1))
+    every = sampled(motion(), 0.01, NAMES, breaks=True)
+    for one in motion().breaks:
+        assert np.abs(every.time - one).min() < 1e-15
+    assert np.diff(every.time).min() >= 0.003
+
+
+def test_times_of_ros_are_whole_nanoseconds():
+    message = json.loads(motion_text(motion(), MotionForm.ROS, 0.013, NAMES))
+    assert message == yaml.safe_load(json.dumps(message))
+    last = message["points"][-1]
+    stamp = last["time_from_start"]["sec"] + 1e-9 * last["time_from_start"]["nanosec"]
+    assert stamp == pytest.approx(motion().total_time, abs=1.1e-9)
+    assert last["positions"] == pytest.approx([0.7, 1.0], abs=1e-12)
+    assert max(map(abs, last["velocities"])) < 1e-12
+    for point in message["points"]:
+        assert set(point) == {
+            "positions", "velocities", "accelerations", "effort", "time_from_start",
+        }  # fmt: skip
+
+
+def test_a_motion_that_starts_later_is_written_from_0():
+    later = as_motion(CubicSpline([5.0, 6.0, 7.5, 8.0], np.array([[0.0], [1.0], [2.0], [0.0]])))
+    rows = sampled(later, 0.1)
+    assert (rows.time[0], rows.time[-1]) == (0.0, 3.0)
+    np.testing.assert_allclose(rows.position, later(5.0 + rows.time))
+
+
+def test_a_solution_gives_its_motion():
+    problem = Problem(WAYPOINTS, Limits(3.0, 9.0), three_five_three(), joints=NAMES)
+    answer = Solution(problem, Status.OPTIMAL, durations=H)
+    np.testing.assert_array_equal(answer.trajectory.breaks, motion().breaks)
+    rows = answer.sample(0.05)
+    assert rows.joints == NAMES
+    np.testing.assert_array_equal(rows.position, motion()(rows.time))
+    nothing = Solution(problem, Status.INFEASIBLE, "the reason")
+    for ask in (lambda: nothing.trajectory, lambda: nothing.sample(0.1)):
+        with pytest.raises(TrajgapError, match="no motion: infeasible, the reason"):
+            ask()
+
+
+def test_a_curve_on_a_clock_of_its_own_is_sampled_but_is_no_polynomial():
+    curve = uniform_cubic_b_spline(4, "timed")
+    clocked = fit(curve, WAYPOINTS, [0.8, 1.1, 0.9])
+    rows = sampled(clocked, 0.01)
+    np.testing.assert_allclose(rows.position[-1], WAYPOINTS[-1], atol=1e-9)
+    with pytest.raises(TrajgapError, match="no polynomials in time"):
+        motion_text(clocked, MotionForm.PPOLY, 0.01)
+
+
+@pytest.mark.parametrize("step", [0.0, -1.0, np.nan, np.inf, 1e-12])
+def test_a_step_is_a_time(step):
+    with pytest.raises(TrajgapError, match="step: "):
+        sampled(motion(), step)
+
+
+def test_a_name_with_a_comma_is_no_column():
+    with pytest.raises(TrajgapError, match="holds a separator"):
+        csv_text(sampled(motion(), 0.1, ("a,b", "c")))
+
+
+def test_free_derivatives_are_part_of_the_motion():
+    curve = piecewise((5, 5))
+    nodal = np.array([[0.4, -0.3], [0.2, 0.1]])
+    assert curve.free == 2
+    problem = Problem(WAYPOINTS[:3], Limits(3.0, 9.0), curve, joints=NAMES)
+    answer = Solution(problem, Status.FEASIBLE, durations=H[:2], nodal=nodal)
+    truth = fit(curve, WAYPOINTS[:3], H[:2], nodal)
+    np.testing.assert_array_equal(answer.sample(0.1).velocity, truth(answer.sample(0.1).time, 1))

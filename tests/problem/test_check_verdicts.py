@@ -1,0 +1,363 @@
+"""Verdicts of the checker: tolerance, jumps, what has no repair, inputs that are refused."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from support import exact_route
+from support.checked import one_joint, table
+from support.samples import FREE, posed
+from trajgap.problem import (
+    QUANTITIES,
+    Check,
+    Interpolant,
+    Limits,
+    Problem,
+    TrajgapError,
+    Verdict,
+    check,
+    cubic_spline,
+    cubic_spline_virtual,
+    evaluate,
+    extrema,
+    fit,
+    piecewise,
+    quintic_spline,
+    rest_to_rest,
+    three_five_three,
+)
+
+# --- verdicts ------------------------------------------------------------------------------------
+
+
+def test_tolerance_decides() -> None:
+    problem = one_joint([0.2, 1.2], rest_to_rest(1, 3), velocity=1.5)
+    for factor, verdict in (
+        (1.0, Verdict.PASS),
+        (1 + 2e-9, Verdict.PASS),
+        (1 - 0.9e-9, Verdict.PASS),
+        (1 - 1.1e-9, Verdict.VIOLATED),
+        (0.5, Verdict.VIOLATED),
+    ):
+        assert check(problem, [factor]).verdict is verdict
+    assert check(problem, [1 - 1e-4], tolerance=1e-3).verdict is Verdict.PASS
+    assert check(problem, [1 - 1e-12], tolerance=0.0).verdict is Verdict.VIOLATED
+    assert check(problem, [1.0], tolerance=0.0).verdict is Verdict.UNDECIDED
+    # what is violated stays violated, whatever is undecided beside it
+    pair = Problem([[0.2, 0.2], [1.4, 1.2]], Limits(1.5), rest_to_rest(1, 3))
+    assert check(pair, [1.0], tolerance=0.0).verdict is Verdict.VIOLATED
+
+
+def test_rounding_that_hides_the_limit_is_undecided() -> None:
+    # Near 2 : 3 this system is singular; 1e-12 from there its coefficients have four digits.
+    quartics = Interpolant((4, 4), (3,), (((3, 0.0),), ((2, 0.0),), ((1, 0.0),)))
+    h = [2.0, 3.0 * (1 + 1e-12)]
+    peak = check(one_joint([0.3, 1.1, -0.4], quartics, velocity=1.0), h).peaks[0]
+    assert peak.error > 1e-6 * abs(peak.value)
+    for factor, verdict in (
+        (1.0, Verdict.UNDECIDED),
+        (0.5, Verdict.VIOLATED),
+        (2.0, Verdict.PASS),
+    ):
+        problem = one_joint([0.3, 1.1, -0.4], quartics, velocity=factor * abs(peak.value))
+        assert check(problem, h).verdict is verdict
+
+
+def test_velocity_jump_is_discontinuous() -> None:
+    lines = piecewise((1, 1, 1), 0, ())
+    problem = one_joint([0.3, 1.0, 0.6, 0.8], lines, velocity=5.0, acceleration=7.0)
+    result = check(problem, [0.5, 0.4, 1.0])
+    assert result.verdict is Verdict.DISCONTINUOUS
+    assert [(j.order, j.break_index, j.joint) for j in result.jumps] == [(1, 1, "1"), (1, 2, "1")]
+    # speeds 1.4, −1.0, 0.2
+    np.testing.assert_allclose([j.size for j in result.jumps], [-2.4, 1.2], rtol=1e-12)
+    np.testing.assert_allclose([j.time for j in result.jumps], [0.5, 0.9], rtol=1e-12)
+    assert result.feasible_time is result.tight_time is None
+    assert result.feasible_why == "the motion jumps at a break; stretching does not repair that"
+    assert result.tight_why == result.feasible_why
+    # a limit that is exceeded is said first
+    slow = one_joint([0.3, 1.0, 0.6, 0.8], lines, velocity=1.0)
+    assert check(slow, [0.5, 0.4, 1.0]).verdict is Verdict.VIOLATED
+    # equal slopes: no jump
+    straight = one_joint([0.3, 0.5, 0.9, 1.0], lines, velocity=5.0)
+    assert check(straight, [0.2, 0.4, 0.1]).verdict is Verdict.PASS
+
+
+def test_acceleration_jump_counts_where_jerk_is_limited() -> None:
+    rest = rest_to_rest(2, 3)
+    free = Limits([5, 5], [20, 20])
+    limited = Limits([5, 5], [20, 20], [np.inf, 900])
+    waypoints = np.array([[0.1, 0.4], [0.5, 1.0], [0.3, 1.9]])
+    result = check(Problem(waypoints, free, rest), [0.8, 0.9])
+    assert result.verdict is Verdict.PASS
+    assert {(j.order, j.joint) for j in result.jumps} == {(2, "1"), (2, "2")}
+    assert check(Problem(waypoints, limited, rest), [0.8, 0.9]).verdict is Verdict.DISCONTINUOUS
+    still = waypoints.copy()
+    still[:, 1] = 0.4
+    assert check(Problem(still, limited, rest), [0.8, 0.9]).verdict is Verdict.PASS
+
+
+def test_joint_that_must_not_move() -> None:
+    for interpolant in (three_five_three(), cubic_spline(3), rest_to_rest(3, 5)):
+        q = np.array([[0.3, 61.7], [0.9, 61.7], [0.4, 61.7], [-0.2, 61.7]])
+        limits = Limits([9, 0], [90, 0], [900, 0])
+        still = Problem(q, limits, interpolant)
+        result = check(still, [1.0, 1.3, 0.8])
+        assert result.verdict in (Verdict.PASS, Verdict.DISCONTINUOUS)
+        assert not table(result, still.joints)[1].any()
+        assert not evaluate(still, [[1.0, 1.3, 0.8]]).ratios[0, 1].any()
+        moving = Problem(q[:, ::-1], limits, interpolant)
+        result = check(moving, [1.0, 1.3, 0.8])
+        assert result.verdict is Verdict.VIOLATED
+        assert np.isinf(result.stretch)
+        assert np.isinf(evaluate(moving, [[1.0, 1.3, 0.8]]).stretch[0])
+        if not any(j.order < 2 for j in result.jumps) and interpolant.continuity[0] > 1:
+            assert result.feasible_time is None
+            assert result.feasible_why == "a joint with limit 0 moves; no stretch repairs that"
+
+
+def test_at_rest_between_virtual_waypoints() -> None:
+    problem = Problem(
+        np.array([[0.3, 61.7], [0.9, 61.7], [0.4, 61.7]]),
+        Limits([9, 0], [90, 0], [900, 0]),
+        cubic_spline_virtual(3),
+    )
+    h = [0.4, 0.9, 1.3, 0.7]
+    assert not evaluate(problem, [h]).ratios[0, 1].any()
+    assert check(problem, h).verdict is Verdict.PASS
+
+
+def test_nothing_limited() -> None:
+    problem, h = posed(three_five_three(), 1, limits=Limits(joints=3))
+    result = check(problem, h)
+    assert result.verdict is Verdict.PASS
+    assert result.worst is None
+    assert (result.peaks, result.stretch, result.max_violation) == ((), 0.0, 0.0)
+    assert result.feasible_time == pytest.approx(h.sum())
+    assert result.tight_time is None
+    assert result.tight_why == "nothing moves or nothing is limited; the total time can shrink to 0"
+    assert not evaluate(problem, [h]).ratios.any()
+    assert "tight time      none: nothing moves" in str(result)
+
+
+def test_nothing_moves() -> None:
+    problem = Problem(np.full((4, 2), 0.7), Limits(1, 2, 3, joints=2), three_five_three())
+    result = check(problem, [1.0, 1.0, 1.0])
+    assert result.verdict is Verdict.PASS
+    assert result.tight_why == "nothing moves or nothing is limited; the total time can shrink to 0"
+    assert not evaluate(problem, [[0.1, 0.2, 0.3]]).ratios.any()
+
+
+def test_repeated_waypoints() -> None:
+    q = np.array([[0.3, 1.0], [0.9, 1.4], [0.9, 1.4], [-0.2, 0.8]])
+    problem = Problem(q, Limits(2, 6, joints=2), three_five_three())
+    result = check(problem, [0.9, 0.4, 1.1])
+    for p in result.peaks:
+        j, order = problem.joints.index(str(p.joint)), QUANTITIES.index(p.quantity) + 1
+        pieces = exact_route.fitted(problem.curve, q[:, j], [0.9, 0.4, 1.1])
+        truth = float(exact_route.peak(pieces, [0.9, 0.4, 1.1], order))
+        assert abs(p.value) == pytest.approx(truth, rel=1e-12)
+    # rest-to-rest stands still between equal way-points
+    rest = Problem(q, Limits(2, 6, joints=2), rest_to_rest(3, 5))
+    assert {p.segment for p in check(rest, [0.9, 1e-3, 1.1]).peaks} <= {0, 2}
+
+
+def test_one_segment() -> None:
+    problem = one_joint([0.4, -0.6], quintic_spline(1), velocity=1.875, acceleration=20.0)
+    # minimum-jerk: |v| = 15/8 d/T, |a| = 10/√3 d/T²
+    result = check(problem, 1.0)
+    np.testing.assert_allclose(
+        np.abs(table(result, ("1",), "value")[0, :2]), [1.875, 10 / np.sqrt(3)], rtol=1e-12
+    )
+    assert result.stretch == pytest.approx(1.0, abs=1e-13)
+
+
+# --- repairs and their reasons -------------------------------------------------------------------
+
+
+def test_prescribed_velocity_has_no_repair() -> None:
+    problem = one_joint([0.2, 0.9, 0.5], cubic_spline(2, ((1, 0.25),)), velocity=1.0)
+    broken = check(problem, [0.3, 0.3])
+    assert broken.verdict is Verdict.VIOLATED
+    assert broken.feasible_time is broken.tight_time is None
+    assert broken.feasible_why == "a prescribed end derivative is not 0; stretching would change it"
+    kept = check(problem, [2.0, 2.0])
+    assert kept.verdict is Verdict.PASS
+    assert kept.feasible_time == pytest.approx(4.0)
+    assert kept.tight_time is None
+
+
+def test_position_limits() -> None:
+    # q overshoots its way-points: a clamped cubic with a turning point inside
+    q = np.array([[0.2], [1.0], [0.9]])
+    wide = Problem(q, Limits(9, position_lower=0.0, position_upper=1.2), cubic_spline(2))
+    result = check(wide, [1.0, 0.5])
+    top = next(p for p in result.peaks if p.quantity == "position" and p.limit == 1.2)
+    pieces = exact_route.fitted(wide.curve, q[:, 0], [1.0, 0.5])
+    peak = float(exact_route.peak(pieces, [1.0, 0.5], 0))
+    assert top.value == pytest.approx(peak, rel=1e-13)
+    assert 1.0 < peak < 1.2
+    assert top.ratio == pytest.approx(1 + (peak - 1.2) / 0.6, rel=1e-12)
+    assert result.verdict is Verdict.PASS
+    assert result.feasible_time == pytest.approx(1.5)
+    low = next(p for p in result.peaks if p.quantity == "position" and p.limit == 0.0)
+    assert low.value == pytest.approx(0.2)
+    tight = Problem(q, Limits(9, position_lower=0.0, position_upper=1.0), cubic_spline(2))
+    broken = check(tight, [1.0, 0.5])
+    assert broken.verdict is Verdict.VIOLATED
+    assert broken.worst is not None
+    assert (broken.worst.quantity, broken.worst.limit) == ("position", 1.0)
+    assert broken.feasible_time is broken.tight_time is None
+    assert broken.feasible_why == "a position limit is exceeded; stretching does not move the path"
+    one_sided = Problem(q, Limits(9, position_lower=0.21), cubic_spline(2))
+    assert check(one_sided, [1.0, 0.5]).verdict is Verdict.VIOLATED
+    # the derivative limits alone make c*
+    assert broken.stretch == pytest.approx(result.stretch)
+
+
+def test_joint_fixed_in_place() -> None:
+    limits = Limits(9, position_lower=[-9, 0.7], position_upper=[9, 0.7])
+    q = np.array([[0.2, 0.7], [1.0, 0.7], [0.9, 0.7]])
+    assert check(Problem(q, limits, cubic_spline(2)), [1.0, 1.0]).verdict is Verdict.PASS
+    moved = q + np.array([[0, 0], [0, 1e-3], [0, 0]])
+    assert check(Problem(moved, limits, cubic_spline(2)), [1.0, 1.0]).verdict is Verdict.VIOLATED
+
+
+def test_position_within_one_ulp_of_its_limit_is_undecided() -> None:
+    bump = Interpolant((3,), (), (((1, 1e-8),), ((1, 0.0),)))
+    q = np.array([[300.0], [300.0]])
+    top = max(e.value for e in extrema(fit(bump, q, [1.0]), 0, 0))
+    assert top > 300.0
+    limits = Limits(9, position_lower=300.0 - 1e-8, position_upper=np.nextafter(top, 0.0), joints=1)
+    result = check(Problem(q, limits, bump), [1.0])
+    assert result.worst is not None
+    assert result.worst.ratio > 1 + 1e-9
+    assert result.verdict is Verdict.UNDECIDED
+
+
+def test_duration_bounds() -> None:
+    problem, h = posed(three_five_three(), 3)
+    c = check(problem, h).stretch
+    tight = h * c
+
+    def judged(
+        lower: np.ndarray | float, upper: np.ndarray | float, at: np.ndarray = tight
+    ) -> Check:
+        return check(dataclasses.replace(problem, duration_lower=lower, duration_upper=upper), at)
+
+    assert judged(0.0, np.inf).verdict is Verdict.PASS
+    # exactly at a bound is inside, and not the worst peak
+    at_bound = judged(tight, tight)
+    assert at_bound.verdict is Verdict.PASS
+    assert at_bound.worst is not None
+    assert at_bound.worst.quantity in QUANTITIES
+    slow = judged(2 * tight, 2 * tight, 2 * tight)
+    assert slow.worst is not None
+    assert slow.worst.quantity in QUANTITIES
+    assert slow.worst.ratio < 0.6
+    short = judged(tight * [1, 1.25, 1], np.inf)
+    assert short.verdict is Verdict.VIOLATED
+    assert short.worst is not None
+    assert (short.worst.quantity, short.worst.segment, short.worst.joint) == ("duration", 1, None)
+    assert short.worst.ratio == pytest.approx(1.25)
+    assert short.worst.time is None
+    assert "segment 2 duration" in str(short)
+    assert short.feasible_why == "a stretched duration falls below its lower bound"
+    long = judged(0.0, tight * [1, 1, 0.5])
+    assert long.worst is not None
+    assert (long.worst.segment, long.worst.ratio) == (2, pytest.approx(2.0))
+    assert long.feasible_why == "a stretched duration exceeds its upper bound"
+    # too fast, and the repair would be too slow
+    half = judged(0.0, 0.8 * tight.max(), 0.5 * tight)
+    assert half.verdict is Verdict.VIOLATED
+    assert half.feasible_time is None
+    assert half.feasible_why == "a stretched duration exceeds its upper bound"
+    # feasible, but the free rescaling would be too fast
+    slow = judged(1.5 * tight, np.inf, 2.0 * tight)
+    assert slow.verdict is Verdict.PASS
+    assert slow.feasible_time == pytest.approx(2 * tight.sum())
+    assert slow.tight_time is None
+    assert slow.tight_why == "a stretched duration falls below its lower bound"
+
+
+def test_free_derivatives_are_taken_as_given() -> None:
+    quintics = FREE["5-5-5 C2"]
+    problem, h = posed(quintics, 12, joints=1)
+    nodal = np.array([[0.4], [-0.3], [1.1], [0.7]])
+    given_values = Interpolant(
+        (5, 5, 5),
+        (2, 2),
+        (
+            ((1, 0.0), (2, 0.0)),
+            ((1, 0.4), (2, 1.1)),
+            ((1, -0.3), (2, 0.7)),
+            ((1, 0.0), (2, 0.0)),
+        ),
+    )
+    other = Problem(problem.waypoints, problem.limits, given_values)
+    np.testing.assert_allclose(
+        table(check(problem, h, nodal), ("1",)), table(check(other, h), ("1",)), rtol=1e-12
+    )
+    np.testing.assert_allclose(
+        evaluate(problem, [h], nodal).ratios, evaluate(other, [h]).ratios, rtol=1e-12
+    )
+    with pytest.raises(TrajgapError, match="give nodal derivatives of shape"):
+        check(problem, h)
+
+
+def test_summary_reads_on_one_screen() -> None:
+    problem = one_joint([1.2, 1.9], rest_to_rest(1, 3), velocity=2.0)
+    text = str(check(problem, [0.4]))
+    assert text.splitlines() == [
+        "violated (for all t, relative tolerance 1e-09)",
+        "total time      0.400000 s",
+        "worst           joint 1 velocity 2.625 against 2 (ratio 1.312500000) at t = 0.200000 s",
+        "feasible time   0.525000 s",
+        "tight time      0.525000 s",
+    ]
+
+
+def test_check_refuses_durations() -> None:
+    problem, _ = posed(three_five_three(), 3)
+    for wrong, message in (
+        ([1.0, 1.0], r"durations: expected 3 \(one per segment\), got 2"),
+        ([1.0, -1.0, 1.0], "must all be positive and finite"),
+        ("x", "durations: not numbers"),
+    ):
+        with pytest.raises(TrajgapError, match=message):
+            check(problem, wrong)
+
+
+def test_a_reachable_total_holds_for_every_waypoint_of_the_box() -> None:
+    from trajgap.problem import reachable_total
+
+    rng = np.random.default_rng(11)
+    q = np.array([[0.2, -1.0], [0.9, 0.3], [0.4, 1.1], [1.3, 0.6]])
+    limits = Limits([1.5, 2.0], [4.0, 6.0], [60.0, 90.0])
+    h = np.array([0.8, 0.9, 1.1])
+    for interpolant in (three_five_three(), quintic_spline(3)):
+        problem = Problem(q, limits, interpolant)
+        total = reachable_total(problem, h, q - 0.03, q + 0.05)
+        assert total is not None
+        stretched = h * total / h.sum()
+        for _ in range(300):
+            other = Problem(q + rng.uniform(-0.03, 0.05, q.shape), limits, interpolant)
+            assert check(other, stretched).verdict is Verdict.PASS
+        exact = reachable_total(problem, h, q, q)
+        assert exact == pytest.approx(check(problem, h).feasible_time, rel=1e-8)
+    bounded = Problem(q, limits, three_five_three(), 0.0, 0.5)
+    assert reachable_total(bounded, h, q, q) is None
+    ranged = Problem(q, Limits(1.5, 4.0, np.inf, -2.0, 2.0, joints=2), three_five_three())
+    assert reachable_total(ranged, h, q, q) is None
+
+
+def test_a_still_segment_of_any_length_does_not_blur_the_peak_of_another() -> None:
+    """Errors grow as 1/h³: with a still segment of 1e-5 s they once hid a limit that is met."""
+    q = np.array([[0.10379], [-0.035097], [-0.035097], [0.009476]])
+    problem = Problem(q, Limits(jerk=2813.87), rest_to_rest(3, 5))
+    h = np.array([0.2, 1e-5, 0.2])
+    h[[0, 2]] *= check(problem, h).stretch
+    verdict = check(problem, h)
+    assert verdict.verdict is Verdict.PASS
+    assert verdict.worst.error < 1e-12 * verdict.worst.limit
+    assert check(problem, [h[0] * (1 - 1e-8), *h[1:]]).verdict is Verdict.VIOLATED

@@ -1,0 +1,113 @@
+"""Optimisers that behave, and some that do everything wrong; found as ``support.optimizers:…``."""
+
+from __future__ import annotations
+
+import os
+import random
+import signal
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+
+def draws(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
+    """Uniform draws, ten at a time."""
+    for _ in range(0, budget, 10):
+        fun(rng.uniform(bounds[:, 0], bounds[:, 1], (10, len(bounds))))
+
+
+def draws_globally(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
+    """Uniform draws from the global generators of numpy and Python."""
+    for _ in range(budget):
+        share = (np.random.random(len(bounds)) + random.random()) / 2  # noqa: NPY002
+        fun(bounds[:, 0] + share * (bounds[:, 1] - bounds[:, 0]))
+
+
+def raises(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
+    fun(bounds.mean(axis=1))
+    raise ZeroDivisionError("one\nover nothing" + "!" * 1000)
+
+
+def exits(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
+    sys.exit(7)
+
+
+def returns_nan(fun: Any, bounds: Any, budget: int, rng: Any) -> Any:
+    fun(bounds.mean(axis=1))
+    return np.full(len(bounds), np.nan)
+
+
+def asks_nan(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
+    fun(np.full(len(bounds), np.nan))
+
+
+def leaves_bounds(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
+    fun(bounds[:, 1] * 2)
+
+
+def overspends(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
+    while True:
+        fun(rng.uniform(bounds[:, 0], bounds[:, 1]))
+
+
+def swallows(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
+    """Goes on after its budget is spent, five times."""
+    spent = 0
+    while spent < 5:
+        try:
+            fun(rng.uniform(bounds[:, 0], bounds[:, 1]))
+        except BaseException:
+            spent += 1
+
+
+def judges_nothing(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
+    pass
+
+
+def warns(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
+    np.log(np.array([-1.0]))
+    fun(bounds.mean(axis=1))
+
+
+def prints(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
+    """Writes to the streams by which its process answers, and reads from the one that asks."""
+    print("noise", flush=True)
+    os.write(1, b"noise")
+    sys.stdin.read()
+    fun(bounds.mean(axis=1))
+
+
+def sleeps(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
+    time.sleep(3600)
+
+
+def hangs(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
+    """Catches whatever is raised to end it."""
+    while True:
+        try:
+            time.sleep(3600)
+        except BaseException:
+            continue
+
+
+def dies(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
+    fun(bounds.mean(axis=1))
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def dies_once(fun: Any, bounds: Any, budget: int, rng: Any, mark: str) -> None:
+    """The first process dies, and leaves a mark behind by which the next one knows."""
+    if not Path(mark).exists():
+        Path(mark).touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    draws(fun, bounds, budget, rng)
+
+
+def dawdles(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
+    """Takes a moment before every tenth of its budget."""
+    for _ in range(10):
+        time.sleep(0.01)
+        fun(rng.uniform(bounds[:, 0], bounds[:, 1], (max(1, budget // 10), len(bounds))))
