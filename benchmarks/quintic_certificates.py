@@ -1,8 +1,8 @@
 """Gap of the certified interval against boxes and seconds on the twenty C4 quintic problems.
 
 ``python benchmarks/quintic_certificates.py [--gap G] [--seconds S] [--every N] [--first F]
-[--verify]``: one line per problem and complete stage. Boxes are cumulative; seconds are of the
-processor, of one core, with the time on the clock behind them.
+[--verify] [--workers N]``: one line per problem and complete stage. Boxes are cumulative; seconds are of the
+processor, with the time on the clock behind them.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from trajgap.problem import Problem
 from trajgap.verify import verify_certificate
 
 
-def line(problem: Problem, gap: float, seconds: float, check: bool) -> None:
+def line(problem: Problem, gap: float, seconds: float, check: bool, workers: int) -> None:
     """Certify one problem and print what each stage reached."""
     began, clock = time.process_time(), time.perf_counter()
     stages: list[tuple[float, int, float, float]] = []
@@ -32,7 +32,7 @@ def line(problem: Problem, gap: float, seconds: float, check: bool) -> None:
             stages.append((progress.gap, progress.nodes, *spent))
         last = progress
 
-    found = certify(problem, gap=gap, seconds=seconds, report=report)
+    found = certify(problem, gap=gap, seconds=seconds, report=report, workers=workers)
     # Without the check of the proof, which ends `certify`.
     stages.append((found.gap, found.nodes, *spent))
     for reached, nodes, processor, wall in stages:
@@ -56,11 +56,12 @@ def main() -> None:
     parser.add_argument("--every", type=int, default=1)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--verify", action="store_true")
+    parser.add_argument("--workers", type=int, default=1)
     given = parser.parse_args()
     certify(instances()[0], gap=0.3)  # compile
     print("| problem | gap | boxes | processor s | clock s |\n|---|---|---|---|---|")
     for problem in instances()[given.first :: given.every]:
-        line(problem, given.gap, given.seconds, given.verify)
+        line(problem, given.gap, given.seconds, given.verify, given.workers)
 
 
 if __name__ == "__main__":

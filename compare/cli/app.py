@@ -27,6 +27,7 @@ from .options import (
     Crate,
     Out,
     ProblemId,
+    ProofWorkers,
     ReadingId,
     Source,
     Workers,
@@ -148,6 +149,7 @@ def solve(
             "May be given several times.",
         ),
     ] = None,
+    workers: ProofWorkers = None,
     samples: SamplesFile = None,
     rate: Rate = None,
     form: Form = None,
@@ -168,6 +170,7 @@ def solve(
             "--any-curve": any_curve or None,
             "--certificates": certificates,
             "--resume": resume or None,
+            "--workers": workers,
         }
         for name, value in options.items():
             if value is not None:
@@ -196,6 +199,7 @@ def solve(
         Subject.ANY if any_curve else Subject.DECLARED,
         certificates,
         resume or [],
+        workers or os.cpu_count() or 1,
         as_json,
         out,
     )

@@ -111,6 +111,7 @@ def certify_case(
     subject: Subject,
     folder: Path | None,
     resume: Sequence[Path],
+    workers: int,
     as_json: bool,
     out: Path | None,
 ) -> int:
@@ -144,6 +145,7 @@ def certify_case(
                         seed=seed,
                         resume=states[one.name].document if one.name in states else None,
                         report=stop.reporting(one.name, step),
+                        workers=workers,
                     )
                 )
                 unsettled |= isinstance(found, str) or found.outcome not in _SETTLED

@@ -56,6 +56,17 @@ Workers = Annotated[
         "longer than a few dozen short replays.",
     ),
 ]
+ProofWorkers = Annotated[
+    int | None,
+    typer.Option(
+        "--workers",
+        min=1,
+        max=MOST,
+        help="With --certify: threads for the proof of a C4 quintic spline; the result does not "
+        "depend on it.",
+        show_default="all cores",
+    ),
+]
 Crate = Annotated[
     Path | None,
     typer.Option(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from concurrent.futures import Executor
 from dataclasses import replace
 from functools import cache
 from importlib import import_module
@@ -76,6 +77,8 @@ def certify(
     seed: int = 0,
     resume: Certified | dict[str, Any] | None = None,
     report: Callable[[Progress], None] | None = None,
+    workers: int = 1,
+    executor: Executor | None = None,
 ) -> Certified:
     """Prove an interval of the least total of a problem with shared durations.
 
@@ -103,6 +106,12 @@ def certify(
         A stopped run, or its `state_document`: `trajgap.verify` proves it again.
     report : callable, optional
         Called with a `Progress` after every batch of boxes.
+    workers : int
+        Parts of the search that run at a time; the result does not depend on it. So far C4 quintic
+        splines alone are searched in parts: the other proofs take one core.
+    executor : concurrent.futures.Executor, optional
+        Where parts run, such as processes or a Dask cluster's `get_executor()`; without one, in
+        threads of this process, since compiled searches do not hold the interpreter's lock.
 
     Returns
     -------
@@ -119,6 +128,8 @@ def certify(
     why = covered(exact, subject)
     if why is not None:
         raise TrajgapError(f"certify: {why}")
+    if workers < 1:
+        raise TrajgapError("certify: workers must be 1 or more")
     if not 0 <= gap < 1 or not seconds >= 0:
         raise TrajgapError("certify: the gap must lie in [0, 1), the seconds must be 0 or more")
     deadline = Deadline.after(seconds)
@@ -130,5 +141,5 @@ def certify(
         request = Request(gap, 0.0, seed, taken_up)
         before = Session(exact, request).result(False, subject)
         before = replace(before, verdict=taken_up.verdict)
-    request = Request(gap, deadline.left, seed, taken_up, report)
+    request = Request(gap, deadline.left, seed, taken_up, report, workers, executor)
     return judged(certifier.run(exact, request), deadline, before)

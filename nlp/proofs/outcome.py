@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from concurrent.futures import Executor
 from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
@@ -101,6 +102,10 @@ class Request:
         Where a stopped run is to go on.
     report : callable or None
         Called with a `Progress` now and then.
+    workers : int
+        Parts of a search that run at a time, where its kind of proof has parts.
+    executor : concurrent.futures.Executor or None
+        Where they run; None for threads of this process.
     """
 
     gap: float = GAP
@@ -108,6 +113,8 @@ class Request:
     seed: int = 0
     resume: Resumed | None = None
     report: Callable[[Progress], None] | None = None
+    workers: int = 1
+    executor: Executor | None = None
 
 
 @dataclass(frozen=True, eq=False)

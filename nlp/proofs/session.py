@@ -66,16 +66,26 @@ class Ladder:
         Of the gap asked for, so that rounding has room in the last stage.
     apart : float
         No stage is nearer to the last one than by this factor.
+    near : float
+        From a stage of this gap on, the last one takes at most ``growth`` times as long: where that
+        time is there, the stages between are left out.
+    growth : float
     """
 
     gaps: tuple[float, ...]
     share: float
     apart: float
+    near: float = 0.0
+    growth: float = math.inf
 
     def stages(self, gap: float) -> list[float]:
         """Gaps of the stages for the one that is asked for."""
         last = self.share * gap
         return [*(g for g in self.gaps if g > self.apart * last), last]
+
+    def leaps(self, gap: float, took: float, left: float) -> bool:
+        """Whether the last stage comes next, after one of ``gap`` that took some of the time."""
+        return gap <= self.near and took * self.growth <= left
 
 
 class Session:
@@ -269,10 +279,15 @@ class Session:
             upper = self.upper
             assert upper is not None
             try:
-                for gap in ladder.stages(self.request.gap):
+                stages, leaping = ladder.stages(self.request.gap), False
+                for gap in stages:
                     target = rounded(upper * (1 - Fraction(gap)))
-                    if target > self.lower:
-                        self.keep(target, stage(target))
+                    if target <= self.lower or (leaping and gap != stages[-1]):
+                        continue
+                    began = self.seconds
+                    self.keep(target, stage(target))
+                    took, left = self.seconds - began, self.request.seconds - self.seconds
+                    leaping = leaping or ladder.leaps(gap, took, left)
                 return
             except Shorter as found:
                 if not self.seek(found.durations):

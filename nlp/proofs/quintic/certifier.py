@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from concurrent.futures import Executor
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -12,20 +13,23 @@ import numpy as np
 from ....problem import Array, Interpolant, Verdict, check
 from ....verify import MOST_POWER, MOST_QUINTIC_JOINTS, MOST_QUINTIC_SEGMENTS, SMALLEST
 from ..exact import ExactProblem, decimal
+from ..executors import executor_for
 from ..rounding import below
-from ..session import Certifier, Ladder, OutOfTime, Session, Shorter
+from ..session import Certifier, Ladder, Session, Shorter
 from .leaves import Leaves
-from .search import DONE, FULL, PAUSED, SHORTER, search
+from .subtrees import Question, Root, search_all
 from .windows import Windows, windows
 
 _LADDER = Ladder(
-    (0.3, 0.2, 0.1, 0.05, *(x * 10.0**-k for k in range(2, 7) for x in (2.0, 1.0, 0.5))), 0.9, 1.5
+    (0.3, 0.2, 0.1, 0.05, *(x * 10.0**-k for k in range(2, 7) for x in (2.0, 1.0, 0.5))),
+    share=0.9,
+    apart=1.5,
+    near=0.1,
+    growth=12.0,
 )
-"""Boxes grow with a power of 1/gap: small steps keep a stopped run near its goal."""
-_CHUNK = 500
-"""Boxes between two looks at the clock: some milliseconds."""
-_STACK = 600
-"""Boxes that wait: depth first, more than the deepest tree that the verifier takes."""
+"""Boxes grow with a power of 1/gap: small steps keep a stopped run near its goal. From 0.1 on they
+grow little, to five times as many at 0.01 and eight at 0.001 (docs/explanation/
+certificates-quintic.md), and judging takes half as long again as the search."""
 _SLIGHT = 1e-7
 """Share by which durations must be shorter to be worth a new start of the ladder."""
 _NEAR = 8
@@ -130,8 +134,9 @@ def shortest(problem: ExactProblem) -> tuple[Fraction, ...]:
 class _Search:
     """What the stages share: numbers in the units of the proof, and windows that exclude boxes."""
 
-    def __init__(self, session: Session) -> None:
+    def __init__(self, session: Session, executor: Executor) -> None:
         self.session, self.units = session, _units(session.exact)
+        self.executor, self.workers = executor, session.request.workers
         own = session.exact.in_units(self.units.powers, self.units.second)
         self.low = shortest(own)
         self.steps, self.limits = _steps(own), _limits(own)
@@ -147,34 +152,20 @@ class _Search:
         """Prove that no total is below ``target``, s."""
         session = self.session
         session.check_clock()
-        n, joints = self.steps.shape
-        own = target / self.units.time
-        total = float(own)
-        low, high = np.zeros((_STACK, n)), np.zeros((_STACK, n))
-        low[0], high[0] = [float(x) for x in self.low], total
-        depth, counts = np.array([1]), np.zeros(3, np.int64)
-        leaves, wary, patience = Leaves.empty(), True, _CHUNK
-        upper = session.upper
+        own, upper = target / self.units.time, session.upper
         look = 0.0 if upper is None else float(upper / self.units.time) * (1.0 - _SLIGHT)
-        while True:
-            code = search(
-                n, joints, self.steps, self.limits, total, self.library.terms, low, high, depth,
-                patience, look if wary and patience > 1 else 0.0, *leaves.arrays, counts,
-            )  # fmt: skip
-            session.report(int(depth[0]), session.nodes + int(counts[0]))
-            counts[:] = 0
-            if code == DONE:
-                return Tree(self.units, own, self.low, self.library, leaves)
-            if code == FULL:
-                leaves = leaves.larger()
-            patience = 1 if code == SHORTER else _CHUNK
-            if code == SHORTER:
-                at = depth[0] - 1
-                wary = self._look(2.0 / (1.0 / low[at] + 1.0 / high[at]), look)
-            elif code not in (DONE, FULL, PAUSED):
-                raise OutOfTime
-            else:
-                session.check_clock()
+        question = Question(self.steps, self.limits, float(own), self.library.terms, look)
+        root = Root(np.array([float(x) for x in self.low]), np.full(len(self.low), question.total))
+
+        def watch(waiting: int, boxes: int) -> float:
+            session.report(waiting, session.nodes + boxes)
+            session.check_clock()
+            return session.request.seconds - session.seconds
+
+        leaves = search_all(
+            question, root, lambda h: self._look(h, look), watch, self.executor, self.workers
+        )
+        return Tree(self.units, own, self.low, self.library, leaves)
 
     def _look(self, durations: Array, below_it: float) -> bool:
         """Raise `Shorter` if the direction of ``durations`` holds a total below the one given.
@@ -216,8 +207,9 @@ def _prove(session: Session) -> bool:
     session.seek()
     if session.upper is None:
         return False
-    stages = _Search(session)
-    session.climb(_LADDER, stages.rounded, stages.stage)
+    with executor_for(session.request.executor, session.request.workers) as executor:
+        stages = _Search(session, executor)
+        session.climb(_LADDER, stages.rounded, stages.stage)
     return True
 
 

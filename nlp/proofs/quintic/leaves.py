@@ -61,6 +61,34 @@ class Leaves:
         tree, kinds, starts, ids, share, tau = map(grown, parts)
         return Leaves(tree, kinds, starts, ids, share, tau, sizes)
 
+    def trimmed(self) -> Leaves:
+        """The same without room for more."""
+        letters, leaves, rows = self.sizes.tolist()
+        return Leaves(
+            self.tree[:letters].copy(),
+            self.kinds[:leaves].copy(),
+            self.starts[: leaves + 1].copy(),
+            self.ids[:rows].copy(),
+            self.share[:rows].copy(),
+            self.tau[:leaves].copy(),
+            self.sizes,
+        )
+
+    @classmethod
+    def joined(cls, parts: list[Leaves]) -> Leaves:
+        """Parts of one tree, given in preorder and trimmed, as one."""
+        before = np.cumsum([0, *(part.sizes[2] for part in parts)])
+        starts = [part.starts[:-1] + b for part, b in zip(parts, before[:-1], strict=True)]
+        return cls(
+            np.concatenate([part.tree for part in parts]),
+            np.concatenate([part.kinds for part in parts]),
+            np.concatenate([*starts, before[-1:]]),
+            np.concatenate([part.ids for part in parts]),
+            np.concatenate([part.share for part in parts]),
+            np.concatenate([part.tau for part in parts]),
+            np.sum([part.sizes for part in parts], axis=0),
+        )
+
     def document(self, windows: Windows) -> dict[str, Any]:
         """Tables of windows and rows that are used, and the tree."""
         letters, leaves = int(self.sizes[0]), int(self.sizes[1])

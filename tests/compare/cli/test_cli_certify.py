@@ -357,6 +357,7 @@ def test_a_state_beside_a_finished_certificate_goes(run: Run) -> None:
         (("--time", "1"), "--time needs --certify"),
         (("--certificates", "x"), "--certificates needs --certify"),
         (("--resume", "x"), "--resume needs --certify"),
+        (("--workers", "2"), "--workers needs --certify"),
         (("--certify", "--resume", "missing.json"), "missing.json: cannot be read"),
         (("--certify", "--resume", "mine.toml"), "mine.toml: no JSON"),
         (("--certify", "--certificates", "taken"), "is no trajgap-certificate-2"),
