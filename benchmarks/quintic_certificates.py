@@ -1,8 +1,8 @@
 """Gap of the certified interval against boxes and seconds on the twenty C4 quintic problems.
 
 ``python benchmarks/quintic_certificates.py [--gap G] [--seconds S] [--every N] [--first F]
-[--verify] [--workers N]``: one line per problem and complete stage. Boxes are cumulative; seconds are of the
-processor, with the time on the clock behind them.
+[--verify] [--workers N]``: one line per problem and complete stage. Boxes are
+cumulative; seconds are of the processor, with the time on the clock behind them.
 """
 
 from __future__ import annotations
