@@ -104,7 +104,7 @@ class Deferred:
         """Call the function, one way or the other."""
         if not self._ready and self._spent >= self._look:
             worth = self._spent >= self._seconds and self._left() > self._seconds
-            self._ready = worth or _at_hand(self._function)
+            self._ready = worth or at_hand(self._function)
             self._look = self._spent + LOOK * self._seconds
         if self._ready:
             return self._function(*arguments)
@@ -115,8 +115,17 @@ class Deferred:
         return found
 
 
-def _at_hand(function: Any) -> bool:
-    """Whether a compiled form of a function is in this process or on disk."""
+def at_hand(function: Any) -> bool:
+    """Whether a compiled form of a function is in this process or on disk.
+
+    Parameters
+    ----------
+    function : numba dispatcher
+
+    Returns
+    -------
+    bool
+    """
     if not isinstance(function, CPUDispatcher):
         return True  # compiling is switched off: it is a plain function
     if function.signatures:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ....problem import Array, Interpolant, Verdict, check
+from ....problem.curves import at_hand
 from ....verify import MOST_POWER, MOST_QUINTIC_JOINTS, MOST_QUINTIC_SEGMENTS, SMALLEST
 from ..exact import ExactProblem, decimal
 from ..rounding import below
@@ -22,6 +23,10 @@ _LADDER = Ladder(
     (0.3, 0.2, 0.1, 0.05, *(x * 10.0**-k for k in range(2, 7) for x in (2.0, 1.0, 0.5))), 0.9, 1.5
 )
 """Boxes grow with a power of 1/gap: small steps keep a stopped run near its goal."""
+COMPILING = 25.0
+"""Seconds that compiling the search takes, once after an installation: measured 22 of a processor."""
+UNCOMPILED = f"compiling the search takes about {COMPILING:.0f} s, once after an installation"
+"""What is left out where there is less time than that."""
 _CHUNK = 500
 """Boxes between two looks at the clock: some milliseconds."""
 _STACK = 600
@@ -146,6 +151,10 @@ class _Search:
     def stage(self, target: Fraction) -> Tree:
         """Prove that no total is below ``target``, s."""
         session = self.session
+        if not at_hand(search):
+            session.left_out = UNCOMPILED
+            session.check_clock(COMPILING)
+            session.left_out = None
         session.check_clock()
         n, joints = self.steps.shape
         own = target / self.units.time
