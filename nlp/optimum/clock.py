@@ -21,7 +21,7 @@ A factor of 8 apart, so that a long run compiles few; below the first, a call en
 
 
 class TooLong(Exception):
-    """What cannot be stopped was not begun, or not gone on with: it would not have ended in time."""
+    """A stage that cannot be stopped was not begun, or not gone on with: it would end too late."""
 
 
 @contextmanager

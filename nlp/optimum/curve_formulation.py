@@ -187,8 +187,9 @@ class CompiledCurve:
     """A formulation with its solvers, and its turning polynomials as numbers.
 
     A solver is derived on its first use; `clock.TooLong` is raised where that is estimated to take
-    longer than what is left of the time. ``turning`` maps durations and the curve's parameters to two matrices, one row per place and
-    ascending powers: the numerator of the limited derivative, and that of the next.
+    longer than what is left of the time. ``turning`` maps durations and the curve's parameters to
+    two matrices, one row per place and ascending powers: the numerator of the limited derivative,
+    and that of the next.
     """
 
     formulation: CurveFormulation

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ...problem import Array, Interpolant, Problem, Verdict, check
 from ...problem.curves import PERM, Deferred, layout, motion_values
 from . import newton_kernel as kernel
-from .clock import seconds_left, time_up
+from .clock import seconds_left
 from .exact_multistart import LEAST_SHARE, least_durations
 from .optimality import kkt
 from .solution import Solution, Status

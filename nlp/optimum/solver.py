@@ -30,7 +30,7 @@ from .idle import idle_segments, with_least_idle
 from .ipopt import compiled, structure_of
 from .judgement import judged, stretchable
 from .long_solve import long_enough, solve_long
-from .matching import matched
+from .matching import jump_equations, matched
 from .newton import settled_quickly
 from .short_ways import moving_at_floor, short_ways, shortened
 from .smoother import as_answer, carried_over, smoother
@@ -307,10 +307,14 @@ def _after_restoration(problem: Problem, ask: Ask, solution: Solution) -> Soluti
 
 
 def _without_jumps(problem: Problem, solution: Solution, seed: int) -> Solution:
-    """Ratios of durations at which a determined curve happens not to jump."""
-    found = [Local(h, None, float(h.sum()), True, True, 0) for h in matched(problem, seed)]
+    """Ratios of durations at which a curve that may jump happens not to."""
+    found = [Local(h, v, float(h.sum()), True, True, 0) for h, v in matched(problem, seed)]
     if not found:
-        return solution
+        equations, ratios = jump_equations(problem)
+        if not equations > ratios:
+            return solution
+        why = f"it would take {ratios} ratios of durations that meet {equations} equations"
+        return replace(solution, why=f"{solution.why}; {why}")
     answer = judged(problem, found, np.zeros(problem.segments), len(found))
     why = f"shortest of {len(found)} ratios of durations at which the motion does not jump"
     return replace(answer, status=Status.FEASIBLE, why=why, iterations=solution.iterations)

@@ -70,8 +70,8 @@ def judged(found: Certified, deadline: Deadline, before: Certified | None = None
     ----------
     found : Certified
     deadline : Deadline
-        Judging ends `SPARE` after it, or takes `LEAST`. A proof that takes longer to judge does not count: it becomes
-        what a state proposes, so that a run with more time can go on from it.
+        Judging ends `SPARE` after it, or takes `LEAST`. A proof that takes longer to judge does not
+        count: it becomes what a state proposes, so that a run with more time can go on from it.
     before : Certified, optional
         What the state that the run went on from proved, with its verdict: it holds if time is up.
 

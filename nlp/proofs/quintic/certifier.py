@@ -24,7 +24,7 @@ _LADDER = Ladder(
 )
 """Boxes grow with a power of 1/gap: small steps keep a stopped run near its goal."""
 COMPILING = 25.0
-"""Seconds that compiling the search takes, once after an installation: measured 22 of a processor."""
+"""Seconds that compiling the search takes, once after an installation: 22 were measured."""
 UNCOMPILED = f"compiling the search takes about {COMPILING:.0f} s, once after an installation"
 """What is left out where there is less time than that."""
 _CHUNK = 500
