@@ -1,8 +1,8 @@
 """How far answers come after their time limit: `solve` and `certify` of larger problems.
 
-    python benchmarks/time_limits.py                       the table, from runs now (a quarter of an hour)
-    python benchmarks/time_limits.py --only "certify quintic"   rows with all these words
-    python benchmarks/time_limits.py --each                every run by itself, as it ends
+    python benchmarks/time_limits.py           the table, from runs now (a quarter of an hour)
+    python benchmarks/time_limits.py --only "certify quintic"    rows with all these words
+    python benchmarks/time_limits.py --each    every run by itself, as it ends
 
 Each run is a process of its own, after imports, after a small problem of its kind, and with one
 thread for linear algebra. Two numbers are taken: seconds from the limit to the answer, and the
