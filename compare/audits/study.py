@@ -168,11 +168,11 @@ class Study(ReplayedCase):
                 return Solution(relaxed, Status.FAILED, why)
             member = self.optimum(pid, rid)
             if member.durations is None or given.free:
-                return solve(relaxed, seconds=RELAXED_SECONDS)
+                return solve(relaxed, start_seconds=RELAXED_SECONDS)
             curve = fit(given, problem.waypoints, member.durations)
             nodal = free_values(family, curve)[None]
             return solve(
-                relaxed, known=member.durations, known_nodal=nodal, seconds=RELAXED_SECONDS
+                relaxed, known=member.durations, known_nodal=nodal, start_seconds=RELAXED_SECONDS
             )
 
         return self.once(("relaxed", pid, rid), compute)

@@ -122,8 +122,8 @@ def solve(
             "--time",
             min=0.0,
             metavar="S",
-            help="With --certify: seconds for each problem; then the best interval is left.",
-            show_default="60",
+            help="Seconds for each problem; then the best motion, or interval, is left.",
+            show_default="none; 60 with --certify",
         ),
     ] = None,
     any_curve: Annotated[
@@ -166,7 +166,6 @@ def solve(
     if not certify:
         options = {
             "--gap": gap,
-            "--time": seconds,
             "--any-curve": any_curve or None,
             "--certificates": certificates,
             "--resume": resume or None,
@@ -182,7 +181,9 @@ def solve(
         from .solving import solve_case
 
         asked = None if samples is None else asked_samples(samples, rate, form, retimed)
-        return solve_case(case, problem, reading, coupling, starts, seed, as_json, out, asked)
+        return solve_case(
+            case, problem, reading, coupling, starts, seed, seconds, as_json, out, asked
+        )
     if samples is not None or rate is not None or form is not None or retimed:
         raise typer.BadParameter("--samples is of a solution; leave --certify out")
     from ...verify import Subject

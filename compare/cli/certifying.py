@@ -244,9 +244,13 @@ def _states(resume: Sequence[Path], asked: Sequence[Question]) -> dict[str, Stat
 
 
 def _why(found: Certified | str) -> str | None:
-    """Why a proof that was found does not count."""
-    if isinstance(found, str) or found.verdict is None or found.verdict.proves:
+    """Why a proof that was found does not count, or what the time was too short for."""
+    if isinstance(found, str):
         return None
+    if found.verdict is None or found.verdict.proves:
+        if found.left_out is None:
+            return None
+        return f"{found.left_out}; --time was too short, and resume goes on with more"
     if found.verdict.out_of_time:
         return "the proof found was not verified within --time; resume with more"
     return f"the proof found is refused: {found.verdict.reason}"

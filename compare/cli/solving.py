@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
@@ -15,7 +16,7 @@ from ...nlp import (
     with_certificate,
     with_certificates,
 )
-from ...nlp.optimum import OPTIMUM_SLACK
+from ...nlp.optimum import OPTIMUM_SLACK, stopping_after
 from ...nlp.retiming import Retiming, retime
 from ...problem import Case, Coupling, fit
 from ..audits import Study
@@ -43,6 +44,7 @@ def solve_case(
     coupling: str | None,
     starts: int,
     seed: int,
+    limit: float | None,
     as_json: bool,
     out: Path | None,
     asked: AskedSamples | None = None,
@@ -58,7 +60,8 @@ def solve_case(
         with progress("solve", len(posed)) as step, naming(case.file):
             for one in posed:
                 step(f"{one.problem_id}, {one.reading_id}")
-                result, answer = _solved(case, one, starts, seed)
+                with stopping_after(math.inf if limit is None else limit):
+                    result, answer = _solved(case, one, starts, seed)
                 results.append(result)
                 if asked is not None and written is None:
                     text, written = write_motion(one, answer, asked)

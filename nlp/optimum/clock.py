@@ -1,7 +1,8 @@
 """A time limit that every step of a local search looks at, however deep it lies.
 
-A search that is stopped returns the best that it has. Nothing is interrupted: where no limit is
-set, no search depends on the clock.
+A search that is stopped returns the best that it has. Nothing is interrupted: a stage without steps
+that is estimated to take longer than what is left is not begun. Where no limit is set, no search
+depends on the clock.
 """
 
 from __future__ import annotations
@@ -17,6 +18,10 @@ _END: ContextVar[float] = ContextVar("end", default=math.inf)
 CAPS = (0.25, 2.0, 16.0, 128.0)
 """Seconds that one call of IPOPT may take: it cannot be told to stop, and its limit is compiled in.
 A factor of 8 apart, so that a long run compiles few; below the first, a call ends anyway."""
+
+
+class TooLong(Exception):
+    """A stage that cannot be stopped was not begun, or not gone on with: it would end too late."""
 
 
 @contextmanager
@@ -54,3 +59,16 @@ def call_cap() -> float | None:
     if left == math.inf:
         return None
     return max((cap for cap in CAPS if cap <= left), default=CAPS[0])
+
+
+def look_ahead(seconds: float = 0.0) -> None:
+    """Raise `TooLong` unless so much time is left.
+
+    Parameters
+    ----------
+    seconds : float
+        What a stage without steps is estimated to take.
+    """
+    left = seconds_left()
+    if left < seconds or left <= 0.0:
+        raise TooLong

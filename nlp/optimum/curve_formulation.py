@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 import time
-from dataclasses import dataclass
-from functools import lru_cache
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cache, lru_cache
 from typing import Any
 
 import numpy as np
@@ -14,14 +16,19 @@ from ...problem.curves import (
     MAX_COEFFICIENTS,
     roots_in_unit,
 )
+from .clock import look_ahead, seconds_left
 from .curve_symbols import Symbols, derived, evaluated, numbers, shape_key, symbols
 from .ipopt import ipopt_options
+from .stopping import look_at_clock
 from .symbolic import ca
 
 SLOWEST = 1e-4
 """Least dt/de where time is not linear, relative to the mean duration."""
 SPEED = 4
 """Stands for the order of a row that keeps time increasing."""
+DERIVING = 0.15
+"""Seconds that CasADi takes to derive and order an NLP's derivatives, for each segment and each
+second of writing it down: measured 0.11 to 0.14 for B-splines of 7 to 24 segments."""
 
 
 @dataclass(frozen=True)
@@ -142,6 +149,7 @@ def build_curve(structure: CurveStructure) -> CurveFormulation:
     rows: list[Any] = []
     at = 0
     for place in places:
+        look_ahead()
         if place.order == SPEED:
             speed = known.speeds[place.piece]
             turning = derived(speed)
@@ -178,20 +186,31 @@ def build_curve(structure: CurveStructure) -> CurveFormulation:
 class CompiledCurve:
     """A formulation with its solvers, and its turning polynomials as numbers.
 
-    ``turning`` maps durations and the curve's parameters to two matrices, one row per place and
-    ascending powers: the numerator of the limited derivative, and that of the next.
+    A solver is derived on its first use; `clock.TooLong` is raised where that is estimated to take
+    longer than what is left of the time. ``turning`` maps durations and the curve's parameters to
+    two matrices, one row per place and ascending powers: the numerator of the limited derivative,
+    and that of the next.
     """
 
     formulation: CurveFormulation
-    cold: Any
-    warm: Any
     turning: Any
     build_seconds: float
+    _solver: Callable[[bool, bool], Any]
+
+    @property
+    def cold(self) -> Any:
+        """From a start; ends at the iteration at which the time is up."""
+        return self._solver(False, seconds_left() < math.inf)
+
+    @property
+    def warm(self) -> Any:
+        """From a neighbouring solution."""
+        return self._solver(True, seconds_left() < math.inf)
 
 
 @lru_cache(maxsize=32)
 def compiled_curve(structure: CurveStructure) -> CompiledCurve:
-    """Build a structure and its solvers once."""
+    """Build a structure once, with a solver; raises `clock.TooLong` as its solvers do."""
     began = time.perf_counter()
     f = build_curve(structure)
     nlp = {
@@ -200,8 +219,17 @@ def compiled_curve(structure: CurveStructure) -> CompiledCurve:
         "f": ca.sum1(f.symbols.durations),
         "g": f.inequalities,
     }
-    cold = ca.nlpsol("cold", "ipopt", nlp, ipopt_options(False))
-    warm = ca.nlpsol("warm", "ipopt", nlp, ipopt_options(True))
+    sizes = f.sizes
+    stop = look_at_clock(sizes["variables"], sizes["inequalities"])
+
+    @cache
+    def solver(warm: bool, limited: bool) -> Any:
+        look_ahead(DERIVING * structure.curve.segments * f.build_seconds)
+        options = ipopt_options(warm)
+        if limited:
+            options["iteration_callback"] = stop
+        return ca.nlpsol("warm" if warm else "cold", "ipopt", nlp, options)
+
     own, following = [], []
     for place in (p for p in f.places if p.slot == 0):
         if place.order == SPEED:
@@ -218,7 +246,9 @@ def compiled_curve(structure: CurveStructure) -> CompiledCurve:
         [f.symbols.durations, f.symbols.parameters],
         [ca.vertcat(*own) if own else empty, ca.vertcat(*following) if own else empty],
     )
-    return CompiledCurve(f, cold, warm, turning, time.perf_counter() - began)
+    built = CompiledCurve(f, turning, 0.0, solver)
+    _ = built.cold
+    return replace(built, build_seconds=time.perf_counter() - began)
 
 
 def _padded(a: list[Any]) -> Any:

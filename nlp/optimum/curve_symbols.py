@@ -1,4 +1,7 @@
-"""Curves other than declared piecewise polynomials, as CasADi expressions in the durations."""
+"""Curves other than declared piecewise polynomials, as CasADi expressions in the durations.
+
+Writing them down looks at the clock, and ends with `clock.TooLong` where the time is up.
+"""
 
 from __future__ import annotations
 
@@ -16,6 +19,7 @@ from ...problem.curves import (
     fractions_of,
     shape_matrix,
 )
+from .clock import look_ahead
 from .symbolic import ca
 
 Polynomial = list[Any]
@@ -78,6 +82,7 @@ def _product(a: Polynomial, b: Polynomial) -> Polynomial:
 
 def _in_time(a: Polynomial, width: Any, highest: int) -> SymbolicPiece:
     """Piece whose time is linear: derivative r is N_r over the r-th power of its duration."""
+    look_ahead()
     found = [a]
     for _ in range(highest):
         found.append(derived(found[-1]))
@@ -144,6 +149,7 @@ def _timed_symbols(curve: TimedUniformBSpline, joints: int, highest: int) -> Sym
 
 
 def _clocked(q: Polynomial, speed: Polynomial, highest: int) -> SymbolicPiece:
+    look_ahead()
     bend = derived(speed)
     found = [q, derived(q)]
     for r in range(1, highest):
@@ -191,6 +197,7 @@ def _span_bases(knots: list[Any], p: int) -> list[list[Polynomial]]:
     """Powers of the basis functions on every span, as `clamped_system.span_bases`."""
     found = []
     for at in range(p, len(knots) - p - 1):
+        look_ahead()
         start, width = knots[at], knots[at + 1] - knots[at]
         basis: list[Polynomial] = [[ca.SX(1)]]
         for q in range(1, p + 1):
@@ -256,6 +263,7 @@ def _values_at(knots: list[Any], p: int, size: int, time: Any) -> list[Any]:
 
     A function of the durations with p − 1 continuous derivatives where the time passes a knot.
     """
+    look_ahead()
     last = len(knots) - 1
     values: list[Any] = [
         ca.logic_and(knots[i] <= time, time < knots[i + 1]) if p <= i < last - p else ca.SX(0)
@@ -279,6 +287,7 @@ def _eliminated(rows: list[list[Any]], right: list[list[Any]]) -> list[list[Any]
     """Solve without exchanging rows, which totally positive systems allow."""
     n = len(rows)
     for c in range(n):
+        look_ahead()
         for i in range(c + 1, n):
             if rows[i][c].is_zero():
                 continue
@@ -289,6 +298,7 @@ def _eliminated(rows: list[list[Any]], right: list[list[Any]]) -> list[list[Any]
             for column in right:
                 column[i] = column[i] - factor * column[c]
     for column in right:
+        look_ahead()
         for c in range(n - 1, -1, -1):
             for k in range(c + 1, n):
                 if not rows[c][k].is_zero():

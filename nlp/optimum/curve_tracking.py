@@ -8,7 +8,7 @@ import time
 import numpy as np
 
 from ...problem import Array, Problem, Verdict, check, evaluate
-from .clock import time_up
+from .clock import TooLong, time_up
 from .curve_formulation import CompiledCurve, ScaledCurve, follow, packed, scaled_curve
 from .tracking import Local, run
 
@@ -50,7 +50,11 @@ def curve_coarse(
     p = packed(scaled, *follow(built, scaled, None))
     if time_up():
         return start, scaled, False, 0
-    x, _, success, iterations = run(built.cold, built.formulation, start / unit, p, bounds)
+    try:
+        solver = built.cold
+    except TooLong:
+        return start, scaled, False, 0
+    x, _, success, iterations = run(solver, built.formulation, start / unit, p, bounds)
     return x * unit, scaled, success, iterations
 
 
@@ -75,8 +79,12 @@ def curve_track(
             np.minimum(wide[1], x * (1.0 + 2.0 * radius)),
         )
         near = duals is not None and step < 1e-2
+        try:
+            solver, again = built.warm if near else built.cold, built.cold
+        except TooLong:
+            break
         x_new, new_duals, success, count = run(
-            built.warm if near else built.cold,
+            solver,
             built.formulation,
             x,
             p,
@@ -85,7 +93,7 @@ def curve_track(
         )
         iterations += count
         if not success and near:
-            x_new, new_duals, success, count = run(built.cold, built.formulation, x, p, bounds)
+            x_new, new_duals, success, count = run(again, built.formulation, x, p, bounds)
             iterations += count
         moved = float(np.abs(x_new / x - 1.0).max())
         total, h_new = curve_merit(problem, x_new * unit)

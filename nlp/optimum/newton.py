@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ...problem import Array, Interpolant, Problem, Verdict, check
 from ...problem.curves import PERM, Deferred, layout, motion_values
 from . import newton_kernel as kernel
-from .clock import time_up
+from .clock import seconds_left
 from .exact_multistart import LEAST_SHARE, least_durations
 from .optimality import kkt
 from .solution import Solution, Status
@@ -45,7 +45,9 @@ FARTHEST = 25.0
 """Log durations above the usual ones at which every search ends: powers of them stay in range."""
 LIMIT = 1e-8
 """KKT residual up to which an answer is taken: that of `judgement.KKT_TOLERANCE`."""
-_descents = Deferred(kernel.descents, 10.0)
+DESCENT = 20.0
+"""Places that a descent costs: measured 9 to 22. Where so much is not left, none is begun."""
+_descents = Deferred(kernel.descents, 10.0, seconds_left)
 """The descents; compiling them takes ten seconds, interpreting them a tenth to a half of one."""
 
 
@@ -93,6 +95,8 @@ class Descents:
     """The compiled descents of one problem, with their room."""
 
     def __init__(self, problem: Problem) -> None:
+        self.place_seconds = 0.0
+        """What the last place took, where the time is limited."""
         curve = problem.piecewise
         plan = _plan(curve)
         n, joints = curve.segments, problem.waypoints.shape[1]
@@ -134,16 +138,25 @@ class Descents:
         """Ends of descents from log durations, and how they ended: see `newton_kernel.descents`.
 
         They are called in parts, so that the clock is looked at, and a kernel that proves worth
-        compiling is compiled, between them. What was not begun by ``until`` has no end.
+        compiling is compiled, between them. What was not begun by ``until``, or would not end
+        within the time limit, has no end.
         """
         ends, found = starts.copy(), np.full((len(starts), 4), np.inf)
         found[:, 0] = kernel.STALLED
-        part = PART if steps == 0 else 1
-        for begin in range(0, len(starts), part):
-            if begin > 0 and (time.monotonic() > until or time_up()):
+        limited = seconds_left() < np.inf
+        stop, longest = 0, DESCENT * self.place_seconds if steps > 0 else 0.0
+        while stop < len(starts):
+            left = seconds_left() if limited else np.inf
+            if (stop > 0 and (time.monotonic() > until or left <= 0.0)) or left < longest:
                 break
-            stop = min(begin + part, len(starts))
+            # Interpreted, a place costs milliseconds, and the clock is looked at after each.
+            slow = steps > 0 or (limited and not _descents.compiled)
+            begin, stop = stop, min(stop + (1 if slow else PART), len(starts))
             _descents(starts, begin, stop, steps, low, high, *self.arrays, ends, found)
+            if limited and steps > 0:
+                longest = max(longest, left - seconds_left())
+            elif limited:
+                self.place_seconds = (left - seconds_left()) / (stop - begin)
         return ends, found
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...problem import Array, Check, Problem, check
+from .clock import time_up
 from .near_optimal import longest_per_segment_range
 from .solution import Evidence, Solution, Status, weakest
 from .solver import STARTS, solve
@@ -159,6 +160,8 @@ def solve_per_joint(
             why = "ranges are computed for declared piecewise polynomials only"
         elif problem.segments > _MOST_SEGMENTS:
             why = f"ranges are computed for at most {_MOST_SEGMENTS} segments"
+        elif time_up():
+            why = "ranges were not computed: the time ran out"
         elif not settled:
             why = "ranges need an attained optimum of every joint"
         else:

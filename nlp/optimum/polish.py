@@ -48,6 +48,8 @@ def polish(problem: Problem, durations: Array, report: KKT) -> tuple[Array, KKT]
         base, excess, columns = _conditions(problem, h, active, weights)
         hessian = np.empty((moving.size, moving.size))
         for i, k in enumerate(moving):
+            if time_up():
+                return durations, report
             step = np.zeros(h.size)
             step[k] = _DIFFERENCE
             ahead, _, _ = _conditions(problem, h * np.exp(step), active, weights)

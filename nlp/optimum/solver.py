@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from ...problem import Array, Problem, TrajgapError, check
 from .asked import Ask, vectors
-from .clock import time_up
+from .clock import TooLong, stopping_after, time_up
 from .decided import decided, kept
 from .descent import restored
 from .exact_multistart import (
@@ -30,7 +30,7 @@ from .idle import idle_segments, with_least_idle
 from .ipopt import compiled, structure_of
 from .judgement import judged, stretchable
 from .long_solve import long_enough, solve_long
-from .matching import matched
+from .matching import jump_equations, matched
 from .newton import settled_quickly
 from .short_ways import moving_at_floor, short_ways, shortened
 from .smoother import as_answer, carried_over, smoother
@@ -38,7 +38,7 @@ from .solution import Solution, Status
 from .starts import equal_start, first_nodal, screened_starts
 from .tracked_multistart import eliminating, tracked_multistart, tracked_search
 from .tracking import Local
-from .unsearched import unsearched
+from .unsearched import cut_short, unsearched
 from .wide_search import Basin
 
 STARTS = 4
@@ -67,6 +67,7 @@ def solve(
     known_nodal: ArrayLike | None = None,
     form: Form | None = None,
     seconds: float = math.inf,
+    start_seconds: float = math.inf,
 ) -> Solution:
     """Best known total time of a problem with shared durations, from an exact NLP.
 
@@ -91,8 +92,10 @@ def solve(
     form : Form, optional
         Reduced or lifted; by default the faster one for the size.
     seconds : float
-        After so long no further start is begun; one that has begun is finished, so that there is
-        always an answer. What is found then depends on the machine.
+        Time limit, kept to within a step of the search: the best motion so far is the answer, and
+        `why` says that the time ran out. What is found then depends on the machine.
+    start_seconds : float
+        After so long no further start is begun; one that has begun is finished.
 
     Returns
     -------
@@ -104,9 +107,6 @@ def solve(
     TrajgapError
         If ``initial`` or ``known`` has the wrong shape.
     """
-    answer = unsearched(problem)
-    if answer is not None:
-        return answer
     ask = Ask(
         starts,
         seed,
@@ -114,16 +114,26 @@ def solve(
         np.empty((0, problem.segments)) if known is None else vectors(problem, "known", known),
         None if known_nodal is None else np.asarray(known_nodal, dtype=np.float64),
         form,
-        time.monotonic() + seconds,
+        time.monotonic() + start_seconds,
     )
     wanted = (len(ask.known), problem.curve.free, len(problem.joints))
     if ask.known_nodal is not None and ask.known_nodal.shape != wanted:
         raise TrajgapError(f"known_nodal: expected shape {wanted}, got {ask.known_nodal.shape}")
+    with stopping_after(seconds):
+        answer = unsearched(problem)
+        if answer is not None:
+            return answer
+        answer = _solve(problem, ask)
+        return cut_short(answer) if time_up() else answer
+
+
+def _solve(problem: Problem, ask: Ask) -> Solution:
+    """`solve` where no elementary argument decides."""
     if long_enough(problem, ask) and (answer := solve_long(problem, ask)) is not None:
         return answer
     smooth = smoother(problem)
     if smooth is not None:
-        found = as_answer(problem, _solve_smoother(problem, smooth, ask, seconds))
+        found = as_answer(problem, _solve_smoother(problem, smooth, ask))
         if found is not None:
             return found
     idle = idle_segments(problem)
@@ -132,7 +142,7 @@ def solve(
     return _solve_moving(problem, ask)
 
 
-def _solve_smoother(problem: Problem, smooth: Problem, ask: Ask, seconds: float) -> Solution:
+def _solve_smoother(problem: Problem, smooth: Problem, ask: Ask) -> Solution:
     """`solve` on the smoother declaration, with the same starts and known motions."""
     known, values = ask.known, None
     if ask.known_nodal is None:
@@ -147,7 +157,7 @@ def _solve_smoother(problem: Problem, smooth: Problem, ask: Ask, seconds: float)
         known=known,
         known_nodal=values,
         form=ask.form,
-        seconds=seconds,
+        start_seconds=ask.until - time.monotonic(),
     )
 
 
@@ -192,8 +202,11 @@ def _floor(problem: Problem, share: float) -> Array:
 
 
 def _tracked(problem: Problem, ask: Ask) -> Solution:
-    """The tracked NLP from each start."""
-    search, build_seconds = tracked_search(problem, ask)
+    """The tracked NLP from each start; without it, a descent, where building it takes too long."""
+    try:
+        search, build_seconds = tracked_search(problem, ask)
+    except TooLong:
+        return _descended(problem, ask)
     points = ask.initial
     if points is None:
         points = screened_starts(problem, ask.starts, np.random.default_rng(ask.seed))
@@ -218,6 +231,15 @@ def _tracked(problem: Problem, ask: Ask) -> Solution:
         points = solution.durations[None]
     assert solution is not None
     return replace(solution, build_seconds=build_seconds)
+
+
+def _descended(problem: Problem, ask: Ask) -> Solution:
+    """An exact descent from equal durations, or from the first start that was given."""
+    floor = _floor(problem, FLOORS[-1])
+    start = equal_start(problem) if ask.initial is None else ask.initial[0]
+    if problem.segments > RESTORABLE:
+        return judged(problem, [], floor, 0)
+    return judged(problem, exact_search(problem, start[None], floor, ask.until), floor, 1)
 
 
 def _searched(
@@ -285,10 +307,14 @@ def _after_restoration(problem: Problem, ask: Ask, solution: Solution) -> Soluti
 
 
 def _without_jumps(problem: Problem, solution: Solution, seed: int) -> Solution:
-    """Ratios of durations at which a determined curve happens not to jump."""
-    found = [Local(h, None, float(h.sum()), True, True, 0) for h in matched(problem, seed)]
+    """Ratios of durations at which a curve that may jump happens not to."""
+    found = [Local(h, v, float(h.sum()), True, True, 0) for h, v in matched(problem, seed)]
     if not found:
-        return solution
+        equations, ratios = jump_equations(problem)
+        if not equations > ratios:
+            return solution
+        why = f"it would take {ratios} ratios of durations that meet {equations} equations"
+        return replace(solution, why=f"{solution.why}; {why}")
     answer = judged(problem, found, np.zeros(problem.segments), len(found))
     why = f"shortest of {len(found)} ratios of durations at which the motion does not jump"
     return replace(answer, status=Status.FEASIBLE, why=why, iterations=solution.iterations)
@@ -372,8 +398,11 @@ def _with_known(problem: Problem, solution: Solution, ask: Ask) -> Solution:
     if searchable(problem):
         found += exact_search(problem, best[None], floor, ask.until)
     else:
-        search, _ = tracked_search(problem, ask)
-        found += search(best[None], FLOORS[-1] * float(best.mean()))
+        try:
+            search, _ = tracked_search(problem, ask)
+            found += search(best[None], FLOORS[-1] * float(best.mean()))
+        except TooLong:
+            pass  # the known motion is the answer
     shorter = judged(problem, found, floor, solution.starts)
     return shorter if shorter.best < solution.best else solution
 

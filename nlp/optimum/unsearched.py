@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from ...problem import Problem, check
 from .decided import decided
 from .feasibility import impossible
 from .joined import joined
 from .solution import Solution, Status
 from .straight import straight_durations
+
+CUT_SHORT = "the time ran out: what was not searched may hold a shorter motion"
+"""Beside the answer of a search that its time limit ended."""
+OUT_OF_TIME = "the time ran out, which says nothing about whether there are any"
+"""Beside the word that nothing was found, by a search that its time limit ended."""
 
 
 def unsearched(problem: Problem) -> Solution | None:
@@ -45,3 +52,21 @@ def unsearched(problem: Problem) -> Solution | None:
             infimum=0.0,
         )
     return None
+
+
+def cut_short(answer: Solution) -> Solution:
+    """The answer of a search whose time ran out, with a word that says so.
+
+    Parameters
+    ----------
+    answer : Solution
+
+    Returns
+    -------
+    Solution
+        Proofs need no search: *infeasible* stays as it is.
+    """
+    if answer.status is Status.INFEASIBLE:
+        return answer
+    said = OUT_OF_TIME if answer.durations is None else CUT_SHORT
+    return replace(answer, why=said if answer.why is None else f"{answer.why}; {said}")

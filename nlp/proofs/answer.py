@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 
 import numpy as np
@@ -38,32 +38,61 @@ def float_problem(exact: ExactProblem) -> Problem:
     )
 
 
+def _unlimited() -> None:
+    """A clock that never stops anything."""
+
+
 def solve_exactly(
-    matrix: list[list[Fraction]], right: list[list[Fraction]]
+    matrix: list[list[Fraction]],
+    right: list[list[Fraction]],
+    clock: Callable[[], None] = _unlimited,
 ) -> list[list[Fraction]] | None:
-    """Solution of a square linear system by Gauss elimination; None if it is singular."""
-    rows = [a + b for a, b in zip(matrix, right, strict=True)]
-    n = len(rows)
-    for k in range(n):
-        pivot = next((i for i in range(k, n) if rows[i][k] != 0), None)
-        if pivot is None:
+    """Solution of a square linear system by Gauss elimination; None if it is singular.
+
+    Of the rows with an entry in a column the shortest is its pivot: the systems of splines are
+    bands, and stay so.
+    """
+    left = [
+        ({c: x for c, x in enumerate(row) if x}, list(values))
+        for row, values in zip(matrix, right, strict=True)
+    ]
+    done: list[tuple[dict[int, Fraction], list[Fraction]]] = []
+    for column in range(len(left)):
+        holding = [n for n, (row, _) in enumerate(left) if column in row]
+        if not holding:
             return None
-        rows[k], rows[pivot] = rows[pivot], rows[k]
-        inverse = 1 / rows[k][k]
-        rows[k] = [x * inverse if x else x for x in rows[k]]
-        for i in range(n):
-            factor = rows[i][k]
-            if i != k and factor:
-                rows[i] = [
-                    x - factor * y if y else x for x, y in zip(rows[i], rows[k], strict=True)
-                ]
-    return [row[n:] for row in rows]
+        row, values = left.pop(min(holding, key=lambda n: len(left[n][0])))
+        inverse = 1 / row.pop(column)
+        row = {c: x * inverse for c, x in row.items()}
+        values = [x * inverse for x in values]
+        for other, beside in left:
+            factor = other.pop(column, None)
+            if factor is None:
+                continue
+            clock()
+            for c, x in row.items():
+                rest = other.get(c, 0) - factor * x
+                if rest:
+                    other[c] = rest
+                else:
+                    del other[c]
+            beside[:] = [x - factor * y if y else x for x, y in zip(beside, values, strict=True)]
+        done.append((row, values))
+    solved: list[list[Fraction]] = [[] for _ in done]
+    for column in range(len(done) - 1, -1, -1):
+        clock()
+        row, values = done[column]
+        for c, x in row.items():
+            values = [v - x * y for v, y in zip(values, solved[c], strict=True)]
+        solved[column] = values
+    return solved
 
 
 def exact_coefficients(
     interpolant: Interpolant,
     waypoints: Sequence[Sequence[Fraction]],
     durations: Sequence[Fraction],
+    clock: Callable[[], None] = _unlimited,
 ) -> list[list[list[Fraction]]] | None:
     """Coefficients [joint][segment][power] in s = (t − t_k)/h_k; None if not determined."""
     first = [0]
@@ -89,7 +118,7 @@ def exact_coefficients(
         right.append(values)
     if len(matrix) != first[-1]:
         return None
-    solved = solve_exactly(matrix, right)
+    solved = solve_exactly(matrix, right, clock)
     if solved is None:
         return None
     return [
@@ -155,8 +184,14 @@ def _smooth(pieces: list[list[Fraction]], durations: Sequence[Fraction], order: 
     return ends[:-1] == starts[1:]
 
 
-def keeps_limits(problem: ExactProblem, durations: Sequence[Fraction]) -> bool:
+def keeps_limits(
+    problem: ExactProblem,
+    durations: Sequence[Fraction],
+    clock: Callable[[], None] = _unlimited,
+) -> bool:
     """Whether durations are within their bounds and their trajectory keeps every limit, exactly.
+
+    ``clock`` is called between the steps, and ends it by raising.
 
     A limit on a derivative asks for a continuous one below it; only a curve that is stretched
     segment by segment is judged inside its segments alone.
@@ -168,7 +203,7 @@ def keeps_limits(problem: ExactProblem, durations: Sequence[Fraction]) -> bool:
     if stretched:
         curve: list[list[list[Fraction]]] | None = uniform_coefficients(problem.waypoints)
     else:
-        curve = exact_coefficients(problem.piecewise, problem.waypoints, durations)
+        curve = exact_coefficients(problem.piecewise, problem.waypoints, durations, clock)
     if curve is None:
         return False
     for j, pieces in enumerate(curve):
@@ -177,6 +212,7 @@ def keeps_limits(problem: ExactProblem, durations: Sequence[Fraction]) -> bool:
             return False
         floor, roof = problem.position_lower[j], problem.position_upper[j]
         for piece, h in zip(pieces, durations, strict=True):
+            clock()
             if roof is not None and not never_above(piece, roof.low):
                 return False
             if floor is not None and not never_above([-c for c in piece], -floor.high):
@@ -194,12 +230,14 @@ def keeps_limits(problem: ExactProblem, durations: Sequence[Fraction]) -> bool:
 
 
 def prove_feasible(
-    problem: ExactProblem, durations: NDArray[np.float64]
+    problem: ExactProblem,
+    durations: NDArray[np.float64],
+    clock: Callable[[], None] = _unlimited,
 ) -> tuple[Fraction, ...] | None:
     """Rational durations near the given ones, proved feasible; None if none was found.
 
     The durations are stretched uniformly by a tiny factor, rounded up to 15 digits, and never
-    beyond their upper bounds.
+    beyond their upper bounds. ``clock`` is called between the steps, and ends it by raising.
     """
     for stretch in (Fraction(0), *_STRETCHES):
         found = []
@@ -211,6 +249,6 @@ def prove_feasible(
             value = Fraction(math.ceil(value * 10**digits), 10**digits)
             value = max(value, low)
             found.append(value if high is None else min(value, high))
-        if keeps_limits(problem, found):
+        if keeps_limits(problem, found, clock):
             return tuple(found)
     return None

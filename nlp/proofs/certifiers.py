@@ -98,8 +98,8 @@ def certify(
         Time limit of all of it: proving a state again, the search, and proving the result with
         `trajgap.verify`, for which the search leaves time. At the limit, or at Ctrl-C, the best
         interval proved so far is returned; a proof that could not be verified in time is left in
-        the state alone. It is kept to within a second and one step: a box, a step of the local
-        solver, or the exact proof that an answer keeps the limits.
+        the state alone. It is kept to within a second and one step: a box, or a step of the local
+        solver. An answer whose exact proof was cut short is none; `Certified.left_out` says so.
     seed : int
         Of the starts of the local solver that finds the answer.
     resume : Certified or dict, optional

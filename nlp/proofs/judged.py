@@ -13,6 +13,8 @@ from .outcome import Certified, Outcome
 
 SPARE = 1.0
 """Seconds that judging may take beyond the time limit: what takes no time is judged without one."""
+LEAST = 0.5
+"""Seconds that judging has whenever it begins: a certificate of usual size takes a tenth of it."""
 
 
 @dataclass(frozen=True)
@@ -36,6 +38,11 @@ class Deadline:
     def left(self) -> float:
         """Seconds until then; 0 where it is over."""
         return max(0.0, self.end - time.perf_counter())
+
+    @property
+    def judging(self) -> float:
+        """Seconds that judging may take: until `SPARE` after the limit, and `LEAST` at least."""
+        return max(LEAST, self.end + SPARE - time.perf_counter())
 
 
 def unstated(problem: ExactProblem) -> str | None:
@@ -63,8 +70,8 @@ def judged(found: Certified, deadline: Deadline, before: Certified | None = None
     ----------
     found : Certified
     deadline : Deadline
-        Judging ends `SPARE` after it. A proof that takes longer to judge does not count: it becomes
-        what a state proposes, so that a run with more time can go on from it.
+        Judging ends `SPARE` after it, or takes `LEAST`. A proof that takes longer to judge does not
+        count: it becomes what a state proposes, so that a run with more time can go on from it.
     before : Certified, optional
         What the state that the run went on from proved, with its verdict: it holds if time is up.
 
@@ -74,7 +81,7 @@ def judged(found: Certified, deadline: Deadline, before: Certified | None = None
     """
     if found.proof is None:
         return found
-    verdict = verify_certificate(certificate(found), seconds=deadline.left + SPARE)
+    verdict = verify_certificate(certificate(found), seconds=deadline.judging)
     if verdict.proves:
         return replace(found, verdict=verdict)
     nothing = replace(

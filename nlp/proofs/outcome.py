@@ -145,6 +145,8 @@ class Certified:
         Of the answer at the way-points, if it is one of any curve.
     verdict : CertificateVerdict or None
         What `trajgap.verify` says of the certificate; None if nothing is proved.
+    left_out : str or None
+        What the time limit was too short for, in words, where that is all that is known.
     """
 
     problem: ExactProblem
@@ -161,6 +163,7 @@ class Certified:
     subject: Subject = Subject.DECLARED
     speeds: tuple[tuple[Fraction, ...], ...] | None = None
     verdict: CertificateVerdict | None = None
+    left_out: str | None = None
 
     @property
     def gap(self) -> float:

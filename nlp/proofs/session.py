@@ -37,8 +37,15 @@ EARLY = 0.25
 and judging twice would cost them more than it gives."""
 SEEKING = 0.5
 """Share of what is left of the time that a local search may take: the rest is for the proof."""
+ANSWERING = 0.5
+"""Seconds that the exact proof of an answer may take beyond the time limit, or beyond its beginning
+where that is later: an answer of usual size is proved in a tenth of it, whatever the limit."""
 SAFE = 1.5
 """Factor on what was measured: later boxes may take longer to judge than those so far."""
+
+
+UNPROVED = "a motion was found, and the exact proof that it keeps its limits was cut short"
+"""What was left out where `ANSWERING` is over."""
 
 
 class OutOfTime(Exception):
@@ -111,6 +118,8 @@ class Session:
         A kind of proof showed that nothing is feasible.
     one_sided : bool
         The kind of proof bounds from below only: no answer of its own is claimed.
+    left_out : str or None
+        What the time was too short for, in words; a kind of proof sets it where it ends the run.
     nodes, open_boxes, judged_boxes : int
         Boxes visited, boxes left, and boxes of the proof where its kind says so.
     """
@@ -123,6 +132,7 @@ class Session:
         self.proof: Argument | None = None
         self.proposals: Argument | None = None
         self.infeasible = self.one_sided = False
+        self.left_out: str | None = None
         self.nodes = self.open_boxes = self.judged_boxes = 0
         self._judging: float | None = None
         self._began = time.perf_counter()
@@ -178,11 +188,17 @@ class Session:
         """Time since the run began."""
         return time.perf_counter() - self._began
 
-    def check_clock(self) -> None:
-        """Raise `OutOfTime` when what is left of the time is needed for judging."""
+    def check_clock(self, ahead: float = 0.0) -> None:
+        """Raise `OutOfTime` when what is left of the time is needed for judging.
+
+        Parameters
+        ----------
+        ahead : float
+            Seconds that a stage without steps is estimated to take, which is not begun then.
+        """
         seconds = self.seconds
         judging = JUDGING * seconds if self._judging is None else self._judging * self.judged_boxes
-        if seconds + judging > self.request.seconds:
+        if seconds + judging + ahead > self.request.seconds:
             raise OutOfTime
 
     def weigh(self, boxes: int, proof: Callable[[], Argument]) -> None:
@@ -210,8 +226,21 @@ class Session:
     # --- the answer -------------------------------------------------------------------------------
 
     def offer(self, durations: Array) -> bool:
-        """Take durations as the answer if they are proved feasible and shorter than it."""
-        proved = prove_feasible(self.exact, durations)
+        """Take durations as the answer if they are proved feasible and shorter than it.
+
+        Raises
+        ------
+        OutOfTime
+            If the time for that proof is over: nothing is said of the durations then.
+        """
+        end = max(self.seconds, self.request.seconds) + ANSWERING
+
+        def clock() -> None:
+            if self.seconds > end:
+                self.left_out = UNPROVED
+                raise OutOfTime
+
+        proved = prove_feasible(self.exact, durations, clock)
         if proved is None or (self.upper is not None and sum(proved) >= self.upper):
             return False
         self.durations = proved
@@ -342,6 +371,7 @@ class Session:
             None if complete else self.proposals,
             subject,
             speeds,
+            left_out=None if complete else self.left_out,
         )
 
 

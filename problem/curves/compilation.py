@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import math
 import sys
 import time
 from collections.abc import Callable
@@ -83,17 +84,27 @@ class Deferred:
     function : numba dispatcher
     seconds : float
         Time that compiling it takes.
+    left : callable, optional
+        How much time there is. It is compiled only where that is enough to compile it.
     """
 
-    def __init__(self, function: Any, seconds: float) -> None:
-        self._function = function
+    def __init__(
+        self, function: Any, seconds: float, left: Callable[[], float] = lambda: math.inf
+    ) -> None:
+        self._function, self._left = function, left
         self._seconds, self._spent, self._look = seconds, 0.0, 0.0
         self._ready = False
+
+    @property
+    def compiled(self) -> bool:
+        """Whether the last call was one of the compiled function."""
+        return self._ready
 
     def __call__(self, *arguments: Any) -> Any:
         """Call the function, one way or the other."""
         if not self._ready and self._spent >= self._look:
-            self._ready = self._spent >= self._seconds or _at_hand(self._function)
+            worth = self._spent >= self._seconds and self._left() > self._seconds
+            self._ready = worth or at_hand(self._function)
             self._look = self._spent + LOOK * self._seconds
         if self._ready:
             return self._function(*arguments)
@@ -104,8 +115,17 @@ class Deferred:
         return found
 
 
-def _at_hand(function: Any) -> bool:
-    """Whether a compiled form of a function is in this process or on disk."""
+def at_hand(function: Any) -> bool:
+    """Whether a compiled form of a function is in this process or on disk.
+
+    Parameters
+    ----------
+    function : numba dispatcher
+
+    Returns
+    -------
+    bool
+    """
     if not isinstance(function, CPUDispatcher):
         return True  # compiling is switched off: it is a plain function
     if function.signatures:

@@ -11,12 +11,14 @@ from typing import Any
 import numpy as np
 
 from ....problem import Array, Interpolant, Verdict, check
+from ....problem.curves import at_hand
 from ....verify import MOST_POWER, MOST_QUINTIC_JOINTS, MOST_QUINTIC_SEGMENTS, SMALLEST
 from ..exact import ExactProblem, decimal
 from ..executors import executor_for
 from ..rounding import below
 from ..session import Certifier, Ladder, Session, Shorter
 from .leaves import Leaves
+from .search import search
 from .subtrees import Question, Root, search_all
 from .windows import Windows, windows
 
@@ -30,6 +32,10 @@ _LADDER = Ladder(
 """Boxes grow with a power of 1/gap: small steps keep a stopped run near its goal. From 0.1 on they
 grow little, to five times as many at 0.01 and eight at 0.001 (docs/explanation/
 certificates-quintic.md), and judging takes half as long again as the search."""
+COMPILING = 25.0
+"""Seconds that compiling the search takes, once after an installation: 22 were measured."""
+UNCOMPILED = f"compiling the search takes about {COMPILING:.0f} s, once after an installation"
+"""What is left out where there is less time than that."""
 _SLIGHT = 1e-7
 """Share by which durations must be shorter to be worth a new start of the ladder."""
 _NEAR = 8
@@ -151,6 +157,10 @@ class _Search:
     def stage(self, target: Fraction) -> Tree:
         """Prove that no total is below ``target``, s."""
         session = self.session
+        if not at_hand(search):
+            session.left_out = UNCOMPILED
+            session.check_clock(COMPILING)
+            session.left_out = None
         session.check_clock()
         own, upper = target / self.units.time, session.upper
         look = 0.0 if upper is None else float(upper / self.units.time) * (1.0 - _SLIGHT)

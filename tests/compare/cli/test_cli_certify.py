@@ -354,7 +354,6 @@ def test_a_state_beside_a_finished_certificate_goes(run: Run) -> None:
     ("arguments", "reason"),
     [
         (("--gap", "0.1"), "--gap needs --certify"),
-        (("--time", "1"), "--time needs --certify"),
         (("--certificates", "x"), "--certificates needs --certify"),
         (("--resume", "x"), "--resume needs --certify"),
         (("--workers", "2"), "--workers needs --certify"),

@@ -78,9 +78,9 @@ def test_none_is_found_where_brute_force_has_none() -> None:
 
 
 def test_bounds_on_the_durations_hold() -> None:
-    (free,) = matched(question(ONWARDS), 0)
+    ((free, _),) = matched(question(ONWARDS), 0)
     low = np.array([0.0, 2.0 * free[1], 0.0])
-    (longer,) = matched(question(ONWARDS, duration_lower=low), 0)
+    ((longer, _),) = matched(question(ONWARDS, duration_lower=low), 0)
     np.testing.assert_allclose(longer, 2.0 * free, rtol=1e-6)
     assert matched(question(ONWARDS, duration_upper=0.9 * free), 0) == []
 
@@ -89,7 +89,7 @@ def test_proportional_joints_share_the_ratios() -> None:
     both = Problem(
         np.column_stack([ONWARDS, 0.5 - 0.4 * ONWARDS]), Limits([V] * 2, [A] * 2, [J] * 2), C1
     )
-    ((alone,), (shared,)) = matched(question(ONWARDS), 0), matched(both, 0)
+    ((alone, _),), ((shared, _),) = matched(question(ONWARDS), 0), matched(both, 0)
     np.testing.assert_allclose(shared, alone, rtol=1e-6)
     other = Problem(np.column_stack([ONWARDS, BACK]), Limits([V] * 2, [A] * 2, [J] * 2), C1)
     assert matched(other, 0) == []

@@ -1,0 +1,99 @@
+"""Exact proofs of answers, and compiling, within the time limit of a certification."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from trajgap.nlp.proofs import session
+from trajgap.nlp.proofs.answer import prove_feasible, solve_exactly
+from trajgap.nlp.proofs.certifiers import certify
+from trajgap.nlp.proofs.exact import exact_problem
+from trajgap.nlp.proofs.outcome import Outcome, Request
+from trajgap.nlp.proofs.quintic import certifier
+from trajgap.nlp.proofs.session import OutOfTime, Session
+from trajgap.problem import Limits, Problem, cubic_spline, quintic_spline
+
+RNG = np.random.default_rng(20261128)
+Q = RNG.normal(size=(6, 2))
+CUBIC = Problem(Q, Limits([1.1] * 2, [1.9] * 2), cubic_spline(5))
+QUINTIC = Problem(Q[:3], Limits([1.1] * 2, [1.9] * 2), quintic_spline(2))
+SLOW = np.full(5, 20.0)
+"""s; no limit is near."""
+
+
+class Ticking:
+    """A clock that goes on by a step whenever somebody looks at it."""
+
+    now, step = 0.0, 0.0
+
+    def perf_counter(self) -> float:
+        self.now += self.step
+        return self.now
+
+
+def test_elimination_solves_and_stops() -> None:
+    matrix = [[Fraction(int(x)) for x in row] for row in RNG.integers(-4, 5, (9, 9))]
+    for i in range(8):
+        matrix[i][i + 1 :] = [Fraction(0)] * (8 - i) if i % 2 else matrix[i][i + 1 :]
+    right = [[Fraction(int(x)) for x in row] for row in RNG.integers(-4, 5, (9, 3))]
+    solved = solve_exactly(matrix, right)
+    assert solved is not None
+    for row, values in zip(matrix, right, strict=True):
+        again = [sum(x * s[k] for x, s in zip(row, solved, strict=True)) for k in range(3)]
+        assert again == values
+    assert solve_exactly([*matrix[:8], matrix[0]], right) is None
+    looks = 0
+
+    def clock() -> None:
+        nonlocal looks
+        looks += 1
+        if looks == 5:
+            raise OutOfTime
+
+    with pytest.raises(OutOfTime):
+        solve_exactly(matrix, right, clock)
+
+
+def test_the_proof_of_an_answer_is_cut_short_and_proves_nothing(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    assert prove_feasible(exact_problem(CUBIC), SLOW) is not None
+    ticks = Ticking()
+    monkeypatch.setattr(session, "time", ticks)
+    one = Session(exact_problem(CUBIC), Request(seconds=100.0))
+    ticks.step = 10.0
+    with pytest.raises(OutOfTime):
+        one.offer(SLOW)
+    assert 100.0 < ticks.now < 150.0
+    ticks.step = 0.0
+    found = one.result(False, certifier.QUINTIC.subject)
+    assert (found.outcome, found.lower, found.upper) == (Outcome.OPEN, 0, None)
+    assert found.left_out == session.UNPROVED
+
+
+def test_an_answer_of_usual_size_is_proved_though_the_time_is_over(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    ticks = Ticking()
+    monkeypatch.setattr(session, "time", ticks)
+    one = Session(exact_problem(CUBIC), Request(seconds=1.0))
+    ticks.now = 500.0
+    assert one.offer(SLOW)
+    assert one.upper == sum(map(Fraction, SLOW))
+
+
+def test_a_search_is_not_compiled_where_that_takes_longer_than_is_left(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def never(*_: object) -> int:
+        raise AssertionError("compiled")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(certifier, "at_hand", lambda _: False)
+        patch.setattr(certifier, "search", never)
+        found = certify(QUINTIC, gap=0.5, seconds=0.9 * certifier.COMPILING)
+    assert (found.outcome, found.lower) == (Outcome.INTERVAL, 0)
+    assert found.left_out == certifier.UNCOMPILED
+    assert found.upper is not None
