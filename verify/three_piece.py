@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cache
+from functools import cache, lru_cache
 from math import comb, factorial, inf, lcm, perm
 from operator import mul
 from typing import Any, ClassVar
@@ -52,6 +52,8 @@ Ratios = dict[tuple[int, int], list[Fraction]]
 """Coefficients in s of each xⁱyʲ."""
 Curves = dict[str, list[Ratios]]
 """By kind of row and joint: a piece times its divisor."""
+Whole = tuple[dict[tuple[int, int], list[int]], int]
+"""Such a piece as integers, divided by one positive integer."""
 
 
 class _ThreePieces(ProofKind[Square]):
@@ -118,7 +120,7 @@ class _ThreePieces(ProofKind[Square]):
             "ends",
         )
 
-    def _curves(self) -> Curves:
+    def _curves(self) -> dict[str, list[Whole]]:
         """Each piece times its divisor, as a polynomial of degree 2 in x and in y, for s in [0, 1].
 
         The curve is linear in the way-points: it is the sum of the curves through the unit ones,
@@ -127,12 +129,13 @@ class _ThreePieces(ProofKind[Square]):
         joints = list(zip(*self.problem.waypoints, strict=True))
         return {
             kind: [
-                {key: _mixed(q, [unit[key] for unit in units]) for key in POWERS} for q in joints
+                _whole({key: _mixed(q, [unit[key] for unit in units]) for key in POWERS})
+                for q in joints
             ]
             for kind, units in _unit_curves(type(self)).items()
         }
 
-    def _polynomial(self, curves: Curves, row: _Row) -> Quotient:
+    def _polynomial(self, curves: dict[str, list[Whole]], row: _Row) -> Quotient:
         """Polynomial in a, b that is < 0 wherever a trajectory below the total is feasible.
 
         With h_g < c·M_g/hold, a piece N/E and |q⁽ʳ⁾(s)| ≤ limit·h_gʳ in its own time: the row is
@@ -163,12 +166,11 @@ class _ThreePieces(ProofKind[Square]):
             limit = bound[1]
             need(limit > 0, "a row leans on a limit that is not there")
         if row.kind in self.divisors:
-            ratios = curves[row.kind][row.joint]
-            values = {key: sign * _value(x, order, row.place) for key, x in ratios.items()}
-            left, unit = _sum([(x, _on_square(*key)) for key, x in values.items()], self.clock)
             segment, divisor = self.divisors[row.kind]
-            shares = [(Fraction(x), _on_square(*key)) for key, x in divisor.items()]
-            below, _ = _sum(shares, self.clock)
+            ratios, unit = curves[row.kind][row.joint]
+            unit *= PLACES ** (self.degrees[segment] - order)
+            values = {key: sign * _value(x, order, row.place) for key, x in ratios.items()}
+            left, below = _on_square(values), _on_square(divisor)
         else:
             segment = _WHOLE[row.kind]
             least = perm(3, order) if self.cubic_ends else factorial(order)
@@ -311,14 +313,17 @@ def _sum(terms: Sequence[tuple[Fraction, Poly]], clock: Clock) -> Quotient:
     return out, unit
 
 
-def _value(poly: Sequence[Fraction], order: int, place: int) -> Fraction:
-    """A derivative of a polynomial at place/PLACES: an integer, divided by one in the end."""
-    unit, degree = lcm(*(c.denominator for c in poly)), len(poly) - 1
+def _whole(ratios: Ratios) -> Whole:
+    unit = lcm(*(c.denominator for x in ratios.values() for c in x))
+    return {key: [int(c * unit) for c in x] for key, x in ratios.items()}, unit
+
+
+def _value(poly: Sequence[int], order: int, place: int) -> int:
+    """A derivative of a polynomial at place/PLACES, times PLACES to the power of its degree."""
     total = 0
-    for p, c in enumerate(poly[order:], order):
-        whole = c.numerator * (unit // c.denominator)
-        total += perm(p, order) * whole * place ** (p - order) * PLACES ** (degree - p)
-    return Fraction(total, unit * PLACES ** (degree - order))
+    for p in range(len(poly) - 1, order - 1, -1):
+        total = total * place + perm(p, order) * poly[p] * PLACES ** (len(poly) - 1 - p)
+    return total
 
 
 def _parabola(nodes: list[list[Fraction]]) -> list[list[Fraction]]:
@@ -332,8 +337,17 @@ def _parabola(nodes: list[list[Fraction]]) -> list[list[Fraction]]:
     return out
 
 
+def _on_square(ratios: dict[tuple[int, int], int]) -> Poly:
+    """a²b²·Σ c·xⁱyʲ in a and b."""
+    out: Poly = {}
+    for (i, j), c in ratios.items():
+        for key, x in _monomial(i, j).items():
+            out[key] = out.get(key, 0) + c * x
+    return out
+
+
 @cache
-def _on_square(i: int, j: int) -> Poly:
+def _monomial(i: int, j: int) -> Poly:
     """a²b²·xⁱyʲ in a and b."""
     a: Poly = {(1, 0): 1}
     a1: Poly = {(0, 0): 1, (1, 0): -1}
@@ -353,6 +367,7 @@ def _covers(poly: Poly, box: Square) -> bool:
     return all(x >= 0 for line in table for x in line)
 
 
+@lru_cache(maxsize=256)  # of the sides of boxes, which come again and again
 def _blossom(low: Fraction, high: Fraction) -> Sequence[list[int]]:
     """Weights of the powers in each Bernstein coefficient, times a positive number.
 
