@@ -8,12 +8,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import comb, factorial, lcm, perm
+from functools import cache, lru_cache
+from math import comb, factorial, inf, lcm, perm
 from operator import mul
 from typing import Any, ClassVar
 
-from .curve import derivative, pieces, value_at
-from .problem import StatedProblem
+from .curve import pieces
+from .problem import Bounds, Declaration, StatedProblem
 from .ranges import MOST_ROWS, MOST_WEIGHTS, PLACES
 from .reading import Clock, listed, need, number, required, sign_of, text, whole
 from .tree import ProofKind
@@ -27,26 +28,32 @@ BINOMIALS = lcm(*(comb(SIZE - 1, p) for p in range(SIZE)))
 _FINEST = 2**256
 """Of a place where the square is cut: each halving adds a digit, and a long tree many."""
 
-Poly = dict[tuple[int, int], Fraction]
+Poly = dict[tuple[int, int], int]
 """Coefficients of aⁱbʲ."""
+Quotient = tuple[Poly, int]
+"""A polynomial divided by a positive integer: so all sums and products are of integers."""
 Square = tuple[Fraction, Fraction, Fraction, Fraction]
 """A box: a from, to, b from, to."""
 
-ONE: Poly = {(0, 0): Fraction(1)}
+ONE: Poly = {(0, 0): 1}
 """The polynomial 1: products begin with it."""
 M: tuple[Poly, ...] = (
-    {(1, 0): Fraction(1), (1, 1): Fraction(-1)},
-    {(0, 0): Fraction(1), (1, 0): Fraction(-1), (0, 1): Fraction(-1), (1, 1): Fraction(1)},
-    {(0, 1): Fraction(1), (1, 1): Fraction(-1)},
+    {(1, 0): 1, (1, 1): -1},
+    {(0, 0): 1, (1, 0): -1, (0, 1): -1, (1, 1): 1},
+    {(0, 1): 1, (1, 1): -1},
 )
 """m = (a(1 − b), (1 − a)(1 − b), b(1 − a)): a segment's share of the total, times S."""
-S: Poly = {(0, 0): Fraction(1), (1, 1): Fraction(-1)}
+S: Poly = {(0, 0): 1, (1, 1): -1}
 """S = 1 − ab: what the shares add up to."""
 
+POWERS = tuple((i, j) for i in range(3) for j in range(3))
+"""Of x and y in a piece."""
 Ratios = dict[tuple[int, int], list[Fraction]]
 """Coefficients in s of each xⁱyʲ."""
 Curves = dict[str, list[Ratios]]
 """By kind of row and joint: a piece times its divisor."""
+Whole = tuple[dict[tuple[int, int], list[int]], int]
+"""Such a piece as integers, divided by one positive integer."""
 
 
 class _ThreePieces(ProofKind[Square]):
@@ -96,11 +103,9 @@ class _ThreePieces(ProofKind[Square]):
         which = [whole(k, 0, len(self._rows) - 1) for k in data[::2]]
         weights = [number(x) for x in data[1::2]]
         need(min(weights) >= 0 and any(weights), "a weight is negative, or all are 0")
-        mixed: Poly = {}
-        for k, w in zip(which, weights, strict=True):
-            self.clock.check()
-            for key, x in self._rows[k].items():
-                mixed[key] = mixed.get(key, Fraction(0)) + w * x
+        rows = [self._rows[k] for k in which]
+        parts = [(w / unit, row) for w, (row, unit) in zip(weights, rows, strict=True)]
+        mixed, _ = _sum(parts, self.clock)
         need(_covers(mixed, box), "it is not proved")
 
     @property
@@ -109,53 +114,28 @@ class _ThreePieces(ProofKind[Square]):
         return self._timeless
 
     def _declared(self) -> None:
-        declared = self.problem.declaration
-        rest = {1: Fraction(0), 2: Fraction(0)}
         need(
-            declared is not None
-            and declared.degrees == self.degrees
-            and declared.continuity == [2, 2]
-            and declared.prescribed == [rest, {}, {}, rest]
-            and not declared.virtual,
+            self.problem.declaration == _at_rest(self.degrees),
             "declaration not covered: not the polynomials of this kind of proof, at rest at the "
             "ends",
         )
 
-    def _curves(self) -> Curves:
+    def _curves(self) -> dict[str, list[Whole]]:
         """Each piece times its divisor, as a polynomial of degree 2 in x and in y, for s in [0, 1].
 
-        It is read off from exact splines on nine pairs of ratios, and checked on two more.
+        The curve is linear in the way-points: it is the sum of the curves through the unit ones,
+        each times a way-point.
         """
-        nodes = [Fraction(x) for x in (1, 2, 3)]
-        grid = [(x, y) for x in nodes for y in nodes]
-        further = [(Fraction(2), Fraction(5)), (Fraction(7, 2), Fraction(1, 3))]
-        splines = {
-            (x, y): pieces(self.problem, [1 / x, Fraction(1), 1 / y], self.clock)
-            for x, y in grid + further
+        joints = list(zip(*self.problem.waypoints, strict=True))
+        return {
+            kind: [
+                _whole({key: _mixed(q, [unit[key] for unit in units]) for key in POWERS})
+                for q in joints
+            ]
+            for kind, units in _unit_curves(type(self)).items()
         }
-        out: Curves = {}
-        for kind, (segment, divisor) in self.divisors.items():
-            out[kind] = []
-            for joint in range(self.problem.joints):
-                values = {}
-                for (x, y), spline in splines.items():
-                    h = (1 / x, Fraction(1), 1 / y)[segment]
-                    by = sum((c * x**i * y**j for (i, j), c in divisor.items()), Fraction(0))
-                    values[x, y] = [by * c * h**p for p, c in enumerate(spline[joint][segment])]
-                rows = [_parabola([values[x, y] for y in nodes]) for x in nodes]
-                found: Ratios = {}
-                for j in range(3):
-                    for i, coefficients in enumerate(_parabola([row[j] for row in rows])):
-                        found[i, j] = coefficients
-                for x, y in further:
-                    expected = [Fraction(0)] * len(values[x, y])
-                    for (i, j), c in found.items():
-                        expected = [e + x**i * y**j * v for e, v in zip(expected, c, strict=True)]
-                    need(values[x, y] == expected, "a piece is not of this form")
-                out[kind].append(found)
-        return out
 
-    def _polynomial(self, curves: Curves, row: _Row) -> Poly:
+    def _polynomial(self, curves: dict[str, list[Whole]], row: _Row) -> Quotient:
         """Polynomial in a, b that is < 0 wherever a trajectory below the total is feasible.
 
         With h_g < c·M_g/hold, a piece N/E and |q⁽ʳ⁾(s)| ≤ limit·h_gʳ in its own time: the row is
@@ -170,7 +150,8 @@ class _ThreePieces(ProofKind[Square]):
         c = longest if cap < 0 else longest * (1 + STRICT)
         hold = S if cap < 0 else M[cap]  # every duration is below c·M[g]/hold
         if row.kind == "lower":
-            return _plus((problem.shortest[row.joint] / c, hold), (Fraction(-1), M[row.joint]))
+            share = problem.shortest[row.joint] / c
+            return _sum([(share, hold), (Fraction(-1), M[row.joint])], self.clock)
         q, order, sign = [w[row.joint] for w in problem.waypoints], row.order, row.sign
         if order == 0:
             ends = required(
@@ -185,23 +166,21 @@ class _ThreePieces(ProofKind[Square]):
             limit = bound[1]
             need(limit > 0, "a row leans on a limit that is not there")
         if row.kind in self.divisors:
-            s = Fraction(row.place, PLACES)
-            ratios = curves[row.kind][row.joint]
-            left = _on_square(
-                {key: sign * value_at(derivative(x, order), s) for key, x in ratios.items()}
-            )
             segment, divisor = self.divisors[row.kind]
-            below = _on_square({key: Fraction(x) for key, x in divisor.items()})
+            ratios, unit = curves[row.kind][row.joint]
+            unit *= PLACES ** (self.degrees[segment] - order)
+            values = {key: sign * _value(x, order, row.place) for key, x in ratios.items()}
+            left, below = _on_square(values), _on_square(divisor)
         else:
             segment = _WHOLE[row.kind]
             least = perm(3, order) if self.cubic_ends else factorial(order)
             way = abs(q[segment + 1] - q[segment]) * (1 if row.kind == "mean" else least)
-            left, below = {(0, 0): way}, ONE
+            left, unit, below = {(0, 0): way.numerator}, way.denominator, ONE
         if order == 0:
-            return _plus((Fraction(1), left), (-limit, below))
+            return _sum([(Fraction(1, unit), left), (-limit, below)], self.clock)
         left = _times(left, *([hold] * order))
         right = _times(below, *([M[segment]] * order))
-        return _plus((1 / (limit * c**order), left), (Fraction(-1), right))
+        return _sum([(1 / (limit * c**order * unit), left), (Fraction(-1), right)], self.clock)
 
 
 class ThreeFiveThree(_ThreePieces):
@@ -258,23 +237,93 @@ class _Row:
         return row
 
 
+def _at_rest(degrees: list[int]) -> Declaration:
+    """C2 pieces through four way-points, at rest without acceleration at both ends."""
+    rest = {1: Fraction(0), 2: Fraction(0)}
+    return Declaration(degrees, [2, 2], [rest, {}, {}, rest], [])
+
+
+@cache
+def _unit_curves(proof: type[_ThreePieces]) -> Curves:
+    """`_curves` where one way-point is 1 and the others are 0, a joint for each of the four.
+
+    They are read off from exact splines on nine pairs of ratios, and checked on two more.
+    """
+    unit = [[Fraction(int(i == j)) for j in range(4)] for i in range(4)]
+    none: list[Bounds] = [None] * 4
+    problem = StatedProblem(
+        unit, [none[:3]] * 4, [none, none], [Fraction(0)] * 3, [None] * 3,
+        _at_rest(proof.degrees), None, (None, None),
+    )  # fmt: skip
+    nodes = [Fraction(x) for x in (1, 2, 3)]
+    grid = [(x, y) for x in nodes for y in nodes]
+    further = [(Fraction(2), Fraction(5)), (Fraction(7, 2), Fraction(1, 3))]
+    splines = {
+        (x, y): pieces(problem, [1 / x, Fraction(1), 1 / y], Clock(inf)) for x, y in grid + further
+    }
+    out: Curves = {}
+    for kind, (segment, divisor) in proof.divisors.items():
+        out[kind] = []
+        for joint in range(4):
+            values = {}
+            for (x, y), spline in splines.items():
+                h = (1 / x, Fraction(1), 1 / y)[segment]
+                by = sum((c * x**i * y**j for (i, j), c in divisor.items()), Fraction(0))
+                values[x, y] = [by * c * h**p for p, c in enumerate(spline[joint][segment])]
+            rows = [_parabola([values[x, y] for y in nodes]) for x in nodes]
+            found: Ratios = {}
+            for j in range(3):
+                for i, coefficients in enumerate(_parabola([row[j] for row in rows])):
+                    found[i, j] = coefficients
+            for x, y in further:
+                expected = _mixed([x**i * y**j for i, j in POWERS], [found[k] for k in POWERS])
+                need(values[x, y] == expected, "a piece is not of this form")
+            out[kind].append(found)
+    return out
+
+
+def _mixed(factors: Sequence[Fraction], lists: Sequence[list[Fraction]]) -> list[Fraction]:
+    """The sum of lists, each times a factor."""
+    return [sum(map(mul, factors, column), Fraction(0)) for column in zip(*lists, strict=True)]
+
+
 def _times(*factors: Poly) -> Poly:
     out = ONE
     for p in factors:
         product: Poly = {}
         for (i, j), x in out.items():
             for (k, m), y in p.items():
-                product[i + k, j + m] = product.get((i + k, j + m), Fraction(0)) + x * y
+                product[i + k, j + m] = product.get((i + k, j + m), 0) + x * y
         out = product
     return out
 
 
-def _plus(*terms: tuple[Fraction, Poly]) -> Poly:
+def _sum(terms: Sequence[tuple[Fraction, Poly]], clock: Clock) -> Quotient:
+    """Polynomials times numbers, added up over one denominator of all numbers."""
+    unit = 1
+    for factor, _ in terms:
+        clock.check()
+        unit = lcm(unit, factor.denominator)
     out: Poly = {}
     for factor, p in terms:
+        clock.check()
+        whole = factor.numerator * (unit // factor.denominator)
         for key, x in p.items():
-            out[key] = out.get(key, Fraction(0)) + factor * x
-    return out
+            out[key] = out.get(key, 0) + whole * x
+    return out, unit
+
+
+def _whole(ratios: Ratios) -> Whole:
+    unit = lcm(*(c.denominator for x in ratios.values() for c in x))
+    return {key: [int(c * unit) for c in x] for key, x in ratios.items()}, unit
+
+
+def _value(poly: Sequence[int], order: int, place: int) -> int:
+    """A derivative of a polynomial at place/PLACES, times PLACES to the power of its degree."""
+    total = 0
+    for p in range(len(poly) - 1, order - 1, -1):
+        total = total * place + perm(p, order) * poly[p] * PLACES ** (len(poly) - 1 - p)
+    return total
 
 
 def _parabola(nodes: list[list[Fraction]]) -> list[list[Fraction]]:
@@ -288,26 +337,29 @@ def _parabola(nodes: list[list[Fraction]]) -> list[list[Fraction]]:
     return out
 
 
-def _on_square(ratios: dict[tuple[int, int], Fraction]) -> Poly:
+def _on_square(ratios: dict[tuple[int, int], int]) -> Poly:
     """a²b²·Σ c·xⁱyʲ in a and b."""
-    a: Poly = {(1, 0): Fraction(1)}
-    a1: Poly = {(0, 0): Fraction(1), (1, 0): Fraction(-1)}
-    b: Poly = {(0, 1): Fraction(1)}
-    b1: Poly = {(0, 0): Fraction(1), (0, 1): Fraction(-1)}
-    return _plus(
-        *(
-            (c, _times(*[a] * (2 - i), *[a1] * i, *[b] * (2 - j), *[b1] * j))
-            for (i, j), c in ratios.items()
-            if c
-        )
-    )
+    out: Poly = {}
+    for (i, j), c in ratios.items():
+        for key, x in _monomial(i, j).items():
+            out[key] = out.get(key, 0) + c * x
+    return out
+
+
+@cache
+def _monomial(i: int, j: int) -> Poly:
+    """a²b²·xⁱyʲ in a and b."""
+    a: Poly = {(1, 0): 1}
+    a1: Poly = {(0, 0): 1, (1, 0): -1}
+    b: Poly = {(0, 1): 1}
+    b1: Poly = {(0, 0): 1, (0, 1): -1}
+    return _times(*[a] * (2 - i), *[a1] * i, *[b] * (2 - j), *[b1] * j)
 
 
 def _covers(poly: Poly, box: Square) -> bool:
     """Whether all Bernstein coefficients on a box are ≥ 0."""
     need(all(max(key) < SIZE for key in poly), "a row has too high a degree")
-    unit = lcm(*(x.denominator for x in poly.values()))
-    table = [[int(poly.get((i, j), 0) * unit) for j in range(SIZE)] for i in range(SIZE)]
+    table = [[poly.get((i, j), 0) for j in range(SIZE)] for i in range(SIZE)]
     for low, high in (box[2:], box[:2]):
         blossom = _blossom(low, high)
         table = [[sum(map(mul, line, row)) for row in blossom] for line in table]
@@ -315,6 +367,7 @@ def _covers(poly: Poly, box: Square) -> bool:
     return all(x >= 0 for line in table for x in line)
 
 
+@lru_cache(maxsize=256)  # of the sides of boxes, which come again and again
 def _blossom(low: Fraction, high: Fraction) -> Sequence[list[int]]:
     """Weights of the powers in each Bernstein coefficient, times a positive number.
 

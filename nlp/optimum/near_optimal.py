@@ -12,6 +12,7 @@ import numpy as np
 from ...problem import Array, Problem, check, fit
 from .formulation import Formulation, Structure, pack_parameters
 from .ipopt import compiled, structure_of
+from .near_newton import applies, reached
 from .symbolic import ca
 from .tracking import (
     Scaled,
@@ -133,6 +134,19 @@ def _improve(
     return h
 
 
+def _moved(
+    problems: list[Problem],
+    starts: list[Array],
+    caps: list[float],
+    weights: Array | None,
+) -> list[Array]:
+    """`_improve` by Newton steps where they settle: some hundred such answers make one range."""
+    found = reached(problems, starts, caps, weights) if applies(problems) else None
+    if found is None:
+        found = _improve(problems, starts, caps, weights)
+    return [_kept(problem, h) for problem, h in zip(problems, found, strict=True)]
+
+
 def _kept(problem: Problem, h: Array) -> Array:
     """Durations made feasible by the (tiny) uniform stretch that they may need."""
     stretch = max(1.0, check(problem, h).stretch)
@@ -161,9 +175,7 @@ def longest_per_segment_range(
     """
     caps = [float(h.sum()) + slack for h in optima]
     given = float(np.max(optima, axis=0).sum())
-    least = [
-        _kept(p, h) for p, h in zip(problems, _improve(problems, optima, caps, None), strict=True)
-    ]
+    least = _moved(problems, optima, caps, None)
     lowest = given
     if all(h.sum() <= cap * (1 + 1e-8) for h, cap in zip(least, caps, strict=True)):
         lowest = min(given, float(np.max(least, axis=0).sum()))
@@ -181,7 +193,7 @@ def longest_per_segment_range(
                 continue
             weights = np.zeros(n)
             weights[chosen] = -1.0
-            h = _kept(problem, _improve([problem], [optimum], [cap], weights)[0])
+            h = _moved([problem], [optimum], [cap], weights)[0]
             if h.sum() <= cap * (1 + 1e-8):
                 reach[j, subset] = max(reach[j, subset], float(h[chosen].sum()))
     return lowest, max(given, _best_assignment(reach, len(problems), n))

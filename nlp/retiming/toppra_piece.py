@@ -7,15 +7,18 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 import numpy as np
-from toppra.algorithm import TOPPRA
-from toppra.constraint import (
-    DiscretizationType,
-    JointAccelerationConstraint,
-    JointVelocityConstraint,
-)
 
 from ...problem import Array
 from .grid import SampledPath
+from .toppra_undrawn import undrawn
+
+with undrawn():
+    from toppra.algorithm import TOPPRA
+    from toppra.constraint import (
+        DiscretizationType,
+        JointAccelerationConstraint,
+        JointVelocityConstraint,
+    )
 
 _UNITS = ((1e4, 10.0), (1e4, 1.0), (1e2, 10.0), (1e4, 3.0), (1e4, 30.0), (1e2, 1.0))
 """Scalings tried: length of the path, and expected path speed.

@@ -112,9 +112,9 @@ def test_solver_and_verifier_have_the_same_rows(shape: ThreePieces) -> None:
     for row in rows:
         mine = exact_row(exact_problem(bounded), row, total)
         entry = [row.kind, row.joint, row.order, row.sign, row.place, row.cap]
-        theirs = proof._polynomial(curves, checker._Row.read(entry, proof))
+        theirs, unit = proof._polynomial(curves, checker._Row.read(entry, proof))
         assert {k: v for k, v in np.ndenumerate(mine) if v} == {
-            k: v for k, v in theirs.items() if v
+            k: Fraction(v, unit) for k, v in theirs.items() if v
         }
 
 
