@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from itertools import groupby
-from typing import Any, TypeVar, cast
+from typing import Any, cast
 
 import numpy as np
 
@@ -76,14 +76,11 @@ def stepped_together(
     return [(traces[i].copy(), best[i].copy(), judges.evaluations(i)) for i in range(len(starts))]
 
 
-S = TypeVar("S")
-
-
-def _stacked(states: list[S]) -> S:
+def _stacked(states: list[Any]) -> Any:
     """States of single runs as one: arrays and best fitness get a first axis."""
     values = {
         field.name: [getattr(state, field.name) for state in states]
-        for field in fields(cast(Any, states[0]))
+        for field in fields(states[0])
     }
     counter = values.pop("iteration")[0]
     return type(states[0])(iteration=counter, **{k: np.stack(v) for k, v in values.items()})
@@ -133,4 +130,4 @@ class _Judges:
     def evaluations(self, run: int) -> int:
         """Positions of one run that were judged: each run judges as many."""
         rows, judge = self._of(run)
-        return judge.evaluations // (rows.stop - rows.start)
+        return judge.evaluations // int(rows.stop - rows.start)

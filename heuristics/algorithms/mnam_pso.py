@@ -191,7 +191,8 @@ class MNAMPSO:
             where, size = pair[..., :1], pair[..., 1:]
             here = np.arange(dimensions) == np.floor(where * dimensions)
             return np.where(here, best + reach * (2.0 * size - 1.0), best)
-        return best + reach * (2.0 * rng.random(dimensions) - 1.0)
+        moved: Array = best + reach * (2.0 * rng.random(dimensions) - 1.0)
+        return moved
 
     def init(self, bounds: Bounds, rng: np.random.Generator, objective: Objective) -> Swarm:
         """Draw and judge the initial swarm, and mutate its best (Steps 1 to 4)."""
