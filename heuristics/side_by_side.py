@@ -79,8 +79,7 @@ def stepped_together(
 def _stacked(states: list[Any]) -> Any:
     """States of single runs as one: arrays and best fitness get a first axis."""
     values = {
-        field.name: [getattr(state, field.name) for state in states]
-        for field in fields(states[0])
+        field.name: [getattr(state, field.name) for state in states] for field in fields(states[0])
     }
     counter = values.pop("iteration")[0]
     return type(states[0])(iteration=counter, **{k: np.stack(v) for k, v in values.items()})
