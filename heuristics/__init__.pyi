@@ -14,7 +14,15 @@ from .algorithms import (
 )
 from .baseline import uniform_rescaling
 from .hazards import TentCollapse, tent_collapse
-from .loop import run, run_many, run_many_per_joint, run_per_joint, states
+from .loop import (
+    Question,
+    run,
+    run_many,
+    run_many_per_joint,
+    run_per_joint,
+    run_questions,
+    states,
+)
 from .objective import Bounds, Counted, DeathPenalty, Objective
 from .optimizers import BASELINES, Borrowed, BorrowedTask, find_optimizer
 from .repair import Handling, Stretch, judge_of
@@ -44,6 +52,7 @@ __all__ = [
     "ImprovedWOA",
     "JointRuns",
     "Objective",
+    "Question",
     "Run",
     "Search",
     "State",
@@ -62,6 +71,7 @@ __all__ = [
     "run_many",
     "run_many_per_joint",
     "run_per_joint",
+    "run_questions",
     "run_within",
     "search_box",
     "shgo",

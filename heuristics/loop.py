@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import ExitStack, closing
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Annotated, Any, TypeVar, cast
 
@@ -14,9 +14,10 @@ from ..problem import Array, Problem
 from .algorithm import Algorithm, S, Search, State
 from .budget import searched
 from .objective import Bounds, Counted, Objective
-from .repair import Handling, judge_of
+from .repair import Handling, Judge, judge_of
 from .result import JointRuns, Run
 from .settings import checked, whole
+from .side_by_side import TOGETHER, Start, moves_together, stepped_together
 from .workers import in_processes
 
 
@@ -52,6 +53,13 @@ Method = Algorithm[Any] | Search
 """What can be run: an algorithm step by step, or a search that owns its loop."""
 
 M = TypeVar("M", bound=Method)
+_SHARES = 4
+"""Pieces of work for each process, so that none waits long for the last one."""
+
+
+def _at_once(method: Method) -> int:
+    """Runs that are moved side by side at most: one where the algorithm moves runs singly."""
+    return TOGETHER if moves_together(method) else 1
 
 
 def _with_budget(method: M, iterations: int | None) -> M:
@@ -72,31 +80,95 @@ def _stepped(
     return trace, np.array(state.best), counted.evaluations
 
 
-def _run(
-    method: Method, problem: Problem, seed: int, stream: tuple[int, ...], handling: str
-) -> Run:
-    judge = judge_of(problem, method.penalty, handling)
-    bounds = Bounds.of(problem)
-    # Named, not numpy's default, which may change: the same seed must give the same bits.
-    rng = np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed, spawn_key=stream)))
-    if isinstance(method, Search):
-        trace, position, evaluations = searched(method, judge, bounds, rng)
+@dataclass(frozen=True, eq=False)
+class Question:
+    """What one run is asked.
+
+    Attributes
+    ----------
+    problem : Problem
+        Its coupling is not looked at.
+    seed : int
+    stream : tuple of int
+        Spawn key under the seed.
+    handling : str
+        What happens to vectors that break a limit, see `Handling`.
+    """
+
+    problem: Problem
+    seed: int
+    stream: tuple[int, ...] = ()
+    handling: str = Handling.DEATH_PENALTY
+
+
+def _started(method: Method, questions: Sequence[Question]) -> list[Start]:
+    judges: dict[tuple[int, str], Judge] = {}
+    starts = []
+    for one in questions:
+        key = (id(one.problem), one.handling)
+        if key not in judges:
+            judges[key] = judge_of(one.problem, method.penalty, one.handling)
+        # Named, not numpy's default, which may change: the same seed must give the same bits.
+        sequence = np.random.SeedSequence(one.seed, spawn_key=one.stream)
+        rng = np.random.Generator(np.random.PCG64(sequence))
+        starts.append(Start(judges[key], Bounds.of(one.problem), rng))
+    return starts
+
+
+def _alone(method: Method, start: Start) -> tuple[Array, Array, int]:
+    search = searched if isinstance(method, Search) else _stepped
+    return search(cast(Any, method), start.judge, start.bounds, start.rng)
+
+
+def run_questions(method: Method, questions: Sequence[Question]) -> list[Run]:
+    """Run an algorithm on several questions, side by side where it can: the same bits either way.
+
+    Parameters
+    ----------
+    method : Algorithm or Search
+    questions : sequence of Question
+        Neighbours that share problem and handling are judged in one call.
+
+    Returns
+    -------
+    list of Run
+        In the order of the questions.
+
+    Raises
+    ------
+    TrajgapError
+        As `run`.
+    """
+    starts = _started(method, questions)
+    sizes = {one.problem.segments for one in questions}
+    if len(starts) > 1 and len(sizes) == 1 and moves_together(method):
+        parts = [starts[i : i + TOGETHER] for i in range(0, len(starts), TOGETHER)]
+        found = [one for part in parts for one in stepped_together(cast(Any, method), part)]
     else:
-        trace, position, evaluations = _stepped(method, judge, bounds, rng)
+        found = [_alone(method, start) for start in starts]
+    return [
+        _answered(method, one, start, *each)
+        for one, start, each in zip(questions, starts, found, strict=True)
+    ]
+
+
+def _answered(
+    method: Method, one: Question, start: Start, trace: Array, position: Array, evaluations: int
+) -> Run:
     trace[trace >= method.penalty] = np.inf
     return Run(
         algorithm=method.kind,
         settings=method,
-        problem=problem.name,
-        seed=seed,
-        stream=stream,
-        durations=judge.decode(position[None])[0],
+        problem=one.problem.name,
+        seed=one.seed,
+        stream=one.stream,
+        durations=start.judge.decode(position[None])[0],
         reported_time=float(trace[-1]),
         trace=trace,
         evaluations=evaluations,
         iterations=method.iterations,
         feasible=bool(np.isfinite(trace[-1])),
-        objective=Handling(handling),
+        objective=Handling(one.handling),
         position=position,
     )
 
@@ -144,7 +216,8 @@ def run(
     True
     """
     record = _with_budget(algorithm, iterations)
-    return _run(record, problem, checked(_SEED, "seed", seed), (), objective)
+    question = Question(problem, checked(_SEED, "seed", seed), (), objective)
+    return run_questions(record, [question])[0]
 
 
 def run_per_joint(
@@ -179,16 +252,17 @@ def run_per_joint(
         As `run`.
     """
     root = checked(_SEED, "seed", seed)
-    record = _with_budget(algorithm, iterations)
-    runs = tuple(
-        _run(record, problem.joint(j), root, (j,), objective) for j in range(len(problem.joints))
-    )
+    return _joints_seeds(algorithm, problem, iterations, objective, (root,))[0]
+
+
+def _joined(problem: Problem, seed: int, runs: tuple[Run, ...]) -> JointRuns:
+    """Runs of the joints as one: every segment takes the longest of them."""
     durations = np.max([one.durations for one in runs], axis=0)
     feasible = all(one.feasible for one in runs)
     return JointRuns(
-        algorithm=record.kind,
+        algorithm=runs[0].algorithm,
         problem=problem.name,
-        seed=root,
+        seed=seed,
         runs=runs,
         durations=durations,
         reported_time=float(durations.sum()) if feasible else np.inf,
@@ -197,39 +271,52 @@ def run_per_joint(
 
 
 R = TypeVar("R")
+_Seeds = tuple[int, ...]
+"""Seeds whose runs are moved side by side."""
 
 
 def _each(
-    one: Callable[[int], R],
+    some: Callable[[_Seeds], tuple[R, ...]],
     seeds: Iterable[int],
     workers: int,
     progress: Callable[[R], None] | None,
+    most: int,
 ) -> tuple[R, ...]:
     clean = [checked(_SEED, "seed", seed) for seed in seeds]
     workers = min(checked(_WORKERS, "workers", workers), max(1, len(clean)))
-    collected = []
+    # Processes share what is left evenly only if there is much more of it than there are of them.
+    size = most if workers == 1 else max(1, min(most, len(clean) // (_SHARES * workers)))
+    parts = [tuple(clean[i : i + size]) for i in range(0, len(clean), size)]
+    collected: list[R] = []
     with ExitStack() as stack:
-        results: Iterable[R] = map(one, clean)
+        results: Iterable[tuple[R, ...]] = map(some, parts)
         if workers > 1:
             # Threads would be slower than one: half of each iteration holds the interpreter.
-            results = stack.enter_context(closing(in_processes(one, clean, workers)))
-        for result in results:
-            collected.append(result)
-            if progress is not None:
-                progress(result)
+            results = stack.enter_context(closing(in_processes(some, parts, workers)))
+        for part in results:
+            for result in part:
+                collected.append(result)
+                if progress is not None:
+                    progress(result)
     return tuple(collected)
 
 
-def _run_seed(
-    algorithm: Method, problem: Problem, iterations: int | None, objective: str, seed: int
-) -> Run:
-    return run(algorithm, problem, seed, iterations, objective)
+def _run_seeds(
+    algorithm: Method, problem: Problem, iterations: int | None, objective: str, seeds: _Seeds
+) -> tuple[Run, ...]:
+    record = _with_budget(algorithm, iterations)
+    return tuple(run_questions(record, [Question(problem, s, (), objective) for s in seeds]))
 
 
-def _joints_seed(
-    algorithm: Method, problem: Problem, iterations: int | None, objective: str, seed: int
-) -> JointRuns:
-    return run_per_joint(algorithm, problem, seed, iterations, objective)
+def _joints_seeds(
+    algorithm: Method, problem: Problem, iterations: int | None, objective: str, seeds: _Seeds
+) -> tuple[JointRuns, ...]:
+    record = _with_budget(algorithm, iterations)
+    joints = [problem.joint(j) for j in range(len(problem.joints))]
+    asked = [Question(one, s, (j,), objective) for j, one in enumerate(joints) for s in seeds]
+    runs = run_questions(record, asked)
+    count = len(seeds)
+    return tuple(_joined(problem, s, tuple(runs[i::count])) for i, s in enumerate(seeds))
 
 
 def run_many(
@@ -269,8 +356,8 @@ def run_many(
         As `run`, if workers is not a whole number of 1 or more, or if processes end twice at the
         same run.
     """
-    one = partial(_run_seed, algorithm, problem, iterations, objective)
-    return _each(one, seeds, workers, progress)
+    some = partial(_run_seeds, algorithm, problem, iterations, objective)
+    return _each(some, seeds, workers, progress, _at_once(algorithm))
 
 
 def run_many_per_joint(
@@ -283,5 +370,6 @@ def run_many_per_joint(
     objective: str = Handling.DEATH_PENALTY,
 ) -> tuple[JointRuns, ...]:
     """`run_per_joint` with each seed, in the order given; parameters as `run_many`."""
-    one = partial(_joints_seed, algorithm, problem, iterations, objective)
-    return _each(one, seeds, workers, progress)
+    some = partial(_joints_seeds, algorithm, problem, iterations, objective)
+    most = max(1, _at_once(algorithm) // len(problem.joints))
+    return _each(some, seeds, workers, progress, most)

@@ -26,6 +26,7 @@ from .woa import (
     draw,
     encircled,
     explores,
+    members,
     replaced,
     spiralled,
 )
@@ -112,6 +113,7 @@ class ImprovedWOA:
     """
 
     kind: ClassVar[str] = "improved-woa"
+    side_by_side: ClassVar[bool] = True
     open_choices: ClassVar[tuple[str, ...]] = OPEN_CHOICES
 
     whales: Annotated[int, whole(1)] = 30
@@ -151,7 +153,7 @@ class ImprovedWOA:
         self, pod: Population, bounds: Bounds, rng: np.random.Generator, objective: Objective
     ) -> Population:
         """Move every whale once (Step 3) and judge it (Steps 4 and 5)."""
-        x, best = pod.positions, pod.best
+        x, best = pod.positions, pod.best[..., None, :]
         drawn = draw(rng, x, self.coefficients, self.r_rule)
         i = pod.iteration + (self.counter is Counter.ONE)
         d = delta(i, self.iterations)
@@ -161,7 +163,7 @@ class ImprovedWOA:
         if self.exploration is not Exploration.DROPPED:
             weight = w if self.exploration is Exploration.WEIGHTED else 1.0
             far = explores(a, self.threshold, self.threshold_rule)
-            circle = np.where(far, encircled(x, x[drawn.member], a, c, weight), circle)
+            circle = np.where(far, encircled(x, members(x, drawn.member), a, c, weight), circle)
         spiral = spiralled(x, best, drawn.g, self.spiral, w)
         moved = np.where(drawn.chance < 0.5, circle, spiral)  # (21)
         moved = kept_in(moved, self.position_rule, self.position_initial, bounds)

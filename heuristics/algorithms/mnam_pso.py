@@ -11,6 +11,7 @@ import numpy as np
 from ...problem import Array
 from ..objective import Bounds, Objective
 from ..settings import Span, clean, number, positive, reject, whole
+from .population import lead
 from .swarm import (
     Draws,
     PositionRule,
@@ -128,6 +129,7 @@ class MNAMPSO:
     """
 
     kind: ClassVar[str] = "mnam-pso"
+    side_by_side: ClassVar[bool] = True
     open_choices: ClassVar[tuple[str, ...]] = OPEN_CHOICES
 
     particles: Annotated[int, whole(1)] = 30
@@ -182,13 +184,15 @@ class MNAMPSO:
 
     def mutant(self, best: Array, rng: np.random.Generator) -> Array:
         """Draw a mutant of the global best, within bounds tied to its smallest coordinate."""
-        reach = self.mutation_scale * float(best.min())
+        dimensions = best.shape[-1]
+        reach = self.mutation_scale * best.min(axis=-1, keepdims=True)
         if self.mutated is MutatedCoordinates.ONE:
-            where, size = rng.random(2)
-            moved = best.copy()
-            moved[int(where * best.size)] += reach * (2.0 * size - 1.0)
-            return moved
-        return best + reach * (2.0 * rng.random(best.size) - 1.0)
+            pair = np.asarray(rng.random(2))
+            where, size = pair[..., :1], pair[..., 1:]
+            here = np.arange(dimensions) == np.floor(where * dimensions)
+            return np.where(here, best + reach * (2.0 * size - 1.0), best)
+        moved: Array = best + reach * (2.0 * rng.random(dimensions) - 1.0)
+        return moved
 
     def init(self, bounds: Bounds, rng: np.random.Generator, objective: Objective) -> Swarm:
         """Draw and judge the initial swarm, and mutate its best (Steps 1 to 4)."""
@@ -201,7 +205,7 @@ class MNAMPSO:
         self, swarm: Swarm, bounds: Bounds, rng: np.random.Generator, objective: Objective
     ) -> Swarm:
         """Move the swarm once (Step 5), judge it and mutate its best (Steps 2 to 4)."""
-        r1, r2 = draw_pair(rng, self.draws, *swarm.positions.shape)
+        r1, r2 = draw_pair(rng, self.draws, *swarm.positions.shape[-2:])
         w = self.inertia(swarm.iteration + 1)  # (12)
         v = attracted(swarm, w, self.c1, self.c2, r1, r2)  # (10)
         if self.velocity_rule is VelocityRule.CLAMP:
@@ -212,7 +216,8 @@ class MNAMPSO:
 
     def _mutate(self, swarm: Swarm, rng: np.random.Generator, objective: Objective) -> Swarm:
         mutant = self.mutant(swarm.best, rng)
-        fitness = float(objective(mutant[None, :])[0])
-        if fitness < swarm.best_fitness:  # Step 4: feasible and better
-            return replace(swarm, best=mutant, best_fitness=fitness)
-        return swarm
+        fitness = objective(mutant[..., None, :])
+        best, best_fitness = lead(  # Step 4: feasible and better
+            mutant[..., None, :], fitness, swarm.best, swarm.best_fitness
+        )
+        return replace(swarm, best=best, best_fitness=best_fitness)

@@ -14,6 +14,9 @@ from ..objective import Objective
 class Population:
     """A population without memory of single members.
 
+    Of populations that move side by side every array and the best fitness have one more axis, the
+    first.
+
     Attributes
     ----------
     iteration : int
@@ -31,7 +34,23 @@ class Population:
     positions: Array
     fitness: Array
     best: Array
-    best_fitness: float
+    best_fitness: float | Array
+
+
+def lead(
+    positions: Array, fitness: Array, best: Array, best_fitness: float | Array
+) -> tuple[Array, float | Array]:
+    """Best position so far and its fitness: only a strictly better member takes the lead.
+
+    Of equal ones the first does. Positions are (..., members, dimensions), fitness (..., members).
+    """
+    least = fitness.min(axis=-1)
+    better = np.asarray(least < best_fitness)
+    if not better.any():
+        return best, best_fitness
+    leader = np.asarray(fitness.argmin(axis=-1))[..., None, None]
+    first = np.take_along_axis(positions, leader, axis=-2)[..., 0, :]
+    return np.where(better[..., None], first, best), np.where(better, least, best_fitness)
 
 
 def first_population(positions: Array, objective: Objective) -> Population:
@@ -43,8 +62,5 @@ def first_population(positions: Array, objective: Objective) -> Population:
 
 def followed(before: Population, positions: Array, fitness: Array) -> Population:
     """Population that follows; only a strictly better member takes the lead."""
-    leader = int(np.argmin(fitness))
-    best, best_fitness = before.best, before.best_fitness
-    if fitness[leader] < best_fitness:
-        best, best_fitness = positions[leader], float(fitness[leader])
+    best, best_fitness = lead(positions, fitness, before.best, before.best_fitness)
     return Population(before.iteration + 1, positions, fitness, best, best_fitness)

@@ -79,6 +79,7 @@ class PSO:
     """
 
     kind: ClassVar[str] = "pso"
+    side_by_side: ClassVar[bool] = True
     open_choices: ClassVar[tuple[str, ...]] = OPEN_CHOICES
 
     particles: Annotated[int, whole(1)] = 30
@@ -107,7 +108,7 @@ class PSO:
         self, swarm: Swarm, bounds: Bounds, rng: np.random.Generator, objective: Objective
     ) -> Swarm:
         """Move the swarm once and judge it."""
-        r1, r2 = draw_pair(rng, self.draws, *swarm.positions.shape)
+        r1, r2 = draw_pair(rng, self.draws, *swarm.positions.shape[-2:])
         v = attracted(swarm, self.inertia, self.c1, self.c2, r1, r2)  # (10)
         if self.velocity_rule is VelocityRule.CLAMP:
             v = held(v, *self.velocity_initial)

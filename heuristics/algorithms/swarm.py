@@ -9,6 +9,7 @@ import numpy as np
 
 from ...problem import Array
 from ..objective import Bounds, Objective
+from .population import lead
 
 
 class Draws(StrEnum):
@@ -46,6 +47,8 @@ class PositionRule(StrEnum):
 class Swarm:
     """All that one iteration of a particle swarm leaves to the next.
 
+    Of swarms that move side by side every array and the best fitness have one more axis, the first.
+
     Attributes
     ----------
     iteration : int
@@ -69,7 +72,7 @@ class Swarm:
     personal: Array
     personal_fitness: Array
     best: Array
-    best_fitness: float
+    best_fitness: float | Array
 
 
 def spread(rng: np.random.Generator, span: tuple[float, float], shape: tuple[int, int]) -> Array:
@@ -81,14 +84,14 @@ def spread(rng: np.random.Generator, span: tuple[float, float], shape: tuple[int
 def draw_pair(
     rng: np.random.Generator, draws: Draws, particles: int, dimensions: int
 ) -> tuple[Array, Array]:
-    """Draw r1, then r2, shaped to broadcast against (particles, dimensions)."""
+    """Draw r1, then r2, shaped to broadcast against (..., particles, dimensions)."""
     shape = {
         Draws.COORDINATE: (particles, dimensions),
         Draws.PARTICLE: (particles, 1),
         Draws.ITERATION: (1, 1),
     }[draws]
     pair = rng.random((2, *shape))
-    return pair[0], pair[1]
+    return pair[..., 0, :, :], pair[..., 1, :, :]
 
 
 def attracted(
@@ -100,7 +103,7 @@ def attracted(
     `irb460-pso-353`.
     """
     x = swarm.positions
-    to_personal, to_best = swarm.personal - x, swarm.best - x
+    to_personal, to_best = swarm.personal - x, swarm.best[..., None, :] - x
     return inertia * swarm.velocities + c1 * r1 * to_personal + c2 * r2 * to_best
 
 
@@ -134,12 +137,9 @@ def judged(swarm: Swarm, positions: Array, velocities: Array, objective: Objecti
     """Judge moved particles and keep what is strictly better, all particles at once."""
     fitness = objective(positions)
     better = fitness < swarm.personal_fitness
-    personal = np.where(better[:, None], positions, swarm.personal)
+    personal = np.where(better[..., None], positions, swarm.personal)
     personal_fitness = np.where(better, fitness, swarm.personal_fitness)
-    leader = int(np.argmin(personal_fitness))
-    best, best_fitness = swarm.best, swarm.best_fitness
-    if personal_fitness[leader] < best_fitness:
-        best, best_fitness = personal[leader], float(personal_fitness[leader])
+    best, best_fitness = lead(personal, personal_fitness, swarm.best, swarm.best_fitness)
     return Swarm(
         swarm.iteration + 1, positions, velocities, fitness, personal, personal_fitness,
         best, best_fitness,

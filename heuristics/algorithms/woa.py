@@ -125,7 +125,7 @@ def draw(
     rng: np.random.Generator, positions: Array, coefficients: Coefficients, rule: RRule
 ) -> Draw:
     """Draw r of A, r of C (unless shared), g, λ and X_r, each for all whales."""
-    whales, dimensions = positions.shape
+    whales, dimensions = positions.shape[-2:]
     shape = (whales, dimensions if coefficients is Coefficients.COORDINATE else 1)
     a = rng.random(shape)
     c = a if rule is RRule.SHARED else rng.random(shape)
@@ -133,6 +133,11 @@ def draw(
     chance = rng.random((whales, 1))
     member = (whales * rng.random(whales)).astype(np.intp)
     return Draw(a, c, g, chance, member)
+
+
+def members(positions: Array, which: NDArray[np.intp]) -> Array:
+    """Positions of the members that were drawn, one for each member."""
+    return np.take_along_axis(positions, which[..., None], axis=-2)
 
 
 def delta(i: int, iterations: int) -> float:
@@ -153,7 +158,7 @@ def spiralled(x: Array, best: Array, g: Array, b: float, weight: float = 1.0) ->
 def explores(a: Array, threshold: float, rule: ThresholdRule) -> NDArray[np.bool_]:
     """Where |A| reaches the threshold, of the shape of A or (whales, 1)."""
     if rule is ThresholdRule.LENGTH:
-        size: Array = np.linalg.norm(a, axis=1, keepdims=True)
+        size: Array = np.linalg.norm(a, axis=-1, keepdims=True)
         return size >= threshold
     return np.abs(a) >= threshold
 
@@ -166,7 +171,7 @@ def replaced(
     if rule is Replacement.ALWAYS:
         return followed(pod, positions, fitness)
     taken = fitness < (penalty if rule is Replacement.FEASIBLE else pod.fitness)
-    kept = np.where(taken[:, None], positions, pod.positions)
+    kept = np.where(taken[..., None], positions, pod.positions)
     return followed(pod, kept, np.where(taken, fitness, pod.fitness))
 
 
@@ -213,6 +218,7 @@ class WOA:
     """
 
     kind: ClassVar[str] = "woa"
+    side_by_side: ClassVar[bool] = True
     open_choices: ClassVar[tuple[str, ...]] = OPEN_CHOICES
 
     whales: Annotated[int, whole(1)] = 30
@@ -240,11 +246,11 @@ class WOA:
         self, pod: Population, bounds: Bounds, rng: np.random.Generator, objective: Objective
     ) -> Population:
         """Move every whale once, (19) and (20), and judge it."""
-        x, best = pod.positions, pod.best
+        x, best = pod.positions, pod.best[..., None, :]
         drawn = draw(rng, x, self.coefficients, self.r_rule)
         d = delta(pod.iteration + (self.counter is Counter.ONE), self.iterations)
         a, c = 2.0 * d * drawn.a - d, 2.0 * drawn.c  # (16)
-        others = x[drawn.member]
+        others = members(x, drawn.member)
         far = explores(a, self.threshold, self.threshold_rule)
         circle = np.where(far, encircled(x, others, a, c), encircled(x, best, a, c))
         spiral = spiralled(x, best, drawn.g, self.spiral)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ....heuristics import Algorithm, in_processes, run
+from ....heuristics import Algorithm, Question, Run, in_processes, run_questions
 from ....nlp import Solution
 from ....nlp.optimum import solve
 from ....problem import TOLERANCE, Array, Coupling, Problem, check
@@ -78,21 +78,30 @@ Kept = dict[tuple[object, ...], Any]
 
 def _examined(task: Task) -> tuple[Sample, ...]:
     kept: Kept = {}
-    found = []
-    for reading, slow, fast in zip(task.readings, task.slower, task.faster, strict=True):
+    by_slower, by_faster = task.algorithms
+    routes = []
+    for slow, fast in zip(task.slower, task.faster, strict=True):
         one, other = _fast_form(slow), _fast_form(fast)
-        by_slower, by_faster = task.algorithms
-        routes = ((one, by_slower), (other, by_slower), (other, by_faster))
+        routes.append(((one, by_slower), (other, by_slower), (other, by_faster)))
+    asked = [
+        (problem, algorithm, objective)
+        for each in routes
+        for problem, algorithm in each
+        for objective in task.objectives
+    ]
+    _run_all(kept, asked, task.runs)
+    found = []
+    for reading, each in zip(task.readings, routes, strict=True):
         totals = np.empty((len(task.objectives), _ROUTES, task.runs))
         settled = np.empty(totals.shape, dtype=np.intp)
         for at, objective in enumerate(task.objectives):
-            for r, (problem, algorithm) in enumerate(routes):
+            for r, (problem, algorithm) in enumerate(each):
                 for seed in range(task.runs):
-                    totals[at, r, seed], settled[at, r, seed] = _ran(
-                        kept, problem, algorithm, seed, objective
-                    )
+                    ran = kept[(*_key(problem), algorithm, seed, objective)]
+                    totals[at, r, seed], settled[at, r, seed] = ran
         totals.setflags(write=False)
         settled.setflags(write=False)
+        (one, _), (other, _), _ = each
         found.append(
             Sample(
                 reading=reading,
@@ -128,19 +137,27 @@ def _key(problem: Problem) -> tuple[object, ...]:
     return (problem.curve, *(array.tobytes() for array in arrays))
 
 
-def _ran(
-    kept: Kept, problem: Problem, algorithm: Algorithm[Any], seed: int, objective: str
-) -> tuple[float, int]:
+def _run_all(kept: Kept, asked: Iterable[tuple[Problem, Algorithm[Any], str]], runs: int) -> None:
+    """Keep what every run gives, each once: all runs of an algorithm are moved side by side."""
+    todo: dict[Algorithm[Any], dict[tuple[object, ...], Question]] = {}
+    for problem, algorithm, objective in asked:
+        for seed in range(runs):
+            key = (*_key(problem), algorithm, seed, objective)
+            # The first of equal problems stands for all, so that neighbours are judged together.
+            one = Question(problem, seed, (), objective)
+            todo.setdefault(algorithm, {}).setdefault(key, one)
+    for algorithm, questions in todo.items():
+        ran = run_questions(algorithm, list(questions.values()))
+        for (key, question), done in zip(questions.items(), ran, strict=True):
+            kept[key] = _judged(question.problem, done)
+
+
+def _judged(problem: Problem, done: Run) -> tuple[float, int]:
     """Total of one run, inf without an answer that keeps its limits, and when it settled."""
-    key = (*_key(problem), algorithm, seed, objective)
-    if key not in kept:
-        done = run(algorithm, problem, seed, None, objective)
-        total = done.reported_time
-        if np.isfinite(total) and check(problem, done.durations).max_violation > TOLERANCE:
-            total = np.inf
-        kept[key] = total, settled_at(done.trace, SETTLED * total)
-    known: tuple[float, int] = kept[key]
-    return known
+    total = done.reported_time
+    if np.isfinite(total) and check(problem, done.durations).max_violation > TOLERANCE:
+        total = np.inf
+    return total, settled_at(done.trace, SETTLED * total)
 
 
 def _optimum(kept: Kept, problem: Problem) -> Optimum:
