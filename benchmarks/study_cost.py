@@ -19,8 +19,8 @@ import time
 from pathlib import Path
 
 from trajgap.compare.gaps import (
-    Session,
     Store,
+    StudySession,
     Trial,
     export_rows,
     on_this_machine,
@@ -55,7 +55,7 @@ def memory(runs: int) -> None:
     with tempfile.TemporaryDirectory() as folder, Store(Path(folder, "runs.sqlite")) as store:
         begun = time.monotonic()
 
-        def told(session: Session) -> None:
+        def told(session: StudySession) -> None:
             if session.run in (0, 10, 100) or session.run % max(1, runs // 10) == 0:
                 rate = session.run / (time.monotonic() - begun)
                 print(
@@ -77,7 +77,7 @@ def workers(seeds: int) -> None:
         with tempfile.TemporaryDirectory() as folder, Store(Path(folder, "runs.sqlite")) as store:
             begun = 0.0
 
-            def told(session: Session) -> None:
+            def told(session: StudySession) -> None:
                 nonlocal begun
                 # The first runs start the processes.
                 if session.run == 4:

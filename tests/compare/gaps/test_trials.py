@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from support.small_studies import small_problem, small_trial
 from trajgap.compare.gaps import RowStatus, canonical, origin_of, run_trial
-from trajgap.heuristics import PSO, run
+from trajgap.heuristics import KINDS, PSO, run
 from trajgap.problem import check
 
 
@@ -45,6 +45,30 @@ def test_an_optimiser_that_draws_globally_is_seeded_and_nobody_else_is() -> None
     assert drawn == (random.random(), np.random.random())  # noqa: NPY002
     assert run_trial(trial) == row
     assert row.status is RowStatus.FINISHED
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_papers_algorithms_draw_from_nothing_but_their_own_generator(kind: str) -> None:
+    # Their runs may thus skip seeding the generators that everybody shares.
+    random.seed(1)
+    np.random.seed(1)  # noqa: NPY002
+    row = run_trial(small_trial(kind, budget=90))
+    drawn = random.random(), np.random.random()  # noqa: NPY002
+    random.seed(1)
+    np.random.seed(1)  # noqa: NPY002
+    assert drawn == (random.random(), np.random.random())  # noqa: NPY002
+    random.seed(2)
+    np.random.seed(2)  # noqa: NPY002
+    assert run_trial(small_trial(kind, budget=90)) == row
+    assert row.evaluations > 0
+
+
+def test_settings_of_one_trial_are_not_those_of_the_next() -> None:
+    few, many = (run_trial(small_trial("pso", settings=f'{{"particles":{n}}}')) for n in (5, 50))
+    assert few.durations != many.durations
+    assert (few.evaluations, many.evaluations) == (200, 200)
+    assert run_trial(small_trial("pso", settings='{"particles":5}')) == few
+    assert run_trial(small_trial("pso", settings='{"particles":5}', budget=100)).evaluations == 100
 
 
 @pytest.mark.parametrize(
