@@ -6,6 +6,7 @@ import importlib.metadata
 import importlib.util
 import json
 import math
+import os
 import random
 import warnings
 from collections.abc import Iterator
@@ -18,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from ...heuristics import KINDS, Algorithm, BudgetedRun, Search, find_optimizer, run_within
-from ...problem import TrajgapError, check
+from ...problem import TrajgapError, check, visible
 from .rows import Row, Trial, failed, settings_of, trace_of
 
 _LONGEST_MESSAGE = 300
@@ -110,6 +111,7 @@ def run_trial(trial: Trial) -> Row:
         rules or takes too long. One that hangs in compiled code, or ends the process, is caught
         by the engines alone.
     """
+    own = os.getpid()
     try:
         with _alone(trial):
             found = run_within(
@@ -122,17 +124,30 @@ def run_trial(trial: Trial) -> Row:
                 trial.stream,
             )
     except KeyboardInterrupt:
-        raise
+        if os.getpid() == own:
+            raise
     except TrajgapError as error:
-        return failed(trial, shortened(str(error)))
+        row = failed(trial, shortened(str(error)))
     except BaseException as error:  # an optimiser may even ask the interpreter to exit
-        return failed(trial, shortened(f"{type(error).__name__}: {error}"))
-    return _row(trial, found)
+        row = failed(trial, shortened(f"{type(error).__name__}: {_said(error)}"))
+    else:
+        row = _row(trial, found)
+    if os.getpid() != own:
+        os._exit(0)  # an optimiser forked, and this is not the process that was asked
+    return row
+
+
+def _said(error: BaseException) -> str:
+    """Text of an error; an optimiser's own may fail at that too."""
+    try:
+        return str(error)
+    except Exception:
+        return ""
 
 
 def shortened(message: str) -> str:
-    """A message in one line of bounded length."""
-    text = " ".join(message.split()).removesuffix(":")
+    """A message in one line of bounded length, of characters that can be seen and written."""
+    text = visible(" ".join(message.split()).removesuffix(":"))
     return text if len(text) <= _LONGEST_MESSAGE else text[: _LONGEST_MESSAGE - 1] + "…"
 
 

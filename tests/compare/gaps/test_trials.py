@@ -81,6 +81,9 @@ def test_settings_of_one_trial_are_not_those_of_the_next() -> None:
         ("support.optimizers:leaves_bounds", "outside its bounds"),
         ("support.optimizers:swallows", "went on after its budget of 200 evaluations was spent"),
         ("support.optimizers:judges_nothing", "judged no position"),
+        ("support.optimizers:moves_bounds", "asked for the fitness of 7 s for duration 1, outside"),
+        ("support.optimizers:raises_unprintable", "ValueError: half of a pair: <U+DC80>, a cursor"),
+        ("support.optimizers:raises_mute", "Mute"),
         ("support.optimizers:unknown", "unknown"),
         ("psso", "did you mean 'pso'"),
     ],
@@ -90,7 +93,8 @@ def test_what_goes_wrong_is_a_row_with_its_message(name: str, message: str) -> N
     assert row.status is RowStatus.FAILED
     assert message in row.message
     assert len(row.message) <= 300
-    assert "\n" not in row.message
+    assert row.message.isprintable()
+    row.message.encode()
     assert (row.durations, row.reported_time, row.feasible_gap) == (None, None, None)
     assert row.reference_upper == 2.5
 
@@ -98,6 +102,30 @@ def test_what_goes_wrong_is_a_row_with_its_message(name: str, message: str) -> N
 def test_a_spent_budget_ends_a_run_and_is_no_fault() -> None:
     row = run_trial(small_trial("support.optimizers:overspends"))
     assert (row.status, row.evaluations) == (RowStatus.FINISHED, 200)
+
+
+@pytest.mark.parametrize("name", ["scribbles", "returns_short"])
+def test_what_does_no_harm_changes_nothing(name: str) -> None:
+    row = run_trial(small_trial(f"support.optimizers:{name}"))
+    honest = run_trial(small_trial("support.optimizers:draws"))
+    assert (row.durations, row.trace) == (honest.durations, honest.trace)
+
+
+def test_what_a_run_does_to_its_process_ends_with_it() -> None:
+    before = run_trial(small_trial("pso"))
+    floats = np.geterr()
+    assert run_trial(small_trial("support.optimizers:leaves_traces")).status is RowStatus.FINISHED
+    assert np.geterr() == floats
+    assert run_trial(small_trial("pso")) == before
+
+
+def test_a_fork_in_the_calling_process_does_not_come_back(tmp_path: Path) -> None:
+    returned = tmp_path / "returned"
+    row = run_trial(small_trial("support.optimizers:forks"))
+    with returned.open("a", encoding="utf-8") as file:
+        file.write(row.status)
+    assert row.durations == run_trial(small_trial("support.optimizers:draws")).durations
+    assert returned.read_text(encoding="utf-8") == "finished"
 
 
 def test_warnings_of_an_optimiser_are_its_own() -> None:
