@@ -87,6 +87,9 @@ def use(
         # What runs interpreted at first holds the kernels themselves.
         monkeypatch.setattr(spline, "_fit_one", mutant.fit_coefficients)
         monkeypatch.setattr(peak, "_roots_in_unit", mutant.roots_in_unit)
+        plain = planted(pieces, "from __future__ import annotations", "")
+        monkeypatch.setattr(plain, "roots_in_unit", mutant.roots_in_unit)
+        monkeypatch.setattr(checker, "largest_of_each", plain.largest_of_each)
     elif module is peak:
         users = (checker, trajectory, suite.test_peak, suite.test_pieces, suite.test_timed)
         for name in ("extrema", "largest", "polynomial_extrema", "critical_points"):
