@@ -297,7 +297,7 @@ def _duration_peaks(problem: Problem, h: Array) -> list[Peak]:
 
 
 def _jumps(problem: Problem, trajectory: Trajectory, error: Array) -> list[Jump]:
-    jumps = []
+    jumps: list[Jump] = []
     if _of_many(trajectory):
         return _jumps_of_many(problem, trajectory, error)
     if trajectory.polynomial_in_time and not may_jump(trajectory, error):

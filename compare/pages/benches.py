@@ -396,8 +396,9 @@ def _reading() -> Section:
          "second; the closest run"),
         ("feasible", "answers that keep every limit at all times"),
         ("≤ 1 %", "share of runs that come within that gap"),
-        ("evaluations to 1 %", "expected running time: all evaluations of all runs over the "
-         "number of runs that reach the gap; in brackets a 95 % interval"),
+        ("evaluations to 1 %", "what restarts need on average until one reaches the gap, which may "
+         "be more than one run's budget: all evaluations of all runs, up to the hit, over the "
+         "number of hits; in brackets a 95 % interval"),
         ("targets reached", "share of pairs of a run and one of 61 gaps from 100 % to 0.0001 %"),
         ("random, rescale, multistart", "baselines: uniform draws; one duration for all segments; "
          "local searches from random starts"),
