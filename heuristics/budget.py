@@ -78,26 +78,28 @@ class Budgeted:
                 f"objective: expected positions of shape (batch, {self._dimensions}), got "
                 f"{x.shape}; pass a single one as x[None]"
             )
-        left = self._budget - self.judged
-        fitness = self._judge(x[:left]) if left and len(x) else np.empty(0)
-        if len(x) > left:
+        count, begin = len(x), self.judged
+        if begin + count > self._budget:
+            if begin < self._budget:
+                self(x[: self._budget - begin])
             self.refused += 1
             raise BudgetSpent
-        return fitness
-
-    def _judge(self, x: Array) -> Array:
+        if not count:
+            return np.empty(0)
+        # One frame from here on: this is run for every generation of every run.
         fitness = self._objective(x)
-        check_shape(fitness, len(x))
-        leader = int(fitness.argmin())  # the first NaN, if there is one
+        if getattr(fitness, "shape", None) != (count,):
+            check_shape(fitness, count)
+        leader = fitness.argmin()  # the first NaN, if there is one
         least = float(fitness[leader])
-        if least != least:
-            raise nan_returned()
-        if self.best is None or least < self._least:
+        if not least >= self._least or self.best is None:
+            if least != least:
+                raise nan_returned()
             self.best, self._least = x[leader].copy(), least
-        end = self.judged + len(x)
+        end = begin + count
         while end > self._fitness.size:
             self._fitness = np.concatenate([self._fitness, np.empty_like(self._fitness)])
-        self._fitness[self.judged : end] = fitness
+        self._fitness[begin:end] = fitness
         self.judged = end
         return fitness
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from .arrays import Array
 from .curves import (
@@ -16,6 +16,8 @@ from .curves import (
     as_durations,
     extrema,
     largest,
+    largest_of_each,
+    may_jump,
     step_sizes,
     tops,
 )
@@ -192,6 +194,15 @@ def _of_many(trajectory: Trajectory) -> bool:
     return trajectory.polynomial_in_time and len(trajectory.durations) >= MANY_PIECES
 
 
+def _largest_of_each(
+    trajectory: Trajectory, error: Array, wanted: NDArray[np.bool_]
+) -> list[tuple[Extremum, float]]:
+    """`_largest` of each wanted derivative; plain polynomials, of few pieces, by one call."""
+    if trajectory.polynomial_in_time and not _of_many(trajectory):
+        return largest_of_each(trajectory, error, wanted)
+    return [_largest(trajectory, error, j, r + 1) for j, r in np.argwhere(wanted).tolist()]
+
+
 def _largest(trajectory: Trajectory, error: Array, j: int, r: int) -> tuple[Extremum, float]:
     """The extremum of the largest size, and the bound on the error of the peak.
 
@@ -223,15 +234,12 @@ def _derivative_peaks(
 ) -> list[Peak]:
     limits = problem.limits.derivatives
     peaks = []
-    for j, label in enumerate(problem.joints):
-        for r, quantity in enumerate(QUANTITIES, start=1):
-            if not np.isfinite(limits[j, r - 1]):
-                continue
-            top, bound = _largest(trajectory, error, j, r)
-            limit = float(limits[j, r - 1])
-            ratio = _ratio(top.value, limit, bound)
-            at = problem.curve.segment_of(h, top)
-            peaks.append(Peak(label, quantity, at, top.time, top.value, limit, ratio, bound))
+    for top, bound in _largest_of_each(trajectory, error, np.isfinite(limits)):
+        limit = float(limits[top.joint, top.order - 1])
+        ratio = _ratio(top.value, limit, bound)
+        at = problem.curve.segment_of(h, top)
+        label, quantity = problem.joints[top.joint], QUANTITIES[top.order - 1]
+        peaks.append(Peak(label, quantity, at, top.time, top.value, limit, ratio, bound))
     return peaks
 
 
@@ -289,9 +297,11 @@ def _duration_peaks(problem: Problem, h: Array) -> list[Peak]:
 
 
 def _jumps(problem: Problem, trajectory: Trajectory, error: Array) -> list[Jump]:
-    jumps = []
+    jumps: list[Jump] = []
     if _of_many(trajectory):
         return _jumps_of_many(problem, trajectory, error)
+    if trajectory.polynomial_in_time and not may_jump(trajectory, error):
+        return jumps
     for b in range(1, len(trajectory.durations)):
         for j, label in enumerate(problem.joints):
             for order in range(3):

@@ -216,10 +216,11 @@ def closest(standings: tuple[Standing, ...]) -> str:
     if not known:
         return "No optimiser found a feasible answer in half of its runs."
     median, first = known[0]
-    said = f"Closest: {first.optimizer}, median gap {percent(median)} of {first.runs} runs"
+    runs = "1 run" if first.runs == 1 else f"{first.runs} runs"
+    said = f"Closest: {first.optimizer} (median gap {percent(median)} over {runs})"
     if len(known) > 1:
         second = known[1]
-        said += f"; next {second[1].optimizer} with {percent(second[0])}"
+        said += f"; next: {second[1].optimizer} ({percent(second[0])})"
     return f"{said}."
 
 

@@ -41,6 +41,12 @@ WITHOUT_DRAWS = frozenset({"rescale", "scipy:direct", "scipy:shgo"})
 _FIRST_RANGES = ("position_initial", "position_range")
 """Settings of the papers' algorithms that say where their first positions are drawn."""
 
+_REPAIRED = (
+    "cma, stretch: CMA-ES with repair. For it alone, durations that break a limit count with the "
+    "shortest uniform stretch that keeps all limits."
+)
+"""What a reader must know of the baseline that is judged otherwise than the rest."""
+
 Named = str | Callable[..., object]
 """An optimiser's name, or a function ``f(fun, bounds, budget, rng)`` of a module."""
 
@@ -351,6 +357,8 @@ def enter(
             repaired = Entrant("cma", {}, str(Handling.STRETCH), "cma, stretch")
             if handling == Handling.STRETCH:
                 repaired = replace(repaired, label="cma")
+            else:
+                notes.append(_REPAIRED)
             entrants.setdefault(repaired.label, repaired)
     return tuple(entrants.values()), tuple(notes)
 

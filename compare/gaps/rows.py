@@ -221,9 +221,10 @@ class Row:
     trace: tuple[tuple[int, float], ...] = field(default=())
 
     @classmethod
-    def begun(cls, trial: Trial) -> Row:
-        """The row of a trial before anything is known of its run."""
-        bare = cls(
+    def begun(cls, trial: Trial, **known: Any) -> Row:
+        """The row of a trial with what is known of its run: nothing, or further fields."""
+        reported, feasible = known.get("reported_time"), known.get("feasible_time")
+        return cls(
             key=trial.key,
             problem=trial.name,
             reading=trial.reading,
@@ -236,8 +237,9 @@ class Row:
             stream=trial.stream,
             budget=trial.budget,
             segments=trial.problem.segments,
+            **known,
+            **_gaps(trial.reference, reported, feasible),
         )
-        return against(bare, trial.reference)
 
     @property
     def feasible(self) -> bool:
@@ -299,23 +301,26 @@ def trace_of(totals: Array) -> tuple[tuple[int, float], ...]:
 
 def failed(trial: Trial, message: str) -> Row:
     """The row of a trial whose run came to nothing."""
-    return replace(Row.begun(trial), status=RowStatus.FAILED, message=message)
+    return Row.begun(trial, status=RowStatus.FAILED, message=message)
 
 
 def against(row: Row, reference: Bracket | None) -> Row:
     """The same row with its gaps set against another reference, or against none."""
+    return replace(row, **_gaps(reference, row.reported_time, row.feasible_time))
+
+
+def _gaps(
+    reference: Bracket | None, reported: float | None, feasible: float | None
+) -> dict[str, Any]:
+    """What a row says of a reference."""
     if reference is None:
-        return replace(
-            row, reference_upper=None, reference_lower=None, reported_gap=None, feasible_gap=None
-        )
-    reported, feasible = row.reported_time, row.feasible_time
-    return replace(
-        row,
-        reference_upper=reference.upper,
-        reference_lower=reference.lower,
-        reported_gap=None if reported is None else reference.gap(reported),
-        feasible_gap=None if feasible is None else reference.gap(feasible),
-    )
+        return dict.fromkeys(("reference_upper", "reference_lower", "reported_gap", "feasible_gap"))
+    return {
+        "reference_upper": reference.upper,
+        "reference_lower": reference.lower,
+        "reported_gap": None if reported is None else reference.gap(reported),
+        "feasible_gap": None if feasible is None else reference.gap(feasible),
+    }
 
 
 def settings_of(row: Row | Trial) -> Mapping[str, Any]:

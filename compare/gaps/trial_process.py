@@ -79,6 +79,8 @@ class _Child:
                 stdout=subprocess.PIPE,
                 stderr=subprocess.DEVNULL,
                 env={**os.environ, **_ONE_THREAD, "PYTHONPATH": paths},
+                # A group of its own, so that what an optimiser starts ends with it.
+                start_new_session=True,
             )
         except OSError as error:
             raise ProcessError(
@@ -87,7 +89,8 @@ class _Child:
         self._answers: queue.SimpleQueue[object] = queue.SimpleQueue()
         said = self._process.stdout
         assert said is not None
-        threading.Thread(target=_listen, args=(said, self._answers), daemon=True).start()
+        self._listener = threading.Thread(target=_listen, args=(said, self._answers), daemon=True)
+        self._listener.start()
         if self._answers.get() is None:
             self.end()
             raise ProcessError(f'workers: a process ends at once; see why: python -c "{_PROGRAM}"')
@@ -109,15 +112,27 @@ class _Child:
         except queue.Empty:
             raise _Late from None
         if not isinstance(answer, TrialOutcome):
-            code = self._process.wait()
+            try:
+                code = self._process.wait(_GRACE)
+            except subprocess.TimeoutExpired:
+                raise _Ended("it closed the pipe by which it answers") from None
             raise _Ended(f"exit code {code}" if code >= 0 else _signal(-code))
         return answer
 
     def end(self) -> None:
-        """End the process, whatever it does."""
+        """End the process and whatever it started."""
+        if hasattr(os, "killpg"):
+            with suppress(ProcessLookupError, PermissionError):
+                os.killpg(self._process.pid, signal.SIGKILL)
         self._process.kill()
         self._process.wait()
-        for pipe in (self._process.stdin, self._process.stdout):
+        # One that left the group may still hold the other end: its pipe is then left open, since
+        # closing it would wait for the thread that reads.
+        self._listener.join(_GRACE)
+        pipes = [self._process.stdin]
+        if not self._listener.is_alive():
+            pipes.append(self._process.stdout)
+        for pipe in pipes:
             with suppress(OSError):
                 assert pipe is not None
                 pipe.close()
@@ -240,6 +255,9 @@ def main() -> None:
     nothing = os.open(os.devnull, os.O_RDWR)
     for stream in (0, 1):
         os.dup2(nothing, stream)
+    if hasattr(os, "register_at_fork"):
+        # A process that an optimiser forks and leaves behind must not hold our pipes open.
+        os.register_at_fork(after_in_child=lambda: _forget(asked, said))
     # A terminal sends Ctrl-C to every process of the group; the parent alone answers it.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     trials: queue.SimpleQueue[Trial] = queue.SimpleQueue()
@@ -256,8 +274,17 @@ def main() -> None:
 def _wait_for(asked: IO[bytes], trials: queue.SimpleQueue[Trial]) -> None:
     while isinstance(trial := _receive(asked), Trial):
         trials.put(trial)
-    # The parent is gone or wants no more. A search may hang, so that this thread ends the process.
+    # The parent is gone or wants no more. A search may hang, or have started others, so that this
+    # thread ends the process and its group.
+    if hasattr(os, "killpg") and os.getpgrp() == os.getpid():
+        os.killpg(0, signal.SIGKILL)
     os._exit(0)
+
+
+def _forget(*pipes: IO[bytes]) -> None:
+    for pipe in pipes:
+        with suppress(OSError):
+            os.close(pipe.fileno())
 
 
 def _known(trial: Trial, problems: dict[str, Problem]) -> Trial:

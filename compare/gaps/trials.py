@@ -4,21 +4,23 @@ from __future__ import annotations
 
 import importlib.metadata
 import importlib.util
+import json
 import math
+import os
 import random
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import replace
 from functools import lru_cache
 from hashlib import sha256
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from ...heuristics import BudgetedRun, find_optimizer, run_within
-from ...problem import TrajgapError, check
-from .rows import Row, Trial, against, failed, settings_of, trace_of
+from ...heuristics import KINDS, Algorithm, BudgetedRun, Search, find_optimizer, run_within
+from ...problem import TrajgapError, check, visible
+from .rows import Row, Trial, failed, settings_of, trace_of
 
 _LONGEST_MESSAGE = 300
 """Characters of a message that are kept: optimisers may print whole arrays into theirs."""
@@ -55,19 +57,44 @@ def origin_of(optimizer: str) -> str:
 
 @contextmanager
 def _alone(trial: Trial) -> Iterator[None]:
+    """Let a run depend on nothing that its process happens to have set, and put all of it back."""
+    with warnings.catch_warnings(), np.errstate():
+        warnings.simplefilter("ignore")
+        if (
+            trial.optimizer in KINDS
+        ):  # they draw from the generator that they are given, and no other
+            yield
+        else:
+            with _seeded(trial):
+                yield
+
+
+@contextmanager
+def _seeded(trial: Trial) -> Iterator[None]:
     """Seed the global generators, for optimisers that draw from them, and put them back."""
     state, legacy = random.getstate(), np.random.get_state()  # noqa: NPY002
     words = np.random.SeedSequence(trial.seed, spawn_key=(*trial.stream, 1)).generate_state(4)
     random.seed(words.tobytes())
     np.random.seed(words)  # noqa: NPY002
     try:
-        with warnings.catch_warnings():
-            # A run must not depend on the filters that its process happens to have.
-            warnings.simplefilter("ignore")
-            yield
+        yield
     finally:
         random.setstate(state)
         np.random.set_state(legacy)  # noqa: NPY002
+
+
+@lru_cache(maxsize=64)
+def _paper_algorithm(name: str, settings: str, budget: int) -> Algorithm[Any]:
+    """An algorithm of the papers, a frozen record, once for all its seeds."""
+    found = find_optimizer(name, budget, **json.loads(settings))
+    assert not isinstance(found, Search)
+    return found
+
+
+def _optimizer(trial: Trial) -> Algorithm[Any] | Search:
+    if trial.optimizer in KINDS:
+        return _paper_algorithm(trial.optimizer, trial.settings, trial.budget)
+    return find_optimizer(trial.optimizer, trial.budget, **settings_of(trial))
 
 
 def run_trial(trial: Trial) -> Row:
@@ -84,10 +111,11 @@ def run_trial(trial: Trial) -> Row:
         rules or takes too long. One that hangs in compiled code, or ends the process, is caught
         by the engines alone.
     """
+    own = os.getpid()
     try:
         with _alone(trial):
             found = run_within(
-                find_optimizer(trial.optimizer, trial.budget, **settings_of(trial)),
+                _optimizer(trial),
                 trial.problem,
                 trial.seed,
                 trial.budget,
@@ -96,32 +124,49 @@ def run_trial(trial: Trial) -> Row:
                 trial.stream,
             )
     except KeyboardInterrupt:
-        raise
+        if os.getpid() == own:
+            raise
     except TrajgapError as error:
-        return failed(trial, shortened(str(error)))
+        row = failed(trial, shortened(str(error)))
     except BaseException as error:  # an optimiser may even ask the interpreter to exit
-        return failed(trial, shortened(f"{type(error).__name__}: {error}"))
-    return _row(trial, found)
+        row = failed(trial, shortened(f"{type(error).__name__}: {_said(error)}"))
+    else:
+        row = _row(trial, found)
+    if os.getpid() != own:
+        os._exit(0)  # an optimiser forked, and this is not the process that was asked
+    return row
+
+
+def _said(error: BaseException) -> str:
+    """Text of an error; an optimiser's own may fail at that too."""
+    try:
+        return str(error)
+    except Exception:
+        return ""
 
 
 def shortened(message: str) -> str:
-    """A message in one line of bounded length."""
-    text = " ".join(message.split()).removesuffix(":")
+    """A message in one line of bounded length, of characters that can be seen and written."""
+    text = visible(" ".join(message.split()).removesuffix(":"))
     return text if len(text) <= _LONGEST_MESSAGE else text[: _LONGEST_MESSAGE - 1] + "…"
 
 
 def _row(trial: Trial, found: BudgetedRun) -> Row:
-    row = replace(Row.begun(trial), evaluations=found.evaluations, trace=trace_of(found.totals))
+    known: dict[str, Any] = {
+        "evaluations": found.evaluations,
+        "trace": trace_of(found.totals),
+    }
     if not math.isfinite(found.reported_time):
-        return replace(row, feasible_why="nothing feasible was judged")
-    row = replace(row, durations=tuple(found.durations.tolist()), reported_time=found.reported_time)
+        return Row.begun(trial, **known, feasible_why="nothing feasible was judged")
     judged = check(trial.problem, found.durations)
     worst = judged.worst
-    row = replace(
-        row,
+    return Row.begun(
+        trial,
+        **known,
+        durations=tuple(found.durations.tolist()),
+        reported_time=found.reported_time,
         verdict=str(judged.verdict),
         worst_ratio=None if worst is None or math.isinf(worst.ratio) else worst.ratio,
         feasible_time=judged.feasible_time,
         feasible_why=judged.feasible_why or "",
     )
-    return against(row, trial.reference)

@@ -375,7 +375,8 @@ def _settings(standings: Sequence[Standing]) -> Terms:
         tuple(
             (
                 one.optimizer,
-                f"{one.handling}; {one.settings if one.settings != '{}' else 'its own'}",
+                f"{one.handling}; "
+                + (one.settings if one.settings != "{}" else "the optimiser's own settings"),
             )
             for one in standings
         )
@@ -388,12 +389,22 @@ def _drawn(at: int | str, name: str, picture: Picture) -> Drawn:
 
 def _reading() -> Section:
     said = (
-        ("median gap", "gap of the middle run to the upper end of the optimum, (T − U)/U"),
-        ("T", "the total that `check` finds for the answer, stretched if it broke a limit"),
+        ("median gap", "how far above the optimum the middle run ends: (T − U)/U, where U is the "
+         "upper end of the optimum's interval"),
+        ("T", "the total that the checker finds for the answer, stretched if it broke a limit"),
+        ("quartiles, best", "a quarter of the runs end below the first and a quarter above the "
+         "second; the closest run"),
+        ("feasible", "answers that keep every limit at all times"),
         ("≤ 1 %", "share of runs that come within that gap"),
-        ("evaluations to 1 %", "expected running time: all evaluations of all runs over the "
-         "number of runs that reach the gap; in brackets a 95 % interval"),
+        ("evaluations to 1 %", "what restarts need on average until one reaches the gap, which may "
+         "be more than one run's budget: all evaluations of all runs, up to the hit, over the "
+         "number of hits; in brackets a 95 % interval"),
         ("targets reached", "share of pairs of a run and one of 61 gaps from 100 % to 0.0001 %"),
+        ("random, rescale, multistart", "baselines: uniform draws; one duration for all segments; "
+         "local searches from random starts"),
+        ("death-penalty, stretch, rescale", "under Settings: what happens to durations that break "
+         "a limit. They get a penalty; or count with the shortest uniform stretch that keeps all "
+         "limits; or are stretched or shortened until one limit is tight"),
         ("A₁₂", "probability that a run of the first is shorter than one of the second"),
         ("p, Holm", "Mann and Whitney's test; every optimiser draws from a random stream of its "
          "own, so runs are independent and not paired"),

@@ -18,9 +18,15 @@ def load_function(name: str) -> Callable[..., object]:
     Raises
     ------
     TrajgapError
-        If the module cannot be imported, or holds no such callable.
+        If a file is named instead of a module, or the module cannot be imported or holds no such
+        callable.
     """
     module, _, attribute = name.partition(":")
+    if module.endswith(".py"):
+        plain = ".".join(Path(module).with_suffix("").parts)
+        raise TrajgapError(
+            f"{name}: names a file; write {plain}:{attribute}, in the folder that holds {module}"
+        )
     here = str(Path.cwd())
     if here not in sys.path and "" not in sys.path:
         sys.path.insert(0, here)

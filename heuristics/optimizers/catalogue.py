@@ -111,7 +111,8 @@ def find_optimizer(
     if not colon:
         raise TrajgapError(
             f"optimizer {name!r}: unknown; {nearest(name, [*KINDS, *_BASELINES, 'cma'])} "
-            "Your own function is module:function"
+            "A function of yours is called module:function, such as mine:evolve for evolve in "
+            "mine.py"
         )
     if source in _LIBRARIES:
         check, minimise = _LIBRARIES[source]

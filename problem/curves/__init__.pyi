@@ -19,7 +19,7 @@ from .kernel import MAX_COEFFICIENTS, roots_in_unit
 from .kind import Curve, PeakGradients, as_curve, fit
 from .peak import Extremum, critical_points, extrema, largest
 from .piece_kernel import divided_extremes, one_sided_extreme, piece_extremes
-from .pieces import MANY_PIECES, near_extrema, step_sizes, tops
+from .pieces import MANY_PIECES, largest_of_each, may_jump, near_extrema, step_sizes, tops
 from .refined import coefficient_gradient
 from .spline import (
     PERM,
@@ -80,7 +80,9 @@ __all__ = [
     "interpreted",
     "jtraj",
     "largest",
+    "largest_of_each",
     "layout",
+    "may_jump",
     "motion_values",
     "near_extrema",
     "numerators",

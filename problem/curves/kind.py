@@ -285,12 +285,11 @@ def value_errors(trajectory: Trajectory, coefficient_error: Array) -> Array:
     extremum, where the next derivative vanishes to rounding.
     """
     size = 32 * np.finfo(np.float64).eps * np.abs(trajectory.scaled)
-    errors = np.zeros((size.shape[0], 4, size.shape[2]))
-    for r in range(4):
-        own = np.einsum("p,kpj->kj", PERM[:, r], coefficient_error + size)
-        place = np.einsum("p,kpj->kj", PERM[:, r + 1], size)
-        errors[:, r] = (own + place) / trajectory.durations[:, None] ** r
-    return errors
+    own = np.einsum("pr,kpj->krj", PERM[:, :4], coefficient_error + size)
+    place = np.einsum("pr,kpj->krj", PERM[:, 1:5], size)
+    # One power after another: those of a table of exponents differ in the last bit.
+    powers = np.stack([trajectory.durations**r for r in range(4)], axis=1)
+    return np.asarray((own + place) / powers[:, :, None])
 
 
 def derivative_rows(s: Array, order: NDArray[np.int64]) -> Array:

@@ -22,11 +22,12 @@ from support.planting import (
     passes,
     places,
     stated_errors,
+    together,
     waves,
 )
 from trajgap.problem import evaluation
 from trajgap.problem.curves import kind as curve
-from trajgap.problem.curves import peak
+from trajgap.problem.curves import peak, pieces
 
 checker = importlib.import_module("trajgap.problem.checker")
 
@@ -55,26 +56,52 @@ PEAK: list[tuple[str, str, Killer]] = [
     (
         "trajectory.turning(k, joint, order), [1.0]])\n        values",
         "[1.0]])\n        values",
-        waves,
+        together,
     ),
-    (", [1.0]])\n        values", "])\n        values", waves),
+    (", [1.0]])\n        values", "])\n        values", together),
     (
         "([[0.0], trajectory.turning(k, joint, order), [1.0]])\n        values",
         "([trajectory.turning(k, joint, order), [1.0]])\n        values",
-        waves,
+        together,
     ),
-    ("np.abs(values).argmax()", "values.argmax()", waves),
-    ("here = abs(float(values[i]))", "here = float(values[i])", agreement),
-    ("if size == size and not here <= size:", "if k == 0:", agreement),
+    ("np.abs(values).argmax()", "values.argmax()", together),
+    ("here = abs(float(values[i]))", "here = float(values[i])", together),
+    ("if size == size and not here <= size:", "if k == 0:", together),
     (
         "bound = max(float(errors[piece]), reach - size)",
         "bound = 0.0",
-        named("test_verdicts", "test_rounding_that_hides_the_limit_is_undecided"),
+        together,
     ),
     (
         "bound = max(float(errors[piece]), reach - size)",
         "bound = float(errors[piece])",
         named("test_peak", "test_another_piece_that_may_be_larger_blurs_the_peak"),
+    ),
+]
+
+PIECES: list[tuple[str, str, Killer]] = [
+    ("a[i] = a[i + 1] * (i + 1)", "a[i] = a[i + 1] * i", agreement),
+    ("a[i] /= power", "a[i] /= 1.0", agreement),
+    ("turn[i] = a[i + 1] * (i + 1)", "turn[i] = a[i + 1]", agreement),
+    ("places[0], places[found + 1] = 0.0, 1.0", "places[0], places[found + 1] = 0.0, 0.9", waves),
+    ("value = a[i] + value * places[m]", "value = a[i] + value", agreement),
+    ("if top == top and not abs(room[3, m]) <= top:", "if room[3, m] > top:", waves),
+    ("if size == size and not here <= size:", "if k == 0:", agreement),
+    ("total = here + error[k, order, joint]", "total = here", together),
+    (
+        "bound = max(float(error[k, order, joint]), float(reach[joint, column]) - abs(value))",
+        "bound = 0.0",
+        named("test_verdicts", "test_rounding_that_hides_the_limit_is_undecided"),
+    ),
+    (
+        "bound = max(float(error[k, order, joint]), float(reach[joint, column]) - abs(value))",
+        "bound = float(error[k, order, joint])",
+        together,
+    ),
+    (
+        "return not (np.abs(starts[1:]",
+        "return False and not (np.abs(starts[1:]",
+        named("test_pieces", "test_a_jump_is_never_overlooked"),
     ),
 ]
 
@@ -227,6 +254,7 @@ ALL = [
     (module, old, new, killer)
     for module, faults in (
         (peak, PEAK),
+        (pieces, PIECES),
         (checker, CHECKER),
         (evaluation, EVALUATION),
         (curve, CURVE),
@@ -253,7 +281,7 @@ def test_a_planted_fault_fails(
     fails(monkeypatch, suite, module, old, new, killer)
 
 
-@pytest.mark.parametrize("module", [peak, checker, evaluation, curve], ids=name)
+@pytest.mark.parametrize("module", [peak, pieces, checker, evaluation, curve], ids=name)
 def test_without_a_fault_the_same_tests_pass(
     monkeypatch: pytest.MonkeyPatch, suite: Suite, module: ModuleType
 ) -> None:

@@ -106,6 +106,65 @@ def dies_once(fun: Any, bounds: Any, budget: int, rng: Any, mark: str) -> None:
     draws(fun, bounds, budget, rng)
 
 
+def forks(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
+    """Goes on in two processes, each of which believes that it is the run."""
+    os.fork()
+    draws(fun, bounds, budget, rng)
+
+
+def forks_and_leaves(fun: Any, bounds: Any, budget: int, rng: Any, mark: str) -> None:
+    """Leaves a process behind that never ends by itself, and is then killed."""
+    found = os.fork()
+    if not found:
+        while True:
+            time.sleep(3600)
+    Path(mark).write_text(str(found), encoding="utf-8")
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def scribbles(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
+    """Writes over all that it was given and that it got back."""
+    for _ in range(0, budget, 10):
+        asked = rng.uniform(bounds[:, 0], bounds[:, 1], (10, len(bounds)))
+        found, kept = fun(asked), bounds.copy()
+        asked[:], found[:], bounds[:] = -1.0, 0.0, np.nan
+        bounds[:] = kept
+
+
+def moves_bounds(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
+    """Makes its bounds wider, and asks there."""
+    bounds[:, 1] += 1.0
+    fun(bounds[:, 1])
+
+
+def returns_short(fun: Any, bounds: Any, budget: int, rng: Any) -> Any:
+    """Judges its draws, and returns something of another shape."""
+    draws(fun, bounds, budget, rng)
+    return np.zeros((2, 7))
+
+
+def raises_unprintable(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
+    """Raises what no file can hold and no terminal should be sent."""
+    raise ValueError("half of a pair: \udc80, a cursor that moves: \x1b[2J")
+
+
+def raises_mute(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
+    """Raises an error that cannot say what it is."""
+
+    class Mute(Exception):
+        def __str__(self) -> str:
+            raise RuntimeError("no words")
+
+    raise Mute
+
+
+def leaves_traces(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
+    """Changes what its process does with floating-point errors, warnings and random numbers."""
+    np.seterr(all="raise")
+    np.random.seed(0)  # noqa: NPY002
+    fun(bounds.mean(axis=1))
+
+
 def dawdles(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
     """Takes a moment before every tenth of its budget."""
     for _ in range(10):

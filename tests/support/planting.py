@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 from support.checkout import ROOT
 from support.samples import DECLARATIONS
-from trajgap.problem.curves import interpolant, kernel, peak, spline, trajectory
+from trajgap.problem.curves import interpolant, kernel, peak, pieces, spline, trajectory
 from trajgap.problem.curves import kind as curve
 
 checker = importlib.import_module("trajgap.problem.checker")
@@ -25,6 +25,7 @@ FILES = {
     "test_check": "test_check.py",
     "test_verdicts": "test_check_verdicts.py",
     "test_peak": "curves/test_peak.py",
+    "test_pieces": "curves/test_pieces.py",
     "test_spline": "curves/test_spline.py",
     "test_spline_errors": "curves/test_spline_errors.py",
     "test_timed": "curves/test_timed_spline.py",
@@ -38,6 +39,7 @@ class Suite:
     test_check: ModuleType
     test_verdicts: ModuleType
     test_peak: ModuleType
+    test_pieces: ModuleType
     test_spline: ModuleType
     test_spline_errors: ModuleType
     test_timed: ModuleType
@@ -62,6 +64,8 @@ def planted(module: ModuleType, old: str, new: str) -> ModuleType:
     assert source.count(old) == 1, f"{old!r} occurs {source.count(old)} times"
     assert (COMPILED in source) == (module is kernel)
     source = source.replace(old, new).replace(COMPILED, "lambda function: function")
+    if module is pieces:
+        source = source.replace("@compiled\n", "")
     mutant = ModuleType(f"{module.__name__}_planted")
     mutant.__package__ = module.__package__
     mutant.__file__ = module.__file__
@@ -83,12 +87,19 @@ def use(
         # What runs interpreted at first holds the kernels themselves.
         monkeypatch.setattr(spline, "_fit_one", mutant.fit_coefficients)
         monkeypatch.setattr(peak, "_roots_in_unit", mutant.roots_in_unit)
+        plain = planted(pieces, "from __future__ import annotations", "")
+        monkeypatch.setattr(plain, "roots_in_unit", mutant.roots_in_unit)
+        monkeypatch.setattr(checker, "largest_of_each", plain.largest_of_each)
     elif module is peak:
-        users = (checker, trajectory, suite.test_peak, suite.test_timed)
+        users = (checker, trajectory, suite.test_peak, suite.test_pieces, suite.test_timed)
         for name in ("extrema", "largest", "polynomial_extrema", "critical_points"):
             held = [user for user in users if hasattr(user, name)]
             assert held, f"nobody takes {name} from peak"
             for user in held:
+                monkeypatch.setattr(user, name, getattr(mutant, name))
+    elif module is pieces:
+        for name in ("largest_of_each", "may_jump"):
+            for user in (checker, suite.test_pieces):
                 monkeypatch.setattr(user, name, getattr(mutant, name))
     elif module is curve:
         monkeypatch.setattr(interpolant, "value_errors", mutant.value_errors)
@@ -143,6 +154,14 @@ def stated_errors(suite: Suite) -> None:
 def digits(suite: Suite) -> None:
     for name in ("3-5-3", "cubic, virtual"):
         suite.test_peak.test_extrema_against_fifty_digits(name)
+
+
+def together(suite: Suite) -> None:
+    for name in suite.test_pieces.NAMES:
+        with pytest.MonkeyPatch.context() as patch:
+            suite.test_pieces.test_one_call_finds_what_one_search_after_another_finds(
+                name, 0.0, patch
+            )
 
 
 def places(suite: Suite) -> None:

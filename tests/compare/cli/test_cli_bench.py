@@ -167,7 +167,8 @@ def test_the_optimiser_of_the_guide_has_ten_lines_and_is_measured(run: Run, fold
         "--no-baselines",
     )  # fmt: skip
     assert (code, err) == (0, "")
-    assert re.search(r"^Closest: mine:evolve, median gap [0-9.]+ % of 3 runs\.$", out, re.MULTILINE)
+    verdict = r"^Closest: mine:evolve \(median gap [0-9.]+ % over 3 runs\)\.$"
+    assert re.search(verdict, out, re.MULTILINE)
 
 
 def test_the_docs_name_what_is_there() -> None:

@@ -208,7 +208,7 @@ def test_gaps_against_a_closed_form(runs: Runs) -> None:
         assert rates == sorted(rates, reverse=True)
     medians = [one.median for one in found.standings]
     assert medians == sorted(medians)
-    assert found.verdict.startswith(f"Closest: {found.standings[0].optimizer}, median gap")
+    assert found.verdict.startswith(f"Closest: {found.standings[0].optimizer} (median gap ")
     assert str(found).splitlines()[0] == found.verdict
     solved = measure_gaps(runs, solve(TOY))
     assert solved.optimum.upper == pytest.approx(EXACT.sum(), rel=1e-7)

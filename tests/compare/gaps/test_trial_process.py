@@ -2,6 +2,7 @@ import os
 import signal
 import sys
 import threading
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -52,6 +53,40 @@ def test_a_run_at_which_two_processes_die_is_reported(crew: Crew) -> None:
     assert crew.run(small_trial()).row.status is RowStatus.FINISHED
 
 
+def test_a_run_that_forks_answers_once(crew: Crew) -> None:
+    honest = run_trial(small_trial("support.optimizers:draws"))
+    for seed in (3, 4):
+        row = crew.run(small_trial("support.optimizers:forks", seed=seed)).row
+        assert (row.optimizer, row.seed) == ("support.optimizers:forks", seed)
+        assert (row.durations == honest.durations) == (seed == 3)
+    assert crew.run(small_trial()).row == run_trial(small_trial())
+
+
+def test_what_a_run_leaves_behind_holds_nothing_up(crew: Crew, tmp_path: Path) -> None:
+    mark = tmp_path / "mark"
+    settings = canonical({"mark": str(mark)})
+    trial = small_trial("support.optimizers:forks_and_leaves", settings=settings, seconds=60)
+    row = crew.run(trial).row
+    assert row.message.endswith("its process ended 2 times (SIGKILL)")
+    left = int(mark.read_text(encoding="utf-8"))
+    assert crew.run(small_trial()).row.status is RowStatus.FINISHED
+    assert is_gone(left)
+
+
+def is_gone(pid: int) -> bool:
+    """Whether a process ends within a minute; one that nobody waited for counts as ended."""
+    for _ in range(600):
+        try:
+            os.kill(pid, 0)
+            status = Path(f"/proc/{pid}/stat")
+            if status.exists() and status.read_text().rpartition(")")[2].split()[0] == "Z":
+                return True
+        except (ProcessLookupError, FileNotFoundError):
+            return True
+        time.sleep(0.1)
+    return False
+
+
 def test_a_search_that_catches_everything_is_ended_from_outside(
     crew: Crew, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -73,7 +108,7 @@ def test_a_process_does_not_outlive_its_parent(crew: Crew) -> None:
     crew.run(small_trial())
     child = crew._own.child
     child._process.stdin.close()
-    assert child._process.wait(60) == 0
+    assert child._process.wait(60) == -signal.SIGKILL
 
 
 def test_a_process_that_cannot_start_is_told(crew: Crew, monkeypatch: pytest.MonkeyPatch) -> None:

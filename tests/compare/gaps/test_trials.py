@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from support.small_studies import small_problem, small_trial
 from trajgap.compare.gaps import RowStatus, canonical, origin_of, run_trial
-from trajgap.heuristics import PSO, run
+from trajgap.heuristics import KINDS, PSO, run
 from trajgap.problem import check
 
 
@@ -47,6 +47,30 @@ def test_an_optimiser_that_draws_globally_is_seeded_and_nobody_else_is() -> None
     assert row.status is RowStatus.FINISHED
 
 
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_papers_algorithms_draw_from_nothing_but_their_own_generator(kind: str) -> None:
+    # Their runs may thus skip seeding the generators that everybody shares.
+    random.seed(1)
+    np.random.seed(1)  # noqa: NPY002
+    row = run_trial(small_trial(kind, budget=90))
+    drawn = random.random(), np.random.random()  # noqa: NPY002
+    random.seed(1)
+    np.random.seed(1)  # noqa: NPY002
+    assert drawn == (random.random(), np.random.random())  # noqa: NPY002
+    random.seed(2)
+    np.random.seed(2)  # noqa: NPY002
+    assert run_trial(small_trial(kind, budget=90)) == row
+    assert row.evaluations > 0
+
+
+def test_settings_of_one_trial_are_not_those_of_the_next() -> None:
+    few, many = (run_trial(small_trial("pso", settings=f'{{"particles":{n}}}')) for n in (5, 50))
+    assert few.durations != many.durations
+    assert (few.evaluations, many.evaluations) == (200, 200)
+    assert run_trial(small_trial("pso", settings='{"particles":5}')) == few
+    assert run_trial(small_trial("pso", settings='{"particles":5}', budget=100)).evaluations == 100
+
+
 @pytest.mark.parametrize(
     ("name", "message"),
     [
@@ -57,6 +81,9 @@ def test_an_optimiser_that_draws_globally_is_seeded_and_nobody_else_is() -> None
         ("support.optimizers:leaves_bounds", "outside its bounds"),
         ("support.optimizers:swallows", "went on after its budget of 200 evaluations was spent"),
         ("support.optimizers:judges_nothing", "judged no position"),
+        ("support.optimizers:moves_bounds", "asked for the fitness of 7 s for duration 1, outside"),
+        ("support.optimizers:raises_unprintable", "ValueError: half of a pair: <U+DC80>, a cursor"),
+        ("support.optimizers:raises_mute", "Mute"),
         ("support.optimizers:unknown", "unknown"),
         ("psso", "did you mean 'pso'"),
     ],
@@ -66,7 +93,8 @@ def test_what_goes_wrong_is_a_row_with_its_message(name: str, message: str) -> N
     assert row.status is RowStatus.FAILED
     assert message in row.message
     assert len(row.message) <= 300
-    assert "\n" not in row.message
+    assert row.message.isprintable()
+    row.message.encode()
     assert (row.durations, row.reported_time, row.feasible_gap) == (None, None, None)
     assert row.reference_upper == 2.5
 
@@ -74,6 +102,30 @@ def test_what_goes_wrong_is_a_row_with_its_message(name: str, message: str) -> N
 def test_a_spent_budget_ends_a_run_and_is_no_fault() -> None:
     row = run_trial(small_trial("support.optimizers:overspends"))
     assert (row.status, row.evaluations) == (RowStatus.FINISHED, 200)
+
+
+@pytest.mark.parametrize("name", ["scribbles", "returns_short"])
+def test_what_does_no_harm_changes_nothing(name: str) -> None:
+    row = run_trial(small_trial(f"support.optimizers:{name}"))
+    honest = run_trial(small_trial("support.optimizers:draws"))
+    assert (row.durations, row.trace) == (honest.durations, honest.trace)
+
+
+def test_what_a_run_does_to_its_process_ends_with_it() -> None:
+    before = run_trial(small_trial("pso"))
+    floats = np.geterr()
+    assert run_trial(small_trial("support.optimizers:leaves_traces")).status is RowStatus.FINISHED
+    assert np.geterr() == floats
+    assert run_trial(small_trial("pso")) == before
+
+
+def test_a_fork_in_the_calling_process_does_not_come_back(tmp_path: Path) -> None:
+    returned = tmp_path / "returned"
+    row = run_trial(small_trial("support.optimizers:forks"))
+    with returned.open("a", encoding="utf-8") as file:
+        file.write(row.status)
+    assert row.durations == run_trial(small_trial("support.optimizers:draws")).durations
+    assert returned.read_text(encoding="utf-8") == "finished"
 
 
 def test_warnings_of_an_optimiser_are_its_own() -> None:

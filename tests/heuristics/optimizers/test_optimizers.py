@@ -168,6 +168,8 @@ def test_what_ends_in_time_is_left_alone() -> None:
         ("psoo", "optimizer 'psoo': unknown; did you mean 'pso'"),
         ("scipy:diferential_evolution", "did you mean 'differential_evolution'"),
         ("nowhere_at_all:f", "module 'nowhere_at_all' cannot be imported"),
+        ("mine.py:f", "mine.py:f: names a file; write mine:f, in the folder that holds mine.py"),
+        ("evolve", "A function of yours is called module:function, such as mine:evolve"),
         ("support.faulty:g", "module 'support.faulty' has no 'g'; check its name"),
         ("support.faulty:FAULTS", "is no function"),
     ],

@@ -1,5 +1,7 @@
 """The compiled search over many pieces finds the very extrema of the search piece by piece."""
 
+from dataclasses import astuple, replace
+
 import numpy as np
 import pytest
 from support.samples import DECLARATIONS, posed
@@ -17,7 +19,16 @@ from trajgap.problem import (
     quintic_spline,
     rest_to_rest,
 )
-from trajgap.problem.curves import near_extrema, step_sizes, tops
+from trajgap.problem.curves import (
+    Deferred,
+    largest,
+    largest_of_each,
+    may_jump,
+    near_extrema,
+    pieces,
+    step_sizes,
+    tops,
+)
 
 NAMES = ("3-5-3", "cubic", "quintic", "rest 7", "4-2-3", "lines", "uneven")
 
@@ -44,6 +55,43 @@ def test_tops_are_the_largest_of_all_extrema(name: str) -> None:
 def same(one: Extremum | Peak, other: Extremum | Peak) -> None:
     assert (one.joint, one.segment, one.time) == (other.joint, other.segment, other.time)
     assert one.value == pytest.approx(other.value, rel=1e-14)
+
+
+@pytest.mark.parametrize("waited", [0.0, 99.0], ids=["interpreted", "compiled"])
+@pytest.mark.parametrize("name", NAMES)
+def test_one_call_finds_what_one_search_after_another_finds(
+    name: str, waited: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    each = Deferred(pieces._largest_of_each, 2.0)
+    each._spent, each._look = waited, 0.0 if waited else 99.0
+    monkeypatch.setattr(pieces, "_each", each)
+    for seed in range(4):
+        problem, h = posed(DECLARATIONS[name], seed)
+        found = problem.curve.enclosed(problem.waypoints, h)
+        curve = found.trajectory
+        error = found.error + np.random.default_rng(seed).random(found.error.shape)
+        wanted = np.ones((curve.joints, 3), dtype=bool)
+        wanted[1, seed % 3] = False
+        asked = np.argwhere(wanted).tolist()
+        one_by_one = [largest(curve, j, r + 1, error[:, r + 1, j]) for j, r in asked]
+        # Not a bit may differ: rows of earlier runs are compared with those of later ones.
+        in_one_call = largest_of_each(curve, error, wanted)
+        assert [(astuple(e), b) for e, b in in_one_call] == [(astuple(e), b) for e, b in one_by_one]
+
+
+def test_a_jump_is_never_overlooked() -> None:
+    problem, h = posed(DECLARATIONS["uneven"], 13)
+    found = problem.curve.enclosed(problem.waypoints, h)
+    assert not may_jump(found.trajectory, found.error)
+    bent = found.trajectory.scaled.copy()
+    for order in range(3):
+        size, scale = step_sizes(found.trajectory, order)
+        least = found.error[0, order, 1] + found.error[1, order, 1] + 1e-9 * scale[0, 1]
+        added = (least - size[0, 1]) * found.trajectory.durations[1] ** order
+        bent[1, order, 1] += added / [1, 1, 2][order]
+        jumping = replace(found.trajectory, scaled=bent)
+        assert may_jump(jumping, found.error)
+        bent[1, order, 1] = found.trajectory.scaled[1, order, 1]
 
 
 @pytest.mark.parametrize("name", NAMES)
