@@ -31,13 +31,15 @@ from ..documents import (
 )
 from .card_errors import plainly
 from .rules import said_to_keep
-from .stated import place
+from .stated import other_objective, place
 from .study import Study
 
 _FEW = 2
 """Totals that are each set beside their optimum; more are told as a range."""
 _MANY_TIMES = 10.0
 """Distance beyond which a multiple says more than a percentage."""
+_OBJECTIVE_WORDS = 8
+"""Words of an objective that the card repeats; a longer one is left to the claims."""
 
 
 def verdict_card(
@@ -231,6 +233,15 @@ def _beside(study: Study, waterfall: Waterfall) -> str | _Above:
     if low <= solution.best <= high:
         return f"{shown} agrees with the {best}"
     share = _seconds(study, claim, rid) / solution.best - 1
+    minimised = other_objective(study.case, claim)
+    if minimised is not None and share > 0:
+        certified = solution.evidence is Evidence.CERTIFIED
+        motion = "shortest motion" if certified else "shortest known motion"
+        called = f" ({minimised})" if count_words(minimised) <= _OBJECTIVE_WORDS else ""
+        return (
+            f"{shown} was not minimised for time alone{called}; the {motion} takes "
+            f"{solution.best:.4f} s{', proven' if certified else ''}"
+        )
     if share >= _MANY_TIMES:
         return f"{shown} is {1 + share:.1f} times the {best}"
     if share > 0:

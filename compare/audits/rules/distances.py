@@ -31,6 +31,7 @@ from ...documents import (
 from ...gaps import gap, reference_of
 from ..explanations import LIMITS, OPTIMAL
 from ..rounding import same_limits
+from ..stated import other_objective
 from ..study import Study
 from .continuous_time import broken
 from .wording import called, called_under
@@ -95,7 +96,16 @@ def _distance(
         f"Printed {shown} {set_beside(distance)} the {reference.evidence} optimum {which}, "
         f"{reference.upper:.6f} s{_bounded(reference)}."
     )
-    if not isinstance(claim, TotalTimeClaim) and study.unmoved(claim, pid, rid) is None:
+    minimised = other_objective(study.case, claim)
+    informs = minimised is not None and distance.lowest > 0
+    if informs:
+        message = (
+            f"Printed {shown} was not minimised for time alone ({minimised}): as information, the "
+            f"shortest motion {which} takes {reference.upper:.6f} s, "
+            f"{reference.evidence}{_bounded(reference)}."
+        )
+    timed = not isinstance(claim, TotalTimeClaim) and study.unmoved(claim, pid, rid) is None
+    if timed and not informs:
         verdict = study.claim_check(claim, pid, rid)
         if verdict.feasible_time is not None:
             repaired = gap(verdict.feasible_time, reference)
@@ -334,8 +344,14 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
     for rid in study.readings:
         sides = _Sides()
         for claim in (study.case.claim(i) for i in statement.of):
+            minimised = other_objective(study.case, claim)
             for pid, reading in study.claim_pairs(claim):
-                if reading == rid:
+                if reading == rid and minimised is not None:
+                    sides.open.append(
+                        f"{called_under(claim, pid)}: minimised for {minimised}, not for time "
+                        "alone, so that a shorter motion contradicts nothing"
+                    )
+                elif reading == rid:
                     _weigh(study, claim, pid, rid, sides)
         if not (sides.longer or sides.breaking or sides.agreeing or sides.open):
             continue
