@@ -124,6 +124,12 @@ def _limits(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[str]
         if isinstance(c, DurationsClaim | MaximumClaim) and said_to_keep(study, c)
     ]
     asked = [c.id for c in about or sets if c.id in words]
+    timed = [c for c in case.claims if isinstance(c, TimeClaim) and c.other_curve is None]
+    if timed and all(isinstance(c, TotalTimeClaim) for c in timed) and not about:
+        return (
+            "Whether the limits are kept is not checkable: totals are printed, durations are not.",
+            set(),
+        )
     if not asked:
         return "No printed durations are said to keep limits.", set()
     under = {

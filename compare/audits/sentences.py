@@ -71,7 +71,9 @@ def _said(case: Case, claim: AnyClaim) -> str:
     whose = f" of joint {claim.joint}" if claim.joint is not None else ""
     match claim:
         case DurationsClaim() | MaximumClaim() | TotalTimeClaim():
-            return f"{_frame(claim)}{_timed(claim, time, whose)}"
+            before = "before optimisation, " if claim.state == "before" else ""
+            curve = f" ({claim.other_curve})" if claim.other_curve else ""
+            return f"{before}{_timed(claim, time, whose)}{curve}"
         case ImprovementClaim(percent=percent) if percent is not None:
             return f"the motion is {percent} % shorter"
         case ImprovementClaim(seconds=saved):
@@ -91,17 +93,12 @@ def _said(case: Case, claim: AnyClaim) -> str:
     return _STATEMENTS[claim.checks].format(of=whose, joint=claim.joint)
 
 
-def _frame(claim: DurationsClaim | MaximumClaim | TotalTimeClaim) -> str:
-    """What a time is said of: the state before an optimisation, another curve."""
-    before = "before optimisation, " if claim.state == "before" else ""
-    return before + (f"on {claim.other_curve}, " if claim.other_curve else "")
-
-
 def _timed(claim: DurationsClaim | MaximumClaim | TotalTimeClaim, unit: str, whose: str) -> str:
     if isinstance(claim, TotalTimeClaim):
         return f"the motion{whose} takes {claim.value} {unit}"
     count = len(claim.durations)
-    total = "" if claim.total is None else f"{claim.total} {unit} in total"
+    # The total of one segment is its duration.
+    total = "" if claim.total is None or count == 1 else f"{claim.total} {unit} in total"
     if count > _MOST:
         plain = f"the {count} segments{whose} take {total}"
         return plain if total else f"the durations of {count} segments{whose}"

@@ -114,6 +114,7 @@ def audited(document: AuditDocument) -> list[RenderableType]:
         ]
         if rows:
             parts.append(Columns(("verdict", "readings", "~claim and its place"), rows))
+        parts += [line(said, "dim") for said in _unchecked(case)]
         advice = () if isinstance(case.advice, Why) else case.advice
         parts += _advised(advice) if advice else [line(one) for one in _causes(case)]
         parts += [line(""), *_time_goes(case.waterfalls)]
@@ -121,6 +122,9 @@ def audited(document: AuditDocument) -> list[RenderableType]:
     return parts
 
 
+_REASONS = 3
+"""Reasons that a terminal shows for claims that cannot be checked: enough for somebody's first case;
+those of a long one fill a page."""
 _ORDER = (
     ClaimVerdict.REFUTED,
     ClaimVerdict.INCONSISTENT,
@@ -129,6 +133,23 @@ _ORDER = (
     ClaimVerdict.NOT_CHECKABLE,
 )
 """Claims in the table: what speaks against them first."""
+
+
+def _unchecked(case: AuditedCase) -> list[str]:
+    """Why claims cannot be checked, each reason once; beyond the first few the pages have them."""
+    places = {one.claim: one.where for one in case.claims}
+    reasons: dict[str, list[str]] = {}
+    for one in case.verdicts:
+        if one.verdict is ClaimVerdict.NOT_CHECKABLE:
+            first = one.why.split(". ")[0].rstrip(".")
+            reasons.setdefault(first, []).append(places[one.claim])
+    told = [
+        f"not checkable, {'; '.join(dict.fromkeys(where))}: {why}."
+        for why, where in list(reasons.items())[:_REASONS]
+    ]
+    more = len(reasons) - len(told)
+    rest = [f"{more} more reason{'s' if more > 1 else ''} on the pages."] if more else []
+    return told + rest
 
 
 def _advised(advice: Sequence[Advice]) -> list[RenderableType]:

@@ -109,20 +109,21 @@ def scaffold(
     _refuse(table, options)
     identity = case_id if case_id is not None else identity_of(path.stem)
 
-    def text(place: str) -> str:
+    def text(place: str, segments: int) -> str:
         total = next(iter(claimed["total"]), None)
-        claims = claim_blocks(claimed["durations"], total, place, len(rows) - 1, checked)
+        claims = claim_blocks(claimed["durations"], total, place, segments, checked)
         angles = _angles(numbers, checked["position"])
         return _text(identity, path.name, joints, labels, angles, checked, given, curve, claims)
 
     try:
-        parse_case(text(where or _UNPLACED), name)
+        case = parse_case(text(where or _UNPLACED, len(rows) - 1), name)
     except CaseError as error:
         for field, reason in error.faults:
             meant = _argument(field)
             (table if meant is None else options).add(meant or field, reason)
         _refuse(table, options)
-    return text(where)
+        raise
+    return text(where, case.problem().segments)
 
 
 def _refuse(table: Faults, options: Faults) -> None:

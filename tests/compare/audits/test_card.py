@@ -81,6 +81,20 @@ value = "0.50"
     assert says in card.optimum
 
 
+def test_totals_alone_are_said_to_be_all_that_is_printed():
+    total = """
+[[claims]]
+id = "total"
+quantity = "total_time"
+where = "Table 2"
+value = "9.50"
+"""
+    card = audit_case(Study(parse_case(LONG + total, "x"), certify_seconds=0)).card
+    assert card.limits == (
+        "Whether the limits are kept is not checkable: totals are printed, durations are not."
+    )
+
+
 def test_many_errors_are_counted_where_the_words_end():
     one = audited_alone("irb460-pso-353")
     explanation = Explanation(change="Two columns may be swapped.", effect="Then all is well.")

@@ -41,6 +41,11 @@ def said(keys):
             "PSO: the segments of joint b take 0.9, 1.2 and 1.0 s, 3.1 s in total.",
         ),
         (
+            'quantity = "durations"\nproblem = "one"\ndurations = ["2.7998"]\ntotal = "2.7998"\n'
+            'other_curve = "septic"',
+            "The segment takes 2.7998 s (septic).",
+        ),
+        (
             f'quantity = "durations"\nproblem = "one"\ndurations = {TWELVE}\ntotal = "1.3"',
             "The 12 segments take 1.3 s in total.",
         ),
@@ -56,7 +61,7 @@ def said(keys):
         (
             'quantity = "total_time"\nproblem = "one"\nvalue = "3.5"\nstate = "before"\n'
             'other_curve = "straight lines"\nobjective = "energy"',
-            "Before optimisation, on straight lines, the motion takes 3.5 s.",
+            "Before optimisation, the motion takes 3.5 s (straight lines).",
         ),
         (
             'quantity = "improvement"\nslower = "times"\nfaster = "second"\npercent = "10.9"',

@@ -103,6 +103,12 @@ def test_a_place_that_is_not_given_is_left_to_be_filled_in(table):
         parse_case(text.replace('where = ""  # fill in', 'where = "Table 9"  #'), "x")
 
 
+def test_a_row_is_as_long_as_the_curve_has_segments(table):
+    """Two virtual way-points make two segments more than the way-points have ways between them."""
+    assert 'durations = [""]  # 5 numbers' in scaffold(table, RAD, family="cubic-spline-virtual")
+    assert 'durations = [""]  # 3 numbers' in scaffold(table, RAD, family="3-5-3")
+
+
 def test_no_place_and_no_number_is_made_up(table):
     text = scaffold(table, RAD, durations="1.0,2.0,3.0", total="6.0")
     assert not re.search(r'^#? ?where = "[^"]', text, re.M)
