@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...nlp import Evidence, Solution, Status
+from ...problem import Coupling
 from ...problem.cases import (
     AnyClaim,
     DurationsClaim,
@@ -67,6 +68,14 @@ def verdict_card(
     limits, judged = _limits(study, words)
     optimum = _optimum(study, waterfalls)
     improvement, improved = _improvement(study, words)
+    told = improved & {
+        one.claim
+        for cause in causes
+        if cause.severity is Severity.ERROR and cause.rule == "TG104"
+        for one in cause.consequences
+    }
+    if told:
+        improvement = None  # the sentence on the tables says which percentage falls with them
     # What the first lines have said is not said again.
     said = {("TG201", one) for one in judged} | {("TG103", one) for one in improved}
     grave = [c for c in causes if c.severity is Severity.ERROR and (c.rule, c.claim) not in said]
@@ -76,7 +85,7 @@ def verdict_card(
     return VerdictCard(
         limits=limits,
         optimum=optimum,
-        improvement=known(improvement, "no improvement is claimed"),
+        improvement=known(improvement, "an error says it" if told else "no improvement is claimed"),
         errors=errors,
         more=more,
         explanation=known(_explanation(causes, left), "none that was tried fits, or has room"),
@@ -151,7 +160,17 @@ def _limits(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[str]
     count = f"{kept} of {len(under)}" if len(under) > 1 else "no reading"
     rest = len(under) - kept - broken
     parts = [f"kept under {count}", f"broken under {broken}"] if rest else [f"kept under {count}"]
-    return f"Whether the limits are kept depends on the reading: {', '.join(parts)}{jump}.", spoken
+    kept_in = f"Whether the limits are kept{_in_doubt(sets, words)}"
+    return f"{kept_in} depends on the reading: {', '.join(parts)}{jump}.", spoken
+
+
+def _in_doubt(sets: Sequence[AnyClaim], words: Mapping[str, Judgement]) -> str:
+    """Where the durations stand that may break a limit, unless that is everywhere."""
+    doubtful = [c for c in sets if words[c.id].verdict is not ClaimVerdict.SUPPORTED]
+    places = list(dict.fromkeys(place(c) for c in doubtful))
+    if len(doubtful) == len(sets) or not 0 < len(places) <= _FEW:
+        return ""
+    return f" in {' and '.join(places)}"
 
 
 def _limited(study: Study, pid: str, rid: str) -> bool:
@@ -229,7 +248,8 @@ def _beside(study: Study, waterfall: Waterfall) -> str | _Above:
     if why:
         return why
     name = "proven optimum" if solution.evidence is Evidence.CERTIFIED else "best known total"
-    best = f"{name} {solution.best:.4f} s"
+    shown_best = f"{solution.best:.4f} s{_together_where_apart(study, pid, rid)}"
+    best = f"{name} {shown_best}"
     claim = _totalled(study, waterfall)
     total = None if claim is None else study.claim_total(claim, rid)
     if total is None or not isinstance(claim, TimeClaim):
@@ -251,8 +271,15 @@ def _beside(study: Study, waterfall: Waterfall) -> str | _Above:
     if share >= _MANY_TIMES:
         return f"{shown} is {1 + share:.1f} times the {best}"
     if share > 0:
-        return _Above(shown, _percent(share), name, f"{solution.best:.4f} s")
+        return _Above(shown, _percent(share), name, shown_best)
     return f"{shown} is {_percent(-share)} below the {best}"
+
+
+def _together_where_apart(study: Study, pid: str, rid: str) -> str:
+    """What the optimum is of, where the paper plans each joint by itself: that has another one."""
+    problem = study.problem(pid, rid)
+    apart = problem.coupling is Coupling.PER_JOINT and len(problem.joints) > 1
+    return " of all joints together" if apart else ""
 
 
 def _seconds(study: Study, claim: TimeClaim, rid: str) -> float:

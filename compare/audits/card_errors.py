@@ -48,9 +48,11 @@ def plainly(case: Case, cause: Cause) -> str:
         "TG203": f"The peak in {where} is not that of the printed durations",
         "TG208": f"The mean or integral in {where} is not that of the printed durations",
         "TG205": f"Control vertices in {where} do not follow from the way-points",
-        "TG301": "By the scaling of time with the velocity limit, the two printed results cannot "
-        "both be shortest",
-        "TG302": f"Called optimal in {where}, but a checked motion within the limits is shorter",
+        "TG301": "Under a velocity limit alone times scale with it, so the two printed results "
+        "cannot both be shortest",
+        "TG302": f"Called optimal in {where}, but {computed} a checked motion within the limits"
+        if computed
+        else f"Called optimal in {where}, but no answer within the limits",
         "TG304": f"The total in {where} is not the shortest of its profile",
         "TG601": "Printed joint angles and positions do not fit the printed robot",
     }.get(cause.rule)

@@ -62,7 +62,7 @@ def sentence_of(case: Case, claim: AnyClaim) -> str:
     said = _said(case, claim)
     names = {one.id: one.name for one in case.algorithms}
     if claim.algorithm is not None:
-        return f"{names[claim.algorithm]}: {said}."
+        said = f"{names[claim.algorithm]}: {said}"
     return f"{said[:1].upper()}{said[1:]}."
 
 

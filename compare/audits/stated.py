@@ -142,6 +142,8 @@ def spoken(case: Case, text: str) -> str:
 def place(claim: AnyClaim) -> str:
     """Where a claim stands, as short as it can be found: the first place that it names."""
     first = claim.where.split(";")[0].strip()
+    # A title names its field as often as it claims: what stands elsewhere too is found there.
+    first = re.sub(r"^title, ", "", first)
     for part in ("abstract", "title", "introduction", "conclusion"):
         if re.match(rf"{part}\b", first):
             return f"the {part}"

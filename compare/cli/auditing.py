@@ -123,8 +123,10 @@ def audited(document: AuditDocument) -> list[RenderableType]:
 
 
 _REASONS = 3
-"""Reasons that a terminal shows for claims that cannot be checked: enough for somebody's first case;
+"""Reasons that a terminal shows for claims that cannot be checked: enough for a first case, while
 those of a long one fill a page."""
+_INFORMS = "informational)"
+"""How what stands in place of a reason ends, where a finding informs and decides nothing."""
 _ORDER = (
     ClaimVerdict.REFUTED,
     ClaimVerdict.INCONSISTENT,
@@ -140,11 +142,12 @@ def _unchecked(case: AuditedCase) -> list[str]:
     places = {one.claim: one.where for one in case.claims}
     reasons: dict[str, list[str]] = {}
     for one in case.verdicts:
-        if one.verdict is ClaimVerdict.NOT_CHECKABLE:
+        # What only informs stands with the claim on its page: it is no reason.
+        if one.verdict is ClaimVerdict.NOT_CHECKABLE and not one.why.endswith(_INFORMS):
             first = one.why.split(". ")[0].rstrip(".")
             reasons.setdefault(first, []).append(places[one.claim])
     told = [
-        f"not checkable, {'; '.join(dict.fromkeys(where))}: {why}."
+        f"not checkable, {where[0] if len(where) == 1 else f'{len(where)} claims'}: {why}."
         for why, where in list(reasons.items())[:_REASONS]
     ]
     more = len(reasons) - len(told)

@@ -236,6 +236,8 @@ class _Sides:
     """What speaks for and against a statement that totals are optimal, under one reading."""
 
     longer: list[str] = field(default_factory=list)
+    most: str = ""
+    most_by: float = 0.0
     breaking: list[str] = field(default_factory=list)
     roots: list[str] = field(default_factory=list)
     agreeing: list[str] = field(default_factory=list)
@@ -254,7 +256,10 @@ def _weigh(study: Study, claim: AnyClaim, pid: str, rid: str, sides: _Sides) -> 
     solution = study.claim_optimum(claim, pid, rid)
     shorter = _shorter(study, claim, pid, rid, solution, total)
     if shorter is not None:
-        sides.longer.append(shorter)
+        said, distance = shorter
+        sides.longer.append(said)
+        if distance.highest > sides.most_by:
+            sides.most, sides.most_by = _at_most(distance), distance.highest
         return
     known = solution.durations is not None and solution.status is not Status.NOT_ATTAINED
     # Whether a bare total is too short takes a proof, which is tried only where it may succeed.
@@ -383,6 +388,7 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
             claim=statement.id,
             reading=rid,
             message=message,
+            computed=sides.most or None,
             kind="longer" if longer else "breaks" if breaking else str(known),
             root=f"{OPTIMAL} {statement.id}" if longer else "",
             follows=() if longer else tuple(sides.roots),
@@ -396,7 +402,7 @@ def _shorter(
     rid: str,
     solution: Solution,
     total: tuple[str, tuple[float, float]],
-) -> str | None:
+) -> tuple[str, Gap] | None:
     """A checked motion that is shorter whatever the digits stand for, if there is one.
 
     Where the solver proves that no motion is the shortest, none is set beside a printed total: that
@@ -411,7 +417,20 @@ def _shorter(
     distance = gap(interval, Reference(upper=reached), feasible=_kept(study, claim, pid, rid))
     jumps = solution.check is not None and any(j.order == 1 for j in solution.check.jumps)
     kind = "a checked motion whose velocity may jump at the via-points under this reading"
-    return (
+    said = (
         f"{called(claim)} prints {shown}, which {set_beside(distance)} the {reached:.6f} s of "
         f"{kind if jumps else 'a checked motion'}"
+    )
+    return said, distance
+
+
+def _at_most(distance: Gap) -> str:
+    """How much longer a printed total is than a motion, at most: for a card."""
+    if distance.many_times:
+        return f"up to {1 + distance.highest:.1f} times as long as"
+    percent = 100 * distance.highest
+    return (
+        f"up to {percent:.1f} % longer than"
+        if percent >= 1
+        else f"up to {percent:.2g} % longer than"
     )
