@@ -114,7 +114,8 @@ def _explanation(causes: Sequence[Cause], room: int) -> str | None:
             called = f"An innocent explanation: {plain[:1].lower()}{plain[1:]}"
             # What it explains and what follows matter more than what it is called.
             said = [f"{one} {explanation.effect}" for one in (called, plain)]
-            return next((e for e in (*said, called, plain) if count_words(e) <= room), None)
+            short = (called, plain) if explanation.settles else ()
+            return next((e for e in (*said, *short) if count_words(e) <= room), None)
     return None
 
 

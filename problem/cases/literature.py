@@ -31,6 +31,8 @@ _NEEDED: dict[str, dict[str, object]] = {
 time; a reading for each other one is the paper's to admit."""
 _ALIASES: dict[str, tuple[str, dict[str, object]]] = {
     "cubic spline": ("cubic-spline", {}),
+    "c2 cubic spline": ("cubic-spline", {}),
+    "c2 cubic natural spline": LITERATURE["natural-cubic"],
     "cubic natural spline": LITERATURE["natural-cubic"],
     "cubic natural": LITERATURE["natural-cubic"],
     "natural spline": LITERATURE["natural-cubic"],
@@ -43,6 +45,7 @@ _ALIASES: dict[str, tuple[str, dict[str, object]]] = {
     "bspline cubic uniform": ("uniform-cubic-b-spline", {}),
     "bspline clamped cubic": ("clamped-b-spline", {"degree": 3}),
     "quintic spline": ("quintic-spline", {}),
+    "c4 quintic spline": ("quintic-spline", {}),
     "bspline quintic": LITERATURE["quintic-b-spline"],
     "bspline clamped quintic": ("clamped-b-spline", {"degree": 5}),
     "bspline septic": ("clamped-b-spline", {"degree": 7}),

@@ -277,7 +277,7 @@ def _text(
         for key, choices in CHOICES.items()
     ]
     limit_lines = [
-        f"{key} = {_numbers(limits[key])}" if key in limits else f"# {key} = 6"
+        f"{key} = {_numbers(limits[key])}" if key in limits else f"# {key} = inf"
         for key in ("velocity", "acceleration", "jerk")
     ]
     parts = [
@@ -295,7 +295,7 @@ def _text(
         f"note = {_quoted(f'way-points from {file}')}",
         '# authors = ""',
         '# title = ""',
-        "# year = 2024",
+        "# year = 0",
         '# doi = ""',
         "",
         "[robot]",

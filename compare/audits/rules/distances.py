@@ -27,6 +27,7 @@ from ...documents import (
     Rounding,
     Severity,
     Why,
+    known,
 )
 from ...gaps import gap, reference_of
 from ..explanations import LIMITS, OPTIMAL
@@ -236,8 +237,7 @@ class _Sides:
     """What speaks for and against a statement that totals are optimal, under one reading."""
 
     longer: list[str] = field(default_factory=list)
-    most: str = ""
-    most_by: float = 0.0
+    most: Gap | None = None
     breaking: list[str] = field(default_factory=list)
     roots: list[str] = field(default_factory=list)
     agreeing: list[str] = field(default_factory=list)
@@ -258,19 +258,19 @@ def _weigh(study: Study, claim: AnyClaim, pid: str, rid: str, sides: _Sides) -> 
     if shorter is not None:
         said, distance = shorter
         sides.longer.append(said)
-        if distance.highest > sides.most_by:
-            sides.most, sides.most_by = _at_most(distance), distance.highest
+        if sides.most is None or distance.highest > sides.most.highest:
+            sides.most = distance
         return
-    known = solution.durations is not None and solution.status is not Status.NOT_ATTAINED
+    found = solution.durations is not None and solution.status is not Status.NOT_ATTAINED
     # Whether a bare total is too short takes a proof, which is tried only where it may succeed.
-    bare = isinstance(claim, TotalTimeClaim) and known and interval[1] >= solution.best
+    bare = isinstance(claim, TotalTimeClaim) and found and interval[1] >= solution.best
     proof = None if bare else broken(study, claim, pid, rid)
     below = _below_certified(study, claim, pid, rid, solution)
     if proof is not None or below is not None:
         sides.breaking.append(f"{name}: {proof or below}")
         sides.roots.append(f"{LIMITS} {claim.id}")
         return
-    if not known:
+    if not found:
         sides.open.append(f"{name}: {_no_optimum(solution)}")
         return
     sides.evidence.append(solution.evidence)
@@ -360,11 +360,11 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
                     _weigh(study, claim, pid, rid, sides)
         if not (sides.longer or sides.breaking or sides.agreeing or sides.open):
             continue
-        known = weakest(sides.evidence)
+        evidence = weakest(sides.evidence)
         longer, breaking = sides.longer, sides.breaking
         if longer or breaking:
             # What refutes is a motion or a broken limit: no optimum, known or certified, is needed.
-            known = Evidence.NONE
+            evidence = Evidence.NONE
             verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
             every = "for every value that rounds to the printed digits"
             said = [f"Not the shortest, {every}: {'; '.join(longer)}."] if longer else []
@@ -375,7 +375,7 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
             message = f"Not decided: {'; '.join(sides.open)}."
         else:
             verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
-            message = f"Every printed total agrees with the {known} optimum"
+            message = f"Every printed total agrees with the {evidence} optimum"
             message += (
                 ", digits rounded up so that the limits are kept." if sides.rounded_up else "."
             )
@@ -383,13 +383,13 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
             rule="TG302",
             severity=severity,
             verdict=verdict,
-            evidence=known,
+            evidence=evidence,
             basis=Basis.ENCLOSURE if breaking and not longer else Basis.OPTIMUM,
             claim=statement.id,
             reading=rid,
             message=message,
-            computed=sides.most or None,
-            kind="longer" if longer else "breaks" if breaking else str(known),
+            gap=known(sides.most, "no time is set beside a motion"),
+            kind="longer" if longer else "breaks" if breaking else str(evidence),
             root=f"{OPTIMAL} {statement.id}" if longer else "",
             follows=() if longer else tuple(sides.roots),
         )
@@ -422,15 +422,3 @@ def _shorter(
         f"{kind if jumps else 'a checked motion'}"
     )
     return said, distance
-
-
-def _at_most(distance: Gap) -> str:
-    """How much longer a printed total is than a motion, at most: for a card."""
-    if distance.many_times:
-        return f"up to {1 + distance.highest:.1f} times as long as"
-    percent = 100 * distance.highest
-    return (
-        f"up to {percent:.1f} % longer than"
-        if percent >= 1
-        else f"up to {percent:.2g} % longer than"
-    )

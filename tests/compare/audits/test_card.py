@@ -177,6 +177,11 @@ def test_the_explanation_of_an_error_is_called_one():
     assert _explanation([cause], 8) == "An innocent explanation: two columns may be swapped."
     assert _explanation([cause], 5) == "Two columns may be swapped."
     assert _explanation([cause], 4) is None
+    # What leaves a limit broken says so, or is not said: alone it would sound as if it settled it.
+    partly = explanation.model_copy(update={"settles": False})
+    left = cause.model_copy(update={"explanations": (partly,)})
+    assert _explanation([left], 10) == "Two columns may be swapped. Then all is well."
+    assert _explanation([left], 8) is None
 
 
 LONG = """

@@ -31,6 +31,8 @@ def declared(tmp_path):
         ("cubic spline with 2 virtual knots", 4, (3,) * 5),
         ("Natural cubic splines", 5, (3,) * 4),
         ("natural spline", 5, (3,) * 4),
+        ("C2 cubic spline", 5, (3,) * 4),
+        ("C4 quintic spline", 5, (5,) * 4),
         ("clamped cubic spline", 5, (3,) * 4),
         ("fifth-order B-spline", 6, (5,) * 5),
         ("quintic B splines", 6, (5,) * 5),
