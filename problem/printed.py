@@ -75,6 +75,8 @@ class Printed:
         text = self.text.strip().translate(MINUS_SIGNS)
         if len(text) > _LONGEST:
             raise TrajgapError(f"a number of {len(text)} characters; at most {_LONGEST} are read")
+        if not text:
+            raise TrajgapError('is empty; write the printed digits, such as "0.660"')
         match = _NUMBER.fullmatch(text)
         if match is None:
             raise TrajgapError(

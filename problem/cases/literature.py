@@ -83,7 +83,7 @@ _SAYING_NOTHING = {
     "trajectory", "via", "waypoint", "waypoints", "with",
 }  # fmt: skip
 """Words that tell no curve from another."""
-_PROFILES = ("lspb", "trapezoidal", "trapezoid", "scurve", "doubles")
+_PROFILES = ("lspb", "trapezoidal", "trapezoid", "parabolic", "blends", "scurve", "doubles")
 """Words of profiles of velocity, which start and end each segment at rest."""
 _ANGELES = {"3-4-5": 5, "4-5-6-7": 7, "5-6-7-8-9": 9}
 """Names of one polynomial from rest to rest by the powers that it has (Angeles, Fundamentals of

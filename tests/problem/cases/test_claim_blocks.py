@@ -109,6 +109,12 @@ def test_a_row_is_as_long_as_the_curve_has_segments(table):
     assert 'durations = [""]  # 3 numbers' in scaffold(table, RAD, family="3-5-3")
 
 
+def test_a_blank_number_is_called_one(table):
+    text = scaffold(table, RAD, where="Table 2", total="6.0").replace('"6.0"', '""')
+    with pytest.raises(CaseError, match=r"value: is empty; write the printed digits, such as"):
+        parse_case(text, "x")
+
+
 def test_no_place_and_no_number_is_made_up(table):
     text = scaffold(table, RAD, durations="1.0,2.0,3.0", total="6.0")
     assert not re.search(r'^#? ?where = "[^"]', text, re.M)

@@ -105,7 +105,9 @@ def test_a_name_that_may_mean_several_is_answered_with_them(declared, name, mean
     assert reason.startswith(f"{name!r} is not known; did you mean {meant}? All: ")
 
 
-@pytest.mark.parametrize("name", ["LSPB", "trapezoidal velocity profile", "S-curve", "double S"])
+@pytest.mark.parametrize(
+    "name", ["LSPB", "parabolic blends", "trapezoidal velocity profile", "S-curve", "double S"]
+)
 def test_profiles_are_told_where_they_belong(declared, name):
     with pytest.raises(CaseError, match="is a profile from rest to rest, not a curve through"):
         declared(name, 4)
