@@ -26,6 +26,7 @@ from ..documents import (
     Severity,
     VerdictCard,
     Waterfall,
+    Why,
     count_words,
     known,
     more_errors,
@@ -68,28 +69,38 @@ def verdict_card(
     limits, judged = _limits(study, words)
     optimum = _optimum(study, waterfalls)
     improvement, improved = _improvement(study, words)
-    told = improved & {
-        one.claim
-        for cause in causes
-        if cause.severity is Severity.ERROR and cause.rule == "TG104"
-        for one in cause.consequences
-    }
-    if told:
-        improvement = None  # the sentence on the tables says which percentage falls with them
     # What the first lines have said is not said again.
     said = {("TG201", one) for one in judged} | {("TG103", one) for one in improved}
     grave = [c for c in causes if c.severity is Severity.ERROR and (c.rule, c.claim) not in said]
-    left = CARD_WORDS - sum(map(count_words, (limits, optimum, improvement or "")))
-    errors, more = _fitting([plainly(study.case, cause) for cause in grave], left)
+    sentences = [plainly(study.case, cause) for cause in grave]
+    left = CARD_WORDS - sum(map(count_words, (limits, optimum)))
+    errors, more = _fitting(sentences, left)
+    # Where an error on the card says which percentage falls by it, no line says so again.
+    told = not {plainly(study.case, c) for c in grave if _tells(study, c, improved)}.isdisjoint(
+        errors
+    )
+    if improvement is not None and not told:
+        left -= count_words(improvement)
+        errors, more = _fitting(sentences, left)
     left -= sum(map(count_words, errors)) + (count_words(more_errors(more)) if more else 0)
     return VerdictCard(
         limits=limits,
         optimum=optimum,
-        improvement=known(improvement, "an error says it" if told else "no improvement is claimed"),
+        improvement=Why("an error says it")
+        if told
+        else known(improvement, "no improvement is claimed"),
         errors=errors,
         more=more,
         explanation=known(_explanation(causes, left), "none that was tried fits, or has room"),
     )
+
+
+def _tells(study: Study, cause: Cause, improved: set[str]) -> bool:
+    """Whether the sentence of a cause says that a claimed percentage falls with it."""
+    falls = improved & {one.claim for one in cause.consequences}
+    claims = [study.case.claim(one) for one in falls]
+    counted = any(isinstance(c, ImprovementClaim) and c.percent is not None for c in claims)
+    return cause.rule == "TG104" and counted
 
 
 def _fitting(sentences: Sequence[str], room: int) -> tuple[tuple[str, ...], int]:

@@ -156,6 +156,29 @@ def test_many_errors_are_counted_where_the_words_end():
     assert f"{card.more} more errors stand below." in card.sentences
 
 
+def test_an_improvement_is_left_out_only_where_an_error_on_the_card_says_it():
+    """Ten errors before the one of the two tables leave no room for it: then the line stays."""
+    one = audited_alone("puma560-mnam-pso-353")
+    first = Cause(
+        severity=Severity.ERROR,
+        rule="TG107",
+        claim=None,
+        says="In a row the printed number is not what the numbers beside it allow. More.",
+        readings=(),
+        explanations=(),
+        consequences=(),
+    )
+    many = [
+        first.model_copy(update={"says": f"{first.says[:9]} {k}{first.says[9:]}"}) for k in range(9)
+    ]
+    crowded = verdict_card(one.study, one.judgements, [*many, *one.causes], one.waterfalls)
+    assert (
+        crowded.improvement == "The claimed 10.9 % improvement contradicts other printed numbers."
+    )
+    assert crowded.words <= CARD_WORDS
+    assert not any("10.9 %" in said for said in crowded.errors)
+
+
 def test_the_explanation_of_an_error_is_called_one():
     one = audited_alone("irb460-pso-353")
     explanation = Explanation(change="Two columns may be swapped.", effect="Then all is well.")
