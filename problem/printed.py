@@ -14,7 +14,7 @@ from .errors import TrajgapError
 
 _NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
 """One decimal number; group 2 is the exponent."""
-_MINUS_SIGNS = str.maketrans({"\u2212": "-", "\u2013": "-", "\ufe63": "-", "\uff0d": "-"})
+MINUS_SIGNS = str.maketrans({"\u2212": "-", "\u2013": "-", "\ufe63": "-", "\uff0d": "-"})
 """Minus signs that are printed or extracted, to the ASCII one."""
 _LONGEST = 64
 """Characters of one number: printed digits are fewer, and arithmetic on more could run away."""
@@ -72,9 +72,11 @@ class Printed:
     def __post_init__(self) -> None:
         if not isinstance(self.text, str):
             raise TrajgapError(f"{self.text!r} is not text; printed digits are a string")
-        text = self.text.strip().translate(_MINUS_SIGNS)
+        text = self.text.strip().translate(MINUS_SIGNS)
         if len(text) > _LONGEST:
             raise TrajgapError(f"a number of {len(text)} characters; at most {_LONGEST} are read")
+        if not text:
+            raise TrajgapError('is empty; write the printed digits, such as "0.660"')
         match = _NUMBER.fullmatch(text)
         if match is None:
             raise TrajgapError(

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...nlp import Evidence, Solution, Status
+from ...problem import Coupling
 from ...problem.cases import (
     AnyClaim,
     DurationsClaim,
@@ -25,19 +26,22 @@ from ..documents import (
     Severity,
     VerdictCard,
     Waterfall,
+    Why,
     count_words,
     known,
     more_errors,
 )
 from .card_errors import plainly
 from .rules import said_to_keep
-from .stated import place
+from .stated import other_objective, place
 from .study import Study
 
 _FEW = 2
 """Totals that are each set beside their optimum; more are told as a range."""
 _MANY_TIMES = 10.0
 """Distance beyond which a multiple says more than a percentage."""
+_OBJECTIVE_WORDS = 8
+"""Words of an objective that the card repeats; a longer one is left to the claims."""
 
 
 def verdict_card(
@@ -68,17 +72,35 @@ def verdict_card(
     # What the first lines have said is not said again.
     said = {("TG201", one) for one in judged} | {("TG103", one) for one in improved}
     grave = [c for c in causes if c.severity is Severity.ERROR and (c.rule, c.claim) not in said]
-    left = CARD_WORDS - sum(map(count_words, (limits, optimum, improvement or "")))
-    errors, more = _fitting([plainly(study.case, cause) for cause in grave], left)
+    sentences = [plainly(study.case, cause) for cause in grave]
+    left = CARD_WORDS - sum(map(count_words, (limits, optimum)))
+    errors, more = _fitting(sentences, left)
+    # Where an error on the card says which percentage falls by it, no line says so again.
+    told = not {plainly(study.case, c) for c in grave if _tells(study, c, improved)}.isdisjoint(
+        errors
+    )
+    if improvement is not None and not told:
+        left -= count_words(improvement)
+        errors, more = _fitting(sentences, left)
     left -= sum(map(count_words, errors)) + (count_words(more_errors(more)) if more else 0)
     return VerdictCard(
         limits=limits,
         optimum=optimum,
-        improvement=known(improvement, "no improvement is claimed"),
+        improvement=Why("an error says it")
+        if told
+        else known(improvement, "no improvement is claimed"),
         errors=errors,
         more=more,
         explanation=known(_explanation(causes, left), "none that was tried fits, or has room"),
     )
+
+
+def _tells(study: Study, cause: Cause, improved: set[str]) -> bool:
+    """Whether the sentence of a cause says that a claimed percentage falls with it."""
+    falls = improved & {one.claim for one in cause.consequences}
+    claims = [study.case.claim(one) for one in falls]
+    counted = any(isinstance(c, ImprovementClaim) and c.percent is not None for c in claims)
+    return cause.rule == "TG104" and counted
 
 
 def _fitting(sentences: Sequence[str], room: int) -> tuple[tuple[str, ...], int]:
@@ -103,7 +125,8 @@ def _explanation(causes: Sequence[Cause], room: int) -> str | None:
             called = f"An innocent explanation: {plain[:1].lower()}{plain[1:]}"
             # What it explains and what follows matter more than what it is called.
             said = [f"{one} {explanation.effect}" for one in (called, plain)]
-            return next((e for e in (*said, called, plain) if count_words(e) <= room), None)
+            short = (called, plain) if explanation.settles else ()
+            return next((e for e in (*said, *short) if count_words(e) <= room), None)
     return None
 
 
@@ -122,6 +145,12 @@ def _limits(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[str]
         if isinstance(c, DurationsClaim | MaximumClaim) and said_to_keep(study, c)
     ]
     asked = [c.id for c in about or sets if c.id in words]
+    timed = [c for c in case.claims if isinstance(c, TimeClaim) and c.other_curve is None]
+    if timed and all(isinstance(c, TotalTimeClaim) for c in timed) and not about:
+        return (
+            "Whether the limits are kept is not checkable: totals are printed, durations are not.",
+            set(),
+        )
     if not asked:
         return "No printed durations are said to keep limits.", set()
     under = {
@@ -143,7 +172,17 @@ def _limits(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[str]
     count = f"{kept} of {len(under)}" if len(under) > 1 else "no reading"
     rest = len(under) - kept - broken
     parts = [f"kept under {count}", f"broken under {broken}"] if rest else [f"kept under {count}"]
-    return f"Whether the limits are kept depends on the reading: {', '.join(parts)}{jump}.", spoken
+    kept_in = f"Whether the limits are kept{_in_doubt(sets, words)}"
+    return f"{kept_in} depends on the reading: {', '.join(parts)}{jump}.", spoken
+
+
+def _in_doubt(sets: Sequence[AnyClaim], words: Mapping[str, Judgement]) -> str:
+    """Where the durations stand that may break a limit, unless that is everywhere."""
+    doubtful = [c for c in sets if words[c.id].verdict is not ClaimVerdict.SUPPORTED]
+    places = list(dict.fromkeys(place(c) for c in doubtful))
+    if len(doubtful) == len(sets) or not 0 < len(places) <= _FEW:
+        return ""
+    return f" in {' and '.join(places)}"
 
 
 def _limited(study: Study, pid: str, rid: str) -> bool:
@@ -221,7 +260,8 @@ def _beside(study: Study, waterfall: Waterfall) -> str | _Above:
     if why:
         return why
     name = "proven optimum" if solution.evidence is Evidence.CERTIFIED else "best known total"
-    best = f"{name} {solution.best:.4f} s"
+    shown_best = f"{solution.best:.4f} s{_together_where_apart(study, pid, rid)}"
+    best = f"{name} {shown_best}"
     claim = _totalled(study, waterfall)
     total = None if claim is None else study.claim_total(claim, rid)
     if total is None or not isinstance(claim, TimeClaim):
@@ -231,11 +271,27 @@ def _beside(study: Study, waterfall: Waterfall) -> str | _Above:
     if low <= solution.best <= high:
         return f"{shown} agrees with the {best}"
     share = _seconds(study, claim, rid) / solution.best - 1
+    minimised = other_objective(study.case, claim)
+    if minimised is not None and share > 0:
+        certified = solution.evidence is Evidence.CERTIFIED
+        motion = "shortest motion" if certified else "shortest known motion"
+        called = f" ({minimised})" if count_words(minimised) <= _OBJECTIVE_WORDS else ""
+        return (
+            f"{shown} was not minimised for time alone{called}; the {motion} takes "
+            f"{solution.best:.4f} s{', proven' if certified else ''}"
+        )
     if share >= _MANY_TIMES:
         return f"{shown} is {1 + share:.1f} times the {best}"
     if share > 0:
-        return _Above(shown, _percent(share), name, f"{solution.best:.4f} s")
+        return _Above(shown, _percent(share), name, shown_best)
     return f"{shown} is {_percent(-share)} below the {best}"
+
+
+def _together_where_apart(study: Study, pid: str, rid: str) -> str:
+    """What the optimum is of, where the paper plans each joint by itself: that has another one."""
+    problem = study.problem(pid, rid)
+    apart = problem.coupling is Coupling.PER_JOINT and len(problem.joints) > 1
+    return " of all joints together" if apart else ""
 
 
 def _seconds(study: Study, claim: TimeClaim, rid: str) -> float:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from ...problem import Case
 from ...problem.cases import AnyClaim, DurationsClaim, ImprovementClaim, MaximumClaim
-from ..documents import Cause, Severity
+from ..documents import Cause, Finding, Gap, Severity
 from .explanations import TABLES
 from .stated import place, spoken
 
@@ -48,15 +48,28 @@ def plainly(case: Case, cause: Cause) -> str:
         "TG203": f"The peak in {where} is not that of the printed durations",
         "TG208": f"The mean or integral in {where} is not that of the printed durations",
         "TG205": f"Control vertices in {where} do not follow from the way-points",
-        "TG301": "By the scaling of time with the velocity limit, the two printed results cannot "
-        "both be shortest",
-        "TG302": f"Called optimal in {where}, but a checked motion within the limits is shorter",
+        "TG301": "Under a velocity limit alone times scale with it, so the two printed results "
+        "cannot both be shortest",
+        "TG302": f"Called optimal in {where}, but {_not_optimal(head)}",
         "TG304": f"The total in {where} is not the shortest of its profile",
         "TG601": "Printed joint angles and positions do not fit the printed robot",
     }.get(cause.rule)
     if cause.rule == "TG103" and not computed:
         sentence = f"Of {printed}, {where} calls the longer total the better one"
     return f"{_capital(sentence or _contradicted(claim))}."
+
+
+def _not_optimal(head: Finding) -> str:
+    """Why a time is not the shortest, and how much longer it is under every reading, if it is."""
+    if head.kind == "breaks":
+        return "no answer within the limits"
+    if not isinstance(head.gap, Gap):
+        return "a checked motion within the limits is shorter"
+    percent = 100 * head.gap.highest
+    share = f"{percent:.1f} % longer than" if percent >= 1 else f"{percent:.2g} % longer than"
+    if head.gap.many_times:
+        share = f"{1 + head.gap.highest:.1f} times as long as"
+    return f"up to {share} a checked motion within the limits"
 
 
 def _tables_alike(case: Case, cause: Cause, tables: Sequence[str]) -> str:

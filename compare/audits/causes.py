@@ -12,8 +12,10 @@ from ..documents import (
     ClaimVerdict,
     Consequence,
     Finding,
+    Gap,
     Judgement,
     Severity,
+    Why,
 )
 from .explanations import explained
 from .study import Study
@@ -76,11 +78,22 @@ def _cause(study: Study, root: str, group: list[Finding], below: list[Finding]) 
         rule=first.rule,
         claim=first.claim,
         says=first.message,
-        head=first,
+        head=_mildest(study, first, group),
         readings=tuple(r for r in readings if r is not None),
         explanations=explained(study, root, first),
         consequences=tuple(consequences.values()),
     )
+
+
+def _mildest(study: Study, first: Finding, group: list[Finding]) -> Finding:
+    """The first finding, with the least distance that holds under every reading; or with none."""
+    if first.kind != "longer":
+        return first
+    under = {f.reading: f.gap for f in group if f.claim == first.claim}
+    gaps = [gap for gap in under.values() if isinstance(gap, Gap)]
+    everywhere = {r.id for r in study.case.readings} <= set(under) and len(gaps) == len(under)
+    least = min(gaps, key=lambda gap: gap.highest) if everywhere else Why("not of every reading")
+    return first.model_copy(update={"gap": least})
 
 
 def with_caveats(

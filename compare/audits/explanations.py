@@ -210,6 +210,7 @@ def _first_that_helps(
         change=best[1],
         effect=f"Then the largest ratio to a limit falls from {before.worst.ratio:.4g} to "
         f"{best[0]:.4g}, and a limit is still broken.",
+        settles=False,
     )
 
 

@@ -29,6 +29,7 @@ from ..documents import (
 from ..gaps import gap, reference_of
 from .reading_words import answers, holding
 from .rules import held_otherwise, reading_clues
+from .stated import other_objective
 from .study import Study
 
 SAME = 1e-6
@@ -60,7 +61,7 @@ def readings_summary(
     if not outcomes:
         missing = study.case.statement().waypoints.not_printed
         why = f"no way-points are printed: {missing}" if missing else "no problem is posed"
-    fits = _fits(outcomes)
+    fits = _fits(one for one in outcomes if _shortest(study, one))
     least = fits[0].factor if fits else 0.0
     nearest = tuple(fit.reading for fit in fits if fit.factor <= least * (1 + SAME))
     tallies = tuple(
@@ -130,6 +131,12 @@ def _outcome(study: Study, waterfall: Waterfall) -> ReadingOutcome:
         evidence=solution.evidence,
         gap=distance,
     )
+
+
+def _shortest(study: Study, outcome: ReadingOutcome) -> bool:
+    """Whether a printed answer is meant as a shortest one, which uses a limit up."""
+    claim = None if outcome.claim is None else study.case.claim(outcome.claim)
+    return claim is None or other_objective(study.case, claim) is None
 
 
 def _keeping(study: Study, claim: AnyClaim, pid: str, rid: str) -> Keeping:

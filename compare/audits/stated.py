@@ -14,14 +14,14 @@ from ...problem.cases import (
     MaximumClaim,
     MeasureClaim,
     MotionValueClaim,
+    TimeClaim,
     TotalTimeClaim,
 )
 from ..documents import StatedAnswer, StatedClaim, StatedSource, known
+from .sentences import sentence_of
 
-_KINDS = {"durations": "Segment durations", "maximum": "Longest segment durations"}
-"""How claims without words of their own are called; others by their quantity."""
-
-
+_TIME = "time"
+"""The objective of a claim that was minimised for time alone, in a file that says another one."""
 _TERMS = ("time-optimal", "point-to-point", "rest-to-rest", "b-spline")
 """Words of the field with a dash, which may be ids too and stay words in a message."""
 
@@ -35,6 +35,10 @@ def stated_claims(case: Case) -> tuple[StatedClaim, ...]:
             text=claim_text(case, claim),
             where=claim.where,
             printed=digits_of(case, claim),
+            objective=known(
+                other_objective(case, claim),
+                "time alone" if isinstance(claim, TimeClaim) else "no printed time",
+            ),
             answer=known(_answer(claim), "the authors were not asked"),
         )
         for claim in case.claims
@@ -63,14 +67,27 @@ def _answer(claim: AnyClaim) -> StatedAnswer | None:
     )
 
 
+def other_objective(case: Case, claim: AnyClaim) -> str | None:
+    """What was minimised for a printed time; None if that is time alone, or nothing else is said.
+
+    Parameters
+    ----------
+    case : Case
+    claim : AnyClaim
+
+    Returns
+    -------
+    str or None
+    """
+    if not isinstance(claim, TimeClaim):
+        return None
+    said = claim.objective or case.document.objective
+    return None if said is None or said.strip().lower() == _TIME else said.strip().rstrip(".")
+
+
 def claim_text(case: Case, claim: AnyClaim) -> str:
-    """What a claim says: its own words, or its kind, joint and algorithm."""
-    if claim.text:
-        return claim.text
-    said = _KINDS.get(claim.quantity, claim.quantity.replace("_", " ").capitalize())
-    said += f" of joint {claim.joint}" if claim.joint else ""
-    names = {one.id: one.name for one in case.algorithms}
-    return said + (f", by the {names[claim.algorithm]}" if claim.algorithm else "") + "."
+    """What a claim says: its own words, or one sentence from what it prints."""
+    return claim.text or sentence_of(case, claim)
 
 
 def digits_of(case: Case, claim: AnyClaim) -> str:
@@ -125,6 +142,8 @@ def spoken(case: Case, text: str) -> str:
 def place(claim: AnyClaim) -> str:
     """Where a claim stands, as short as it can be found: the first place that it names."""
     first = claim.where.split(";")[0].strip()
+    # A title names its field as often as it claims: what stands elsewhere too is found there.
+    first = re.sub(r"^title, ", "", first)
     for part in ("abstract", "title", "introduction", "conclusion"):
         if re.match(rf"{part}\b", first):
             return f"the {part}"

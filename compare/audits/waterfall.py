@@ -12,6 +12,7 @@ from ...nlp.retiming import retime
 from ...problem import Coupling, down, fit, up
 from ...problem.cases import AnyClaim, DurationsClaim, MaximumClaim
 from ..documents import EXACT, PUBLISHED, SHARED_OPTIMUM, Step, Waterfall, Why
+from .stated import other_objective
 from .study import Study
 
 _ROUNDING = 1e-12
@@ -101,7 +102,8 @@ def _published(study: Study, claim: AnyClaim, pid: str, rid: str) -> list[Step]:
     why = study.unmoved(claim, pid, rid)
     if why is not None:
         time = study.case.claim_durations(claim, rid).value.sum() if value is None else value
-        alone = Step(name=PUBLISHED, time=time, low=low, high=high, note=f"printed {shown}")
+        note = f"printed {shown}{_minimised(study, claim)}"
+        alone = Step(name=PUBLISHED, time=time, low=low, high=high, note=note)
         return [alone, Step.missing("feasible after repair", why)]
     verdict = study.claim_check(claim, pid, rid)
     rounding = study.claim_rounding(claim, pid, rid)
@@ -110,7 +112,8 @@ def _published(study: Study, claim: AnyClaim, pid: str, rid: str) -> list[Step]:
         time=verdict.total_time if value is None else value,
         low=low,
         high=high,
-        note=f"printed {shown}; limits, for all that rounds to the digits: {rounding.verdict}",
+        note=f"printed {shown}{_minimised(study, claim)}; limits, for all that rounds to the "
+        f"digits: {rounding.verdict}",
     )
     if verdict.feasible_time is None:
         note = verdict.feasible_why or ""
@@ -122,6 +125,12 @@ def _published(study: Study, claim: AnyClaim, pid: str, rid: str) -> list[Step]:
         note += f"; the printed durations sum to {summed:.6g} s"
     repaired = Step(name="feasible after repair", time=verdict.feasible_time, note=note)
     return [printed, repaired]
+
+
+def _minimised(study: Study, claim: AnyClaim) -> str:
+    """What was minimised for a printed total, where that is not time alone."""
+    objective = other_objective(study.case, claim)
+    return "" if objective is None else f", not minimised for time alone: {objective}"
 
 
 def _procedure(study: Study, pid: str, rid: str) -> Step:

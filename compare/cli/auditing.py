@@ -114,6 +114,7 @@ def audited(document: AuditDocument) -> list[RenderableType]:
         ]
         if rows:
             parts.append(Columns(("verdict", "readings", "~claim and its place"), rows))
+        parts += [line(said, "dim") for said in _unchecked(case)]
         advice = () if isinstance(case.advice, Why) else case.advice
         parts += _advised(advice) if advice else [line(one) for one in _causes(case)]
         parts += [line(""), *_time_goes(case.waterfalls)]
@@ -121,6 +122,11 @@ def audited(document: AuditDocument) -> list[RenderableType]:
     return parts
 
 
+_REASONS = 3
+"""Reasons that a terminal shows for claims that cannot be checked: enough for a first case, while
+those of a long one fill a page."""
+_INFORMS = "informational)"
+"""How what stands in place of a reason ends, where a finding informs and decides nothing."""
 _ORDER = (
     ClaimVerdict.REFUTED,
     ClaimVerdict.INCONSISTENT,
@@ -129,6 +135,24 @@ _ORDER = (
     ClaimVerdict.NOT_CHECKABLE,
 )
 """Claims in the table: what speaks against them first."""
+
+
+def _unchecked(case: AuditedCase) -> list[str]:
+    """Why claims cannot be checked, each reason once; beyond the first few the pages have them."""
+    places = {one.claim: one.where for one in case.claims}
+    reasons: dict[str, list[str]] = {}
+    for one in case.verdicts:
+        # What only informs stands with the claim on its page: it is no reason.
+        if one.verdict is ClaimVerdict.NOT_CHECKABLE and not one.why.endswith(_INFORMS):
+            first = one.why.split(". ")[0].rstrip(".")
+            reasons.setdefault(first, []).append(places[one.claim])
+    told = [
+        f"not checkable, {where[0] if len(where) == 1 else f'{len(where)} claims'}: {why}."
+        for why, where in list(reasons.items())[:_REASONS]
+    ]
+    more = len(reasons) - len(told)
+    rest = [f"{more} more reason{'s' if more > 1 else ''} on the pages."] if more else []
+    return told + rest
 
 
 def _advised(advice: Sequence[Advice]) -> list[RenderableType]:

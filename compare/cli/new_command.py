@@ -32,8 +32,8 @@ def new(
     family: Annotated[
         str | None,
         typer.Option(
-            help="Curve, as case files or the literature name it: 3-5-3, 4-3-4, natural-cubic, "
-            "cubic-b-spline, quintic-b-spline, quintic-polynomials...",
+            help="Curve, as case files or the literature name it, or the degrees of its segments: "
+            "3-5-3, 4-3-3-4, natural-cubic, cubic-b-spline, quintic-polynomials...",
             show_default="3-5-3 for four way-points, else a cubic spline",
         ),
     ] = None,
@@ -43,6 +43,9 @@ def new(
         typer.Option(metavar="H1,H2,...", help="Printed durations of the segments: a claim."),
     ] = None,
     total: Annotated[str | None, typer.Option(help="Printed total time: a claim.")] = None,
+    where: Annotated[
+        str | None, typer.Option(metavar="PLACE", help="Where these are printed: Table 2.")
+    ] = None,
 ) -> int:
     """Start a case file from a table of way-points.
 
@@ -58,5 +61,5 @@ def new(
         "time": time_unit,
     }
     limits = {"velocity": velocity, "acceleration": acceleration, "jerk": jerk}
-    new_case(out, table, units, limits, case_id, family, degree, durations, total)
+    new_case(out, table, units, limits, case_id, family, degree, durations, total, where)
     return 0

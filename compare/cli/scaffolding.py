@@ -22,6 +22,7 @@ def new_case(
     degree: int | None,
     durations: str | None,
     total: str | None,
+    where: str | None,
 ) -> None:
     """Write a case file for a table of way-points.
 
@@ -35,7 +36,7 @@ def new_case(
         Unit of "position", "velocity", "acceleration", "jerk", "time"; None where not given.
     limits : mapping
         Limits on "velocity", "acceleration", "jerk"; None where not given.
-    case_id, family, degree, durations, total : optional
+    case_id, family, degree, durations, total, where : optional
         As in `scaffold`.
 
     Raises
@@ -56,6 +57,7 @@ def new_case(
                 degree=degree,
                 durations=durations,
                 total=total,
+                where=where or "",
                 **limits,
             )
 
@@ -81,7 +83,11 @@ def new_case(
         if faults:
             raise CaseError(file, *faults[0], faults[1:])
         write(written(given))
-    then = "judges what is claimed" if durations or total else "once claims are filled in"
+    then = "judges what is claimed"
+    if not (durations or total):
+        then = "once claims are filled in"
+    elif not where:
+        then = 'once where = "" says where the claim is printed, such as "Table 2"'
     say(f"written: {out}\nnext: trajgap audit {shlex.quote(str(out))}  # {then}\n")
 
 

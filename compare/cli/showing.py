@@ -40,11 +40,13 @@ def show_case(
 def _tables(document: ShowDocument, case: Case) -> list[RenderableType]:
     source, robot = document.source, document.robot
     named = (source.authors, source.title, source.journal, source.year, source.doi)
+    objective = case.document.objective
     cited = ". ".join(str(part).rstrip(".") for part in named if part)
     lines = [
         document.title,
         *([cited] if cited else []),
         f"{robot.name}, joints {', '.join(robot.joints)}",
+        *([f"minimised: {objective}, not time alone"] if objective else []),
         "",
     ]
     problems = [(p.id, p.title or p.why) for p in document.problems]

@@ -27,6 +27,8 @@ class Explanation(Entry):
     """What would have to be otherwise in print."""
     effect: str
     """What that would settle, and what it would leave."""
+    settles: bool = True
+    """Whether it would settle the whole of it."""
 
 
 class Cause(Entry):

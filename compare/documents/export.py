@@ -10,6 +10,7 @@ from typing import Any
 
 from pydantic.json_schema import GenerateJsonSchema, models_json_schema
 
+from ...problem import case_schema
 from .audited import AuditDocument
 from .benched import BenchDocument
 from .case_shown import ShowDocument
@@ -45,6 +46,8 @@ DOCUMENTS: tuple[type[Document], ...] = (
 
 SCHEMA_FILE = "reference/output.schema.json"
 """Place of the JSON Schema in the folder of the docs."""
+CASE_SCHEMA_FILE = "reference/case.schema.json"
+"""Place of the JSON Schema of case files there."""
 
 _TABLE = re.compile(r"(<!-- table: (\S+) -->\n).*?(?=<!-- end -->)", re.DOTALL)
 """A generated table in a Markdown file, with its name."""
@@ -151,13 +154,18 @@ def filled(text: str, rules: Iterable[Rule]) -> str:
 
 def schema_text() -> str:
     """The file that holds the JSON Schema."""
-    return json.dumps(output_schema(), indent=2, ensure_ascii=False) + "\n"
+    return _indented(output_schema())
+
+
+def _indented(schema: Mapping[str, Any]) -> str:
+    return json.dumps(schema, indent=2, ensure_ascii=False) + "\n"
 
 
 def write_docs(docs: Path, rules: Iterable[Rule]) -> None:
-    """Write the JSON Schema and the tables of words and rules into the folder of the docs."""
+    """Write both JSON Schemas and the tables of words and rules into the folder of the docs."""
     rules = tuple(rules)
     (docs / SCHEMA_FILE).write_text(schema_text(), encoding="utf-8")
+    (docs / CASE_SCHEMA_FILE).write_text(_indented(case_schema()), encoding="utf-8")
     for file in sorted(docs.rglob("*.md")):
         text = file.read_text(encoding="utf-8")
         now = filled(text, rules)

@@ -29,6 +29,8 @@ class StatedClaim(Entry):
     """Place in the paper: section, table, row."""
     printed: str
     """The printed digits with their unit; empty where it prints none."""
+    objective: OrWhy[str]
+    """What was minimised for a printed time, where that is not time alone."""
     answer: OrWhy[StatedAnswer]
     """Of the authors, where they were asked."""
 

@@ -138,12 +138,14 @@ def distance_of(case: dict[str, Any]) -> tuple[str, str, str, str]:
     Returns
     -------
     tuple of str
-        Dashes where no problem is posed, or no total is printed.
+        Dashes where no problem is posed, or no total is printed; and in place of the distance,
+        where the total was minimised for something else than time alone.
     """
+    otherwise = {c["claim"] for c in case["claims"] if c.get("objective")}
     for entry in case["waterfalls"]:
         steps = {step["name"]: step for step in entry["steps"] if step["time"] is not None}
         if PUBLISHED in steps and SHARED_OPTIMUM in steps:
             printed, best = steps[PUBLISHED]["time"], steps[SHARED_OPTIMUM]
-            share = printed / best["time"] - 1
-            return f"{printed:g}", f"{best['time']:.4f}", f"{share:.1%}", best["evidence"]
+            share = f"{printed / best['time'] - 1:.1%}" if entry["claim"] not in otherwise else "–"
+            return f"{printed:g}", f"{best['time']:.4f}", share, best["evidence"]
     return "–", "–", "–", ""

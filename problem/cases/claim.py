@@ -67,6 +67,8 @@ class TimeClaim(Claim):
     """"before" for the state before an optimisation, of which no limit or optimum is claimed."""
     other_curve: Text | None = None
     """Name of the curve that it belongs to, where that is not the problem's own."""
+    objective: Text | None = None
+    """What was minimised for it, where that is not what the file says; "time" for time alone."""
 
 
 class DurationsClaim(TimeClaim):

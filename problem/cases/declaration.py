@@ -25,6 +25,7 @@ from ..curves import (
     uniform_cubic_b_spline,
 )
 from ..fields import Number, Strict, fault
+from .literature import meant_by
 
 Ends = tuple[tuple[int, float], ...]
 """Derivatives ``(order, value)`` prescribed at both ends, rad/sᵒʳᵈᵉʳ."""
@@ -83,6 +84,9 @@ FAMILIES = {
 
 def _known(name: object) -> str:
     if not isinstance(name, str) or name not in FAMILIES:
+        meant = meant_by(name, FAMILIES) if isinstance(name, str) else None
+        if meant is not None:
+            raise fault("", f"{name!r} is not allowed; write {meant.written()}")
         *most, last = map(repr, FAMILIES)
         raise fault("", f"{name!r} is not allowed; use {', '.join(most)} or {last}")
     return name

@@ -114,6 +114,8 @@ def _read(detail: Mapping[str, Any]) -> list[tuple[str, str]]:
             return [(f"{path}.{key}", f"is missing; add one of {', '.join(kinds)}")]
         fix = nearest(str(given), kinds)
         return [(f"{path}.{key}", f"{_short(given)} is no {name}; {fix}")]
+    if kind == "string_too_short" and detail["loc"][-1] == "where":
+        return [(path, 'is empty; say where it is printed, such as "Table 2"')]
     return [(path, _reason(kind, raw, context, detail["msg"]))]
 
 

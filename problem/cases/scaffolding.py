@@ -6,69 +6,28 @@ import csv
 import json
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from difflib import get_close_matches
 from pathlib import Path
 from typing import cast
 
 from ..errors import CaseError, TrajgapError
-from ..printed import Printed
+from ..printed import MINUS_SIGNS, Printed
 from ..textfile import read_text
 from ..units import CHOICES, Quantity, check_unit
+from .claim_blocks import claim_blocks
 from .declaration import FAMILIES
 from .faults import Faults
+from .literature import meant_by, unknown
 from .load import parse_case
 
 _LABEL_HEADERS = ("", "waypoint", "way-point", "point", "label", "name")
 """Headers, in lower case, of a first column that holds names and not angles."""
 
 
-LITERATURE: dict[str, tuple[str, dict[str, object]]] = {
-    "natural-cubic": ("cubic-spline", {"end_orders": [2]}),
-    "clamped-cubic": ("cubic-spline", {"end_orders": [1]}),
-    "cubic-b-spline": ("cubic-spline-virtual", {}),
-    "quintic-b-spline": ("quintic-spline", {}),
-    "3-3-3": ("polynomials", {"degrees": [3, 3, 3], "end_orders": [1]}),
-    "4-3-4": ("polynomials", {"degrees": [4, 3, 4]}),
-    "cubic-polynomials": ("rest-to-rest", {"degree": 3}),
-    "quintic-polynomials": ("rest-to-rest", {"degree": 5}),
-    "septic-polynomials": ("rest-to-rest", {"degree": 7}),
-}
-"""Names that papers give to curves, and how a case file declares them. An interpolating cubic or
-quintic B-spline through way-points is a C2 cubic or C4 quintic spline at rest at both ends."""
-_EXAMPLES = (
-    (
-        "“The motion keeps its limits.”",
-        '[[claims]]\nid = "limits-kept"\nquantity = "statement"\nwhere = "section 4"\n'
-        'text = "The motion keeps its limits."\nchecks = "within_limits"\nof = ["{of}"]',
-    ),
-    (
-        "“The motion is time-optimal.”",
-        '[[claims]]\nid = "time-optimal"\nquantity = "statement"\nwhere = "abstract"\n'
-        'text = "The motion is time-optimal."\nchecks = "optimal"\nof = ["{of}"]',
-    ),
-    (
-        "“Velocity and acceleration are continuous.”",
-        '[[claims]]\nid = "smooth"\nquantity = "statement"\nwhere = "section 4"\n'
-        'text = "Velocity and acceleration are continuous."\nchecks = "continuous"\n'
-        'of = ["{of}"]',
-    ),
-    (
-        "A total time printed by itself, such as in the abstract.",
-        '[[claims]]\nid = "abstract-total"\nquantity = "total_time"\nwhere = "abstract"\n'
-        'value = "3.528"',
-    ),
-    (
-        "“10.9 % shorter than the standard algorithm.”",
-        '[[claims]]\nid = "improvement"\nquantity = "improvement"\nwhere = "abstract"\n'
-        'slower = "ID OF THE LONGER TOTAL"\nfaster = "{of}"\npercent = "10.9"',
-    ),
-    (
-        "The largest acceleration, as a table or a figure prints it.",
-        '[[claims]]\nid = "peak"\nquantity = "peak"\nwhere = "Table 3"\n'
-        'derivative = "acceleration"\nvalue = "7.98"\njoint = "JOINT"',
-    ),
-)
-"""A claim of each usual kind: the sentence in a paper, and the block that states it."""
+_ROUND = 5
+"""Degrees of which angles that are settings are multiples: what is rounded to whole degrees seldom
+is, and hardly ever all of a table."""
+_UNPLACED = "to be filled in"
+"""Stands for a place that is not given while the rest is checked."""
 
 
 def scaffold(
@@ -83,6 +42,7 @@ def scaffold(
     jerk: str | None = None,
     durations: str | None = None,
     total: str | None = None,
+    where: str = "",
 ) -> str:
     """Write a case file for a table of way-points.
 
@@ -97,7 +57,8 @@ def scaffold(
     case_id : str, optional
         Id of the case; the file's name by default.
     family : str, optional
-        Interpolant, by a name of case files or one of `LITERATURE`. By default 3-5-3 for four
+        Interpolant, by a name of case files, a name of the literature such as "natural cubic
+        spline", or the degrees of its segments such as "4-3-3-4". By default 3-5-3 for four
         way-points; else the cubic spline with two virtual way-points, or without a jerk limit,
         which it needs to have a shortest motion, the one at rest at both ends.
     degree : int, optional
@@ -107,11 +68,17 @@ def scaffold(
     durations, total : str, optional
         Printed durations of the segments, with commas between, and printed total time: each
         becomes a claim, with its digits as given.
+    where : str, optional
+        Table, section or figure that prints them. If it is empty the claim has a blank that is
+        refused until it is filled in.
 
     Returns
     -------
     str
-        TOML with every number as it stands in the table, and comments on what to add. It loads.
+        TOML with every number as it stands in the table, and comments on what to add. It loads,
+        but for a blank place of a claim. Angles with decimals are in quotes, which stand for all
+        that rounds to them; whole radians, and whole degrees where all are multiples of 5, are
+        settings and meant exactly.
 
     Raises
     ------
@@ -141,25 +108,22 @@ def scaffold(
     curve = _curve(options, family, degree, len(rows), "jerk" in given)
     _refuse(table, options)
     identity = case_id if case_id is not None else identity_of(path.stem)
-    text = _text(
-        identity,
-        path.name,
-        joints,
-        labels,
-        numbers,
-        checked,
-        given,
-        curve,
-        _claims(claimed["durations"], claimed["total"]),
-    )
+
+    def text(place: str, segments: int) -> str:
+        total = next(iter(claimed["total"]), None)
+        claims = claim_blocks(claimed["durations"], total, place, segments, checked)
+        angles = _angles(numbers, checked["position"])
+        return _text(identity, path.name, joints, labels, angles, checked, given, curve, claims)
+
     try:
-        parse_case(text, name)
+        case = parse_case(text(where or _UNPLACED, len(rows) - 1), name)
     except CaseError as error:
         for field, reason in error.faults:
             meant = _argument(field)
             (table if meant is None else options).add(meant or field, reason)
         _refuse(table, options)
-    return text
+        raise
+    return text(where, case.problem().segments)
 
 
 def _refuse(table: Faults, options: Faults) -> None:
@@ -191,7 +155,7 @@ def _curve(
     faults: Faults, family: str | None, degree: int | None, points: int, jerk: bool
 ) -> list[str]:
     """Lines of the block that declares the curve, with the reason for it."""
-    why, keys = "as given", dict[str, object]()
+    why = "as given"
     if family is None and points == 4:
         family, why = "3-5-3", "usual for four way-points; change it to what the paper says"
     elif family is None and jerk:
@@ -199,56 +163,18 @@ def _curve(
     elif family is None:
         family = "cubic-spline"
         why = "cubic-spline-virtual has no shortest motion without a jerk limit; add one to use it"
-    elif family in LITERATURE:
+    meant = None if family is None else meant_by(family, FAMILIES)
+    if meant is None:
+        faults.add("family", unknown(family or "", FAMILIES))
+        return []
+    if meant.family != family:
         why = f"what papers call {family}"
-        family, keys = LITERATURE[family]
-    if family not in FAMILIES:
-        names = (*FAMILIES, *LITERATURE)
-        near = [one for one in names if family and family.lower() in one]
-        near = near or get_close_matches(family, names)
-        meant = f"did you mean {' or '.join(near)}? All: " if near else "use one of "
-        reason = f"{family!r} is not known; {meant}{', '.join(names)}"
-        faults.add("family", reason)
+    keys = dict(meant.keys)
     if degree is not None:
-        keys = {**keys, "degree": degree}
-    lines = [f"family = {_quoted(family)}  # {why}"]
+        keys["degree"] = degree
+    note = [f"# {meant.note}"] if meant.note else []
+    lines = [f"family = {_quoted(meant.family)}  # {_comment(why)}", *note]
     return lines + [f"{key} = {json.dumps(value)}" for key, value in keys.items()]
-
-
-def _claims(durations: Sequence[str], total: Sequence[str]) -> list[str]:
-    """Lines of the claims that are given, and of every other kind as comments to fill in."""
-    lines = []
-    if durations:
-        lines += [
-            "[[claims]]",
-            'id = "durations"',
-            'quantity = "durations"',
-            'where = "Table 2"  # where the paper prints them',
-            f"durations = [{', '.join(map(_quoted, durations))}]{_coarse(durations)}",
-            *([f"total = {_quoted(total[0])}"] if total else []),
-            "",
-        ]
-    elif total:
-        lines += [
-            "[[claims]]",
-            'id = "total"',
-            'quantity = "total_time"',
-            'where = "abstract"  # where the paper prints it',
-            f"value = {_quoted(total[0])}",
-            "",
-        ]
-    of = "durations" if durations or not total else "total"
-    for title, claim in _EXAMPLES:
-        lines += [f"# {title}", *(f"# {line}" for line in claim.format(of=of).splitlines()), ""]
-    return lines
-
-
-def _coarse(durations: Sequence[str]) -> str:
-    """A remark on durations without decimals, which may be meant exactly."""
-    whole = next((one for one in durations if re.fullmatch("[0-9]+", one)), None)
-    if whole is None:
-        return ""
-    return f'  # "{whole}" may be {int(whole) - 0.5:g} to {int(whole) + 0.5:g}; no quotes: exact'
 
 
 def _units(faults: Faults, units: Mapping[str, str], limits: Iterable[str]) -> dict[str, str]:
@@ -339,36 +265,37 @@ def _text(
     file: str,
     joints: Sequence[str],
     labels: Sequence[str],
-    numbers: Sequence[Sequence[str]],
+    angles: Sequence[Sequence[str]],
     units: Mapping[str, str],
     limits: Mapping[str, Sequence[str]],
     curve: Sequence[str],
     claims: Sequence[str],
 ) -> str:
-    rows = [f"  [{', '.join(map(_quoted, row))}],  # {_comment(labels[k])}"
-            for k, row in enumerate(numbers)]  # fmt: skip
+    rows = [f"  [{', '.join(row)}],  # {_comment(labels[k])}" for k, row in enumerate(angles)]
     unit_lines = [
         f"{key} = {_quoted(units[key])}" if key in units else f'# {key} = "{choices[0]}"'
         for key, choices in CHOICES.items()
     ]
     limit_lines = [
-        f"{key} = {_numbers(limits[key])}" if key in limits else f"# {key} = 6"
+        f"{key} = {_numbers(limits[key])}" if key in limits else f"# {key} = inf"
         for key in ("velocity", "acceleration", "jerk")
     ]
     parts = [
         "# A number in quotes stands for every value that rounds to its digits.",
-        "# A bare number is exact. Uncomment and fill in what the paper prints.",
+        "# A bare number is exact.",
+        "# Take the first mark off each line of what the paper prints, and fill in empty quotes.",
         "",
         "format = 1",
         f"id = {_quoted(identity)}",
         f"title = {_quoted(identity)}",
         'coupling = "shared"  # or "per-joint": each joint by itself, longest per segment',
+        '# objective = ""  # what is minimised, if not time alone: "time and jerk, weighted"',
         "",
         "[source]",
         f"note = {_quoted(f'way-points from {file}')}",
         '# authors = ""',
         '# title = ""',
-        "# year = 2024",
+        "# year = 0",
         '# doi = ""',
         "",
         "[robot]",
@@ -379,7 +306,8 @@ def _text(
         *unit_lines,
         "",
         "[waypoints]",
-        '# where = "Table 1"',
+        '# where = ""  # such as Table 1',
+        *_rounding(angles, units["position"]),
         f"labels = [{', '.join(map(_quoted, labels))}]",
         "waypoint_rows = [",
         *rows,
@@ -395,13 +323,42 @@ def _text(
         "lower = 0  # 0 means positive",
         "",
         *claims,
+        "## What the paper leaves open, and what was chosen.",
         "# [[assumptions]]",
-        '# id = "limits-everywhere"',
-        '# text = "What the paper leaves open."',
-        '# choice = "What was chosen."',
+        '# id = "open"',
+        '# text = ""',
+        '# choice = ""',
         "",
     ]
     return "\n".join(parts)
+
+
+def _angles(rows: Sequence[Sequence[str]], unit: str) -> list[list[str]]:
+    """Angles as a case file writes them: settings bare, what may be rounded in quotes."""
+    whole = {cell: int(cell.translate(MINUS_SIGNS)) for row in rows for cell in row if _whole(cell)}
+    exact = unit == "rad" or all(number % _ROUND == 0 for number in whole.values())
+    return [
+        [str(whole[cell]) if exact and cell in whole else _quoted(cell) for cell in row]
+        for row in rows
+    ]
+
+
+def _rounding(angles: Sequence[Sequence[str]], unit: str) -> list[str]:
+    """A remark on whole numbers of a table: how they are taken, and how to say otherwise."""
+    cells = [cell for row in angles for cell in row]
+    if any(_whole(cell) for cell in cells):
+        return [
+            "# Whole numbers are settings and meant exactly; quote those that the paper rounds."
+        ]
+    rounded = next((c for c in cells if _whole(json.loads(c))), None)
+    if rounded is None:
+        return []
+    number = int(json.loads(rounded).translate(MINUS_SIGNS))
+    return [f"# {rounded} may be {number - 0.5:g} to {number + 0.5:g} {unit}; no quotes: exact"]
+
+
+def _whole(text: str) -> bool:
+    return re.fullmatch("[+-]?[0-9]+", text.translate(MINUS_SIGNS)) is not None
 
 
 def _numbers(texts: Sequence[str]) -> str:

@@ -388,6 +388,8 @@ class CaseFile(ProblemData):
     title: Text
     source: Source
     robot: Robot
+    objective: Text | None = None
+    """What the paper minimises, where that is not time alone."""
     transcription: Transcription | None = None
     problems: tuple[ProblemBlock, ...] = ()
     readings: tuple[Reading, ...] = ()

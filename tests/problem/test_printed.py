@@ -82,8 +82,14 @@ def test_exponents_move_the_last_place():
     assert Printed("0.0").truncated == (Fraction(-1, 10), Fraction(1, 10))
 
 
+@pytest.mark.parametrize("text", ["", " "])
+def test_no_text_is_called_empty(text):
+    with pytest.raises(TrajgapError, match="is empty; write the printed digits"):
+        Printed(text)
+
+
 @pytest.mark.parametrize(
-    "text", ["", "nan", "inf", "-inf", "1,5", "1_0", "0x1", "1 2", "1.2.3", "e5", "٣", "--1", "."]
+    "text", ["nan", "inf", "-inf", "1,5", "1_0", "0x1", "1 2", "1.2.3", "e5", "٣", "--1", "."]
 )
 def test_other_text_is_no_number(text):
     with pytest.raises(TrajgapError, match="not a finite decimal number"):

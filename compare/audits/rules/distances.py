@@ -27,10 +27,12 @@ from ...documents import (
     Rounding,
     Severity,
     Why,
+    known,
 )
 from ...gaps import gap, reference_of
 from ..explanations import LIMITS, OPTIMAL
 from ..rounding import same_limits
+from ..stated import other_objective
 from ..study import Study
 from .continuous_time import broken
 from .wording import called, called_under
@@ -95,7 +97,16 @@ def _distance(
         f"Printed {shown} {set_beside(distance)} the {reference.evidence} optimum {which}, "
         f"{reference.upper:.6f} s{_bounded(reference)}."
     )
-    if not isinstance(claim, TotalTimeClaim) and study.unmoved(claim, pid, rid) is None:
+    minimised = other_objective(study.case, claim)
+    informs = minimised is not None and distance.lowest > 0
+    if informs:
+        message = (
+            f"Printed {shown} was not minimised for time alone ({minimised}): as information, the "
+            f"shortest motion {which} takes {reference.upper:.6f} s, "
+            f"{reference.evidence}{_bounded(reference)}."
+        )
+    timed = not isinstance(claim, TotalTimeClaim) and study.unmoved(claim, pid, rid) is None
+    if timed and not informs:
         verdict = study.claim_check(claim, pid, rid)
         if verdict.feasible_time is not None:
             repaired = gap(verdict.feasible_time, reference)
@@ -226,6 +237,7 @@ class _Sides:
     """What speaks for and against a statement that totals are optimal, under one reading."""
 
     longer: list[str] = field(default_factory=list)
+    most: Gap | None = None
     breaking: list[str] = field(default_factory=list)
     roots: list[str] = field(default_factory=list)
     agreeing: list[str] = field(default_factory=list)
@@ -244,18 +256,21 @@ def _weigh(study: Study, claim: AnyClaim, pid: str, rid: str, sides: _Sides) -> 
     solution = study.claim_optimum(claim, pid, rid)
     shorter = _shorter(study, claim, pid, rid, solution, total)
     if shorter is not None:
-        sides.longer.append(shorter)
+        said, distance = shorter
+        sides.longer.append(said)
+        if sides.most is None or distance.highest > sides.most.highest:
+            sides.most = distance
         return
-    known = solution.durations is not None and solution.status is not Status.NOT_ATTAINED
+    found = solution.durations is not None and solution.status is not Status.NOT_ATTAINED
     # Whether a bare total is too short takes a proof, which is tried only where it may succeed.
-    bare = isinstance(claim, TotalTimeClaim) and known and interval[1] >= solution.best
+    bare = isinstance(claim, TotalTimeClaim) and found and interval[1] >= solution.best
     proof = None if bare else broken(study, claim, pid, rid)
     below = _below_certified(study, claim, pid, rid, solution)
     if proof is not None or below is not None:
         sides.breaking.append(f"{name}: {proof or below}")
         sides.roots.append(f"{LIMITS} {claim.id}")
         return
-    if not known:
+    if not found:
         sides.open.append(f"{name}: {_no_optimum(solution)}")
         return
     sides.evidence.append(solution.evidence)
@@ -334,16 +349,22 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
     for rid in study.readings:
         sides = _Sides()
         for claim in (study.case.claim(i) for i in statement.of):
+            minimised = other_objective(study.case, claim)
             for pid, reading in study.claim_pairs(claim):
-                if reading == rid:
+                if reading == rid and minimised is not None:
+                    sides.open.append(
+                        f"{called_under(claim, pid)}: minimised for {minimised}, not for time "
+                        "alone, so that a shorter motion contradicts nothing"
+                    )
+                elif reading == rid:
                     _weigh(study, claim, pid, rid, sides)
         if not (sides.longer or sides.breaking or sides.agreeing or sides.open):
             continue
-        known = weakest(sides.evidence)
+        evidence = weakest(sides.evidence)
         longer, breaking = sides.longer, sides.breaking
         if longer or breaking:
             # What refutes is a motion or a broken limit: no optimum, known or certified, is needed.
-            known = Evidence.NONE
+            evidence = Evidence.NONE
             verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
             every = "for every value that rounds to the printed digits"
             said = [f"Not the shortest, {every}: {'; '.join(longer)}."] if longer else []
@@ -354,7 +375,7 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
             message = f"Not decided: {'; '.join(sides.open)}."
         else:
             verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
-            message = f"Every printed total agrees with the {known} optimum"
+            message = f"Every printed total agrees with the {evidence} optimum"
             message += (
                 ", digits rounded up so that the limits are kept." if sides.rounded_up else "."
             )
@@ -362,12 +383,13 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
             rule="TG302",
             severity=severity,
             verdict=verdict,
-            evidence=known,
+            evidence=evidence,
             basis=Basis.ENCLOSURE if breaking and not longer else Basis.OPTIMUM,
             claim=statement.id,
             reading=rid,
             message=message,
-            kind="longer" if longer else "breaks" if breaking else str(known),
+            gap=known(sides.most, "no time is set beside a motion"),
+            kind="longer" if longer else "breaks" if breaking else str(evidence),
             root=f"{OPTIMAL} {statement.id}" if longer else "",
             follows=() if longer else tuple(sides.roots),
         )
@@ -380,7 +402,7 @@ def _shorter(
     rid: str,
     solution: Solution,
     total: tuple[str, tuple[float, float]],
-) -> str | None:
+) -> tuple[str, Gap] | None:
     """A checked motion that is shorter whatever the digits stand for, if there is one.
 
     Where the solver proves that no motion is the shortest, none is set beside a printed total: that
@@ -395,7 +417,8 @@ def _shorter(
     distance = gap(interval, Reference(upper=reached), feasible=_kept(study, claim, pid, rid))
     jumps = solution.check is not None and any(j.order == 1 for j in solution.check.jumps)
     kind = "a checked motion whose velocity may jump at the via-points under this reading"
-    return (
+    said = (
         f"{called(claim)} prints {shown}, which {set_beside(distance)} the {reached:.6f} s of "
         f"{kind if jumps else 'a checked motion'}"
     )
+    return said, distance

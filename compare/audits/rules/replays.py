@@ -32,6 +32,7 @@ from ...gaps import (
 )
 from ..replay_settings import LISTED
 from ..replayed_case import Replays
+from ..stated import other_objective
 from ..study import Study
 
 _TOLERANCES = (SETTLED, 5 * SETTLED)
@@ -175,6 +176,13 @@ def _total(study: Study, claim: AnyClaim) -> Iterator[Finding]:
         runs = study.spread_runs(claim.algorithm, pid, rid)
         if not runs:
             yield found(message=study.unreplayed(claim.algorithm, pid, rid) or "")
+            continue
+        minimised = other_objective(study.case, claim)
+        if minimised is not None:
+            yield found(
+                message=f"A replay minimises time alone, and {shown} was minimised for "
+                f"{minimised}: they are not set beside each other."
+            )
             continue
         spreads = {name: spread(_totals(one)) for name, one in runs.items()}
         listed = spreads[LISTED]

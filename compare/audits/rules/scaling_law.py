@@ -12,6 +12,7 @@ from ....problem.cases import AnyClaim, Digits, DurationsClaim, MaximumClaim, St
 from ...documents import Basis, ClaimVerdict, Finding, Reference, Severity
 from ...gaps import gap
 from ..explanations import OPTIMAL
+from ..stated import other_objective
 from ..study import Study
 from .distances import set_beside
 from .wording import called_under
@@ -26,6 +27,8 @@ def judge_scaling(study: Study) -> Iterator[Finding]:
     for slow, fast in permutations(claims, 2):
         if slow.problem == fast.problem or slow.joint != fast.joint:
             continue
+        if other_objective(study.case, fast) is not None:
+            continue  # its total is no shortest one, and need not scale
         for rid in study.readings:
             yield from _stretched(study, slow, fast, rid, statements)
 

@@ -33,6 +33,26 @@ def test_new_with_every_unit(run: Run, table: str) -> None:
     assert case.problem().limits.velocity == pytest.approx([80 * 3.141592653589793 / 180] * 2)
 
 
+@pytest.mark.parametrize(
+    ("where", "then"),
+    [
+        (("--where", "Table 4"), "judges what is claimed"),
+        ((), 'once where = "" says where the claim is printed, such as "Table 2"'),
+    ],
+)
+def test_new_says_what_is_left_to_fill_in(
+    run: Run, table: str, where: tuple[str, ...], then: str
+) -> None:
+    units = ("--position-unit", "deg", "--time-unit", "s", "--total", "3.4")
+    code, out, err = run("new", "out.toml", "--from", table, *units, *where)
+    assert (code, err) == (0, "")
+    assert out == f"written: out.toml\nnext: trajgap audit out.toml  # {then}\n"
+    if where:
+        assert [claim.where for claim in load_case("out.toml").claims] == ["Table 4"]
+    else:
+        assert_refused(run("show", "out.toml"), "claims[0].where: is empty; say where it is")
+
+
 def test_new_asks_for_units(run: Run, table: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stdin", io.StringIO("rad\nrad/s^2\n\n"))
     code, _, err = run(

@@ -63,7 +63,7 @@ FAULTS = [
     (('velocity = "deg/s"', 'velocity = "deg"'), "units.velocity: 'deg' measures position, not velocity; use one of rad/s, deg/s"),
     (('velocity = "deg/s"\n', ""), "units.velocity: is missing; add one of rad/s, deg/s (problem 'one', reading 'rad')"),
     (('position = "deg"', "position = 3"), "units.position: unknown unit 3 for position; use one of rad, deg"),
-    (('family = "3-5-3"', 'family = "4-5-4"'), "interpolant.family: '4-5-4' is not allowed; use '3-5-3', 'polynomials', 'cubic-spline', 'quintic-spline', 'cubic-spline-virtual', 'rest-to-rest', 'jtraj', 'uniform-cubic-b-spline' or 'clamped-b-spline'"),
+    (('family = "3-5-3"', 'family = "bezier"'), "interpolant.family: 'bezier' is not allowed; use '3-5-3', 'polynomials', 'cubic-spline', 'quintic-spline', 'cubic-spline-virtual', 'rest-to-rest', 'jtraj', 'uniform-cubic-b-spline' or 'clamped-b-spline'"),
     (('family = "3-5-3"', 'family = {x = 1}'), "interpolant.family: {'x': 1} is not allowed; use '3-5-3', 'polynomials', 'cubic-spline', 'quintic-spline', 'cubic-spline-virtual', 'rest-to-rest', 'jtraj', 'uniform-cubic-b-spline' or 'clamped-b-spline'"),
     (('family = "3-5-3"', 'family = "polynomials"'), "interpolant.degrees: is missing; family 'polynomials' needs it"),
     (('family = "3-5-3"', 'family = "3-5-3"\ndegree = 5'), "interpolant.degree: does not go with family '3-5-3'; leave it out"),

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from trajgap.problem.cases.literature import LITERATURE
 from trajgap.problem.cases.load import parse_case
-from trajgap.problem.cases.scaffolding import LITERATURE, scaffold
+from trajgap.problem.cases.scaffolding import scaffold
 from trajgap.problem.errors import CaseError
 
 RAD = {"position": "rad", "velocity": "rad/s", "acceleration": "rad/s^2"}
@@ -210,25 +211,15 @@ def test_limits_of_each_joint_and_printed_times_are_taken_as_given(table):
         velocity="6, 5.50",
         durations="0.910, 1.35,1.10",
         total="3.36",
+        where="Table 2",
     )
     case = parse_case(text, "x")
     np.testing.assert_array_equal(case.problem().limits.velocity, [6, 5.5])
     (claim,) = case.claims
     assert [d.text for d in claim.durations] == ["0.910", "1.35", "1.10"]
     assert claim.total.text == "3.36"
-    (alone,) = parse_case(scaffold(table(points(4)), RAD, total="3.36"), "x").claims
+    (alone,) = parse_case(scaffold(table(points(4)), RAD, total="3.36", where="x"), "x").claims
     assert (alone.quantity, alone.value.text) == ("total_time", "3.36")
-
-
-def test_every_commented_claim_loads_once_its_blanks_are_filled_in(table):
-    text = scaffold(table(points(4)), RAD, acceleration="8", durations="1,2,3", total="6")
-    blocks = [b for b in text.split("\n\n") if "# [[claims]]" in b]
-    assert len(blocks) == 6
-    for block in blocks:
-        lines = [line[2:] for line in block.splitlines()[1:]]
-        filled = "\n".join(lines).replace("JOINT", "1").replace("ID OF THE LONGER TOTAL", "slow")
-        slow = '\n[[claims]]\nid = "slow"\nquantity = "total_time"\nwhere = "x"\nvalue = "9"\n'
-        assert parse_case(f"{text}\n{filled}\n{slow}", "x").claims
 
 
 @pytest.mark.parametrize(
@@ -268,3 +259,24 @@ def test_all_faults_of_table_and_arguments_are_told_at_once(table):
         "jerk",
         "family",
     ]
+
+
+@pytest.mark.parametrize(
+    ("unit", "rows", "written", "remark"),
+    [
+        ("deg", "-10,90\n60,0\n", [["-10", "90"], ["60", "0"]], "settings and meant exactly"),
+        ("rad", "1,0\n2,-3\n", [["1", "0"], ["2", "-3"]], "settings and meant exactly"),
+        ("deg", "12.5,0\n−35,7.0\n", [['"12.5"', "0"], ["-35", '"7.0"']], "settings and meant"),
+        ("deg", "37,90\n112,0\n", [['"37"', '"90"'], ['"112"', '"0"']], '"37" may be 36.5 to'),
+        ("rad", "0.50,1.00\n2.10,0.00\n", [['"0.50"', '"1.00"'], ['"2.10"', '"0.00"']], None),
+    ],
+)
+def test_settings_are_bare_and_what_may_be_rounded_is_quoted(table, unit, rows, written, remark):
+    """Quotes are an interval: -10 degrees in quotes would be all from -10.5 to -9.5 degrees."""
+    text = scaffold(table("a,b\n" + rows), {"position": unit}, family="cubic-spline")
+    assert [f"  [{', '.join(row)}]," in text for row in written] == [True, True]
+    bare = [[not number.startswith('"') for number in row] for row in written]
+    points = parse_case(text, "x").document.waypoints.points
+    assert [[number.exact for number in row] for row in points] == bare
+    assert ("exact" in text.split("[waypoints]")[1].split("[limits]")[0]) == (remark is not None)
+    assert remark is None or remark in text
