@@ -165,7 +165,10 @@ class Papers(FromResults):
 
 def _counted(case: dict[str, Any]) -> str:
     words = [v["verdict"] for v in case["verdicts"]]
-    return ", ".join(f"{words.count(word)} {word}" for word in _WORDS if word in words)
+    counts = {word: words.count(word) for word in _WORDS if word in words}
+    return ", ".join(
+        f"{n} {word if n == 1 else word.replace('depends', 'depend')}" for word, n in counts.items()
+    )
 
 
 class SourceShown(FromResults):

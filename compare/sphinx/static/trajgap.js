@@ -24,9 +24,11 @@ for (const table of document.querySelectorAll("table.trajgap-sortable")) {
         const apart = number(a) - number(b);
         return Number.isNaN(apart) ? a.localeCompare(b, "en", { numeric: true }) : apart;
       };
-      rows.sort((a, b) => order(text(a), text(b)));
-      if (down) rows.reverse();
-      table.tBodies[0].append(...rows);
+      const known = rows.filter((row) => !/^–?$/.test(text(row)));
+      known.sort((a, b) => order(text(a), text(b)));
+      if (down) known.reverse();
+      // What has no value stays below what has one, whichever way the column runs.
+      table.tBodies[0].append(...known, ...rows.filter((row) => !known.includes(row)));
     });
   });
 }
