@@ -11,7 +11,7 @@ from docutils.parsers.rst import directives
 from sphinx.util.docutils import SphinxDirective
 
 from ...problem import TrajgapError, file_name
-from ..documents import ClaimVerdict, more_errors, worth
+from ..documents import ClaimVerdict, counted, more_errors, worth
 from ..pictures import waterfall_picture
 from .parts import badge, paragraph, picture, table
 from .proofs import proved_again
@@ -166,9 +166,7 @@ class Papers(FromResults):
 def _counted(case: dict[str, Any]) -> str:
     words = [v["verdict"] for v in case["verdicts"]]
     counts = {word: words.count(word) for word in _WORDS if word in words}
-    return ", ".join(
-        f"{n} {word if n == 1 else word.replace('depends', 'depend')}" for word, n in counts.items()
-    )
+    return ", ".join(counted(word, count) for word, count in counts.items())
 
 
 class SourceShown(FromResults):
