@@ -39,6 +39,7 @@ sphinx_gallery_conf = {
     "notebook_extensions": set(),
     "show_signature": False,
     "write_computation_times": False,
+    "min_reported_time": 3600,  # s: how long a program took says nothing to a reader
     "abort_on_example_error": True,
 }
 
@@ -50,7 +51,8 @@ html_theme = "pydata_sphinx_theme"
 html_title = "trajgap"
 html_theme_options = {
     "navbar_end": ["theme-switcher"],
-    "secondary_sidebar_items": ["page-toc"],
+    "header_links_before_dropdown": 8,  # every part of the site stands in its head
+    "secondary_sidebar_items": {"**": ["page-toc"], "index": []},  # the front page has a wide table
     "show_prev_next": True,
     "use_edit_page_button": False,
     "show_toc_level": 2,
@@ -60,7 +62,9 @@ html_theme_options = {
 html_context = {"default_mode": "auto"}  # light or dark as the reader's system is
 html_show_sourcelink = False
 html_copy_source = False
-html_static_path: list[str] = []
+html_static_path = ["_static"]
+html_css_files = ["site.css"]
+html_favicon = "_static/mark.svg"
 
 
 def link_inside(_app: Any, _page: str, source: list[str]) -> None:

@@ -89,7 +89,7 @@ def papers_table() -> str:
     """The table of the audited papers as the README shows it."""
     results = Results(RESULTS)
     lines = [
-        "| paper | printed, s | optimum, s | above it | | limits |",
+        "| paper | printed, s | optimum, s | above it | evidence | limits |",
         "|---|---|---|---|---|---|",
     ]
     for name in results.names:

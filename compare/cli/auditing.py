@@ -22,6 +22,7 @@ from ..documents import (
     Urgency,
     Waterfall,
     Why,
+    counted,
     facts,
     more_errors,
     tally,
@@ -104,7 +105,7 @@ def audited(document: AuditDocument) -> list[RenderableType]:
         parts += [line(said, "bold red" if said in against else "") for said in card.sentences]
         parts.append(line(tally(case.verdicts), "dim"))
         counts = Counter(v.verdict for v in case.verdicts)
-        said = ", ".join(f"{counts[word]} {word}" for word in ClaimVerdict if counts[word])
+        said = ", ".join(counted(word, counts[word]) for word in ClaimVerdict if counts[word])
         many = "1 claim" if len(case.verdicts) == 1 else f"{len(case.verdicts)} claims"
         parts += [line(""), line(f"{many}: {said or 'none to judge'}")]
         stated = {one.claim: one for one in case.claims}

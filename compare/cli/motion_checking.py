@@ -310,7 +310,7 @@ _SENTENCES = {
     Verdict.PASS: "every limit is kept at every instant",
     Verdict.VIOLATED: "a limit is exceeded",
     Verdict.DISCONTINUOUS: "the motion jumps",
-    Verdict.UNDECIDED: "not decided",
+    Verdict.UNDECIDED: "it is not shown whether every limit is kept",
 }
 """What a verdict means, in a few words."""
 

@@ -16,7 +16,7 @@ from .benched import (
     overall_cells,
     percent,
 )
-from .card import CARD_WORDS, VerdictCard, count_words, more_errors, tally
+from .card import CARD_WORDS, VerdictCard, count_words, counted, more_errors, tally
 from .case_shown import ShowDocument, show_document
 from .cause import Cause, Consequence, Explanation
 from .certified import CertifiedResult, CertifyDocument, certify_result
@@ -242,6 +242,7 @@ __all__ = [
     "certify_result",
     "closest",
     "count_words",
+    "counted",
     "diff_document",
     "facts",
     "filled",

@@ -80,6 +80,11 @@ def more_errors(count: int) -> str:
     return f"{count} more error{'s stand' if count > 1 else ' stands'} below."
 
 
+def counted(verdict: str, count: int) -> str:
+    """So many claims with a verdict: "1 depends on the reading", "3 depend on the reading"."""
+    return f"{count} {verdict if count == 1 else verdict.replace('depends', 'depend')}"
+
+
 def count_words(text: str) -> int:
     """Words of a text: what blanks separate, numbers and units included."""
     return len(text.split())

@@ -11,7 +11,7 @@ from docutils.parsers.rst import directives
 from sphinx.util.docutils import SphinxDirective
 
 from ...problem import TrajgapError, file_name
-from ..documents import ClaimVerdict, more_errors, worth
+from ..documents import ClaimVerdict, counted, more_errors, worth
 from ..pictures import waterfall_picture
 from .parts import badge, paragraph, picture, table
 from .proofs import proved_again
@@ -72,20 +72,22 @@ class Claims(FromResults):
     option_spec: ClassVar[dict[str, Any]] = {"verdict": directives.unchanged}
 
     def made(self, results: Results) -> list[nodes.Node]:
-        """The claims with one of the words asked for, all without the option."""
+        """The claims with one of the words asked for, in their order; all without the option."""
         case = results.case(self.arguments[0])
         wanted = [w.strip() for w in self.options.get("verdict", "").split(",") if w.strip()]
         stated = {one["claim"]: one for one in case["claims"]}
         found: list[nodes.Node] = []
-        for verdict in case["verdicts"]:
-            if wanted and verdict["verdict"] not in wanted:
-                continue
+        chosen = [one for one in case["verdicts"] if not wanted or one["verdict"] in wanted]
+        if wanted:
+            chosen.sort(key=lambda one: wanted.index(one["verdict"]))
+        for verdict in chosen:
             claim = stated[verdict["claim"]]
             box = nodes.container(classes=["trajgap-claim"])
             head = nodes.paragraph(classes=["trajgap-said"])
             head += badge(verdict["verdict"])
             head += nodes.Text(f" {claim['text']}")
             place = ". ".join(filter(None, (claim["where"], claim["printed"], _holds(verdict))))
+            place = f"{place[:1].upper()}{place[1:]}"
             box += [head, paragraph(place, "trajgap-beside"), paragraph(verdict["why"])]
             for caveat in verdict["caveats"]:
                 box += paragraph(f"{caveat[:1].upper()}{caveat[1:]}", "trajgap-beside")
@@ -146,7 +148,7 @@ class Papers(FromResults):
             paper = self._linked(name, case["title"])
             rows.append([paper, *best, word, case["card"]["limits"], _counted(case)])
         columns = ("paper", "printed, s", "optimum, s", "above it", "evidence", "limits", "claims")
-        return [table(columns, rows, "trajgap-sortable")]
+        return [table(columns, rows, "trajgap-sortable", "trajgap-papers")]
 
     def _linked(self, name: str, title: str) -> nodes.Node:
         pages = self.options.get("pages")
@@ -163,7 +165,8 @@ class Papers(FromResults):
 
 def _counted(case: dict[str, Any]) -> str:
     words = [v["verdict"] for v in case["verdicts"]]
-    return ", ".join(f"{words.count(word)} {word}" for word in _WORDS if word in words)
+    counts = {word: words.count(word) for word in _WORDS if word in words}
+    return ", ".join(counted(word, count) for word, count in counts.items())
 
 
 class SourceShown(FromResults):
@@ -185,7 +188,7 @@ class SourceShown(FromResults):
             ["made again by", nodes.literal("", made["command"])],
         ]
         cite = nodes.literal_block(made["citation"], made["citation"], language="bibtex")
-        return [said, table(("", ""), rows, "trajgap-facts"), *self._proofs(made), cite]
+        return [said, table(("what", "value"), rows, "trajgap-facts"), *self._proofs(made), cite]
 
     def _proofs(self, made: dict[str, Any]) -> list[nodes.Node]:
         """The certificates that the audit rests on, each proved again where conf.py has them."""
@@ -199,7 +202,7 @@ class SourceShown(FromResults):
             verdict = proved_again(path, one["sha256"])
             rows.append([nodes.literal("", one["file"]), badge(worth(verdict)), verdict.reason])
         told = paragraph("Certificates, each proved again when this page was built:")
-        return [told, table(("file", "", "what it proves"), rows)]
+        return [told, table(("file", "evidence", "what it proves"), rows)]
 
 
 class CertificateShown(SphinxDirective):

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
+from textwrap import indent
 from typing import Any
 
-from ..pictures import Picture, svg
+from ...problem import file_name
+from ..pictures import Picture, embedded, svg
+from .parts import framed
 
 SAVED = "_trajgap_saved"
 """Name under which an example keeps the pictures that stand on its page already."""
@@ -27,7 +30,8 @@ def scrape_pictures(_block: object, block_vars: dict[str, Any], gallery_conf: An
     Returns
     -------
     str
-        reStructuredText that shows them, each with its description in words.
+        reStructuredText that shows them, each with its description in words: inside a web page,
+        so that they follow its theme and scroll on a phone; as files elsewhere.
     """
     from sphinx_gallery.scrapers import figure_rst
 
@@ -38,6 +42,10 @@ def scrape_pictures(_block: object, block_vars: dict[str, Any], gallery_conf: An
         if not any(picture is one for one in saved):
             saved.append(picture)
             path = Path(next(block_vars["image_path_iterator"])).with_suffix(".svg")
-            path.write_text(svg(picture), encoding="utf-8")
-            shown.append(figure_rst([str(path)], gallery_conf["src_dir"], picture.description))
+            drawn = svg(picture)
+            path.write_text(drawn, encoding="utf-8")
+            file = figure_rst([str(path)], gallery_conf["src_dir"], picture.description)
+            inside = framed(embedded(drawn, file_name(path.stem)))
+            shown += [f".. raw:: html\n\n{indent(inside, '    ')}\n"]
+            shown += [f".. only:: not html\n\n{indent(file, '    ')}\n"]
     return "\n".join(shown)

@@ -50,5 +50,9 @@ def table(
 
 def picture(drawn: Picture, name: str) -> list[nodes.Node]:
     """A picture inside the page, so that it follows the theme; its words elsewhere."""
-    inside = f'<div class="trajgap-picture" tabindex="0">{embedded(svg(drawn), name)}</div>'
-    return [nodes.raw("", inside, format="html")]
+    return [nodes.raw("", framed(embedded(svg(drawn), name)), format="html")]
+
+
+def framed(inside: str) -> str:
+    """A picture in HTML, in a frame that scrolls, by keys too, where a page is too narrow."""
+    return f'<div class="trajgap-picture" tabindex="0">{inside}</div>'

@@ -36,9 +36,14 @@ class SuiteTable(SphinxDirective):
         if not chosen:
             known = ", ".join(sorted({one.curve for one in list_instances()}))
             raise self.error(f"no instance has the curve {curve!r}; known: {known}")
-        columns = ("instance", "curve", "segments", "joints", "tight in", "lower, s", "upper, s",
-                   "width", "evidence", "basins", "feasible")  # fmt: skip
-        return [table(columns, [self._row(one) for one in chosen], "trajgap-sortable")]
+        columns = ["instance", "curve", "segments", "joints", "tight in", "lower, s", "upper, s",
+                   "width", "evidence", "basins", "feasible"]  # fmt: skip
+        rows = [self._row(one) for one in chosen]
+        if curve is not None:  # the page says it already
+            place = columns.index("curve")
+            for cells in (columns, *rows):
+                del cells[place]
+        return [table(columns, rows, "trajgap-sortable")]
 
     def _row(self, one: BenchmarkInstance) -> list[nodes.Node | str]:
         hard = one.hardness
@@ -95,7 +100,7 @@ class InstanceShown(SphinxDirective):
                 ["feasible share", f"{hard.feasible_share:.2%} of durations drawn in the box"],
                 *([f"success of {name}", f"{rate:.0%}"] for name, rate in hard.baselines.items()),
             ]  # fmt: skip
-        return [said, table(("", ""), rows, "trajgap-facts")]
+        return [said, table(("what", "value"), rows, "trajgap-facts")]
 
     def _proof(self, one: BenchmarkInstance) -> nodes.paragraph:
         file = one.certificate_file()

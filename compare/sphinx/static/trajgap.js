@@ -1,5 +1,13 @@
 // Tables that sort by the column whose heading is pressed; without the script they stay as printed.
+// Those of papers have their headings beside the values too, for screens too narrow for columns.
 for (const table of document.querySelectorAll("table.trajgap-sortable")) {
+  const headings = [...table.querySelectorAll("thead th")].map((one) => one.textContent.trim());
+  if (table.classList.contains("trajgap-papers")) {
+    for (const row of table.tBodies[0].rows) {
+      [...row.cells].forEach((cell, column) => { cell.dataset.label = headings[column]; });
+    }
+    table.classList.add("trajgap-labelled");
+  }
   table.querySelectorAll("thead th").forEach((heading, column) => {
     const button = document.createElement("button");
     button.type = "button";
@@ -16,9 +24,11 @@ for (const table of document.querySelectorAll("table.trajgap-sortable")) {
         const apart = number(a) - number(b);
         return Number.isNaN(apart) ? a.localeCompare(b, "en", { numeric: true }) : apart;
       };
-      rows.sort((a, b) => order(text(a), text(b)));
-      if (down) rows.reverse();
-      table.tBodies[0].append(...rows);
+      const known = rows.filter((row) => !/^–?$/.test(text(row)));
+      known.sort((a, b) => order(text(a), text(b)));
+      if (down) known.reverse();
+      // What has no value stays below what has one, whichever way the column runs.
+      table.tBodies[0].append(...known, ...rows.filter((row) => !known.includes(row)));
     });
   });
 }

@@ -268,7 +268,7 @@ def test_the_index_names_every_case_and_its_counts(folder: Path) -> None:
     seen = Seen((folder / "index.html").read_text(encoding="utf-8"))
     assert f"{ID}.html" in [a.get("href") for tag, a in seen.tags if tag == "a"]
     # The fifth word is counted by itself, not among those beside it.
-    said = "3 supported, 2 refuted, 10 not checkable, 2 depends on the reading."
+    said = "3 supported, 2 refuted, 10 not checkable, 2 depend on the reading."
     assert f"17 claims: {said}" in seen.words
 
 

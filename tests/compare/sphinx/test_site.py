@@ -6,6 +6,7 @@ import re
 import shutil
 import subprocess
 import sys
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -220,7 +221,7 @@ FOREIGN = """
 ```
 
 ```{trajgap-claims} irb460-pso-353
-:verdict: refuted
+:verdict: supported, refuted, depends on the reading
 ```
 
 ```{trajgap-waterfall} irb460-pso-353
@@ -277,6 +278,12 @@ def test_a_foreign_project_shows_an_audit(tmp_path):
     assert page.count("certified</span>") > 40  # the suite's table, of 46
     assert ">353-puma560<" in page
     assert "basins" in page
+    assert "trajgap-papers" in page
+    assert page.count("<p>curve</p>") == 1  # of the instance; the table has one curve alone
+    words = re.findall(r'trajgap-word trajgap-([a-z-]+)">[^<]*</span> ', page)
+    stated = Counter(one["verdict"].replace(" ", "-") for one in case["verdicts"])
+    wanted = ("supported", "refuted", "depends-on-the-reading")
+    assert [one for one in words if one in wanted] == [w for w in wanted for _ in range(stated[w])]
     assert "http://" not in re.sub(r"<svg.*?</svg>", "", page, flags=re.DOTALL)
     assert (tmp_path / "thesis" / "out" / "_static" / "trajgap.css").exists()
 
@@ -374,6 +381,7 @@ def test_a_gallery_shows_each_picture_once(tmp_path):
     told = scrape_pictures((), block, {"src_dir": str(tmp_path)})
     assert "one.svg" in told
     assert "In double precision" in told
+    assert '<title id="one-title">T</title>' in told  # inside the page, so that it has its colours
     assert (tmp_path / "one.svg").read_text(encoding="utf-8").startswith("<?xml")
     assert scrape_pictures((), block, {"src_dir": str(tmp_path)}) == ""
     assert not (tmp_path / "two.svg").exists()
