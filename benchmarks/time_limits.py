@@ -7,8 +7,8 @@
 Each run is a process of its own, after imports, after a small problem of its kind, and with one
 thread for linear algebra. Two numbers are taken: seconds from the limit to the answer, and the
 processor seconds that the process took in them, read from the system by another process. The first
-grows with whatever else the machine does, the second does not. ``first`` rows have no compiled code
-at hand, as after an installation.
+grows with whatever else the machine does, the second does not. With ``--first`` there are two other
+rows, without compiled code at hand, as after an installation.
 """
 
 from __future__ import annotations
@@ -42,9 +42,8 @@ ROWS = [
     ),
     *(("certify", "cubic", n, "") for n in POINTS),
     *(("certify", "quintic", n, "") for n in POINTS if n <= 27),
-    ("solve", "cubic", 8, "first"),
-    ("certify", "quintic", 8, "first"),
 ]
+FIRST = [("solve", "cubic", 8, "first"), ("certify", "quintic", 8, "first")]
 
 
 def problem_of(curve, count):
@@ -133,6 +132,7 @@ def main() -> None:
     parser.add_argument("--run", nargs=5)
     parser.add_argument("--only", default="")
     parser.add_argument("--each", action="store_true")
+    parser.add_argument("--first", action="store_true")
     parser.add_argument("--seconds", type=float, nargs="*", default=SECONDS)
     asked = parser.parse_args()
     if asked.run:
@@ -141,7 +141,7 @@ def main() -> None:
         return
     print("| what | curve | way-points | " + " | ".join(f"{s:g} s" for s in asked.seconds) + " |")
     print("|---" * (3 + len(asked.seconds)) + "|")
-    for row in ROWS:
+    for row in FIRST if asked.first else ROWS:
         what, curve, count, first = row
         named = [what, curve, str(count), *([first] if first else [])]
         if not all(word in " ".join(named).split() for word in asked.only.split()):
