@@ -15,12 +15,12 @@ from .algorithms import (
 from .baseline import uniform_rescaling
 from .hazards import TentCollapse, tent_collapse
 from .loop import (
-    Question,
+    AskedRun,
     run,
+    run_asked,
     run_many,
     run_many_per_joint,
     run_per_joint,
-    run_questions,
     states,
 )
 from .objective import Bounds, Counted, DeathPenalty, Objective
@@ -39,6 +39,7 @@ __all__ = [
     "PSO",
     "WOA",
     "Algorithm",
+    "AskedRun",
     "Borrowed",
     "BorrowedTask",
     "Bounds",
@@ -52,7 +53,6 @@ __all__ = [
     "ImprovedWOA",
     "JointRuns",
     "Objective",
-    "Question",
     "Run",
     "Search",
     "State",
@@ -68,10 +68,10 @@ __all__ = [
     "one_by_one",
     "open_choices",
     "run",
+    "run_asked",
     "run_many",
     "run_many_per_joint",
     "run_per_joint",
-    "run_questions",
     "run_within",
     "search_box",
     "shgo",

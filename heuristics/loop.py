@@ -81,7 +81,7 @@ def _stepped(
 
 
 @dataclass(frozen=True, eq=False)
-class Question:
+class AskedRun:
     """What one run is asked.
 
     Attributes
@@ -101,7 +101,7 @@ class Question:
     handling: str = Handling.DEATH_PENALTY
 
 
-def _started(method: Method, questions: Sequence[Question]) -> list[Start]:
+def _started(method: Method, questions: Sequence[AskedRun]) -> list[Start]:
     judges: dict[tuple[int, str], Judge] = {}
     starts = []
     for one in questions:
@@ -120,13 +120,13 @@ def _alone(method: Method, start: Start) -> tuple[Array, Array, int]:
     return search(cast(Any, method), start.judge, start.bounds, start.rng)
 
 
-def run_questions(method: Method, questions: Sequence[Question]) -> list[Run]:
+def run_asked(method: Method, questions: Sequence[AskedRun]) -> list[Run]:
     """Run an algorithm on several questions, side by side where it can: the same bits either way.
 
     Parameters
     ----------
     method : Algorithm or Search
-    questions : sequence of Question
+    questions : sequence of AskedRun
         Neighbours that share problem and handling are judged in one call.
 
     Returns
@@ -153,7 +153,7 @@ def run_questions(method: Method, questions: Sequence[Question]) -> list[Run]:
 
 
 def _answered(
-    method: Method, one: Question, start: Start, trace: Array, position: Array, evaluations: int
+    method: Method, one: AskedRun, start: Start, trace: Array, position: Array, evaluations: int
 ) -> Run:
     trace[trace >= method.penalty] = np.inf
     return Run(
@@ -216,8 +216,8 @@ def run(
     True
     """
     record = _with_budget(algorithm, iterations)
-    question = Question(problem, checked(_SEED, "seed", seed), (), objective)
-    return run_questions(record, [question])[0]
+    question = AskedRun(problem, checked(_SEED, "seed", seed), (), objective)
+    return run_asked(record, [question])[0]
 
 
 def run_per_joint(
@@ -305,7 +305,7 @@ def _run_seeds(
     algorithm: Method, problem: Problem, iterations: int | None, objective: str, seeds: _Seeds
 ) -> tuple[Run, ...]:
     record = _with_budget(algorithm, iterations)
-    return tuple(run_questions(record, [Question(problem, s, (), objective) for s in seeds]))
+    return tuple(run_asked(record, [AskedRun(problem, s, (), objective) for s in seeds]))
 
 
 def _joints_seeds(
@@ -313,8 +313,8 @@ def _joints_seeds(
 ) -> tuple[JointRuns, ...]:
     record = _with_budget(algorithm, iterations)
     joints = [problem.joint(j) for j in range(len(problem.joints))]
-    asked = [Question(one, s, (j,), objective) for j, one in enumerate(joints) for s in seeds]
-    runs = run_questions(record, asked)
+    asked = [AskedRun(one, s, (j,), objective) for j, one in enumerate(joints) for s in seeds]
+    runs = run_asked(record, asked)
     count = len(seeds)
     return tuple(_joined(problem, s, tuple(runs[i::count])) for i, s in enumerate(seeds))
 

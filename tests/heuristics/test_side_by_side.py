@@ -8,13 +8,13 @@ from trajgap.heuristics import (
     KINDS,
     MNAMPSO,
     PSO,
-    Question,
+    AskedRun,
     Run,
     from_settings,
     run,
+    run_asked,
     run_many_per_joint,
     run_per_joint,
-    run_questions,
 )
 from trajgap.heuristics.side_by_side import TOGETHER, moves_together
 from trajgap.problem import Limits, Problem, quintic_spline, rest_to_rest, three_five_three
@@ -37,12 +37,12 @@ def same(a: Run, b: Run) -> None:
 def test_questions_of_all_sorts_together(kind: str) -> None:
     algorithm = replace(from_settings(kind, {}), iterations=25)
     questions = [
-        Question(problem, seed, (), handling)
+        AskedRun(problem, seed, (), handling)
         for problem in (PROBLEM, SLOWER, STOPPING)
         for handling in HANDLINGS
         for seed in (3, 8)
     ]
-    for one, found in zip(questions, run_questions(algorithm, questions), strict=True):
+    for one, found in zip(questions, run_asked(algorithm, questions), strict=True):
         same(found, run(algorithm, one.problem, one.seed, None, one.handling))
 
 
@@ -62,8 +62,8 @@ OPEN = [
 def test_every_branch_takes_runs_side_by_side(kind: str, settings: dict[str, object]) -> None:
     algorithm = from_settings(kind, {**settings, "iterations": 25})
     assert moves_together(algorithm)
-    questions = [Question(p, seed) for p in (PROBLEM, SLOWER) for seed in range(3)]
-    for one, found in zip(questions, run_questions(algorithm, questions), strict=True):
+    questions = [AskedRun(p, seed) for p in (PROBLEM, SLOWER) for seed in range(3)]
+    for one, found in zip(questions, run_asked(algorithm, questions), strict=True):
         same(found, run(algorithm, one.problem, one.seed))
 
 
@@ -75,7 +75,7 @@ def test_joints_and_more_seeds_than_are_moved_at_once() -> None:
         assert found.durations.tobytes() == alone.durations.tobytes()
         for j, (a, b) in enumerate(zip(found.runs, alone.runs, strict=True)):
             same(a, b)
-            same(a, run_questions(algorithm, [Question(PROBLEM.joint(j), seed, (j,))])[0])
+            same(a, run_asked(algorithm, [AskedRun(PROBLEM.joint(j), seed, (j,))])[0])
 
 
 def test_a_subclass_that_says_nothing_is_moved_by_itself() -> None:
@@ -85,10 +85,10 @@ def test_a_subclass_that_says_nothing_is_moved_by_itself() -> None:
 
     assert moves_together(PSO())
     assert not moves_together(Own())
-    questions = [Question(PROBLEM, seed) for seed in (1, 2)]
+    questions = [AskedRun(PROBLEM, seed) for seed in (1, 2)]
     for a, b in zip(
-        run_questions(Own(iterations=4), questions),
-        run_questions(PSO(iterations=4), questions),
+        run_asked(Own(iterations=4), questions),
+        run_asked(PSO(iterations=4), questions),
         strict=True,
     ):
         assert a.trace.tobytes() == b.trace.tobytes()

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ....heuristics import Algorithm, Question, Run, in_processes, run_questions
+from ....heuristics import Algorithm, AskedRun, Run, in_processes, run_asked
 from ....nlp import Solution
 from ....nlp.optimum import solve
 from ....problem import TOLERANCE, Array, Coupling, Problem, check
@@ -139,15 +139,15 @@ def _key(problem: Problem) -> tuple[object, ...]:
 
 def _run_all(kept: Kept, asked: Iterable[tuple[Problem, Algorithm[Any], str]], runs: int) -> None:
     """Keep what every run gives, each once: all runs of an algorithm are moved side by side."""
-    todo: dict[Algorithm[Any], dict[tuple[object, ...], Question]] = {}
+    todo: dict[Algorithm[Any], dict[tuple[object, ...], AskedRun]] = {}
     for problem, algorithm, objective in asked:
         for seed in range(runs):
             key = (*_key(problem), algorithm, seed, objective)
             # The first of equal problems stands for all, so that neighbours are judged together.
-            one = Question(problem, seed, (), objective)
+            one = AskedRun(problem, seed, (), objective)
             todo.setdefault(algorithm, {}).setdefault(key, one)
     for algorithm, questions in todo.items():
-        ran = run_questions(algorithm, list(questions.values()))
+        ran = run_asked(algorithm, list(questions.values()))
         for (key, question), done in zip(questions.items(), ran, strict=True):
             kept[key] = _judged(question.problem, done)
 
