@@ -19,7 +19,7 @@ from ..rounding import below
 from ..session import Certifier, Ladder, Session, Shorter
 from .leaves import Leaves
 from .search import search
-from .subtrees import Question, Root, search_all
+from .subtrees import Stage, Root, search_all
 from .windows import Windows, windows
 
 _LADDER = Ladder(
@@ -164,7 +164,7 @@ class _Search:
         session.check_clock()
         own, upper = target / self.units.time, session.upper
         look = 0.0 if upper is None else float(upper / self.units.time) * (1.0 - _SLIGHT)
-        question = Question(self.steps, self.limits, float(own), self.library.terms, look)
+        question = Stage(self.steps, self.limits, float(own), self.library.terms, look)
         root = Root(np.array([float(x) for x in self.low]), np.full(len(self.low), question.total))
 
         def watch(waiting: int, boxes: int) -> float:

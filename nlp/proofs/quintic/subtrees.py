@@ -31,7 +31,7 @@ Place = tuple[int, ...]
 
 
 @dataclass(frozen=True, eq=False)
-class Question:
+class Stage:
     """What all parts of one stage share, in the units of the proof.
 
     Attributes
@@ -95,12 +95,12 @@ class Part:
     code: int
 
 
-def search_part(question: Question, root: Root, seconds: float) -> Part:
+def search_part(question: Stage, root: Root, seconds: float) -> Part:
     """Search below a box until it is empty, `_PART` boxes are visited or time is up.
 
     Parameters
     ----------
-    question : Question
+    question : Stage
     root : Root
     seconds : float
 
@@ -136,7 +136,7 @@ def search_part(question: Question, root: Root, seconds: float) -> Part:
 
 
 def search_all(
-    question: Question,
+    question: Stage,
     root: Root,
     look: Callable[[Array], bool],
     watch: Callable[[int, int], float],
@@ -147,7 +147,7 @@ def search_all(
 
     Parameters
     ----------
-    question : Question
+    question : Stage
     root : Root
     look : callable
         Given durations whose total seems to be below ``question.look``: whether to go on looking.

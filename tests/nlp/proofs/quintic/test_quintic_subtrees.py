@@ -45,7 +45,7 @@ class LastFirst(Executor):
         self.held.clear()
 
 
-def stage(total: float, executor: Executor, workers: int) -> tuple[subtrees.Question, Leaves]:
+def stage(total: float, executor: Executor, workers: int) -> tuple[subtrees.Stage, Leaves]:
     """The tree that proves ``total`` times the best total that is known."""
     session = Session(exact_problem(PROBLEM), Request(seconds=1e6, workers=workers))
     assert session.seek()
@@ -53,9 +53,7 @@ def stage(total: float, executor: Executor, workers: int) -> tuple[subtrees.Ques
     upper = session.upper
     assert upper is not None
     tree = kind.stage(kind.rounded(upper * Fraction(total)))
-    question = subtrees.Question(
-        kind.steps, kind.limits, float(tree.total), kind.library.terms, 0.0
-    )
+    question = subtrees.Stage(kind.steps, kind.limits, float(tree.total), kind.library.terms, 0.0)
     return question, tree.leaves
 
 
@@ -63,7 +61,7 @@ def same(a: Leaves, b: Leaves) -> bool:
     return all(np.array_equal(x, y) for x, y in zip(a.arrays, b.arrays, strict=True))
 
 
-def whole(question: subtrees.Question) -> Leaves:
+def whole(question: subtrees.Stage) -> Leaves:
     """The same tree by one call of the kernel."""
     n, joints = question.steps.shape
     low, high = np.zeros((600, n)), np.zeros((600, n))
@@ -112,7 +110,7 @@ def test_parts_run_in_other_processes() -> None:
 def test_the_first_in_preorder_ends_the_search() -> None:
     """Directions that seem to be shorter are looked at wherever they turn up; the first decides."""
     question, _ = stage(0.9, Here(), 1)
-    question = subtrees.Question(
+    question = subtrees.Stage(
         question.steps, question.limits, question.total, question.windows, 1.3 * question.total
     )
     root = subtrees.Root(
