@@ -50,7 +50,7 @@ def plainly(case: Case, cause: Cause) -> str:
         "TG205": f"Control vertices in {where} do not follow from the way-points",
         "TG301": "Under a velocity limit alone times scale with it, so the two printed results "
         "cannot both be shortest",
-        "TG302": f"Called optimal in {where}, but {_not_optimal(head)}",
+        "TG302": f"Called optimal in {where}, but {_not_optimal(head, len(cause.readings))}",
         "TG304": f"The total in {where} is not the shortest of its profile",
         "TG601": "Printed joint angles and positions do not fit the printed robot",
     }.get(cause.rule)
@@ -59,7 +59,7 @@ def plainly(case: Case, cause: Cause) -> str:
     return f"{_capital(sentence or _contradicted(claim))}."
 
 
-def _not_optimal(head: Finding) -> str:
+def _not_optimal(head: Finding, readings: int) -> str:
     """Why a time is not the shortest, and how much longer it is under every reading, if it is."""
     if head.kind == "breaks":
         return "no answer within the limits"
@@ -69,7 +69,8 @@ def _not_optimal(head: Finding) -> str:
     share = f"{percent:.1f} % longer than" if percent >= 1 else f"{percent:.2g} % longer than"
     if head.gap.many_times:
         share = f"{1 + head.gap.highest:.1f} times as long as"
-    return f"up to {share} a checked motion within the limits"
+    mildest = ", under the mildest reading" if readings > 1 else ""
+    return f"up to {share} a checked motion within the limits{mildest}"
 
 
 def _tables_alike(case: Case, cause: Cause, tables: Sequence[str]) -> str:

@@ -19,7 +19,7 @@ from ..rounding import below
 from ..session import Certifier, Ladder, Session, Shorter
 from .leaves import Leaves
 from .search import search
-from .subtrees import Stage, Root, search_all
+from .subtrees import Root, Stage, search_all
 from .windows import Windows, windows
 
 _LADDER = Ladder(

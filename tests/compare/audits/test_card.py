@@ -52,7 +52,7 @@ def test_tables_alike_stand_on_the_card_with_the_claim_that_falls():
     # Joints 3 and 4, 3.172 s beside 3.1269 s and 2.403 s beside 2.3893 s: a small excess is one.
     assert (
         "Called optimal in the abstract, but up to 1.5 % longer than a checked motion within the "
-        "limits."
+        "limits, under the mildest reading."
     ) in card.errors
     assert (
         "Tables 2 and 3 agree in all 28 numbers, so the claimed 10.9 % cannot follow from them."
