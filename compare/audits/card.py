@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...nlp import Evidence, Solution, Status
-from ...problem import Coupling
+from ...problem import Coupling, Verdict
 from ...problem.cases import (
     AnyClaim,
     DurationsClaim,
@@ -133,11 +133,23 @@ def _explanation(causes: Sequence[Cause], room: int) -> str | None:
 # --- limits ---------------------------------------------------------------------------------------
 
 
+def _within(study: Study, sets: Sequence[DurationsClaim | MaximumClaim]) -> str:
+    """Whether it takes the rounding of the digits to keep the limits."""
+    printed = [
+        study.claim_check(one, *pair).limits is Verdict.PASS
+        for one in sets
+        if study.has_durations(one)
+        for pair in study.claim_pairs(one)
+    ]
+    return "" if all(printed) else " within rounding"
+
+
 def _limits(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[str]]:
     """Whether printed durations keep their limits, and the claims that the sentence speaks of."""
     case = study.case
     if not study.posed:
-        return "Whether the limits are kept is not checkable: no way-points are printed.", set()
+        unread = "the text that was read has no way-points"
+        return f"Whether the limits are kept is not checkable: {unread}.", set()
     about = [c for c in case.claims if getattr(c, "checks", "") == "within_limits"]
     sets = [
         c
@@ -164,7 +176,7 @@ def _limits(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[str]
     if kept == len(under) and not any(_limited(study, *pair) for pair in study.pairs):
         return f"No limits are stated, so that none can be broken{jump}.", spoken
     if kept == len(under):
-        return f"The printed durations keep the limits{jump}.", spoken
+        return f"The printed durations keep the limits{_within(study, sets)}{jump}.", spoken
     if broken == len(under):
         return f"{_broken(sets, words)} for every value that rounds to the printed digits.", spoken
     if not broken and not kept:

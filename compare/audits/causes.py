@@ -138,7 +138,7 @@ def _caveats(study: Study, judgement: Judgement, against: dict[str, set[str]]) -
         return
     for message, sides in against.items():
         if rests & sides:
-            text = f"rests on numbers that others in print contradict: {message}"
+            text = f"rests on numbers that other printed numbers contradict: {message}"
             yield Caveat(CaveatKind.DOUBTED, text)
 
 

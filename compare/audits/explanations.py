@@ -66,7 +66,11 @@ def explained(study: Study, root: str, finding: Finding) -> tuple[Explanation, .
     if kind == SUM and claim.total is not None:
         return tuple(islice(_sums(claim, claim.total), 1))
     if kind == LIMITS and finding.problem and finding.reading:
-        return tuple(_kept_if(study, claim, finding.problem, finding.reading))
+        found = _kept_if(study, claim, finding.problem, finding.reading)
+        if len(study.readings) == 1:
+            return tuple(found)
+        under = f", under reading {finding.reading}."
+        return tuple(e.model_copy(update={"effect": e.effect[:-1] + under}) for e in found)
     return ()
 
 
@@ -147,7 +151,7 @@ def _kept_if(
     for i, k in islice(combinations(range(len(printed.value)), 2), _TRIED):
         order = np.arange(len(printed.value))
         order[[i, k]] = k, i
-        change = f"The durations of segments {i + 1} and {k + 1} may have been exchanged in print."
+        change = f"Durations {i + 1} and {k + 1} may have been exchanged in print."
         exchanged.append((change, problem, printed.value[order], widths[order]))
     turned = []
     joint = None if found.worst.joint is None else problem.joints.index(found.worst.joint)

@@ -65,7 +65,7 @@ def judge(
         scope = Scope.SOME if partial else Scope.ALL
         behind = [f for f in own if f.verdict in words and f.verdict in _ORDER]
         evidence = max((f.evidence for f in behind), key=_RANK.index, default=Evidence.NONE)
-        why = " ".join(dict.fromkeys(_said(behind, verdict)))
+        why = " ".join(dict.fromkeys(_said(behind, verdict, len(each))))
         confidence = _confidence(behind, verdict)
     return Judgement(
         claim=claim,
@@ -90,14 +90,27 @@ def _confidence(behind: Iterable[Finding], verdict: ClaimVerdict) -> Confidence 
     return (min if one else max)(known, key=order, default=UNDECIDED)
 
 
-def _said(behind: Iterable[Finding], verdict: ClaimVerdict) -> Iterable[str]:
-    """The messages behind a verdict; where readings disagree, the word and reading before each."""
-    for f in sorted(behind, key=lambda f: _ORDER.index(f.verdict)):
+def _said(behind: Iterable[Finding], verdict: ClaimVerdict, computed: int) -> Iterable[str]:
+    """The messages behind a verdict; what holds under some readings alone has them before it.
+
+    Where readings disagree, each has its word too.
+    """
+    ordered = sorted(behind, key=lambda f: _ORDER.index(f.verdict))
+    under: dict[str, dict[str | None, None]] = {}
+    for f in ordered:
+        under.setdefault(f.message, {})[f.reading] = None
+    for f in ordered:
         if verdict is ClaimVerdict.DEPENDS:
-            under = "every reading" if f.reading is None else f"reading {f.reading}"
-            yield f"{f.verdict.capitalize()} under {under}: {f.message}"
-        else:
+            where = "every reading" if f.reading is None else f"reading {f.reading}"
+            yield f"{f.verdict.capitalize()} under {where}: {f.message}"
+            continue
+        readings = [r for r in under[f.message] if r is not None]
+        if None in under[f.message] or len(readings) == computed:
             yield f.message
+        elif len(readings) == 1:
+            yield f"Under reading {readings[0]}: {f.message}"
+        else:
+            yield f"Under {len(readings)} of {computed} readings: {f.message}"
 
 
 def weigh(

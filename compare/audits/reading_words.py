@@ -9,7 +9,7 @@ from math import log
 from ...nlp import Evidence, weakest
 from ..documents import Excess, Gap, Keeping, ReadingOutcome, ReadingsSummary, Scope, Why
 
-_KEPT = {
+KEPT = {
     Keeping.KEEPS: "kept",
     Keeping.CONSISTENT: "kept by some values that round to the digits",
     Keeping.DISCONTINUOUS: "kept between velocity jumps",
@@ -63,7 +63,7 @@ def _of_answers(summary: ReadingsSummary) -> Iterable[str]:
     for (claim, problem), own in by_answer.items():
         under = {k: [o.reading for o in own if o.keeping is k] for k in Keeping}
         said = ", ".join(
-            f"{_KEPT[k]} under {len(found)} ({named(found)})" for k, found in under.items() if found
+            f"{KEPT[k]} under {len(found)} ({named(found)})" for k, found in under.items() if found
         )
         count = len(summary.admissible)
         which = f"{count}" if len(own) == count else f"{len(own)} of {count}"

@@ -1,4 +1,4 @@
-"""Directives: a verdict card, claims, a waterfall, the table of papers, a certificate."""
+"""Directives: a verdict card, claims, readings, a waterfall, the table of papers, a certificate."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from docutils.parsers.rst import directives
 from sphinx.util.docutils import SphinxDirective
 
 from ...problem import TrajgapError, file_name
-from ..documents import ClaimVerdict, counted, more_errors, worth
+from ..audits import KEPT
+from ..documents import ClaimVerdict, Keeping, counted, more_errors, worth
 from ..pictures import waterfall_picture
 from .parts import badge, paragraph, picture, table
 from .proofs import proved_again
@@ -80,6 +81,7 @@ class Claims(FromResults):
         chosen = [one for one in case["verdicts"] if not wanted or one["verdict"] in wanted]
         if wanted:
             chosen.sort(key=lambda one: wanted.index(one["verdict"]))
+        told: set[str] = set()
         for verdict in chosen:
             claim = stated[verdict["claim"]]
             box = nodes.container(classes=["trajgap-claim"])
@@ -90,7 +92,10 @@ class Claims(FromResults):
             place = f"{place[:1].upper()}{place[1:]}"
             box += [head, paragraph(place, "trajgap-beside"), paragraph(verdict["why"])]
             for caveat in verdict["caveats"]:
-                box += paragraph(f"{caveat[:1].upper()}{caveat[1:]}", "trajgap-beside")
+                # One long reason is told once.
+                short = f"{caveat.partition(':')[0]} (see above)." if caveat in told else caveat
+                told.add(caveat)
+                box += paragraph(f"{short[:1].upper()}{short[1:]}", "trajgap-beside")
             found.append(box)
         return found or [paragraph("None.")]
 
@@ -99,12 +104,47 @@ def _holds(verdict: dict[str, Any]) -> str:
     """Under which readings a verdict holds, what kind of proof it is, and its reference value."""
     words = list(verdict["readings"].values())
     each = [f"{word} under {words.count(word)}" for word in dict.fromkeys(words)]
-    parts = [f"{', '.join(each)} of {len(words)} readings"] if len(words) > 1 else []
+    undecided = set(words) == {str(ClaimVerdict.NOT_CHECKABLE)}
+    said_of = len(words) > 1 and not undecided
+    parts = [f"{', '.join(each)} of {len(words)} readings"] if said_of else []
     if verdict["evidence"] != "none":
         parts.append(f"reference {verdict['evidence']}")
     parts += [verdict["confidence"]] if verdict["confidence"] else []
     said = "; ".join(parts)
     return f"{said[:1].upper()}{said[1:]}"
+
+
+class Readings(FromResults):
+    """``{trajgap-readings} CASE``: what the text leaves open, the default, and what follows."""
+
+    def made(self, results: Results) -> list[nodes.Node]:
+        """The default with its reason, and a row for each reading and printed motion."""
+        case = results.case(self.arguments[0])
+        said = case["readings"]
+        if said is None:
+            return [paragraph("The text leaves nothing open: there is one reading.")]
+        names = said["admissible"]
+        head = paragraph(f"The text leaves open what {len(names)} readings settle. The default is ")
+        head += nodes.literal("", said["default"])
+        head += nodes.Text(f": {said['default_why']}" if said["default_why"] else ".")
+        rows = [_under(case, outcome) for outcome in said["outcomes"]]
+        columns = ("reading", "durations of", "limits", "largest ratio", "shortest, s", "evidence")
+        return [head, table(columns, rows, "trajgap-facts")] if rows else [head]
+
+
+def _under(case: dict[str, Any], outcome: dict[str, Any]) -> list[Any]:
+    """What one printed motion is under one reading."""
+    own = [c["where"] for c in case["claims"] if c["claim"] == outcome["claim"]]
+    held, optimum = outcome["held"], outcome["optimum"]
+    ratio = held["everywhere"] if isinstance(held, dict) else None
+    return [
+        nodes.literal("", outcome["reading"]),
+        own[0] if own else "–",
+        KEPT[Keeping(outcome["keeping"])] if outcome["keeping"] else "–",
+        "–" if ratio is None else f"{ratio:.4g}",
+        "–" if optimum is None else f"{optimum:.5g}",
+        outcome["evidence"] if optimum is not None else "",
+    ]
 
 
 class WaterfallShown(FromResults):
@@ -233,6 +273,7 @@ class CertificateShown(SphinxDirective):
 DIRECTIVES: dict[str, type[SphinxDirective]] = {
     "trajgap-card": Card,
     "trajgap-claims": Claims,
+    "trajgap-readings": Readings,
     "trajgap-waterfall": WaterfallShown,
     "trajgap-papers": Papers,
     "trajgap-source": SourceShown,

@@ -42,7 +42,12 @@ def test_the_palletisers_card():
 
 
 def test_tables_alike_stand_on_the_card_with_the_claim_that_falls():
-    card = audited_alone("puma560-mnam-pso-353").card
+    audited = audited_alone("puma560-mnam-pso-353")
+    card = audited.card
+    # Printed to a millisecond, five rows exceed a limit by less than their rounding.
+    assert card.limits == "The printed durations keep the limits within rounding."
+    (share,) = (j.why for j in audited.judgements if j.claim == "improvement")
+    assert share.startswith("3.961 and 3.528 s give 10.9 %, but from the totals printed in the ")
     assert card.optimum == (
         "Under the default of 2 readings, 3.528 s is 7.0 % above the proven optimum 3.2967 s of "
         "all joints together."
@@ -63,7 +68,7 @@ def test_tables_alike_stand_on_the_card_with_the_claim_that_falls():
 def test_without_way_points_the_card_says_what_is_not_checkable():
     card = audited_alone("z1-woa-bspline").card
     assert "not checkable" in card.limits
-    assert "no way-points are printed" in card.limits
+    assert "the text that was read has no way-points" in card.limits
     assert "not checkable" in card.optimum
 
 

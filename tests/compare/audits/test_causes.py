@@ -41,7 +41,9 @@ def test_neither_side_of_a_contradiction_in_print_is_taken() -> None:
     for claim in ("pso-longest", "mnam-longest", "mnam-total", "pso-joint-1", "limits-kept"):
         (said,) = by[claim].caveats
         assert said.kind is CaveatKind.DOUBTED
-        assert said.text.startswith("rests on numbers that others in print contradict: Table 2")
+        assert said.text.startswith(
+            "rests on numbers that other printed numbers contradict: Table 2"
+        )
     assert by["pso-total"].verdict is ClaimVerdict.INCONSISTENT
     assert by["conditions"].caveats == ()
 
@@ -53,8 +55,8 @@ def test_a_motion_and_a_scaling_law_that_refute_one_claim_are_one_error() -> Non
     (broken,) = [c for c in one.causes if c.claim == "durations-110" and c.rule == "TG201"]
     assert [c.claim for c in broken.consequences] == ["limits-kept"]
     changes = [e.change for e in broken.explanations]
-    assert changes[0] == "The durations of segments 1 and 3 may have been exchanged in print."
-    assert broken.explanations[0].effect == "Then every limit is kept."
+    assert changes[0] == "Durations 1 and 3 may have been exchanged in print."
+    assert broken.explanations[0].effect == "Then every limit is kept, under reading waypoints-rad."
     assert "0.4854 in place of 0.3854" in changes[1]
 
 
@@ -121,7 +123,7 @@ def test_exchanged_durations_are_the_first_explanation() -> None:
     one = judged("0, 3, 4", "1.9", '"1.000", "3.000"', '"4.000"', "within_limits")
     (cause,) = one.causes
     first = cause.explanations[0]
-    assert first.change == "The durations of segments 1 and 2 may have been exchanged in print."
+    assert first.change == "Durations 1 and 2 may have been exchanged in print."
     assert first.effect == "Then every limit is kept."
     kept = judged("0, 3, 4", "1.9", '"3.000", "1.000"', '"4.000"', "within_limits")
     assert kept.causes == ()

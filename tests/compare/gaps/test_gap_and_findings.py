@@ -103,6 +103,15 @@ def test_a_claim_that_depends_on_the_reading_names_each_reading_with_its_word() 
     assert judged.readings == {"a": S, "b": R}
 
 
+def test_what_holds_under_some_readings_alone_has_them_before_it() -> None:
+    findings = [finding(R, r, message="one of three.") for r in ("a", "b")]
+    findings += [finding(R, "c", message="another."), finding(R, None, message="always.")]
+    findings += [finding(R, r, message="each.") for r in ("a", "b", "c")]
+    assert judge("c", findings, ["a", "b", "c"]).why == (
+        "Under 2 of 3 readings: one of three. Under reading c: another. always. each."
+    )
+
+
 def test_one_supporting_reading_of_sixteen_supports_nothing() -> None:
     readings = [str(k) for k in range(16)]
     assert judge("c", [finding(S, "3")], readings).verdict is D

@@ -224,6 +224,9 @@ FOREIGN = """
 :verdict: supported, refuted, depends on the reading
 ```
 
+```{trajgap-readings} irb460-pso-353
+```
+
 ```{trajgap-waterfall} irb460-pso-353
 :problem: limit-80
 ```
@@ -273,6 +276,8 @@ def test_a_foreign_project_shows_an_audit(tmp_path):
     assert case["card"]["errors"][0].split(":")[0] in page
     assert case["provenance"]["date"] in page
     assert "<svg" in page
+    assert case["readings"]["default_why"].split(".")[0] in page
+    assert page.count("<code") >= len(case["readings"]["outcomes"]) == page.count("<p>Table 4, ")
     assert 'aria-labelledby="' in page
     assert "Proved again when this page was built" in page
     assert page.count("certified</span>") > 40  # the suite's table, of 46
