@@ -16,6 +16,7 @@ from ..documents import ClaimVerdict, Keeping, counted, more_errors, worth
 from ..pictures import waterfall_picture
 from .parts import badge, paragraph, picture, table
 from .proofs import proved_again
+from .reasons import reasons
 from .results import Results, distance_of, waterfall_of
 from .suite import InstanceShown, SuiteTable
 
@@ -90,7 +91,7 @@ class Claims(FromResults):
             head += nodes.Text(f" {claim['text']}")
             place = ". ".join(filter(None, (claim["where"], claim["printed"], _holds(verdict))))
             place = f"{place[:1].upper()}{place[1:]}"
-            box += [head, paragraph(place, "trajgap-beside"), paragraph(verdict["why"])]
+            box += [head, paragraph(place, "trajgap-beside"), *reasons(case, verdict)]
             for caveat in verdict["caveats"]:
                 # One long reason is told once.
                 short = f"{caveat.partition(':')[0]} (see above)." if caveat in told else caveat

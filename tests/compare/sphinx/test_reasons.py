@@ -1,0 +1,50 @@
+"""Reasons of a verdict on a page: the default reading's first, many others folded."""
+
+from __future__ import annotations
+
+from docutils import nodes
+from trajgap.compare.sphinx.reasons import reasons
+
+
+def finding(reading: str | None, message: str, verdict: str = "refuted", **changes: object):
+    one = {"claim": "c", "decides": True, "verdict": verdict, "reading": reading}
+    return {**one, "message": message, **changes}
+
+
+VERDICT = {"claim": "c", "why": "all of it", "readings": dict.fromkeys("abcd", "refuted")}
+
+
+def texts(case: dict) -> list[str]:
+    return [node.astext() for node in reasons(case, VERDICT)]
+
+
+def test_few_reasons_are_told_as_they_are() -> None:
+    case = {"readings": None, "findings": [finding("a", "one."), finding("b", "two.")]}
+    assert texts(case) == ["all of it"]
+
+
+def test_of_many_reasons_the_default_stands_first_and_the_others_are_folded() -> None:
+    found = [
+        finding("d", "kept.", "supported"),
+        finding("a", "one."),
+        finding("b", "two."),
+        finding("c", "two."),
+        finding("a", "of another claim.", claim="other"),
+        finding("a", "decides nothing.", decides=False),
+        finding("a", "says nothing.", "not checkable"),
+    ]
+    case = {"readings": {"default": "b"}, "findings": found}
+    lead, opening, folded, closing = reasons(case, VERDICT)
+    assert lead.astext() == "Refuted under readings b, c: two."
+    assert opening.astext() == "<details><summary>2 more reasons</summary>"
+    assert [one.astext() for one in folded.findall(nodes.paragraph)] == [
+        "Refuted under reading a: one.",
+        "Supported under reading d: kept.",
+    ]
+    assert closing.astext() == "</details>"
+
+
+def test_what_needs_no_reading_stands_first() -> None:
+    found = [finding("a", "one."), finding("b", "two."), finding(None, "three.")]
+    case = {"readings": {"default": "d"}, "findings": found}
+    assert texts(case)[0] == "Refuted under every reading: three."
