@@ -140,6 +140,7 @@ def _within(study: Study, sets: Sequence[DurationsClaim | MaximumClaim]) -> str:
         for one in sets
         if study.has_durations(one)
         for pair in study.claim_pairs(one)
+        if study.unmoved(one, *pair) is None
     ]
     return "" if all(printed) else " within rounding"
 
