@@ -40,6 +40,17 @@ def hull(number: Printed) -> Interval:
     return Interval(min(a.lower, b.lower), max(a.upper, b.upper))
 
 
+def _raised(number: Printed) -> Interval:
+    """Every value that gives the printed digits if what is left over is rounded up, not off.
+
+    Times are often printed so, for a longer motion keeps the limits too.
+    """
+    value = number.fraction
+    return (
+        Interval(value - number.unit, value) if value >= 0 else Interval(value, value + number.unit)
+    )
+
+
 def _either(a: Interval, b: Interval) -> Interval:
     """The least interval that holds two."""
     return Interval(min(a.lower, b.lower), max(a.upper, b.upper))
@@ -71,11 +82,13 @@ def compared(
     root: str,
     plain: str = "",
     mixed: Interval | None = None,
+    coarser: bool = False,
 ) -> Finding:
     """A printed number against the interval that its printed ingredients allow.
 
     ``plain`` is what the digits as printed give, shown where the printed number is another;
-    ``mixed`` is what the ingredients allow, each rounded or cut off, if that is more than both.
+    ``mixed`` is what the ingredients allow, each rounded or cut off, if that is more than both;
+    ``coarser`` says that the number has fewer digits than they, and may have been rounded up.
     """
     digits, computed = f"{printed} {unit}", f"{span(rounded)} {unit}"
     verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
@@ -99,9 +112,15 @@ def compared(
             f"{what} allows {computed} with rounded digits; printed is {digits}, which fits only "
             f"if some digits are rounded and others cut off ({span(whole)} {unit})."
         )
+    elif coarser and meet(_raised(printed), whole):
+        severity, kind = Severity.WARNING, "fits rounded up"
+        message = (
+            f"{what} allows {computed} with rounded digits; printed is {digits}, which fits only "
+            f"if it was rounded up ({span(whole)} {unit})."
+        )
     else:
         verdict, severity, kind = ClaimVerdict.REFUTED, Severity.ERROR, "does not fit"
-        message = f"{what} allows {computed}; printed is {digits}, rounded or cut off."
+        message = f"{what} allows {computed}; printed is {digits}, however it was rounded."
     return Finding(
         rule=rule,
         severity=severity,
@@ -129,6 +148,7 @@ def _sums(study: Study) -> Iterator[Finding]:
                 study.time_unit,
                 f"{SUM} {claim.id}",
                 str(sum(d.decimal for d in claim.durations)),
+                coarser=claim.total.unit > max(d.unit for d in claim.durations),
             )
 
 

@@ -151,6 +151,28 @@ def test_a_sum_at_the_edge_of_its_rounding_shows_the_plain_sum(total: str, word:
     assert word in found.message
 
 
+@pytest.mark.parametrize(
+    ("total", "verdict"),
+    [
+        ("2.221", ClaimVerdict.SUPPORTED),  # 2.2202 rounded up to a millisecond
+        ("2.219", ClaimVerdict.REFUTED),
+        ("2.222", ClaimVerdict.REFUTED),
+        ("2.2205", ClaimVerdict.REFUTED),  # of as many digits as its parts: nothing to round up
+    ],
+)
+def test_a_total_of_fewer_digits_than_its_parts_may_be_rounded_up(
+    total: str, verdict: ClaimVerdict
+) -> None:
+    text = one_joint("0, 1, 3", "1.9", "x", "optimal").replace(
+        'durations = ["x"]', SUM.format(total)
+    )
+    (found,) = said_of(study_of(text), judge_digits, "d", "TG101")
+    assert found.verdict is verdict
+    if verdict is ClaimVerdict.SUPPORTED:
+        assert found.severity is Severity.WARNING
+        assert "fits only if it was rounded up" in found.message
+
+
 EXCHANGED = """
 [[claims]]
 id = "before"
