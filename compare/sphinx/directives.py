@@ -130,7 +130,7 @@ class Readings(FromResults):
         head += nodes.Text(f": {said['default_why']}" if said["default_why"] else ".")
         rows = [_under(case, outcome) for outcome in said["outcomes"]]
         columns = ("reading", "durations of", "limits", "largest ratio", "shortest, s", "evidence")
-        return [head, table(columns, rows, "trajgap-facts")] if rows else [head]
+        return [head, table(columns, rows)] if rows else [head]
 
 
 def _under(case: dict[str, Any], outcome: dict[str, Any]) -> list[Any]:
