@@ -22,7 +22,7 @@ from .curves import (
     tops,
 )
 from .errors import CurveError
-from .limits import QUANTITIES
+from .limits import QUANTITIES, half_range
 from .problem import Problem
 
 TOLERANCE = 1e-9
@@ -243,11 +243,6 @@ def _derivative_peaks(
     return peaks
 
 
-def _half_range(low: float, high: float, limit: float) -> float:
-    """What an excess of position is set beside, so that its ratio is 1 at the limit."""
-    return float((high - low) / 2) if np.isfinite(high - low) else max(1.0, abs(limit))
-
-
 def _position_peaks(
     problem: Problem,
     h: Array,
@@ -264,7 +259,7 @@ def _position_peaks(
             if not np.isfinite(limit):
                 continue
             excess = sign * (top.value - limit)
-            half = _half_range(low, high, limit)
+            half = half_range(low, high, limit)
             bound = float(error[:, 0, j].max())
             ratio = 1.0 + excess / half if half > 0 else _ratio(excess, 0.0, bound)
             at = problem.curve.segment_of(h, top)
@@ -279,7 +274,7 @@ def _slack(problem: Problem, peak: Peak) -> float:
     scale = peak.limit
     if peak.quantity == "position":
         limits, j = problem.limits, problem.joints.index(str(peak.joint))
-        scale = _half_range(limits.position_lower[j], limits.position_upper[j], peak.limit)
+        scale = half_range(limits.position_lower[j], limits.position_upper[j], peak.limit)
     return peak.error / scale if scale else 0.0
 
 

@@ -101,3 +101,8 @@ class Limits:
         """Copy with the derivative limits replaced by ``values``, shape (joints, 3)."""
         v = np.asarray(values, dtype=np.float64)
         return replace(self, velocity=v[:, 0], acceleration=v[:, 1], jerk=v[:, 2])
+
+
+def half_range(low: float, high: float, limit: float) -> float:
+    """What an excess of position is set beside, so that its ratio is 1 at the limit."""
+    return float((high - low) / 2) if np.isfinite(high - low) else max(1.0, abs(limit))

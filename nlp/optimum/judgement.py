@@ -21,6 +21,9 @@ POLISHED = 1e-11
 """KKT residual above which an answer is sharpened by Newton steps on its active set."""
 BLURRED = 1e-6
 """Relative length by which rounding may set an optimum apart from the tight motion beside it."""
+_ON_FLOOR = 1.01
+"""Durations over a made-up least one up to which it counts as met: interior points end beside it,
+and floors lie orders of magnitude below durations that any limit asks for."""
 
 
 def judged(problem: Problem, found: list[Local], floor: Array, starts: int) -> Solution:
@@ -73,11 +76,9 @@ def judged(problem: Problem, found: list[Local], floor: Array, starts: int) -> S
         jumps = sum(jump.order < 2 for jump in verdict.jumps)
         note = f"limits kept inside the segments; {jumps} jumps of velocity between them"
         why = note if why is None else f"{why}; {note}"
-    shrinking = np.flatnonzero((floor > 0) & (durations <= 1.01 * floor)).tolist()
-    if shrinking:
-        status = Status.NOT_ATTAINED
-        names = ", ".join(str(k + 1) for k in shrinking)
-        why = f"the total falls as the duration of segment {names} goes to 0"
+    falling = still_falling(durations, floor)
+    if falling is not None:
+        status, why = Status.NOT_ATTAINED, falling
     return Solution(
         problem,
         status,
@@ -92,6 +93,28 @@ def judged(problem: Problem, found: list[Local], floor: Array, starts: int) -> S
         iterations=iterations,
         totals=tuple(local.total if local.feasible else float("inf") for local in found),
     )
+
+
+def still_falling(durations: Array, floor: Array) -> str | None:
+    """Why an answer is no shortest motion: a duration lies on a least one that the search made up.
+
+    Parameters
+    ----------
+    durations : ndarray, shape (segments,)
+        s.
+    floor : ndarray, shape (segments,)
+        Least durations, s, that the search made up; 0 where the problem itself sets one.
+
+    Returns
+    -------
+    str or None
+        None where every duration is longer than its made-up least one.
+    """
+    on_floor = np.flatnonzero((floor > 0) & (durations <= _ON_FLOOR * floor)).tolist()
+    if not on_floor:
+        return None
+    names = ", ".join(str(k + 1) for k in on_floor)
+    return f"the total falls as the duration of segment {names} goes to 0"
 
 
 def _past_rounding(problem: Problem, local: Local) -> Local:

@@ -12,7 +12,7 @@ from .asked import Ask
 from .clock import time_up
 from .decided import decided, kept
 from .exact_multistart import made_up
-from .judgement import BLURRED, KKT_TOLERANCE, SAME
+from .judgement import BLURRED, KKT_TOLERANCE, SAME, still_falling
 from .long_search import LongLocal, long_search, way_start
 from .solution import Solution, Status
 from .starts import SETTLED_SEGMENTS, equal_start
@@ -127,11 +127,9 @@ def _judged(problem: Problem, local: LongLocal, floor: Array) -> Solution | None
     elif beyond > KKT_TOLERANCE:
         why = f"longer by {beyond:.1e} (relative) than a tight motion, which rounding errors blur"
         status = Status.FEASIBLE if beyond > BLURRED else status
-    shrinking = np.flatnonzero((floor > 0) & (h <= 1.01 * floor)).tolist()
-    if shrinking:
-        status = Status.NOT_ATTAINED
-        names = ", ".join(str(k + 1) for k in shrinking)
-        why = f"the total falls as the duration of segment {names} goes to 0"
+    falling = still_falling(h, floor)
+    if falling is not None:
+        status, why = Status.NOT_ATTAINED, falling
     return Solution(
         problem,
         status,

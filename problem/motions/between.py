@@ -14,13 +14,13 @@ import numpy as np
 
 from ..checker import Verdict
 from ..curves import divided_extremes
+from ..limits import half_range
 from .joint_limits import BRAKING, ORDERS, JointLimits
 from .judged import (
     MOTION_TOLERANCE,
     MotionCheck,
     MotionPeak,
     check_same_joints,
-    half_range,
     joined,
     peak,
     slow_down,

@@ -11,6 +11,7 @@ from ..arrays import Array
 from ..checker import Verdict
 from ..curves import PERM, one_sided_extreme, piece_extremes
 from ..errors import TrajgapError
+from ..limits import half_range
 from .floor import Floor, least_time
 from .joint_limits import BRAKING, ORDERS, JointLimits
 from .motion import Motion
@@ -286,11 +287,6 @@ def _one_sided(motion: Motion, limits: JointLimits, j: int, standing: float) -> 
         sign_of = -1.0 if place[2] < 0 else 1.0
         peaks.append(replace(one, value=sign_of * one.value, limit=sign_of * one.limit))
     return peaks
-
-
-def half_range(low: float, high: float, limit: float) -> float:
-    """What an excess of position is set beside, so that its ratio is 1 at the limit."""
-    return float((high - low) / 2) if np.isfinite(high - low) else max(1.0, abs(limit))
 
 
 def peak(

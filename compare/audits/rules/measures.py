@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ....problem import QUANTITIES, Array, Printed, Trajectory, fit
-from ....problem.cases import AnyClaim, MeasureClaim, motions_of
+from ....problem.cases import AnyClaim, MeasureClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..study import Study
-from .peaks import has_curve, peak_numbers
+from .peaks import each_motion, has_curve, peak_numbers
 from .printed_digits import hull
 from .wording import called, in_units, unit_shown
 
@@ -31,6 +31,8 @@ NAMES = {
     "integral-square": "integral of the square",
 }
 """Each measure in words."""
+_NO_MOTION = "No durations are printed of whose motion this could be measured."
+"""Said of a measure where nothing defines a motion."""
 
 
 @dataclass(frozen=True)
@@ -157,18 +159,7 @@ class _Beside:
 
 def judge_measures(study: Study) -> Iterator[Finding]:
     """Findings of TG208."""
-    for claim in study.claims:
-        if isinstance(claim, MeasureClaim):
-            meant = motions_of(study.case.claims, claim)
-            for motion in meant:
-                yield from _measures(study, claim, motion)
-            if not meant:
-                yield Finding(
-                    rule="TG208",
-                    basis=Basis.TEXT,
-                    claim=claim.id,
-                    message="No durations are printed of whose motion this could be measured.",
-                )
+    return each_motion(study, MeasureClaim, _measures, "TG208", _NO_MOTION)
 
 
 def _measures(study: Study, claim: MeasureClaim, motion: AnyClaim) -> Iterator[Finding]:

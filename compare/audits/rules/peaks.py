@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import cached_property
 from math import pi
+from typing import TypeVar
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from ..study import Study
 from .norms import largest_norm
 from .wording import called, in_units, unit_shown
 
+_Value = TypeVar("_Value", bound=MotionValueClaim)
 _SAMPLES = 50
 """Samples of a motion at the coarsest: fewer would show corners in a printed figure."""
 _PHASES = 8
@@ -36,6 +38,8 @@ _NEAR_FACTOR = 0.01
 
 _WIDE = 0.05
 """Share of a peak above which the room that digits leave is said: what then fits tells little."""
+_NO_MOTION = "No durations are printed whose motion could have this peak."
+"""Said of a peak where nothing defines a motion."""
 
 
 class Class(StrEnum):
@@ -237,20 +241,29 @@ def peak_numbers(study: Study, claim: MotionValueClaim) -> list[tuple[str | None
     return list(zip(study.case.robot.joints, claim.values, strict=True))
 
 
-def judge_peaks(study: Study) -> Iterator[Finding]:
-    """Findings of TG203."""
+def each_motion(
+    study: Study,
+    kind: type[_Value],
+    judge: Callable[[Study, _Value, AnyClaim], Iterator[Finding]],
+    rule: str,
+    without: str,
+) -> Iterator[Finding]:
+    """Findings on each claim of a kind beside each motion that it may describe.
+
+    ``without`` is said of a claim where nothing printed defines such a motion.
+    """
     for claim in study.claims:
-        if isinstance(claim, PeakClaim):
+        if isinstance(claim, kind):
             meant = motions_of(study.case.claims, claim)
             for motion in meant:
-                yield from _peaks(study, claim, motion)
+                yield from judge(study, claim, motion)
             if not meant:
-                yield Finding(
-                    rule="TG203",
-                    basis=Basis.TEXT,
-                    claim=claim.id,
-                    message="No durations are printed whose motion could have this peak.",
-                )
+                yield Finding(rule=rule, basis=Basis.TEXT, claim=claim.id, message=without)
+
+
+def judge_peaks(study: Study) -> Iterator[Finding]:
+    """Findings of TG203."""
+    return each_motion(study, PeakClaim, _peaks, "TG203", _NO_MOTION)
 
 
 def _peaks(study: Study, claim: PeakClaim, motion: AnyClaim) -> Iterator[Finding]:

@@ -164,8 +164,8 @@ class _Search:
         session.check_clock()
         own, upper = target / self.units.time, session.upper
         look = 0.0 if upper is None else float(upper / self.units.time) * (1.0 - _SLIGHT)
-        question = Stage(self.steps, self.limits, float(own), self.library.terms, look)
-        root = Root(np.array([float(x) for x in self.low]), np.full(len(self.low), question.total))
+        stage = Stage(self.steps, self.limits, float(own), self.library.terms, look)
+        root = Root(np.array([float(x) for x in self.low]), np.full(len(self.low), stage.total))
 
         def watch(waiting: int, boxes: int) -> float:
             session.report(waiting, session.nodes + boxes)
@@ -173,7 +173,7 @@ class _Search:
             return session.request.seconds - session.seconds
 
         leaves = search_all(
-            question, root, lambda h: self._look(h, look), watch, self.executor, self.workers
+            stage, root, lambda h: self._look(h, look), watch, self.executor, self.workers
         )
         return Tree(self.units, own, self.low, self.library, leaves)
 

@@ -95,30 +95,30 @@ class Part:
     code: int
 
 
-def search_part(question: Stage, root: Root, seconds: float) -> Part:
+def search_part(stage: Stage, root: Root, seconds: float) -> Part:
     """Search below a box until it is empty, `_PART` boxes are visited or time is up.
 
     Parameters
     ----------
-    question : Stage
+    stage : Stage
     root : Root
     seconds : float
 
     Returns
     -------
     Part
-        But for the clock, a function of question and root alone.
+        But for the clock, a function of stage and root alone.
     """
     ends = time.monotonic() + seconds
-    n, joints = question.steps.shape
+    n, joints = stage.steps.shape
     low, high = (np.zeros((_STACK - root.height, n)) for _ in range(2))
     low[0], high[0] = root.low, root.high
     depth, counts = np.array([1]), np.zeros(3, np.int64)
     leaves, seen = Leaves.empty(), root.seen
     while True:
-        look = question.look if root.wary and not seen else 0.0
+        look = stage.look if root.wary and not seen else 0.0
         code = search(
-            n, joints, question.steps, question.limits, question.total, question.windows,
+            n, joints, stage.steps, stage.limits, stage.total, stage.windows,
             low, high, depth, 1 if seen else _CHUNK, look, *leaves.arrays, counts,
         )  # fmt: skip
         if code == FULL:
@@ -136,7 +136,7 @@ def search_part(question: Stage, root: Root, seconds: float) -> Part:
 
 
 def search_all(
-    question: Stage,
+    stage: Stage,
     root: Root,
     look: Callable[[Array], bool],
     watch: Callable[[int, int], float],
@@ -147,10 +147,10 @@ def search_all(
 
     Parameters
     ----------
-    question : Stage
+    stage : Stage
     root : Root
     look : callable
-        Given durations whose total seems to be below ``question.look``: whether to go on looking.
+        Given durations whose total seems to be below ``stage.look``: whether to go on looking.
         It raises `Shorter` where they are what they seem to be.
     watch : callable
         Given the roots that wait and the boxes visited since it was last asked: the seconds left.
@@ -181,7 +181,7 @@ def search_all(
             while waiting and len(running) < _AHEAD * workers:
                 place, one = heapq.heappop(waiting)
                 if ended is None or place < ended[0]:
-                    running[executor.submit(search_part, question, one, left)] = place
+                    running[executor.submit(search_part, stage, one, left)] = place
             for future in wait(running, _LOOK, FIRST_COMPLETED).done:
                 place, part = running.pop(future), future.result()
                 boxes += part.boxes
