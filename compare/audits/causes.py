@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from ...problem import TrajgapError
 from ...problem.cases import AnyClaim, ImprovementClaim, MaximumClaim, StatementClaim
 from ..documents import (
     Cause,
@@ -152,9 +153,17 @@ def _jumps(study: Study, claim: AnyClaim, rid: str) -> bool:
     """Whether the velocity of a motion that a claim speaks about jumps under a reading."""
     about = [claim, *(study.case.claim(i) for i in _rests_on(claim))]
     return any(
-        any(jump.order == 1 for jump in study.claim_check(one, pid, rid).jumps)
+        _jumping(study, one, pid, rid)
         for one in about
         if study.has_durations(one)
         for pid, reading in study.claim_pairs(one)
-        if reading == rid and study.unmoved(one, pid, rid) is None
+        if reading == rid
     )
+
+
+def _jumping(study: Study, claim: AnyClaim, pid: str, rid: str) -> bool:
+    try:
+        found = study.claim_check(claim, pid, rid)
+    except TrajgapError:  # the printed numbers define no motion, as a finding says
+        return False
+    return any(jump.order == 1 for jump in found.jumps)

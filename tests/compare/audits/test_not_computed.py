@@ -187,3 +187,46 @@ def test_an_algorithm_that_nothing_replays_is_named_with_the_nearest_kind() -> N
     unnamed = parse_case(BASE.replace('kind = "pso"\n', ""), "base.toml")
     assert Study(unnamed).not_replayed == ("PSO: the case file names no kind.",)
     assert Study(parse_case(BASE, "base.toml")).not_replayed == ()
+
+
+def test_printed_points_that_define_no_curve_leave_the_rest_to_be_judged() -> None:
+    """Paper 4414: two way-points were apart before they were rounded, and the curve needs that."""
+    text = """format = 1
+id = "rounded-together"
+title = "Two way-points that rounding put together"
+[source]
+[robot]
+name = "arm"
+joints = ["1"]
+[units]
+position = "rad"
+velocity = "rad/s"
+time = "s"
+[waypoints]
+joint_rows = [["0.91", "0.28", "1.51", "1.51", "1.12"]]
+[limits]
+velocity = [0.73]
+[interpolant]
+family = "clamped-b-spline"
+degree = 4
+knots = "averaged-continued"
+parameters = "chord"
+time = "timed"
+[[claims]]
+id = "fast"
+quantity = "durations"
+where = "Table 1"
+durations = ["2.820", "4.246", "2.575", "2.085"]
+total = "11.727"
+[[claims]]
+id = "smooth"
+quantity = "statement"
+where = "text"
+checks = "continuous"
+of = ["fast"]
+"""
+    found = audit(parse_case(text, "together.toml"), certify_seconds=0).cases[0]
+    words = {j.claim: j.verdict for j in found.judgements}
+    assert words == {"fast": ClaimVerdict.SUPPORTED, "smooth": ClaimVerdict.NOT_CHECKABLE}
+    why = next(j.why for j in found.judgements if j.claim == "smooth")
+    assert "2 and 3 coincide" in why
