@@ -13,7 +13,7 @@ from .cases import (
     scaffold,
 )
 from .characters import escaped, visible
-from .checker import TOLERANCE, Check, Jump, Peak, Verdict, check
+from .checker import TOLERANCE, Check, Peak, Verdict, check
 from .curves import (
     ClampedBSpline,
     ClampedReading,
@@ -58,6 +58,7 @@ from .files import (
     try_writing_in,
 )
 from .gradient import peak_gradients
+from .jumps import Jump
 from .limits import QUANTITIES, Limits
 from .printed import Interval, Printed, down, up
 from .problem import Coupling, Problem
