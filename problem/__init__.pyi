@@ -44,7 +44,7 @@ from .curves import (
 )
 from .errors import CaseError, CurveError, ProcessError, TrajgapError
 from .evaluation import Evaluation, evaluate, keeps_limits, reachable_total
-from .fields import Strict
+from .fields import LimitPair, Strict
 from .file_names import LONGEST_NAME, file_name
 from .files import (
     check_name,
@@ -114,6 +114,7 @@ __all__ = [
     "JointKind",
     "Jump",
     "Knots",
+    "LimitPair",
     "Limits",
     "Measured",
     "Parameters",

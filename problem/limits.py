@@ -137,7 +137,16 @@ class Limits:
     @property
     def uneven(self) -> bool:
         """Whether some lower limit of a derivative differs in size from its upper one."""
-        return any(self.__dict__[name].ndim == 2 for name in QUANTITIES)
+        return any(map(self.is_uneven, QUANTITIES))
+
+    def ends(self, quantity: str) -> tuple[Array, Array]:
+        """Least and largest value of a derivative, shape (joints,) each, signed."""
+        below, above = self.sides[:, :, QUANTITIES.index(quantity)]
+        return -below, above
+
+    def is_uneven(self, quantity: str) -> bool:
+        """Whether the lower limit of a derivative differs in size from the upper one."""
+        return bool(self.__dict__[quantity].ndim == 2)
 
     @property
     def derivatives(self) -> Array:

@@ -252,7 +252,7 @@ def _unit_curves(proof: type[_ThreePieces]) -> Curves:
     unit = [[Fraction(int(i == j)) for j in range(4)] for i in range(4)]
     none: list[Bounds] = [None] * 4
     problem = StatedProblem(
-        unit, [none[:3]] * 4, [none, none], [Fraction(0)] * 3, [None] * 3,
+        unit, [none[:3]] * 4, [[none[:3]] * 4] * 2, [none, none], [Fraction(0)] * 3, [None] * 3,
         _at_rest(proof.degrees), None, (None, None),
     )  # fmt: skip
     nodes = [Fraction(x) for x in (1, 2, 3)]

@@ -12,9 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....problem import TrajgapError, Verdict, check
+from ..certifier import Certifier
 from ..exact import ExactProblem
 from ..rounding import down
-from ..session import Certifier, Ladder, OutOfTime, Session, Shorter
+from ..session import Ladder, OutOfTime, Session, Shorter
 from .boxes import Boxes, Proof, Proposer
 from .ratios import shape_of
 from .rows import STRICT, shape_for
