@@ -35,6 +35,9 @@ class Certifier:
         What its interval speaks about.
     instant : bool
         Whether it is a closed form.
+    sided : bool
+        Whether its bounds know lower and upper limits that differ in size. If not, they are proved
+        within the larger of both, which is sound and wider.
     """
 
     family: str
@@ -43,6 +46,7 @@ class Certifier:
     prove: Callable[[Session], bool]
     subject: Subject = Subject.DECLARED
     instant: bool = False
+    sided: bool = False
 
     def run(self, exact: ExactProblem, request: Request) -> Certified:
         """Prove an interval of the optimum; the time limit and Ctrl-C end it with what is proved.
@@ -52,7 +56,7 @@ class Certifier:
         TrajgapError
             If the state to go on from does not prove what it says.
         """
-        if exact.pairs and not self.instant:
+        if exact.pairs and not self.sided:
             return self._run_wider(exact, request)
         session = Session(exact, request)
         try:

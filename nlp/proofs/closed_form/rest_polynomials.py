@@ -181,5 +181,6 @@ REST_TO_REST = Certifier(
     lambda _: None,
     proving("rest-to-rest", _closed_form),
     instant=True,
+    sided=True,
 )
 """Rest at every way-point makes each segment a formula, whatever the odd degree."""

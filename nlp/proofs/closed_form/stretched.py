@@ -45,5 +45,6 @@ STRETCHED = Certifier(
     lambda _: None,
     proving("stretched", _closed_form),
     instant=True,
+    sided=True,
 )
 """One curve alone: its segments do not know of each other, so that each is a formula."""
