@@ -84,4 +84,4 @@ class Certifier:
             with suppress(KeyboardInterrupt, OutOfTime):
                 session.seek()
         found = session.result(False, self.subject)
-        return replace(found, stopped=wide.stopped, proposals=wide.proposals)
+        return replace(found, stopped=wide.stopped, proposals=wide.proposals, widened=True)

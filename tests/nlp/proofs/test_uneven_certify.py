@@ -103,6 +103,7 @@ def test_other_kinds_prove_within_the_larger_size() -> None:
     found = certify(problem, seconds=60.0)
     assert found.outcome is Outcome.INTERVAL
     assert found.upper is not None
+    assert found.widened
     total, hull = solve(problem).total_time, solve(problem.hull).total_time
     assert hull < total * (1 - 1e-4)
     assert 0.99 * hull < float(found.lower) <= hull * (1 + 1e-9)
