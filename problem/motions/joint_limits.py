@@ -104,11 +104,13 @@ class JointLimits:
     def two_sided(self) -> Limits:
         """The same limits for `Problem` and `solve`, each side of its own size.
 
-        A deceleration has no place there: where it is given, the smaller of acceleration and
-        deceleration counts on both sides.
+        A deceleration has no place there: where it is given, the smallest of it and of both sides
+        of the acceleration counts on both.
         """
         sides = np.stack([-self.lower[:, 1:], self.upper[:, 1:]])
-        sides[:, :, 1] = np.minimum(sides[:, :, 1], self.deceleration)
+        braking = np.isfinite(self.deceleration)
+        least = np.minimum(sides[:, :, 1].min(axis=0), self.deceleration)
+        sides[:, braking, 1] = least[braking]
         free = Limits(joints=len(self.joints)).with_positions(self.lower[:, 0], self.upper[:, 0])
         return free.with_sides(np.abs(sides))
 
