@@ -13,7 +13,7 @@ from .cases import (
     scaffold,
 )
 from .characters import escaped, visible
-from .checker import TOLERANCE, Check, Jump, Peak, Verdict, check
+from .checker import TOLERANCE, Check, Peak, Verdict, check
 from .curves import (
     ClampedBSpline,
     ClampedReading,
@@ -44,7 +44,7 @@ from .curves import (
 )
 from .errors import CaseError, CurveError, ProcessError, TrajgapError
 from .evaluation import Evaluation, evaluate, keeps_limits, reachable_total
-from .fields import Strict
+from .fields import LimitPair, Strict
 from .file_names import LONGEST_NAME, file_name
 from .files import (
     check_name,
@@ -58,6 +58,7 @@ from .files import (
     try_writing_in,
 )
 from .gradient import peak_gradients
+from .jumps import Jump
 from .limits import QUANTITIES, Limits
 from .printed import Interval, Printed, down, up
 from .problem import Coupling, Problem
@@ -113,6 +114,7 @@ __all__ = [
     "JointKind",
     "Jump",
     "Knots",
+    "LimitPair",
     "Limits",
     "Measured",
     "Parameters",

@@ -10,20 +10,19 @@ from numpy.typing import ArrayLike, NDArray
 
 from .arrays import Array
 from .curves import (
-    MANY_PIECES,
     Extremum,
     Trajectory,
     as_durations,
     extrema,
     largest,
     largest_of_each,
-    may_jump,
-    step_sizes,
     tops,
 )
 from .errors import CurveError
+from .jumps import Jump, jumps_of, of_many
 from .limits import QUANTITIES, half_range
 from .problem import Problem
+from .uneven_peaks import uneven_peaks
 
 TOLERANCE = 1e-9
 """Relative excess over a limit that still counts as keeping it."""
@@ -58,9 +57,9 @@ class Peak:
     time : float or None
         Where on the trajectory, s.
     value, limit : float
-        In rad, s.
+        In rad, s; the limit of a derivative as a size, that of the side with the larger ratio.
     ratio : float
-        |value|/limit; above 1 the limit is exceeded.
+        |value|/limit; above 1 the limit is exceeded. 0 where only the other side is limited.
     error : float
         Bound on the rounding error of ``value``.
     """
@@ -78,30 +77,6 @@ class Peak:
     def margin(self) -> float:
         """1 − ratio: what is left of the limit."""
         return 1.0 - self.ratio
-
-
-@dataclass(frozen=True)
-class Jump:
-    """A derivative that differs on the two sides of a break.
-
-    Attributes
-    ----------
-    joint : str
-    order : int
-        0 position, 1 velocity, 2 acceleration.
-    break_index : int
-        Break between two pieces of the trajectory, from 1.
-    time : float
-        s.
-    size : float
-        Value after the break less the value before it, rad/sᵒʳᵈᵉʳ.
-    """
-
-    joint: str
-    order: int
-    break_index: int
-    time: float
-    size: float
 
 
 _DERIVATIVES = ("position", *QUANTITIES)
@@ -189,16 +164,11 @@ def _ratio(value: float, limit: float, error: float) -> float:
     return abs(value) / limit
 
 
-def _of_many(trajectory: Trajectory) -> bool:
-    """Whether there are so many pieces that their extrema are found by compiled code."""
-    return trajectory.polynomial_in_time and len(trajectory.durations) >= MANY_PIECES
-
-
 def _largest_of_each(
     trajectory: Trajectory, error: Array, wanted: NDArray[np.bool_]
 ) -> list[tuple[Extremum, float]]:
     """`_largest` of each wanted derivative; plain polynomials, of few pieces, by one call."""
-    if trajectory.polynomial_in_time and not _of_many(trajectory):
+    if trajectory.polynomial_in_time and not of_many(trajectory):
         return largest_of_each(trajectory, error, wanted)
     return [_largest(trajectory, error, j, r + 1) for j, r in np.argwhere(wanted).tolist()]
 
@@ -210,7 +180,7 @@ def _largest(trajectory: Trajectory, error: Array, j: int, r: int) -> tuple[Extr
     an extremum and its error: a short segment, whose error is large but whose values are small,
     does not blur the peak of another.
     """
-    if _of_many(trajectory):
+    if of_many(trajectory):
         found = tops(trajectory, error, j, r)
         own = float(error[found.size.segment, r, j])
         return found.size, max(own, found.reach - abs(found.size.value))
@@ -219,7 +189,7 @@ def _largest(trajectory: Trajectory, error: Array, j: int, r: int) -> tuple[Extr
 
 def _outermost(trajectory: Trajectory, error: Array, j: int) -> tuple[Extremum, Extremum]:
     """Where a joint's position is least, and where it is largest."""
-    if _of_many(trajectory):
+    if of_many(trajectory):
         found = tops(trajectory, error, j, 0)
         return found.lowest, found.highest
     points = extrema(trajectory, j, 0)
@@ -232,14 +202,18 @@ def _derivative_peaks(
     trajectory: Trajectory,
     error: Array,
 ) -> list[Peak]:
-    limits = problem.limits.derivatives
-    peaks = []
-    for top, bound in _largest_of_each(trajectory, error, np.isfinite(limits)):
-        limit = float(limits[top.joint, top.order - 1])
-        ratio = _ratio(top.value, limit, bound)
+    def peak(top: Extremum, limit: float, ratio: float, bound: float) -> Peak:
         at = problem.curve.segment_of(h, top)
         label, quantity = problem.joints[top.joint], QUANTITIES[top.order - 1]
-        peaks.append(Peak(label, quantity, at, top.time, top.value, limit, ratio, bound))
+        return Peak(label, quantity, at, top.time, top.value, limit, ratio, bound)
+
+    if problem.limits.uneven:
+        sided = uneven_peaks(problem.limits, trajectory, error)
+        return [peak(p.extremum, p.size, p.ratio, p.error) for p in sided]
+    limits, peaks = problem.limits.derivatives, []
+    for top, bound in _largest_of_each(trajectory, error, np.isfinite(limits)):
+        limit = float(limits[top.joint, top.order - 1])
+        peaks.append(peak(top, limit, _ratio(top.value, limit, bound), bound))
     return peaks
 
 
@@ -289,35 +263,6 @@ def _duration_peaks(problem: Problem, h: Array) -> list[Peak]:
                 Peak(None, "duration", k, None, float(d), float(high), float(d / high), 0.0)
             )
     return peaks
-
-
-def _jumps(problem: Problem, trajectory: Trajectory, error: Array) -> list[Jump]:
-    jumps: list[Jump] = []
-    if _of_many(trajectory):
-        return _jumps_of_many(problem, trajectory, error)
-    if trajectory.polynomial_in_time and not may_jump(trajectory, error):
-        return jumps
-    for b in range(1, len(trajectory.durations)):
-        for j, label in enumerate(problem.joints):
-            for order in range(3):
-                left, right, scale = trajectory.sides(b, j, order)
-                size = right - left
-                bound = float(error[b - 1, order, j] + error[b, order, j]) + 1e-9 * scale
-                if abs(size) > bound:
-                    jumps.append(Jump(label, order, b, float(trajectory.breaks[b]), size))
-    return jumps
-
-
-def _jumps_of_many(problem: Problem, trajectory: Trajectory, error: Array) -> list[Jump]:
-    found = []
-    for order in range(3):
-        size, scale = step_sizes(trajectory, order)
-        bound = error[:-1, order] + error[1:, order] + 1e-9 * scale
-        found += [(b, j, order, size[b, j]) for b, j in np.argwhere(np.abs(size) > bound).tolist()]
-    return [
-        Jump(problem.joints[j], order, b + 1, float(trajectory.breaks[b + 1]), float(step))
-        for b, j, order, step in sorted(found)
-    ]
 
 
 def _no_curve(problem: Problem, h: Array, why: CurveError, tolerance: float) -> Check:
@@ -398,11 +343,10 @@ def check(
         *_position_peaks(problem, h, trajectory, error),
         *_duration_peaks(problem, h),
     ]
-    jumps = _jumps(problem, trajectory, error)
+    jumps = jumps_of(problem, trajectory, error)
+    jerk_limited = np.isfinite(problem.limits.sides[:, :, 2]).any(axis=0)
     serious = [
-        jump
-        for jump in jumps
-        if jump.order < 2 or np.isfinite(problem.limits.jerk[problem.joints.index(jump.joint)])
+        jump for jump in jumps if jump.order < 2 or jerk_limited[problem.joints.index(jump.joint)]
     ]
     verdict = Verdict.PASS
     for p in peaks:

@@ -23,8 +23,8 @@ class Evaluation:
     Attributes
     ----------
     ratios : ndarray, shape (batch, joints, 3)
-        max over t of |v|/V, |a|/A, |j|/J; 0 where there is no limit, inf where a duration is
-        not positive and finite.
+        max over t of |v|/V, |a|/A, |j|/J, each by the limit on its side; 0 where there is no
+        limit, inf where a duration is not positive and finite.
     """
 
     ratios: Array
@@ -64,6 +64,8 @@ def evaluate(problem: Problem, durations: ArrayLike, nodal: ArrayLike | None = N
         h = np.asarray(durations, dtype=np.float64)
     except (TypeError, ValueError):
         raise TrajgapError("durations: not numbers; give seconds, (batch, segments)") from None
+    if problem.limits.uneven:
+        return Evaluation(_uneven_ratios(problem, h, nodal))
     if nodal is None:
         values, limits, wanted, plain = _fixed_question(problem)
     else:
@@ -93,6 +95,8 @@ def keeps_limits(problem: Problem, durations: Array, tolerance: float) -> NDArra
     ndarray of bool, shape (batch,)
         Sooner than all ratios, where bounds decide: what a death penalty asks.
     """
+    if problem.limits.uneven:
+        return np.asarray((_uneven_ratios(problem, durations) <= 1 + tolerance).all(axis=(1, 2)))
     values, divisors, wanted, _ = _fixed_question(problem)
     ceilings = np.where(wanted, divisors, np.inf) * (1 + tolerance)
     peaks = problem.curve.decided_peaks(values, durations, wanted, ceilings)
@@ -101,6 +105,18 @@ def keeps_limits(problem: Problem, durations: Array, tolerance: float) -> NDArra
     # 0/0 keeps a limit of 0, inf/inf keeps nothing.
     kept: NDArray[np.bool_] = ((ratios <= 1 + tolerance) | (peaks == 0.0)).all(axis=(1, 2))
     return kept
+
+
+def _uneven_ratios(problem: Problem, h: Array, nodal: ArrayLike | None = None) -> Array:
+    """The larger ratio of both sides, shape (batch, joints, 3)."""
+    sides = problem.limits.sides
+    wanted = np.isfinite(sides)
+    extra = None if nodal is None else np.asarray(nodal, dtype=np.float64)
+    peaks = problem.curve.batch_sides(problem.waypoints, h, wanted, extra)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        ratios = peaks / np.where(wanted, sides, 1.0)[:, None]
+    ratios[np.isnan(ratios)] = 0.0  # 0/0 is kept
+    return np.asarray(ratios.max(axis=0))
 
 
 _Question = tuple[Array, Array, NDArray[np.bool_], bool]
@@ -151,6 +167,10 @@ def reachable_total(
     plain = not problem.curve.free and problem.curve.homogeneous
     if not plain or problem.limits.limits_position:
         return None
+    if problem.limits.uneven:
+        # The smaller size holds on both sides.
+        narrow = problem.limits.with_derivatives(problem.limits.sides.min(axis=0))
+        problem = replace(problem, limits=narrow)
     away = np.maximum(np.asarray(upper) - q, q - np.asarray(lower))
     unlimited = Limits(joints=points)
     cardinal = replace(

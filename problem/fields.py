@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from decimal import Decimal
 from difflib import get_close_matches
 from typing import Annotated, Any, Literal
@@ -135,6 +136,51 @@ def _upper_limit(raw: object) -> Printed | None:
     return None if raw is None or sign else _not_negative(read_number(raw))
 
 
+@dataclass(frozen=True)
+class LimitPair:
+    """The least and the largest value that a derivative may take, as printed.
+
+    Attributes
+    ----------
+    lower, upper : Printed or None
+        0 or less, and 0 or more; None where there is no limit.
+    """
+
+    lower: Printed | None
+    upper: Printed | None
+
+    def __str__(self) -> str:
+        low, high = (("-inf" if self.lower is None else self.lower), self.upper or "inf")
+        return f"[{low}, {high}]"
+
+
+_LEAST_AND_LARGEST = "give the least value, 0 or less, and the largest, 0 or more: [-15, 10]"
+"""How to fix a pair of limits."""
+
+
+def _size_or_pair(raw: object) -> Printed | LimitPair | None:
+    """One joint's limit: a size that holds on both sides, or a pair."""
+    if isinstance(raw, LimitPair):
+        return raw
+    if not isinstance(raw, list | tuple):
+        return _upper_limit(raw)
+    if len(raw) != 2:
+        raise TrajgapError(f"a pair of limits has 2 numbers, got {len(raw)}; {_LEAST_AND_LARGEST}")
+    ends = []
+    for value, sign in zip(raw, ("-", "+"), strict=True):
+        infinite = _infinite(value)
+        if infinite == sign:
+            ends.append(None)
+            continue
+        if infinite:
+            raise TrajgapError(f"{infinite}inf leaves out 0; {_LEAST_AND_LARGEST}")
+        number = read_number(value)
+        if number.fraction * (-1 if sign == "-" else 1) < 0:
+            raise TrajgapError(f"{number} leaves out 0; {_LEAST_AND_LARGEST}")
+        ends.append(number)
+    return LimitPair(*ends)
+
+
 def _position_limit(side: str) -> Any:
     def read(raw: object) -> Printed | None:
         sign = _infinite(raw)
@@ -149,6 +195,13 @@ def _plain(number: Printed | None) -> str | int | float | None:
     if number is None or not number.exact:
         return None if number is None else number.text
     return int(number.fraction) if number.fraction.denominator == 1 else number.value
+
+
+def _plain_entry(entry: Printed | LimitPair | None) -> Any:
+    if not isinstance(entry, LimitPair):
+        return _plain(entry)
+    low, high = _plain(entry.lower), _plain(entry.upper)
+    return ["-inf" if low is None else low, "inf" if high is None else high]
 
 
 _DIGITS = r"^\s*[+\-−]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?\s*$"
@@ -186,6 +239,21 @@ UpperLimit = Annotated[
 ]
 """A `Number` of 0 or more, or inf (kept as None)."""
 
+SizeOrPair = Annotated[
+    Printed | LimitPair | None,
+    PlainValidator(_size_or_pair),
+    PlainSerializer(_plain_entry),
+    WithJsonSchema(
+        {
+            "anyOf": [
+                *_LIMIT_SCHEMA["anyOf"],
+                {"type": "array", "items": _LIMIT_SCHEMA, "minItems": 2, "maxItems": 2},
+            ]
+        }
+    ),
+]
+"""An `UpperLimit`, or the least and the largest value."""
+
 LowerPosition = Annotated[
     Printed | None,
     PlainValidator(_position_limit("-")),
@@ -219,6 +287,11 @@ UNION_TAGS = ("list", "scalar")
 OneOrEachUpper = Annotated[
     Annotated[UpperLimit, Tag("scalar")]
     | Annotated[tuple[UpperLimit, ...], BeforeValidator(_nonempty), Tag("list")],
+    Discriminator(_form),
+]
+OneOrEachSized = Annotated[
+    Annotated[UpperLimit, Tag("scalar")]
+    | Annotated[tuple[SizeOrPair, ...], BeforeValidator(_nonempty), Tag("list")],
     Discriminator(_form),
 ]
 OneOrEachLength = Annotated[

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from typing import overload
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,15 +15,47 @@ QUANTITIES = ("velocity", "acceleration", "jerk")
 """The limited derivatives of the joint angle, in order of differentiation."""
 
 
-@dataclass(frozen=True, eq=False)
+class _Size:
+    """Sizes of one quantity's limits, shape (joints,); refused where the two sides differ.
+
+    Code that knows sizes alone would be wrong about a joint whose sides differ, and wrong without
+    a sign of it: here it meets an error. What knows sides reads `Limits.sides`.
+    """
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._name = name
+
+    @overload
+    def __get__(self, limits: None, owner: type) -> float: ...
+
+    @overload
+    def __get__(self, limits: Limits, owner: type) -> Array: ...
+
+    def __get__(self, limits: Limits | None, owner: type) -> Array | float:
+        if limits is None:
+            return np.inf  # the field's default
+        given: Array = limits.__dict__[self._name]
+        if given.ndim == 2:
+            raise TrajgapError(
+                f"limits.{self._name}: the lower and the upper limit of a joint differ in size, "
+                "which is not supported here; give one size, such as the smaller one"
+            )
+        return given
+
+    def __set__(self, limits: Limits, value: ArrayLike) -> None:
+        limits.__dict__[self._name] = value
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Limits:
-    """Symmetric limits on the derivatives of every joint, and a position range.
+    """Limits on the derivatives of every joint, and a position range.
 
     Parameters
     ----------
-    velocity, acceleration, jerk : array_like, shape (joints,) or scalar
-        Largest absolute value, rad/s, rad/s², rad/s³. ``inf`` means no limit; 0 means that the
-        joint must not move.
+    velocity, acceleration, jerk : array_like, shape (joints,), (joints, 2) or scalar
+        Largest absolute value, rad/s, rad/s², rad/s³; or a pair of the least and the largest value
+        for each joint, the least at most 0 and the largest at least 0. ``inf`` means no limit; 0
+        means that the joint must not move, or not to that side.
     position_lower, position_upper : array_like, shape (joints,) or scalar
         Position range, rad; infinite where there is none.
     joints : int, optional
@@ -31,12 +64,18 @@ class Limits:
     Raises
     ------
     TrajgapError
-        If a limit is not a number, NaN or negative, the range is empty, or the lengths differ.
+        If a limit is not a number, NaN or negative, a range leaves out 0 or is empty, or the
+        lengths differ. Also on reading ``velocity``, ``acceleration`` or ``jerk`` where the two
+        sides of a joint differ: there is no one size then, and `sides` gives both.
+
+    Notes
+    -----
+    Pairs of equal size are the same limits as that size, to the last bit.
     """
 
-    velocity: Array = field(default_factory=lambda: np.array(np.inf))
-    acceleration: Array = field(default_factory=lambda: np.array(np.inf))
-    jerk: Array = field(default_factory=lambda: np.array(np.inf))
+    velocity: _Size = _Size()
+    acceleration: _Size = _Size()
+    jerk: _Size = _Size()
     position_lower: Array = field(default_factory=lambda: np.array(-np.inf))
     position_upper: Array = field(default_factory=lambda: np.array(np.inf))
     joints: int | None = None
@@ -46,38 +85,93 @@ class Limits:
         arrays = {}
         for name in names:
             try:
-                arrays[name] = np.asarray(getattr(self, name), dtype=np.float64)
+                arrays[name] = np.asarray(self.__dict__[name], dtype=np.float64)
             except (TypeError, ValueError):
                 raise TrajgapError(
                     f"limits.{name}: not numbers; give one value, or one per joint"
                 ) from None
-        sizes = {a.size for a in arrays.values() if a.ndim} | (
+        sizes = {len(a) for a in arrays.values() if a.ndim} | (
             {self.joints} if self.joints is not None else set()
         )
         count = max(sizes, default=1)
         for name, array in arrays.items():
-            if array.ndim > 1 or (array.ndim == 1 and array.size != count):
+            paired = name in QUANTITIES and array.shape == (count, 2)
+            if not paired and (array.ndim > 1 or (array.ndim == 1 and array.size != count)):
                 raise TrajgapError(
                     f"limits.{name}: expected one value or {count} (one per joint), "
                     f"got shape {array.shape}"
                 )
             if np.isnan(array).any():
                 raise TrajgapError(f"limits.{name}: is NaN; write inf where there is no limit")
-            if name in QUANTITIES and (array < 0).any():
-                raise TrajgapError(
-                    f"limits.{name}: is negative; give the largest absolute value, 0 or more"
-                )
-            full = np.array(np.broadcast_to(array, (count,)))
+            if paired:
+                full = _paired(name, array)
+            else:
+                if name in QUANTITIES and (array < 0).any():
+                    raise TrajgapError(
+                        f"limits.{name}: is negative; give the largest absolute value, 0 or more"
+                    )
+                full = np.array(np.broadcast_to(array, (count,)))
             full.setflags(write=False)
             object.__setattr__(self, name, full)
         object.__setattr__(self, "joints", count)
         if (self.position_lower > self.position_upper).any():
             raise TrajgapError("limits.position_lower: lies above limits.position_upper")
 
+    def __repr__(self) -> str:
+        names = (*QUANTITIES, "position_lower", "position_upper", "joints")
+        return f"Limits({', '.join(f'{name}={self.__dict__[name]!r}' for name in names)})"
+
+    @property
+    def sides(self) -> Array:
+        """Sizes of the limits to both sides, shape (2, joints, 3): below 0, then above 0.
+
+        Velocity, acceleration and jerk must lie between ``-sides[0]`` and ``sides[1]``.
+        """
+        found = np.empty((2, int(self.joints or 1), 3))
+        for r, name in enumerate(QUANTITIES):
+            given = self.__dict__[name]
+            found[0, :, r] = given if given.ndim == 1 else np.abs(given[:, 0])
+            found[1, :, r] = given if given.ndim == 1 else given[:, 1]
+        return found
+
+    @property
+    def uneven(self) -> bool:
+        """Whether some lower limit of a derivative differs in size from its upper one."""
+        return any(map(self.is_uneven, QUANTITIES))
+
+    def ends(self, quantity: str) -> tuple[Array, Array]:
+        """Least and largest value of a derivative, shape (joints,) each, signed."""
+        below, above = self.sides[:, :, QUANTITIES.index(quantity)]
+        return -below, above
+
+    def is_uneven(self, quantity: str) -> bool:
+        """Whether the lower limit of a derivative differs in size from the upper one."""
+        return bool(self.__dict__[quantity].ndim == 2)
+
     @property
     def derivatives(self) -> Array:
-        """Velocity, acceleration and jerk limits stacked, shape (joints, 3)."""
+        """Velocity, acceleration and jerk limits stacked, shape (joints, 3).
+
+        Raises
+        ------
+        TrajgapError
+            If some are `uneven`.
+        """
         return np.stack([self.velocity, self.acceleration, self.jerk], axis=1)
+
+    @property
+    def widest(self) -> Array:
+        """The larger size of both sides, shape (joints, 3): what no motion within them exceeds."""
+        return np.asarray(self.sides.max(axis=0))
+
+    @property
+    def hull(self) -> Limits:
+        """The narrowest limits of equal sides that allow all that these allow.
+
+        Every motion within these is within those: what is proved of the shortest motion there is
+        a lower bound here. Without uneven limits they are these limits themselves.
+        """
+        return self.with_derivatives(self.widest) if self.uneven else self
 
     @property
     def limits_position(self) -> bool:
@@ -89,18 +183,48 @@ class Limits:
     def joint(self, index: int) -> Limits:
         """Limits of one joint alone."""
         one = slice(index, index + 1)
-        return Limits(
-            self.velocity[one],
-            self.acceleration[one],
-            self.jerk[one],
-            self.position_lower[one],
-            self.position_upper[one],
-        )
+        velocity, acceleration, jerk = (self.__dict__[name][one] for name in QUANTITIES)
+        low, high = self.position_lower[one], self.position_upper[one]
+        return Limits(velocity, acceleration, jerk, low, high)
 
     def with_derivatives(self, values: ArrayLike) -> Limits:
         """Copy with the derivative limits replaced by ``values``, shape (joints, 3)."""
         v = np.asarray(values, dtype=np.float64)
         return replace(self, velocity=v[:, 0], acceleration=v[:, 1], jerk=v[:, 2])
+
+    def with_sides(self, values: ArrayLike) -> Limits:
+        """Copy with the derivative limits replaced, shape (2, joints, 3) as `sides`."""
+        low, high = np.asarray(values, dtype=np.float64)
+        pairs = np.stack([-low, high], axis=-1)
+        return replace(self, velocity=pairs[:, 0], acceleration=pairs[:, 1], jerk=pairs[:, 2])
+
+    def with_positions(self, lower: ArrayLike, upper: ArrayLike) -> Limits:
+        """Copy with the position range replaced, shape (joints,) each, rad."""
+        velocity, acceleration, jerk = (self.__dict__[name] for name in QUANTITIES)
+        low, high = np.asarray(lower), np.asarray(upper)
+        return Limits(velocity, acceleration, jerk, low, high, self.joints)
+
+    def of_joints(self, count: int) -> Limits:
+        """The limits of the one joint that these are given for, for each of ``count`` joints."""
+        velocity, acceleration, jerk = (
+            np.repeat(self.__dict__[name], count, axis=0) for name in QUANTITIES
+        )
+        low, high = self.position_lower[0], self.position_upper[0]
+        return Limits(velocity, acceleration, jerk, low, high, count)
+
+
+def _paired(name: str, pairs: Array) -> Array:
+    """Checked pairs of one quantity; sizes, shape (joints,), where all sides are equal."""
+    wrong = np.argwhere((pairs[:, 0] > 0) | (pairs[:, 1] < 0))
+    if wrong.size:
+        low, high = pairs[wrong[0, 0]]
+        raise TrajgapError(
+            f"limits.{name}: {low:g} to {high:g} leaves out 0; give the least value, 0 or less, "
+            "and the largest, 0 or more"
+        )
+    if (-pairs[:, 0] == pairs[:, 1]).all():
+        return np.array(pairs[:, 1])
+    return np.array(pairs)
 
 
 def half_range(low: float, high: float, limit: float) -> float:

@@ -82,19 +82,7 @@ class Problem:
                 raise TrajgapError(
                     f"limits: given for {self.limits.joints} joints, way-points for {q.shape[1]}"
                 )
-            one = self.limits
-            object.__setattr__(
-                self,
-                "limits",
-                Limits(
-                    one.velocity[0],
-                    one.acceleration[0],
-                    one.jerk[0],
-                    one.position_lower[0],
-                    one.position_upper[0],
-                    joints=q.shape[1],
-                ),
-            )
+            object.__setattr__(self, "limits", self.limits.of_joints(q.shape[1]))
         n = self.curve.segments
         for name in ("duration_lower", "duration_upper"):
             try:
@@ -145,6 +133,14 @@ class Problem:
                 "the way-points, which is needed here"
             )
         return polynomials
+
+    @property
+    def hull(self) -> Problem:
+        """The same question within the `Limits.hull`: its optimum is a lower bound on this one's.
+
+        Without uneven limits it is this problem itself.
+        """
+        return replace(self, limits=self.limits.hull) if self.limits.uneven else self
 
     def joint(self, index: int) -> Problem:
         """The same question for one joint alone, with shared coupling."""

@@ -48,7 +48,7 @@ def check_answer(problem: StatedProblem, h: Sequence[Fraction], clock: Clock) ->
         return
     for j, curve in enumerate(pieces(problem, h, clock)):
         for order in (2, 3):
-            if problem.limits[j][order - 1] is None:
+            if all(side[j][order - 1] is None for side in problem.sides):
                 continue
             what = "velocity" if order == 2 else "acceleration"
             below = [derivative(piece, order - 1) for piece in curve]
@@ -71,9 +71,9 @@ def _keeps(
     """Refuse a piece on [0, end] that exceeds a limit; its time is counted in ``unit`` s."""
     limits = [
         (r, s, x[0] * unit**r)
-        for r, x in enumerate(problem.limits[joint], 1)
+        for s, side in ((1, problem.sides[1]), (-1, problem.sides[0]))
+        for r, x in enumerate(side[joint], 1)
         if x is not None
-        for s in (1, -1)
     ]
     low, high = (side[joint] for side in problem.position)
     limits += [] if high is None else [(0, 1, high[0])]

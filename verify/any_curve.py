@@ -242,6 +242,8 @@ def check_motion(
     Refused
         With the joint and the segment.
     """
+    alike = problem.sides[0] == problem.sides[1]
+    need(alike, "answer: lower and upper limits differ, which no answer of any curve keeps")
     asked = spans_of(problem)
     check_durations(h, asked.shortest, asked.longest)
     for j, (velocity, bend) in enumerate(zip(asked.velocity, asked.acceleration, strict=True)):

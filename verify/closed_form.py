@@ -27,8 +27,8 @@ class ClosedForm(ProofKind[None]):
         self._late = False
 
     @abstractmethod
-    def peak(self, joint: int, segment: int, order: int, place: Fraction) -> Fraction:
-        """|derivative| at a place if the segment takes 1 s."""
+    def value(self, joint: int, segment: int, order: int, place: Fraction) -> Fraction:
+        """Derivative at a place if the segment takes 1 s."""
 
     def root(self) -> None:
         """All durations."""
@@ -41,6 +41,8 @@ class ClosedForm(ProofKind[None]):
     def leaf(self, box: None, data: list[Any]) -> None:
         """[joint, order, place, least duration] of every segment: limit·hʳ ≥ |derivative|.
 
+        The limit is that on the side of the derivative.
+
         Joint −1 stands for the duration's own lower bound.
         """
         problem, n, least = self.problem, self.problem.segments, []
@@ -52,12 +54,12 @@ class ClosedForm(ProofKind[None]):
             if whole(joint, -1, problem.joints - 1) == -1:
                 need(x <= problem.shortest[k], f"segment {k + 1}: above its lower bound")
             else:
-                bound = required(
-                    problem.limits[joint][whole(order, 1, 3) - 1], "a limit that is not there"
-                )
+                r = whole(order, 1, 3)
+                value = self.value(joint, k, r, Fraction(whole(place, 0, PLACES), PLACES))
+                side = problem.sides[1 if value > 0 else 0]
+                bound = required(side[joint][r - 1], "a limit that is not there")
                 need(bound[1] > 0, "a limit that is not there")
-                value = self.peak(joint, k, order, Fraction(whole(place, 0, PLACES), PLACES))
-                proved = bound[1] * x**order <= value
+                proved = bound[1] * x**r <= abs(value)
                 need(proved, f"segment {k + 1}: its least duration is not proved")
             least.append(x)
         need(self.total <= sum(least), "the total is not proved")
@@ -79,11 +81,11 @@ class RestToRest(ClosedForm):
         super().__init__(problem, proof, total, clock)
         self._shape = _from_rest(_degree(problem))
 
-    def peak(self, joint: int, segment: int, order: int, place: Fraction) -> Fraction:
+    def value(self, joint: int, segment: int, order: int, place: Fraction) -> Fraction:
         """Of q_k + Δq·φ."""
         q = self.problem.waypoints
-        way = abs(q[segment + 1][joint] - q[segment][joint])
-        return way * abs(value_at(derivative(self._shape, order), place))
+        way = q[segment + 1][joint] - q[segment][joint]
+        return way * value_at(derivative(self._shape, order), place)
 
 
 class Stretched(ClosedForm):
@@ -102,9 +104,9 @@ class Stretched(ClosedForm):
         need(stretched, "declaration not covered: no stretched uniform cubic B-spline")
         self._curves = uniform_pieces(problem, clock)
 
-    def peak(self, joint: int, segment: int, order: int, place: Fraction) -> Fraction:
+    def value(self, joint: int, segment: int, order: int, place: Fraction) -> Fraction:
         """In the time of the segment."""
-        return abs(value_at(derivative(self._curves[joint][segment], order), place))
+        return value_at(derivative(self._curves[joint][segment], order), place)
 
 
 def _degree(problem: StatedProblem) -> int:

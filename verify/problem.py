@@ -67,6 +67,9 @@ class StatedProblem:
     ----------
     waypoints : list, [way-point][joint]
     limits : list, [joint][order − 1]
+        The larger size of both sides: a bound from below that holds within it holds here.
+    sides : list, [0 lower, 1 upper][joint][order − 1]
+        Size of the limit on each side, which an answer keeps.
     position : list, [0 lower, 1 upper][joint]
     shortest, longest : list, one per segment
     declaration : Declaration or None
@@ -79,6 +82,7 @@ class StatedProblem:
 
     waypoints: list[list[Fraction]]
     limits: list[list[Bounds]]
+    sides: list[list[list[Bounds]]]
     position: list[list[Bounds]]
     shortest: list[Fraction]
     longest: list[Fraction | None]
@@ -124,8 +128,9 @@ def read_problem(data: Any) -> StatedProblem:
     points = listed(data["waypoints"], "waypoints", MOST_SEGMENTS + 1, 2)
     q = [[number(x) for x in listed(row, "waypoints", joints, joints)] for row in points]
     rows = listed(data["limits"], "limits", joints, joints)
-    limits = [[_bounds(x) for x in listed(row, "limits", 3, 3)] for row in rows]
-    need(all(x is None or x[0] >= 0 for r in limits for x in r), "a limit is negative")
+    pairs = [[_pair(x) for x in listed(row, "limits", 3, 3)] for row in rows]
+    sides = [[[pair[side] for pair in row] for row in pairs] for side in (0, 1)]
+    limits = [[_larger(*pair) for pair in row] for row in pairs]
     position = [
         [_bounds(x) for x in listed(data[key], key, joints, joints)]
         for key in ("position_lower", "position_upper")
@@ -147,7 +152,28 @@ def read_problem(data: Any) -> StatedProblem:
         need(len(q) == n + 1 - len(declaration.virtual), "malformed: waypoints: one for each break")
         start, end = (declaration.prescribed[k].get(1) for k in (0, -1))
         curve = None
-    return StatedProblem(q, limits, position, shortest, longest, declaration, curve, (start, end))
+    return StatedProblem(
+        q, limits, sides, position, shortest, longest, declaration, curve, (start, end)
+    )
+
+
+def _pair(entry: Any) -> tuple[Bounds, Bounds]:
+    """Sizes of a lower and an upper limit, from one size or from the least and largest value."""
+    if type(entry) is not list:
+        size = _bounds(entry)
+        need(size is None or size[0] >= 0, "a limit is negative")
+        return size, size
+    low, high = (_bounds(x) for x in listed(entry, "limits", 2, 2))
+    need(low is None or low[1] <= 0, "a lower limit is positive")
+    need(high is None or high[0] >= 0, "an upper limit is negative")
+    return (None if low is None else (-low[1], -low[0])), high
+
+
+def _larger(one: Bounds, other: Bounds) -> Bounds:
+    """Bounds of the larger of two sizes; None where one of them is no limit."""
+    if one is None or other is None:
+        return None
+    return max(one[0], other[0]), max(one[1], other[1])
 
 
 def _bounds(entry: Any) -> Bounds:

@@ -160,9 +160,8 @@ class _ThreePieces(ProofKind[Square]):
             )
             limit = max(sign * x for x in ends) + STRICT
         else:
-            bound = required(
-                problem.limits[row.joint][order - 1], "a row leans on a limit that is not there"
-            )
+            side = problem.sides[(1 + row.side(q)) // 2]
+            bound = required(side[row.joint][order - 1], "a row leans on a limit that is not there")
             limit = bound[1]
             need(limit > 0, "a row leans on a limit that is not there")
         if row.kind in self.divisors:
@@ -218,6 +217,18 @@ class _Row:
     place: int
     cap: int
 
+    def side(self, q: list[Fraction]) -> int:
+        """Side of the limit that a row on a derivative leans on, ±1.
+
+        The mean speed of a piece has the sign of its way. From rest a derivative of that sign is
+        reached; to rest, seen backwards, every second one has the other sign.
+        """
+        if self.kind not in _WHOLE:
+            return self.sign
+        segment = _WHOLE[self.kind]
+        turned = self.kind == "last" and self.order == 2
+        return (1 if q[segment + 1] >= q[segment] else -1) * (-1 if turned else 1)
+
     @classmethod
     def read(cls, entry: Any, of: _ThreePieces) -> _Row:
         """Read [kind, joint, order, sign, place, cap]; "lower" has a segment for the joint."""
@@ -252,7 +263,7 @@ def _unit_curves(proof: type[_ThreePieces]) -> Curves:
     unit = [[Fraction(int(i == j)) for j in range(4)] for i in range(4)]
     none: list[Bounds] = [None] * 4
     problem = StatedProblem(
-        unit, [none[:3]] * 4, [none, none], [Fraction(0)] * 3, [None] * 3,
+        unit, [none[:3]] * 4, [[none[:3]] * 4] * 2, [none, none], [Fraction(0)] * 3, [None] * 3,
         _at_rest(proof.degrees), None, (None, None),
     )  # fmt: skip
     nodes = [Fraction(x) for x in (1, 2, 3)]

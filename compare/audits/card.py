@@ -201,7 +201,7 @@ def _in_doubt(sets: Sequence[AnyClaim], words: Mapping[str, Judgement]) -> str:
 def _limited(study: Study, pid: str, rid: str) -> bool:
     """Whether a problem limits anything that moves."""
     limits = study.problem(pid, rid).limits
-    return limits.limits_position or bool(np.isfinite(limits.derivatives).any())
+    return limits.limits_position or bool(np.isfinite(limits.sides).any())
 
 
 def _jumping(judgements: Iterable[Judgement]) -> str:

@@ -169,9 +169,11 @@ def _excesses(study: Study, claim: AnyClaim, pid: str, rid: str) -> tuple[Excess
                 ratio=float(abs(e.value) / limit),
             )
             for order, name in enumerate(QUANTITIES, start=1)
-            for j, limit in enumerate(problem.limits.derivatives[:, order - 1])
-            if np.isfinite(limit) and limit > 0
+            for j, sizes in enumerate(problem.limits.sides[:, :, order - 1].T)
+            if np.isfinite(sizes).any()
             for e in extrema(trajectory, j, order)
+            for limit in (sizes[int(e.value > 0.0)],)
+            if np.isfinite(limit) and limit > 0
         ]
     found: dict[int, Excess] = {}
     for excess in over:

@@ -178,7 +178,7 @@ def same_limits(one: Problem, other: Problem) -> bool:
     """Whether two problems have equal limits and bounds on the durations."""
     a, b = one.limits, other.limits
     return (
-        np.array_equal(a.derivatives, b.derivatives)
+        np.array_equal(a.sides, b.sides)
         and np.array_equal(a.position_lower, b.position_lower)
         and np.array_equal(a.position_upper, b.position_upper)
         and np.array_equal(one.duration_lower, other.duration_lower)

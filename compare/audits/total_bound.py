@@ -93,7 +93,8 @@ def _least_durations(problem: Problem, waypoints: RoundingBox) -> Array:
     """Durations below which the mean speed between two way-points exceeds a velocity limit."""
     least = np.zeros(problem.segments)
     breaks = problem.curve.waypoint_breaks
-    speed = np.where(problem.limits.velocity > 0.0, problem.limits.velocity, np.inf)
+    most = problem.limits.widest[:, 0]
+    speed = np.where(most > 0.0, most, np.inf)
     for w in range(len(breaks) - 1):
         if breaks[w + 1] - breaks[w] != 1:
             continue

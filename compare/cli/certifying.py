@@ -243,11 +243,20 @@ def _states(resume: Sequence[Path], asked: Sequence[Question]) -> dict[str, Stat
     return found
 
 
+WIDENED = (
+    "lower and upper limits differ, and this kind of proof takes the larger size on both sides: "
+    "the lower bound holds, and more time need not close the gap"
+)
+"""Said of intervals that are wide for another reason than time."""
+
+
 def _why(found: Certified | str) -> str | None:
     """Why a proof that was found does not count, or what the time was too short for."""
     if isinstance(found, str):
         return None
     if found.verdict is None or found.verdict.proves:
+        if found.widened and found.outcome is Outcome.INTERVAL:
+            return WIDENED
         if found.left_out is None:
             return None
         return f"{found.left_out}; --time was too short, and resume goes on with more"

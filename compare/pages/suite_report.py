@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from ...problem import Problem, visible
+from ...problem import QUANTITIES, Limits, Problem, visible
 from ...problem.suite import BenchmarkInstance, Hardness, plain_text, suite_version
 from .blocks import Block, Cell, Grid, Page, Prose, Section, Terms, number, text
 from .environment import environment, style
@@ -174,15 +174,20 @@ def _posed(problem: Problem) -> Block:
     return Grid(columns, tuple(rows))
 
 
+def _sizes(limits: Limits, quantity: str) -> list[str]:
+    """Each joint's limit in digits, with both sides where they differ in size."""
+    low, high = (x.tolist() for x in limits.ends(quantity))
+    return [
+        (f"{b:.6g}" if math.isfinite(b) else "none") if -a == b else f"{a:.6g} to {b:.6g}"
+        for a, b in zip(low, high, strict=True)
+    ]
+
+
 def _limits(problem: Problem) -> Block:
     limits = problem.limits
-    own = {"velocity": limits.velocity, "acceleration": limits.acceleration, "jerk": limits.jerk}
     rows = [
-        (
-            text(f"{name} (rad/s{power})"),
-            *(number(f"{x:.6g}" if math.isfinite(x) else "none") for x in values),
-        )
-        for (name, values), power in zip(own.items(), ("", "²", "³"), strict=True)
+        (text(f"{name} (rad/s{power})"), *(number(x) for x in _sizes(limits, name)))
+        for name, power in zip(QUANTITIES, ("", "²", "³"), strict=True)
     ]
     return Grid(("limit", *(f"joint {label}" for label in problem.joints)), tuple(rows))
 

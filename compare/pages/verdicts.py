@@ -66,6 +66,10 @@ def _problems(study: Study) -> Grid:
 def _limits(problem: Problem, statement: Statement) -> str:
     parts = []
     for name in QUANTITIES:
+        if problem.limits.is_uneven(name):
+            low, high = (both_units(statement, name, x, ".6g") for x in problem.limits.ends(name))
+            parts.append(f"{name} at least {low}, at most {high}")
+            continue
         values = getattr(problem.limits, name)
         alike = len({f"{v:.6g}" for v in values}) == 1
         if not (alike and np.isinf(values[0])):

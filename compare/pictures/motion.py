@@ -89,7 +89,7 @@ def motion_picture(
         rows = [
             (fit(problem.curve, problem.waypoints[:, j : j + 1], h[j]), 0) for j in range(joints)
         ]
-    orders = [0, 1, 2] + ([3] if np.isfinite(problem.limits.jerk).any() else [])
+    orders = [0, 1, 2] + ([3] if np.isfinite(problem.limits.sides[:, :, 2]).any() else [])
     description = "; ".join(
         _words(problem, *rows[j], j, r, shown_in(units, _name(r)))
         for j in range(joints)
@@ -124,8 +124,8 @@ def _limits_of(problem: Problem, joint: int, order: int) -> tuple[float, float]:
     limits = problem.limits
     if order == 0:
         return float(limits.position_lower[joint]), float(limits.position_upper[joint])
-    top = float(limits.derivatives[joint, order - 1])
-    return -top, top
+    below, above = limits.sides[:, joint, order - 1].tolist()
+    return -below, above
 
 
 def _largest(trajectory: Trajectory, column: int, order: int) -> Extremum:

@@ -263,7 +263,8 @@ def bound_ratio(
 def _mean_speed(problem: Problem, lower: Array, upper: Array, waypoints: Ball) -> Bound:
     """Bound from the mean speed between way-points, which some instant attains; any box will do."""
     breaks = problem.curve.waypoint_breaks
-    speed = np.where(problem.limits.velocity > 0.0, problem.limits.velocity, np.inf)
+    most = problem.limits.widest[:, 0]
+    speed = np.where(most > 0.0, most, np.inf)
     value, place = -np.inf, None
     for w in range(len(breaks) - 1):
         time = upper[breaks[w] : breaks[w + 1]].sum() * (1.0 + problem.segments * EPS)

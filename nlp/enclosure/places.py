@@ -51,11 +51,15 @@ def rows_at(problem: Problem, durations: Array, most: int = _MOST_PLACES) -> Lim
     points: list[Extremum] = []
     numbers: list[tuple[float, float, float]] = []
     for j in range(trajectory.joints):
-        for r, limit in enumerate(limits.derivatives[j], start=1):
-            if np.isfinite(limit):
-                found = extrema(trajectory, j, r)
-                points += found
-                numbers += [(1.0 if e.value >= 0.0 else -1.0, 0.0, limit) for e in found]
+        for r, (below, above) in enumerate(limits.sides[:, j].T.tolist(), start=1):
+            if not (np.isfinite(below) or np.isfinite(above)):
+                continue
+            for e in extrema(trajectory, j, r):
+                sign, limit = (1.0, above) if e.value >= 0.0 else (-1.0, below)
+                # A limit of 0 on one side alone is left out: rows of width 0 hold on both.
+                if np.isfinite(limit) and (limit > 0.0 or below == above):
+                    points.append(e)
+                    numbers.append((sign, 0.0, limit))
         low, high = limits.position_lower[j], limits.position_upper[j]
         for limit, sign in ((low, -1.0), (high, 1.0)):
             if np.isfinite(limit):

@@ -127,5 +127,5 @@ def _narrower(problem: Problem, verdict: Check) -> Problem:
                 low[j] += inwards
             else:
                 high[j] -= inwards
-    inside = limits.with_derivatives(limits.derivatives * share)
-    return replace(problem, limits=replace(inside, position_lower=low, position_upper=high))
+    inside = limits.with_sides(limits.sides * share)
+    return replace(problem, limits=inside.with_positions(low, high))

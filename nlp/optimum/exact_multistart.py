@@ -45,9 +45,11 @@ def least_durations(problem: Problem) -> Array:
     """
     least = np.array(problem.duration_lower)
     breaks = problem.curve.waypoint_breaks
-    distance = np.abs(np.diff(problem.waypoints, axis=0))
+    way = np.diff(problem.waypoints, axis=0)
+    distance, sides = np.abs(way), problem.limits.sides[:, :, 0]
     with np.errstate(divide="ignore", invalid="ignore"):
-        needed = np.where(distance > 0, distance / problem.limits.velocity, 0.0).max(axis=1)
+        velocity = np.where(way > 0, sides[1], sides[0])
+        needed = np.where(distance > 0, distance / velocity, 0.0).max(axis=1)
     for w, seconds in enumerate(needed):
         if breaks[w + 1] == breaks[w] + 1 and np.isfinite(seconds):
             least[breaks[w]] = max(least[breaks[w]], (1.0 - ROUND) * seconds)
@@ -74,14 +76,16 @@ def box_above(problem: Problem, floor: Array) -> LogBox:
 def ordinary(problem: Problem, basin: Basin) -> bool:
     """Whether the tracked NLP is at its best: stretching repairs, durations are alike.
 
-    With a clock of its own a curve's jerk is a ratio of polynomials over t′⁵. On the coarse places
-    IPOPT then often runs into its iteration limit, and the descents are several times as quick.
+    It is not used where the two sides of limits differ. With a clock of its own a curve's jerk is a
+    ratio of polynomials over t′⁵. On the coarse places IPOPT then often runs into its iteration
+    limit, and the descents are several times as quick.
     """
     h = basin.durations
     curve = problem.curve
     clocked = curve.piecewise is None and curve.shape(problem.waypoints) is None
     return bool(
         basin.excess == 0.0
+        and not problem.limits.uneven
         and not (clocked and np.isfinite(problem.limits.jerk).any())
         and problem.curve.homogeneous
         and not problem.limits.limits_position

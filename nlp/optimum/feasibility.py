@@ -20,15 +20,17 @@ ENDLESS = 1e29
 def impossible(problem: Problem) -> str | None:
     """The first elementary reason why a problem has no feasible durations, or None.
 
-    None does not mean that the problem is feasible.
+    None does not mean that the problem is feasible. Where the sides of limits differ, some proofs
+    look at the larger one alone: what is impossible within it is impossible.
     """
+    wide = problem.hull
     return (
-        _limit_zero(problem)
-        or _outside_range(problem)
+        _limit_zero(wide)
+        or _outside_range(wide)
         or _prescribed_beyond_limit(problem)
-        or _too_little_time(problem)
-        or _too_far_from_rest(problem)
-        or _too_sharp_a_turn(problem)
+        or _too_little_time(wide)
+        or _too_far_from_rest(wide)
+        or _too_sharp_a_turn(wide)
         or _each_segment_by_itself(problem)
     )
 
@@ -60,7 +62,7 @@ def _prescribed_beyond_limit(problem: Problem) -> str | None:
         for order, value in problem.curve.prescribed_at(b):
             if order > 3:
                 continue
-            over = abs(value) > problem.limits.derivatives[:, order - 1]
+            over = abs(value) > problem.limits.sides[int(value > 0.0), :, order - 1]
             if over.any():
                 joint = problem.joints[int(np.argmax(over))]
                 quantity = QUANTITIES[order - 1]

@@ -37,12 +37,15 @@ class Structure:
     orders : tuple of int
         Limited derivative orders (0 position, 1 velocity, 2 acceleration, 3 jerk).
     form : Form
+    uneven : bool
+        Whether lower limits are numbers of their own, and not those of the upper ones.
     """
 
     interpolant: Interpolant
     joints: int
     orders: tuple[int, ...]
     form: Form
+    uneven: bool = False
 
 
 @dataclass(frozen=True)
@@ -248,7 +251,8 @@ def build(structure: Structure) -> Formulation:
     -----
     In s = (t − t_k)/h_k the limits read |p⁽ʳ⁾(s)| ≤ L hʳ. Parameters, in this order: the values
     of the declaration's rows (way-points, prescribed derivatives), the reciprocals of the
-    derivative limits, position bounds, and for each moving slot its place and its Newton weight.
+    derivative limits (upper ones before lower ones, where they are uneven), position bounds, and
+    for each moving slot its place and its Newton weight.
     """
     began = time.perf_counter()
     interpolant, joints = structure.interpolant, structure.joints
@@ -258,7 +262,7 @@ def build(structure: Structure) -> Formulation:
     h = symbol.sym("h", n)
     row_count = layout(interpolant).kinds.size if reduced else len(interpolant.rows)
     values = symbol.sym("values", row_count, joints)
-    inverse_limits = symbol.sym("inverse_limits", 3, joints)
+    inverse_limits = symbol.sym("inverse_limits", 6 if structure.uneven else 3, joints)
     position = symbol.sym("position", 4, joints)
     parameters = [ca.vec(values), ca.vec(inverse_limits), ca.vec(position)]
     equalities: list[Any] = []
@@ -292,9 +296,10 @@ def build(structure: Structure) -> Formulation:
             low, high, with_low, with_high = (ca.mtimes(tall, position[i, :]) for i in range(4))
             upper, lower = (value - high) * with_high, (low - value) * with_low
         else:
-            value = value * ca.mtimes(tall, inverse_limits[r - 1, :])
             room = ca.mtimes(_take(h, segments) ** r, np.ones((1, joints)))
-            upper, lower = value - room, -value - room
+            below = value * ca.mtimes(tall, inverse_limits[r + 2, :]) if structure.uneven else None
+            value = value * ca.mtimes(tall, inverse_limits[r - 1, :])
+            upper, lower = value - room, -(value if below is None else below) - room
         inequalities += [ca.vec(upper), ca.vec(lower)]
     empty = symbol(0, 1)
     return Formulation(

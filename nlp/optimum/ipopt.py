@@ -110,11 +110,11 @@ def best_form(interpolant: Interpolant, joints: int) -> Form:
 
 def structure_of(problem: Problem, form: Form | None = None) -> Structure:
     """The shape of a problem's NLP: curve, joints, and which derivatives are limited."""
-    limits = problem.limits.derivatives
-    usable = np.isfinite(limits) & (limits > 0)
+    limits = problem.limits.sides
+    usable = (np.isfinite(limits) & (limits > 0)).any(axis=0)
     orders = tuple(r for r in (1, 2, 3) if usable[:, r - 1].any())
     if problem.limits.limits_position:
         orders = (0, *orders)
     joints = problem.waypoints.shape[1]
     chosen = form or best_form(problem.piecewise, joints)
-    return Structure(problem.piecewise, joints, orders, chosen)
+    return Structure(problem.piecewise, joints, orders, chosen, problem.limits.uneven)

@@ -91,7 +91,7 @@ def _ratios(problem: Problem, share: float) -> _Ratios:
     reasons = ["velocity"] * (n - 1)
     for k in range(n - 1):
         for j, joint in enumerate(problem.joints):
-            for order in (1, 2) if np.isfinite(problem.limits.jerk[j]) else (1,):
+            for order in (1, 2) if np.isfinite(problem.limits.sides[:, j, 2]).any() else (1,):
                 sides = [found.trajectory.derivative(k + i, j, order) for i in (0, 1)]
                 # A joint that stands still has no derivative: rounding has no part in that.
                 still = np.diff(problem.waypoints[k : k + 3, j]) == 0.0
@@ -133,10 +133,11 @@ def _box(problem: Problem) -> tuple[Array, Array]:
     trajectory = problem.curve.fitted(problem.waypoints, np.ones(problem.segments))
     for j in range(len(problem.joints)):
         for r in (1, 2, 3):
-            limit = float(problem.limits.derivatives[j, r - 1])
-            if not np.isfinite(limit) or limit == 0.0:
-                continue
-            for e in extrema(trajectory, j, r):
+            sizes = problem.limits.sides[:, j, r - 1]
+            for e in extrema(trajectory, j, r) if np.isfinite(sizes).any() else ():
+                limit = float(sizes[int(e.value > 0.0)])
+                if not np.isfinite(limit) or limit == 0.0:
+                    continue
                 least[e.segment] = max(least[e.segment], (abs(e.value) / limit) ** (1.0 / r))
     with np.errstate(divide="ignore"):
         return np.log(least), np.log(problem.duration_upper)

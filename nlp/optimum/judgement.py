@@ -135,7 +135,7 @@ def stretchable(problem: Problem) -> bool:
         np.isinf(problem.duration_upper).all()
         and problem.curve.homogeneous
         and not problem.limits.limits_position
-        and (problem.limits.derivatives > 0).all()
+        and (problem.limits.sides > 0).all()
     )
 
 

@@ -47,17 +47,19 @@ class ExactRows:
 
 def _limited(problem: Problem, h: Array) -> list[tuple[Extremum, float, float]]:
     """Extrema near a limit, with the side and the excess."""
-    curve, limits = problem.curve, problem.limits
+    curve, limits, sizes = problem.curve, problem.limits, problem.limits.sides
     trajectory = fit(curve, problem.waypoints, h)
     every_break = len(curve.waypoint_breaks) == curve.segments + 1
     span = np.ptp(problem.waypoints, axis=0)
     found: list[tuple[Extremum, float, float]] = []
     for j in range(len(problem.joints)):
         for r in (1, 2, 3):
-            limit = float(limits.derivatives[j, r - 1])
-            if not np.isfinite(limit) or limit == 0.0:
+            if not np.isfinite(sizes[:, j, r - 1]).any():
                 continue
             for e in extrema(trajectory, j, r):
+                limit = float(sizes[int(e.value > 0.0), j, r - 1])
+                if not np.isfinite(limit) or limit == 0.0:
+                    continue
                 size = abs(e.value) / limit
                 repeated = e.s == 0.0 and e.segment > 0 and curve.smooth_order(e.segment) >= r
                 if size > NEAR and not repeated:

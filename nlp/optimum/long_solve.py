@@ -29,10 +29,13 @@ SHORTER = 2e-9
 def long_enough(problem: Problem, ask: Ask) -> bool:
     """Whether a problem is searched here: many segments, in each of which something moves.
 
+    This search knows limits of equal sides.
     Below, small dense searches are quicker and look for more basins.
     """
     curve = problem.curve.piecewise
     if curve is None or curve.free or ask.form is not None or curve.segments <= SETTLED_SEGMENTS:
+        return False
+    if problem.limits.uneven:
         return False
     limits = problem.limits.derivatives
     moves = np.abs(np.diff(problem.waypoints, axis=0)).max(axis=1) > 0

@@ -84,6 +84,8 @@ def covered(problem: Problem) -> bool:
     curve = problem.curve.piecewise
     if curve is None or curve.free or curve.segments > MOST_SEGMENTS or not curve.homogeneous:
         return False
+    if problem.limits.uneven:
+        return False
     limits = problem.limits.derivatives
     bounded = bool(
         (np.isfinite(limits).any(axis=1) & (np.ptp(problem.waypoints, axis=0) > 0)).any()

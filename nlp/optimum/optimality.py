@@ -68,16 +68,18 @@ def _peaks_near_limit(
     problem: Problem, durations: Array, nodal: Array | None, near: float
 ) -> list[_Constraint]:
     trajectory = fit(problem.curve, problem.waypoints, durations, nodal)
-    limits, derivatives = problem.limits, problem.limits.derivatives
+    limits, sides = problem.limits, problem.limits.sides
     curve = problem.curve
     every_break = len(curve.waypoint_breaks) == curve.segments + 1
     found: list[_Constraint] = []
     for j, name in enumerate(problem.joints):
         for r, quantity in enumerate(QUANTITIES, start=1):
-            limit = float(derivatives[j, r - 1])
-            if not np.isfinite(limit) or limit == 0:
+            if not np.isfinite(sides[:, j, r - 1]).any():
                 continue
             for e in extrema(trajectory, j, r):
+                limit = float(sides[int(e.value > 0.0), j, r - 1])
+                if not np.isfinite(limit) or limit == 0:
+                    continue
                 repeated = e.s == 0.0 and e.segment > 0 and curve.smooth_order(e.segment) >= r
                 excess = abs(e.value) / limit - 1
                 if excess >= -near and not repeated:
@@ -139,7 +141,7 @@ def kkt(
     nodal_scale = np.ones((free, joints))
     for i, (_, order) in enumerate(problem.piecewise.free_derivatives if free else ()):
         if 1 <= order <= 3:
-            limit = problem.limits.derivatives[:, order - 1]
+            limit = problem.limits.widest[:, order - 1]
             nodal_scale[i] = np.where(np.isfinite(limit), limit, 1.0)
     for i, c in enumerate(rows):
         columns[:n, i] = c.sign * gradients.durations[i] * durations / c.scale

@@ -122,7 +122,7 @@ def _side(problem: Problem, e: Extremum) -> tuple[float, float, float]:
     """Sign, excess and scale of an active extremum, scaled as in `kkt`."""
     limits, j = problem.limits, e.joint
     if e.order > 0:
-        limit = float(limits.derivatives[j, e.order - 1])
+        limit = float(limits.sides[int(e.value > 0.0), j, e.order - 1])
         return float(np.sign(e.value)), abs(e.value) / limit - 1.0, limit
     ends = (float(limits.position_lower[j]), float(limits.position_upper[j]))
     scale = max(1.0, *(abs(x) for x in ends if np.isfinite(x)))

@@ -120,7 +120,7 @@ class Solution:
         """Why nothing keeps the total from 0, so that there is no time to set others beside."""
         if self.infimum is None or self.infimum > _VANISHING * self.total_time:
             return None
-        if not np.isfinite(self.problem.limits.derivatives).any():
+        if not np.isfinite(self.problem.limits.sides).any():
             return "without limits there is no shortest motion (not checkable)"
         return "nothing that is limited keeps the total from 0, so that no motion is the shortest"
 

@@ -203,6 +203,8 @@ def _floor(problem: Problem, share: float) -> Array:
 
 def _tracked(problem: Problem, ask: Ask) -> Solution:
     """The tracked NLP from each start; without it, a descent, where building it takes too long."""
+    if problem.limits.uneven and problem.curve.piecewise is None:
+        return _descended(problem, ask)  # the NLP of other curves knows limits of equal sides
     try:
         search, build_seconds = tracked_search(problem, ask)
     except TooLong:

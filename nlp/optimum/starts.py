@@ -35,10 +35,8 @@ def first_nodal(problem: Problem) -> Array | None:
 def equal_start(problem: Problem) -> Array:
     """Equal durations, rescaled uniformly to be tight and put within the bounds, s."""
     h = np.ones((1, problem.segments))
-    limits = problem.limits.derivatives
-    usable = replace(
-        problem, limits=problem.limits.with_derivatives(np.where(limits > 0, limits, np.inf))
-    )
+    sides = problem.limits.sides
+    usable = replace(problem, limits=problem.limits.with_sides(np.where(sides > 0, sides, np.inf)))
     stretch = float(evaluate(usable, h, first_nodal(problem)).stretch[0])
     if not (np.isfinite(stretch) and stretch > 0):
         stretch = 1.0

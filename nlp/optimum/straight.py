@@ -42,8 +42,9 @@ def straight_durations(problem: Problem) -> Array | None:
     if any(order < 2 or value != 0.0 for order, value in given):
         return None
     moving = np.ptp(problem.waypoints, axis=0) > 0
-    bound = np.isfinite(problem.limits.derivatives).any(axis=1)
-    if (moving & np.isfinite(problem.limits.velocity)).any() or not (moving & bound).any():
+    limited = np.isfinite(problem.limits.sides).any(axis=0)
+    bound = limited.any(axis=1)
+    if (moving & limited[:, 0]).any() or not (moving & bound).any():
         return None
     ways = [
         [Fraction(float(b)) - Fraction(float(a)) for a, b in pairwise(q)]

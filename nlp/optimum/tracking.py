@@ -61,7 +61,9 @@ def scaled_problem(problem: Problem, formulation: Formulation, time_unit: float)
             ]
         )
     units = np.array([time_unit**r.order for r in rows])[:, None] / angle
-    limits = problem.limits.derivatives * time_unit ** np.arange(1, 4) / angle[:, None]
+    # Upper limits before lower ones where they differ, as `formulation.build` takes them.
+    sides = problem.limits.sides[::-1] if problem.limits.uneven else problem.limits.sides[:1]
+    limits = np.concatenate(list(sides * time_unit ** np.arange(1, 4) / angle[:, None]), axis=1)
     usable = np.isfinite(limits) & (limits > 0)
     inverse = np.where(usable, 1.0 / np.where(usable, limits, 1.0), 0.0)
     low, high = problem.limits.position_lower, problem.limits.position_upper

@@ -23,13 +23,17 @@ _DEEPEST = 60
 
 def float_problem(exact: ExactProblem) -> Problem:
     """Nearest problem in floats, in the unit of angle of ``exact``; π on the tighter side."""
-    limits = [[np.inf if x is None else float(x.low) for x in row] for row in exact.limits]
-    v, a, j = np.array(limits, dtype=np.float64).T
+    joints = range(len(exact.joints))
+    pairs = [[exact.sides(j, r) for r in (1, 2, 3)] for j in joints]
+    sides = [
+        [[np.inf if pair[side] is None else float(pair[side].low) for pair in row] for row in pairs]
+        for side in (0, 1)
+    ]
     low = [-np.inf if x is None else float(x.high) for x in exact.position_lower]
     high = [np.inf if x is None else float(x.low) for x in exact.position_upper]
     return Problem(
         np.array([[float(q) for q in row] for row in exact.waypoints]),
-        Limits(v, a, j, np.array(low), np.array(high)),
+        Limits(joints=len(exact.joints)).with_sides(sides).with_positions(low, high),
         exact.curve,
         np.array([float(x) for x in exact.duration_lower]),
         np.array([np.inf if x is None else float(x) for x in exact.duration_upper]),
@@ -207,7 +211,7 @@ def keeps_limits(
     if curve is None:
         return False
     for j, pieces in enumerate(curve):
-        limited = [order for order in (2, 3) if problem.limits[j][order - 1] is not None]
+        limited = [order for order in (2, 3) if problem.sides(j, order) != (None, None)]
         if not stretched and not all(_smooth(pieces, durations, r - 1) for r in limited):
             return False
         floor, roof = problem.position_lower[j], problem.position_upper[j]
@@ -218,12 +222,13 @@ def keeps_limits(
             if floor is not None and not never_above([-c for c in piece], -floor.high):
                 return False
             derivative, scale = piece, Fraction(1)
-            for limit in problem.limits[j]:
+            for order in (1, 2, 3):
                 derivative = [p * c for p, c in enumerate(derivative)][1:]
                 scale *= h
-                if limit is None or not derivative:
-                    continue
-                for sign in (1, -1):
+                below, above = problem.sides(j, order)
+                for sign, limit in ((1, above), (-1, below)):
+                    if limit is None or not derivative:
+                        continue
                     if not never_above([sign * c for c in derivative], limit.low * scale):
                         return False
     return True

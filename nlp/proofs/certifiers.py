@@ -11,10 +11,11 @@ from typing import Any
 
 from ...problem import Problem, TrajgapError
 from ...verify import Subject
+from .certifier import Certifier
 from .exact import ExactProblem, exact_problem
 from .judged import SPARE, Deadline, judged, unstated
 from .outcome import GAP, Certified, Progress, Request
-from .session import Certifier, Session
+from .session import Session
 from .state import resumed
 
 CERTIFIERS: tuple[str, ...] = (

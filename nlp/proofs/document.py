@@ -29,6 +29,14 @@ def _real(value: Real | None) -> str | dict[str, Any] | None:
     return text if value.pi == 0 else {"value": text, "pi": value.pi}
 
 
+def _limit(problem: ExactProblem, joint: int, order: int, size: Real | None) -> Any:
+    """A size, or the least and the largest value where the two differ in size."""
+    low, high = problem.sides(joint, order)
+    if low == high:
+        return _real(size)
+    return [_real(None if low is None else Real(-low.rational, low.pi)), _real(high)]
+
+
 def problem_document(problem: ExactProblem) -> dict[str, Any]:
     """The problem as it stands in a certificate.
 
@@ -47,7 +55,10 @@ def problem_document(problem: ExactProblem) -> dict[str, Any]:
         "joints": list(problem.joints),
         **(_declaration(curve) if isinstance(curve, Interpolant) else _other(curve)),
         "waypoints": [[decimal(q) for q in row] for row in problem.waypoints],
-        "limits": [[_real(x) for x in row] for row in problem.limits],
+        "limits": [
+            [_limit(problem, j, r, x) for r, x in enumerate(row, 1)]
+            for j, row in enumerate(problem.limits)
+        ],
         "position_lower": [_real(x) for x in problem.position_lower],
         "position_upper": [_real(x) for x in problem.position_upper],
         "duration_lower": [decimal(x) for x in problem.duration_lower],

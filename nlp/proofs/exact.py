@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...problem import Curve, Interpolant, Printed, Problem, Scale, TrajgapError, scale
+from ...problem import Curve, Interpolant, LimitPair, Printed, Problem, Scale, TrajgapError, scale
 from ...problem.cases import Statement
 
 _PI = Scale(Fraction(1), 1).bounds
@@ -60,6 +60,22 @@ class Real:
         return self.ends[1]
 
 
+Pair = tuple[Real | None, Real | None]
+"""Sizes of a lower and an upper limit; None where there is none."""
+
+
+def _joined(pairs: Mapping[tuple[int, int], Pair]) -> dict[tuple[int, int], Real | None]:
+    """The larger size of each pair: none where a side has none."""
+    found: dict[tuple[int, int], Real | None] = {}
+    for place, (low, high) in pairs.items():
+        found[place] = None if low is None or high is None else max(low, high, key=_high)
+    return found
+
+
+def _high(value: Real) -> Fraction:
+    return value.high
+
+
 @dataclass(frozen=True)
 class ExactProblem:
     """A problem with shared durations, every number rational.
@@ -74,7 +90,9 @@ class ExactProblem:
     waypoints : tuple of tuple of Fraction
         One row per way-point, in ``unit``.
     limits : tuple of tuple
-        Per joint: velocity, acceleration, jerk as `Real` in ``unit``/sʳ, or None.
+        Per joint: velocity, acceleration, jerk as `Real` in ``unit``/sʳ, or None. Sizes that hold
+        on both sides; of a pair in ``pairs`` the larger one, so that what is proved of the least
+        total within them holds within the pairs too.
     position_lower, position_upper : tuple
         Per joint, a `Real` in ``unit`` or None.
     duration_lower : tuple of Fraction
@@ -83,6 +101,9 @@ class ExactProblem:
         s.
     unit : str
         Unit of angle, "rad" or "deg".
+    pairs : tuple of ((joint, order), pair)
+        Sizes of the lower and the upper limit, where they differ: all that
+        an answer has to keep beside ``limits``.
     """
 
     name: str
@@ -95,6 +116,17 @@ class ExactProblem:
     duration_lower: tuple[Fraction, ...]
     duration_upper: tuple[Fraction | None, ...]
     unit: str = "rad"
+    pairs: tuple[tuple[tuple[int, int], Pair], ...] = ()
+
+    def sides(self, joint: int, order: int) -> Pair:
+        """Sizes of the lower and the upper limit of a derivative."""
+        own = self.limits[joint][order - 1]
+        return dict(self.pairs).get((joint, order), (own, own))
+
+    @property
+    def even(self) -> ExactProblem:
+        """The problem within ``limits`` alone: its least total is at most this one's."""
+        return replace(self, pairs=()) if self.pairs else self
 
     @property
     def segments(self) -> int:
@@ -128,6 +160,7 @@ class ExactProblem:
             self.duration_lower,
             self.duration_upper,
             self.unit,
+            tuple(((0, r), pair) for (j, r), pair in self.pairs if j == index),
         )
 
     def in_units(self, powers: Sequence[int], second: int) -> ExactProblem:
@@ -150,6 +183,10 @@ class ExactProblem:
             position_upper=tuple(map(over, self.position_upper, angle)),
             duration_lower=tuple(x / time for x in self.duration_lower),
             duration_upper=tuple(None if x is None else x / time for x in self.duration_upper),
+            pairs=tuple(
+                ((j, r), (over(low, angle[j] / time**r), over(high, angle[j] / time**r)))
+                for (j, r), (low, high) in self.pairs
+            ),
         )
 
     def derivative_limits(self) -> NDArray[np.float64]:
@@ -175,16 +212,22 @@ def exact_problem(problem: Problem) -> ExactProblem:
     def point(value: float) -> Real | None:
         return Real(Fraction(value)) if np.isfinite(value) else None
 
+    below, above = limits.sides
+    pairs = [
+        ((j, r + 1), (point(float(below[j, r])), point(float(above[j, r]))))
+        for j, r in np.argwhere(below != above).tolist()
+    ]
     return ExactProblem(
         problem.name,
         problem.curve,
         problem.joints,
         tuple(tuple(Fraction(float(q)) for q in row) for row in problem.waypoints),
-        tuple(tuple(point(float(x)) for x in row) for row in limits.derivatives),
+        tuple(tuple(point(float(x)) for x in row) for row in limits.widest),
         tuple(point(float(x)) for x in limits.position_lower),
         tuple(point(float(x)) for x in limits.position_upper),
         tuple(Fraction(float(x)) for x in problem.duration_lower),
         tuple(Fraction(float(x)) if np.isfinite(x) else None for x in problem.duration_upper),
+        pairs=tuple(pairs),
     )
 
 
@@ -227,10 +270,30 @@ def printed_problem(statement: Statement) -> ExactProblem:
         return list(given) if isinstance(given, tuple | list) else [given] * count
 
     units, limits, total = statement.units, statement.limits, len(statement.labels)
-    columns = []
-    for name in ("velocity", "acceleration", "jerk"):
+    columns: list[list[Real | None]] = []
+    pairs: dict[tuple[int, int], Pair] = {}
+    for order, name in enumerate(("velocity", "acceleration", "jerk"), 1):
         column = each(getattr(limits, name), total)
-        columns.append([angle(column[j], getattr(units, name)) for j in statement.joints])
+        for place, j in enumerate(statement.joints):
+            if isinstance(column[j], LimitPair):
+                low, high = (
+                    angle(x, getattr(units, name)) for x in (column[j].lower, column[j].upper)
+                )
+                if low is not None:
+                    low = Real(-low.rational, low.pi)
+                if low != high:
+                    pairs[place, order] = low, high
+                else:
+                    column[j] = column[j].upper
+        joined = _joined(pairs)
+        columns.append(
+            [
+                joined[place, order]
+                if (place, order) in joined
+                else angle(column[j], getattr(units, name))
+                for place, j in enumerate(statement.joints)
+            ]
+        )
     low, high = (
         [angle(each(getattr(limits, name), total)[j], units.position) for j in statement.joints]
         for name in ("position_lower", "position_upper")
@@ -250,4 +313,5 @@ def printed_problem(statement: Statement) -> ExactProblem:
         tuple(Fraction(0) if x is None else x.fraction * second for x in shortest),
         tuple(None if x is None else x.fraction * second for x in longest),
         str(units.position),
+        tuple(pairs.items()),
     )

@@ -147,6 +147,9 @@ class Certified:
         What `trajgap.verify` says of the certificate; None if nothing is proved.
     left_out : str or None
         What the time limit was too short for, in words, where that is all that is known.
+    widened : bool
+        Whether the bound was proved within the larger size of limits whose sides differ: it holds,
+        and may stay below the optimum whatever the time.
     """
 
     problem: ExactProblem
@@ -164,6 +167,7 @@ class Certified:
     speeds: tuple[tuple[Fraction, ...], ...] | None = None
     verdict: CertificateVerdict | None = None
     left_out: str | None = None
+    widened: bool = False
 
     @property
     def gap(self) -> float:

@@ -211,6 +211,8 @@ def not_applicable(trajectory: Trajectory, limits: Limits) -> str | None:
     moving = _moving(trajectory)
     if not moving.any():
         return "nothing moves"
+    if limits.uneven:
+        return "the two sides of a limit differ in size, and paths are retimed within equal ones"
     if np.isfinite(limits.jerk[moving]).any():
         return "jerk is limited, and TOPPRA knows velocity and acceleration limits only"
     if np.isinf(limits.acceleration[moving]).all():

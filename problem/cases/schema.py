@@ -18,6 +18,7 @@ from ..fields import (
     Number,
     OneOrEachLength,
     OneOrEachLowerPosition,
+    OneOrEachSized,
     OneOrEachUpper,
     OneOrEachUpperPosition,
     PositionUnit,
@@ -196,12 +197,15 @@ class Waypoints(Strict):
 
 
 class LimitsBlock(Strict):
-    """Limits as printed: one for all joints or one per joint; absent or inf means none."""
+    """Limits as printed: one for all joints or one per joint; absent or inf means none.
+
+    One per joint may be a pair: the least value, 0 or less, and the largest, 0 or more.
+    """
 
     where: str = ""
-    velocity: OneOrEachUpper = None
-    acceleration: OneOrEachUpper = None
-    jerk: OneOrEachUpper = None
+    velocity: OneOrEachSized = None
+    acceleration: OneOrEachSized = None
+    jerk: OneOrEachSized = None
     position_lower: OneOrEachLowerPosition = None
     position_upper: OneOrEachUpperPosition = None
 

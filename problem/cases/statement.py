@@ -12,6 +12,7 @@ import numpy as np
 from ..arrays import Array
 from ..curves import Curve
 from ..errors import CaseError, TrajgapError
+from ..fields import LimitPair
 from ..limits import Limits
 from ..printed import Printed
 from ..problem import Coupling, Problem
@@ -321,13 +322,31 @@ class Statement:
                 "limits.position_lower", "lies above limits.position_upper; exchange them"
             )
         limits = Limits(
-            velocity=np.maximum(self._limit("velocity", "velocity", digits), 0.0),
-            acceleration=np.maximum(self._limit("acceleration", "acceleration", digits), 0.0),
-            jerk=np.maximum(self._limit("jerk", "jerk", digits), 0.0),
+            velocity=self._sizes("velocity", digits),
+            acceleration=self._sizes("acceleration", digits),
+            jerk=self._sizes("jerk", digits),
             position_lower=position_lower,
             position_upper=position_upper,
         )
         return curve, limits, lower, upper
+
+    def _sizes(self, quantity: Quantity, digits: Digits) -> Array:
+        """Sizes of a derivative's limits, or their pairs where some joint has one."""
+        given = getattr(self.limits, quantity)
+        sizes = np.maximum(self._limit(quantity, quantity, digits), 0.0)
+        if not isinstance(given, tuple) or not any(isinstance(x, LimitPair) for x in given):
+            return sizes
+        least = [x.lower if isinstance(x, LimitPair) else x for x in given]
+        low = [
+            Measured(-np.inf, -np.inf, -np.inf)
+            if x is None
+            else self.si(x, quantity, f"limits.{quantity}")
+            for x in least
+        ]
+        # A size stands for both sides.
+        low = [n if n.value <= 0 else Measured(-n.value, -n.upper, -n.lower) for n in low]
+        lower = np.minimum(_end([low[j] for j in self.joints], digits, upper=False), 0.0)
+        return np.column_stack([lower, sizes])
 
     def _limit(self, name: str, quantity: Quantity, digits: Digits) -> Array:
         default = -np.inf if name == "position_lower" else np.inf
@@ -337,7 +356,9 @@ class Statement:
     def _each(
         self, block: str, name: str, quantity: Quantity, count: int, item: str, default: float
     ) -> list[Measured]:
-        given: Sequence[Printed | None] | Printed | None = getattr(getattr(self, block), name)
+        given: Sequence[Printed | LimitPair | None] | Printed | None = getattr(
+            getattr(self, block), name
+        )
         none = Measured(default, default, default)
         if given is None:
             return [none] * count
@@ -348,7 +369,8 @@ class Statement:
                 f"{block}.{name}",
                 f"{len(given)} values for {count} {item}s; give one for all, or one each",
             )
-        return [none if one is None else self.si(one, quantity, f"{block}.{name}") for one in given]
+        upper = [one.upper if isinstance(one, LimitPair) else one for one in given]
+        return [none if one is None else self.si(one, quantity, f"{block}.{name}") for one in upper]
 
 
 def _turned(angle: Measured, turns: int) -> Measured:

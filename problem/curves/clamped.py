@@ -213,14 +213,33 @@ class ClampedBSpline(StretchedCurve):
         """True peaks by the compiled kernel."""
         if self._stretched:
             return super().batch_peaks(values, durations, wanted)
+        return self._peaks(values, durations, wanted, 0.0)
+
+    def batch_sides(
+        self,
+        waypoints: Array,
+        durations: Array,
+        wanted: NDArray[np.bool_],
+        nodal: Array | None = None,
+    ) -> Array:
+        """True peaks to each side by the compiled kernel."""
+        if self._stretched:
+            return super().batch_sides(waypoints, durations, wanted)
+        sides = zip(wanted, (-1.0, 1.0), strict=True)
+        return np.stack([self._peaks(waypoints, durations, part, sign) for part, sign in sides])
+
+    def _peaks(
+        self, values: Array, durations: Array, wanted: NDArray[np.bool_], side: float
+    ) -> Array:
         h = as_batch(self, durations)
         average, orders = _plan(self)
         rows = fractions_of(self, values)
         fractions = np.empty((0, self.waypoints)) if rows is None else np.array(rows)
         peaks = np.empty((h.shape[0], values.shape[1], 3))
         clamped_kernel.batch_peaks(
-            h, np.ascontiguousarray(values), average, fractions, self.degree, orders, wanted, peaks
-        )
+            h, np.ascontiguousarray(values), average, fractions, self.degree, orders, wanted, side,
+            peaks,
+        )  # fmt: skip
         return peaks
 
     def value_gradients(

@@ -114,7 +114,7 @@ def _curve(times, knots, degree, orders, right, bases, work, matrix):  # type: i
 
 
 @compiled
-def _peaks(knots, degree, bases, control, wanted, top):  # type: ignore[no-untyped-def]
+def _peaks(knots, degree, bases, control, wanted, side, top):  # type: ignore[no-untyped-def]
     """Largest absolute derivatives of each column of ``control``."""
     a, derivative = np.empty(ROOM), np.empty(ROOM)
     roots, work = np.empty(ROOM), np.empty((ROOM, ROOM))
@@ -140,19 +140,20 @@ def _peaks(knots, degree, bases, control, wanted, top):  # type: ignore[no-untyp
                     value = 0.0
                     for m in range(n, -1, -1):
                         value = value * s + a[m]
-                    value = abs(value)
+                    value = abs(value) if side == 0.0 else side * value
                     if not value <= top[j, r]:
                         top[j, r] = value if value == value else np.inf
 
 
 @compiled
 def batch_peaks(  # type: ignore[no-untyped-def]
-    durations, waypoints, average, fractions, degree, orders, wanted, peaks
+    durations, waypoints, average, fractions, degree, orders, wanted, side, peaks
 ):
     """Find the true peaks of |v|, |a|, |j| for many duration vectors.
 
     ``average[inner knot, way-point]`` places the knots by the times where ``fractions`` has no
-    row; else row g places those of joint g, or the one row those of all joints.
+    row; else row g places those of joint g, or the one row those of all joints. ``side`` as in
+    `kernel.batch_peaks`.
     """
     count, inner = durations.shape[1] + 1, average.shape[0]
     pieces, joints = inner + 1, waypoints.shape[1]
@@ -192,6 +193,6 @@ def batch_peaks(  # type: ignore[no-untyped-def]
             if not valid:
                 break
             part = slice(g * columns, (g + 1) * columns)
-            _peaks(knots, degree, bases, right, wanted[part], peaks[v, part])
+            _peaks(knots, degree, bases, right, wanted[part], side, peaks[v, part])
         if not valid:
             peaks[v] = np.inf

@@ -167,6 +167,18 @@ class Interpolant(Curve):
         """True peaks by the compiled kernel, on several threads where that pays."""
         return spline.batch_peaks(self, values, as_batch(self, durations), wanted)
 
+    def batch_sides(
+        self,
+        waypoints: Array,
+        durations: Array,
+        wanted: NDArray[np.bool_],
+        nodal: Array | None = None,
+    ) -> Array:
+        """True peaks to each side by the compiled kernel."""
+        values, h = self.motion_values(waypoints, nodal), as_batch(self, durations)
+        sides = zip(wanted, (-1.0, 1.0), strict=True)
+        return np.stack([spline.batch_peaks(self, values, h, part, sign) for part, sign in sides])
+
     def value_gradients(
         self,
         waypoints: Array,

@@ -281,13 +281,19 @@ def _lane_level(a, order, degree, perm, lanes, count, cuts, state):  # type: ign
 
 
 @compiled
-def _lane_peaks(a, degree, perm, lanes, cuts, state, peak):  # type: ignore[no-untyped-def]
-    """Largest absolute value on [0, 1] of the polynomials ``a[power, lane]``."""
+def _lane_peaks(a, degree, perm, lanes, cuts, state, side, peak):  # type: ignore[no-untyped-def]
+    """Largest absolute value on [0, 1] of the polynomials ``a[power, lane]``.
+
+    With ``side`` 1 the largest value instead, with −1 that of the polynomials' negatives.
+    """
     for x in range(lanes):
         end = 0.0
         for i in range(degree + 1):
             end += a[i, x]
-        peak[x] = abs(a[0, x]) if abs(a[0, x]) >= abs(end) else abs(end)
+        if side == 0.0:
+            peak[x] = abs(a[0, x]) if abs(a[0, x]) >= abs(end) else abs(end)
+        else:
+            peak[x] = side * a[0, x] if side * a[0, x] >= side * end else side * end
         if degree == 2:
             turn = -0.5 * a[1, x] / a[2, x]
             cuts[0, x] = turn if 0.0 < turn < 1.0 else 0.0
@@ -298,19 +304,25 @@ def _lane_peaks(a, degree, perm, lanes, cuts, state, peak):  # type: ignore[no-u
     value, slope = state[6], state[7]
     for piece in range(degree - 1):
         _lane_horner(a, 0, degree, perm, lanes, cuts[piece], value, slope)
-        for x in range(lanes):
-            peak[x] = abs(value[x]) if abs(value[x]) > peak[x] else peak[x]
+        if side == 0.0:
+            for x in range(lanes):
+                peak[x] = abs(value[x]) if abs(value[x]) > peak[x] else peak[x]
+        else:
+            for x in range(lanes):
+                peak[x] = side * value[x] if side * value[x] > peak[x] else peak[x]
 
 
 @compiled
 def batch_peaks(  # type: ignore[no-untyped-def]
-    durations, values, kinds, breaks, orders, degrees, column, lower, upper, perm, wanted, peaks
-):
+    durations, values, kinds, breaks, orders, degrees, column, lower, upper, perm, wanted, side,
+    peaks,
+):  # fmt: skip
     """Find the true peaks of the wanted derivatives for many duration vectors.
 
     ``wanted[joint, order − 1]`` selects; ``peaks[vector, joint, order − 1]`` receives the largest
     absolute value over all t, infinite where a duration is not positive and finite or the value
-    overflows.
+    overflows. With ``side`` 1 or −1 it receives the furthest value above 0, or below, as a size; 0
+    where there is none.
     """
     n, joints, unknowns = degrees.size, values.shape[1], column.max() + 1
     block = min(max(1, _LANES // joints), durations.shape[0])
@@ -346,7 +358,7 @@ def batch_peaks(  # type: ignore[no-untyped-def]
                 for i in range(degree + 1):
                     for x in range(joints * vectors):
                         a[i, x] = perm[i + r, r] * scaled[k, i + r, x]
-                _lane_peaks(a, degree, perm, joints * vectors, cuts, state, peak)
+                _lane_peaks(a, degree, perm, joints * vectors, cuts, state, side, peak)
                 for v in range(vectors):
                     rate = (1.0 / h[k, v]) ** r
                     for j in range(joints):

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array
 from ..errors import TrajgapError
-from .peak import Extremum
+from .peak import Extremum, extrema
 from .spline import PERM, as_durations
 from .trajectory import Trajectory
 
@@ -183,6 +183,45 @@ class Curve(ABC):
             Where one exceeds its ceiling, others of that vector may be infinite.
         """
         return self.batch_peaks(values, durations, wanted)
+
+    def batch_sides(
+        self,
+        waypoints: Array,
+        durations: Array,
+        wanted: NDArray[np.bool_],
+        nodal: Array | None = None,
+    ) -> Array:
+        """True peaks to each side, one vector after the other unless a kind has a quicker way.
+
+        Parameters
+        ----------
+        waypoints : ndarray, shape (way-points, joints)
+            rad.
+        durations : ndarray, shape (batch, segments)
+            s; vectors that define no curve give infinite peaks.
+        wanted : ndarray of bool, shape (2, joints, 3)
+            Which peaks are needed, below 0 and above; the others are returned as 0.
+        nodal : ndarray, shape (free, joints), optional
+
+        Returns
+        -------
+        ndarray, shape (2, batch, joints, 3)
+            Sizes, rad/s, rad/s², rad/s³: of the furthest value below 0, and above; 0 for none.
+        """
+        h, q = as_batch(self, durations), waypoints - waypoints[0]
+        found = np.zeros((2, len(h), q.shape[1], 3))
+        for v, one in enumerate(h):
+            try:
+                trajectory = self.fitted(q, as_durations(one, self.segments), nodal)
+            except TrajgapError:
+                found[:, v] = np.inf
+                continue
+            for j, r in np.argwhere(wanted.any(axis=0)).tolist():
+                values = np.array([e.value for e in extrema(trajectory, j, r + 1)])
+                top = np.maximum(np.array([-values, values]).max(axis=1), 0.0)
+                found[:, v, j, r] = np.where(np.isnan(top), np.inf, top)
+        found[~np.broadcast_to(wanted[:, None], found.shape) & np.isfinite(found)] = 0.0
+        return found
 
     @abstractmethod
     def value_gradients(

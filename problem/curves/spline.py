@@ -236,6 +236,7 @@ def batch_peaks(
     values: Array,
     durations: Array,
     wanted: NDArray[np.bool_],
+    side: float = 0.0,
 ) -> Array:
     """True peaks of |v|, |a|, |j| for a batch of duration vectors.
 
@@ -248,6 +249,8 @@ def batch_peaks(
         Durations, s; vectors that are not positive and finite give infinite peaks.
     wanted : ndarray of bool, shape (joints, 3)
         Which peaks are needed; the others are returned as 0.
+    side : float
+        0 for sizes; 1 for the furthest values above 0, −1 for those below, as sizes.
 
     Returns
     -------
@@ -270,6 +273,7 @@ def batch_peaks(
             plan.upper,
             PERM,
             wanted,
+            side,
             peaks[part],
         )
 

@@ -65,17 +65,31 @@ def segment_peaks(curve: Curve, waypoints: ArrayLike) -> Array:
     -------
     ndarray, shape (segments, joints, 3)
     """
+    return np.asarray(segment_sides(curve, waypoints).max(axis=0))
+
+
+def segment_sides(curve: Curve, waypoints: ArrayLike) -> Array:
+    """`segment_peaks` below 0 and above, shape (2, segments, joints, 3); 0 for none.
+
+    Parameters
+    ----------
+    curve : Curve
+        One whose segments are stretched.
+    waypoints : array_like, shape (way-points, joints)
+        rad.
+    """
     q = as_waypoints(curve, waypoints)
     form = shape_of(curve, q - q[0])
-    peaks = np.zeros((curve.segments, q.shape[1], 3))
+    peaks = np.zeros((2, curve.segments, q.shape[1], 3))
     for p, k in enumerate(form.segment):
         for j in range(q.shape[1]):
             a = form.scaled[p, : form.degree + 1, j]
             for r in range(min(3, form.degree)):
                 a = a[1:] * np.arange(1, a.size) / form.share[p]
                 places = np.concatenate([[0.0], critical_points(a), [1.0]])
-                top = float(np.abs(np.polynomial.polynomial.polyval(places, a)).max())
-                peaks[k, j, r] = max(peaks[k, j, r], top)
+                values = np.polynomial.polynomial.polyval(places, a)
+                peaks[0, k, j, r] = max(peaks[0, k, j, r], float((-values).max()))
+                peaks[1, k, j, r] = max(peaks[1, k, j, r], float(values.max()))
     return peaks
 
 
@@ -125,7 +139,21 @@ class StretchedCurve(Curve):
 
     def batch_peaks(self, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
         """True peaks by one division a segment."""
+        return self._stretched_peaks(values, as_batch(self, durations), wanted)
+
+    def batch_sides(
+        self,
+        waypoints: Array,
+        durations: Array,
+        wanted: NDArray[np.bool_],
+        nodal: Array | None = None,
+    ) -> Array:
+        """True peaks to each side by one division a segment."""
         h = as_batch(self, durations)
+        sides = zip(segment_sides(self, waypoints).transpose(0, 1, 3, 2), wanted, strict=True)
+        return np.stack([self._stretched_peaks(values, h, part) for values, part in sides])
+
+    def _stretched_peaks(self, values: Array, h: Array, wanted: NDArray[np.bool_]) -> Array:
         valid = np.asarray((np.isfinite(h) & (h > 0)).all(axis=1))
         rate = 1.0 / np.where(valid[:, None], h, 1.0)
         peaks = np.zeros((h.shape[0], values.shape[2], 3))

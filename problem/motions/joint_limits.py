@@ -56,10 +56,10 @@ class JointLimits:
 
     @classmethod
     def of(cls, limits: Limits, joints: Sequence[str]) -> JointLimits:
-        """The symmetric limits of a `Problem` for these joints."""
-        d = limits.derivatives
-        lower = np.column_stack([limits.position_lower, -d])
-        upper = np.column_stack([limits.position_upper, d])
+        """The limits of a `Problem` for these joints."""
+        below, above = limits.sides
+        lower = np.column_stack([limits.position_lower, -below])
+        upper = np.column_stack([limits.position_upper, above])
         free = np.full(len(joints), np.inf)
         return cls(tuple(joints), lower, upper, free)
 
@@ -99,6 +99,20 @@ class JointLimits:
             position_lower=self.lower[:, 0],
             position_upper=self.upper[:, 0],
         )
+
+    @property
+    def two_sided(self) -> Limits:
+        """The same limits for `Problem` and `solve`, each side of its own size.
+
+        A deceleration has no place there: where it is given, the smallest of it and of both sides
+        of the acceleration counts on both.
+        """
+        sides = np.stack([-self.lower[:, 1:], self.upper[:, 1:]])
+        braking = np.isfinite(self.deceleration)
+        least = np.minimum(sides[:, :, 1].min(axis=0), self.deceleration)
+        sides[:, braking, 1] = least[braking]
+        free = Limits(joints=len(self.joints)).with_positions(self.lower[:, 0], self.upper[:, 0])
+        return free.with_sides(np.abs(sides))
 
     def source(self, joint: str, quantity: str) -> str:
         """Where a limit is stated, in words."""

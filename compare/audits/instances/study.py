@@ -127,7 +127,7 @@ def _key(problem: Problem) -> tuple[object, ...]:
     """What tells one problem through the same way-points from another."""
     limits = problem.limits
     arrays = (
-        limits.derivatives,
+        limits.sides if limits.uneven else limits.derivatives,
         limits.position_lower,
         limits.position_upper,
         problem.duration_lower,

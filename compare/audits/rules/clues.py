@@ -8,7 +8,7 @@ from math import pi
 
 import numpy as np
 
-from ....problem import Array, Measured, control_vertices, fit, from_si, to_si
+from ....problem import Array, LimitPair, Measured, control_vertices, fit, from_si, to_si
 from ....problem.cases import (
     AnyClaim,
     AnyClue,
@@ -124,6 +124,8 @@ def _data_sheet(study: Study, clue: DataSheetClue, rid: str) -> _Said:
     known = [to_si(value, clue.unit) for value in clue.values]
     given = getattr(statement.limits, clue.quantity)
     each = list(given) if isinstance(given, tuple) else [given] * len(known)
+    if any(isinstance(one, LimitPair) for one in each):
+        return None  # a data sheet prints sizes
     pairs = [
         (statement.si(one, clue.quantity), known[j])
         for j, one in enumerate(each)
@@ -212,22 +214,25 @@ def held_otherwise(study: Study, claim: AnyClaim, pid: str, rid: str) -> HeldOth
     problem = study.claim_problem(claim, pid, rid)
     durations = study.case.claim_durations(claim, rid).value
     trajectory = fit(problem.curve, problem.waypoints, durations)
-    limits = problem.limits.derivatives
+    limits = problem.limits.sides
     places = np.linspace(0.0, 1.0, _STEPS + 1)
     pieces = len(trajectory.breaks) - 1
     sampled = 0.0
     for joint in range(len(problem.joints)):
         for order in (1, 2, 3):
-            limit = float(limits[joint, order - 1])
-            if not np.isfinite(limit) or limit <= 0:
-                continue
-            for piece in range(pieces):
-                there = trajectory.values(piece, joint, order, places)
-                sampled = max(sampled, float(np.abs(there).max()) / limit)
+            for side, sign in ((0, -1.0), (1, 1.0)):
+                limit = float(limits[side, joint, order - 1])
+                if not np.isfinite(limit) or limit <= 0:
+                    continue
+                for piece in range(pieces):
+                    there = sign * trajectory.values(piece, joint, order, places)
+                    sampled = max(sampled, float(there.max()) / limit)
     vertices: float | Why = Why("the curve has no control vertices in time")
     declared = study.case.statement(pid, rid).declaration
-    if (declared.family, declared.time) == ("uniform-cubic-b-spline", "stretched"):
-        vertices = _on_vertices(problem.waypoints, durations, limits)
+    if problem.limits.uneven:
+        vertices = Why("lower and upper limits differ, and vertices are set beside equal ones")
+    elif (declared.family, declared.time) == ("uniform-cubic-b-spline", "stretched"):
+        vertices = _on_vertices(problem.waypoints, durations, limits[1])
     return HeldOtherwise(
         everywhere=float(worst.ratio), steps=_STEPS, sampled=sampled, vertices=vertices
     )

@@ -357,9 +357,9 @@ def _used_up(study: Study, claim: AnyClaim) -> Iterator[Finding]:
         problem = study.claim_problem(claim, pid, rid)
         tight = []
         for r, quantity in enumerate(QUANTITIES, start=1):
-            limits = problem.limits.derivatives[:, r - 1]
+            limits = problem.limits.sides[:, :, r - 1]
             for top in largest(study, claim, pid, rid, r):
-                limit = float(limits[top.joint])
+                limit = float(limits[int(top.value > 0.0), top.joint])
                 if not np.isfinite(limit):
                     continue
                 reach = box_reach(study, claim, pid, rid, top)

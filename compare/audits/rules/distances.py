@@ -311,7 +311,7 @@ def _no_optimum(solution: Solution) -> str:
     why = f": {solution.why}" if solution.why else ""
     if solution.status is Status.NOT_ATTAINED:
         limits = solution.problem.limits
-        free = not np.isfinite(limits.derivatives).any()
+        free = not np.isfinite(limits.sides).any()
         reason = "no limit is printed, and " if free else ""
         return f"{reason}no motion is the shortest, the total only approaches an infimum{why}"
     if solution.status is Status.INFEASIBLE:

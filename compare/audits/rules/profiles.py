@@ -120,6 +120,18 @@ def _ways(problem: Problem, study: Study, pid: str, rid: str) -> tuple[Array, Ar
 
 def _beside(study: Study, claim: TotalTimeClaim, profile: str, pid: str, rid: str) -> Finding:
     problem = study.claim_problem(claim, pid, rid)
+    if problem.limits.uneven:
+        return Finding(
+            rule="TG304",
+            severity=Severity.INFO,
+            verdict=ClaimVerdict.NOT_CHECKABLE,
+            basis=Basis.CHECK,
+            claim=claim.id,
+            problem=pid,
+            reading=rid,
+            message=f"The lower and upper limits differ; the {profile} profile is computed within "
+            "limits of equal size only.",
+        )
     plain = shortest(
         profile, np.abs(np.diff(problem.waypoints, axis=0)), problem.limits.derivatives
     )

@@ -36,9 +36,12 @@ def judge_scaling(study: Study) -> Iterator[Finding]:
 def velocity_factor(one: Problem, other: Problem) -> float | None:
     """Factor c that maps feasible durations of ``one`` to feasible ones of ``other``, or None.
 
-    With velocity limits only, equal curves and no duration bound in force, stretching time by
-    c = V_one/V_other divides every velocity by c: optimum times limit is a constant.
+    With velocity limits of equal sides only, equal curves and no duration bound in force,
+    stretching time by c = V_one/V_other divides every velocity by c: optimum times limit is a
+    constant.
     """
+    if one.limits.uneven or other.limits.uneven:
+        return None
     same = (
         one.curve == other.curve
         and one.curve.homogeneous

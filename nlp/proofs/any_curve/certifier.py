@@ -10,9 +10,10 @@ import numpy as np
 from ....problem import Array
 from ....verify import Subject
 from ..answer import float_problem
+from ..certifier import Certifier
 from ..exact import ExactProblem
 from ..rounding import down
-from ..session import Certifier, Session
+from ..session import Session
 from .estimate import estimate_any_curve
 from .exact import FreeQuestion, missing, prove_motion, question, unanswered
 from .local import LocalQuestion, local_optimum

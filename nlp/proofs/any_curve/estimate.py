@@ -206,6 +206,8 @@ def _matter(problem: Problem) -> NDArray[np.bool_]:
 def _not_covered(problem: Problem) -> str | None:
     """The reason why there is no value, as far as it can be told before solving."""
     limits, restless = problem.limits, _restless(problem)
+    if limits.uneven:
+        return "lower and upper limits differ; this optimum is computed within equal ones only"
     if np.isfinite(limits.jerk[restless]).any():
         return "jerk is limited; the optimum over all curves is computed for v and a limits only"
     for name, values in (("velocity", limits.velocity), ("acceleration", limits.acceleration)):

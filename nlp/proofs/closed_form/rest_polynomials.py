@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -13,9 +14,10 @@ import numpy as np
 from ....problem import Interpolant
 from ....verify import LEAF
 from ..answer import solve_exactly
+from ..certifier import Certifier
 from ..exact import ExactProblem, decimal
 from ..rounding import root_below
-from ..session import Certifier, Session
+from ..session import Session
 from ..three_piece import PLACES
 
 STILL = 1e-9
@@ -79,8 +81,13 @@ def shape(degree: int) -> list[Fraction]:
     return [row[0] for row in solved]
 
 
-def peaks(degree: int) -> list[tuple[int, Fraction]]:
-    """For orders 1 to 3, a place (in 1/PLACES) of the largest |derivative| and its value there."""
+def size(value: Fraction, sign: int) -> Fraction:
+    """|value| for sign 0, else what lies to the side of the sign; 0 where nothing does."""
+    return abs(value) if sign == 0 else max(sign * value, Fraction(0))
+
+
+def peaks(degree: int, sign: int = 0) -> list[tuple[int, Fraction]]:
+    """For orders 1 to 3, a place (in 1/PLACES) of the largest `size` of it, and that size."""
     found = []
     poly = shape(degree)
     for _ in range(3):
@@ -88,7 +95,7 @@ def peaks(degree: int) -> list[tuple[int, Fraction]]:
         slope = np.polynomial.Polynomial([float(p * c) for p, c in enumerate(poly)][1:] or [0.0])
         roots = np.real(slope.roots()) if slope.degree() else np.zeros(0)
         places = {0, PLACES, *(round(float(np.clip(s, 0, 1)) * PLACES) for s in roots)}
-        values = {k: abs(at(poly, Fraction(k, PLACES))) for k in places}
+        values = {k: size(at(poly, Fraction(k, PLACES)), sign) for k in places}
         best = max(values, key=lambda k: (values[k], k))
         found.append((best, values[best]))
     return found
@@ -100,7 +107,7 @@ def at(poly: list[Fraction], s: Fraction) -> Fraction:
 
 
 def closed_form(
-    problem: ExactProblem, peak: Callable[[int, int, int], tuple[int, Fraction, Fraction]]
+    problem: ExactProblem, peak: Callable[[int, int, int, int], tuple[int, Fraction, Fraction]]
 ) -> tuple[list[SegmentBound], list[float]]:
     """Least duration of every segment, proved, and durations to try as the answer.
 
@@ -108,8 +115,8 @@ def closed_form(
     ----------
     problem : ExactProblem
     peak : callable
-        Of joint, segment and order, if the segment takes 1 s: a place (in 1/PLACES) of almost the
-        largest |derivative|, its value there, and the largest.
+        Of joint, segment, order and sign, if the segment takes 1 s: a place (in 1/PLACES) of almost
+        the largest `size` of the derivative, its size there, and the largest.
 
     Returns
     -------
@@ -121,11 +128,12 @@ def closed_form(
     for k in range(problem.segments):
         best = SegmentBound(problem.duration_lower[k])
         longest = float(best.least)
-        for j, limits in enumerate(problem.limits):
-            for order, limit in enumerate(limits, start=1):
+        for j, order in product(range(len(problem.joints)), (1, 2, 3)):
+            low, high = problem.sides(j, order)
+            for sign, limit in ((-1, low), (1, high)) if low != high else ((0, high),):
                 if limit is None or limit.low <= 0:
                     continue
-                place, value, top = peak(j, k, order)
+                place, value, top = peak(j, k, order, sign)
                 longest = max(longest, float(top / limit.low) ** (1 / order))
                 least = root_below(value / limit.high, order) if value else Fraction(0)
                 if least > best.least:
@@ -137,12 +145,12 @@ def closed_form(
 
 
 def _closed_form(problem: ExactProblem) -> tuple[list[SegmentBound], list[float]]:
-    tops = peaks(problem.piecewise.degrees[0])
+    tops = {sign: peaks(problem.piecewise.degrees[0], sign) for sign in (-1, 0, 1)}
 
-    def peak(joint: int, segment: int, order: int) -> tuple[int, Fraction, Fraction]:
-        way = abs(problem.waypoints[segment + 1][joint] - problem.waypoints[segment][joint])
-        place, top = tops[order - 1]
-        return place, way * top, way * top
+    def peak(joint: int, segment: int, order: int, sign: int) -> tuple[int, Fraction, Fraction]:
+        way = problem.waypoints[segment + 1][joint] - problem.waypoints[segment][joint]
+        place, top = tops[sign if way >= 0 else -sign][order - 1]
+        return place, abs(way) * top, abs(way) * top
 
     return closed_form(problem, peak)
 
@@ -173,5 +181,6 @@ REST_TO_REST = Certifier(
     lambda _: None,
     proving("rest-to-rest", _closed_form),
     instant=True,
+    sided=True,
 )
 """Rest at every way-point makes each segment a formula, whatever the odd degree."""

@@ -7,18 +7,18 @@ from fractions import Fraction
 
 from ....problem.curves import StretchedUniformBSpline
 from ..answer import uniform_coefficients
+from ..certifier import Certifier
 from ..exact import ExactProblem
-from ..session import Certifier
 from ..three_piece import PLACES
-from .rest_polynomials import SegmentBound, at, closed_form, proving
+from .rest_polynomials import SegmentBound, at, closed_form, proving, size
 
 
 def _declares(problem: ExactProblem) -> bool:
     return isinstance(problem.curve, StretchedUniformBSpline)
 
 
-def _peak(piece: list[Fraction], order: int) -> tuple[int, Fraction, Fraction]:
-    """A place (in 1/PLACES) of almost the largest |derivative|, its value there, and the largest.
+def _peak(piece: list[Fraction], order: int, sign: int) -> tuple[int, Fraction, Fraction]:
+    """A place (in 1/PLACES) of almost the largest `size`, the size there, and the largest.
 
     The first derivative is a parabola in e, the second a line, the third a constant.
     """
@@ -29,14 +29,14 @@ def _peak(piece: list[Fraction], order: int) -> tuple[int, Fraction, Fraction]:
         if 0 < vertex < 1:
             exact.append(vertex)
             places.add(round(vertex * PLACES))
-    values = {k: abs(at(poly, Fraction(k, PLACES))) for k in places}
+    values = {k: size(at(poly, Fraction(k, PLACES)), sign) for k in places}
     best = max(values, key=lambda k: (values[k], k))
-    return best, values[best], max(abs(at(poly, e)) for e in exact)
+    return best, values[best], max(size(at(poly, e), sign) for e in exact)
 
 
 def _closed_form(problem: ExactProblem) -> tuple[list[SegmentBound], list[float]]:
     curves = uniform_coefficients(problem.waypoints)
-    return closed_form(problem, lambda joint, k, order: _peak(curves[joint][k], order))
+    return closed_form(problem, lambda joint, k, order, sign: _peak(curves[joint][k], order, sign))
 
 
 STRETCHED = Certifier(
@@ -45,5 +45,6 @@ STRETCHED = Certifier(
     lambda _: None,
     proving("stretched", _closed_form),
     instant=True,
+    sided=True,
 )
 """One curve alone: its segments do not know of each other, so that each is a formula."""

@@ -13,8 +13,9 @@ import numpy as np
 
 from ....problem import Array
 from ....verify import MOST_CUBIC_SEGMENTS, TICKS
+from ..certifier import Certifier
 from ..exact import ExactProblem
-from ..session import Certifier, Ladder, Session
+from ..session import Ladder, Session
 from .ranges import implied
 from .replay import replayed
 from .search import Search

@@ -13,10 +13,11 @@ import numpy as np
 from ....problem import Array, Interpolant, Verdict, check
 from ....problem.curves import at_hand
 from ....verify import MOST_POWER, MOST_QUINTIC_JOINTS, MOST_QUINTIC_SEGMENTS, SMALLEST
+from ..certifier import Certifier
 from ..exact import ExactProblem, decimal
 from ..executors import executor_for
 from ..rounding import below
-from ..session import Certifier, Ladder, Session, Shorter
+from ..session import Ladder, Session, Shorter
 from .leaves import Leaves
 from .search import search
 from .subtrees import Root, Stage, search_all

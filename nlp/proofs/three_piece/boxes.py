@@ -130,9 +130,11 @@ class Proposer:
         problem = self.problem
         for g in range(len(self._segments)):
             for j in range(len(problem.joints)):
-                for r, limit in enumerate(problem.limits[j], start=1):
-                    if limit is not None and limit.high > 0:
-                        self._limits += [(g, j, r, sign, float(limit.high)) for sign in (1, -1)]
+                for r in (1, 2, 3):
+                    below, above = problem.sides(j, r)
+                    for sign, limit in ((1, above), (-1, below)):
+                        if limit is not None and limit.high > 0:
+                            self._limits.append((g, j, r, sign, float(limit.high)))
                 low, high = problem.position_lower[j], problem.position_upper[j]
                 if high is not None:
                     self._limits.append((g, j, 0, 1, float(high.high)))

@@ -9,7 +9,7 @@ from functools import lru_cache
 import numpy as np
 
 from ....problem import TrajgapError
-from ..exact import ExactProblem
+from ..exact import ExactProblem, Real
 from .ratios import Ratios, ThreePieces, derivative, shape_of
 from .square_polynomials import (
     MONOMIALS,
@@ -85,11 +85,27 @@ def shape_for(problem: ExactProblem) -> ThreePieces:
 
 def size_for(problem: ExactProblem) -> int:
     """Number of coefficients per variable that holds every row."""
-    order = max(
-        (r for row in problem.limits for r, x in enumerate(row, start=1) if x is not None),
-        default=1,
-    )
-    return 3 + order
+    joints = range(len(problem.joints))
+    limited = [r for j in joints for r in (1, 2, 3) if problem.sides(j, r) != (None, None)]
+    return 3 + max(limited, default=1)
+
+
+def side_of(problem: ExactProblem, row: PieceRow) -> int:
+    """Side, ±1, of the limit that a row on a derivative leans on.
+
+    The mean speed of a piece has the sign of its way. From rest a derivative of that sign is
+    reached; to rest, seen backwards, every second one has the other sign.
+    """
+    step = {"first": 0, "mean": 1, "last": 2}.get(row.kind)
+    if step is None:
+        return row.sign
+    forth = problem.waypoints[step + 1][row.joint] >= problem.waypoints[step][row.joint]
+    return (1 if forth else -1) * (-1 if row.kind == "last" and row.order == 2 else 1)
+
+
+def limit_of(problem: ExactProblem, row: PieceRow) -> Real | None:
+    """Size of the limit that a row on a derivative leans on; None if there is none."""
+    return problem.sides(row.joint, row.order)[(1 + side_of(problem, row)) // 2]
 
 
 def on_square(ratios: dict[Ratios, Fraction]) -> Poly:
@@ -128,7 +144,7 @@ def _without_cap(problem: ExactProblem, row: PieceRow) -> tuple[Poly, Poly]:
         assert end is not None
         limit = end.high + STRICT if row.sign > 0 else STRICT - end.low
     else:
-        bound = problem.limits[row.joint][row.order - 1]
+        bound = limit_of(problem, row)
         assert bound is not None
         limit = bound.high
     shape, q = shape_for(problem), [angles[row.joint] for angles in problem.waypoints]
@@ -195,7 +211,7 @@ def static_rows(problem: ExactProblem) -> list[PieceRow]:
             for order in (1, 2, 3) if kind != "mean" else (1,):
                 best: tuple[Fraction, int] | None = None
                 for joint in range(len(problem.joints)):
-                    limit = problem.limits[joint][order - 1]
+                    limit = limit_of(problem, PieceRow(kind, joint, order))
                     if limit is None or limit.high <= 0:
                         continue
                     ratio = abs(q[step + 1][joint] - q[step][joint]) / limit.high

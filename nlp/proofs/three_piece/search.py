@@ -12,9 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....problem import TrajgapError, Verdict, check
+from ..certifier import Certifier
 from ..exact import ExactProblem
 from ..rounding import down
-from ..session import Certifier, Ladder, OutOfTime, Session, Shorter
+from ..session import Ladder, OutOfTime, Session, Shorter
 from .boxes import Boxes, Proof, Proposer
 from .ratios import shape_of
 from .rows import STRICT, shape_for
@@ -138,7 +139,9 @@ def _declares(problem: ExactProblem) -> bool:
 
 
 def _missing(problem: ExactProblem) -> str | None:
-    usable = any(x is not None and x.high > 0 for row in problem.limits for x in row)
+    joints = range(len(problem.joints))
+    every = [x for j in joints for r in (1, 2, 3) for x in problem.sides(j, r)]
+    usable = any(x is not None and x.high > 0 for x in every)
     if not usable and not any(problem.duration_lower):
         return "nothing limits the total from below"
     return None
@@ -187,10 +190,10 @@ def _above_all(exact: ExactProblem) -> Fraction | None:
 def _positions_alone(exact: ExactProblem) -> ExactProblem:
     """The problem without anything that more time could repair."""
     nothing = ((None, None, None),) * len(exact.joints)
-    return replace(exact, limits=nothing, duration_lower=(Fraction(0),) * exact.segments)
+    return replace(exact, limits=nothing, duration_lower=(Fraction(0),) * exact.segments, pairs=())
 
 
 THREE_PIECE = Certifier(
-    "C2 3-5-3 and 4-3-4 polynomials at rest at the ends", _declares, _missing, _prove
+    "C2 3-5-3 and 4-3-4 polynomials at rest at the ends", _declares, _missing, _prove, sided=True
 )
 """At rest alone: the pieces are quotients of polynomials in two ratios only then."""

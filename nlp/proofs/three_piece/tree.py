@@ -12,7 +12,7 @@ from ....problem import TrajgapError
 from ....verify import LEAF, OPEN, number
 from ..exact import ExactProblem, decimal
 from .boxes import Boxes, Proof
-from .rows import PLACES, TOTAL, PieceRow, shape_for
+from .rows import PLACES, TOTAL, PieceRow, limit_of, shape_for
 
 _DEEPEST = 60
 """Halvings of a side in a tree that is read: an index of 64 bits holds them."""
@@ -116,7 +116,7 @@ def _row(problem: ExactProblem, entry: Any) -> PieceRow:
         side = problem.position_upper if sign > 0 else problem.position_lower
         there = side[row.joint] is not None
     else:
-        limit = problem.limits[row.joint][row.order - 1]
+        limit = limit_of(problem, row)
         there = limit is not None and limit.high > 0
     known = (kind == "lower" or kind in shape.kinds) and sign != 0
     if not (known and there and held and (kind != "mean" or order == 1)):

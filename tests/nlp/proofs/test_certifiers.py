@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from trajgap.nlp.proofs.certifier import Certifier
 from trajgap.nlp.proofs.certifiers import CERTIFIERS, certifiers
-from trajgap.nlp.proofs.session import Certifier
 from trajgap.verify import Subject
 
 

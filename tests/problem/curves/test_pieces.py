@@ -12,10 +12,10 @@ from trajgap.problem import (
     Problem,
     Verdict,
     check,
-    checker,
     cubic_spline,
     extrema,
     fit,
+    jumps,
     quintic_spline,
     rest_to_rest,
 )
@@ -135,7 +135,7 @@ def test_the_checker_says_the_same_by_both_searches(
 ) -> None:
     problem, h = long_problem(kind, 130)
     found = check(problem, h)
-    monkeypatch.setattr(checker, "MANY_PIECES", 10**6)
+    monkeypatch.setattr(jumps, "MANY_PIECES", 10**6)
     for one, other in zip(found.peaks, check(problem, h).peaks, strict=True):
         same(one, other)
         assert one.ratio == pytest.approx(other.ratio, rel=1e-14)

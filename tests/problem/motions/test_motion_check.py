@@ -226,6 +226,26 @@ def test_symmetric_limits_imply_the_others():
     assert (back.upper <= limits.upper).all()
 
 
+def test_two_sided_limits_imply_the_others_and_keep_each_side():
+    limits = JointLimits(
+        ("1", "2"),
+        np.array([[-1.0, -2.0, -3.0, -np.inf], [-2.0, -1.0, -6.0, -7.0]]),
+        np.array([[2.0, 1.5, 4.0, np.inf], [3.0, 4.0, 5.0, 6.0]]),
+        np.array([np.inf, 4.5]),
+    )
+    own = limits.two_sided
+    np.testing.assert_array_equal(own.ends("velocity"), [[-2.0, -1.0], [1.5, 4.0]])
+    # The deceleration of joint 2 counts while it slows down, in either direction.
+    np.testing.assert_array_equal(own.ends("acceleration"), [[-3.0, -4.5], [4.0, 4.5]])
+    np.testing.assert_array_equal(own.ends("jerk"), [[-np.inf, -7.0], [np.inf, 6.0]])
+    np.testing.assert_array_equal(own.position_upper, [2.0, 3.0])
+    back = JointLimits.of(own, ("1", "2"))
+    np.testing.assert_array_equal(back.lower[0], limits.lower[0])
+    np.testing.assert_array_equal(back.upper[0], limits.upper[0])
+    assert (back.lower >= limits.lower).all()
+    assert (back.upper <= limits.upper).all()
+
+
 @pytest.mark.parametrize(
     ("make", "message"),
     [

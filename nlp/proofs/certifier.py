@@ -1,0 +1,87 @@
+"""One kind of proof, as a run needs it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, replace
+
+from ...verify import Subject
+from .exact import ExactProblem
+from .outcome import Certified, Outcome, Request
+from .session import OutOfTime, Session
+
+WIDER = 0.5
+"""Share of the time that a proof may take within limits of equal sides, where lower and upper ones
+differ: what is left is for the search of an answer."""
+
+
+@dataclass(frozen=True)
+class Certifier:
+    """One kind of proof, as a run needs it.
+
+    Attributes
+    ----------
+    family : str
+        Words for the curves that it covers.
+    declares : callable
+        Whether a problem's curve is of its kind.
+    missing : callable
+        Why such a problem is not covered all the same, or None.
+    prove : callable
+        Raises the bound of a session, and returns whether nothing is left to do. Keyboard
+        interrupts and `OutOfTime` end it.
+    subject : Subject
+        What its interval speaks about.
+    instant : bool
+        Whether it is a closed form.
+    sided : bool
+        Whether its bounds know lower and upper limits that differ in size. If not, they are proved
+        within the larger of both, which is sound and wider.
+    """
+
+    family: str
+    declares: Callable[[ExactProblem], bool]
+    missing: Callable[[ExactProblem], str | None]
+    prove: Callable[[Session], bool]
+    subject: Subject = Subject.DECLARED
+    instant: bool = False
+    sided: bool = False
+
+    def run(self, exact: ExactProblem, request: Request) -> Certified:
+        """Prove an interval of the optimum; the time limit and Ctrl-C end it with what is proved.
+
+        Raises
+        ------
+        TrajgapError
+            If the state to go on from does not prove what it says.
+        """
+        if exact.pairs and not self.sided:
+            return self._run_wider(exact, request)
+        session = Session(exact, request)
+        try:
+            complete = self.prove(session)
+        except (KeyboardInterrupt, OutOfTime):
+            complete = False
+        return session.result(complete, self.subject)
+
+    def _run_wider(self, exact: ExactProblem, request: Request) -> Certified:
+        """A bound proved within the larger size of both sides, and an answer that keeps both.
+
+        Of any curve there is an answer to the wider problem alone, which is left out.
+        """
+        session = Session(exact, request)
+        own = self.subject is Subject.DECLARED
+        share = WIDER if own else 1.0
+        wide = self.run(exact.even, replace(request, seconds=share * request.seconds))
+        if wide.outcome is Outcome.INFEASIBLE:
+            session.infeasible = True
+        if wide.proof is not None:
+            session.keep(wide.lower, wide.proof)
+        session.proposals, session.nodes = wide.proposals, wide.nodes
+        session.open_boxes, session.one_sided = wide.open_boxes, not own
+        if own and not session.infeasible:
+            with suppress(KeyboardInterrupt, OutOfTime):
+                session.seek()
+        found = session.result(False, self.subject)
+        return replace(found, stopped=wide.stopped, proposals=wide.proposals, widened=True)
