@@ -41,10 +41,10 @@ def find_causes(study: Study, findings: Iterable[Finding]) -> tuple[Cause, ...]:
     tuple of Cause
         The gravest first.
     """
+    against = [f for f in findings if f.severity in _AGAINST]
     groups: dict[str, list[Finding]] = {}
-    for f in findings:
-        if f.severity in _AGAINST:
-            groups.setdefault(_root(f), []).append(f)
+    for f in against:
+        groups.setdefault(_root(f), []).append(f)
     below: dict[str, list[Finding]] = {root: [] for root in groups}
     own = []
     for root, group in groups.items():
@@ -53,7 +53,7 @@ def find_causes(study: Study, findings: Iterable[Finding]) -> tuple[Cause, ...]:
             own.append(root)
         for up in above:
             below[up] += group
-    found = [_cause(study, root, groups[root], below[root]) for root in own]
+    found = [_cause(study, root, groups[root], below[root], against) for root in own]
     return tuple(sorted(found, key=lambda cause: list(Severity).index(cause.severity)))
 
 
@@ -62,7 +62,9 @@ def _root(finding: Finding) -> str:
     return finding.root or "\n".join(said)
 
 
-def _cause(study: Study, root: str, group: list[Finding], below: list[Finding]) -> Cause:
+def _cause(
+    study: Study, root: str, group: list[Finding], below: list[Finding], against: list[Finding]
+) -> Cause:
     first = next((f for f in group if f.reading in (None, study.main_reading)), group[0])
     readings = dict.fromkeys(f.reading for f in group if f.reading is not None)
     if any(f.reading is None for f in group):
@@ -80,9 +82,20 @@ def _cause(study: Study, root: str, group: list[Finding], below: list[Finding]) 
         says=first.message,
         head=_mildest(study, first, group),
         readings=tuple(r for r in readings if r is not None),
+        elsewhere=_elsewhere(study, first, set(readings), against),
         explanations=explained(study, root, first),
         consequences=tuple(consequences.values()),
     )
+
+
+def _elsewhere(
+    study: Study, first: Finding, readings: set[str | None], against: list[Finding]
+) -> str:
+    """What contradicts a claim that is called optimal where no motion is shown to be shorter."""
+    left = {reading.id for reading in study.case.readings} - readings
+    breaking = {f.reading for f in against if f.claim == first.claim and f.kind == "breaks"}
+    told = first.kind == "longer" and left and left <= breaking
+    return "the durations break a limit" if told else ""
 
 
 def _mildest(study: Study, first: Finding, group: list[Finding]) -> Finding:

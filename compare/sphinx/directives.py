@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -16,6 +17,7 @@ from ..documents import ClaimVerdict, Keeping, counted, more_errors, worth
 from ..pictures import waterfall_picture
 from .parts import badge, paragraph, picture, table
 from .proofs import proved_again
+from .reasons import names as reading_names
 from .reasons import reasons
 from .results import Results, distance_of, waterfall_of
 from .suite import InstanceShown, SuiteTable
@@ -126,20 +128,23 @@ class Readings(FromResults):
             return [paragraph("The text leaves nothing open: there is one reading.")]
         names = said["admissible"]
         head = paragraph(f"The text leaves open what {len(names)} readings settle. The default is ")
-        head += nodes.literal("", said["default"])
-        head += nodes.Text(f": {said['default_why']}" if said["default_why"] else ".")
-        rows = [_under(case, outcome) for outcome in said["outcomes"]]
+        labels = reading_names(case).labels
+        head += nodes.Text(f"“{labels.get(said['default'], said['default'])}”. ")
+        head += nodes.Text(said["default_why"] or "")
+        meant = [[labels.get(one, one), nodes.literal("", one)] for one in names]
+        known = table(("reading", "its id"), meant)
+        rows = [_under(case, outcome, labels) for outcome in said["outcomes"]]
         columns = ("reading", "durations of", "limits", "largest ratio", "shortest, s", "evidence")
-        return [head, table(columns, rows)] if rows else [head]
+        return [head, table(columns, rows), known] if rows else [head, known]
 
 
-def _under(case: dict[str, Any], outcome: dict[str, Any]) -> list[Any]:
+def _under(case: dict[str, Any], outcome: dict[str, Any], labels: Mapping[str, str]) -> list[Any]:
     """What one printed motion is under one reading."""
     own = [c["where"] for c in case["claims"] if c["claim"] == outcome["claim"]]
     held, optimum = outcome["held"], outcome["optimum"]
     ratio = held["everywhere"] if isinstance(held, dict) else None
     return [
-        nodes.literal("", outcome["reading"]),
+        labels.get(outcome["reading"], outcome["reading"]),
         own[0] if own else "–",
         KEPT[Keeping(outcome["keeping"])] if outcome["keeping"] else "–",
         "–" if ratio is None else f"{ratio:.4g}",

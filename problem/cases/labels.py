@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from ..problem import Coupling
 from ..units import CHOICES
 from .declaration import InterpolantBlock
-from .schema import CaseFile, ProblemData, Reading
+from .schema import CaseFile, Reading
 
 _UNITS = {
     "position": "angles",

@@ -62,7 +62,9 @@ def check_references(document: CaseFile, faults: Faults) -> None:
     labels = [reading.label for reading in document.readings]
     for index, label in enumerate(labels):
         if label is not None and label in labels[:index]:
-            faults.add(f"readings[{index}].label", f"{label!r} names another reading; say what differs")
+            faults.add(
+                f"readings[{index}].label", f"{label!r} names another reading; say what differs"
+            )
 
     def known(kind: str, field: str, name: str | None) -> None:
         if name is not None and name not in ids[kind]:

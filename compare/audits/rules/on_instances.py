@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ....problem.cases import ConvergenceClaim
-from ...documents import Basis, Effect, Finding, Procedure
+from ...documents import Basis, Effect, Finding, Procedure, quoted
 from ...gaps import SETTLED
 from ..instances import (
     MIDDLE,
@@ -202,7 +202,7 @@ def _convergence(result: InstancesResult, claim: ConvergenceClaim) -> Finding:
         shares.append(float((settled <= claim.iterations.value).mean()) if settled.size else 0.0)
     low, high = 100 * min(shares), 100 * max(shares)
     each = ", ".join(
-        f"{100 * share:.3g} % under {reading}"
+        f"{100 * share:.3g} % under {quoted(reading, result.labels)}"
         for share, reading in zip(shares, result.readings, strict=True)
     )
     message = (
