@@ -184,11 +184,10 @@ def _limits(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[str]
         return f"{_broken(sets, words)} for every value that rounds to the printed digits.", spoken
     if not broken and not kept:
         return "Whether the limits are kept is not decided by the printed digits.", spoken
-    kept_in = f"Whether the limits are kept{_in_doubt(sets, words)}"
-    return f"{kept_in} {_differing(study, under)}{jump}.", spoken
+    return f"{_differing(study, under, _in_doubt(sets, words))}{jump}.", spoken
 
 
-def _differing(study: Study, found: Mapping[str, set[ClaimVerdict]]) -> str:
+def _differing(study: Study, found: Mapping[str, set[ClaimVerdict]], where: str) -> str:
     """Under which readings limits are kept, broken or neither; an implausible one stands last."""
     groups: dict[str, list[str]] = {"kept": [], "broken": [], "undecided": []}
     for reading, words in found.items():
@@ -198,14 +197,15 @@ def _differing(study: Study, found: Mapping[str, set[ClaimVerdict]]) -> str:
     said = {word: own for word, own in groups.items() if own}
     if len(found) > _FEW:
         counts = [f"{word} under {len(own)}" for word, own in said.items()]
-        return f"depends on the reading: {', '.join(counts)} of {len(found)}"
+        share = f"{', '.join(counts)} of {len(found)}"
+        return f"Whether the limits are kept{where} depends on the reading: {share}"
     ordered = sorted(said.items(), key=lambda item: all(one in far for one in item[1]))
     parts = []
     for word, own in ordered:
         mark = "the implausible " if all(one in far for one in own) else ""
         which = " and ".join(quoted(one, study.case.labels) for one in own)
         parts.append(f"{word} under {mark}{which}")
-    return f"depends on the reading: {', '.join(parts)}"
+    return f"The limits{where} are {', '.join(parts)}"
 
 
 def _in_doubt(sets: Sequence[AnyClaim], words: Mapping[str, Judgement]) -> str:

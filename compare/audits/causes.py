@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from ...problem.cases import AnyClaim, ImprovementClaim, MaximumClaim, StatementClaim
 from ..documents import (
+    DOUBTED,
     Cause,
     Caveat,
     CaveatKind,
@@ -16,6 +17,8 @@ from ..documents import (
     Judgement,
     Severity,
     Why,
+    built,
+    stated,
 )
 from .explanations import explained
 from .study import Study
@@ -120,7 +123,8 @@ def with_caveats(
     found = list(findings)
     against = _contradictions(found)
     return tuple(
-        j.model_copy(update={"caveats": tuple(_caveats(study, j, against))}) for j in judgements
+        j.model_copy(update={"caveats": tuple(_caveats(study, j, against, found))})
+        for j in judgements
     )
 
 
@@ -137,8 +141,13 @@ def _contradictions(findings: list[Finding]) -> dict[str, set[str]]:
     return sides
 
 
-def _caveats(study: Study, judgement: Judgement, against: dict[str, set[str]]) -> Iterator[Caveat]:
+def _caveats(
+    study: Study, judgement: Judgement, against: dict[str, set[str]], findings: list[Finding]
+) -> Iterator[Caveat]:
     claim = study.case.claim(judgement.claim)
+    own = [f for f in findings if f.claim == claim.id and f.decides]
+    if judgement.verdict is ClaimVerdict.SUPPORTED and own and all(f.built for f in own):
+        yield Caveat(CaveatKind.BUILT, built())
     held = [r for r, v in judgement.readings.items() if v is ClaimVerdict.SUPPORTED]
     # What follows from printed totals alone needs no curve.
     timed = not isinstance(claim, ImprovementClaim)
@@ -146,13 +155,14 @@ def _caveats(study: Study, judgement: Judgement, against: dict[str, set[str]]) -
     if jumping:
         count = "" if len(judgement.readings) == 1 else f" ({len(jumping)} of {len(held)} readings)"
         yield Caveat(CaveatKind.JUMPING, f"on a curve whose velocity jumps{count}")
+    if isinstance(claim, StatementClaim) and claim.nature is not None:
+        yield Caveat(CaveatKind.STATED, stated(claim.nature))
     rests = {claim.id, *_rests_on(claim)}
     if judgement.verdict is ClaimVerdict.INCONSISTENT:
         return
     for message, sides in against.items():
         if rests & sides:
-            text = f"rests on numbers that other printed numbers contradict: {message}"
-            yield Caveat(CaveatKind.DOUBTED, text)
+            yield Caveat(CaveatKind.DOUBTED, f"{DOUBTED}: {message}")
 
 
 def _rests_on(claim: AnyClaim) -> tuple[str, ...]:

@@ -75,7 +75,7 @@ def judge(
         said = (Said(f.verdict, f.message, f.rule, f.reading) for f in behind)
         depends = verdict is ClaimVerdict.DEPENDS
         behind_it = reasons(said, tuple(each), named)
-        why = " ".join(told(one, tuple(each), named, word=depends) for one in behind_it)
+        why = " ".join(told(one, tuple(each), named, word=depends, why=True) for one in behind_it)
         confidence = _confidence(behind, verdict)
     return Judgement(
         claim=claim,

@@ -69,8 +69,9 @@ def _of_answers(summary: ReadingsSummary) -> Iterable[str]:
             (k for k in Keeping if found[k]),
             key=lambda k: all(r in summary.implausible for r in found[k]),
         )
+        named = _names(summary)
         said = ", ".join(
-            f"{KEPT[k]} {under(found[k], summary.admissible, _names(summary))}" for k in words
+            f"{KEPT[k]} {under(found[k], summary.admissible, named, why=True)}" for k in words
         )
         yield f"{claim} ({problem}): the limits are {said}.{_of_gaps(own, summary)}"
 

@@ -25,7 +25,9 @@ from ..documents import (
     counted,
     facts,
     more_errors,
+    qualified,
     tally,
+    worth_little,
 )
 from .certifying import read_certificates
 from .input import read_cases
@@ -107,12 +109,10 @@ def audited(document: AuditDocument) -> list[RenderableType]:
         counts = Counter(v.verdict for v in case.verdicts)
         said = ", ".join(counted(word, counts[word]) for word in ClaimVerdict if counts[word])
         many = "1 claim" if len(case.verdicts) == 1 else f"{len(case.verdicts)} claims"
+        beside = worth_little(case.verdicts)
+        said += f"; {beside}" if beside else ""
         parts += [line(""), line(f"{many}: {said or 'none to judge'}")]
-        stated = {one.claim: one for one in case.claims}
-        rows = [
-            (v.verdict, _under(v), f"{stated[v.claim].text} ({stated[v.claim].where})")
-            for v in sorted(case.verdicts, key=lambda v: _ORDER.index(v.verdict))
-        ]
+        rows = _rows(case)
         if rows:
             parts.append(Columns(("verdict", "readings", "~claim and its place"), rows))
         parts += [line(said, "dim") for said in _unchecked(case)]
@@ -122,6 +122,19 @@ def audited(document: AuditDocument) -> list[RenderableType]:
         parts += [line(""), *_time_goes(case.waterfalls, labels)]
         parts += [line(f"{words}: {value}", "dim") for words, value in facts(case)]
     return parts
+
+
+def _rows(case: AuditedCase) -> list[tuple[str, str, str]]:
+    """Verdict, readings and words of each claim; the same words in several places are one row."""
+    stated = {one.claim: one for one in case.claims}
+    places: dict[tuple[str, str, str], list[str]] = {}
+    for v in sorted(case.verdicts, key=lambda v: _ORDER.index(v.verdict)):
+        key = (qualified(v.verdict, v.caveats), _under(v), stated[v.claim].text)
+        places.setdefault(key, []).append(stated[v.claim].where)
+    return [
+        (verdict, under, f"{text} ({'; '.join(where)})")
+        for (verdict, under, text), where in places.items()
+    ]
 
 
 _REASONS = 3

@@ -66,6 +66,7 @@ from .motion_checked import (
     WrittenMotion,
 )
 from .provenance import Provenance, UsedCertificate
+from .qualified import BUILT, DOUBTED, built, evident, qualified, stated, worth_little
 from .reasons import (
     DECIDING,
     NAMELESS,
@@ -136,9 +137,11 @@ from .waterfall import EXACT, PUBLISHED, SHARED_OPTIMUM, Step, Waterfall
 
 __all__ = [
     "BENCH_COLUMNS",
+    "BUILT",
     "CARD_WORDS",
     "DECIDING",
     "DOCUMENTS",
+    "DOUBTED",
     "EXACT",
     "NAMELESS",
     "OVERALL_COLUMNS",
@@ -256,6 +259,7 @@ __all__ = [
     "Worth",
     "WrittenMotion",
     "bench_cells",
+    "built",
     "capital",
     "cases_document",
     "certify_result",
@@ -263,6 +267,7 @@ __all__ = [
     "count_words",
     "counted",
     "diff_document",
+    "evident",
     "facts",
     "filled",
     "gap_cell",
@@ -277,17 +282,20 @@ __all__ = [
     "output_schema",
     "overall_cells",
     "percent",
+    "qualified",
     "quoted",
     "reason",
     "reasons",
     "schema_text",
     "show_document",
     "solve_result",
+    "stated",
     "suite_document",
     "tally",
     "told",
     "under",
     "verify_document",
     "worth",
+    "worth_little",
     "write_docs",
 ]

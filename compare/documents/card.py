@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from .entry import Count, Entry, OrWhy
 from .finding import Judgement
+from .qualified import evident
 from .vocabulary import Confidence
 
 CARD_WORDS = 80
@@ -58,9 +59,12 @@ def tally(judgements: Sequence[Judgement]) -> str:
         Such as "Verdicts on 31 claims: 8 follow from the printed digits, 17 are proven under a
         reading, 6 are open."
     """
-    many = Counter(j.confidence for j in judgements if isinstance(j.confidence, Confidence))
+    own = [j for j in judgements if evident(j)]
+    many = Counter(j.confidence for j in own if isinstance(j.confidence, Confidence))
     parts = [f"{many[one]} {told[many[one] != 1]}" for one, told in _KNOWN.items() if many[one]]
-    left = len(judgements) - many.total()
+    held = sum(isinstance(j.confidence, Confidence) for j in judgements) - len(own)
+    parts += [f"{held} {'holds' if held == 1 else 'hold'} by construction"] if held else []
+    left = len(judgements) - len(own) - held
     parts += [f"{left} {'is' if left == 1 else 'are'} open"] if left else []
     count = f"{len(judgements)} claim{'' if len(judgements) == 1 else 's'}"
     return f"Verdicts on {count}: {', '.join(parts)}." if parts else "No claims."

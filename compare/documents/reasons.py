@@ -15,7 +15,7 @@ DECIDING = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT, ClaimVerdict.SUPPOR
 """What decides, the strongest first: a proof outweighs what only agrees."""
 _FEW = 2
 """Readings that a sentence names; of more it gives the number."""
-_NUMBERS = re.compile(r"[-−+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?: ?(?:rad|°|deg)(?:/s[²³]?)?)?")
+_NUMBERS = re.compile(r"[-−+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?|(?:\brad\b|\bdeg\b|°)(?:/s[²³]?)?")
 """Numbers and the units behind them: what reasons that are alike may differ in."""
 
 
@@ -143,7 +143,12 @@ def _alike(
 
 
 def told(
-    one: Reason, computed: Sequence[str], named: Named = NAMELESS, *, word: bool = False
+    one: Reason,
+    computed: Sequence[str],
+    named: Named = NAMELESS,
+    *,
+    word: bool = False,
+    why: bool = False,
 ) -> str:
     """A reason with the readings under which it holds, in one text.
 
@@ -155,12 +160,14 @@ def told(
     named : Named
     word : bool
         Whether its word stands in front: where readings give different ones.
+    why : bool
+        Whether an implausible reading has its reason beside it.
 
     Returns
     -------
     str
     """
-    where = under(one.readings, computed, named)
+    where = under(one.readings, computed, named, why=why)
     labels = named.labels
     if len(one.each) > 1:
         where += f", here with the numbers of {quoted(one.readings[0], labels)}"
@@ -185,6 +192,8 @@ def under(
     computed: Sequence[str],
     named: Named = NAMELESS,
     most: int = _FEW,
+    *,
+    why: bool = False,
 ) -> str:
     """Under which readings something holds, in words.
 
@@ -196,6 +205,8 @@ def under(
     named : Named
     most : int
         Readings that are named; of more the number is given, and the exceptions if they are few.
+    why : bool
+        Whether an implausible reading has its reason beside it.
 
     Returns
     -------
@@ -210,7 +221,8 @@ def under(
         several = "s" if len(readings) > 1 else ""
         which = _and([quoted(one, labels) for one in readings])
         if len(readings) == 1 and readings[0] in far:
-            return f"under the implausible reading {which} ({far[readings[0]]})"
+            reason = f" ({far[readings[0]]})" if why else ""
+            return f"under the implausible reading {which}{reason}"
         return f"under the reading{several} {which}"
     count = f"under {len(readings)} of {len(computed)} readings"
     if len(left) <= _FEW:

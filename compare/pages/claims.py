@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 from ...nlp import Evidence
 from ...problem import file_name
@@ -18,11 +19,14 @@ from ..documents import (
     Said,
     Scope,
     Severity,
+    qualified,
     reasons,
     told,
     under,
+    worth_little,
 )
 from .blocks import Behind, Block, Cell, Claimed, Prose, Section, slug, word
+from .said_once import shown_once
 
 _AGAINST = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT, ClaimVerdict.DEPENDS)
 """Verdicts that stand in the open, the gravest first."""
@@ -48,7 +52,7 @@ def against(one: CaseAudit) -> Section:
     found = [
         claimed(one, j) for verdict in _AGAINST for j in one.judgements if j.verdict is verdict
     ]
-    blocks: list[Block] = [*_alike(found)]
+    blocks: list[Block] = [*shown_once(found)]
     causes = [c for c in one.causes if not _told(one, c)]
     if causes:
         blocks += [Prose("The causes", "heading"), *(_behind(one, c) for c in causes)]
@@ -62,32 +66,12 @@ def against(one: CaseAudit) -> Section:
 def folded_claims(one: CaseAudit) -> Iterator[Section]:
     """Supported claims, then those that cannot be checked, each behind a fold."""
     for verdict in (ClaimVerdict.SUPPORTED, ClaimVerdict.NOT_CHECKABLE):
-        found = tuple(claimed(one, j) for j in one.judgements if j.verdict is verdict)
-        count = f"{len(found)} claim{'' if len(found) == 1 else 's'} {verdict}"
-        yield Section(f"claims-{slug(verdict)}", count, found, folded=True)
-
-
-def _alike(found: Sequence[Claimed]) -> Iterator[Claimed]:
-    """Claims in order; a reason that an earlier one gave is named, not said again."""
-    first: dict[tuple[str, ...], Claimed] = {}
-    for one in found:
-        before = first.setdefault((*one.why, *one.more), one)
-        if before is one:
-            yield one
-        else:
-            yield Claimed(
-                text=one.text,
-                where=one.where,
-                printed=one.printed,
-                verdict=one.verdict,
-                holds=one.holds,
-                why=(f"For the same reason as {before.where}.",),
-                more=(),
-                caveats=one.caveats if one.caveats != before.caveats else (),
-                anchor=one.anchor,
-                id=one.id,
-                answer=one.answer,
-            )
+        own = [j for j in one.judgements if j.verdict is verdict]
+        beside = worth_little(own)
+        title = f"{len(own)} claim{'' if len(own) == 1 else 's'} {verdict}"
+        title += f", {beside}" if beside else ""
+        found = tuple(shown_once([claimed(one, j) for j in own]))
+        yield Section(f"claims-{slug(verdict)}", title, found, folded=True)
 
 
 def claimed(one: CaseAudit, judgement: Judgement) -> Claimed:
@@ -100,7 +84,9 @@ def claimed(one: CaseAudit, judgement: Judgement) -> Claimed:
         text=claim_text(one.case, claim),
         where=claim.where,
         printed=digits_of(one.case, claim),
-        verdict=word(judgement.verdict),
+        verdict=replace(
+            word(judgement.verdict), text=qualified(judgement.verdict, judgement.caveats)
+        ),
         holds=_holds(judgement, names(one)),
         why=why,
         more=more,

@@ -49,8 +49,7 @@ def _examined(study: Study, result: InstancesResult, examined: ExaminedInstances
         *(Prose(said) for said in (placed(result), attributed(result)) if said),
         Prose(
             "The instances are not the paper's: they inform and decide nothing, and the absolute "
-            "times stay not checkable. Way-points written into the case "
-            "file in place of not_printed and count bring the whole audit.",
+            "times stay not checkable.",
             "note",
         ),
         Terms(_design(study, result)),

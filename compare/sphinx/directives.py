@@ -13,7 +13,7 @@ from sphinx.util.docutils import SphinxDirective
 
 from ...problem import TrajgapError, file_name
 from ..audits import KEPT
-from ..documents import ClaimVerdict, Keeping, counted, more_errors, worth
+from ..documents import ClaimVerdict, Keeping, counted, more_errors, qualified, worth
 from ..pictures import waterfall_picture
 from .parts import badge, paragraph, picture, table
 from .proofs import proved_again
@@ -85,15 +85,27 @@ class Claims(FromResults):
         if wanted:
             chosen.sort(key=lambda one: wanted.index(one["verdict"]))
         told: set[str] = set()
-        for verdict in chosen:
-            claim = stated[verdict["claim"]]
+        reasoned: dict[str, str] = {}
+        groups: dict[tuple[str, ...], list[dict[str, Any]]] = {}
+        for one in chosen:
+            key = (stated[one["claim"]]["text"], qualified(one["verdict"], one["caveats"]))
+            groups.setdefault((*key, _holds(one)), []).append(one)
+        for verdict, *others in groups.values():
+            claim = _with_places(stated, verdict, others)
             box = nodes.container(classes=["trajgap-claim"])
             head = nodes.paragraph(classes=["trajgap-said"])
             head += badge(verdict["verdict"])
-            head += nodes.Text(f" {claim['text']}")
+            beside = qualified(verdict["verdict"], verdict["caveats"])
+            head += nodes.Text(f"{beside.removeprefix(verdict['verdict'])} {claim['text']}")
             place = ". ".join(filter(None, (claim["where"], claim["printed"], _holds(verdict))))
             place = f"{place[:1].upper()}{place[1:]}"
-            box += [head, paragraph(place, "trajgap-beside"), *reasons(case, verdict)]
+            box += [head, paragraph(place, "trajgap-beside")]
+            before = reasoned.setdefault(verdict["why"], claim["where"])
+            first = before == claim["where"]
+            box += reasons(case, verdict) if first else [paragraph(_same(before))]
+            for one in others:
+                if one["why"] != verdict["why"]:
+                    box += paragraph(f"{stated[one['claim']]['where']}: {one['why']}")
             for caveat in verdict["caveats"]:
                 # One long reason is told once.
                 short = f"{caveat.partition(':')[0]} (see above)." if caveat in told else caveat
@@ -101,6 +113,22 @@ class Claims(FromResults):
                 box += paragraph(f"{short[:1].upper()}{short[1:]}", "trajgap-beside")
             found.append(box)
         return found or [paragraph("None.")]
+
+
+def _with_places(
+    stated: dict[str, Any], verdict: dict[str, Any], others: list[dict[str, Any]]
+) -> dict[str, Any]:
+    """A claim with the places and digits of all that say the same."""
+    every = [stated[one["claim"]] for one in (verdict, *others)]
+    joined = {
+        key: "; ".join(dict.fromkeys(one[key] for one in every if one[key]))
+        for key in ("where", "printed")
+    }
+    return {**every[0], **joined}
+
+
+def _same(where: str) -> str:
+    return f"For the same reason as {where}."
 
 
 def _holds(verdict: dict[str, Any]) -> str:
