@@ -153,7 +153,8 @@ def _caveats(
     timed = not isinstance(claim, ImprovementClaim)
     jumping = [r for r in held if timed and _jumps(study, claim, r)]
     if jumping:
-        count = "" if len(judgement.readings) == 1 else f" ({len(jumping)} of {len(held)} readings)"
+        many = f" under {len(jumping)} of the {len(held)} readings that support it"
+        count = "" if len(judgement.readings) == 1 else many
         yield Caveat(CaveatKind.JUMPING, f"on a curve whose velocity jumps{count}")
     if isinstance(claim, StatementClaim) and claim.nature is not None:
         yield Caveat(CaveatKind.STATED, stated(claim.nature))

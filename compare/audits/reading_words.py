@@ -102,13 +102,20 @@ def _of_gaps(own: Sequence[ReadingOutcome], summary: ReadingsSummary) -> str:
 
 def _away(low: float, high: float) -> str:
     """How far totals are from an optimum, as a share of it or as a multiple."""
-    if low >= 1:
-        low_, high_ = f"{1 + low:.3g}", f"{1 + high:.3g}"
-        return f"{low_ if low_ == high_ else f'{low_} to {high_}'} times as long"
-    ends = [f"{100 * x:.1f}".replace("-", "−") for x in (low, high)]
-    if ends == ["0.0", "0.0"] or ends == ["−0.0", "0.0"]:
-        return "the same"
-    return f"{ends[0] if ends[0] == ends[1] else ' to '.join(ends)} % above it"
+    ends = [_end(low), _end(high)]
+    numbers, words = zip(*ends, strict=True)
+    if ends[0] == ends[1]:
+        return " ".join(ends[0])
+    if words[0] == words[1]:
+        return f"{' to '.join(numbers)} {words[0]}"
+    return " to ".join(" ".join(end) for end in ends)
+
+
+def _end(gap: float) -> tuple[str, str]:
+    """A distance as a number, and what it is."""
+    if gap >= 1:
+        return f"{1 + gap:.3g}", "times as long"
+    return f"{100 * abs(gap):.1f}", f"% {'below' if gap < 0 else 'above'} it"
 
 
 def _of_fit(summary: ReadingsSummary) -> Iterable[str]:

@@ -168,9 +168,11 @@ def told(
     str
     """
     where = under(one.readings, computed, named, why=why)
-    labels = named.labels
     if len(one.each) > 1:
-        where += f", here with the numbers of {quoted(one.readings[0], labels)}"
+        # Where a sentence names its readings, none is named again.
+        first = quoted(one.readings[0], named.labels)
+        shown = f", here with the numbers of {first}"
+        where += " (numbers of the first)" if first in where else shown
     elif len(one.readings) == len(computed) and not word:
         return one.message
     return f"{capital(f'{one.verdict} {where}' if word else where)}: {one.message}"
