@@ -17,8 +17,8 @@ from ..documents import (
     Judgement,
     Severity,
     Why,
-    built,
-    stated,
+    built_remark,
+    nature_remark,
 )
 from .explanations import explained
 from .study import Study
@@ -147,7 +147,7 @@ def _caveats(
     claim = study.case.claim(judgement.claim)
     own = [f for f in findings if f.claim == claim.id and f.decides]
     if judgement.verdict is ClaimVerdict.SUPPORTED and own and all(f.built for f in own):
-        yield Caveat(CaveatKind.BUILT, built())
+        yield Caveat(CaveatKind.BUILT, built_remark())
     held = [r for r, v in judgement.readings.items() if v is ClaimVerdict.SUPPORTED]
     # What follows from printed totals alone needs no curve.
     timed = not isinstance(claim, ImprovementClaim)
@@ -157,7 +157,7 @@ def _caveats(
         count = "" if len(judgement.readings) == 1 else many
         yield Caveat(CaveatKind.JUMPING, f"on a curve whose velocity jumps{count}")
     if isinstance(claim, StatementClaim) and claim.nature is not None:
-        yield Caveat(CaveatKind.STATED, stated(claim.nature))
+        yield Caveat(CaveatKind.STATED, nature_remark(claim.nature))
     rests = {claim.id, *_rests_on(claim)}
     if judgement.verdict is ClaimVerdict.INCONSISTENT:
         return

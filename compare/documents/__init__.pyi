@@ -66,20 +66,7 @@ from .motion_checked import (
     WrittenMotion,
 )
 from .provenance import Provenance, UsedCertificate
-from .qualified import BUILT, DOUBTED, built, evident, qualified, stated, worth_little
-from .reasons import (
-    DECIDING,
-    NAMELESS,
-    Named,
-    Reason,
-    Said,
-    capital,
-    listed,
-    quoted,
-    reasons,
-    told,
-    under,
-)
+from .remarks import BUILT, DOUBTED, built_remark, evident, nature_remark, qualified, worth_little
 from .side_by_side import (
     Excess,
     Fit,
@@ -134,6 +121,19 @@ from .vocabulary import (
     meanings,
 )
 from .waterfall import EXACT, PUBLISHED, SHARED_OPTIMUM, Step, Waterfall
+from .why_judged import (
+    DECIDING,
+    NAMELESS,
+    Named,
+    Reason,
+    Said,
+    capital,
+    listed,
+    quoted,
+    reasons,
+    told,
+    under,
+)
 
 __all__ = [
     "BENCH_COLUMNS",
@@ -259,7 +259,7 @@ __all__ = [
     "Worth",
     "WrittenMotion",
     "bench_cells",
-    "built",
+    "built_remark",
     "capital",
     "cases_document",
     "certify_result",
@@ -279,6 +279,7 @@ __all__ = [
     "meaning",
     "meanings",
     "more_errors",
+    "nature_remark",
     "output_schema",
     "overall_cells",
     "percent",
@@ -289,7 +290,6 @@ __all__ = [
     "schema_text",
     "show_document",
     "solve_result",
-    "stated",
     "suite_document",
     "tally",
     "told",

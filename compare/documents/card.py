@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from .entry import Count, Entry, OrWhy
 from .finding import Judgement
-from .qualified import evident
+from .remarks import evident
 from .vocabulary import Confidence
 
 CARD_WORDS = 80

@@ -32,12 +32,12 @@ _BESIDE = {
 """What stands beside which verdict, by the beginning of a caveat."""
 
 
-def built() -> str:
+def built_remark() -> str:
     """The caveat of a claim that holds by construction."""
     return f"{BUILT}, whatever the durations, so that it is no evidence for the printed numbers"
 
 
-def stated(nature: Nature) -> str:
+def nature_remark(nature: Nature) -> str:
     """The caveat of a sentence that claims nothing that numbers could decide."""
     why = {
         Nature.DEFINITION: "it says how something is called or made, and claims no result",

@@ -103,7 +103,12 @@ def reasons(said: Iterable[Said], computed: Sequence[str], named: Named = NAMELE
         if one.verdict in DECIDING:
             rules, where = messages.setdefault((one.verdict, one.message), ({}, {}))
             rules[one.rule] = None
-            where.update(dict.fromkeys(computed if one.reading is None else (one.reading,)))
+            under_them = computed if one.reading is None else (one.reading,)
+            where.update(dict.fromkeys(under_them))
+    # The default reading is the first of those under which it holds.
+    for key, (rules, where) in messages.items():
+        first = [reading for reading in where if reading == named.default]
+        messages[key] = (rules, dict.fromkeys([*first, *where]))
     found = [
         Reason(
             verdict=group[0][0],
