@@ -110,7 +110,8 @@ def test_what_holds_under_some_readings_alone_has_them_before_it() -> None:
     findings += [finding(R, "c", message="another."), finding(R, None, message="always.")]
     findings += [finding(R, r, message="each.") for r in ("a", "b", "c")]
     assert judge("c", findings, ["a", "b", "c"]).why == (
-        "Under the readings “a” and “b”: one of three. Under the reading “c”: another. always. each."
+        "Under the readings “a” and “b”: one of three. Under the reading “c”: another. always. "
+        "each."
     )
 
 
