@@ -66,7 +66,16 @@ from .motion_checked import (
     WrittenMotion,
 )
 from .provenance import Provenance, UsedCertificate
-from .remarks import BUILT, DOUBTED, built_remark, evident, nature_remark, qualified, worth_little
+from .remarks import (
+    BUILT,
+    DOUBTED,
+    built_remark,
+    evident,
+    nature_remark,
+    qualified,
+    same_reason,
+    worth_little,
+)
 from .side_by_side import (
     Excess,
     Fit,
@@ -287,6 +296,7 @@ __all__ = [
     "quoted",
     "reason",
     "reasons",
+    "same_reason",
     "schema_text",
     "show_document",
     "solve_result",

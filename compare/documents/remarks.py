@@ -99,6 +99,18 @@ def worth_little(judgements: Sequence[Judgement]) -> str:
     return f"of these {', '.join(parts)}" if parts else ""
 
 
+def same_reason(text: str) -> str:
+    """What stands in place of a reason that an earlier claim, of these words, has given."""
+    return f"For the same reason as “{text.rstrip('.')}”."
+
+
+def claims_nothing(judgement: Judgement) -> bool:
+    """Whether a claim that is not checkable states no result: a definition, an aim and the like."""
+    starts = tuple(f"{said}:" for said in _STATED.values())
+    undecided = judgement.verdict is ClaimVerdict.NOT_CHECKABLE
+    return undecided and any(str(caveat).startswith(starts) for caveat in judgement.caveats)
+
+
 def evident(judgement: Judgement) -> bool:
     """Whether a verdict is decided and says something of the paper: not by construction."""
     known = isinstance(judgement.confidence, Confidence)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
+from ..documents import same_reason
 from .blocks import Claimed
 
 
@@ -30,7 +31,7 @@ def shown_once(found: Sequence[Claimed]) -> Iterator[Claimed]:
         one = _joined(group)
         before = first.setdefault((*one.why, *one.more), one)
         if before is not one:
-            one = replace(one, why=(f"For the same reason as {before.where}.",), more=())
+            one = replace(one, why=(same_reason(before.text),), more=())
         caveats = tuple(
             f"{caveat.partition(':')[0]} (see above)." if caveat in told else caveat
             for caveat in one.caveats

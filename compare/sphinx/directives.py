@@ -13,7 +13,7 @@ from sphinx.util.docutils import SphinxDirective
 
 from ...problem import TrajgapError, file_name
 from ..audits import KEPT
-from ..documents import ClaimVerdict, Keeping, counted, more_errors, qualified, worth
+from ..documents import ClaimVerdict, Keeping, counted, more_errors, qualified, same_reason, worth
 from ..pictures import waterfall_picture
 from .parts import badge, paragraph, picture, table
 from .proofs import proved_again
@@ -100,9 +100,9 @@ class Claims(FromResults):
             place = ". ".join(filter(None, (claim["where"], claim["printed"], _holds(verdict))))
             place = f"{place[:1].upper()}{place[1:]}"
             box += [head, paragraph(place, "trajgap-beside")]
-            before = reasoned.setdefault(verdict["why"], claim["where"])
-            first = before == claim["where"]
-            box += reasons(case, verdict) if first else [paragraph(_same(before))]
+            before = reasoned.setdefault(verdict["why"], claim["text"])
+            first = before == claim["text"]
+            box += reasons(case, verdict) if first else [paragraph(same_reason(before))]
             for one in others:
                 if one["why"] != verdict["why"]:
                     box += paragraph(f"{stated[one['claim']]['where']}: {one['why']}")
@@ -125,10 +125,6 @@ def _with_places(
         for key in ("where", "printed")
     }
     return {**every[0], **joined}
-
-
-def _same(where: str) -> str:
-    return f"For the same reason as {where}."
 
 
 def _holds(verdict: dict[str, Any]) -> str:

@@ -57,10 +57,16 @@ def placed(result: InstancesResult) -> str:
             sides.setdefault(_aside(result, reading), []).append(reading)
     said = f"On {drawn}, the printed reduction of {percent_range(*result.printed)} is "
     middle = f"the middle {100 * MIDDLE:g} % of the reductions of one run against one run"
-    parts = [f"usual under {', '.join(inside)}, within {middle}"] if inside else []
+    parts = (
+        [f"usual under {', '.join(quoted(one, result.labels) for one in inside)}, within {middle}"]
+        if inside
+        else []
+    )
     for side, own in sides.items():
         what = "" if inside or parts else f", outside {middle}"
-        parts.append(f"unusual under {', '.join(own)} ({side}){what}")
+        parts.append(
+            f"unusual under {', '.join(quoted(one, result.labels) for one in own)} ({side}){what}"
+        )
     return f"{said}{'; it is '.join(parts)}."
 
 

@@ -59,9 +59,12 @@ def test_a_word_has_what_it_is_worth_beside_it(verdict, caveats, wanted) -> None
 
 
 def test_what_holds_by_construction_is_counted_as_no_evidence() -> None:
+    aim = Caveat(CaveatKind.STATED, nature_remark(Nature.AIM))
     every = [judged(S), judged(S, BUILT), judged(S, DOUBT), judged(S, DOUBT), judged(N)]
+    every.append(judged(N, aim))
     assert tally(every) == (
-        "Verdicts on 5 claims: 3 are proven under a reading, 1 holds by construction, 1 is open."
+        "Verdicts on 6 claims: 3 are proven under a reading, 1 holds by construction, 1 is open, "
+        "1 claims no result."
     )
     assert worth_little(every) == "of these 1 by construction, 2 on doubted numbers"
     assert worth_little([judged(S), judged(R, DOUBT)]) == ""
