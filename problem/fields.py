@@ -321,6 +321,9 @@ Id = Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9.-]*$")]
 
 Text = Annotated[str, Field(min_length=1)]
 
+Label = Annotated[str, Field(min_length=1, max_length=80, pattern=r"^\S(.*\S)?$")]
+"""A few words on one line, which stand for what they name within a sentence or a cell."""
+
 JointLabels = Annotated[tuple[Text, ...], Field(min_length=1, max_length=MOST_JOINTS)]
 
 

@@ -1,7 +1,7 @@
 from .card_errors import plainly
 from .case_audit import AuditReport, CaseAudit, audit
 from .provenance import certificate_files, package_version
-from .reading_words import KEPT, named, segments
+from .reading_words import KEPT, segments
 from .rounding import Point, RoundingBox, RoundingVerdict, judge_rounding
 from .rules import EXPLAINED, RULES
 from .stated import claim_text, digits_of, place, spoken
@@ -23,7 +23,6 @@ __all__ = [
     "claim_text",
     "digits_of",
     "judge_rounding",
-    "named",
     "package_version",
     "place",
     "plainly",

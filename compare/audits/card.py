@@ -30,8 +30,10 @@ from ..documents import (
     count_words,
     known,
     more_errors,
+    quoted,
 )
 from .card_errors import plainly
+from .plausibility import implausible
 from .rules import said_to_keep
 from .stated import other_objective, place
 from .study import Study
@@ -182,11 +184,28 @@ def _limits(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[str]
         return f"{_broken(sets, words)} for every value that rounds to the printed digits.", spoken
     if not broken and not kept:
         return "Whether the limits are kept is not decided by the printed digits.", spoken
-    count = f"{kept} of {len(under)}" if len(under) > 1 else "no reading"
-    rest = len(under) - kept - broken
-    parts = [f"kept under {count}", f"broken under {broken}"] if rest else [f"kept under {count}"]
-    kept_in = f"Whether the limits are kept{_in_doubt(sets, words)}"
-    return f"{kept_in} depends on the reading: {', '.join(parts)}{jump}.", spoken
+    return f"{_differing(study, under, _in_doubt(sets, words))}{jump}.", spoken
+
+
+def _differing(study: Study, found: Mapping[str, set[ClaimVerdict]], where: str) -> str:
+    """Under which readings limits are kept, broken or neither; an implausible one stands last."""
+    groups: dict[str, list[str]] = {"kept": [], "broken": [], "undecided": []}
+    for reading, words in found.items():
+        broken, kept = ClaimVerdict.REFUTED in words, words == {ClaimVerdict.SUPPORTED}
+        groups["broken" if broken else "kept" if kept else "undecided"].append(reading)
+    far = implausible(study)
+    said = {word: own for word, own in groups.items() if own}
+    if len(found) > _FEW:
+        counts = [f"{word} under {len(own)}" for word, own in said.items()]
+        share = f"{', '.join(counts)} of {len(found)}"
+        return f"Whether the limits are kept{where} depends on the reading: {share}"
+    ordered = sorted(said.items(), key=lambda item: all(one in far for one in item[1]))
+    parts = []
+    for word, own in ordered:
+        mark = "the implausible " if all(one in far for one in own) else ""
+        which = " and ".join(quoted(one, study.case.labels) for one in own)
+        parts.append(f"{word} under {mark}{which}")
+    return f"The limits{where} are {', '.join(parts)}"
 
 
 def _in_doubt(sets: Sequence[AnyClaim], words: Mapping[str, Judgement]) -> str:

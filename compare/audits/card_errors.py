@@ -13,6 +13,9 @@ from .stated import place, spoken
 _LONGEST = 24
 """Words of a claim's text that a sentence may quote; a longer one is called by its place."""
 
+_UNDER = "under "
+"""How a sentence says under how many readings it holds."""
+
 
 def plainly(case: Case, cause: Cause) -> str:
     """A cause as one plain sentence.
@@ -25,8 +28,17 @@ def plainly(case: Case, cause: Cause) -> str:
     Returns
     -------
     str
-        By claims' texts and places, never by ids.
+        By claims' texts and places, never by ids. What holds under some readings alone says so.
     """
+    sentence = _plain(case, cause)
+    count, every = len(cause.readings), len(case.readings)
+    if not 0 < count < every or f"{_UNDER}{count} of" in sentence:
+        return sentence
+    return f"{_UNDER.capitalize()}{count} of {every} readings: {sentence}"
+
+
+def _plain(case: Case, cause: Cause) -> str:
+    """The sentence, without the readings unless they stand within it."""
     head, claim = cause.head, case.claim(cause.claim) if cause.claim else None
     if head is not None and head.root.startswith(f"{TABLES} "):
         return _tables_alike(case, cause, head.root.split(" ")[1:])
@@ -50,7 +62,7 @@ def plainly(case: Case, cause: Cause) -> str:
         "TG205": f"Control vertices in {where} do not follow from the way-points",
         "TG301": "Under a velocity limit alone times scale with it, so the two printed results "
         "cannot both be shortest",
-        "TG302": f"Called optimal in {where}, but {_not_optimal(head, len(cause.readings))}",
+        "TG302": f"Called optimal in {where}, but {_not_optimal(head, cause, len(case.readings))}",
         "TG304": f"The total in {where} is not the shortest of its profile",
         "TG601": "Printed joint angles and positions do not fit the printed robot",
     }.get(cause.rule)
@@ -59,17 +71,20 @@ def plainly(case: Case, cause: Cause) -> str:
     return f"{_capital(sentence or _contradicted(claim))}."
 
 
-def _not_optimal(head: Finding, readings: int) -> str:
+def _not_optimal(head: Finding, cause: Cause, readings: int) -> str:
     """Why a time is not the shortest, and how much longer it is under every reading, if it is."""
     if head.kind == "breaks":
         return "no answer within the limits"
+    count = len(cause.readings)
     if not isinstance(head.gap, Gap):
-        return "a checked motion within the limits is shorter"
+        where = f"{_UNDER}{count} of {readings} readings " if 0 < count < readings else ""
+        others = f", and under the others {cause.elsewhere}" if cause.elsewhere else ""
+        return f"{where}a checked motion within the limits is shorter{others}"
     percent = 100 * head.gap.highest
     share = f"{percent:.1f} % longer than" if percent >= 1 else f"{percent:.2g} % longer than"
     if head.gap.many_times:
         share = f"{1 + head.gap.highest:.1f} times as long as"
-    mildest = ", under the mildest reading" if readings > 1 else ""
+    mildest = ", under the mildest reading" if count > 1 else ""
     return f"up to {share} a checked motion within the limits{mildest}"
 
 

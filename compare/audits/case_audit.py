@@ -22,6 +22,7 @@ from ..documents import (
     ClaimVerdict,
     Finding,
     Judgement,
+    Named,
     ReadingsSummary,
     Scope,
     Severity,
@@ -36,6 +37,7 @@ from .draft import advise
 from .instances import examined_entry
 from .intervals import CERTIFY_SECONDS
 from .judging import judge, weigh
+from .plausibility import implausible
 from .provenance import provenance
 from .readings import readings_summary
 from .rules import GROUPS, NOT_COMPUTED
@@ -243,7 +245,14 @@ def audit_case(study: Study) -> CaseAudit:
     by_rule = sorted(scoped, key=_weight)
     admissible = [reading.id for reading in study.case.readings]
     judgements = tuple(
-        judge(claim.id, by_rule, admissible, study.readings) for claim in study.case.claims
+        judge(
+            claim.id,
+            by_rule,
+            admissible,
+            study.readings,
+            Named(study.case.labels, implausible(study), study.main_reading),
+        )
+        for claim in study.case.claims
     )
     ordered = sorted(weigh(by_rule, judgements, admissible), key=_weight)
     judgements = with_caveats(study, judgements, ordered)

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 from ...problem import TrajgapError
 from ...problem.cases import AnyClaim, ImprovementClaim, MaximumClaim, StatementClaim
 from ..documents import (
+    DOUBTED,
     Cause,
     Caveat,
     CaveatKind,
@@ -17,6 +18,8 @@ from ..documents import (
     Judgement,
     Severity,
     Why,
+    built_remark,
+    nature_remark,
 )
 from .explanations import explained
 from .study import Study
@@ -42,10 +45,10 @@ def find_causes(study: Study, findings: Iterable[Finding]) -> tuple[Cause, ...]:
     tuple of Cause
         The gravest first.
     """
+    against = [f for f in findings if f.severity in _AGAINST]
     groups: dict[str, list[Finding]] = {}
-    for f in findings:
-        if f.severity in _AGAINST:
-            groups.setdefault(_root(f), []).append(f)
+    for f in against:
+        groups.setdefault(_root(f), []).append(f)
     below: dict[str, list[Finding]] = {root: [] for root in groups}
     own = []
     for root, group in groups.items():
@@ -54,7 +57,7 @@ def find_causes(study: Study, findings: Iterable[Finding]) -> tuple[Cause, ...]:
             own.append(root)
         for up in above:
             below[up] += group
-    found = [_cause(study, root, groups[root], below[root]) for root in own]
+    found = [_cause(study, root, groups[root], below[root], against) for root in own]
     return tuple(sorted(found, key=lambda cause: list(Severity).index(cause.severity)))
 
 
@@ -63,7 +66,9 @@ def _root(finding: Finding) -> str:
     return finding.root or "\n".join(said)
 
 
-def _cause(study: Study, root: str, group: list[Finding], below: list[Finding]) -> Cause:
+def _cause(
+    study: Study, root: str, group: list[Finding], below: list[Finding], against: list[Finding]
+) -> Cause:
     first = next((f for f in group if f.reading in (None, study.main_reading)), group[0])
     readings = dict.fromkeys(f.reading for f in group if f.reading is not None)
     if any(f.reading is None for f in group):
@@ -81,9 +86,20 @@ def _cause(study: Study, root: str, group: list[Finding], below: list[Finding]) 
         says=first.message,
         head=_mildest(study, first, group),
         readings=tuple(r for r in readings if r is not None),
+        elsewhere=_elsewhere(study, first, set(readings), against),
         explanations=explained(study, root, first),
         consequences=tuple(consequences.values()),
     )
+
+
+def _elsewhere(
+    study: Study, first: Finding, readings: set[str | None], against: list[Finding]
+) -> str:
+    """What contradicts a claim that is called optimal where no motion is shown to be shorter."""
+    left = {reading.id for reading in study.case.readings} - readings
+    breaking = {f.reading for f in against if f.claim == first.claim and f.kind == "breaks"}
+    told = first.kind == "longer" and left and left <= breaking
+    return "the durations break a limit" if told else ""
 
 
 def _mildest(study: Study, first: Finding, group: list[Finding]) -> Finding:
@@ -108,7 +124,8 @@ def with_caveats(
     found = list(findings)
     against = _contradictions(found)
     return tuple(
-        j.model_copy(update={"caveats": tuple(_caveats(study, j, against))}) for j in judgements
+        j.model_copy(update={"caveats": tuple(_caveats(study, j, against, found))})
+        for j in judgements
     )
 
 
@@ -125,22 +142,29 @@ def _contradictions(findings: list[Finding]) -> dict[str, set[str]]:
     return sides
 
 
-def _caveats(study: Study, judgement: Judgement, against: dict[str, set[str]]) -> Iterator[Caveat]:
+def _caveats(
+    study: Study, judgement: Judgement, against: dict[str, set[str]], findings: list[Finding]
+) -> Iterator[Caveat]:
     claim = study.case.claim(judgement.claim)
+    own = [f for f in findings if f.claim == claim.id and f.decides]
+    if judgement.verdict is ClaimVerdict.SUPPORTED and own and all(f.built for f in own):
+        yield Caveat(CaveatKind.BUILT, built_remark())
     held = [r for r, v in judgement.readings.items() if v is ClaimVerdict.SUPPORTED]
     # What follows from printed totals alone needs no curve.
     timed = not isinstance(claim, ImprovementClaim)
     jumping = [r for r in held if timed and _jumps(study, claim, r)]
     if jumping:
-        count = "" if len(judgement.readings) == 1 else f" ({len(jumping)} of {len(held)} readings)"
+        many = f" under {len(jumping)} of the {len(held)} readings that support it"
+        count = "" if len(judgement.readings) == 1 else many
         yield Caveat(CaveatKind.JUMPING, f"on a curve whose velocity jumps{count}")
+    if isinstance(claim, StatementClaim) and claim.nature is not None:
+        yield Caveat(CaveatKind.STATED, nature_remark(claim.nature))
     rests = {claim.id, *_rests_on(claim)}
     if judgement.verdict is ClaimVerdict.INCONSISTENT:
         return
     for message, sides in against.items():
         if rests & sides:
-            text = f"rests on numbers that other printed numbers contradict: {message}"
-            yield Caveat(CaveatKind.DOUBTED, text)
+            yield Caveat(CaveatKind.DOUBTED, f"{DOUBTED}: {message}")
 
 
 def _rests_on(claim: AnyClaim) -> tuple[str, ...]:

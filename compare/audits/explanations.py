@@ -11,7 +11,7 @@ import numpy as np
 
 from ...problem import Array, Check, Printed, Problem, check
 from ...problem.cases import AnyClaim, ConditionsClaim, DurationsClaim, MaximumClaim
-from ..documents import Explanation, Finding, HeldOtherwise, Rounding
+from ..documents import Explanation, Finding, HeldOtherwise, Rounding, quoted
 from .rounding import RoundingBox, judge_rounding
 from .rules import count_conditions, held_otherwise
 from .stated import place
@@ -69,7 +69,7 @@ def explained(study: Study, root: str, finding: Finding) -> tuple[Explanation, .
         found = _kept_if(study, claim, finding.problem, finding.reading)
         if len(study.readings) == 1:
             return tuple(found)
-        under = f", under reading {finding.reading}."
+        under = f", under {quoted(finding.reading, study.case.labels)}."
         return tuple(e.model_copy(update={"effect": e.effect[:-1] + under}) for e in found)
     return ()
 

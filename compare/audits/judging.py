@@ -6,18 +6,22 @@ from collections.abc import Iterable, Sequence
 
 from ...nlp import Evidence
 from ..documents import (
+    DECIDING,
+    NAMELESS,
     UNDECIDED,
     ClaimVerdict,
     Confidence,
     Finding,
     Judgement,
+    Named,
+    Said,
     Scope,
     Severity,
     Why,
+    reasons,
+    told,
 )
 
-_ORDER = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT, ClaimVerdict.SUPPORTED)
-"""What decides under one reading, the strongest first: a proof outweighs what only agrees."""
 _RANK = (Evidence.NONE, Evidence.CERTIFIED, Evidence.BEST_KNOWN, Evidence.UNCONVERGED)
 """The weakest reference last: a verdict rests on the weakest of what stands behind it."""
 
@@ -27,6 +31,7 @@ def judge(
     findings: Iterable[Finding],
     admissible: Sequence[str],
     computed: Sequence[str] | None = None,
+    named: Named = NAMELESS,
 ) -> Judgement:
     """Combine the deciding findings about one claim into its verdict.
 
@@ -42,6 +47,8 @@ def judge(
         Every reading of the case.
     computed : sequence of str, optional
         The readings that were computed, of which the verdict speaks; all by default.
+    named : Named, optional
+        What the readings are called; by their ids if left out.
 
     Returns
     -------
@@ -52,7 +59,7 @@ def judge(
     each: dict[str, ClaimVerdict] = {}
     for reading in computed or admissible:
         there = {f.verdict for f in own if f.reading in (None, reading)}
-        each[reading] = next((v for v in _ORDER if v in there), ClaimVerdict.NOT_CHECKABLE)
+        each[reading] = next((v for v in DECIDING if v in there), ClaimVerdict.NOT_CHECKABLE)
     words = list(dict.fromkeys(each.values()))
     verdict = words[0] if len(words) == 1 else ClaimVerdict.DEPENDS
     if verdict is ClaimVerdict.NOT_CHECKABLE:
@@ -63,9 +70,12 @@ def judge(
     else:
         partial = len(words) > 1 or len(each) < len(admissible)
         scope = Scope.SOME if partial else Scope.ALL
-        behind = [f for f in own if f.verdict in words and f.verdict in _ORDER]
+        behind = [f for f in own if f.verdict in words and f.verdict in DECIDING]
         evidence = max((f.evidence for f in behind), key=_RANK.index, default=Evidence.NONE)
-        why = " ".join(dict.fromkeys(_said(behind, verdict, len(each))))
+        said = (Said(f.verdict, f.message, f.rule, f.reading) for f in behind)
+        depends = verdict is ClaimVerdict.DEPENDS
+        behind_it = reasons(said, tuple(each), named)
+        why = " ".join(told(one, tuple(each), named, word=depends, why=True) for one in behind_it)
         confidence = _confidence(behind, verdict)
     return Judgement(
         claim=claim,
@@ -88,29 +98,6 @@ def _confidence(behind: Iterable[Finding], verdict: ClaimVerdict) -> Confidence 
     one = verdict in (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT)
     order = list(Confidence).index
     return (min if one else max)(known, key=order, default=UNDECIDED)
-
-
-def _said(behind: Iterable[Finding], verdict: ClaimVerdict, computed: int) -> Iterable[str]:
-    """The messages behind a verdict; what holds under some readings alone has them before it.
-
-    Where readings disagree, each has its word too.
-    """
-    ordered = sorted(behind, key=lambda f: _ORDER.index(f.verdict))
-    under: dict[str, dict[str | None, None]] = {}
-    for f in ordered:
-        under.setdefault(f.message, {})[f.reading] = None
-    for f in ordered:
-        if verdict is ClaimVerdict.DEPENDS:
-            where = "every reading" if f.reading is None else f"reading {f.reading}"
-            yield f"{f.verdict.capitalize()} under {where}: {f.message}"
-            continue
-        readings = [r for r in under[f.message] if r is not None]
-        if None in under[f.message] or len(readings) == computed:
-            yield f.message
-        elif len(readings) == 1:
-            yield f"Under reading {readings[0]}: {f.message}"
-        else:
-            yield f"Under {len(readings)} of {computed} readings: {f.message}"
 
 
 def weigh(

@@ -7,7 +7,17 @@ from collections.abc import Iterable, Sequence
 from math import log
 
 from ...nlp import Evidence, weakest
-from ..documents import Excess, Gap, Keeping, ReadingOutcome, ReadingsSummary, Scope, Why
+from ..documents import (
+    Excess,
+    Gap,
+    Keeping,
+    Named,
+    ReadingOutcome,
+    ReadingsSummary,
+    Scope,
+    Why,
+    under,
+)
 
 KEPT = {
     Keeping.KEEPS: "kept",
@@ -27,14 +37,6 @@ def answers(summary: ReadingsSummary) -> tuple[str, ...]:
 def holding(summary: ReadingsSummary) -> tuple[str, ...]:
     """What holds of the claims under all, some and no readings."""
     return tuple(_of_claims(summary))
-
-
-def named(readings: Sequence[str], most: int = 2) -> str:
-    """Readings by name where they are few, else the first and how many more."""
-    shown = list(dict.fromkeys(readings))
-    if len(shown) > most:
-        return f"{shown[0]} and {len(shown) - 1} more"
-    return ", ".join(shown)
 
 
 def segments(excesses: Sequence[Excess]) -> str:
@@ -61,32 +63,59 @@ def _of_answers(summary: ReadingsSummary) -> Iterable[str]:
         if outcome.claim is not None:
             by_answer[outcome.claim, outcome.problem].append(outcome)
     for (claim, problem), own in by_answer.items():
-        under = {k: [o.reading for o in own if o.keeping is k] for k in Keeping}
-        said = ", ".join(
-            f"{KEPT[k]} under {len(found)} ({named(found)})" for k, found in under.items() if found
+        found = {k: [o.reading for o in own if o.keeping is k] for k in Keeping}
+        # What is named as implausible does not lead the sentence.
+        words = sorted(
+            (k for k in Keeping if found[k]),
+            key=lambda k: all(r in summary.implausible for r in found[k]),
         )
-        count = len(summary.admissible)
-        which = f"{count}" if len(own) == count else f"{len(own)} of {count}"
-        yield f"{claim} ({problem}), {which} readings: the limits are {said}.{_of_gaps(own)}"
+        named = _names(summary)
+        said = ", ".join(
+            f"{KEPT[k]} {under(found[k], summary.admissible, named, why=True)}" for k in words
+        )
+        yield f"{claim} ({problem}): the limits are {said}.{_of_gaps(own, summary)}"
 
 
-def _of_gaps(own: Sequence[ReadingOutcome]) -> str:
+def _names(summary: ReadingsSummary) -> Named:
+    return Named(summary.labels, summary.implausible, summary.default)
+
+
+def _of_gaps(own: Sequence[ReadingOutcome], summary: ReadingsSummary) -> str:
     """How far the printed total is from the optimum, where the limits are kept and where not."""
-    kept = [o for o in own if o.keeping in (Keeping.KEEPS, Keeping.CONSISTENT)]
+    plain = [o for o in own if o.reading not in summary.implausible]
+    kept = [o for o in plain if o.keeping in (Keeping.KEEPS, Keeping.CONSISTENT)]
     parts = []
     for group, where in (
-        (kept, " as long where the limits are kept"),
-        ([o for o in own if o not in kept], " as long elsewhere" if kept else " as long"),
+        (kept, " where the limits are kept"),
+        ([o for o in plain if o not in kept], " elsewhere" if kept else ""),
     ):
         gaps = [o.gap for o in group if isinstance(o.gap, Gap)]
         if gaps:
-            low = 1 + min(g.lowest for g in gaps)
-            high = 1 + max(g.highest for g in gaps)
-            low_, high_ = f"{low:.3g}", f"{high:.3g}"
-            parts.append(f"{low_ if low_ == high_ else f'{low_} to {high_}'} times{where}")
-    evidence = weakest(o.evidence for o in own if o.evidence is not Evidence.NONE)
-    beside = f"the {evidence} optimum" if evidence is Evidence.CERTIFIED else "the best known total"
-    return f" Beside {beside}, the printed total is {', and '.join(parts)}." if parts else ""
+            low, high = min(g.lowest for g in gaps), max(g.highest for g in gaps)
+            parts.append(f"{_away(low, high)}{where}")
+    evidence = weakest(o.evidence for o in plain if o.evidence is not Evidence.NONE)
+    beside = f"{evidence} optimum" if evidence is Evidence.CERTIFIED else "best known total"
+    left = len(own) - len(plain)
+    without = f" ({left} implausible reading{'s' * (left > 1)} left out)" if left else ""
+    return f" Printed total beside the {beside}: {', and '.join(parts)}{without}." if parts else ""
+
+
+def _away(low: float, high: float) -> str:
+    """How far totals are from an optimum, as a share of it or as a multiple."""
+    ends = [_end(low), _end(high)]
+    numbers, words = zip(*ends, strict=True)
+    if ends[0] == ends[1]:
+        return " ".join(ends[0])
+    if words[0] == words[1]:
+        return f"{' to '.join(numbers)} {words[0]}"
+    return " to ".join(" ".join(end) for end in ends)
+
+
+def _end(gap: float) -> tuple[str, str]:
+    """A distance as a number, and what it is."""
+    if gap >= 1:
+        return f"{1 + gap:.3g}", "times as long"
+    return f"{100 * abs(gap):.1f}", f"% {'below' if gap < 0 else 'above'} it"
 
 
 def _of_fit(summary: ReadingsSummary) -> Iterable[str]:
@@ -109,7 +138,8 @@ def _of_fit(summary: ReadingsSummary) -> Iterable[str]:
     if len(nearest) == len(summary.fits):
         which = "The printed durations fit every reading alike"
     else:
-        which = f"The printed durations fit best under {named(nearest, 3)}"
+        best = under(nearest, summary.admissible, _names(summary), most=3)
+        which = f"The printed durations fit best {best}"
     yield (
         f"{which}: multiplied by {worst:.4g}, those of {claim} would just reach the limits, as the "
         f"shortest motion does{''.join(f'; {x}' for x in there)}. This does not say which reading "

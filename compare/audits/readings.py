@@ -27,6 +27,7 @@ from ..documents import (
     known,
 )
 from ..gaps import gap, reference_of
+from .plausibility import implausible
 from .reading_words import answers, holding
 from .rules import held_otherwise, reading_clues
 from .stated import other_objective
@@ -75,6 +76,8 @@ def readings_summary(
     )
     summary = ReadingsSummary(
         admissible=admissible,
+        labels=study.case.labels,
+        implausible=implausible(study),
         default=study.case.default_reading.id,
         default_why=known(
             study.case.default_reading.default_why, "the case file gives no reason of its own"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from rich.console import RenderableType
@@ -25,7 +25,9 @@ from ..documents import (
     counted,
     facts,
     more_errors,
+    qualified,
     tally,
+    worth_little,
 )
 from .certifying import read_certificates
 from .input import read_cases
@@ -107,20 +109,32 @@ def audited(document: AuditDocument) -> list[RenderableType]:
         counts = Counter(v.verdict for v in case.verdicts)
         said = ", ".join(counted(word, counts[word]) for word in ClaimVerdict if counts[word])
         many = "1 claim" if len(case.verdicts) == 1 else f"{len(case.verdicts)} claims"
+        beside = worth_little(case.verdicts)
+        said += f"; {beside}" if beside else ""
         parts += [line(""), line(f"{many}: {said or 'none to judge'}")]
-        stated = {one.claim: one for one in case.claims}
-        rows = [
-            (v.verdict, _under(v), f"{stated[v.claim].text} ({stated[v.claim].where})")
-            for v in sorted(case.verdicts, key=lambda v: _ORDER.index(v.verdict))
-        ]
+        rows = _rows(case)
         if rows:
             parts.append(Columns(("verdict", "readings", "~claim and its place"), rows))
         parts += [line(said, "dim") for said in _unchecked(case)]
         advice = () if isinstance(case.advice, Why) else case.advice
         parts += _advised(advice) if advice else [line(one) for one in _causes(case)]
-        parts += [line(""), *_time_goes(case.waterfalls)]
+        labels = {} if isinstance(case.readings, Why) else case.readings.labels
+        parts += [line(""), *_time_goes(case.waterfalls, labels)]
         parts += [line(f"{words}: {value}", "dim") for words, value in facts(case)]
     return parts
+
+
+def _rows(case: AuditedCase) -> list[tuple[str, str, str]]:
+    """Verdict, readings and words of each claim; the same words in several places are one row."""
+    stated = {one.claim: one for one in case.claims}
+    places: dict[tuple[str, str, str], list[str]] = {}
+    for v in sorted(case.verdicts, key=lambda v: _ORDER.index(v.verdict)):
+        key = (qualified(v.verdict, v.caveats), _under(v), stated[v.claim].text)
+        places.setdefault(key, []).append(stated[v.claim].where)
+    return [
+        (verdict, under, f"{text} ({'; '.join(where)})")
+        for (verdict, under, text), where in places.items()
+    ]
 
 
 _REASONS = 3
@@ -179,14 +193,16 @@ def _causes(case: AuditedCase) -> list[str]:
     """Errors and warnings, one paragraph each with the rule; `trajgap explain RULE` explains it."""
     places = {one.claim: one.where for one in case.claims}
     found = []
+    every = 1 if isinstance(case.readings, Why) else len(case.readings.admissible)
     for cause in case.causes:
         where = f"{places[cause.claim]}: " if cause.claim else ""
-        under = f" [{len(cause.readings)} readings]" if len(cause.readings) > 1 else ""
+        count = len(cause.readings)
+        under = f" [{count} of {every} readings]" if 0 < count < every else ""
         found.append(f"{cause.severity} {cause.rule}{under} {where}{cause.says.rstrip('.')}.")
     return found
 
 
-def _time_goes(waterfalls: Sequence[Waterfall]) -> list[RenderableType]:
+def _time_goes(waterfalls: Sequence[Waterfall], labels: Mapping[str, str]) -> list[RenderableType]:
     """Where the time goes, for each problem under its first reading."""
     first: dict[str, Waterfall] = {}
     for waterfall in waterfalls:
@@ -197,7 +213,8 @@ def _time_goes(waterfalls: Sequence[Waterfall]) -> list[RenderableType]:
         return []
     rows = [(name, *(cell for one in steps for cell in _step(one.get(name)))) for name in names]
     columns = [column for problem in first for column in (f">{problem}", "evidence")]
-    title = f"where the time goes, s ({waterfalls[0].reading})"
+    under = f" ({labels[waterfalls[0].reading]})" if len(labels) > 1 else ""
+    title = f"where the time goes, s{under}"
     told = dict.fromkeys(said for one in first.values() for said in one.without_optimum)
     return [Columns((title, *columns), rows), *(line(said, "dim") for said in told)]
 

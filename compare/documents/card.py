@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from .entry import Count, Entry, OrWhy
 from .finding import Judgement
+from .remarks import claims_nothing, evident
 from .vocabulary import Confidence
 
 CARD_WORDS = 80
@@ -58,10 +59,15 @@ def tally(judgements: Sequence[Judgement]) -> str:
         Such as "Verdicts on 31 claims: 8 follow from the printed digits, 17 are proven under a
         reading, 6 are open."
     """
-    many = Counter(j.confidence for j in judgements if isinstance(j.confidence, Confidence))
+    own = [j for j in judgements if evident(j)]
+    many = Counter(j.confidence for j in own if isinstance(j.confidence, Confidence))
     parts = [f"{many[one]} {told[many[one] != 1]}" for one, told in _KNOWN.items() if many[one]]
-    left = len(judgements) - many.total()
+    held = sum(isinstance(j.confidence, Confidence) for j in judgements) - len(own)
+    parts += [f"{held} {'holds' if held == 1 else 'hold'} by construction"] if held else []
+    said = sum(claims_nothing(j) for j in judgements)
+    left = len(judgements) - len(own) - held - said
     parts += [f"{left} {'is' if left == 1 else 'are'} open"] if left else []
+    parts += [f"{said} {'claims' if said == 1 else 'claim'} no result"] if said else []
     count = f"{len(judgements)} claim{'' if len(judgements) == 1 else 's'}"
     return f"Verdicts on {count}: {', '.join(parts)}." if parts else "No claims."
 

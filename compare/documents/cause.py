@@ -46,6 +46,9 @@ class Cause(Entry):
     """Its finding under that reading; None where a cause is made by hand; not in JSON."""
     readings: tuple[str, ...]
     """The readings under which it holds; empty where it depends on none."""
+    elsewhere: str = Field(default="", exclude=True)
+    """What contradicts the same claim under all other readings; empty where nothing does or there
+    are none; not in JSON."""
     explanations: tuple[Explanation, ...]
     """The most charitable first; empty where none that was tried fits the numbers."""
     consequences: tuple[Consequence, ...]

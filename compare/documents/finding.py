@@ -115,6 +115,8 @@ class Finding(Entry):
     """What it shows, as a key that findings of one cause share; by itself if empty; not in JSON."""
     follows: tuple[str, ...] = Field(default=(), exclude=True)
     """Roots from which it follows, where they are found; not in JSON."""
+    built: bool = Field(default=False, exclude=True)
+    """Whether it holds of any curve of the declared kind, whatever is printed; not in JSON."""
     between: tuple[str, ...] = Field(default=(), exclude=True)
     """Claims that contradict each other: neither side is taken; not in JSON."""
 
@@ -126,6 +128,10 @@ class CaveatKind(Enum):
     """A motion's velocity jumps."""
     DOUBTED = auto()
     """Printed numbers contradict each other."""
+    BUILT = auto()
+    """A claim holds of any curve of its kind."""
+    STATED = auto()
+    """A sentence claims nothing that numbers could decide."""
 
 
 @dataclass(frozen=True)

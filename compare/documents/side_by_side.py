@@ -94,6 +94,11 @@ class ReadingsSummary(Entry):
 
     admissible: tuple[str, ...]
     """Every reading of the case."""
+    labels: dict[str, str]
+    """What each of them means in words; people read these, and keys name the ids."""
+    implausible: dict[str, str]
+    """Readings that leave the printed durations far from the limits while another does not, each
+    with what was computed. They are admissible still."""
     default: str
     default_why: OrWhy[str]
     """Why it is the default."""

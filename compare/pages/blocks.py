@@ -179,6 +179,8 @@ class Claimed:
     anchor: str
     id: str
     answer: str = ""
+    also: tuple[str, ...] = ()
+    """Anchors of claims of the same words in other places, which this one stands for."""
     kind: ClassVar[str] = "claimed"
 
 

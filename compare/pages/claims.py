@@ -4,18 +4,32 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 from ...nlp import Evidence
 from ...problem import file_name
 from ...problem.cases import AnyClaim
-from ..audits import CaseAudit, claim_text, digits_of, named, place, plainly, spoken
-from ..documents import Cause, ClaimVerdict, Confidence, Finding, Judgement, Scope, Severity
+from ..audits import CaseAudit, claim_text, digits_of, place, plainly, spoken
+from ..documents import (
+    Cause,
+    ClaimVerdict,
+    Confidence,
+    Judgement,
+    Named,
+    Said,
+    Scope,
+    Severity,
+    qualified,
+    reasons,
+    told,
+    under,
+    worth_little,
+)
 from .blocks import Behind, Block, Cell, Claimed, Prose, Section, slug, word
+from .said_once import shown_once
 
 _AGAINST = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT, ClaimVerdict.DEPENDS)
 """Verdicts that stand in the open, the gravest first."""
-_DECIDED = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT, ClaimVerdict.SUPPORTED)
-"""Verdicts of findings that say something of a claim, those against it first."""
 _OPEN_WORDS = 30
 """Words of a reason that stand in the open; what goes beyond is a fold away."""
 
@@ -38,7 +52,7 @@ def against(one: CaseAudit) -> Section:
     found = [
         claimed(one, j) for verdict in _AGAINST for j in one.judgements if j.verdict is verdict
     ]
-    blocks: list[Block] = [*_alike(found)]
+    blocks: list[Block] = [*shown_once(found)]
     causes = [c for c in one.causes if not _told(one, c)]
     if causes:
         blocks += [Prose("The causes", "heading"), *(_behind(one, c) for c in causes)]
@@ -52,47 +66,28 @@ def against(one: CaseAudit) -> Section:
 def folded_claims(one: CaseAudit) -> Iterator[Section]:
     """Supported claims, then those that cannot be checked, each behind a fold."""
     for verdict in (ClaimVerdict.SUPPORTED, ClaimVerdict.NOT_CHECKABLE):
-        found = tuple(claimed(one, j) for j in one.judgements if j.verdict is verdict)
-        count = f"{len(found)} claim{'' if len(found) == 1 else 's'} {verdict}"
-        yield Section(f"claims-{slug(verdict)}", count, found, folded=True)
-
-
-def _alike(found: Sequence[Claimed]) -> Iterator[Claimed]:
-    """Claims in order; a reason that an earlier one gave is named, not said again."""
-    first: dict[tuple[str, ...], Claimed] = {}
-    for one in found:
-        before = first.setdefault((*one.why, *one.more), one)
-        if before is one:
-            yield one
-        else:
-            yield Claimed(
-                text=one.text,
-                where=one.where,
-                printed=one.printed,
-                verdict=one.verdict,
-                holds=one.holds,
-                why=(f"For the same reason as {before.where}.",),
-                more=(),
-                caveats=one.caveats if one.caveats != before.caveats else (),
-                anchor=one.anchor,
-                id=one.id,
-                answer=one.answer,
-            )
+        own = [j for j in one.judgements if j.verdict is verdict]
+        beside = worth_little(own)
+        title = f"{len(own)} claim{'' if len(own) == 1 else 's'} {verdict}"
+        title += f", {beside}" if beside else ""
+        found = tuple(shown_once([claimed(one, j) for j in own]))
+        yield Section(f"claims-{slug(verdict)}", title, found, folded=True)
 
 
 def claimed(one: CaseAudit, judgement: Judgement) -> Claimed:
     """One claim with its verdict and why."""
     claim = one.case.claim(judgement.claim)
     # The place of the claim stands above its reasons.
-    told = (reason.removeprefix(f"{claim.where}: ") for reason in _why(one, judgement))
-    reasons = [spoken(one.case, reason) for reason in told]
-    why, more = _opened(reasons)
+    said = (reason.removeprefix(f"{claim.where}: ") for reason in _why(one, judgement))
+    why, more = _opened([spoken(one.case, reason) for reason in said])
     return Claimed(
         text=claim_text(one.case, claim),
         where=claim.where,
         printed=digits_of(one.case, claim),
-        verdict=word(judgement.verdict),
-        holds=_holds(judgement),
+        verdict=replace(
+            word(judgement.verdict), text=qualified(judgement.verdict, judgement.caveats)
+        ),
+        holds=_holds(judgement, names(one)),
         why=why,
         more=more,
         caveats=tuple(
@@ -138,21 +133,22 @@ def _sentences(text: str) -> list[str]:
     return [*(f"{part}." for part in parts[:-1]), parts[-1]]
 
 
-def _holds(judgement: Judgement) -> str:
+def _holds(judgement: Judgement, named: Named) -> str:
     """Under which readings the word holds, and which reference it rests on."""
     parts = []
-    count = len(judgement.readings)
+    every = tuple(judgement.readings)
+    count = len(every)
     known = _KNOWN[judgement.confidence] if isinstance(judgement.confidence, Confidence) else ""
     if judgement.scope is Scope.SOME or judgement.verdict is ClaimVerdict.DEPENDS:
-        under: dict[ClaimVerdict, list[str]] = {}
+        found: dict[ClaimVerdict, list[str]] = {}
         for reading, verdict in judgement.readings.items():
-            under.setdefault(verdict, []).append(reading)
-        each = [f"{verdict} under {_which(names)}" for verdict, names in under.items()]
-        parts.append(f"of {count} readings: {', '.join(each)}" if count > 1 else each[0])
+            found.setdefault(verdict, []).append(reading)
+        each = [f"{verdict} {under(which, every, named)}" for verdict, which in found.items()]
+        parts.append(", ".join(each))
     elif judgement.scope is Scope.ALL and count > 1:
-        every = "under both readings" if count == 2 else f"under all {count} readings"
+        all_ = "under both readings" if count == 2 else f"under all {count} readings"
         proven = judgement.confidence is Confidence.PROVEN
-        parts.append(f"{known} {every}" if proven else every)
+        parts.append(f"{known} {all_}" if proven else all_)
         known = "" if proven else known
     if judgement.evidence is not Evidence.NONE:
         parts.append(f"reference: {judgement.evidence}")
@@ -160,23 +156,26 @@ def _holds(judgement: Judgement) -> str:
     return "; ".join(parts)
 
 
-def _which(readings: Sequence[str]) -> str:
-    return readings[0] if len(readings) == 1 else str(len(readings))
+def names(one: CaseAudit) -> Named:
+    """What the readings of a case are called."""
+    far = one.readings.implausible if one.readings is not None else {}
+    return Named(one.case.labels, far, one.study.main_reading)
 
 
 def _why(one: CaseAudit, judgement: Judgement) -> Iterator[str]:
-    """What decides: each message once, with the rules and the readings that say it."""
-    said: dict[str, list[Finding]] = {}
-    for f in one.findings:
-        if f.claim == judgement.claim and f.decides and f.verdict in _DECIDED:
-            said.setdefault(f.message, []).append(f)
-    if not said:
+    """What decides: each reason once, with the rules and the readings that say it."""
+    said = [
+        Said(f.verdict, f.message, f.rule, f.reading)
+        for f in one.findings
+        if f.claim == judgement.claim and f.decides
+    ]
+    found = reasons(said, tuple(judgement.readings), names(one))
+    if not found:
         yield judgement.why
-    for message, own in sorted(said.items(), key=lambda line: _DECIDED.index(line[1][0].verdict)):
-        rules = ", ".join(dict.fromkeys(f.rule for f in own))
-        readings = list(dict.fromkeys(f.reading for f in own if f.reading))
-        every = not readings or len(readings) == len(one.study.readings)
-        yield f"{message} ({rules}{'' if every else f'; {named(readings)}'})"
+    depends = judgement.verdict is ClaimVerdict.DEPENDS
+    for reason in found:
+        text = told(reason, tuple(judgement.readings), names(one), word=depends)
+        yield f"{text} ({', '.join(reason.rules)})"
 
 
 # --- causes ---------------------------------------------------------------------------------------
@@ -190,9 +189,7 @@ def _told(one: CaseAudit, cause: Cause) -> bool:
 
 
 def _behind(one: CaseAudit, cause: Cause) -> Behind:
-    says = spoken(one.case, cause.says) if cause.claim is None else plainly(one.case, cause)
-    if len(cause.readings) and len(cause.readings) < len(one.study.readings):
-        says += f" (Under {len(cause.readings)} of {len(one.study.readings)} readings.)"
+    says = plainly(one.case, cause)
     says, *_ = _opened([says])[0] or (says,)
     hit = dict.fromkeys(c.claim for c in cause.consequences if c.claim and c.claim != cause.claim)
     return Behind(

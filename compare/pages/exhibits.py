@@ -25,6 +25,7 @@ from ..pictures import (
 )
 from .blocks import Block, Drawn, Folded, Grid, Section, number, text
 from .motions_shown import whole_claims
+from .numbers import noted, only_under
 from .units import both_units, paper_units
 
 _SAMPLES = 20_000
@@ -102,7 +103,7 @@ def _jumps_of(
     )
     where = "; ".join(dict.fromkeys(c.where for c in claims))
     caption = (
-        f"{where}. Reading {rid}. The velocity jumps under {len(jumping)} of {len(readings)} "
+        f"{where}.{noted(study, rid)} The velocity jumps under {len(jumping)} of {len(readings)} "
         "readings. Limits are judged apart from jumps, inside the segments."
     )
     yield _drawn(file_name("jumps", pid, first.id), picture, caption)
@@ -117,7 +118,7 @@ def _jumps_of(
         for jump in velocity_jumps(problem, durations)
     )
     columns = ("joint", "break", "time", "velocity after less before")
-    yield Folded(f"All {len(rows)} jumps: {names}; reading {rid}", (Grid(columns, rows),))
+    yield Folded(f"All {len(rows)} jumps: {names}{only_under(study, rid)}", (Grid(columns, rows),))
 
 
 # --- control polygon ------------------------------------------------------------------------------
@@ -248,7 +249,7 @@ def _joint_path(study: Study, chain: Chain) -> _Path | None:
         )
         return _Path(np.empty((0, 3)), (), (), said)
     points = np.asarray(forward_kinematics(chain, q)[..., :3, 3])
-    said = f"Way-points by forward kinematics, reading {study.main_reading}."
+    said = f"Way-points by forward kinematics.{noted(study, study.main_reading)}"
     return _Path(points, tuple(labels or ()), (), said)
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from ...problem import file_name
@@ -47,8 +49,7 @@ def _examined(study: Study, result: InstancesResult, examined: ExaminedInstances
         *(Prose(said) for said in (placed(result), attributed(result)) if said),
         Prose(
             "The instances are not the paper's: they inform and decide nothing, and the absolute "
-            "times stay not checkable. Way-points written into the case "
-            "file in place of not_printed and count bring the whole audit.",
+            "times stay not checkable.",
             "note",
         ),
         Terms(_design(study, result)),
@@ -61,7 +62,7 @@ def _examined(study: Study, result: InstancesResult, examined: ExaminedInstances
                 for step in block.lengths
             ),
         ),
-        Folded(f"Totals of every instance, {block.id}", (_instances(examined),)),
+        Folded(f"Totals of every instance, {block.id}", (_instances(examined, result.labels),)),
     ]
 
 
@@ -127,7 +128,7 @@ def _row(found: Reduction, result: InstancesResult) -> tuple[Cell, ...]:
     )
     missing = f"\n{found.missing} without answer" if found.missing else ""
     return (
-        text(found.reading),
+        text(result.label(found.reading)),
         text(found.effect + (f", {found.objective}" if found.objective else "")),
         number(f"{found.pairs}{missing}"),
         *(number(None if isinstance(x, Why) else f"{100 * x:.1f}") for x in quantiles),
@@ -136,7 +137,7 @@ def _row(found: Reduction, result: InstancesResult) -> tuple[Cell, ...]:
     )
 
 
-def _instances(examined: ExaminedInstances) -> Grid:
+def _instances(examined: ExaminedInstances, labels: Mapping[str, str]) -> Grid:
     slow, fast = examined.slower, examined.faster
     routes = (
         f"{slow.algorithm} on {slow.problem}",
@@ -146,7 +147,11 @@ def _instances(examined: ExaminedInstances) -> Grid:
     rows = []
     for one in examined.instances:
         for own in one.readings:
-            cells = [text(own.reading), number(f"{one.step:g}"), number(one.instance + 1)]
+            cells = [
+                text(labels.get(own.reading, own.reading)),
+                number(f"{one.step:g}"),
+                number(one.instance + 1),
+            ]
             for optimum in (own.slower_optimum, own.faster_optimum):
                 total = optimum.total_time
                 cells.append(

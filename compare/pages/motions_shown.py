@@ -13,7 +13,7 @@ from ...problem.cases import AnyClaim, DurationsClaim, MaximumClaim, TotalTimeCl
 from ..audits import CaseAudit, Study, place
 from ..pictures import Picture, Runs, convergence, endings, landscape, motion_picture, svg
 from .blocks import Block, Drawn, Folded, Grid, Prose, Section
-from .numbers import REPLAY_COLUMNS, problem_name, replay_rows
+from .numbers import REPLAY_COLUMNS, noted, problem_name, replay_rows
 from .units import paper_units
 
 
@@ -34,7 +34,7 @@ def motions(one: CaseAudit) -> Section:
                 nodal=solution.nodal,
                 units=paper_units(one.study.case.statement(pid, rid)),
             )
-            blocks.append(_drawn(file_name("optimum", pid), picture, f"Reading {rid}."))
+            blocks.append(_drawn(file_name("optimum", pid), picture, noted(one.study, rid).strip()))
     return Section("motions", "Motions, with limits and peaks", tuple(blocks), folded=True)
 
 
@@ -70,12 +70,12 @@ def _printed_motions(study: Study, pid: str, rid: str) -> Iterator[Block]:
         title = f"Printed durations: {'; '.join(dict.fromkeys(place(c) for c in claims))}"
         unmoved = study.unmoved(first, pid, rid)
         if unmoved is not None:
-            yield Prose(f"{title} are not drawn: {unmoved}. Reading {rid}.", "note")
+            yield Prose(f"{title} are not drawn: {unmoved}.{noted(study, rid)}", "note")
             continue
         rounding = study.claim_rounding(first, pid, rid).verdict
         worst = study.claim_check(first, pid, rid).worst
         if worst is not None and worst.quantity == "curve":
-            yield Prose(f"{title} define no curve. Reading {rid}.", "note")
+            yield Prose(f"{title} define no curve.{noted(study, rid)}", "note")
             continue
         picture = motion_picture(
             problem,
@@ -86,7 +86,7 @@ def _printed_motions(study: Study, pid: str, rid: str) -> Iterator[Block]:
             units=paper_units(study.case.statement(pid, rid)),
         )
         where = "; ".join(c.where for c in claims)
-        yield _drawn(file_name("motion", pid, first.id), picture, f"{where}. Reading {rid}.")
+        yield _drawn(file_name("motion", pid, first.id), picture, f"{where}.{noted(study, rid)}")
     for tables, singles in _tables_by_joint(study, pid).items():
         if study.unmoved(singles[0], pid, rid) is None:
             yield _joint_by_joint(study, pid, rid, tables, singles)
@@ -135,7 +135,7 @@ def _joint_by_joint(
     caption = (
         "Each joint with its own durations, at the printed digits. For every value that rounds to "
         "the printed digits: "
-        f"{each}. Reading {rid}."
+        f"{each}.{noted(study, rid)}"
     )
     return _drawn(file_name("motion", pid, "joints", str(claims[0].table)), picture, caption)
 
@@ -165,8 +165,8 @@ def searches(one: CaseAudit) -> Section:
         blocks.append(Folded(f"Spread over seeds and open choices: {name}", (grid,)))
     lead = Prose(
         f"Each algorithm was run with seeds 0 to {study.seeds - 1} under the choices listed below, "
-        f"reading {rid}, and under settings spread over all that the text leaves open. Replays "
-        "inform and decide nothing.",
+        f"and under settings spread over all that the text leaves open.{noted(study, rid)} "
+        "Replays inform and decide nothing.",
         "note",
     )
     shown = (lead, *blocks) if blocks else ()

@@ -120,8 +120,18 @@ def problem_name(one: CaseAudit, pid: str, reading: str | None = None) -> str:
     title = next((p.title for p in one.case.problems if p.id == pid), "") or pid
     if not one.case.document.problems:
         title = "The motion"  # the file names no problem, and "main" says nothing
-    under = f"; reading {reading}" if reading and len(one.study.readings) > 1 else ""
+    under = f"; {one.case.labels[reading]}" if reading and len(one.study.readings) > 1 else ""
     return f"{title}{under}"
+
+
+def only_under(study: Study, rid: str) -> str:
+    """Under which reading something is shown, behind its title; empty where there is one."""
+    return f"; {study.case.labels[rid]}" if len(study.readings) > 1 else ""
+
+
+def noted(study: Study, rid: str) -> str:
+    """The same as a sentence behind a caption."""
+    return f" Reading: {study.case.labels[rid]}." if len(study.readings) > 1 else ""
 
 
 def _drawn(one: CaseAudit, waterfall: Waterfall) -> tuple[Plain, ...]:
@@ -143,7 +153,7 @@ def _side_by_side(one: CaseAudit, pid: str, waterfalls: Sequence[Waterfall]) -> 
     for waterfall in waterfalls:
         steps = {s.name: s for s in waterfall.steps}
         cells = [_step(steps.get(name)) for name in names]
-        rows.append((text(waterfall.reading), *cells))
+        rows.append((text(one.case.labels[waterfall.reading]), *cells))
     caption = f"{problem_name(one, pid)}; an empty cell was not computed"
     return Grid(("reading", *names), tuple(rows), caption).filled
 
@@ -215,7 +225,7 @@ def optima(one: CaseAudit) -> Section:
         rows.append(
             (
                 text(problem_cell(study.case, pid)),
-                text(rid),
+                text(study.case.labels[rid]),
                 text("printed curve, shared durations"),
                 *_answer(own),
             )
@@ -227,7 +237,7 @@ def optima(one: CaseAudit) -> Section:
             rows.append(
                 (
                     text(problem_cell(study.case, pid)),
-                    text(rid),
+                    text(study.case.labels[rid]),
                     text("relaxed family"),
                     *_answer(relaxed),
                 )
@@ -282,7 +292,7 @@ def _joints(study: Study, pid: str, rid: str) -> Iterator[Block]:
         )
     names = ("joint", *_ANSWER, "printed", "gap")
     named = problem_cell(study.case, pid) or "each segment takes the longest duration"
-    yield Prose(f"Each joint by itself: {named}; reading {rid}", "heading")
+    yield Prose(f"Each joint by itself: {named}{only_under(study, rid)}", "heading")
     yield Grid(names, tuple(rows))
     yield Prose(_procedure(answer), "note")
 
@@ -326,7 +336,7 @@ def sensitivities(one: CaseAudit) -> Section:
             rows.append(
                 (
                     text(problem_cell(one.case, pid)),
-                    text(rid),
+                    text(one.case.labels[rid]),
                     text(where),
                     text(quantity),
                     number(len(changes)),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 
 from ...problem import Case
@@ -21,6 +21,7 @@ from .blocks import (
     text,
     word,
 )
+from .numbers import problem_cell
 
 _FEW = 4
 """Rows of a table that stand in the open; a longer one is folded."""
@@ -51,12 +52,17 @@ def _argued(one: CaseAudit, summary: ReadingsSummary) -> Iterator[Block]:
         key = (clue.where, clue.text, clue.computed, str(clue.speaks))
         found.setdefault(key, []).append(clue.reading)
     rows = tuple(
-        (text(f"{where}\n{said}"), text(", ".join(readings)), text(speaks), text(computed))
+        (
+            text(f"{where}\n{said}"),
+            text("; ".join(summary.labels[reading] for reading in readings)),
+            text(speaks),
+            text(computed),
+        )
         for (where, said, computed, speaks), readings in found.items()
     )
     blocks: list[Plain] = []
     if not isinstance(summary.default_why, Why):
-        blocks.append(Prose(f"Default {summary.default}: {summary.default_why}"))
+        blocks.append(Prose(f"Default: {summary.labels[summary.default]}. {summary.default_why}"))
     if rows:
         columns = ("printed or known", "readings", "speaks", "computed under them")
         note = "None of this decides a verdict: an implausible reading stays admissible."
@@ -81,7 +87,7 @@ def _held(one: CaseAudit, outcomes: list[ReadingOutcome]) -> tuple[Block, ...]:
         rows.append(
             (
                 text(whose),
-                text(outcome.reading),
+                text(one.case.labels[outcome.reading]),
                 number(f"{held.everywhere:.4g}"),
                 number(f"{held.sampled:.4g}"),
                 number(vertices),
@@ -105,7 +111,7 @@ def _outcomes(one: CaseAudit, summary: ReadingsSummary) -> list[Block]:
     names = ("reading", "limits", "over a limit", "× to limits", "optimum", "printed total")
     grids: list[Block] = []
     for (claim, problem), own in printed.items():
-        rows = tuple(_row(outcome, default) for outcome in own)
+        rows = tuple(_row(outcome, default, summary.labels) for outcome in own)
         where = place(one.case.claim(claim)) if claim else problem
         grids.append(Grid(names, rows, where).filled)
     note = (
@@ -117,7 +123,7 @@ def _outcomes(one: CaseAudit, summary: ReadingsSummary) -> list[Block]:
     return [*grids, Folded("How to read this table", (Prose(note, "note"),))]
 
 
-def _row(outcome: ReadingOutcome, default: str) -> tuple[Cell, ...]:
+def _row(outcome: ReadingOutcome, default: str, labels: Mapping[str, str]) -> tuple[Cell, ...]:
     mark = "\n(default)" if outcome.reading == default else ""
     optimum = stretch = gap = None
     if not isinstance(outcome.optimum, Why):
@@ -135,7 +141,7 @@ def _row(outcome: ReadingOutcome, default: str) -> tuple[Cell, ...]:
     jumps = f"\n{outcome.jumps} velocity jumps" if outcome.jumps else ""
     limits = text(None) if isinstance(outcome.keeping, Why) else word(outcome.keeping)
     return (
-        text(outcome.reading + mark),
+        text(labels[outcome.reading] + mark),
         replace(limits, text=limits.text + jumps),
         text(over),
         number(stretch),
@@ -153,15 +159,15 @@ def _unposed(one: CaseAudit) -> Grid:
         curve, limits, _, _ = one.case.statement(pid, rid).data()
         rows.append(
             (
-                text(rid),
-                text(pid),
+                text(one.case.labels[rid]),
+                text(problem_cell(one.case, pid)),
                 text(curve.name),
                 text(_listed(limits.velocity)),
                 text(_listed(limits.acceleration)),
             )
         )
     names = ("reading", "problem", "curve", "velocity limits, rad/s", "acceleration limits, rad/s²")
-    return Grid(names, tuple(rows), "What each reading poses, way-points apart")
+    return Grid(names, tuple(rows), "What each reading poses, way-points apart").filled
 
 
 def _listed(limits: Iterable[float]) -> str:

@@ -42,7 +42,7 @@ def _problems(study: Study) -> Grid:
         rows.append(
             (
                 text(problem_cell(study.case, pid)),
-                text(rid),
+                text(study.case.labels[rid]),
                 text(f"{len(p.joints)} × {p.waypoints.shape[0]}"),
                 text(p.curve.name),
                 text(_limits(p, study.case.statement(pid, rid))),
@@ -114,7 +114,11 @@ def _finding_grid(case: Case, found: list[Finding], readings: int) -> Grid:
     rows = []
     for f, *more in groups.values():
         names = [x.reading for x in (f, *more) if x.reading is not None]
-        which = "all" if not names or len(set(names)) == readings else ", ".join(names)
+        which = (
+            "all"
+            if not names or len(set(names)) == readings
+            else "; ".join(case.labels[name] for name in dict.fromkeys(names))
+        )
         about = f.claim or ""
         where = place(case.claim(about)) if about else ""
         problem = problem_cell(case, f.problem) if f.problem else ""
@@ -149,12 +153,20 @@ def foundations(one: CaseAudit) -> list[Section]:
     """Readings, assumptions, and what cannot be checked."""
     case, default = one.case, one.case.default_reading.id
     readings = tuple(
-        (r.id + (" (default)" if r.id == default else ""), r.why)
+        (
+            f"{case.labels[r.id]}{' (default)' if r.id == default else ''}",
+            f"{r.why} Its id: {r.id}",
+        )
         for r in case.readings
         if r.id in one.study.readings
     )
     assumed = tuple(
-        (text(a.id), text(a.text), text(a.choice), text(", ".join(a.affects)))
+        (
+            text(a.id),
+            text(a.text),
+            text(a.choice),
+            text(", ".join(case.labels.get(one, one) for one in a.affects)),
+        )
         for a in case.assumptions
     )
     lost = tuple((text(n.where), text(n.what), text(n.why)) for n in case.not_checkable)

@@ -238,9 +238,11 @@ def _not_computed(one: CaseAudit) -> Section:
     if one.study.posed:
         return Section("not-computed", "Not computed", ())
     why = one.case.statement().waypoints.not_printed or "none of its readings poses a problem"
+    # Where there are several readings, the section above has said why.
+    reason = "" if one.readings is not None else f" ({why})"
     said = Prose(
-        f"No problem is posed: way-points are not printed ({why}). Optima, motions, replays and "
-        "landscapes appear here as soon as the case file has way-points."
+        f"No problem is posed, since way-points are not printed{reason}: there are no optima, "
+        "motions, replays or landscapes."
     )
     return Section("not-computed", "Not computed", (said,))
 

@@ -36,7 +36,7 @@ def instances_picture(result: InstancesResult, *, title: str) -> Picture:
         counted beside their row.
     """
     described = [
-        f"{reading}: {effect} {distribution(result.reductions(reading, effect))}"
+        f"{result.label(reading)}: {effect} {distribution(result.reductions(reading, effect))}"
         for reading in result.readings
         for effect in Effect
     ]
@@ -71,7 +71,9 @@ def _label(result: InstancesResult, reading: str) -> str:
         for effect in Effect
         for at in _objectives(result, effect)
     )
-    return shown(reading, 24) + (f"\n{missing} pairs without answer" if missing else "")
+    return shown(result.label(reading), 24, 3) + (
+        f"\n{missing} pairs without answer" if missing else ""
+    )
 
 
 def _panel(axes: Axes, result: InstancesResult, effect: Effect) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -12,10 +13,11 @@ from sphinx.util.docutils import SphinxDirective
 
 from ...problem import TrajgapError, file_name
 from ..audits import KEPT
-from ..documents import ClaimVerdict, Keeping, counted, more_errors, worth
+from ..documents import ClaimVerdict, Keeping, counted, more_errors, qualified, same_reason, worth
 from ..pictures import waterfall_picture
 from .parts import badge, paragraph, picture, table
 from .proofs import proved_again
+from .reasons import names as reading_names
 from .reasons import reasons
 from .results import Results, distance_of, waterfall_of
 from .suite import InstanceShown, SuiteTable
@@ -83,15 +85,27 @@ class Claims(FromResults):
         if wanted:
             chosen.sort(key=lambda one: wanted.index(one["verdict"]))
         told: set[str] = set()
-        for verdict in chosen:
-            claim = stated[verdict["claim"]]
+        reasoned: dict[str, str] = {}
+        groups: dict[tuple[str, ...], list[dict[str, Any]]] = {}
+        for one in chosen:
+            key = (stated[one["claim"]]["text"], qualified(one["verdict"], one["caveats"]))
+            groups.setdefault((*key, _holds(one)), []).append(one)
+        for verdict, *others in groups.values():
+            claim = _with_places(stated, verdict, others)
             box = nodes.container(classes=["trajgap-claim"])
             head = nodes.paragraph(classes=["trajgap-said"])
             head += badge(verdict["verdict"])
-            head += nodes.Text(f" {claim['text']}")
+            beside = qualified(verdict["verdict"], verdict["caveats"])
+            head += nodes.Text(f"{beside.removeprefix(verdict['verdict'])} {claim['text']}")
             place = ". ".join(filter(None, (claim["where"], claim["printed"], _holds(verdict))))
             place = f"{place[:1].upper()}{place[1:]}"
-            box += [head, paragraph(place, "trajgap-beside"), *reasons(case, verdict)]
+            box += [head, paragraph(place, "trajgap-beside")]
+            before = reasoned.setdefault(verdict["why"], claim["text"])
+            first = before == claim["text"]
+            box += reasons(case, verdict) if first else [paragraph(same_reason(before))]
+            for one in others:
+                if one["why"] != verdict["why"]:
+                    box += paragraph(f"{stated[one['claim']]['where']}: {one['why']}")
             for caveat in verdict["caveats"]:
                 # One long reason is told once.
                 short = f"{caveat.partition(':')[0]} (see above)." if caveat in told else caveat
@@ -99,6 +113,18 @@ class Claims(FromResults):
                 box += paragraph(f"{short[:1].upper()}{short[1:]}", "trajgap-beside")
             found.append(box)
         return found or [paragraph("None.")]
+
+
+def _with_places(
+    stated: dict[str, Any], verdict: dict[str, Any], others: list[dict[str, Any]]
+) -> dict[str, Any]:
+    """A claim with the places and digits of all that say the same."""
+    every = [stated[one["claim"]] for one in (verdict, *others)]
+    joined = {
+        key: "; ".join(dict.fromkeys(one[key] for one in every if one[key]))
+        for key in ("where", "printed")
+    }
+    return {**every[0], **joined}
 
 
 def _holds(verdict: dict[str, Any]) -> str:
@@ -126,20 +152,23 @@ class Readings(FromResults):
             return [paragraph("The text leaves nothing open: there is one reading.")]
         names = said["admissible"]
         head = paragraph(f"The text leaves open what {len(names)} readings settle. The default is ")
-        head += nodes.literal("", said["default"])
-        head += nodes.Text(f": {said['default_why']}" if said["default_why"] else ".")
-        rows = [_under(case, outcome) for outcome in said["outcomes"]]
+        labels = reading_names(case).labels
+        head += nodes.Text(f"“{labels.get(said['default'], said['default'])}”. ")
+        head += nodes.Text(said["default_why"] or "")
+        meant = [[labels.get(one, one), nodes.literal("", one)] for one in names]
+        known = table(("reading", "its id"), meant)
+        rows = [_under(case, outcome, labels) for outcome in said["outcomes"]]
         columns = ("reading", "durations of", "limits", "largest ratio", "shortest, s", "evidence")
-        return [head, table(columns, rows)] if rows else [head]
+        return [head, table(columns, rows), known] if rows else [head, known]
 
 
-def _under(case: dict[str, Any], outcome: dict[str, Any]) -> list[Any]:
+def _under(case: dict[str, Any], outcome: dict[str, Any], labels: Mapping[str, str]) -> list[Any]:
     """What one printed motion is under one reading."""
     own = [c["where"] for c in case["claims"] if c["claim"] == outcome["claim"]]
     held, optimum = outcome["held"], outcome["optimum"]
     ratio = held["everywhere"] if isinstance(held, dict) else None
     return [
-        nodes.literal("", outcome["reading"]),
+        labels.get(outcome["reading"], outcome["reading"]),
         own[0] if own else "–",
         KEPT[Keeping(outcome["keeping"])] if outcome["keeping"] else "–",
         "–" if ratio is None else f"{ratio:.4g}",

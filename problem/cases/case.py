@@ -17,6 +17,7 @@ from ..units import CHOICES, Measured, Quantity
 from .claim import AnyClaim, Claim, DurationsClaim, MaximumClaim
 from .clue import AnyClue
 from .instances import InstancesBlock
+from .labels import reading_labels
 from .line import on_line
 from .overlay import overlaid
 from .robot_file import robot_file, robot_ids
@@ -148,6 +149,11 @@ class Case:
         return self.document.not_checkable
 
     @cached_property
+    def labels(self) -> dict[str, str]:
+        """What each reading means in words, by its id."""
+        return reading_labels(self.document, self.readings)
+
+    @property
     def default_reading(self) -> Reading:
         """The reading marked as default, else the first."""
         return next((r for r in self.readings if r.default), self.readings[0])

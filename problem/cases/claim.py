@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from datetime import date
+from enum import StrEnum
 from typing import Annotated, Literal, Self
 
 from pydantic import AfterValidator, Discriminator, Field, StrictInt, model_validator
@@ -218,6 +219,19 @@ class ControlVerticesClaim(Claim):
     """One row per joint: two more numbers than way-points."""
 
 
+class Nature(StrEnum):
+    """What a sentence is that claims no result which numbers could decide."""
+
+    DEFINITION = "definition"
+    """How something is called, made or set up."""
+    IDENTITY = "identity"
+    """Mathematics that holds whatever the paper prints."""
+    AIM = "aim"
+    """What is wanted, not what was reached."""
+    JUDGEMENT = "judgement"
+    """An opinion of which no measure is named."""
+
+
 class StatementClaim(Claim):
     """A claim in words."""
 
@@ -246,9 +260,13 @@ class StatementClaim(Claim):
     """Another algorithm that the claim's own is compared with: replays of both stand beside it."""
     not_checkable: str | None = None
     """Why it cannot be checked; needed exactly if ``checks`` is "none"."""
+    nature: Nature | None = None
+    """What it is where it claims no result; with ``checks`` "none" only."""
 
     @model_validator(mode="after")
     def _reason(self) -> Self:
+        if self.nature is not None and self.checks != "none":
+            raise fault(".nature", 'goes with checks = "none" only; leave it out, or check nothing')
         if (self.checks == "none") != bool(self.not_checkable):
             raise fault(
                 ".not_checkable",

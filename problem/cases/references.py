@@ -59,6 +59,12 @@ def check_references(document: CaseFile, faults: Faults) -> None:
     defaults = [index for index, reading in enumerate(document.readings) if reading.default]
     if len(defaults) > 1:
         faults.add(f"readings[{defaults[1]}].default", "a second default reading; keep one")
+    labels = [reading.label for reading in document.readings]
+    for index, label in enumerate(labels):
+        if label is not None and label in labels[:index]:
+            faults.add(
+                f"readings[{index}].label", f"{label!r} names another reading; say what differs"
+            )
 
     def known(kind: str, field: str, name: str | None) -> None:
         if name is not None and name not in ids[kind]:

@@ -15,6 +15,7 @@ from ..fields import (
     Id,
     JerkUnit,
     JointLabels,
+    Label,
     Number,
     OneOrEachLength,
     OneOrEachLowerPosition,
@@ -253,6 +254,9 @@ class Reading(Override):
     """An admissible way of reading what the paper prints, with its justification."""
 
     id: Id
+    label: Label | None = None
+    """What it means, in a few words that stand for it in reports; made from what it changes if
+    absent."""
     why: Text
     default: StrictBool = False
     default_why: Text | None = None

@@ -129,4 +129,5 @@ def examined(
         iterations=last.iterations,
         samples=examine(tasks, study.workers, progress),
         printed_totals=_printed_totals(study, block, readings[0]),
+        labels=study.case.labels,
     )

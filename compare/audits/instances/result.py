@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -146,6 +147,8 @@ class InstancesResult:
         Budget of the faster procedure's algorithm.
     samples : tuple of Sample
         By step, instance and reading, in this order; failures included.
+    labels : mapping of str to str
+        What each reading means in words.
     """
 
     block: InstancesBlock
@@ -157,6 +160,7 @@ class InstancesResult:
     samples: tuple[Sample, ...]
     printed_totals: tuple[str | None, str | None] = (None, None)
     """Of the slower and the faster procedure, with their unit."""
+    labels: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def instances(self) -> int:
@@ -212,6 +216,10 @@ class InstancesResult:
         """Runs without an answer that keeps its limits, over all routes."""
         return sum(int(np.isinf(s.totals[objective]).sum()) for s in self.of(reading))
 
+    def label(self, reading: str) -> str:
+        """What a reading means in words."""
+        return self.labels.get(reading, reading)
+
     @property
     def unsolved(self) -> tuple[str, ...]:
         """Optima that are not known, in words."""
@@ -219,7 +227,7 @@ class InstancesResult:
         for s in self.samples:
             for problem, one in ((self.slower.problem, s.slower), (self.faster.problem, s.faster)):
                 if not np.isfinite(one.total):
-                    at = f"step {s.step:g}, instance {s.index + 1}, {s.reading}"
+                    at = f"step {s.step:g}, instance {s.index + 1}, {self.label(s.reading)}"
                     found.append(f"{problem}, {at}: {one.status}")
         return tuple(found)
 

@@ -8,7 +8,7 @@ from math import perm
 
 import numpy as np
 
-from ....problem import QUANTITIES, fit
+from ....problem import QUANTITIES, Curve, fit
 from ....problem.cases import AnyClaim, ConditionsClaim, StatementClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..study import Study
@@ -89,6 +89,8 @@ def _counted(study: Study, claim: ConditionsClaim) -> Finding:
         printed=printed,
         computed=computed,
         message=message,
+        # A printed count may be wrong; that the declared curve meets its own conditions cannot.
+        built=verdict is ClaimVerdict.SUPPORTED and claim.count is None,
     )
 
 
@@ -164,13 +166,14 @@ def _at_rest(
     named = [study.case.claim(i) for i in of]
     motions = named or [c for c in study.case.claims if study.has_durations(c)]
     for rid in study.readings:
-        moving, judged = [], 0
+        moving, judged, built = [], 0, True
         for motion in motions:
             for pid, reading in study.claim_pairs(motion):
                 ours = reading == rid and claim.problem in (None, pid)
                 if not ours or not has_curve(study, motion, pid, rid):
                     continue
                 judged += 1
+                built &= _prescribed(study.claim_problem(motion, pid, rid).curve, orders)
                 moving += [
                     f"{called_under(motion, pid)}: {said}"
                     for said in _moving(study, motion, pid, rid, orders)
@@ -189,7 +192,14 @@ def _at_rest(
             f"{'; '.join(moving)}."
             if moving
             else f"On the stated curve {names} are 0 at both ends of every printed motion.",
+            built=built and not moving,
         )
+
+
+def _prescribed(curve: Curve, orders: Sequence[int]) -> bool:
+    """Whether a curve has derivatives 0 at both ends as it is declared."""
+    ends = (curve.prescribed_at(0), curve.prescribed_at(curve.segments))
+    return all((order, 0.0) in end for end in ends for order in orders)
 
 
 def _moving(

@@ -273,11 +273,13 @@ def _limits_statement(study: Study, claim: StatementClaim) -> Iterator[Finding]:
 def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
     for rid in study.readings:
         jumps = []
-        judged = 0
+        judged, built = 0, True
         for other in (study.case.claim(i) for i in claim.of):
             for pid, reading in study.claim_pairs(other):
                 if reading == rid:
                     judged += 1
+                    curve = study.claim_problem(other, pid, rid).curve
+                    built &= all(curve.smooth_order(k) >= 2 for k in range(1, curve.segments))
                     jumps += [(pid, jump) for jump in study.claim_check(other, pid, rid).jumps]
         if not judged:
             continue
@@ -308,6 +310,7 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             claim=claim.id,
             reading=rid,
             message=message,
+            built=built and not jumps,
         )
 
 

@@ -418,7 +418,7 @@ def _shorter(
     jumps = solution.check is not None and any(j.order == 1 for j in solution.check.jumps)
     kind = "a checked motion whose velocity may jump at the via-points under this reading"
     said = (
-        f"{called(claim)} prints {shown}, which {set_beside(distance)} the {reached:.6f} s of "
-        f"{kind if jumps else 'a checked motion'}"
+        f"{called(claim)} prints {shown}, and {kind if jumps else 'a checked motion'} takes "
+        f"{reached:.6f} s"
     )
     return said, distance

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ....problem.cases import ConvergenceClaim
-from ...documents import Basis, Effect, Finding, Procedure
+from ...documents import Basis, Effect, Finding, Procedure, quoted
 from ...gaps import SETTLED
 from ..instances import (
     MIDDLE,
@@ -57,10 +57,16 @@ def placed(result: InstancesResult) -> str:
             sides.setdefault(_aside(result, reading), []).append(reading)
     said = f"On {drawn}, the printed reduction of {percent_range(*result.printed)} is "
     middle = f"the middle {100 * MIDDLE:g} % of the reductions of one run against one run"
-    parts = [f"usual under {', '.join(inside)}, within {middle}"] if inside else []
+    parts = (
+        [f"usual under {', '.join(quoted(one, result.labels) for one in inside)}, within {middle}"]
+        if inside
+        else []
+    )
     for side, own in sides.items():
         what = "" if inside or parts else f", outside {middle}"
-        parts.append(f"unusual under {', '.join(own)} ({side}){what}")
+        parts.append(
+            f"unusual under {', '.join(quoted(one, result.labels) for one in own)} ({side}){what}"
+        )
     return f"{said}{'; it is '.join(parts)}."
 
 
@@ -202,7 +208,7 @@ def _convergence(result: InstancesResult, claim: ConvergenceClaim) -> Finding:
         shares.append(float((settled <= claim.iterations.value).mean()) if settled.size else 0.0)
     low, high = 100 * min(shares), 100 * max(shares)
     each = ", ".join(
-        f"{100 * share:.3g} % under {reading}"
+        f"{100 * share:.3g} % under {quoted(reading, result.labels)}"
         for share, reading in zip(shares, result.readings, strict=True)
     )
     message = (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ....problem.cases import ImprovementClaim, StatementClaim, TotalTimeClaim
+from ....problem.cases import ImprovementClaim, StatementClaim
 from ...documents import Basis, Finding
 from ..study import Study
 
@@ -28,11 +28,9 @@ def _without_waypoints(study: Study) -> Iterator[Finding]:
         if said or isinstance(claim, ImprovementClaim):
             continue
         why = (study.case.statement(claim.problem).waypoints.not_printed or "").removesuffix(".")
-        what = "An absolute time" if isinstance(claim, TotalTimeClaim) else "This"
         yield _listed(
             claim.id,
-            f"{what} cannot be computed without the way-points: {why}. Added to "
-            "the case file, they make it checkable.",
+            f"Without the way-points there is nothing to compute: {why}.",
         )
 
 

@@ -228,8 +228,7 @@ EXPLAINED = {
     ),
     "TG501": Explained(
         "What does the text not carry that a claim would need?",
-        "Not checkable, with the reason. Added to the case file, the missing number makes the "
-        "claim checkable.",
+        "Not checkable, with the reason.",
         "Way-points are shown in a figure only.",
     ),
     "TG502": Explained(

@@ -240,17 +240,19 @@ def _convergence(study: Study, claim: ConvergenceClaim) -> Iterator[Finding]:
         if not runs:
             yield found(message=study.unreplayed(claim.algorithm, pid, rid) or "")
             continue
-        parts, spans = [], []
+        parts: list[str] = []
+        spans: list[str] = []
         for tolerance in _TOLERANCES:
             within = {
                 name: float((_settled(one, tolerance) <= claim.iterations.value).mean())
                 for name, one in runs.items()
             }
-            parts.append(f"{_percent(within[LISTED])} within {100 * tolerance:g} %")
+            share = f"{_percent(within[LISTED])}{'' if parts else ' of the runs'}"
+            parts.append(f"{share} lie within {100 * tolerance:g} %")
             spans.append(f"{_percent(min(within.values()))} to {_percent(max(within.values()))}")
         varied = (
-            f" Over {len(runs)} settings of what the text leaves open the shares are "
-            f"{' and '.join(spans)}."
+            f" Over {len(runs)} settings of what the text leaves open these shares "
+            f"range from {' and from '.join(spans)}."
             if len(runs) > 1
             else ""
         )
@@ -258,8 +260,8 @@ def _convergence(study: Study, claim: ConvergenceClaim) -> Iterator[Finding]:
         yield found(
             computed=f"median {np.median(settled):.0f} iterations",
             message=(
-                f"Of {settled.size} runs under the listed choices, at iteration "
-                f"{claim.iterations}, {' and '.join(parts)} of their final value.{varied} The text "
-                "names no tolerance."
+                f"After {claim.iterations} iterations {parts[0]} of their final value, and "
+                f"{parts[1]}, counted over {settled.size} runs under the listed "
+                f"choices.{varied} The text names no tolerance."
             ),
         )

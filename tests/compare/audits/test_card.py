@@ -22,8 +22,8 @@ def test_the_palletisers_card():
     card = audited_alone("irb460-pso-353").card
     # The durations under 80 °/s keep their limit under both readings: they are not in doubt.
     assert card.limits == (
-        "Whether the limits are kept in Table 4, column 110 °/s depends on the reading: "
-        "kept under 1 of 2."
+        "The limits in Table 4, column 110 °/s are broken under “way-points in radians”, kept "
+        "under the implausible “way-points in degrees”."
     )
     # 1.869/1.817473 and 1.6041/1.321799 by hand.
     assert card.optimum == (

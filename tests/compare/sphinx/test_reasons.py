@@ -7,11 +7,16 @@ from trajgap.compare.sphinx.reasons import reasons
 
 
 def finding(reading: str | None, message: str, verdict: str = "refuted", **changes: object):
-    one = {"claim": "c", "decides": True, "verdict": verdict, "reading": reading}
+    one = {"claim": "c", "decides": True, "verdict": verdict, "reading": reading, "rule": "TG201"}
     return {**one, "message": message, **changes}
 
 
-VERDICT = {"claim": "c", "why": "all of it", "readings": dict.fromkeys("abcd", "refuted")}
+VERDICT = {
+    "claim": "c",
+    "verdict": "depends on the reading",
+    "why": "all of it",
+    "readings": dict.fromkeys("abcd", "refuted"),
+}
 
 
 def texts(case: dict) -> list[str]:
@@ -33,13 +38,14 @@ def test_of_many_reasons_the_default_stands_first_and_the_others_are_folded() ->
         finding("a", "decides nothing.", decides=False),
         finding("a", "says nothing.", "not checkable"),
     ]
-    case = {"readings": {"default": "b"}, "findings": found}
+    labels = {"a": "angles in degrees", "b": "angles in radians"}
+    case = {"readings": {"default": "b", "labels": labels}, "findings": found}
     lead, opening, folded, closing = reasons(case, VERDICT)
-    assert lead.astext() == "Refuted under readings b, c: two."
+    assert lead.astext() == "Refuted under the readings “angles in radians” and “c”: two."
     assert opening.astext() == "<details><summary>2 more reasons</summary>"
     assert [one.astext() for one in folded.findall(nodes.paragraph)] == [
-        "Refuted under reading a: one.",
-        "Supported under reading d: kept.",
+        "Refuted under the reading “angles in degrees”: one.",
+        "Supported under the reading “d”: kept.",
     ]
     assert closing.astext() == "</details>"
 
@@ -48,3 +54,14 @@ def test_what_needs_no_reading_stands_first() -> None:
     found = [finding("a", "one."), finding("b", "two."), finding(None, "three.")]
     case = {"readings": {"default": "d"}, "findings": found}
     assert texts(case)[0] == "Refuted under every reading: three."
+
+
+def test_what_differs_in_numbers_is_told_once_and_every_number_is_folded() -> None:
+    found = [finding("a", "3 s too long."), finding("b", "4 s too long.")]
+    lead, _, folded, _ = reasons({"readings": {"default": "b"}, "findings": found}, VERDICT)
+    said = "Refuted under the readings “b” and “a” (numbers of the first): 4 s too long."
+    assert lead.astext() == said
+    assert [one.astext() for one in folded.findall(nodes.paragraph)] == [
+        "Refuted under the reading “b”: 4 s too long.",
+        "Refuted under the reading “a”: 3 s too long.",
+    ]

@@ -175,7 +175,7 @@ def test_failures_are_kept_and_counted() -> None:
                      "position_initial = [0, 0.05]"))  # fmt: skip
     assert np.isinf([s.totals for s in found.samples]).all()
     assert len(found.unsolved) == 2 * len(found.samples)
-    assert "step 0.9, instance 2, joined: infeasible" in "; ".join(found.unsolved)
+    assert "step 0.9, instance 2, quintic spline: infeasible" in "; ".join(found.unsolved)
     assert found.failed("as-printed") == 4 * 3 * 2
     spread = distribution(found.reductions("as-printed", Effect.BOTH))
     assert (spread.pairs, spread.missing) == (16, 16)

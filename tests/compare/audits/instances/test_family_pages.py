@@ -52,7 +52,7 @@ def test_findings_inform_and_decide_nothing() -> None:
     assert "4 instances, at steps of 0.3, 0.9 rad, with 2 runs each" in found[1].message
     assert "at the best known optima: median 0.0 % (0.0 to 0.0 %)." in found[2].message
     assert "By iteration 10 of 12" in found[3].message
-    assert "% under as-printed, " in found[3].message
+    assert "% under “as-printed”, " in found[3].message
     assert "95 % interval, instances resampled" in found[1].message
     assert "Where 2.00 s is printed, the procedure" in found[1].message
     # Readings are named and never counted.
@@ -78,7 +78,7 @@ def test_without_a_pair_of_answers_the_words_say_so() -> None:
             )
         )
     )
-    assert "unusual under as-printed, joined (no pair of answers)" in found[0].message
+    assert "unusual under “as-printed”, “quintic spline” (no pair of answers)" in found[0].message
     assert found[0].computed == "no pair of answers"
     assert "12 runs found nothing that keeps its limits" in found[1].message
 
@@ -137,7 +137,9 @@ def test_the_picture_shows_every_pair(result: InstancesResult) -> None:
     shown = np.sort(points[:, 0])
     values = [result.reductions(r, Effect.BOTH, at) for r in result.readings for at in (0, 1)]
     np.testing.assert_allclose(shown, np.sort(100 * np.concatenate(values)), rtol=1e-12)
-    assert [t.get_text() for t in both.get_yticklabels()] == list(result.readings)
+    assert [t.get_text() for t in both.get_yticklabels()] == [
+        result.label(reading) for reading in result.readings
+    ]
     assert sum(len(c.get_offsets()) for c in curve.collections) == len(result.samples)
     assert alone.get_title(loc="left") == "algorithm alone"
     assert "as-printed: both together median" in picture.description

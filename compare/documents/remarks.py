@@ -1,0 +1,117 @@
+"""What goes with the word of a verdict, in the same breath: doubted numbers, truisms, definitions.
+
+A word of its own is not needed for these: the verdict is what it is, and the reader learns at once
+what it is worth.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+
+from ...problem.cases import Nature
+from .finding import Judgement
+from .vocabulary import ClaimVerdict, Confidence
+
+DOUBTED = "rests on numbers that other printed numbers contradict"
+"""How a caveat begins where a claim rests on a contradiction in print."""
+BUILT = "true of any such curve"
+"""How one begins where nothing that is printed could make the claim false."""
+_STATED = {
+    Nature.DEFINITION: "a definition",
+    Nature.IDENTITY: "a mathematical identity",
+    Nature.AIM: "an aim",
+    Nature.JUDGEMENT: "a judgement",
+}
+"""How one begins where nothing is claimed that numbers could decide."""
+_BESIDE = {
+    DOUBTED: (ClaimVerdict.SUPPORTED, "but on doubted numbers"),
+    BUILT: (ClaimVerdict.SUPPORTED, "by construction"),
+    **{said: (ClaimVerdict.NOT_CHECKABLE, said) for said in _STATED.values()},
+}
+"""What stands beside which verdict, by the beginning of a caveat."""
+
+
+def built_remark() -> str:
+    """The caveat of a claim that holds by construction."""
+    return f"{BUILT}, whatever the durations, so that it is no evidence for the printed numbers"
+
+
+def nature_remark(nature: Nature) -> str:
+    """The caveat of a sentence that claims nothing that numbers could decide."""
+    why = {
+        Nature.DEFINITION: "it says how something is called or made, and claims no result",
+        Nature.IDENTITY: "it holds whatever this paper prints",
+        Nature.AIM: "it says what is wanted, not what was reached",
+        Nature.JUDGEMENT: "no measure is named that could be computed",
+    }
+    return f"{_STATED[nature]}: {why[nature]}"
+
+
+def qualified(verdict: str, caveats: Iterable[object]) -> str:
+    """A verdict with what goes with it.
+
+    Parameters
+    ----------
+    verdict : str
+    caveats : iterable of object
+        Their texts.
+
+    Returns
+    -------
+    str
+        Such as "supported, but on doubted numbers".
+    """
+    texts = list(map(str, caveats))
+    beside = [
+        said
+        for start, (word, said) in _BESIDE.items()
+        if word == verdict and any(text.startswith(start) for text in texts)
+    ]
+    return ", ".join([verdict, *beside])
+
+
+def worth_little(judgements: Sequence[Judgement]) -> str:
+    """How many of some claims hold by construction or on doubted numbers; empty where none does.
+
+    Parameters
+    ----------
+    judgements : sequence of Judgement
+
+    Returns
+    -------
+    str
+        Such as "18 of them on doubted numbers, 2 by construction".
+    """
+    starts = [
+        (start, said.removeprefix("but "))
+        for start, (word, said) in _BESIDE.items()
+        if word is ClaimVerdict.SUPPORTED
+    ]
+    counts = Counter(
+        said
+        for judgement in judgements
+        if judgement.verdict is ClaimVerdict.SUPPORTED
+        for start, said in starts
+        if any(str(caveat).startswith(start) for caveat in judgement.caveats)
+    )
+    parts = [f"{count} {said}" for said, count in counts.items()]
+    return f"of these {', '.join(parts)}" if parts else ""
+
+
+def same_reason(text: str) -> str:
+    """What stands in place of a reason that an earlier claim, of these words, has given."""
+    return f"For the same reason as “{text.rstrip('.')}”."
+
+
+def claims_nothing(judgement: Judgement) -> bool:
+    """Whether a claim that is not checkable states no result: a definition, an aim and the like."""
+    starts = tuple(f"{said}:" for said in _STATED.values())
+    undecided = judgement.verdict is ClaimVerdict.NOT_CHECKABLE
+    return undecided and any(str(caveat).startswith(starts) for caveat in judgement.caveats)
+
+
+def evident(judgement: Judgement) -> bool:
+    """Whether a verdict is decided and says something of the paper: not by construction."""
+    known = isinstance(judgement.confidence, Confidence)
+    return known and not any(str(caveat).startswith(BUILT) for caveat in judgement.caveats)

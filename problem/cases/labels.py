@@ -1,0 +1,203 @@
+"""What each reading of a case means, in a few words that no other reading of the case has."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+
+from ..problem import Coupling
+from ..units import CHOICES
+from .declaration import InterpolantBlock
+from .schema import CaseFile, Reading
+
+_UNITS = {
+    "position": "angles",
+    "velocity": "velocities",
+    "acceleration": "accelerations",
+    "jerk": "jerks",
+    "time": "times",
+}
+"""What a unit is of, as a reader calls it."""
+_SHOWN = {"rad": "radians", "deg": "degrees", "s": "seconds", "ms": "milliseconds"}
+"""Units that read better in full; of the others the signs are changed alone."""
+_LIMITS = {
+    "velocity": "velocity limits",
+    "acceleration": "acceleration limits",
+    "jerk": "jerk limits",
+    "position_lower": "lower position limits",
+    "position_upper": "upper position limits",
+}
+"""Keys of the limits, as a reader calls them."""
+_FAMILIES = {
+    "3-5-3": "3-5-3 polynomials",
+    "cubic-spline": "cubic spline",
+    "quintic-spline": "quintic spline",
+    "cubic-spline-virtual": "cubic spline with virtual points",
+    "rest-to-rest": "at rest at every way-point",
+    "uniform-cubic-b-spline": "uniform cubic B-spline",
+    "clamped-b-spline": "clamped B-spline",
+}
+"""Families of curves in words; the others are called as case files call them."""
+_KNOTS = {
+    "waypoints": "knots at the way-points",
+    "averaged": "averaged knots",
+    "averaged-continued": "averaged knots, continued at the ends",
+}
+"""Where the inner knots of a clamped B-spline lie."""
+_PARAMETERS = {
+    "times": "knots by the times",
+    "chord": "knots by chord lengths",
+    "joint-chord": "knots by the chord lengths of each joint",
+}
+"""What its knots are placed by."""
+_TIME = {"stretched": "each segment stretched in time by itself", "timed": "smooth time"}
+"""How time enters a B-spline."""
+_TIME_ENDS = {
+    "equal-vertices": "time ending in equal vertices",
+    "natural": "natural ends of time",
+}
+"""How a smooth time ends."""
+_DERIVATIVES = {1: "velocity", 2: "acceleration", 3: "jerk"}
+"""Derivatives at the ends, by their order."""
+
+
+def reading_labels(document: CaseFile, readings: Sequence[Reading]) -> dict[str, str]:
+    """The meaning of each reading, in words: its `label`, else in what it differs from the others.
+
+    Parameters
+    ----------
+    document : CaseFile
+    readings : sequence of Reading
+
+    Returns
+    -------
+    dict of str to str
+        By the readings' ids. No two are alike: where words do not tell readings apart, their ids
+        stand beside.
+    """
+    found = {one.id: one.label or _differing(document, one, readings) for one in readings}
+    count = Counter(found.values())
+    return {
+        name: label if label and count[label] == 1 else f"{label} ({name})" if label else name
+        for name, label in found.items()
+    }
+
+
+def _differing(document: CaseFile, reading: Reading, readings: Sequence[Reading]) -> str:
+    """What a reading says where another one says something else."""
+    parts = []
+    for told in _ASPECTS:
+        own = list(told(document, reading))
+        others = [list(told(document, one)) for one in readings]
+        # A part that all readings share tells none from another.
+        parts += [part for part in own if not all(part in other for other in others)]
+    return ", ".join(dict.fromkeys(parts))
+
+
+def _stated(document: CaseFile, reading: Reading, block: str, key: str) -> object:
+    """A key of a block as a reading has it, else the file; None where a problem says it."""
+    own = getattr(reading, block)
+    if key in own.model_fields_set:
+        return getattr(own, key)
+    if any(key in getattr(problem, block).model_fields_set for problem in document.problems):
+        return None
+    return getattr(getattr(document, block), key)
+
+
+def _units(document: CaseFile, reading: Reading) -> Iterator[str]:
+    for quantity in CHOICES:
+        unit = _stated(document, reading, "units", quantity)
+        if isinstance(unit, str):
+            shown = unit.replace("deg", "°").replace("^2", "²").replace("^3", "³")
+            yield f"{_UNITS[quantity]} in {_SHOWN.get(unit, shown)}"
+
+
+def _waypoints(document: CaseFile, reading: Reading) -> Iterator[str]:
+    own = reading.waypoints
+    if own is not None:
+        yield f"way-points of {own.where}" if own.where else "other way-points"
+    if reading.joints is not None:
+        yield f"joint{'s' if len(reading.joints) > 1 else ''} {_and(reading.joints)} alone"
+    turned = [joint for joint, turns in reading.turns.items() if any(turns)]
+    if turned:
+        every = [turn for joint in turned for turn in reading.turns[joint]]
+        off = "taken off" if max(every) <= 0 else "added to"
+        yield f"whole turns {off} joint{'s' if len(turned) > 1 else ''} {_and(turned)}"
+
+
+def _limits(document: CaseFile, reading: Reading) -> Iterator[str]:
+    for key, name in _LIMITS.items():
+        if key in reading.limits.model_fields_set:
+            value = getattr(reading.limits, key)
+            several = isinstance(value, tuple)
+            where = reading.limits.where
+            of = f"of {where}" if where else "of its own"
+            yield f"no {name}" if value is None else f"{name} {of if several else value}"
+
+
+def _curve(document: CaseFile, reading: Reading) -> Iterator[str]:
+    block = reading.interpolant
+    if block is None:
+        # What a problem states, a reading that is silent leaves as it is.
+        own = any(problem.interpolant for problem in document.problems)
+        block = None if own else document.interpolant
+    if block is not None:
+        yield from _declared(block)
+
+
+def _declared(block: InterpolantBlock) -> Iterator[str]:
+    """A curve in words, as many as its block has keys."""
+    yield _FAMILIES.get(block.family, block.family)
+    if block.degree is not None:
+        yield f"degree {block.degree}"
+    if block.degrees is not None:
+        yield f"degrees {'-'.join(map(str, block.degrees))}"
+    if block.continuity is not None:
+        yield f"continuous up to derivative {block.continuity}"
+    named = ((_KNOTS, block.knots), (_PARAMETERS, block.parameters))
+    yield from (words[key] for words, key in named if key is not None)
+    if block.time is not None:
+        yield _TIME[block.time]
+    if block.time_ends is not None:
+        yield _TIME_ENDS[block.time_ends]
+    values = block.end_derivatives or ("0",) * len(block.orders)
+    if block.end_orders is not None or block.end_derivatives is not None:
+        for order, value in zip(block.orders, values, strict=True):
+            yield f"end {_DERIVATIVES.get(order, f'derivative {order}')} {value}"
+    if block.free:
+        yield f"{block.free} free coefficients"
+
+
+def _durations(document: CaseFile, reading: Reading) -> Iterator[str]:
+    unit = document.units.time or "s"
+    for key, least in (("lower", "at least"), ("upper", "at most")):
+        value = _stated(document, reading, "durations", key)
+        if value is None or isinstance(value, tuple):
+            if key in reading.durations.model_fields_set:
+                yield f"{key} bounds on the durations" if value else f"no {key} bound on durations"
+        elif key == "lower" and float(str(value)) == 0.0:
+            yield "durations only positive"
+        else:
+            yield f"durations {least} {value} {unit}"
+
+
+def _coupling(document: CaseFile, reading: Reading) -> Iterator[str]:
+    if reading.coupling is not None:
+        shared = reading.coupling is Coupling.SHARED
+        yield "durations shared by the joints" if shared else "each joint timed by itself"
+
+
+def _and(parts: Sequence[str]) -> str:
+    *most, last = parts or ("",)
+    return f"{', '.join(most)} and {last}" if most else last
+
+
+_ASPECTS: tuple[Callable[[CaseFile, Reading], Iterator[str]], ...] = (
+    _units,
+    _waypoints,
+    _limits,
+    _curve,
+    _durations,
+    _coupling,
+)
+"""What a reading may change, in the order in which a label tells it."""

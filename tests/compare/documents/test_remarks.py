@@ -1,0 +1,70 @@
+"""What stands beside a word: doubted numbers, what holds by construction, what claims no result."""
+
+from __future__ import annotations
+
+import pytest
+from trajgap.compare.documents import (
+    DOUBTED,
+    Caveat,
+    CaveatKind,
+    ClaimVerdict,
+    Confidence,
+    Judgement,
+    Scope,
+    built_remark,
+    nature_remark,
+    qualified,
+    tally,
+    worth_little,
+)
+from trajgap.nlp import Evidence
+from trajgap.problem.cases import Nature
+
+S, R, N = ClaimVerdict.SUPPORTED, ClaimVerdict.REFUTED, ClaimVerdict.NOT_CHECKABLE
+DOUBT = Caveat(CaveatKind.DOUBTED, f"{DOUBTED}: two tables are alike.")
+BUILT = Caveat(CaveatKind.BUILT, built_remark())
+
+
+def judged(verdict: ClaimVerdict, *caveats: Caveat) -> Judgement:
+    decided = {} if verdict is N else {"confidence": Confidence.PROVEN}
+    return Judgement(
+        claim="c",
+        verdict=verdict,
+        scope=Scope.ALL,
+        evidence=Evidence.NONE,
+        why="",
+        caveats=caveats,
+        readings={},
+        **decided,
+    )
+
+
+@pytest.mark.parametrize(
+    ("verdict", "caveats", "wanted"),
+    [
+        (S, (), "supported"),
+        (S, (DOUBT,), "supported, but on doubted numbers"),
+        (S, (BUILT,), "supported, by construction"),
+        # What is refuted is so, whatever the numbers are worth.
+        (R, (DOUBT,), "refuted"),
+        (N, (nature_remark(Nature.DEFINITION),), "not checkable, a definition"),
+        (N, (nature_remark(Nature.IDENTITY),), "not checkable, a mathematical identity"),
+        (N, (nature_remark(Nature.AIM),), "not checkable, an aim"),
+        (N, (nature_remark(Nature.JUDGEMENT),), "not checkable, a judgement"),
+        (S, ("on a curve whose velocity jumps",), "supported"),
+    ],
+)
+def test_a_word_has_what_it_is_worth_beside_it(verdict, caveats, wanted) -> None:
+    assert qualified(verdict, caveats) == wanted
+
+
+def test_what_holds_by_construction_is_counted_as_no_evidence() -> None:
+    aim = Caveat(CaveatKind.STATED, nature_remark(Nature.AIM))
+    every = [judged(S), judged(S, BUILT), judged(S, DOUBT), judged(S, DOUBT), judged(N)]
+    every.append(judged(N, aim))
+    assert tally(every) == (
+        "Verdicts on 6 claims: 3 are proven under a reading, 1 holds by construction, 1 is open, "
+        "1 claims no result."
+    )
+    assert worth_little(every) == "of these 1 by construction, 2 on doubted numbers"
+    assert worth_little([judged(S), judged(R, DOUBT)]) == ""

@@ -1,0 +1,100 @@
+"""Reasons of a verdict: each once, with its readings in words, and nothing lost."""
+
+from __future__ import annotations
+
+import pytest
+from trajgap.compare.documents import Named, Said, listed, reasons, told, under
+
+READINGS = tuple("abcdef")
+LABELS = {"a": "first", "b": "second", "c": "third", "d": "fourth", "e": "fifth", "f": "sixth"}
+NAMED = Named(LABELS, {}, "c")
+
+
+def said(readings: str, message: str, verdict: str = "refuted", rule: str = "TG201") -> list[Said]:
+    return [Said(verdict, message, rule, one) for one in readings]
+
+
+@pytest.mark.parametrize(
+    ("readings", "wanted"),
+    [
+        ("a", "under the reading “first”"),
+        ("ab", "under the readings “first” and “second”"),
+        ("abc", "under 3 of 6 readings"),
+        ("abcd", "under 4 of 6 readings (not under “fifth” and “sixth”)"),
+        ("abcde", "under 5 of 6 readings (not under “sixth”)"),
+        ("abcdef", "under every reading"),
+    ],
+)
+def test_readings_are_named_where_few_hold_or_few_are_left(readings: str, wanted: str) -> None:
+    assert under(tuple(readings), READINGS, NAMED) == wanted
+
+
+def test_of_two_readings_both_are_called_both() -> None:
+    assert under(("a", "b"), ("a", "b"), NAMED) == "under both readings"
+
+
+def test_an_implausible_reading_is_named_as_one_with_its_reason_where_asked() -> None:
+    named = Named(LABELS, {"b": "57 times too slow"}, "a")
+    assert under(("b",), READINGS, named) == "under the implausible reading “second”"
+    assert under(("b",), READINGS, named, why=True) == (
+        "under the implausible reading “second” (57 times too slow)"
+    )
+
+
+def test_reasons_that_differ_in_numbers_alone_are_one_with_those_of_the_default() -> None:
+    found = reasons(
+        [
+            *said("a", "The velocity reaches 7.5 rad/s, limit 3 rad/s."),
+            *said("bc", "The velocity reaches 430 °/s, limit 172 °/s."),
+            *said("d", "The velocity jumps."),
+        ],
+        READINGS,
+        NAMED,
+    )
+    assert [told(one, READINGS, NAMED) for one in found] == [
+        "Under 3 of 6 readings, here with the numbers of “third”: The velocity reaches 430 °/s, "
+        "limit 172 °/s.",
+        "Under the reading “fourth”: The velocity jumps.",
+    ]
+    # To the digit, with every reading, nothing is left out.
+    assert listed(found[0], READINGS, NAMED, word=True) == [
+        "Refuted under the readings “third” and “second”: The velocity reaches 430 °/s, "
+        "limit 172 °/s.",
+        "Refuted under the reading “first”: The velocity reaches 7.5 rad/s, limit 3 rad/s.",
+    ]
+
+
+def test_two_numbers_of_one_reading_stay_two_reasons() -> None:
+    found = reasons([*said("a", "Row 1: 3 s."), *said("a", "Row 2: 4 s.")], READINGS, NAMED)
+    assert [one.message for one in found] == ["Row 1: 3 s.", "Row 2: 4 s."]
+
+
+def test_the_strongest_word_stands_first_then_the_default_and_implausible_ones_last() -> None:
+    named = Named(LABELS, {"a": "far"}, "c")
+    found = reasons(
+        [
+            *said("a", "far away."),
+            *said("b", "near."),
+            *said("c", "default."),
+            *said("d", "holds.", "supported"),
+            *said("e", "says nothing.", "not checkable"),
+            *said("f", "contradicts.", "inconsistent"),
+        ],
+        READINGS,
+        named,
+    )
+    messages = ["default.", "near.", "far away.", "contradicts.", "holds."]
+    assert [one.message for one in found] == messages
+
+
+def test_what_holds_under_every_reading_has_none_before_it_unless_words_differ() -> None:
+    (one,) = reasons([Said("refuted", "always.", "TG101")], READINGS, NAMED)
+    assert told(one, READINGS, NAMED) == "always."
+    assert told(one, READINGS, NAMED, word=True) == "Refuted under every reading: always."
+
+
+def test_rules_that_say_the_same_are_told_together() -> None:
+    (one,) = reasons(
+        [*said("a", "same.", rule="TG201"), *said("b", "same.", rule="TG302")], READINGS, NAMED
+    )
+    assert (one.rules, one.readings) == (("TG201", "TG302"), ("a", "b"))

@@ -1,0 +1,83 @@
+"""What a reading means in words: its own label, or what it changes and the others do not."""
+
+from __future__ import annotations
+
+import pytest
+from support.base_case import BASE
+from trajgap.problem.cases import parse_case, published_ids
+from trajgap.problem.cases.load import load_case
+from trajgap.problem.errors import CaseError
+
+
+def labels(text: str) -> dict[str, str]:
+    return parse_case(text, "base.toml").labels
+
+
+def with_label(**named: str) -> str:
+    text = BASE
+    for reading, label in named.items():
+        text = text.replace(f'id = "{reading}"\n', f'id = "{reading}"\nlabel = "{label}"\n', 1)
+    return text
+
+
+def test_without_a_label_a_reading_is_called_by_what_it_changes() -> None:
+    assert labels(BASE) == {
+        "plain": "angles in degrees, durations at least 0.1 s",
+        "rad": "angles in radians, durations only positive",
+    }
+
+
+def test_a_label_of_its_own_stands_and_the_other_is_still_made() -> None:
+    found = labels(with_label(plain="as the header says"))
+    assert found["plain"] == "as the header says"
+    assert found["rad"] == "angles in radians, durations only positive"
+
+
+def test_two_readings_cannot_have_one_label() -> None:
+    match = r"readings\[1\]\.label: 'alike' names another reading; say what differs"
+    with pytest.raises(CaseError, match=match):
+        labels(with_label(plain="alike", rad="alike"))
+
+
+@pytest.mark.parametrize("label", ["", " padded", "x" * 81, r"two\nlines"])
+def test_a_label_is_a_few_words_on_one_line(label: str) -> None:
+    with pytest.raises(CaseError, match="label"):
+        labels(with_label(plain=label))
+
+
+@pytest.mark.parametrize(
+    ("changes", "wanted"),
+    [
+        ('coupling = "shared"', "durations shared by the joints"),
+        ('interpolant = { family = "quintic-spline" }', "quintic spline"),
+        ('interpolant = { family = "rest-to-rest", degree = 5 }', "degree 5"),
+        ("durations = { upper = 3 }", "durations at most 3 s"),
+        ("limits = { velocity = 7 }", "velocity limits 7"),
+        ('joints = ["b"]', "joint b alone"),
+        ('turns = { "b" = [-1, 0, 0, 0] }', "whole turns taken off joint b"),
+        ('turns = { "b" = [1, 0, 0, 0] }', "whole turns added to joint b"),
+    ],
+)
+def test_whatever_a_reading_changes_has_words(changes: str, wanted: str) -> None:
+    # The labels are made before any curve is built, so that each change is named by itself.
+    base = BASE.replace('id = "rad"\n', f'id = "rad"\n{changes}\n', 1)
+    head, at, tail = base.partition('[[readings]]\nid = "rad"')
+    block, sep, rest = tail.partition("\n\n")
+    lines = block.splitlines()
+    kept, names = [], set()
+    for line in lines:
+        name = line.partition(" = ")[0]
+        if name not in names:
+            kept.append(line)
+            names.add(name)
+    found = labels(head + at + "\n".join(kept) + sep + rest)
+    assert wanted in found["rad"].split(", ")
+    assert wanted not in found["plain"]
+
+
+@pytest.mark.parametrize("case_id", published_ids())
+def test_shipped_readings_have_distinct_words_and_no_ids(case_id: str) -> None:
+    case = load_case(case_id)
+    assert list(case.labels) == [reading.id for reading in case.readings]
+    assert len(set(case.labels.values())) == len(case.readings)
+    assert not [label for name, label in case.labels.items() if name in label]
