@@ -25,6 +25,7 @@ from .options import (
     AsJson,
     Coupled,
     Crate,
+    NoCache,
     Out,
     ProblemId,
     ProofWorkers,
@@ -154,6 +155,7 @@ def solve(
     rate: Rate = None,
     form: Form = None,
     retimed: Retimed = False,
+    no_cache: NoCache = False,
     as_json: AsJson = False,
     out: Out = None,
 ) -> int:
@@ -203,6 +205,7 @@ def solve(
         workers or os.cpu_count() or 1,
         as_json,
         out,
+        not no_cache,
     )
 
 
@@ -267,6 +270,7 @@ def audit(
         bool,
         typer.Option("--draft", help="Your own draft: say what to change before you submit it."),
     ] = False,
+    no_cache: NoCache = False,
     strict: Annotated[
         bool, typer.Option("--strict", help="Exit with 1 if a finding has severity error.")
     ] = False,
@@ -299,6 +303,7 @@ def audit(
         as_json,
         out,
         crate,
+        not no_cache,
     )
 
 

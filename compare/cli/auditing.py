@@ -29,6 +29,7 @@ from ..documents import (
 )
 from .certifying import read_certificates
 from .input import read_cases
+from .kept import kept_proofs
 from .output import check_folder, emit, new_output, progress, say
 from .result_tables import seconds
 from .table import Columns, line
@@ -50,6 +51,7 @@ def audit_cases(
     as_json: bool,
     out: Path | None,
     crate: Path | None,
+    cache: bool = True,
 ) -> int:
     """Audit cases; all of them are read before anything is computed."""
     chosen = read_cases(sources or published_ids())
@@ -78,6 +80,7 @@ def audit_cases(
             certify_seconds=certify_seconds,
             certificates=given,
             draft=draft,
+            cache=cache,
         )
         if folder is not None:
             from ..pages import write_report
@@ -92,6 +95,8 @@ def audit_cases(
     emit(report.document, audited, as_json)
     if folder is not None and not as_json:
         say(f"pages: {folder / 'index.html'}\n")
+    if report.kept and not as_json:
+        say(kept_proofs(report.kept))
     return 1 if strict and report.errors else 0
 
 

@@ -67,6 +67,14 @@ ProofWorkers = Annotated[
         show_default="all cores",
     ),
 ]
+NoCache = Annotated[
+    bool,
+    typer.Option(
+        "--no-cache",
+        help="Neither keep proofs for later runs nor use those that earlier ones kept; each of "
+        "these is proved again before it counts.",
+    ),
+]
 Crate = Annotated[
     Path | None,
     typer.Option(

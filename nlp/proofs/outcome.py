@@ -147,6 +147,8 @@ class Certified:
         What `trajgap.verify` says of the certificate; None if nothing is proved.
     left_out : str or None
         What the time limit was too short for, in words, where that is all that is known.
+    kept : bool
+        Whether the proof is that of an earlier run, proved again in this one.
     """
 
     problem: ExactProblem
@@ -164,6 +166,7 @@ class Certified:
     speeds: tuple[tuple[Fraction, ...], ...] | None = None
     verdict: CertificateVerdict | None = None
     left_out: str | None = None
+    kept: bool = False
 
     @property
     def gap(self) -> float:
