@@ -250,7 +250,7 @@ def audit(
     problem: ProblemId = None,
     reading: ReadingId = None,
     seeds: Annotated[int, typer.Option(min=2, max=MOST, help="Seeds of each replay.")] = 100,
-    workers: Workers = 1,
+    workers: Workers = None,
     certify_seconds: Annotated[
         float,
         typer.Option(

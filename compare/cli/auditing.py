@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
@@ -34,6 +35,8 @@ from .output import check_folder, emit, new_output, progress, say
 from .result_tables import seconds
 from .table import Columns, line
 
+FEW_SEEDS = 20
+"""Seeds below which one process is done before others have started."""
 AUDIT_FOLDER = Path("trajgap-audit")
 """Where the pages go, unless the command line says otherwise."""
 
@@ -43,7 +46,7 @@ def audit_cases(
     problem: str | None,
     reading: str | None,
     seeds: int,
-    workers: int,
+    workers: int | None,
     certify_seconds: float,
     certificates: Path | None,
     draft: bool,
@@ -73,7 +76,7 @@ def audit_cases(
         report = audit(
             chosen,
             seeds=seeds,
-            workers=workers,
+            workers=workers or (1 if seeds < FEW_SEEDS else os.cpu_count() or 1),
             problem=problem,
             reading=reading,
             progress=step,

@@ -48,12 +48,13 @@ Coupled = Annotated[
     ),
 ]
 Workers = Annotated[
-    int,
+    int | None,
     typer.Option(
         min=1,
         max=MOST,
         help="Processes for the replays; the result does not depend on it. Starting one takes "
         "longer than a few dozen short replays.",
+        show_default="all cores; 1 below 20 seeds",
     ),
 ]
 ProofWorkers = Annotated[
