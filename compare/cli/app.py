@@ -35,6 +35,7 @@ from .options import (
 )
 from .study_command import study
 from .suite_app import suite_app
+from .threads import one_thread
 
 # Whatever computes is imported inside the commands, so that --help answers at once.
 # The commands of this program.
@@ -355,6 +356,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         elif isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")
     if arguments is None:
+        one_thread()
         catch_interrupts()
     try:
         code = _run(sys.argv[1:] if arguments is None else arguments)

@@ -83,6 +83,24 @@ def test_each_command_explains_itself(run: Run, command: str) -> None:
         assert option in page, option
 
 
+@pytest.mark.parametrize(
+    ("given", "wanted"),
+    [({}, "1"), ({"OMP_NUM_THREADS": "3"}, None), ({"OPENBLAS_NUM_THREADS": "2"}, "2")],
+)
+def test_linear_algebra_has_one_thread_unless_it_is_told(
+    given: dict[str, str], wanted: str | None
+) -> None:
+    program_ = (
+        "import os, sys; from trajgap.compare.cli import main; sys.argv[1:] = ['--version']\n"
+        "main(); print(os.environ.get('OPENBLAS_NUM_THREADS'))"
+    )
+    plain = {k: v for k, v in os.environ.items() if not k.endswith("_THREADS")}
+    done = subprocess.run(
+        [sys.executable, "-c", program_], capture_output=True, text=True, env=plain | given
+    )
+    assert done.stdout.splitlines()[-1] == str(wanted)
+
+
 def test_every_rule_is_explained_with_an_example(run: Run) -> None:
     document = strict(run("explain", "--json")[1])
     assert_valid(document, "explain")
