@@ -1,6 +1,7 @@
 """How all tests are run: the same examples every time, the whole suite on several cores."""
 
 import gc
+import os
 import signal
 from functools import cache
 from pathlib import Path
@@ -18,6 +19,9 @@ pytest.register_assert_rewrite("support")
 # No deadline: the first example may compile.
 settings.register_profile("trajgap", deadline=None, derandomize=True)
 settings.load_profile("trajgap")
+
+# No test finds what another one, or the user, has proved before; programs that tests start neither.
+os.environ["TRAJGAP_CACHE"] = ""
 
 # Programs that tests start and interrupt inherit this; a run in the background ignores SIGINT.
 signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -156,6 +156,11 @@ class AuditReport:
         return sum(one.errors for one in self.cases)
 
     @property
+    def kept(self) -> int:
+        """Proofs of earlier runs that were proved again and count here."""
+        return sum(one.study.intervals.kept for one in self.cases)
+
+    @property
     def document(self) -> AuditDocument:
         """What `trajgap audit` answers."""
         return AuditDocument(cases=tuple(one.document for one in self.cases))
@@ -175,6 +180,7 @@ def audit(
     certify_seconds: float = CERTIFY_SECONDS,
     certificates: Sequence[dict[str, Any]] = (),
     draft: bool = False,
+    cache: bool | Path = False,
 ) -> AuditReport:
     """Audit published claims against the exact optimum of the very problems they state.
 
@@ -197,6 +203,9 @@ def audit(
         Certificates beside the shipped ones; each is proved again before it counts.
     draft : bool
         Whether to say, for each case, what its author can change before submitting.
+    cache : bool or Path
+        Whether proofs that the audit finds are kept for later ones, and those that were kept are
+        used once they are proved again: in the user's cache folder, or in the folder given.
 
     Returns
     -------
@@ -221,6 +230,7 @@ def audit(
             progress=progress,
             certify_seconds=certify_seconds,
             certificates=certificates,
+            cache=cache,
         )
         for one in loaded
     ]

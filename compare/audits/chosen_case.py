@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from copy import copy
+from pathlib import Path
 from typing import Any, Self, TypeVar, cast
 
 from ...problem import Case, Problem, TrajgapError
@@ -36,6 +37,8 @@ class ChosenCase:
         For certifying optima that no certificate proves; 0 turns it off.
     certificates : sequence of dict
         Certificates beside the shipped ones; each is proved again before it counts.
+    cache : bool or Path
+        Whether proofs are kept for later audits, as `trajgap.nlp.certify` says.
     """
 
     def __init__(
@@ -48,6 +51,7 @@ class ChosenCase:
         progress: Callable[[str], None] | None = None,
         certify_seconds: float = CERTIFY_SECONDS,
         certificates: Sequence[dict[str, Any]] = (),
+        cache: bool | Path = False,
     ) -> None:
         if seeds < 2:
             raise TrajgapError(f"seeds: {seeds} show no spread; give 2 or more, 30 is customary")
@@ -65,7 +69,7 @@ class ChosenCase:
         """What the study was kept to; None where it was not."""
         self._progress = progress or (lambda _: None)
         self._kept: dict[tuple[Any, ...], Any] = {}
-        self.intervals = Intervals(certificates, certify_seconds, self._progress)
+        self.intervals = Intervals(certificates, certify_seconds, self._progress, cache)
 
     def once(self, key: tuple[Any, ...], compute: Callable[[], T]) -> T:
         """What was kept under a key, computed where nothing is; errors are kept too."""

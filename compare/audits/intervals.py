@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 from ...nlp import ExactProblem, Outcome, ProvedInterval, certificate, certify, proved
@@ -34,15 +35,24 @@ class Intervals:
         For certifying what no certificate proves; 0 turns it off.
     progress : callable
         Called with a short text before a search.
+    cache : bool or Path
+        As `trajgap.nlp.certify` takes it.
     """
 
     def __init__(
-        self, documents: Sequence[dict[str, Any]], seconds: float, progress: Callable[[str], None]
+        self,
+        documents: Sequence[dict[str, Any]],
+        seconds: float,
+        progress: Callable[[str], None],
+        cache: bool | Path = False,
     ) -> None:
         self._documents = tuple(documents)
         self._made: list[dict[str, Any]] = []
         self._left = seconds
         self._progress = progress
+        self._cache = cache
+        self.kept = 0
+        """Proofs of earlier runs that were proved again and count here."""
         self._found: dict[ExactProblem, ProvedInterval | None] = {}
         self.left_out: list[str] = []
         """Problems that are covered and were not certified, and totals that were not excluded for
@@ -99,7 +109,7 @@ class Intervals:
         self._progress(f"certifying {problem.name}, at most {seconds:.0f} s")
         began = time.monotonic()
         try:
-            answer = certify(problem, gap=_GAP, seconds=seconds)
+            answer = certify(problem, gap=_GAP, seconds=seconds, cache=self._cache)
         except TrajgapError:
             return None  # nothing limits its total
         finally:
@@ -109,6 +119,7 @@ class Intervals:
             found = interval_of(document, problem, verdict=answer.verdict)
             if found is not None:
                 self._made.append(document)
+                self.kept += answer.kept
         if found is None:
             self.left_out.append(f"the optimum of {problem.name}, within {seconds:.0f} s")
         return found

@@ -25,6 +25,7 @@ from .options import (
     AsJson,
     Coupled,
     Crate,
+    NoCache,
     Out,
     ProblemId,
     ProofWorkers,
@@ -34,6 +35,7 @@ from .options import (
 )
 from .study_command import study
 from .suite_app import suite_app
+from .threads import one_thread
 
 # Whatever computes is imported inside the commands, so that --help answers at once.
 # The commands of this program.
@@ -154,6 +156,7 @@ def solve(
     rate: Rate = None,
     form: Form = None,
     retimed: Retimed = False,
+    no_cache: NoCache = False,
     as_json: AsJson = False,
     out: Out = None,
 ) -> int:
@@ -203,6 +206,7 @@ def solve(
         workers or os.cpu_count() or 1,
         as_json,
         out,
+        not no_cache,
     )
 
 
@@ -247,7 +251,7 @@ def audit(
     problem: ProblemId = None,
     reading: ReadingId = None,
     seeds: Annotated[int, typer.Option(min=2, max=MOST, help="Seeds of each replay.")] = 100,
-    workers: Workers = 1,
+    workers: Workers = None,
     certify_seconds: Annotated[
         float,
         typer.Option(
@@ -267,6 +271,7 @@ def audit(
         bool,
         typer.Option("--draft", help="Your own draft: say what to change before you submit it."),
     ] = False,
+    no_cache: NoCache = False,
     strict: Annotated[
         bool, typer.Option("--strict", help="Exit with 1 if a finding has severity error.")
     ] = False,
@@ -299,6 +304,7 @@ def audit(
         as_json,
         out,
         crate,
+        not no_cache,
     )
 
 
@@ -350,6 +356,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         elif isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")
     if arguments is None:
+        one_thread()
         catch_interrupts()
     try:
         code = _run(sys.argv[1:] if arguments is None else arguments)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -31,10 +32,13 @@ from ..documents import (
 )
 from .certifying import read_certificates
 from .input import read_cases
+from .kept import kept_proofs
 from .output import check_folder, emit, new_output, progress, say
 from .result_tables import seconds
 from .table import Columns, line
 
+FEW_SEEDS = 20
+"""Seeds below which one process is done before others have started."""
 AUDIT_FOLDER = Path("trajgap-audit")
 """Where the pages go, unless the command line says otherwise."""
 
@@ -44,7 +48,7 @@ def audit_cases(
     problem: str | None,
     reading: str | None,
     seeds: int,
-    workers: int,
+    workers: int | None,
     certify_seconds: float,
     certificates: Path | None,
     draft: bool,
@@ -52,6 +56,7 @@ def audit_cases(
     as_json: bool,
     out: Path | None,
     crate: Path | None,
+    cache: bool = True,
 ) -> int:
     """Audit cases; all of them are read before anything is computed."""
     chosen = read_cases(sources or published_ids())
@@ -73,13 +78,14 @@ def audit_cases(
         report = audit(
             chosen,
             seeds=seeds,
-            workers=workers,
+            workers=workers or (1 if seeds < FEW_SEEDS else os.cpu_count() or 1),
             problem=problem,
             reading=reading,
             progress=step,
             certify_seconds=certify_seconds,
             certificates=given,
             draft=draft,
+            cache=cache,
         )
         if folder is not None:
             from ..pages import write_report
@@ -94,6 +100,8 @@ def audit_cases(
     emit(report.document, audited, as_json)
     if folder is not None and not as_json:
         say(f"pages: {folder / 'index.html'}\n")
+    if report.kept and not as_json:
+        say(kept_proofs(report.kept))
     return 1 if strict and report.errors else 0
 
 

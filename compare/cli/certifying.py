@@ -54,6 +54,7 @@ from ..documents import (
 )
 from . import proof_tables as cli_proofs
 from .input import Posed, naming, read_case, select
+from .kept import kept_proofs
 from .output import (
     Steps,
     check_certificates,
@@ -114,6 +115,7 @@ def certify_case(
     workers: int,
     as_json: bool,
     out: Path | None,
+    cache: bool = True,
 ) -> int:
     """Prove an interval of the optimum of each selected problem and reading."""
     case = read_case(source)
@@ -127,7 +129,7 @@ def certify_case(
         check_certificates(folder)
         _check_files(folder, asked)
     results: list[CertifiedResult] = []
-    unsettled, stop = False, _Stop()
+    unsettled, kept, stop = False, 0, _Stop()
     with new_output(out) as write:
         with progress("certify", len(asked)) as step, naming(case.file), stop.listening():
             for one in asked:
@@ -146,8 +148,10 @@ def certify_case(
                         resume=states[one.name].document if one.name in states else None,
                         report=stop.reporting(one.name, step),
                         workers=workers,
+                        cache=cache,
                     )
                 )
+                kept += not isinstance(found, str) and found.kept
                 unsettled |= isinstance(found, str) or found.outcome not in _SETTLED
                 files = _written(folder, one, found)
                 ids = (case.id, one.posed.problem_id, one.posed.reading_id, one.asked.joint)
@@ -157,6 +161,8 @@ def certify_case(
     emit(document, cli_proofs.certified, as_json)
     if folder is not None and not as_json and any(r.certificate for r in results):
         say(f"certificates: {folder}\n")
+    if kept and not as_json:
+        say(kept_proofs(kept))
     if stop.asked:
         raise KeyboardInterrupt
     return NOT_PROVED if unsettled else 0

@@ -48,12 +48,13 @@ Coupled = Annotated[
     ),
 ]
 Workers = Annotated[
-    int,
+    int | None,
     typer.Option(
         min=1,
         max=MOST,
         help="Processes for the replays; the result does not depend on it. Starting one takes "
         "longer than a few dozen short replays.",
+        show_default="all cores; 1 below 20 seeds",
     ),
 ]
 ProofWorkers = Annotated[
@@ -65,6 +66,14 @@ ProofWorkers = Annotated[
         help="With --certify: threads for the proof of a C4 quintic spline; the result does not "
         "depend on it.",
         show_default="all cores",
+    ),
+]
+NoCache = Annotated[
+    bool,
+    typer.Option(
+        "--no-cache",
+        help="Neither keep proofs for later runs nor use those that earlier ones kept; each of "
+        "these is proved again before it counts.",
     ),
 ]
 Crate = Annotated[

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...problem.curves import compiler, roots_in_unit
+from ...problem.curves import by_elements, compiler, roots_in_unit
 
 NEAR = 0.3
 """Extrema below this share of their limit are left out: no step of a trust region reaches it."""
@@ -23,6 +23,7 @@ compiled = compiler(*(Path(__file__).with_name(name) for name in KERNELS), ROOTS
 """Compiles a function of one of these files."""
 
 
+@by_elements("inverse", "x", "slopes")
 @compiled
 def curve_at(  # type: ignore[no-untyped-def]
     z, values, kinds, breaks, orders, degrees, column, perm, inverse, x, slopes, sloped, a, right
@@ -134,6 +135,7 @@ def curve_at(  # type: ignore[no-untyped-def]
     return True
 
 
+@by_elements("excess", "gradient", "place", "s_of")
 @compiled
 def rows_at(  # type: ignore[no-untyped-def]
     z, degrees, smooth, inverse_limits, ranges, span, perm, x, slopes, sloped,
@@ -205,6 +207,7 @@ def rows_at(  # type: ignore[no-untyped-def]
     return count, worst, outside
 
 
+@by_elements("hessian")
 @compiled
 def add_curvature(  # type: ignore[no-untyped-def]
     z, j, r, k, side, inside, s, weight, values, kinds, breaks, orders, degrees, column, perm,

@@ -11,6 +11,7 @@ import math
 
 import numpy as np
 
+from ...problem.curves import by_elements
 from .newton_curve import NEAR, add_curvature, compiled, curve_at, rows_at
 from .newton_program import filled, inverted, least_step
 
@@ -28,6 +29,7 @@ CONVERGED, STALLED, ABANDONED = 1, 0, 2
 """How a descent ends: at a least total, anywhere else, or on its way to a known end."""
 
 
+@by_elements("slope")
 @compiled
 def _shares(z, slope):  # type: ignore[no-untyped-def]
     """Log of the total, and each duration's share of it."""
@@ -42,6 +44,7 @@ def _shares(z, slope):  # type: ignore[no-untyped-def]
     return top + math.log(total)
 
 
+@by_elements()
 @compiled
 def _known(z, length, ends, found, count):  # type: ignore[no-untyped-def]
     """Whether an earlier descent has converged near a place, with the same total."""

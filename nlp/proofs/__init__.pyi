@@ -19,6 +19,7 @@ from .evidence import (
     with_interval,
 )
 from .exact import ExactProblem, decimal, exact_problem, printed_problem
+from .kept import cache_folder
 from .outcome import Certified, Outcome, Progress
 from .proven_optimum import solve
 from .state import StateFile, read_state, state_document
@@ -30,6 +31,7 @@ __all__ = [
     "Progress",
     "ProvedInterval",
     "StateFile",
+    "cache_folder",
     "certificate",
     "certificate_text",
     "certify",

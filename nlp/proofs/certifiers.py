@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import functools
+import time
 from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import replace
-from functools import cache
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 from ...problem import Problem, TrajgapError
@@ -14,6 +16,7 @@ from ...verify import Subject
 from .certifier import Certifier
 from .exact import ExactProblem, exact_problem
 from .judged import SPARE, Deadline, judged, unstated
+from .kept import KeptProofs, cache_folder
 from .outcome import GAP, Certified, Progress, Request
 from .session import Session
 from .state import resumed
@@ -31,7 +34,7 @@ CERTIFIERS: tuple[str, ...] = (
 A rest-to-rest cubic is a C2 cubic spline too: closed forms stand in front."""
 
 
-@cache
+@functools.cache
 def certifiers(subject: Subject) -> tuple[Certifier, ...]:
     """The kinds of proof that speak about a subject, the preferred one first."""
     named = (entry.rpartition(".") for entry in CERTIFIERS)
@@ -80,6 +83,7 @@ def certify(
     report: Callable[[Progress], None] | None = None,
     workers: int = 1,
     executor: Executor | None = None,
+    cache: bool | Path = False,
 ) -> Certified:
     """Prove an interval of the least total of a problem with shared durations.
 
@@ -113,6 +117,11 @@ def certify(
     executor : concurrent.futures.Executor, optional
         Where parts run, such as processes or a Dask cluster's `get_executor()`; without one, in
         threads of this process, since compiled searches do not hold the interpreter's lock.
+    cache : bool or Path
+        Whether a proof that settles the question is kept for later runs, and one that an earlier
+        run kept is used: in the user's cache folder, or in the folder given. Nothing that is kept
+        is trusted: it counts if `trajgap.verify` proves it again, to this question and this gap.
+        A run that goes on from a state does neither.
 
     Returns
     -------
@@ -133,7 +142,12 @@ def certify(
         raise TrajgapError("certify: workers must be 1 or more")
     if not 0 <= gap < 1 or not seconds >= 0:
         raise TrajgapError("certify: the gap must lie in [0, 1), the seconds must be 0 or more")
-    deadline = Deadline.after(seconds)
+    began, deadline = time.perf_counter(), Deadline.after(seconds)
+    where = None if resume is not None or cache is False else cache
+    kept = KeptProofs(cache_folder() if where is True else where)
+    known = kept.taken(exact, subject, gap, seed, deadline)
+    if known is not None:
+        return replace(known, seconds=time.perf_counter() - began)
     certifier = _certifier(exact, subject)
     assert certifier is not None
     taken_up, before = None, None
@@ -143,4 +157,6 @@ def certify(
         before = Session(exact, request).result(False, subject)
         before = replace(before, verdict=taken_up.verdict)
     request = Request(gap, deadline.left, seed, taken_up, report, workers, executor)
-    return judged(certifier.run(exact, request), deadline, before)
+    found = judged(certifier.run(exact, request), deadline, before)
+    kept.keep(found, gap, seed)
+    return found

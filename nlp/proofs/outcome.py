@@ -150,6 +150,8 @@ class Certified:
     widened : bool
         Whether the bound was proved within the larger size of limits whose sides differ: it holds,
         and may stay below the optimum whatever the time.
+    kept : bool
+        Whether the proof is that of an earlier run, proved again in this one.
     """
 
     problem: ExactProblem
@@ -168,6 +170,7 @@ class Certified:
     verdict: CertificateVerdict | None = None
     left_out: str | None = None
     widened: bool = False
+    kept: bool = False
 
     @property
     def gap(self) -> float:

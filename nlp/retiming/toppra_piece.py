@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -14,6 +15,7 @@ from .toppra_undrawn import undrawn
 
 with undrawn():
     from toppra.algorithm import TOPPRA
+    from toppra.constants import SMALL, TINY
     from toppra.constraint import (
         DiscretizationType,
         JointAccelerationConstraint,
@@ -85,7 +87,56 @@ class _Solver(TOPPRA):  # type: ignore[misc]
     """
 
     def compute_controllable_sets(self, sdmin: float, sdmax: float) -> Array:
-        return np.asarray(super().compute_controllable_sets(0.0, sdmax))
+        """The programs of toppra's own loop, in its order, since each begins where one ended.
+
+        Floats in place of its small arrays, which cost more than the programs.
+        """
+        solver, cells = self.solver_wrapper, self._N
+        solve, fastest = solver.solve_stagewise_optim, np.zeros(solver.get_no_vars())
+        fastest[:2] = 1e-9, -1.0
+        slowest = -fastest
+        sets = np.zeros((cells + 1, 2))
+        low, high = 0.0, float(sdmax) ** 2
+        sets[cells] = low, high
+        solver.setup_solver()
+        for i in range(cells - 1, -1, -1):
+            top = float(solve(i, None, fastest, np.nan, np.nan, low, high)[1])
+            low = float(solve(i, None, slowest, np.nan, np.nan, low, high)[1])
+            low, high = 0.0 if low < 0 else low, top
+            sets[i] = low, high
+            if math.isnan(low) or math.isnan(high):
+                return sets
+        solver.close_solver()
+        return sets
+
+    def fastest_speeds(self, start: float, end: float) -> Array | None:
+        """Path speeds at the points of the grid, as `compute_parameterization` finds them.
+
+        None where there is no parametrisation.
+        """
+        sets = self.compute_controllable_sets(end, end)
+        now = start**2
+        if np.isnan(sets).any() or not sets[0, 0] - SMALL <= now <= sets[0, 1] + SMALL:
+            return None
+        solver = self.solver_wrapper
+        solve, aim = solver.solve_stagewise_optim, np.zeros(solver.get_no_vars())
+        aim[1] = -1.0
+        squares = [now]
+        solver.setup_solver()
+        rest = zip(solver.get_deltas().tolist(), sets[1:].tolist(), strict=True)
+        for i, (step, (low, high)) in enumerate(rest):
+            aim[0] = -2 * step
+            change = float(solve(i, None, aim, now, now, low, high)[0])
+            if math.isnan(change):
+                # toppra tries again from a little slower; it does so rarely.
+                solver.close_solver()
+                speeds = self.compute_parameterization(start, end)[1]
+                return None if speeds is None or np.isnan(speeds).any() else np.asarray(speeds)
+            new = now + 2 * step * change
+            now = min(high, max(low, max(new - TINY, 0.9999 * new)))
+            squares.append(now)
+        solver.close_solver()
+        return np.sqrt(squares)
 
 
 @contextmanager
@@ -190,10 +241,11 @@ def _attempt(
             if reached < slower * start:
                 return None
             start = min(start, reached)
-        answer = solver.compute_trajectory(start, end)
-        if answer is None or not np.isfinite(answer.duration):
+        speeds = solver.fastest_speeds(start, end)
+        if speeds is None:
             return None
-        if solver.problem_data.sd_vec[-1] < slower * end:
+        # At constant acceleration a cell takes its length by the mean speed; added one by one.
+        duration = float(np.cumsum(2 * np.diff(grid) / (speeds[:-1] + speeds[1:]))[-1])
+        if not np.isfinite(duration) or speeds[-1] < slower * end:
             return None
-        speeds = np.asarray(solver.problem_data.sd_vec, dtype=np.float64)
-    return float(answer.duration) * time_unit, speeds / (time_unit * scale)
+    return duration * time_unit, speeds / (time_unit * scale)

@@ -3,7 +3,7 @@ from .clamped import ClampedBSpline
 from .clamped_counts import ClampedReading, Count, clamped_readings
 from .clamped_fit import clamped_control_points
 from .clamped_knots import Knots, Parameters, average_matrix, fractions_of
-from .compilation import Deferred, at_hand, compiler, interpreted
+from .compilation import Deferred, at_hand, by_elements, compiler, interpreted
 from .condition import Condition, ConditionKind
 from .interpolant import (
     Interpolant,
@@ -64,6 +64,7 @@ __all__ = [
     "at_hand",
     "average_matrix",
     "batch_coefficients",
+    "by_elements",
     "clamped_control_points",
     "clamped_readings",
     "clock_matrix",

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .compilation import compiler
+from .compilation import by_elements, compiler
 
 MAX_COEFFICIENTS = 10
 """Coefficients of degree 9, the highest that a declaration may have."""
@@ -33,6 +33,7 @@ compiled = compiler(*(Path(__file__).with_name(name) for name in KERNELS))
 """Compiles a function of one of these files."""
 
 
+@by_elements()
 @compiled
 def _bracketed_root(a, degree, low, high, value_low):  # type: ignore[no-untyped-def]
     """Root of a monotone piece: Newton steps, bisection where they leave the bracket."""
@@ -58,6 +59,7 @@ def _bracketed_root(a, degree, low, high, value_low):  # type: ignore[no-untyped
     return s
 
 
+@by_elements("roots")
 @compiled
 def roots_in_unit(a, degree, work, roots):  # type: ignore[no-untyped-def]
     """Sign changes of a polynomial in the open unit interval, ascending; returns their number.

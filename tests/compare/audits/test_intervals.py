@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from datetime import date
+from pathlib import Path
+
 import numpy as np
 from trajgap.compare import audit
 from trajgap.compare.audits.case_audit import CaseAudit
@@ -52,6 +56,15 @@ def test_an_audit_certifies_what_it_can() -> None:
     optimum = one.study.optimum("main", "as-printed")
     assert optimum.lower_bound is not None
     assert optimum.lower_bound <= optimum.best <= optimum.lower_bound * 1.01
+
+
+def test_an_audit_says_the_same_with_kept_proofs(tmp_path: Path) -> None:
+    day = date(2026, 1, 1)
+    cold, warm = (audit(stated(), seeds=2, cache=tmp_path) for _ in range(2))
+    assert (cold.kept, warm.kept) == (0, len(list(tmp_path.iterdir())))
+    assert warm.kept > 0
+    one, other = (replace(report.cases[0], day=day).document for report in (cold, warm))
+    assert one.model_dump_json() == other.model_dump_json()
 
 
 def test_without_time_nothing_is_certified() -> None:

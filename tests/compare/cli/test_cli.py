@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import subprocess
 import sys
@@ -80,6 +81,24 @@ def test_each_command_explains_itself(run: Run, command: str) -> None:
     for option in re.findall(r"--[a-z-]+", out):
         page = (ROOT / "docs" / "reference" / "command-line.md").read_text("utf-8")
         assert option in page, option
+
+
+@pytest.mark.parametrize(
+    ("given", "wanted"),
+    [({}, "1"), ({"OMP_NUM_THREADS": "3"}, None), ({"OPENBLAS_NUM_THREADS": "2"}, "2")],
+)
+def test_linear_algebra_has_one_thread_unless_it_is_told(
+    given: dict[str, str], wanted: str | None
+) -> None:
+    program_ = (
+        "import os, sys; from trajgap.compare.cli import main; sys.argv[1:] = ['--version']\n"
+        "main(); print(os.environ.get('OPENBLAS_NUM_THREADS'))"
+    )
+    plain = {k: v for k, v in os.environ.items() if not k.endswith("_THREADS")}
+    done = subprocess.run(
+        [sys.executable, "-c", program_], capture_output=True, text=True, env=plain | given
+    )
+    assert done.stdout.splitlines()[-1] == str(wanted)
 
 
 def test_every_rule_is_explained_with_an_example(run: Run) -> None:
@@ -230,7 +249,7 @@ def test_audit_writes_pages(run: Run, stand_in: dict[str, Any]) -> None:
     assert (code, err) == (0, "")
     assert stand_in["cases"] == list(published_ids())
     assert stand_in["seeds"] == 100
-    assert stand_in["workers"] >= 1
+    assert stand_in["workers"] == os.cpu_count()
     assert "refuted" in out
     assert "error TG302 Table 4, column 80 °/s: text" in out
     # The card comes first, then the claims by their texts.
@@ -273,6 +292,7 @@ def test_audit_passes_its_options_on(run: Run, stand_in: dict[str, Any]) -> None
         "seeds": 4,
         "workers": 2,
         "draft": True,
+        "cache": True,
     }
     assert Path("deep/er/index.html").is_file()
 

@@ -1,0 +1,319 @@
+"""Proofs of earlier runs: whatever stands in a file costs time at most, and never a verdict."""
+
+import json
+import os
+import shutil
+import threading
+import time
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+from support.certificate_kinds import KINDS
+from trajgap.nlp import Outcome, certificate, certify
+from trajgap.nlp.proofs import cache_folder, kept, state_document
+from trajgap.nlp.proofs.kept import VARIABLE, KeptProofs
+from trajgap.problem import Limits, Problem, three_five_three
+from trajgap.verify import Subject, seal
+
+GAP = 1e-2
+"""Reached in a tenth of a second."""
+
+
+@pytest.fixture
+def searches(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The problems that were searched since the test began."""
+    from trajgap.nlp.proofs import certifiers
+
+    begun: list[str] = []
+    usual = certifiers._certifier
+
+    class Counting:
+        def __init__(self, own) -> None:
+            self.own = own
+
+        def __getattr__(self, name):
+            return getattr(self.own, name)
+
+        def run(self, problem, request):
+            begun.append(problem.name)
+            return self.own.run(problem, request)
+
+    monkeypatch.setattr(certifiers, "_certifier", lambda *asked: Counting(usual(*asked)))
+    return begun
+
+
+def posed(shift: float = 0.0) -> Problem:
+    waypoints = [[0.1 + shift, 0.5], [0.7, 0.2], [1.2, -0.4], [0.9, 0.3]]
+    return Problem(waypoints, Limits(6.0, 8.0, joints=2), three_five_three(), name="posed")
+
+
+def only(folder: Path) -> Path:
+    (file,) = folder.glob("*.json")
+    return file
+
+
+def alike(one, other) -> bool:
+    """Whether two runs say the same of a problem, and prove it with the same words."""
+    said = [(f.outcome, f.lower, f.upper, f.durations, f.nodes, f.speeds) for f in (one, other)]
+    return said[0] == said[1] and json.dumps(certificate(one)) == json.dumps(certificate(other))
+
+
+@pytest.mark.parametrize("name", [*sorted(KINDS), "any-curve"])
+def test_a_kept_proof_of_every_kind_says_what_the_search_said(name, tmp_path, searches):
+    any_curve = name == "any-curve"
+    problem = posed() if any_curve else KINDS[name].make()
+    # Wide for quintic splines, whose search would take a minute on a busy machine.
+    gap = 0.5 if name in ("any-curve", "quintic-spline") else KINDS[name].gap
+    subject = Subject.ANY if any_curve else Subject.DECLARED
+    cold = certify(problem, subject=subject, gap=gap, cache=tmp_path)
+    warm = certify(problem, subject=subject, gap=gap, cache=tmp_path)
+    assert cold.outcome in (Outcome.CERTIFIED, Outcome.INFEASIBLE)
+    assert not cold.kept
+    assert warm.kept
+    assert len(searches) == 1
+    assert alike(cold, warm)
+    assert warm.verdict == cold.verdict
+
+
+def test_without_a_folder_nothing_is_kept(tmp_path, searches, monkeypatch):
+    monkeypatch.setenv(VARIABLE, str(tmp_path))
+    for _ in range(2):
+        assert not certify(posed(), gap=GAP).kept
+    assert len(searches) == 2
+    assert not list(tmp_path.iterdir())
+    monkeypatch.setenv(VARIABLE, "")
+    assert cache_folder() is None
+    assert not certify(posed(), gap=GAP, cache=True).kept
+
+
+def test_the_folder_is_the_systems_own_or_the_one_that_is_named(tmp_path, searches, monkeypatch):
+    monkeypatch.setenv(VARIABLE, str(tmp_path))
+    assert cache_folder() == tmp_path / "proofs"
+    assert not certify(posed(), gap=GAP, cache=True).kept
+    assert certify(posed(), gap=GAP, cache=True).kept
+    monkeypatch.delenv(VARIABLE)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "own"))
+    assert cache_folder() == tmp_path / "own" / "trajgap" / "proofs"
+
+
+def test_another_question_is_searched(tmp_path, searches):
+    certify(posed(), gap=GAP, cache=tmp_path)
+    for change in ({"gap": GAP / 2}, {"seed": 1}):
+        assert not certify(posed(), **({"gap": GAP} | change), cache=tmp_path).kept
+    assert not certify(posed(0.01), gap=GAP, cache=tmp_path).kept
+    assert len(searches) == 4
+    # What a problem is called is no part of it.
+    assert certify(replace(posed(), name="other"), gap=GAP, cache=tmp_path).kept
+
+
+def test_what_another_version_kept_is_not_looked_at(tmp_path, searches, monkeypatch):
+    certify(posed(), gap=GAP, cache=tmp_path)
+    monkeypatch.setattr(kept, "_code", lambda: "another version")
+    assert not certify(posed(), gap=GAP, cache=tmp_path).kept
+    assert len(list(tmp_path.glob("*.json"))) == 2
+
+
+def test_a_run_that_is_cut_short_or_goes_on_keeps_nothing(tmp_path, searches):
+    open_run = certify(posed(), gap=0.0, seconds=0.2, cache=tmp_path)
+    assert open_run.outcome is not Outcome.CERTIFIED
+    assert not list(tmp_path.iterdir())
+    state = state_document(open_run)
+    assert state is not None
+    certify(posed(), gap=GAP, resume=state, cache=tmp_path)
+    assert not list(tmp_path.iterdir())
+
+
+def test_no_flipped_byte_changes_an_answer(tmp_path):
+    cold = certify(posed(), gap=GAP, cache=tmp_path)
+    file = only(tmp_path)
+    content = file.read_bytes()
+    survived = 0
+    for at in range(7, len(content), max(1, len(content) // 60)):
+        file.write_bytes(content[:at] + bytes([content[at] ^ 1]) + content[at + 1 :])
+        exact = cold.problem
+        found = KeptProofs(tmp_path).taken(exact, Subject.DECLARED, GAP, 0, kept.Deadline.after(9))
+        if found is not None:  # a byte of the number of boxes, which proves nothing
+            survived += 1
+            assert (found.lower, found.upper, found.durations) == (
+                cold.lower,
+                cold.upper,
+                cold.durations,
+            )
+    assert survived <= 1
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"",
+        b"{",
+        b"[]",
+        b"null",
+        b"\xff\xfe",
+        b'{"format":"trajgap kept proof 1"}',
+        b'{"format":"trajgap kept proof 1","nodes":1,"certificate":{}}',
+        b'{"format":"trajgap kept proof 1","nodes":1,"certificate":{"proof":{}}}',
+        b"[" * 100_000,
+    ],
+)
+def test_a_foreign_file_is_searched_over_and_replaced(content, tmp_path, searches):
+    cold = certify(posed(), gap=GAP, cache=tmp_path)
+    file = only(tmp_path)
+    own = file.read_bytes()
+    file.write_bytes(content)
+    again = certify(posed(), gap=GAP, cache=tmp_path)
+    assert not again.kept
+    assert alike(cold, again)
+    assert file.read_bytes() == own
+
+
+@pytest.mark.parametrize("part", [0.1, 0.5, 0.99])
+def test_a_truncated_file_is_searched_over(part, tmp_path, searches):
+    cold = certify(posed(), gap=GAP, cache=tmp_path)
+    file = only(tmp_path)
+    file.write_bytes(file.read_bytes()[: int(part * file.stat().st_size)])
+    again = certify(posed(), gap=GAP, cache=tmp_path)
+    assert len(searches) == 2
+    assert alike(cold, again)
+
+
+def test_swapped_files_are_searched_over(tmp_path, searches):
+    first = certify(posed(), gap=GAP, cache=tmp_path / "a")
+    second = certify(posed(0.01), gap=GAP, cache=tmp_path / "b")
+    one, other = only(tmp_path / "a"), only(tmp_path / "b")
+    shutil.copy(other, tmp_path / "swapped")
+    shutil.copy(one, other)
+    shutil.copy(tmp_path / "swapped", one)
+    assert alike(first, certify(posed(), gap=GAP, cache=tmp_path / "a"))
+    assert alike(second, certify(posed(0.01), gap=GAP, cache=tmp_path / "b"))
+    assert len(searches) == 4
+
+
+def resealed(document: dict) -> dict:
+    rest = {key: value for key, value in document.items() if key != "seal"}
+    rest["problem_hash"] = seal(rest["problem"])
+    return {**rest, "seal": seal(rest)}
+
+
+def forge(folder: Path, change) -> None:
+    file = only(folder)
+    stored = json.loads(file.read_text())
+    change(stored["certificate"])
+    stored["certificate"] = resealed(stored["certificate"])
+    file.write_text(json.dumps(stored))
+
+
+def higher(document: dict) -> None:
+    document["claim"]["lower"] = document["claim"]["upper"]
+
+
+def shorter(document: dict) -> None:
+    durations = document["claim"]["durations"]
+    half = [str(Fraction(h) / 2) for h in durations]
+    document["claim"] |= {"durations": half, "upper": str(sum(map(Fraction, half)))}
+    document["claim"]["lower"] = "0.1"
+
+
+def wider(document: dict) -> None:
+    """True, and proved, but less than was asked for."""
+    document["claim"]["lower"] = "0.1"
+
+
+def infeasible(document: dict) -> None:
+    document["claim"] |= {"infeasible": True, "upper": None, "durations": None}
+
+
+def other_limits(document: dict) -> None:
+    """An easier problem, of which the same proof may hold."""
+    document["problem"]["limits"][0][0] = "7"
+
+
+def other_words(document: dict) -> None:
+    document["question"]["case"] = "somebody's"
+
+
+def unproved(document: dict) -> None:
+    document["proof"] = None
+
+
+FORGED = (higher, shorter, wider, infeasible, other_limits, other_words, unproved)
+
+
+@pytest.mark.parametrize("change", FORGED, ids=lambda change: change.__name__)
+def test_a_forged_file_with_right_seals_is_searched_over(change, tmp_path, searches):
+    cold = certify(posed(), gap=GAP, cache=tmp_path)
+    forge(tmp_path, change)
+    again = certify(posed(), gap=GAP, cache=tmp_path)
+    assert not again.kept
+    assert len(searches) == 2
+    assert alike(cold, again)
+
+
+def test_a_file_that_is_no_regular_one_is_not_waited_for(tmp_path, searches):
+    certify(posed(), gap=GAP, cache=tmp_path)
+    file = only(tmp_path)
+    file.unlink()
+    os.mkfifo(file)
+    began = threading.Event()
+    thread = threading.Thread(
+        target=lambda: (certify(posed(), gap=GAP, cache=tmp_path), began.set()), daemon=True
+    )
+    thread.start()
+    thread.join(60)
+    assert began.is_set()
+
+
+def test_where_nothing_can_be_written_the_answer_is_the_same(tmp_path, monkeypatch):
+    cold = certify(posed(), gap=GAP)
+    (tmp_path / "file").write_text("in the way")
+    assert alike(cold, certify(posed(), gap=GAP, cache=tmp_path / "file" / "folder"))
+
+    def full(path, text):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(kept, "replace_file", full)
+    assert alike(cold, certify(posed(), gap=GAP, cache=tmp_path / "full"))
+    assert not (tmp_path / "full").exists()
+
+
+def test_no_time_proves_nothing_again(tmp_path):
+    certify(posed(), gap=GAP, cache=tmp_path)
+    without = certify(posed(), gap=GAP, seconds=0.0)
+    again = certify(posed(), gap=GAP, seconds=0.0, cache=tmp_path)
+    assert not again.kept
+    assert again.outcome is without.outcome
+
+
+def test_two_at_once_leave_one_whole_file(tmp_path):
+    found = certify(posed(), gap=GAP)
+    stores = [KeptProofs(tmp_path) for _ in range(2)]
+    threads = [
+        threading.Thread(target=lambda s=s: [s.keep(found, GAP, 0) for _ in range(20)])
+        for s in stores
+    ]
+    for thread in threads:
+        thread.start()
+    while any(thread.is_alive() for thread in threads):
+        if files := list(tmp_path.glob("*.json")):
+            json.loads(files[0].read_text())
+        time.sleep(0.001)
+    assert [file.name for file in tmp_path.iterdir()] == [only(tmp_path).name]
+    assert certify(posed(), gap=GAP, cache=tmp_path).kept
+
+
+def test_the_oldest_proofs_make_way(tmp_path, monkeypatch):
+    found = certify(posed(), gap=GAP)
+    store = KeptProofs(tmp_path)
+    store.keep(found, GAP, 0)
+    size = only(tmp_path).stat().st_size
+    monkeypatch.setattr(kept, "MOST_KEPT", 2 * size + size // 2)
+    for age, seed in ((30, 1), (20, 2), (10, 3)):
+        for file in tmp_path.glob("*.json"):
+            os.utime(file, (time.time() - age, time.time() - age - file.stat().st_ino % 2))
+        store.keep(found, GAP, seed)
+    assert len(list(tmp_path.glob("*.json"))) == 2
+    deadline = kept.Deadline.after(9)
+    assert store.taken(found.problem, found.subject, GAP, 3, deadline) is not None
+    assert store.taken(found.problem, found.subject, GAP, 0, deadline) is None
