@@ -75,3 +75,5 @@ def pytest_collection_finish() -> None:
     """Take what is imported out of the garbage collector's rounds: it never is garbage."""
     gc.collect()
     gc.freeze()
+    # Numbers die by their count; what refers to itself is little, and may wait.
+    gc.set_threshold(20_000, 20, 20)
