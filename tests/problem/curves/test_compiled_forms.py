@@ -1,4 +1,4 @@
-"""Kernels are compiled for one form of array: whether a caller may write into its own is no other."""
+"""Kernels are compiled for one form of array, whether or not it may be written into."""
 
 from __future__ import annotations
 
