@@ -42,6 +42,14 @@ def pytest_cmdline_main(config: pytest.Config) -> None:
         config.option.dist = "loadfile"
 
 
+def pytest_configure(config: pytest.Config) -> None:
+    """Have processes that run tests side by side share what they compile."""
+    if hasattr(config, "workerinput"):
+        from support.compiled_once import share_compiling
+
+        share_compiling()
+
+
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
     """Keep a file's tests in one process, and all that read shared studies in the same one.
@@ -71,3 +79,5 @@ def pytest_collection_finish() -> None:
     """Take what is imported out of the garbage collector's rounds: it never is garbage."""
     gc.collect()
     gc.freeze()
+    # Numbers die by their count; what refers to itself is little, and may wait.
+    gc.set_threshold(20_000, 20, 20)

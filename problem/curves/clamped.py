@@ -236,8 +236,9 @@ class ClampedBSpline(StretchedCurve):
         rows = fractions_of(self, values)
         fractions = np.empty((0, self.waypoints)) if rows is None else np.array(rows)
         peaks = np.empty((h.shape[0], values.shape[1], 3))
+        # A copy may be written into: one type of array, for which the kernel is compiled once.
         clamped_kernel.batch_peaks(
-            h, np.ascontiguousarray(values), average, fractions, self.degree, orders, wanted, side,
+            h, np.array(values, order="C"), average, fractions, self.degree, orders, wanted, side,
             peaks,
         )  # fmt: skip
         return peaks

@@ -314,7 +314,8 @@ def as_batch(curve: Curve, durations: ArrayLike) -> Array:
         raise TrajgapError(
             f"durations: a batch has shape (vectors, {curve.segments}), got {h.shape}"
         )
-    return h
+    # Compiled functions take arrays that may not be written into for another type.
+    return h if h.flags.writeable else h.copy()
 
 
 def value_errors(trajectory: Trajectory, coefficient_error: Array) -> Array:

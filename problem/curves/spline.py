@@ -144,7 +144,7 @@ def batch_coefficients(
     out = np.zeros((interpolant.segments, kernel.MAX_COEFFICIENTS, joints * vectors))
     fitted = _fit_one if vectors == 1 else kernel.fit_coefficients
     fitted(
-        np.ascontiguousarray(durations.T),
+        np.array(durations.T, order="C"),  # one that may be written into: compiled for it alone
         vectors,
         values,
         plan.kinds,

@@ -134,34 +134,6 @@ def test_the_page_names_every_file() -> None:
             assert f"`{path.name}`" in text
 
 
-KINDS = (
-    "uniform_cubic_b_spline(4, 'stretched')",
-    "uniform_cubic_b_spline(4, 'timed')",
-    "ClampedBSpline(4, 4, 'averaged-continued')",
-)
-
-
-def test_every_kind_of_curve_is_known_from_the_start() -> None:
-    # Trials run in a process that has imported everything: a fresh one has not.
-    import subprocess
-    import sys
-
-    program = (
-        "import os\n"
-        "from trajgap.problem import ClampedBSpline, Limits, Problem, check\n"
-        "from trajgap.problem import uniform_cubic_b_spline\n"
-        f"for make in {', '.join(f'lambda: {kind}' for kind in KINDS)}:\n"
-        "    if os.fork():  # each kind in a process that knows no other\n"
-        "        os.wait()\n"
-        "        continue\n"
-        "    problem = Problem([[0.1], [0.9], [-0.3], [0.4]], Limits(9.0, 90.0), make())\n"
-        "    print(check(problem, [0.8, 1.1, 0.9]).limits, flush=True)\n"
-        "    os._exit(0)"
-    )
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
-    assert (done.returncode, done.stdout) == (0, "pass\npass\npass\n"), done.stderr
-
-
 def test_a_slip_of_an_attack_is_a_failure_with_its_files() -> None:
     def slips(rng: np.random.Generator, folder: Path) -> str | None:
         (folder / "case.toml").write_text("x", encoding="utf-8")

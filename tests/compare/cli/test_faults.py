@@ -10,7 +10,7 @@ from importlib import import_module
 from pathlib import Path
 
 import pytest
-from support.command_line import CASE, START, Run, assert_refused, program
+from support.command_line import CASE, START, Run, assert_refused
 from trajgap.compare.pages import foreign
 
 ONE = ("mine.toml", "--problem", "main", "--coupling", "shared")
@@ -132,7 +132,7 @@ def test_a_folder_that_cannot_be_exchanged_is_no_place_for_an_audit(run: Run, pl
     assert list(Path().iterdir()) == []
 
 
-def test_a_draft_that_a_killed_command_left_stands_in_nobodys_way(tmp_path: Path) -> None:
+def test_a_draft_that_a_killed_command_left_stands_in_nobodys_way(run: Run, tmp_path: Path) -> None:
     (tmp_path / ".trajgap-1.tmp").touch()
     process = subprocess.Popen(
         [sys.executable, "-c", START, "new", "out.toml", "--from", "table.csv"],
@@ -144,17 +144,14 @@ def test_a_draft_that_a_killed_command_left_stands_in_nobodys_way(tmp_path: Path
     while not list(tmp_path.glob(".trajgap-*-*.tmp")):
         assert process.poll() is None
         time.sleep(0.02)
-    ended = program(
-        "new", "out.toml", "--from", "table.csv", "--position-unit", "rad", cwd=tmp_path
-    )
-    assert "out.toml: OUT: cannot be written (another process writes it)" in ended.stderr
+    same = ("new", "out.toml", "--from", "table.csv", "--position-unit", "rad")
+    _, _, err = run(*same)
+    assert "out.toml: OUT: cannot be written (another process writes it)" in err
     process.kill()
     process.communicate()
     assert not (tmp_path / "out.toml").exists()
-    ended = program(
-        "new", "out.toml", "--from", "table.csv", "--position-unit", "rad", cwd=tmp_path
-    )
-    assert (ended.returncode, ended.stderr) == (0, "")
+    code, _, err = run(*same)
+    assert (code, err) == (0, "")
     assert (tmp_path / "out.toml").is_file()
     left = sorted(path.name for path in tmp_path.glob(".trajgap*"))
     assert left == [".trajgap-1.tmp"], "no name of ours"

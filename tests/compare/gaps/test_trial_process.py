@@ -20,22 +20,30 @@ def crew() -> Iterator[Crew]:
     found.end()
 
 
-def test_a_trial_gives_the_same_row_in_a_process_of_its_own(crew: Crew) -> None:
-    outcome = crew.run(small_trial())
+@pytest.fixture(scope="module")
+def going_on() -> Iterator[Crew]:
+    """A crew for the tests after which it can run trials as before: to start costs a second."""
+    found = Crew()
+    yield found
+    found.end()
+
+
+def test_a_trial_gives_the_same_row_in_a_process_of_its_own(going_on: Crew) -> None:
+    outcome = going_on.run(small_trial())
     assert outcome.row == run_trial(small_trial())
     assert outcome.row.status is RowStatus.FINISHED
     assert outcome.seconds > 0
 
 
-def test_one_process_runs_many_trials(crew: Crew) -> None:
-    crew.run(small_trial())
-    first = crew._own.child
-    crew.run(small_trial("support.optimizers:raises"))
-    assert crew._own.child is first
+def test_one_process_runs_many_trials(going_on: Crew) -> None:
+    going_on.run(small_trial())
+    first = going_on._own.child
+    going_on.run(small_trial("support.optimizers:raises"))
+    assert going_on._own.child is first
 
 
-def test_what_an_optimiser_prints_and_reads_is_not_ours(crew: Crew) -> None:
-    assert crew.run(small_trial("support.optimizers:prints")).row.status is RowStatus.FINISHED
+def test_what_an_optimiser_prints_and_reads_is_not_ours(going_on: Crew) -> None:
+    assert going_on.run(small_trial("support.optimizers:prints")).row.status is RowStatus.FINISHED
 
 
 @pytest.mark.slow
@@ -46,30 +54,30 @@ def test_a_run_whose_process_dies_is_done_again(crew: Crew, tmp_path: Path) -> N
     assert row.durations == run_trial(small_trial("support.optimizers:draws")).durations
 
 
-def test_a_run_at_which_two_processes_die_is_reported(crew: Crew) -> None:
-    row = crew.run(small_trial("support.optimizers:dies")).row
+def test_a_run_at_which_two_processes_die_is_reported(going_on: Crew) -> None:
+    row = going_on.run(small_trial("support.optimizers:dies")).row
     assert row.status is RowStatus.FAILED
     assert row.message == "support.optimizers:dies: its process ended 2 times (SIGKILL)"
-    assert crew.run(small_trial()).row.status is RowStatus.FINISHED
+    assert going_on.run(small_trial()).row.status is RowStatus.FINISHED
 
 
-def test_a_run_that_forks_answers_once(crew: Crew) -> None:
+def test_a_run_that_forks_answers_once(going_on: Crew) -> None:
     honest = run_trial(small_trial("support.optimizers:draws"))
     for seed in (3, 4):
-        row = crew.run(small_trial("support.optimizers:forks", seed=seed)).row
+        row = going_on.run(small_trial("support.optimizers:forks", seed=seed)).row
         assert (row.optimizer, row.seed) == ("support.optimizers:forks", seed)
         assert (row.durations == honest.durations) == (seed == 3)
-    assert crew.run(small_trial()).row == run_trial(small_trial())
+    assert going_on.run(small_trial()).row == run_trial(small_trial())
 
 
-def test_what_a_run_leaves_behind_holds_nothing_up(crew: Crew, tmp_path: Path) -> None:
+def test_what_a_run_leaves_behind_holds_nothing_up(going_on: Crew, tmp_path: Path) -> None:
     mark = tmp_path / "mark"
     settings = canonical({"mark": str(mark)})
     trial = small_trial("support.optimizers:forks_and_leaves", settings=settings, seconds=60)
-    row = crew.run(trial).row
+    row = going_on.run(trial).row
     assert row.message.endswith("its process ended 2 times (SIGKILL)")
     left = int(mark.read_text(encoding="utf-8"))
-    assert crew.run(small_trial()).row.status is RowStatus.FINISHED
+    assert going_on.run(small_trial()).row.status is RowStatus.FINISHED
     assert is_gone(left)
 
 
@@ -88,13 +96,13 @@ def is_gone(pid: int) -> bool:
 
 
 def test_a_search_that_catches_everything_is_ended_from_outside(
-    crew: Crew, monkeypatch: pytest.MonkeyPatch
+    going_on: Crew, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(trial_process, "_GRACE", 0.5)
-    row = crew.run(small_trial("support.optimizers:hangs", seconds=0.5)).row
+    row = going_on.run(small_trial("support.optimizers:hangs", seconds=0.5)).row
     assert row.status is RowStatus.FAILED
     assert row.message.startswith("support.optimizers:hangs: took longer than 0.5 s; raise")
-    assert crew.run(small_trial()).row.status is RowStatus.FINISHED
+    assert going_on.run(small_trial()).row.status is RowStatus.FINISHED
 
 
 @pytest.mark.slow
