@@ -17,7 +17,7 @@ from .ranges import (
     SMALLEST,
     TICKS,
 )
-from .reading import Refused, number, read_document, shown
+from .reading import Clock, OutOfTime, Refused, number, read_document, shown
 from .tree import CUT, LEAF, OPEN, Subject
 from .verdict import (
     CERTIFICATE_FORMAT,
@@ -49,6 +49,8 @@ __all__ = [
     "TICKS",
     "CertificateVerdict",
     "CertifiedQuestion",
+    "Clock",
+    "OutOfTime",
     "Refused",
     "Subject",
     "number",

@@ -136,7 +136,8 @@ class AnyCurve(ProofKind[Sides]):
         self._cap = number(proof["cap"])
         need(0 < total <= self._cap, "the total exceeds the cap below which the boxes lie")
         rows = listed(proof["rows"], "rows", MOST_ROWS)
-        self._rows = [_Row.read(row, len(self._asked.steps), problem.joints) for row in rows]
+        spans = len(self._asked.steps)
+        self._rows = [_Row.read(row, spans, problem.joints) for row in clock.each(rows)]
         self._speeds = [self._speed(joint) for joint in range(problem.joints)]
 
     def _speed(self, joint: int) -> Fraction | None:
@@ -159,7 +160,7 @@ class AnyCurve(ProofKind[Sides]):
                     need(limit[1] > 0, "a joint that moves has the velocity limit 0")
                     least[k] = max(least[k], abs(step) / limit[1])
         # A total below the cap leaves a span at most what the others do not need.
-        spare = self._cap - sum(least)
+        spare = self._cap - sum(self.clock.each(least), Zero)
         return [
             (low, low + spare if top is None else min(top, low + spare))
             for low, top in zip(least, asked.longest, strict=True)
@@ -208,7 +209,8 @@ class AnyCurve(ProofKind[Sides]):
             times[k] -= weight * time
             slope[k, joint] = slope.get((k, joint), Zero) - weight * first
             slope[k + 1, joint] = slope.get((k + 1, joint), Zero) - weight * last
-        result += sum(min(c * low, c * high) for c, (low, high) in zip(times, box, strict=True))
+        for c, (low, high) in self.clock.each(zip(times, box, strict=True)):
+            result += min(c * low, c * high)
         for (at, joint), c in slope.items():
             self.clock.check()
             end = asked.ends[0] if at == 0 else asked.ends[1] if at == len(box) else None

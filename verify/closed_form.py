@@ -62,7 +62,8 @@ class ClosedForm(ProofKind[None]):
                 proved = bound[1] * x**r <= abs(value)
                 need(proved, f"segment {k + 1}: its least duration is not proved")
             least.append(x)
-        need(self.total <= sum(least), "the total is not proved")
+        reached = sum(self.clock.each(least), Fraction(0))
+        need(self.total <= reached, "the total is not proved")
         both = zip(least, problem.longest, strict=True)
         self._late = any(top is not None and x > top for x, top in both)
 

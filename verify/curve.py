@@ -94,7 +94,8 @@ def _solve(
                     other[key] = rest
                 else:
                     other.pop(key, None)
-            values[:] = [x - factor * y for x, y in zip(values, right, strict=True)]
+            both = zip(values, right, strict=True)
+            values[:] = [x - factor * y for x, y in clock.each(both)]
         done.append((column, row, right))
     solved: list[list[Fraction]] = [[] for _ in rows]
     for column, row, right in reversed(done):
@@ -102,8 +103,9 @@ def _solve(
         known = list(right)
         for key, x in row.items():
             if key != column:
-                known = [r - x * y for r, y in zip(known, solved[key], strict=True)]
-        solved[column] = [r / row[column] for r in known]
+                both = zip(known, solved[key], strict=True)
+                known = [r - x * y for r, y in clock.each(both)]
+        solved[column] = [r / row[column] for r in clock.each(known)]
     return solved
 
 
@@ -123,14 +125,10 @@ def uniform_pieces(problem: StatedProblem, clock: Clock) -> Pieces:
     -------
     Pieces
     """
-    found = []
-    for column in zip(*problem.waypoints, strict=True):
-        clock.check()
-        found.append(_uniform(list(column)))
-    return found
+    return [_uniform(list(column), clock) for column in zip(*problem.waypoints, strict=True)]
 
 
-def _uniform(q: Sequence[Fraction]) -> list[list[Fraction]]:
+def _uniform(q: Sequence[Fraction], clock: Clock) -> list[list[Fraction]]:
     n = len(q)
     # q″ at the start of a piece is 6(q₁ − q₀) − 4m₀ − 2m₁, at its end 2m₀ + 4m₁ − 6(q₁ − q₀).
     diagonal = [Fraction(6), *[Fraction(4)] * (n - 2), Fraction(6)]
@@ -139,16 +137,17 @@ def _uniform(q: Sequence[Fraction]) -> list[list[Fraction]]:
     right = [6 * (q[1] - q[0])]
     right += [3 * (q[i + 1] - q[i - 1]) for i in range(1, n - 1)]
     right += [6 * (q[-1] - q[-2])]
-    for i in range(1, n):
+    for i in clock.each(range(1, n)):
         factor = below[i - 1] / diagonal[i - 1]
         diagonal[i] -= factor * above[i - 1]
         right[i] -= factor * right[i - 1]
     slopes = [right[-1] / diagonal[-1]]
-    for i in range(n - 2, -1, -1):
+    for i in clock.each(range(n - 2, -1, -1)):
         slopes.append((right[i] - above[i] * slopes[-1]) / diagonal[i])
     slopes.reverse()
     found = []
-    for (a, b), (u, w) in zip(pairwise(q), pairwise(slopes), strict=True):
+    both = zip(pairwise(q), pairwise(slopes), strict=True)
+    for (a, b), (u, w) in clock.each(both):
         found.append([a, u, 3 * (b - a) - 2 * u - w, u + w - 2 * (b - a)])
     return found
 

@@ -74,14 +74,14 @@ class QuinticSpline(ProofKind[Sides]):
         sizes = [abs(d) for row in steps for d in row if d]
         sizes += [x for row in limits for x in row if x is not None]
         need(all(SMALLEST < x < 1 / SMALLEST for x in sizes), "a number is of unusual size")
-        self._windows = [
-            _window(w, n, joints) for w in listed(proof["windows"], "windows", MOST_WINDOWS)
-        ]
+        stated_windows = listed(proof["windows"], "windows", MOST_WINDOWS)
+        self._windows = [_window(w, n, joints) for w in clock.each(stated_windows)]
         self._task = Task(
             np.array([[float(x) for x in row] for row in steps]),
             np.array([[np.inf if x is None else float(x) for x in row] for row in limits]),
             float(own),
             listed(proof["rows"], "rows", MOST_ROWS),
+            clock,
         )
         self._low = []
         for k, stated_low in enumerate(listed(proof["low"], "low", n, n)):

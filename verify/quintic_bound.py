@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .ranges import MOST_LIMITS, MOST_WEIGHT, QUINTIC_PLACES
-from .reading import Refused, listed, need, whole
+from .reading import Clock, Refused, listed, need, whole
 
 Array = NDArray[np.float64]
 
@@ -58,9 +58,12 @@ class Task:
     total : float
     rows : list
         ``proof.rows`` of the file.
+    clock : Clock
     """
 
-    def __init__(self, steps: Array, limits: Array, total: float, rows: list[Any]) -> None:
+    def __init__(
+        self, steps: Array, limits: Array, total: float, rows: list[Any], clock: Clock
+    ) -> None:
         self.steps, self.limits, self.total = steps, limits, total
         n, joints = steps.shape
         tops = (n - 1, joints - 1, 3, 1, QUINTIC_PLACES)
@@ -71,7 +74,7 @@ class Task:
                     whole(x, a, b)
                     for x, a, b in zip(listed(row, "a row", 5, 5), bottoms, tops, strict=True)
                 ]
-                for row in rows
+                for row in clock.each(rows)
             ],
             np.int64,
         ).reshape(-1, 5)

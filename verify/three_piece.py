@@ -74,7 +74,8 @@ class _ThreePieces(ProofKind[Square]):
         super().__init__(problem, proof, total, clock)
         self._declared()
         need(total > 0, "the total is not positive")
-        rows = [_Row.read(row, self) for row in listed(proof["rows"], "rows", MOST_ROWS)]
+        stated = listed(proof["rows"], "rows", MOST_ROWS)
+        rows = [_Row.read(row, self) for row in clock.each(stated)]
         # Without the total in any row, what is excluded is excluded for every total.
         self._timeless = all(r.cap >= 0 or (r.kind in self.divisors and r.order == 0) for r in rows)
         curves = self._curves()
@@ -106,7 +107,7 @@ class _ThreePieces(ProofKind[Square]):
         rows = [self._rows[k] for k in which]
         parts = [(w / unit, row) for w, (row, unit) in zip(weights, rows, strict=True)]
         mixed, _ = _sum(parts, self.clock)
-        need(_covers(mixed, box), "it is not proved")
+        need(_covers(mixed, box, self.clock), "it is not proved")
 
     @property
     def infeasible(self) -> bool:
@@ -367,13 +368,13 @@ def _monomial(i: int, j: int) -> Poly:
     return _times(*[a] * (2 - i), *[a1] * i, *[b] * (2 - j), *[b1] * j)
 
 
-def _covers(poly: Poly, box: Square) -> bool:
+def _covers(poly: Poly, box: Square, clock: Clock) -> bool:
     """Whether all Bernstein coefficients on a box are ≥ 0."""
     need(all(max(key) < SIZE for key in poly), "a row has too high a degree")
     table = [[poly.get((i, j), 0) for j in range(SIZE)] for i in range(SIZE)]
     for low, high in (box[2:], box[:2]):
         blossom = _blossom(low, high)
-        table = [[sum(map(mul, line, row)) for row in blossom] for line in table]
+        table = [[sum(map(mul, line, row)) for row in blossom] for line in clock.each(table)]
         table = [list(line) for line in zip(*table, strict=True)]
     return all(x >= 0 for line in table for x in line)
 

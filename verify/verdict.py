@@ -161,7 +161,7 @@ def seal(part: Any) -> str:
 
 
 def verify_certificate(
-    source: str | Path | dict[str, Any], *, seconds: float = SECONDS
+    source: str | Path | dict[str, Any], *, seconds: float = SECONDS, clock: Clock | None = None
 ) -> CertificateVerdict:
     """Prove a certificate, or what a state has proved so far, again.
 
@@ -170,27 +170,31 @@ def verify_certificate(
     source : str, Path or dict
         File, or its read_document JSON.
     seconds : float
-        Time limit.
+        Time limit, reading the file included.
+    clock : Clock, optional
+        That the caller began before, instead of one of ``seconds`` from now.
 
     Returns
     -------
     CertificateVerdict
         Never raises: what cannot be read is refused, and what takes too long is out of time.
     """
-    clock = Clock(seconds)
+    clock = Clock(seconds) if clock is None else clock
     altered = False
     question, problem_hash = CertifiedQuestion(), None
     try:
-        document = _document(source if isinstance(source, dict) else read_document(source))
+        data = source if isinstance(source, dict) else read_document(source, clock)
+        document = _document(data)
         problem_hash = seal(document["problem"])
         altered = problem_hash != document["problem_hash"]
+        clock.check()
         altered |= document["seal"] != seal({k: x for k, x in document.items() if k != "seal"})
         question = _question(document["question"])
         subject, lower, upper, infeasible = _judged(document, clock)
     except Refused as error:
         why, late = str(error), False
     except OutOfTime:
-        why, late = f"nothing was decided in {seconds:g} s; give more time", True
+        why, late = f"nothing was decided in {clock.seconds:g} s; give more time", True
     except (ValueError, TypeError, LookupError, ArithmeticError, RecursionError) as error:
         why, late = f"malformed: {type(error).__name__}: {shown(str(error))}", False
     else:
@@ -246,22 +250,24 @@ def _judged(document: dict[str, Any], clock: Clock) -> Claimed:
     if kind is not None:
         need(subject is kind.subject, f"this kind of proof speaks about {kind.subject}")
     need(lower <= total, "the lower bound exceeds the total that is proved")
-    upper = None
+    upper, least = None, None
     if answer is not None:
         h, speeds, upper = answer
         need(not infeasible, "infeasible, but with an answer")
-        need(sum(h) <= upper, "the durations exceed the upper bound")
+        least = sum(clock.each(h), Fraction(0))
+        need(least <= upper, "the durations exceed the upper bound")
         if subject is Subject.ANY:
             any_curve.check_motion(problem, h, speeds, clock)
         else:
             check_answer(problem, h, clock)
     if kind is not None:
         walk(kind, document["proof"]["tree"], clock)
-    contradicted = answer is not None and total > sum(answer[0])
+    contradicted = least is not None and total > least
     need(not contradicted, "the proof contradicts the answer: one of them is wrong")
     if infeasible:
         longest = [x for x in problem.longest if x is not None]
-        above = len(longest) == problem.segments and lower > sum(longest)
+        most = sum(clock.each(longest), Fraction(0))
+        above = len(longest) == problem.segments and lower > most
         need(
             kind is not None and (above or kind.infeasible),
             "infeasible only above the sum of all upper bounds, or by a proof of its own",

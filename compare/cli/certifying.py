@@ -38,6 +38,8 @@ from ...verify import (
     STATE_FORMAT,
     CertificateVerdict,
     CertifiedQuestion,
+    Clock,
+    OutOfTime,
     Refused,
     Subject,
     read_document,
@@ -401,11 +403,13 @@ def _verdict(
     path: Path, seconds: float, asked: Sequence[Question] | None
 ) -> tuple[CertificateVerdict, CertifiedQuestion | str | None]:
     """What a file is worth, and which question of a case it is about."""
+    clock = Clock(seconds)  # for reading, too
     try:
-        document = read_document(path)
-    except Refused:
-        return verify_certificate(path), None if asked is None else "refused"
-    verdict = verify_certificate(document, seconds=seconds)
+        document = read_document(path, clock)
+    except (Refused, OutOfTime):
+        verdict = verify_certificate(path, clock=clock)
+        return verdict, None if asked is None else str(worth(verdict))
+    verdict = verify_certificate(document, clock=clock)
     if asked is None:
         return verdict, None
     return verdict, _about(document, verdict, asked) if verdict.proves else str(worth(verdict))

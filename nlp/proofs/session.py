@@ -44,6 +44,8 @@ SAFE = 1.5
 """Factor on what was measured: later boxes may take longer to judge than those so far."""
 
 
+UNBOUNDED = "the time ended before a lower bound was proved"
+"""What was left out where a search had to end before its first proof."""
 UNPROVED = "a motion was found, and the exact proof that it keeps its limits was cut short"
 """What was left out where `ANSWERING` is over."""
 
@@ -135,6 +137,7 @@ class Session:
         self.left_out: str | None = None
         self.nodes = self.open_boxes = self.judged_boxes = 0
         self._judging: float | None = None
+        self._answering = 0.0
         self._began = time.perf_counter()
         self._reported = -math.inf
         resumed = request.resume
@@ -198,8 +201,18 @@ class Session:
         """
         seconds = self.seconds
         judging = JUDGING * seconds if self._judging is None else self._judging * self.judged_boxes
-        if seconds + judging + ahead > self.request.seconds:
+        if seconds + judging + self._answering + ahead > self.request.seconds:
+            if self.proof is None and self.left_out is None:
+                self.left_out = UNBOUNDED
             raise OutOfTime
+
+    @property
+    def searching(self) -> float:
+        """Seconds that a search may still take, before `check_clock` ends it."""
+        end = self.request.seconds - self._answering
+        if self._judging is None:
+            return end / (1.0 + JUDGING) - self.seconds
+        return end - self._judging * self.judged_boxes - self.seconds
 
     def weigh(self, boxes: int, proof: Callable[[], Argument]) -> None:
         """Say how large the proof is by now, for kinds whose judging takes as long as the search.
@@ -233,7 +246,8 @@ class Session:
         OutOfTime
             If the time for that proof is over: nothing is said of the durations then.
         """
-        end = max(self.seconds, self.request.seconds) + ANSWERING
+        began = self.seconds
+        end = max(began, self.request.seconds) + ANSWERING
 
         def clock() -> None:
             if self.seconds > end:
@@ -241,6 +255,8 @@ class Session:
                 raise OutOfTime
 
         proved = prove_feasible(self.exact, durations, clock)
+        # Whoever judges proves the answer once more.
+        self._answering = max(self._answering, self.seconds - began)
         if proved is None or (self.upper is not None and sum(proved) >= self.upper):
             return False
         self.durations = proved

@@ -34,7 +34,7 @@ class CubicSpline(ProofKind[Box]):
         )
         self._ticks = ticks
         rows = listed(proof["rows"], "rows", MOST_ROWS)
-        self._known = [self._cubic.condition(entry) for entry in rows]
+        self._known = [self._cubic.condition(entry) for entry in clock.each(rows)]
         self._root = self._cubic.root(proof["root"])
 
     def root(self) -> Box:

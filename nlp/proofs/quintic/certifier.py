@@ -171,7 +171,7 @@ class _Search:
         def watch(waiting: int, boxes: int) -> float:
             session.report(waiting, session.nodes + boxes)
             session.check_clock()
-            return session.request.seconds - session.seconds
+            return session.searching
 
         leaves = search_all(
             stage, root, lambda h: self._look(h, look), watch, self.executor, self.workers

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import heapq
+import math
 import time
 from collections.abc import Callable
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
@@ -18,7 +19,9 @@ from .search import DEEP, FULL, PAUSED, SHORTER, search
 _PART = 5_000
 """Boxes of a part: about a second, beside which handing it out costs nothing."""
 _CHUNK = 500
-"""Boxes between two looks at the clock: less than a tenth of a second."""
+"""Boxes between two looks at the clock, to `_USUAL` segments: less than a tenth of a second."""
+_USUAL = 8
+"""Segments up to which that holds; beyond, a box takes time of the third power."""
 _AHEAD = 2
 """Parts handed out for each worker: the next one is there when it ends one."""
 _STACK = 600
@@ -95,7 +98,12 @@ class Part:
     code: int
 
 
-def search_part(stage: Stage, root: Root, seconds: float) -> Part:
+def between_looks(segments: int) -> int:
+    """Boxes of a spline of so many segments that are searched without a look at the clock."""
+    return max(1, int(_CHUNK * min(1.0, _USUAL / segments) ** 3))
+
+
+def search_part(stage: Stage, root: Root, seconds: float, until: float = math.inf) -> Part:
     """Search below a box until it is empty, `_PART` boxes are visited or time is up.
 
     Parameters
@@ -103,23 +111,27 @@ def search_part(stage: Stage, root: Root, seconds: float) -> Part:
     stage : Stage
     root : Root
     seconds : float
+        From now.
+    until : float
+        And no longer than this, by `time.time`: a part may have waited for its turn.
 
     Returns
     -------
     Part
         But for the clock, a function of stage and root alone.
     """
-    ends = time.monotonic() + seconds
+    ends = time.monotonic() + min(seconds, until - time.time())
     n, joints = stage.steps.shape
     low, high = (np.zeros((_STACK - root.height, n)) for _ in range(2))
     low[0], high[0] = root.low, root.high
     depth, counts = np.array([1]), np.zeros(3, np.int64)
     leaves, seen = Leaves.empty(), root.seen
+    chunk = between_looks(n)
     while True:
         look = stage.look if root.wary and not seen else 0.0
         code = search(
             n, joints, stage.steps, stage.limits, stage.total, stage.windows,
-            low, high, depth, 1 if seen else _CHUNK, look, *leaves.arrays, counts,
+            low, high, depth, 1 if seen else chunk, look, *leaves.arrays, counts,
         )  # fmt: skip
         if code == FULL:
             leaves = leaves.larger()
@@ -177,11 +189,11 @@ def search_all(
     try:
         while waiting or running:
             left = watch(len(waiting) + len(running), boxes)
-            boxes = 0
+            boxes, until = 0, time.time() + left
             while waiting and len(running) < _AHEAD * workers:
                 place, one = heapq.heappop(waiting)
                 if ended is None or place < ended[0]:
-                    running[executor.submit(search_part, stage, one, left)] = place
+                    running[executor.submit(search_part, stage, one, left, until)] = place
             for future in wait(running, _LOOK, FIRST_COMPLETED).done:
                 place, part = running.pop(future), future.result()
                 boxes += part.boxes

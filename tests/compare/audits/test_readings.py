@@ -99,7 +99,6 @@ def summary_of(one: CaseAudit) -> ReadingsSummary:
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_every_unit_mix_of_the_polishing_paper_has_its_outcome() -> None:
     found = {o.reading: o for o in summary_of(polish()).outcomes}
     assert len(found) == 19
@@ -120,7 +119,6 @@ def test_every_unit_mix_of_the_polishing_paper_has_its_outcome() -> None:
         assert o.gap.kind is (GapKind.OPTIMALITY if kept else GapKind.REPORTED)
 
 
-@pytest.mark.slow
 @pytest.mark.slow
 def test_segments_over_a_limit_are_those_of_a_dense_sample() -> None:
     one = polish()
@@ -174,7 +172,7 @@ def test_the_words_say_how_it_is_measured_and_call_no_reading_the_right_one() ->
     assert fit.endswith("This does not say which reading was meant.")
     assert holding(summary_of(polish())) == (
         "Under every reading: supported x.",
-        "Under some: y (supported 1, refuted 17).",
+        "Under some: y (supported 1, refuted 18).",
         "Decided under none: z.",
     )
 
@@ -321,7 +319,7 @@ def test_the_document_carries_every_number(made: Callable[[], CaseAudit]) -> Non
     if made is pallet:
         return
     y = shown["claims"][1]
-    assert (y["claim"], y["scope"], y["readings"]) == ("y", "some", {"supported": 1, "refuted": 17})
+    assert (y["claim"], y["scope"], y["readings"]) == ("y", "some", {"supported": 1, "refuted": 18})
 
 
 @pytest.mark.slow
@@ -330,7 +328,10 @@ def test_the_page_has_a_row_for_each_reading() -> None:
     page = markdown(Page("irb1600", "t", (side_by_side(one),)))
     for outcome in summary_of(one).outcomes:
         (line,) = [
-            x for x in page.splitlines() if x.startswith(f"| {outcome.reading}") and "|" in x
+            x
+            for x in page.splitlines()
+            # One id may begin with another.
+            if x.startswith((f"| {outcome.reading} |", f"| {outcome.reading}<br>"))
         ]
         assert f"| {outcome.keeping}" in line
         assert f"{outcome.optimum:.6f} s<br>{outcome.evidence}" in line

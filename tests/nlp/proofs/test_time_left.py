@@ -97,3 +97,34 @@ def test_a_search_is_not_compiled_where_that_takes_longer_than_is_left(
     assert (found.outcome, found.lower) == (Outcome.INTERVAL, 0)
     assert found.left_out == certifier.UNCOMPILED
     assert found.upper is not None
+
+
+def test_what_a_search_may_take_is_what_the_clock_leaves_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    ticks = Ticking()
+    monkeypatch.setattr(session, "time", ticks)
+    one = Session(exact_problem(CUBIC), Request(seconds=100.0))
+    ticks.now = 30.0
+    assert one.searching == pytest.approx(100.0 / (1.0 + session.JUDGING) - 30.0)
+    # The verifier proves the answer once more: what that took is left to it.
+    ticks.step = 0.05
+    assert one.offer(SLOW)
+    ticks.step, answering = 0.0, ticks.now - 30.0
+    assert answering > 1.0
+    ticks.now = 30.0
+    shorter = one.searching
+    assert shorter == pytest.approx((100.0 - answering) / (1.0 + session.JUDGING) - 30.0, abs=0.1)
+    ticks.now = 30.0 + shorter - 0.01
+    one.check_clock()
+    ticks.now = 30.0 + shorter + 0.01
+    with pytest.raises(OutOfTime):
+        one.check_clock()
+    assert one.left_out == session.UNBOUNDED
+
+
+def test_an_interval_without_a_lower_bound_says_why() -> None:
+    found = certify(QUINTIC, gap=1e-6, seconds=0.0)
+    assert (found.lower, found.proof) == (0, None)
+    assert found.upper is None or found.outcome is Outcome.INTERVAL
+    assert found.left_out in (session.UNBOUNDED, session.UNPROVED, certifier.UNCOMPILED)

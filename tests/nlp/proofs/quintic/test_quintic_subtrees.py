@@ -6,6 +6,7 @@ import multiprocessing
 from collections.abc import Callable
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from fractions import Fraction
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ from trajgap.nlp.proofs.executors import Here
 from trajgap.nlp.proofs.outcome import Outcome, Request
 from trajgap.nlp.proofs.quintic import certifier, subtrees
 from trajgap.nlp.proofs.quintic.leaves import Leaves
-from trajgap.nlp.proofs.quintic.search import DONE, search
+from trajgap.nlp.proofs.quintic.search import DONE, PAUSED, search
 from trajgap.nlp.proofs.session import OutOfTime, Session, Shorter
 from trajgap.problem import Limits, Problem, TrajgapError, quintic_spline
 
@@ -165,6 +166,38 @@ def test_the_clock_ends_it_and_leaves_nothing_waiting() -> None:
     assert asked == 3
     assert late.held
     assert all(future.cancelled() for future, _ in late.held)
+
+
+def test_a_part_that_waited_for_its_turn_ends_when_all_do(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is handed out ahead begins late, and has no more time than what was handed out first."""
+    question, _ = stage(0.9995, Here(), 1)
+    lowest = certifier.shortest(exact_problem(PROBLEM))
+    root = subtrees.Root(np.array([float(x) for x in lowest]), np.full(3, question.total))
+    monkeypatch.setattr(subtrees, "_CHUNK", 4)
+    monkeypatch.setattr(
+        subtrees, "time", SimpleNamespace(time=lambda: 100.0, monotonic=lambda: 5.0)
+    )
+    assert subtrees.search_part(question, root, 60.0, 100.0 + 1.0).boxes > 100
+    late = subtrees.search_part(question, root, 60.0, 100.0 - 1.0)
+    assert (late.code, late.boxes) == (PAUSED, 4)
+    asked: list[float] = []
+
+    class Noting(Here):
+        def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+            asked.append(args[-1])
+            return super().submit(fn, *args, **kwargs)
+
+    subtrees.search_all(question, root, lambda _: True, lambda *_: 7.0, Noting(), 1)
+    assert set(asked) == {107.0}
+
+
+def test_long_splines_are_looked_at_as_often_as_short_ones() -> None:
+    assert subtrees.between_looks(2) == subtrees.between_looks(8) == subtrees._CHUNK
+    boxes = [subtrees.between_looks(n) for n in range(8, 27)]
+    assert boxes == sorted(boxes, reverse=True)
+    # A box takes time of the third power.
+    assert all(k * n**3 <= boxes[0] * 8**3 for n, k in enumerate(boxes, 8))
+    assert boxes[-1] >= 1
 
 
 def test_the_result_is_the_same_on_two_threads() -> None:
