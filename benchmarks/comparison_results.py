@@ -1,12 +1,13 @@
 """Runs the studies of the papers' comparisons and writes what they came to.
 
-    python benchmarks/comparison_results.py run FOLDER       in order of importance, resumable
-    python benchmarks/comparison_results.py collect FOLDER   comparisons.json and the docs page
+    python benchmarks/comparison_results.py run FOLDER [PAPER]    in order of importance, resumable
+    python benchmarks/comparison_results.py collect FOLDER        comparisons.json and the docs page
 
 FOLDER holds the study files of ``paper_comparisons.py``, which ``run`` writes if they are missing.
 One process runs one trial after another and keeps each row in ``FOLDER/PAPER.sqlite`` as it ends;
 ``trajgap study FOLDER/pso-listed.toml --store FOLDER/pso.sqlite --workers 8`` makes the same rows.
-``collect`` takes the rows that are there: each number stands with its number of runs.
+``collect`` takes the rows that are there: each number stands with its number of runs. A paper of
+which FOLDER has no rows keeps what is committed.
 """
 
 from __future__ import annotations
@@ -74,12 +75,12 @@ APART = "each joint by itself"  # the paper's procedure: each segment takes the 
 JOINT = ", joint "
 
 
-def run(folder: Path) -> None:
+def run(folder: Path, papers: Sequence[str] = ()) -> None:
     if not (folder / "pso-listed.toml").exists():
         write_studies(folder)
     plans: dict[str, StudyPlan] = {}
     for part, apart, handlings, seeds in ORDER:
-        for paper in PAPERS:
+        for paper in papers or PAPERS:
             name = f"{paper}-{part}"
             plan = plans.setdefault(name, load_study(folder / f"{name}.toml"))
             with Store(folder / f"{paper}.sqlite") as store:
@@ -266,6 +267,7 @@ def labels_of(paper: str, kind: str) -> list[str]:
 
 def collect(folder: Path) -> list[Comparison]:
     found = []
+    before = {one.case: one for one in all_comparisons()}
     for paper, (source, (improved, standard), budget) in PAPERS.items():
         case = load_case(source)
         kinds = tuple(
@@ -285,8 +287,9 @@ def collect(folder: Path) -> list[Comparison]:
                 if (one.problem, one.reading, one.handling) not in there
             ]
             # As the paper works first: joint by joint where it does.
-            if not listed:
-                continue  # not run yet
+            if not listed:  # not run here
+                found += [before[case.id]] if case.id in before else []
+                continue
             listed.sort(key=lambda one: APART not in one.problem and paper == "pso")
             found.append(
                 Comparison(
@@ -390,7 +393,8 @@ def percent(share: float | None) -> str:
 if __name__ == "__main__":
     step, where = sys.argv[1], Path(sys.argv[2])
     if step == "run":
-        run(where)
+        run(where, sys.argv[3:])
     else:
-        write(collect(where))
-        print(f"{len(all_comparisons())} comparisons")
+        collected = collect(where)
+        write(collected)
+        print(f"{len(collected)} comparisons")

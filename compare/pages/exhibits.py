@@ -12,7 +12,7 @@ from ...problem import Array, TrajgapError, file_name, forward_kinematics, to_si
 from ...problem.cases import ControlVerticesClaim, DurationsClaim, MaximumClaim
 from ...problem.robots import Chain, DhTable, proximity, sample_workspace
 from ..audits import Study, place
-from ..audits.rules import vertices
+from ..audits.rules import has_vertices, vertices
 from ..pictures import (
     Picture,
     jump_picture,
@@ -129,7 +129,7 @@ def _polygons(study: Study) -> Iterator[Block]:
         if not isinstance(claim, ControlVerticesClaim):
             continue
         statement = study.case.statement(claim.problem)
-        if not statement.complete:
+        if not (statement.complete and has_vertices(statement)):
             continue
         joints = range(len(statement.labels))
         waypoints = [[row[j].value for j in joints] for row in statement.waypoints.points]

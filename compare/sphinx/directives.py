@@ -146,20 +146,32 @@ class Readings(FromResults):
 
     def made(self, results: Results) -> list[nodes.Node]:
         """The default with its reason, and a row for each reading and printed motion."""
-        case = results.case(self.arguments[0])
-        said = case["readings"]
-        if said is None:
-            return [paragraph("The text leaves nothing open: there is one reading.")]
-        names = said["admissible"]
-        head = paragraph(f"The text leaves open what {len(names)} readings settle. The default is ")
-        labels = reading_names(case).labels
-        head += nodes.Text(f"“{labels.get(said['default'], said['default'])}”. ")
-        head += nodes.Text(said["default_why"] or "")
-        meant = [[labels.get(one, one), nodes.literal("", one)] for one in names]
-        known = table(("reading", "its id"), meant)
-        rows = [_under(case, outcome, labels) for outcome in said["outcomes"]]
-        columns = ("reading", "durations of", "limits", "largest ratio", "shortest, s", "evidence")
-        return [head, table(columns, rows), known] if rows else [head, known]
+        return readings_of(results.case(self.arguments[0]))
+
+
+def readings_of(case: dict[str, Any]) -> list[nodes.Node]:
+    """Paragraphs and the table of a case's readings; one paragraph where there is one reading."""
+    said = case["readings"]
+    if said is None:
+        return [paragraph("The text leaves nothing open: there is one reading.")]
+    names = said["admissible"]
+    head = paragraph(f"The text leaves open what {len(names)} readings settle. The default is ")
+    labels = reading_names(case).labels
+    head += nodes.Text(f"“{labels.get(said['default'], said['default'])}”. ")
+    head += nodes.Text(said["default_why"] or "")
+    meant = [[labels.get(one, one), nodes.literal("", one)] for one in names]
+    known = table(("reading", "its id"), meant)
+    rows = [_under(case, outcome, labels) for outcome in said["outcomes"]]
+    if not rows:
+        return [head, known]
+    columns = ["reading", "durations of", "limits", "largest ratio", "shortest, s", "evidence"]
+    shown: list[nodes.Node] = [head]
+    places = {row[1] for row in rows}
+    if len(places) == 1:  # a column of one text would take the room of the others
+        shown.append(paragraph(f"Durations judged: {next(iter(places))}."))
+        for cells in (columns, *rows):
+            del cells[1]
+    return [*shown, table(columns, rows, "trajgap-sortable", "trajgap-readings"), known]
 
 
 def _under(case: dict[str, Any], outcome: dict[str, Any], labels: Mapping[str, str]) -> list[Any]:

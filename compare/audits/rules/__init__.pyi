@@ -3,7 +3,7 @@ from .condition_count import count_conditions
 from .continuous_time import said_to_keep
 from .on_instances import HANDLED, attributed, placed
 from .plain_words import EXPLAINED, Explained
-from .printed_vertices import Vertex, vertices
+from .printed_vertices import Vertex, has_vertices, vertices
 from .registry import GROUPS, NOT_COMPUTED, RULES
 
 __all__ = [
@@ -16,6 +16,7 @@ __all__ = [
     "Vertex",
     "attributed",
     "count_conditions",
+    "has_vertices",
     "held_otherwise",
     "placed",
     "reading_clues",

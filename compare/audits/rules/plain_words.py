@@ -141,7 +141,8 @@ EXPLAINED = {
     ),
     "TG205": Explained(
         "Do printed control vertices follow from the printed way-points?",
-        "Supported if each lies within what the rounding of the way-points allows, else refuted.",
+        "Supported if each lies within what the rounding of the way-points allows, else refuted; "
+        "not checkable on another curve than the uniform cubic B-spline.",
         "The vertex computed from the way-points lies between 0.4317 and 0.4319; 0.4318 is "
         "supported and 0.4381 refuted.",
     ),

@@ -25,7 +25,7 @@ class Vertex:
         From 0, as the paper counts.
     printed : Printed
     allowed : Interval
-        Of V through the inverse of (2)(3), for every way-point that rounds to its digits.
+        Of the vertex on the uniform cubic B-spline, for every way-point that rounds to its digits.
     allowed_cut : Interval
         The same for way-points whose digits are rounded or cut off.
     """
@@ -53,12 +53,43 @@ class Vertex:
 
 
 def judge_vertices(study: Study) -> Iterator[Finding]:
-    """Set every printed control vertex beside the way-points of its problem."""
+    """Set every printed control vertex beside the way-points of its problem.
+
+    Each kind of B-spline has vertices of its own, so that a claim is judged only under readings
+    whose curve is the uniform cubic one.
+    """
     for claim in study.claims:
         if isinstance(claim, ControlVerticesClaim):
-            statement = study.case.statement(claim.problem)
-            if statement.complete:
-                yield _judged(claim, vertices(claim, statement))
+            problem = claim.problem or study.case.problems[0].id
+            under = {
+                rid: _found(claim, statement)
+                for pid, rid in study.pairs
+                if pid == problem and (statement := study.case.statement(pid, rid)).complete
+            }
+            first = next(iter(under.values()), None)
+            if first is not None and all(found == first for found in under.values()):
+                yield first
+            else:
+                yield from (f.model_copy(update={"reading": rid}) for rid, f in under.items())
+
+
+def has_vertices(statement: Statement) -> bool:
+    """Whether the curve of a statement is the one whose vertices are computed here."""
+    return statement.declaration.family == "uniform-cubic-b-spline"
+
+
+def _found(claim: ControlVerticesClaim, statement: Statement) -> Finding:
+    if has_vertices(statement):
+        return _judged(claim, vertices(claim, statement))
+    return Finding(
+        rule="TG205",
+        basis=Basis.DIGITS,
+        claim=claim.id,
+        message=(
+            "Control vertices are computed for the uniform cubic B-spline alone, and the curve of "
+            f"the case is another one ({statement.declaration.family})."
+        ),
+    )
 
 
 def vertices(claim: ControlVerticesClaim, statement: Statement) -> tuple[Vertex, ...]:
@@ -97,7 +128,7 @@ def _judged(claim: ControlVerticesClaim, found: tuple[Vertex, ...]) -> Finding:
         )
         message = (
             f"{len(beyond)} of {len(found)} printed control vertices lie outside what the printed "
-            f"way-points allow through (2) and (3), digits rounded or cut off: {shown}."
+            f"way-points allow on the uniform cubic B-spline, digits rounded or cut off: {shown}."
         )
     elif outside:
         verdict, severity = ClaimVerdict.SUPPORTED, Severity.WARNING
@@ -110,8 +141,8 @@ def _judged(claim: ControlVerticesClaim, found: tuple[Vertex, ...]) -> Finding:
         verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
         message = (
             f"All {len(found)} printed control vertices lie inside the interval that the rounding "
-            f"of the printed way-points allows through (2) and (3), at most {widest:.2g} either "
-            "side of the value computed from the digits."
+            f"of the printed way-points allows on the uniform cubic B-spline, at most {widest:.2g} "
+            "either side of the value computed from the digits."
         )
     return Finding(
         rule="TG205",

@@ -1,8 +1,8 @@
 // Tables that sort by the column whose heading is pressed; without the script they stay as printed.
-// Those of papers have their headings beside the values too, for screens too narrow for columns.
+// Those of papers and readings have their headings beside the values too, for screens too narrow for columns.
 for (const table of document.querySelectorAll("table.trajgap-sortable")) {
   const headings = [...table.querySelectorAll("thead th")].map((one) => one.textContent.trim());
-  if (table.classList.contains("trajgap-papers")) {
+  if (table.matches(".trajgap-papers, .trajgap-readings")) {
     for (const row of table.tBodies[0].rows) {
       [...row.cells].forEach((cell, column) => { cell.dataset.label = headings[column]; });
     }

@@ -152,6 +152,6 @@ def test_pages_of_cases_with_long_ids(tmp_path: Path) -> None:
     assert len(pages) == 4
     assert all(len(page.stem) < 130 for page in pages)
     index = (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
-    for target in re.findall(r'href="([^"#]+)"', index):
+    for target in re.findall(r'<a href="([^"#]+)"', index):
         assert (tmp_path / "out" / target).is_file()
     assert foreign(tmp_path / "out") is None

@@ -4,8 +4,10 @@ import json
 import re
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
+from urllib.parse import unquote
 
 import pytest
+from support.checkout import ROOT
 from support.hostile import ID, IMAGE, Seen
 from support.studies import audited
 from trajgap.compare import AuditReport
@@ -32,6 +34,8 @@ def flat(text: str) -> str:
 def test_a_page_fetches_nothing_but_its_own_pictures(folder: Path, name: str) -> None:
     text = (folder / f"{name}.html").read_text(encoding="utf-8")
     for tag, attributes in Seen(text).tags:
+        if (tag, attributes.get("rel")) == ("link", "icon"):
+            continue
         assert tag not in ("link", "script", "iframe", "object", "embed", "base", "form")
         if tag == "img":
             assert attributes["loading"] == "lazy"
@@ -43,8 +47,23 @@ def test_a_page_fetches_nothing_but_its_own_pictures(folder: Path, name: str) ->
             assert not re.match(r"\s*(?:[a-z]+:|//)", target, re.IGNORECASE), (tag, target)
     assert "@import" not in text
     assert not re.search(r"url\((?!#)", text)
-    pictures = "" if name == "index" else "img-src 'self' file:; "
+    pictures = "img-src data:; " if name == "index" else "img-src 'self' file: data:; "
     assert f"default-src 'none'; {pictures}style-src 'unsafe-inline'" in text
+
+
+@pytest.mark.parametrize("name", ["index", "glossary", ID])
+def test_a_page_carries_its_icon_so_that_no_browser_asks_a_server_for_one(
+    folder: Path, name: str
+) -> None:
+    seen = Seen((folder / f"{name}.html").read_text(encoding="utf-8"))
+    (icon,) = [attributes for tag, attributes in seen.tags if tag == "link"]
+    kind, _, picture = str(icon["href"]).partition(",")
+    assert (icon["rel"], kind) == ("icon", "data:image/svg+xml")
+    drawn = ElementTree.fromstring(unquote(picture))
+    mark = ElementTree.parse(ROOT / "docs" / "_static" / "mark.svg").getroot()
+    assert ElementTree.canonicalize(ElementTree.tostring(drawn)) == ElementTree.canonicalize(
+        ElementTree.tostring(mark)
+    )
 
 
 def test_a_doi_is_a_link_only_if_it_is_one() -> None:
@@ -66,7 +85,7 @@ def test_every_link_leads_somewhere(folder: Path) -> None:
         assert len(ids[name]) == len(set(ids[name]))
         for _, attributes in seen.tags:
             target = attributes.get("href") or attributes.get("xlink:href")
-            if not target:
+            if not target or target.startswith("data:"):
                 continue
             file, _, anchor = target.partition("#")
             assert not file or (folder / file).is_file(), target

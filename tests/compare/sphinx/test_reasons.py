@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import pytest
 from docutils import nodes
+from support.checkout import ROOT
+from trajgap.compare.sphinx import Results
+from trajgap.compare.sphinx.directives import readings_of
 from trajgap.compare.sphinx.reasons import reasons
 
 
@@ -65,3 +69,24 @@ def test_what_differs_in_numbers_is_told_once_and_every_number_is_folded() -> No
         "Refuted under the reading “b”: 4 s too long.",
         "Refuted under the reading “a”: 3 s too long.",
     ]
+
+
+@pytest.mark.parametrize("name", ["irb1600-ga-cubic-bspline", "irb460-pso-353"])
+def test_a_place_that_every_row_shares_is_said_once(name):
+    case = Results(ROOT / "docs" / "results").case(name)
+    *said, shown, _ = readings_of(case)
+    rows = list(shown.findall(nodes.row))
+    outcomes = case["readings"]["outcomes"]
+    claims = {one["claim"] for one in outcomes}
+    places = [c["where"] for c in case["claims"] if c["claim"] in claims]
+    assert len(rows) == len(outcomes) + 1
+    counts = [sum(place in part.astext() for part in (*said, *rows)) for place in places]
+    if len(places) == 1:
+        assert counts == [1]
+        assert said[-1].astext() == f"Durations judged: {places[0]}."
+    else:
+        assert counts == [
+            sum(one["claim"] == claim for one in outcomes) for claim in sorted(claims, reverse=True)
+        ]
+    wide = {len(list(row.findall(nodes.entry))) for row in rows}
+    assert wide == {5 if len(places) == 1 else 6}

@@ -34,10 +34,40 @@ from trajgap.problem import (
 
 POLISH, WHALE = "irb1600-ga-cubic-bspline", "z1-woa-bspline"
 TIMES = ("stretched", "timed")
+CLAMPED = """family = "clamped-b-spline"
+degree = 3
+knots = "averaged-continued"
+end_orders = [1]
+parameters = "chord"
+time = "timed"
+"""
 
 
 def of(findings, rule: str, claim: str | None = None) -> list[Finding]:
     return [f for f in findings if f.rule == rule and (claim is None or f.claim == claim)]
+
+
+def vertex_case(block: str) -> str:
+    """Four way-points, their curve, and vertices that are those of no uniform cubic B-spline."""
+    return f"""
+format = 1
+id = "v"
+title = "T"
+source = {{ title = "S" }}
+robot = {{ name = "R", joints = ["1"] }}
+units = {{ position = "rad", velocity = "rad/s", time = "s" }}
+waypoints = {{ joint_rows = [["0.1", "1.2", "-0.4", "0.7"]] }}
+limits = {{ velocity = 3 }}
+
+[interpolant]
+{block}
+
+[[claims]]
+id = "vertices"
+quantity = "control_vertices"
+where = "Table 2"
+joint_rows = [["0.1", "0.2", "1.5", "-0.8", "0.6", "0.7"]]
+"""
 
 
 # --- TG205 ----------------------------------------------------------------------------------------
@@ -125,6 +155,48 @@ def test_control_vertices_are_counted(old: str, new: str, message: str) -> None:
     with pytest.raises(CaseError) as caught:
         changed(POLISH, (old, new))
     assert message in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("block", "verdict"),
+    [
+        ('family = "3-5-3"', ClaimVerdict.NOT_CHECKABLE),
+        (CLAMPED, ClaimVerdict.NOT_CHECKABLE),
+        ('family = "uniform-cubic-b-spline"\ntime = "stretched"', ClaimVerdict.REFUTED),
+    ],
+)
+def test_vertices_of_another_curve_are_not_held_to_the_uniform_splines(
+    block: str, verdict: ClaimVerdict
+) -> None:
+    """A clamped spline has two vertices more than way-points as well, and other ones."""
+    (found,) = of(judge_vertices(Study(parse_case(vertex_case(block), "v.toml"))), "TG205")
+    assert found.verdict is verdict
+    assert (found.severity is Severity.ERROR) is (verdict is ClaimVerdict.REFUTED)
+    assert ("(2) and (3)" in found.message) is False
+    if verdict is ClaimVerdict.NOT_CHECKABLE:
+        assert "uniform cubic B-spline" in found.message
+
+
+def test_vertices_are_judged_under_the_readings_of_their_curve_alone() -> None:
+    text = (
+        vertex_case('family = "uniform-cubic-b-spline"\ntime = "stretched"')
+        + """
+[[readings]]
+id = "uniform"
+why = "The text says uniform."
+default = true
+
+[[readings]]
+id = "other"
+why = "The title says 3-5-3."
+interpolant = { family = "3-5-3" }
+"""
+    )
+    found = of(judge_vertices(Study(parse_case(text, "v.toml"))), "TG205")
+    assert {f.reading: f.verdict for f in found} == {
+        "uniform": ClaimVerdict.REFUTED,
+        "other": ClaimVerdict.NOT_CHECKABLE,
+    }
 
 
 # --- rounding boxes -------------------------------------------------------------------------------
