@@ -344,7 +344,7 @@ def check(
         *_duration_peaks(problem, h),
     ]
     jumps = jumps_of(problem, trajectory, error)
-    jerk_limited = np.isfinite(problem.limits.sides[:, :, 2]).any(axis=0)
+    jerk_limited = problem.limits.limited[:, 2]
     serious = [
         jump for jump in jumps if jump.order < 2 or jerk_limited[problem.joints.index(jump.joint)]
     ]

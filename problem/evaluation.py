@@ -114,9 +114,9 @@ def _uneven_ratios(problem: Problem, h: Array, nodal: ArrayLike | None = None) -
     extra = None if nodal is None else np.asarray(nodal, dtype=np.float64)
     peaks = problem.curve.batch_sides(problem.waypoints, h, wanted, extra)
     with np.errstate(invalid="ignore", divide="ignore"):
-        ratios = peaks / np.where(wanted, sides, 1.0)[:, None]
-    ratios[np.isnan(ratios)] = 0.0  # 0/0 is kept
-    return np.asarray(ratios.max(axis=0))
+        found = peaks / np.where(wanted, sides, 1.0)[:, None]
+    found[np.isnan(found)] = 0.0  # 0/0 is kept
+    return np.asarray(found.max(axis=0))
 
 
 _Question = tuple[Array, Array, NDArray[np.bool_], bool]

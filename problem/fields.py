@@ -166,7 +166,7 @@ def _size_or_pair(raw: object) -> Printed | LimitPair | None:
         return _upper_limit(raw)
     if len(raw) != 2:
         raise TrajgapError(f"a pair of limits has 2 numbers, got {len(raw)}; {_LEAST_AND_LARGEST}")
-    ends = []
+    ends: list[Printed | None] = []
     for value, sign in zip(raw, ("-", "+"), strict=True):
         infinite = _infinite(value)
         if infinite == sign:

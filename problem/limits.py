@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from typing import overload
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from .arrays import Array
 from .errors import TrajgapError
@@ -163,6 +163,12 @@ class Limits:
     def widest(self) -> Array:
         """The larger size of both sides, shape (joints, 3): what no motion within them exceeds."""
         return np.asarray(self.sides.max(axis=0))
+
+    @property
+    def limited(self) -> NDArray[np.bool_]:
+        """Which derivatives have a limit on some side, shape (joints, 3)."""
+        found: NDArray[np.bool_] = np.isfinite(self.sides.min(axis=0))
+        return found
 
     @property
     def hull(self) -> Limits:

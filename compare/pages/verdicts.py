@@ -67,7 +67,9 @@ def _limits(problem: Problem, statement: Statement) -> str:
     parts = []
     for name in QUANTITIES:
         if problem.limits.is_uneven(name):
-            low, high = (both_units(statement, name, x, ".6g") for x in problem.limits.ends(name))
+            low, high = (
+                both_units(statement, name, x.tolist(), ".6g") for x in problem.limits.ends(name)
+            )
             parts.append(f"{name} at least {low}, at most {high}")
             continue
         values = getattr(problem.limits, name)

@@ -111,7 +111,7 @@ def best_form(interpolant: Interpolant, joints: int) -> Form:
 def structure_of(problem: Problem, form: Form | None = None) -> Structure:
     """The shape of a problem's NLP: curve, joints, and which derivatives are limited."""
     limits = problem.limits.sides
-    usable = (np.isfinite(limits) & (limits > 0)).any(axis=0)
+    usable = np.array(np.isfinite(limits) & (limits > 0)).max(axis=0)
     orders = tuple(r for r in (1, 2, 3) if usable[:, r - 1].any())
     if problem.limits.limits_position:
         orders = (0, *orders)

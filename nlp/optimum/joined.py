@@ -91,7 +91,7 @@ def _ratios(problem: Problem, share: float) -> _Ratios:
     reasons = ["velocity"] * (n - 1)
     for k in range(n - 1):
         for j, joint in enumerate(problem.joints):
-            for order in (1, 2) if np.isfinite(problem.limits.sides[:, j, 2]).any() else (1,):
+            for order in (1, 2) if problem.limits.limited[j, 2] else (1,):
                 sides = [found.trajectory.derivative(k + i, j, order) for i in (0, 1)]
                 # A joint that stands still has no derivative: rounding has no part in that.
                 still = np.diff(problem.waypoints[k : k + 3, j]) == 0.0

@@ -230,6 +230,6 @@ def _places(problem: Problem) -> list[tuple[int, int, int]]:
         for j in range(len(problem.joints))
         for order in (1, 2)
         if order > curve.continuity[b - 1]
-        and (order == 1 or np.isfinite(problem.limits.sides[:, j, 2]).any())
+        and (order == 1 or problem.limits.limited[j, 2])
         and np.ptp(problem.waypoints[:, j]) > 0
     ]

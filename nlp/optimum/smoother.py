@@ -49,7 +49,7 @@ def smoother(problem: Problem) -> Problem | None:
 def _jerk_limited(problem: Problem) -> Array:
     """Joints that move and whose jerk is limited."""
     moving = np.ptp(problem.waypoints, axis=0) > 0
-    return np.asarray(np.isfinite(problem.limits.sides[:, :, 2]).any(axis=0) & moving)
+    return np.asarray(problem.limits.limited[:, 2] & moving)
 
 
 def same_motions(problem: Problem) -> bool:

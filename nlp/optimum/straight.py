@@ -42,7 +42,7 @@ def straight_durations(problem: Problem) -> Array | None:
     if any(order < 2 or value != 0.0 for order, value in given):
         return None
     moving = np.ptp(problem.waypoints, axis=0) > 0
-    limited = np.isfinite(problem.limits.sides).any(axis=0)
+    limited = problem.limits.limited
     bound = limited.any(axis=1)
     if (moving & limited[:, 0]).any() or not (moving & bound).any():
         return None

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ...problem import Interpolant, Limits, Problem
 from ...problem.curves import ConditionKind, StretchedUniformBSpline, vertex_matrix
-from .exact import ExactProblem
+from .exact import ExactProblem, Real
 
 _STRETCHES = tuple(Fraction(1, 10**k) for k in (13, 12, 11, 10, 9, 8, 7))
 """Shares by which an answer is stretched until it is feasible, tried in turn: from some roundings
@@ -21,14 +21,15 @@ _DEEPEST = 60
 """Halvings after which a polynomial is taken to exceed its bound: finer than any float."""
 
 
+def _tight(size: Real | None) -> float:
+    """The tighter end of a limit in floats; inf for none."""
+    return np.inf if size is None else float(size.low)
+
+
 def float_problem(exact: ExactProblem) -> Problem:
     """Nearest problem in floats, in the unit of angle of ``exact``; π on the tighter side."""
-    joints = range(len(exact.joints))
-    pairs = [[exact.sides(j, r) for r in (1, 2, 3)] for j in joints]
-    sides = [
-        [[np.inf if pair[side] is None else float(pair[side].low) for pair in row] for row in pairs]
-        for side in (0, 1)
-    ]
+    pairs = [[exact.sides(j, r) for r in (1, 2, 3)] for j in range(len(exact.joints))]
+    sides = [[[_tight(pair[side]) for pair in row] for row in pairs] for side in (0, 1)]
     low = [-np.inf if x is None else float(x.high) for x in exact.position_lower]
     high = [np.inf if x is None else float(x.low) for x in exact.position_upper]
     return Problem(

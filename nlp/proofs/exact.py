@@ -275,16 +275,14 @@ def printed_problem(statement: Statement) -> ExactProblem:
     for order, name in enumerate(("velocity", "acceleration", "jerk"), 1):
         column = each(getattr(limits, name), total)
         for place, j in enumerate(statement.joints):
-            if isinstance(column[j], LimitPair):
-                low, high = (
-                    angle(x, getattr(units, name)) for x in (column[j].lower, column[j].upper)
-                )
-                if low is not None:
-                    low = Real(-low.rational, low.pi)
-                if low != high:
-                    pairs[place, order] = low, high
-                else:
-                    column[j] = column[j].upper
+            if not isinstance(column[j], LimitPair):
+                continue
+            ends = (column[j].lower, column[j].upper)
+            least, most = (angle(x, getattr(units, name)) for x in ends)
+            below = None if least is None else Real(-least.rational, least.pi)
+            if below != most:
+                pairs[place, order] = below, most
+            column[j] = column[j].upper
         joined = _joined(pairs)
         columns.append(
             [

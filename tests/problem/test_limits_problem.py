@@ -70,7 +70,8 @@ def test_limits_of_one_joint_and_replaced() -> None:
             {"velocity": [1, 2], "jerk": [1, 2, 3]},
             r"limits.velocity: expected one value or 3 \(one per joint\), got shape \(2,\)",
         ),
-        ({"acceleration": np.ones((2, 2))}, r"limits.acceleration: .* got shape \(2, 2\)"),
+        ({"acceleration": np.ones((2, 3))}, r"limits.acceleration: .* got shape \(2, 3\)"),
+        ({"acceleration": np.ones((2, 2))}, r"limits.acceleration: 1 to 1 leaves out 0"),
         ({"velocity": [1, 2], "joints": 3}, r"limits.velocity: expected one value or 3"),
         (
             {"velocity": [1, np.nan]},

@@ -17,12 +17,14 @@ from support.planting import (
     collected,
     digits,
     fails,
+    jumps,
     name,
     named,
     passes,
     places,
     stated_errors,
     together,
+    uneven,
     waves,
 )
 from trajgap.problem import evaluation
@@ -30,6 +32,8 @@ from trajgap.problem.curves import kind as curve
 from trajgap.problem.curves import peak, pieces
 
 checker = importlib.import_module("trajgap.problem.checker")
+wrong_side = named("test_uneven", "test_the_wrong_side_is_a_violation")
+side_of_zero = named("test_uneven", "test_a_side_of_zero_forbids_that_side_alone")
 
 PEAK: list[tuple[str, str, Killer]] = [
     ("    if degree < 2:", "    if degree < 3:", chebyshev),
@@ -138,21 +142,6 @@ CHECKER: list[tuple[str, str, Killer]] = [
         named("test_verdicts", "test_duration_bounds"),
     ),
     (
-        "for b in range(1, len(trajectory.durations)):",
-        "for b in range(1, len(trajectory.durations) - 1):",
-        named("test_verdicts", "test_velocity_jump_is_discontinuous"),
-    ),
-    (
-        "if abs(size) > bound:",
-        "if size > bound:",
-        named("test_verdicts", "test_velocity_jump_is_discontinuous"),
-    ),
-    (
-        "for order in range(3):\n                left",
-        "for order in range(2):\n                left",
-        named("test_verdicts", "test_acceleration_jump_counts_where_jerk_is_limited"),
-    ),
-    (
         "if not np.isfinite(factor):",
         "if False:",
         named("test_verdicts", "test_joint_that_must_not_move"),
@@ -246,6 +235,32 @@ EVALUATION: list[tuple[str, str, Killer]] = [
     ("for j in range(1, ratios.shape[1]):", "for j in range(1, ratios.shape[1] - 1):", agreement),
 ]
 
+JUMPS: list[tuple[str, str, Killer]] = [
+    (
+        "for b in range(1, len(trajectory.durations)):",
+        "for b in range(1, len(trajectory.durations) - 1):",
+        named("test_verdicts", "test_velocity_jump_is_discontinuous"),
+    ),
+    (
+        "if abs(size) > bound:",
+        "if size > bound:",
+        named("test_verdicts", "test_velocity_jump_is_discontinuous"),
+    ),
+    (
+        "for order in range(3):\n                left",
+        "for order in range(2):\n                left",
+        named("test_verdicts", "test_acceleration_jump_counts_where_jerk_is_limited"),
+    ),
+]
+
+UNEVEN: list[tuple[str, str, Killer]] = [
+    ("((0, -1.0), (1, 1.0))", "((1, -1.0), (0, 1.0))", wrong_side),
+    ("((0, -1.0), (1, 1.0))", "((1, 1.0),)", wrong_side),
+    ("here = sign * point.value", "here = point.value", wrong_side),
+    ("float(np.maximum(0.0, top)) / size", "abs(top) / size", side_of_zero),
+    ("0.0 if top <= bound else np.inf", "0.0", side_of_zero),
+]
+
 CURVE: list[tuple[str, str, Killer]] = [
     ("coefficient_error + size)", "0 * size)", stated_errors),
 ]
@@ -256,6 +271,8 @@ ALL = [
         (peak, PEAK),
         (pieces, PIECES),
         (checker, CHECKER),
+        (jumps, JUMPS),
+        (uneven, UNEVEN),
         (evaluation, EVALUATION),
         (curve, CURVE),
     )
@@ -281,7 +298,9 @@ def test_a_planted_fault_fails(
     fails(monkeypatch, suite, module, old, new, killer)
 
 
-@pytest.mark.parametrize("module", [peak, pieces, checker, evaluation, curve], ids=name)
+@pytest.mark.parametrize(
+    "module", [peak, pieces, checker, jumps, uneven, evaluation, curve], ids=name
+)
 def test_without_a_fault_the_same_tests_pass(
     monkeypatch: pytest.MonkeyPatch, suite: Suite, module: ModuleType
 ) -> None:

@@ -17,6 +17,7 @@ from trajgap.problem import (
     cubic_spline,
     evaluate,
     keeps_limits,
+    piecewise,
     reachable_total,
     rest_to_rest,
     uniform_cubic_b_spline,
@@ -142,6 +143,9 @@ def test_a_side_of_zero_forbids_that_side_alone() -> None:
     unlimited = check(Problem(-rising, free, curve), [1e-3])
     assert unlimited.verdict is Verdict.PASS
     assert unlimited.peaks[0].ratio == 0.0
+    # At -1 rad/s all the way, nothing lies on the limited side.
+    steady = check(Problem(-rising, free, piecewise((1,), 0, ())), [1.0])
+    assert (steady.verdict, steady.peaks[0].ratio) == (Verdict.PASS, 0.0)
 
 
 @pytest.mark.parametrize("kind", ["clamped", "timed"])

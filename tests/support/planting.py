@@ -21,6 +21,8 @@ from trajgap.problem.curves import interpolant, kernel, peak, pieces, spline, tr
 from trajgap.problem.curves import kind as curve
 
 checker = importlib.import_module("trajgap.problem.checker")
+jumps = importlib.import_module("trajgap.problem.jumps")
+uneven = importlib.import_module("trajgap.problem.uneven_peaks")
 FILES = {
     "test_check": "test_check.py",
     "test_verdicts": "test_check_verdicts.py",
@@ -29,6 +31,7 @@ FILES = {
     "test_spline": "curves/test_spline.py",
     "test_spline_errors": "curves/test_spline_errors.py",
     "test_timed": "curves/test_timed_spline.py",
+    "test_uneven": "test_uneven_limits.py",
 }
 COMPILED = "compiler(*(Path(__file__).with_name(name) for name in KERNELS))"
 
@@ -43,6 +46,7 @@ class Suite:
     test_spline: ModuleType
     test_spline_errors: ModuleType
     test_timed: ModuleType
+    test_uneven: ModuleType
 
 
 Killer = Callable[[Suite], None]
@@ -98,9 +102,13 @@ def use(
             for user in held:
                 monkeypatch.setattr(user, name, getattr(mutant, name))
     elif module is pieces:
-        for name in ("largest_of_each", "may_jump"):
-            for user in (checker, suite.test_pieces):
+        for name, asking in (("largest_of_each", checker), ("may_jump", jumps)):
+            for user in (asking, suite.test_pieces):
                 monkeypatch.setattr(user, name, getattr(mutant, name))
+    elif module is jumps:
+        monkeypatch.setattr(checker, "jumps_of", mutant.jumps_of)
+    elif module is uneven:
+        monkeypatch.setattr(checker, "uneven_peaks", mutant.uneven_peaks)
     elif module is curve:
         monkeypatch.setattr(interpolant, "value_errors", mutant.value_errors)
     else:
