@@ -85,7 +85,7 @@ class Claims(FromResults):
         if wanted:
             chosen.sort(key=lambda one: wanted.index(one["verdict"]))
         told: set[str] = set()
-        reasoned: dict[str, str] = {}
+        reasoned: dict[str, tuple[str, str]] = {}
         groups: dict[tuple[str, ...], list[dict[str, Any]]] = {}
         for one in chosen:
             key = (stated[one["claim"]]["text"], qualified(one["verdict"], one["caveats"]))
@@ -100,9 +100,10 @@ class Claims(FromResults):
             place = ". ".join(filter(None, (claim["where"], claim["printed"], _holds(verdict))))
             place = f"{place[:1].upper()}{place[1:]}"
             box += [head, paragraph(place, "trajgap-beside")]
-            before = reasoned.setdefault(verdict["why"], claim["text"])
-            first = before == claim["text"]
-            box += reasons(case, verdict) if first else [paragraph(same_reason(before))]
+            own = claim["text"], claim["where"]
+            before = reasoned.setdefault(verdict["why"], own)
+            short = same_reason(*before, claim["where"])
+            box += reasons(case, verdict) if before == own else [paragraph(short)]
             for one in others:
                 if one["why"] != verdict["why"]:
                     box += paragraph(f"{stated[one['claim']]['where']}: {one['why']}")
