@@ -158,9 +158,17 @@ class Readings(FromResults):
         head += nodes.Text(said["default_why"] or "")
         meant = [[labels.get(one, one), nodes.literal("", one)] for one in names]
         known = table(("reading", "its id"), meant)
-        rows = [_under(case, outcome, labels) for outcome in said["outcomes"]]
+        far = said.get("implausible", {})
+        marked = {
+            one: f"{labels.get(one, one)}{' (implausible)' if one in far else ''}" for one in names
+        }
+        told = [
+            paragraph(f"Implausible, though admissible: {labels.get(one, one)}, for {why}.")
+            for one, why in far.items()
+        ]
+        rows = [_under(case, outcome, marked) for outcome in said["outcomes"]]
         columns = ("reading", "durations of", "limits", "largest ratio", "shortest, s", "evidence")
-        return [head, table(columns, rows), known] if rows else [head, known]
+        return [head, *told, table(columns, rows), known] if rows else [head, *told, known]
 
 
 def _under(case: dict[str, Any], outcome: dict[str, Any], labels: Mapping[str, str]) -> list[Any]:

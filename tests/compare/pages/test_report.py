@@ -171,6 +171,17 @@ def test_where_readings_differ_each_has_its_verdict(page: Seen) -> None:
     assert "depends on the reading" in page.words
 
 
+def test_a_reading_is_called_by_its_meaning_and_its_id_stands_once(
+    folder: Path, report: AuditReport
+) -> None:
+    written = (folder / f"{ID}.md").read_text(encoding="utf-8")
+    for reading, label in report.cases[0].case.labels.items():
+        # Names of files and commands to make the audit again hold ids between other characters.
+        found = re.findall(rf"(?<![\w.-]){re.escape(reading)}(?![\w-])", written)
+        assert len(found) == 1
+        assert written.count(label) > 1
+
+
 def test_every_finding_stands_with_rule_basis_and_numbers(page: Seen, report: AuditReport) -> None:
     for finding in report.cases[0].findings:
         assert finding.rule in page.words
