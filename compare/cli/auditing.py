@@ -115,10 +115,14 @@ def audited(document: AuditDocument) -> list[RenderableType]:
         parts += [line(said, "bold red" if said in against else "") for said in card.sentences]
         parts.append(line(tally(case.verdicts), "dim"))
         counts = Counter(v.verdict for v in case.verdicts)
-        said = ", ".join(counted(word, counts[word]) for word in ClaimVerdict if counts[word])
-        many = "1 claim" if len(case.verdicts) == 1 else f"{len(case.verdicts)} claims"
         beside = worth_little(case.verdicts)
-        said += f"; {beside}" if beside else ""
+        worth = {ClaimVerdict.SUPPORTED: f" ({beside})" if beside else ""}
+        said = ", ".join(
+            f"{counted(word, counts[word])}{worth.get(word, '')}"
+            for word in ClaimVerdict
+            if counts[word]
+        )
+        many = "1 claim" if len(case.verdicts) == 1 else f"{len(case.verdicts)} claims"
         parts += [line(""), line(f"{many}: {said or 'none to judge'}")]
         rows = _rows(case)
         if rows:

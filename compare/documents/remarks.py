@@ -62,13 +62,20 @@ def qualified(verdict: str, caveats: Iterable[object]) -> str:
     str
         Such as "supported, but on doubted numbers".
     """
+    return ", ".join([verdict, *_beside(verdict, caveats)])
+
+
+def _beside(verdict: str, caveats: Iterable[object]) -> list[str]:
+    """What stands beside a verdict; what holds by construction rests on no numbers at all."""
     texts = list(map(str, caveats))
-    beside = [
-        said
+    found = {
+        start: said
         for start, (word, said) in _BESIDE.items()
         if word == verdict and any(text.startswith(start) for text in texts)
-    ]
-    return ", ".join([verdict, *beside])
+    }
+    if BUILT in found:
+        found.pop(DOUBTED, None)
+    return list(found.values())
 
 
 def worth_little(judgements: Sequence[Judgement]) -> str:
@@ -81,27 +88,34 @@ def worth_little(judgements: Sequence[Judgement]) -> str:
     Returns
     -------
     str
-        Such as "18 of them on doubted numbers, 2 by construction".
+        Such as "18 on doubted numbers, 2 by construction".
     """
-    starts = [
-        (start, said.removeprefix("but "))
-        for start, (word, said) in _BESIDE.items()
-        if word is ClaimVerdict.SUPPORTED
-    ]
     counts = Counter(
-        said
+        said.removeprefix("but ")
         for judgement in judgements
         if judgement.verdict is ClaimVerdict.SUPPORTED
-        for start, said in starts
-        if any(str(caveat).startswith(start) for caveat in judgement.caveats)
+        for said in _beside(judgement.verdict, judgement.caveats)
     )
     parts = [f"{count} {said}" for said, count in counts.items()]
-    return f"of these {', '.join(parts)}" if parts else ""
+    return ", ".join(parts)
 
 
-def same_reason(text: str) -> str:
-    """What stands in place of a reason that an earlier claim, of these words, has given."""
-    return f"For the same reason as “{text.rstrip('.')}”."
+def same_reason(text: str, where: str, own: str) -> str:
+    """What stands in place of a reason that an earlier claim has given.
+
+    Parameters
+    ----------
+    text, where : str
+        Words and place of the earlier claim.
+    own : str
+        Place of this one; where it is the same, the words tell them apart.
+
+    Returns
+    -------
+    str
+    """
+    called = where if where != own else f"“{text.rstrip('.')}”"
+    return f"For the same reason as {called}."
 
 
 def claims_nothing(judgement: Judgement) -> bool:

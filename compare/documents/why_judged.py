@@ -183,7 +183,7 @@ def told(
     return f"{capital(f'{one.verdict} {where}' if word else where)}: {one.message}"
 
 
-def listed(
+def in_full(
     one: Reason, computed: Sequence[str], named: Named = NAMELESS, *, word: bool = False
 ) -> list[str]:
     """Every message of a reason with all its readings named; nothing is left out."""
@@ -218,19 +218,18 @@ def under(
     Returns
     -------
     str
-        Such as "under the reading “angles in degrees”" or "under 12 of 16 readings".
+        Such as "under “angles in degrees”" or "under 12 of 16 readings".
     """
     labels, far = named.labels, named.implausible
     left = [one for one in computed if one not in readings]
     if not left:
         return "under both readings" if len(computed) == 2 else "under every reading"
     if len(readings) <= most:
-        several = "s" if len(readings) > 1 else ""
         which = _and([quoted(one, labels) for one in readings])
         if len(readings) == 1 and readings[0] in far:
             reason = f" ({far[readings[0]]})" if why else ""
-            return f"under the implausible reading {which}{reason}"
-        return f"under the reading{several} {which}"
+            return f"under the implausible {which}{reason}"
+        return f"under {which}"
     count = f"under {len(readings)} of {len(computed)} readings"
     if len(left) <= _FEW:
         return f"{count} (not under {_and([quoted(one, labels) for one in left])})"

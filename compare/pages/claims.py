@@ -69,7 +69,7 @@ def folded_claims(one: CaseAudit) -> Iterator[Section]:
         own = [j for j in one.judgements if j.verdict is verdict]
         beside = worth_little(own)
         title = f"{len(own)} claim{'' if len(own) == 1 else 's'} {verdict}"
-        title += f", {beside}" if beside else ""
+        title += f": {beside}" if beside else ""
         found = tuple(shown_once([claimed(one, j) for j in own]))
         yield Section(f"claims-{slug(verdict)}", title, found, folded=True)
 

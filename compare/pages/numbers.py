@@ -120,7 +120,11 @@ def problem_name(one: CaseAudit, pid: str, reading: str | None = None) -> str:
     title = next((p.title for p in one.case.problems if p.id == pid), "") or pid
     if not one.case.document.problems:
         title = "The motion"  # the file names no problem, and "main" says nothing
-    under = f"; {one.case.labels[reading]}" if reading and len(one.study.readings) > 1 else ""
+    under = (
+        f"; {one.case.labels.get(reading, reading)}"
+        if reading and len(one.study.readings) > 1
+        else ""
+    )
     return f"{title}{under}"
 
 
@@ -153,7 +157,7 @@ def _side_by_side(one: CaseAudit, pid: str, waterfalls: Sequence[Waterfall]) -> 
     for waterfall in waterfalls:
         steps = {s.name: s for s in waterfall.steps}
         cells = [_step(steps.get(name)) for name in names]
-        rows.append((text(one.case.labels[waterfall.reading]), *cells))
+        rows.append((text(one.case.labels.get(waterfall.reading, waterfall.reading)), *cells))
     caption = f"{problem_name(one, pid)}; an empty cell was not computed"
     return Grid(("reading", *names), tuple(rows), caption).filled
 

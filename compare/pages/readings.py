@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from ...problem import Case
@@ -63,6 +63,10 @@ def _argued(one: CaseAudit, summary: ReadingsSummary) -> Iterator[Block]:
     blocks: list[Plain] = []
     if not isinstance(summary.default_why, Why):
         blocks.append(Prose(f"Default: {summary.labels[summary.default]}. {summary.default_why}"))
+    blocks += [
+        Prose(f"Implausible, though admissible: {summary.labels[reading]}, for {why}.")
+        for reading, why in summary.implausible.items()
+    ]
     if rows:
         columns = ("printed or known", "readings", "speaks", "computed under them")
         note = "None of this decides a verdict: an implausible reading stays admissible."
@@ -111,7 +115,7 @@ def _outcomes(one: CaseAudit, summary: ReadingsSummary) -> list[Block]:
     names = ("reading", "limits", "over a limit", "× to limits", "optimum", "printed total")
     grids: list[Block] = []
     for (claim, problem), own in printed.items():
-        rows = tuple(_row(outcome, default, summary.labels) for outcome in own)
+        rows = tuple(_row(outcome, default, summary) for outcome in own)
         where = place(one.case.claim(claim)) if claim else problem
         grids.append(Grid(names, rows, where).filled)
     note = (
@@ -123,8 +127,9 @@ def _outcomes(one: CaseAudit, summary: ReadingsSummary) -> list[Block]:
     return [*grids, Folded("How to read this table", (Prose(note, "note"),))]
 
 
-def _row(outcome: ReadingOutcome, default: str, labels: Mapping[str, str]) -> tuple[Cell, ...]:
+def _row(outcome: ReadingOutcome, default: str, summary: ReadingsSummary) -> tuple[Cell, ...]:
     mark = "\n(default)" if outcome.reading == default else ""
+    mark += "\n(implausible)" if outcome.reading in summary.implausible else ""
     optimum = stretch = gap = None
     if not isinstance(outcome.optimum, Why):
         optimum = f"{outcome.optimum:.6f} s\n{outcome.evidence}"
@@ -141,7 +146,7 @@ def _row(outcome: ReadingOutcome, default: str, labels: Mapping[str, str]) -> tu
     jumps = f"\n{outcome.jumps} velocity jumps" if outcome.jumps else ""
     limits = text(None) if isinstance(outcome.keeping, Why) else word(outcome.keeping)
     return (
-        text(labels[outcome.reading] + mark),
+        text(summary.labels[outcome.reading] + mark),
         replace(limits, text=limits.text + jumps),
         text(over),
         number(stretch),

@@ -31,7 +31,7 @@ def shown_once(found: Sequence[Claimed]) -> Iterator[Claimed]:
         one = _joined(group)
         before = first.setdefault((*one.why, *one.more), one)
         if before is not one:
-            one = replace(one, why=(same_reason(before.text),), more=())
+            one = replace(one, why=(same_reason(before.text, before.where, one.where),), more=())
         caveats = tuple(
             f"{caveat.partition(':')[0]} (see above)." if caveat in told else caveat
             for caveat in one.caveats

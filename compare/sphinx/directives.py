@@ -85,7 +85,7 @@ class Claims(FromResults):
         if wanted:
             chosen.sort(key=lambda one: wanted.index(one["verdict"]))
         told: set[str] = set()
-        reasoned: dict[str, str] = {}
+        reasoned: dict[str, tuple[str, str]] = {}
         groups: dict[tuple[str, ...], list[dict[str, Any]]] = {}
         for one in chosen:
             key = (stated[one["claim"]]["text"], qualified(one["verdict"], one["caveats"]))
@@ -100,9 +100,10 @@ class Claims(FromResults):
             place = ". ".join(filter(None, (claim["where"], claim["printed"], _holds(verdict))))
             place = f"{place[:1].upper()}{place[1:]}"
             box += [head, paragraph(place, "trajgap-beside")]
-            before = reasoned.setdefault(verdict["why"], claim["text"])
-            first = before == claim["text"]
-            box += reasons(case, verdict) if first else [paragraph(same_reason(before))]
+            own = claim["text"], claim["where"]
+            before = reasoned.setdefault(verdict["why"], own)
+            short = same_reason(*before, claim["where"])
+            box += reasons(case, verdict) if before == own else [paragraph(short)]
             for one in others:
                 if one["why"] != verdict["why"]:
                     box += paragraph(f"{stated[one['claim']]['where']}: {one['why']}")
@@ -161,11 +162,19 @@ def readings_of(case: dict[str, Any]) -> list[nodes.Node]:
     head += nodes.Text(said["default_why"] or "")
     meant = [[labels.get(one, one), nodes.literal("", one)] for one in names]
     known = table(("reading", "its id"), meant)
-    rows = [_under(case, outcome, labels) for outcome in said["outcomes"]]
+    far = said.get("implausible", {})
+    marked = {
+        one: f"{labels.get(one, one)}{' (implausible)' if one in far else ''}" for one in names
+    }
+    told = [
+        paragraph(f"Implausible, though admissible: {labels.get(one, one)}, for {why}.")
+        for one, why in far.items()
+    ]
+    rows = [_under(case, outcome, marked) for outcome in said["outcomes"]]
     if not rows:
-        return [head, known]
+        return [head, *told, known]
     columns = ["reading", "durations of", "limits", "largest ratio", "shortest, s", "evidence"]
-    shown: list[nodes.Node] = [head]
+    shown: list[nodes.Node] = [head, *told]
     places = {row[1] for row in rows}
     if len(places) == 1:  # a column of one text would take the room of the others
         shown.append(paragraph(f"Durations judged: {next(iter(places))}."))

@@ -6,7 +6,7 @@ from typing import Any
 
 from docutils import nodes
 
-from ..documents import ClaimVerdict, Named, Said, listed, told
+from ..documents import ClaimVerdict, Named, Said, in_full, told
 from ..documents import reasons as grouped
 from .parts import paragraph
 
@@ -43,7 +43,7 @@ def reasons(case: dict[str, Any], verdict: dict[str, Any]) -> list[nodes.Node]:
     rest = [
         line
         for one in (found if summed else found[1:])
-        for line in listed(one, computed, named, word=depends)
+        for line in in_full(one, computed, named, word=depends)
     ]
     folded = nodes.container(classes=["trajgap-folded"])
     folded += [paragraph(one) for one in rest]

@@ -204,8 +204,8 @@ def test_a_reading_far_from_the_limits_is_named_as_implausible_and_stands_last()
     )
     limits = next(one for one in answers(found) if one.startswith("durations-110"))
     assert limits.startswith(
-        "durations-110 (limit-110): the limits are broken under the reading “way-points in "
-        "radians”, kept under the implausible reading “way-points in degrees” (printed durations "
+        "durations-110 (limit-110): the limits are broken under “way-points in "
+        "radians”, kept under the implausible “way-points in degrees” (printed durations "
     )
     assert limits.endswith("21.4 % above it (1 implausible reading left out).")
 
@@ -275,7 +275,7 @@ def test_a_selected_reading_counts_as_one_of_all() -> None:
     claims = {"limit-80": "durations-80", "limit-110": "durations-110"}
     found = summary_of(summed(load_case(PALLET), claims, reading="waypoints-rad"))
     assert answers(found)[0].startswith(
-        "durations-80 (limit-80): the limits are kept under the reading “way-points in radians”."
+        "durations-80 (limit-80): the limits are kept under “way-points in radians”."
     )
     assert all(answer.startswith("durations-") for answer in answers(found))
 

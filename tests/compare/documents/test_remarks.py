@@ -45,6 +45,8 @@ def judged(verdict: ClaimVerdict, *caveats: Caveat) -> Judgement:
         (S, (), "supported"),
         (S, (DOUBT,), "supported, but on doubted numbers"),
         (S, (BUILT,), "supported, by construction"),
+        # What holds by construction rests on no printed number, doubted or not.
+        (S, (BUILT, DOUBT), "supported, by construction"),
         # What is refuted is so, whatever the numbers are worth.
         (R, (DOUBT,), "refuted"),
         (N, (nature_remark(Nature.DEFINITION),), "not checkable, a definition"),
@@ -66,5 +68,5 @@ def test_what_holds_by_construction_is_counted_as_no_evidence() -> None:
         "Verdicts on 6 claims: 3 are proven under a reading, 1 holds by construction, 1 is open, "
         "1 claims no result."
     )
-    assert worth_little(every) == "of these 1 by construction, 2 on doubted numbers"
+    assert worth_little(every) == "1 by construction, 2 on doubted numbers"
     assert worth_little([judged(S), judged(R, DOUBT)]) == ""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from trajgap.compare.documents import Named, Said, listed, reasons, told, under
+from trajgap.compare.documents import Named, Said, in_full, reasons, told, under
 
 READINGS = tuple("abcdef")
 LABELS = {"a": "first", "b": "second", "c": "third", "d": "fourth", "e": "fifth", "f": "sixth"}
@@ -17,8 +17,8 @@ def said(readings: str, message: str, verdict: str = "refuted", rule: str = "TG2
 @pytest.mark.parametrize(
     ("readings", "wanted"),
     [
-        ("a", "under the reading “first”"),
-        ("ab", "under the readings “first” and “second”"),
+        ("a", "under “first”"),
+        ("ab", "under “first” and “second”"),
         ("abc", "under 3 of 6 readings"),
         ("abcd", "under 4 of 6 readings (not under “fifth” and “sixth”)"),
         ("abcde", "under 5 of 6 readings (not under “sixth”)"),
@@ -35,9 +35,9 @@ def test_of_two_readings_both_are_called_both() -> None:
 
 def test_an_implausible_reading_is_named_as_one_with_its_reason_where_asked() -> None:
     named = Named(LABELS, {"b": "57 times too slow"}, "a")
-    assert under(("b",), READINGS, named) == "under the implausible reading “second”"
+    assert under(("b",), READINGS, named) == "under the implausible “second”"
     assert under(("b",), READINGS, named, why=True) == (
-        "under the implausible reading “second” (57 times too slow)"
+        "under the implausible “second” (57 times too slow)"
     )
 
 
@@ -54,13 +54,12 @@ def test_reasons_that_differ_in_numbers_alone_are_one_with_those_of_the_default(
     assert [told(one, READINGS, NAMED) for one in found] == [
         "Under 3 of 6 readings, here with the numbers of “third”: The velocity reaches 430 °/s, "
         "limit 172 °/s.",
-        "Under the reading “fourth”: The velocity jumps.",
+        "Under “fourth”: The velocity jumps.",
     ]
     # To the digit, with every reading, nothing is left out.
-    assert listed(found[0], READINGS, NAMED, word=True) == [
-        "Refuted under the readings “third” and “second”: The velocity reaches 430 °/s, "
-        "limit 172 °/s.",
-        "Refuted under the reading “first”: The velocity reaches 7.5 rad/s, limit 3 rad/s.",
+    assert in_full(found[0], READINGS, NAMED, word=True) == [
+        "Refuted under “third” and “second”: The velocity reaches 430 °/s, limit 172 °/s.",
+        "Refuted under “first”: The velocity reaches 7.5 rad/s, limit 3 rad/s.",
     ]
 
 

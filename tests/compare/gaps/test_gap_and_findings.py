@@ -99,9 +99,7 @@ def test_findings_about_other_claims_or_beside_the_point_do_not_decide() -> None
 def test_a_claim_that_depends_on_the_reading_names_each_reading_with_its_word() -> None:
     findings = [finding(S, "a", message="kept."), finding(R, "b", message="broken.")]
     judged = judge("c", findings, ["a", "b"])
-    assert judged.why == (
-        "Refuted under the reading “b”: broken. Supported under the reading “a”: kept."
-    )
+    assert judged.why == ("Refuted under “b”: broken. Supported under “a”: kept.")
     assert judged.readings == {"a": S, "b": R}
 
 
@@ -110,8 +108,7 @@ def test_what_holds_under_some_readings_alone_has_them_before_it() -> None:
     findings += [finding(R, "c", message="another."), finding(R, None, message="always.")]
     findings += [finding(R, r, message="each.") for r in ("a", "b", "c")]
     assert judge("c", findings, ["a", "b", "c"]).why == (
-        "Under the readings “a” and “b”: one of three. Under the reading “c”: another. always. "
-        "each."
+        "Under “a” and “b”: one of three. Under “c”: another. always. each."
     )
 
 

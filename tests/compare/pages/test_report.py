@@ -11,7 +11,7 @@ from support.checkout import ROOT
 from support.hostile import ID, IMAGE, Seen
 from support.studies import audited
 from trajgap.compare import AuditReport
-from trajgap.compare.documents import CARD_WORDS, Basis, Gap, Keeping
+from trajgap.compare.documents import CARD_WORDS, Basis, Gap, Keeping, qualified
 from trajgap.compare.pages.blocks import (
     Claimed,
     Page,
@@ -161,7 +161,7 @@ def test_every_claim_stands_with_its_digits_and_verdict(
         assert flat(claim.text) in page.words
         assert claim.where in page.words
         assert flat(plain(claim.where)) in flat(written)
-        assert shown[claim.id].verdict.text == judgement.verdict
+        assert shown[claim.id].verdict.text == qualified(judgement.verdict, judgement.caveats)
         if judgement.evidence is not Evidence.NONE:
             assert f"reference: {judgement.evidence}" in shown[claim.id].holds
     assert "0.7615, 0.3854, 0.4572 s" in page.words
@@ -184,10 +184,21 @@ def test_the_card_stands_on_top_in_page_markdown_and_index(
 
 def test_where_readings_differ_each_has_its_verdict(page: Seen) -> None:
     assert (
-        "refuted under the reading “way-points in radians”, supported under the implausible "
+        "refuted under “way-points in radians”, supported under the implausible "
         "reading “way-points in degrees”"
     ) in page.words
     assert "depends on the reading" in page.words
+
+
+def test_a_reading_is_called_by_its_meaning_and_its_id_stands_once(
+    folder: Path, report: AuditReport
+) -> None:
+    written = (folder / f"{ID}.md").read_text(encoding="utf-8")
+    for reading, label in report.cases[0].case.labels.items():
+        # Names of files and commands to make the audit again hold ids between other characters.
+        found = re.findall(rf"(?<![\w.-]){re.escape(reading)}(?![\w-])", written)
+        assert len(found) == 1
+        assert written.count(label) > 1
 
 
 def test_every_finding_stands_with_rule_basis_and_numbers(page: Seen, report: AuditReport) -> None:

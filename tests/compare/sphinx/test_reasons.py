@@ -45,11 +45,11 @@ def test_of_many_reasons_the_default_stands_first_and_the_others_are_folded() ->
     labels = {"a": "angles in degrees", "b": "angles in radians"}
     case = {"readings": {"default": "b", "labels": labels}, "findings": found}
     lead, opening, folded, closing = reasons(case, VERDICT)
-    assert lead.astext() == "Refuted under the readings “angles in radians” and “c”: two."
+    assert lead.astext() == "Refuted under “angles in radians” and “c”: two."
     assert opening.astext() == "<details><summary>2 more reasons</summary>"
     assert [one.astext() for one in folded.findall(nodes.paragraph)] == [
-        "Refuted under the reading “angles in degrees”: one.",
-        "Supported under the reading “d”: kept.",
+        "Refuted under “angles in degrees”: one.",
+        "Supported under “d”: kept.",
     ]
     assert closing.astext() == "</details>"
 
@@ -63,11 +63,11 @@ def test_what_needs_no_reading_stands_first() -> None:
 def test_what_differs_in_numbers_is_told_once_and_every_number_is_folded() -> None:
     found = [finding("a", "3 s too long."), finding("b", "4 s too long.")]
     lead, _, folded, _ = reasons({"readings": {"default": "b"}, "findings": found}, VERDICT)
-    said = "Refuted under the readings “b” and “a” (numbers of the first): 4 s too long."
+    said = "Refuted under “b” and “a” (numbers of the first): 4 s too long."
     assert lead.astext() == said
     assert [one.astext() for one in folded.findall(nodes.paragraph)] == [
-        "Refuted under the reading “b”: 4 s too long.",
-        "Refuted under the reading “a”: 3 s too long.",
+        "Refuted under “b”: 4 s too long.",
+        "Refuted under “a”: 3 s too long.",
     ]
 
 
