@@ -25,7 +25,7 @@ from .loop import (
 )
 from .objective import Bounds, Counted, DeathPenalty, Objective
 from .optimizers import BASELINES, Borrowed, BorrowedTask, find_optimizer
-from .repair import Handling, Stretch, judge_of
+from .repair import Handling, Stretch, compile_judge, judge_of
 from .result import JointRuns, Run
 from .search_boxes import search_box
 from .within_budget import BudgetedRun, run_within
@@ -58,6 +58,7 @@ __all__ = [
     "State",
     "Stretch",
     "TentCollapse",
+    "compile_judge",
     "differential_evolution",
     "dual_annealing",
     "find_optimizer",

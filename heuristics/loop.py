@@ -14,7 +14,7 @@ from ..problem import Array, Problem
 from .algorithm import Algorithm, S, Search, State
 from .budget import searched
 from .objective import Bounds, Counted, Objective
-from .repair import Handling, Judge, judge_of
+from .repair import Handling, Judge, compile_judge, judge_of
 from .result import JointRuns, Run
 from .settings import checked, whole
 from .side_by_side import TOGETHER, Start, moves_together, stepped_together
@@ -281,6 +281,7 @@ def _each(
     workers: int,
     progress: Callable[[R], None] | None,
     most: int,
+    compile_first: Callable[[], None],
 ) -> tuple[R, ...]:
     clean = [checked(_SEED, "seed", seed) for seed in seeds]
     workers = min(checked(_WORKERS, "workers", workers), max(1, len(clean)))
@@ -291,6 +292,7 @@ def _each(
     with ExitStack() as stack:
         results: Iterable[tuple[R, ...]] = map(some, parts)
         if workers > 1:
+            compile_first()
             # Threads would be slower than one: half of each iteration holds the interpreter.
             results = stack.enter_context(closing(in_processes(some, parts, workers)))
         for part in results:
@@ -357,7 +359,8 @@ def run_many(
         same run.
     """
     some = partial(_run_seeds, algorithm, problem, iterations, objective)
-    return _each(some, seeds, workers, progress, _at_once(algorithm))
+    first = partial(compile_judge, problem, objective)
+    return _each(some, seeds, workers, progress, _at_once(algorithm), first)
 
 
 def run_many_per_joint(
@@ -372,4 +375,5 @@ def run_many_per_joint(
     """`run_per_joint` with each seed, in the order given; parameters as `run_many`."""
     some = partial(_joints_seeds, algorithm, problem, iterations, objective)
     most = max(1, _at_once(algorithm) // len(problem.joints))
-    return _each(some, seeds, workers, progress, most)
+    first = partial(compile_judge, problem.joint(0), objective)
+    return _each(some, seeds, workers, progress, most, first)

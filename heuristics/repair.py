@@ -146,3 +146,22 @@ def judge_of(problem: Problem, penalty: float, handling: str = Handling.DEATH_PE
     if chosen is Handling.DEATH_PENALTY:
         return DeathPenalty(problem, penalty)
     return Stretch(problem, penalty, shorten=chosen is Handling.RESCALE)
+
+
+def compile_judge(problem: Problem, handling: str = Handling.DEATH_PENALTY) -> None:
+    """Judge two vectors of a problem, so that what that compiles lies on disk.
+
+    Processes that start afterwards find it there; otherwise each of them compiles it once more.
+
+    Parameters
+    ----------
+    problem : Problem
+    handling : str
+        As `judge_of`.
+
+    Raises
+    ------
+    TrajgapError
+        As `judge_of`.
+    """
+    judge_of(problem, np.inf, handling)(np.ones((2, problem.segments)))

@@ -178,3 +178,20 @@ def test_an_audit_with_a_killed_worker_ends_as_without(tmp_path: Path) -> None:
     alone = [*arguments[: arguments.index("--workers")], "--json"]
     wanted = subprocess.run([*command, *alone], capture_output=True, text=True, cwd=tmp_path)
     assert out == wanted.stdout
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_what_all_processes_need_is_compiled_before_they_start(
+    workers: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    loop = import_module("trajgap.heuristics.loop")
+    told: list[object] = []
+
+    def started(some: object, parts: list[tuple[int, ...]], count: int) -> Iterator[tuple[()]]:
+        told.append(count)
+        yield from ()
+
+    monkeypatch.setattr(loop, "in_processes", started)
+    monkeypatch.setattr(loop, "compile_judge", lambda *asked: told.append(asked))
+    run_many(PSO(particles=4, iterations=1), PROBLEM, range(4), workers, objective="stretch")
+    assert told == ([] if workers == 1 else [(PROBLEM, "stretch"), 2])

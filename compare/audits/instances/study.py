@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ....heuristics import Algorithm, AskedRun, Run, in_processes, run_asked
+from ....heuristics import Algorithm, AskedRun, Run, compile_judge, in_processes, run_asked
 from ....nlp import Solution
 from ....nlp.optimum import solve
 from ....problem import TOLERANCE, Array, Coupling, Problem, check
@@ -64,6 +64,8 @@ def examine(
     with ExitStack() as stack:
         results: Iterable[tuple[Sample, ...]] = map(_examined, todo)
         if workers > 1:
+            for problem in (todo[0].slower[0], todo[0].faster[0]):
+                compile_judge(_fast_form(problem), todo[0].objectives[0])
             results = stack.enter_context(closing(in_processes(_examined, todo, workers)))
         for done, samples in enumerate(results, start=1):
             found += samples
