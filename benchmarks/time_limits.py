@@ -1,19 +1,25 @@
-"""How far answers come after their time limit: `solve` and `certify` of larger problems.
+"""How far answers come after their time limit: `solve`, `certify`, `verify` and `audit`.
 
     python benchmarks/time_limits.py           the table, from runs now (a quarter of an hour)
     python benchmarks/time_limits.py --only "certify quintic"    rows with all these words
     python benchmarks/time_limits.py --each    every run by itself, as it ends
 
 Each run is a process of its own, after imports, after a small problem of its kind, and with one
-thread for linear algebra. Two numbers are taken: seconds from the limit to the answer, and the
-processor seconds that the process took in them, read from the system by another process. The first
-grows with whatever else the machine does, the second does not. With ``--first`` there are two other
+thread for linear algebra. `verify` is the command, with certificates that a run of `MAKING` seconds
+left, with a state of a long spline, and with the largest file that is read. `audit` has a case of
+three problems, and what counts is the time in which it certifies them. Two numbers are taken:
+seconds from the limit to the answer, and the processor seconds that the process took in them, read
+from the system by another process. The first grows with whatever else the machine does, the second
+does not. With ``--first`` there are two other
 rows, without compiled code at hand, as after an installation.
 """
 
 from __future__ import annotations
 
 import argparse
+import contextlib
+import io
+import json
 import os
 import select
 import subprocess
@@ -26,6 +32,10 @@ SECONDS = (1.0, 3.0, 10.0)
 POINTS = (8, 25, 40)
 PATIENCE = 60.0
 """Seconds beyond the limit after which a run is ended: it counts as that much or more."""
+MAKING = 40.0
+"""Seconds for which a certificate is searched that `verify` then has to prove."""
+LONG = 400
+"""Segments of the spline whose exact elimination `verify` has to break off."""
 JOINTS = 6
 LIMITS = (2.0, 10.0, 60.0)
 CURVES = {
@@ -33,6 +43,8 @@ CURVES = {
     "quintic": "C4 quintic",
     "timed": "uniform B-spline, timed",
     "clamped": "clamped quintic B-spline",
+    "long": "C2 cubic, a state with an answer alone",
+    "file": "none: 64 MB of JSON",
 }
 ROWS = [
     *(
@@ -42,6 +54,10 @@ ROWS = [
     ),
     *(("certify", "cubic", n, "") for n in POINTS),
     *(("certify", "quintic", n, "") for n in POINTS if n <= 27),
+    *(("verify", curve, n, "") for curve in ("cubic", "quintic") for n in POINTS if n <= 27),
+    ("verify", "long", LONG + 1, ""),
+    ("verify", "file", 0, ""),
+    *(("audit", curve, n, "") for curve in ("cubic", "quintic") for n in POINTS if n <= 27),
 ]
 FIRST = [("solve", "cubic", 8, "first"), ("certify", "quintic", 8, "first")]
 
@@ -70,7 +86,105 @@ def problem_of(curve, count):
     return Problem(q, Limits(*LIMITS, joints=JOINTS), kinds[curve]())
 
 
-def work(what, curve, count, seconds, first):
+def file_of(curve, count, path):
+    """Write what `verify` gets: a certificate, a state or merely a large file."""
+    from trajgap.nlp import certificate, certify
+    from trajgap.nlp.proofs.document import problem_document
+    from trajgap.nlp.proofs.exact import exact_problem
+    from trajgap.verify import STATE_FORMAT, seal
+
+    if curve == "file":
+        leaves = ",".join(['["."]'] * 9_000_000)
+        path.write_text(f"[{leaves}]")
+        return
+    found = certify(problem_of("cubic" if curve == "long" else curve, 8), seconds=5.0, gap=0.5)
+    if curve != "long":
+        found = certify(problem_of(curve, count), seconds=MAKING, gap=1e-6)
+    document = certificate(found)
+    if curve == "long":
+        document["problem"] = problem_document(exact_problem(problem_of("cubic", count)))
+        document |= {"format": STATE_FORMAT, "proof": None, "proposals": None}
+        document["problem_hash"] = seal(document["problem"])
+        times = ["1." + f"{k:03d}" * 10 for k in range(count - 1)]
+        document["claim"] |= {"lower": "0", "upper": str(2 * count), "durations": times}
+    path.write_text(json.dumps(document))
+
+
+def case_of(curve, count):
+    """The same problem as a case file, with three limits of velocity: three problems."""
+    from trajgap.problem import parse_case
+
+    q = problem_of(curve, count).waypoints
+    rows = ", ".join("[" + ", ".join(f'"{x:.6f}"' for x in column) + "]" for column in q.T)
+    problems = "".join(
+        f'[[problems]]\nid = "p{k}"\nlimits = {{ velocity = {LIMITS[0] - 0.1 * k} }}\n'
+        f'[[claims]]\nid = "c{k}"\nquantity = "total_time"\nwhere = "Table 1"\n'
+        f'problem = "p{k}"\nvalue = "{10 * count}.0"\n'
+        for k in range(3)
+    )
+    text = f"""format = 1
+id = "timed"
+title = "Timed"
+coupling = "shared"
+[source]
+year = 2020
+[robot]
+name = "arm"
+joints = {json.dumps([str(j) for j in range(JOINTS)])}
+[units]
+position = "rad"
+velocity = "rad/s"
+acceleration = "rad/s^2"
+jerk = "rad/s^3"
+time = "s"
+[waypoints]
+labels = {json.dumps([f"P{k}" for k in range(count)])}
+joint_rows = [{rows}]
+[limits]
+velocity = {LIMITS[0]}
+acceleration = {LIMITS[1]}
+jerk = {LIMITS[2]}
+[interpolant]
+family = "{curve}-spline"
+{problems}"""
+    return parse_case(text, "timed.toml")
+
+
+def told(word):
+    """Tell the parent where the run is, and wait until it has looked at the clock."""
+    print(word, flush=True)
+    sys.stdin.readline()
+
+
+def verified(path, seconds):
+    """One run of the command `python -m trajgap.verify`."""
+    from trajgap.verify.__main__ import main as verify
+
+    sys.argv = ["verify", "--time", str(seconds), str(path)]
+    with contextlib.redirect_stdout(io.StringIO()) as said:
+        verify()
+    return said.getvalue().partition(": ")[2].partition(":")[0]
+
+
+def audited(curve, count, seconds):
+    """One audit, which pauses the clock of the parent wherever it does not certify."""
+    from trajgap.compare.audits import audit, intervals
+
+    certify = intervals.certify
+
+    def noted(*given, **named):
+        told("begin")
+        try:
+            return certify(*given, **named)
+        finally:
+            told("pause")
+
+    intervals.certify = noted
+    audit(case_of(curve, count), seeds=2, certify_seconds=seconds)
+    return "audited"
+
+
+def work(what, curve, count, seconds, first, path):
     """One run; says when it begins, and how it ended."""
     from trajgap.nlp import certify, solve
 
@@ -80,13 +194,20 @@ def work(what, curve, count, seconds, first):
             return str(solve(problem, seconds=seconds).status)
         return str(certify(problem, seconds=seconds, gap=1e-6).outcome)
 
-    if not first:
-        run(4, 5.0)
-    print("begin", flush=True)
-    sys.stdin.readline()
-    told = run(count, seconds)
-    print("end", told, flush=True)
-    sys.stdin.readline()
+    if what == "audit":
+        word = audited(curve, count, seconds)
+    elif what == "verify":
+        import trajgap.verify.__main__
+        import trajgap.verify.quintic  # noqa: F401
+
+        told("begin")
+        word = verified(path, seconds)
+    else:
+        if not first:
+            run(4, 5.0)
+        told("begin")
+        word = run(count, seconds)
+    told(f"end {word}")
 
 
 def processor(pid):
@@ -95,49 +216,62 @@ def processor(pid):
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
-def measured(row, seconds):
+def measured(row, seconds, path):
     """One run in its own process: word, seconds and processor seconds beyond the limit."""
     what, curve, count, first = row
     environment = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1")
+    took, beyond, word = 0.0, 0.0, ""
     with tempfile.TemporaryDirectory() as folder:
         if first:
             environment["NUMBA_CACHE_DIR"] = folder
-        command = [sys.executable, __file__, "--run", what, curve, str(count), str(seconds), first]
+        run = [what, curve, str(count), str(seconds), first, str(path)]
         with subprocess.Popen(
-            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment
+            [sys.executable, __file__, "--run", *run],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            env=environment,
         ) as child:
             assert child.stdin is not None
             assert child.stdout is not None
-            assert child.stdout.readline().startswith(b"begin"), row
-            began = time.monotonic()
-            child.stdin.write(b"\n")
-            child.stdin.flush()
-            at_limit = None
-            if not select.select([child.stdout], [], [], seconds)[0]:
-                at_limit = processor(child.pid)
-            ended = bool(select.select([child.stdout], [], [], PATIENCE)[0])
-            told = child.stdout.readline().decode().removeprefix("end ").strip() if ended else ""
-            took, total = time.monotonic() - began, processor(child.pid)
-            if not ended:
-                child.kill()
-                told = "no answer"
-            child.stdin.close()  # it waits, so that its times can be read
-    assert told, row
-    beyond = 0.0 if at_limit is None else total - at_limit
-    return told, took, max(0.0, took - seconds), beyond
+            while not word:
+                said = child.stdout.readline().decode().strip()
+                if said == "begin":
+                    late, busy, said = watched(child, seconds - took)
+                    took, beyond = took + late, beyond + busy
+                if not said:
+                    child.kill()
+                word = said.removeprefix("end ") if said.startswith("end ") else ""
+                word = word or ("" if said else "no answer")
+                child.stdin.write(b"\n")  # it waited, so that its times could be read
+                with contextlib.suppress(BrokenPipeError):
+                    child.stdin.flush()
+    return word, took, max(0.0, took - seconds), beyond
+
+
+def watched(child, left):
+    """From a beginning to the next word: seconds, processor seconds beyond the limit, the word."""
+    began, at_limit = time.monotonic(), None
+    child.stdin.write(b"\n")
+    child.stdin.flush()
+    if not select.select([child.stdout], [], [], max(0.0, left))[0]:
+        at_limit = processor(child.pid)
+    ended = bool(select.select([child.stdout], [], [], PATIENCE)[0])
+    said = child.stdout.readline().decode().strip() if ended else ""
+    busy = 0.0 if at_limit is None else processor(child.pid) - at_limit
+    return time.monotonic() - began, busy, said
 
 
 def main() -> None:
     parser = argparse.ArgumentParser()
-    parser.add_argument("--run", nargs=5)
+    parser.add_argument("--run", nargs=6)
     parser.add_argument("--only", default="")
     parser.add_argument("--each", action="store_true")
     parser.add_argument("--first", action="store_true")
     parser.add_argument("--seconds", type=float, nargs="*", default=SECONDS)
     asked = parser.parse_args()
     if asked.run:
-        what, curve, count, seconds, first = asked.run
-        work(what, curve, int(count), float(seconds), first)
+        what, curve, count, seconds, first, path = asked.run
+        work(what, curve, int(count), float(seconds), first, path)
         return
     print("| what | curve | way-points | " + " | ".join(f"{s:g} s" for s in asked.seconds) + " |")
     print("|---" * (3 + len(asked.seconds)) + "|")
@@ -147,12 +281,16 @@ def main() -> None:
         if not all(word in " ".join(named).split() for word in asked.only.split()):
             continue
         cells = []
-        for seconds in asked.seconds:
-            told, took, late, busy = measured(row, seconds)
-            cells.append("in time" if late == 0.0 else f"{late:.2f} ({busy:.2f})")
-            if asked.each:
-                said = f"{seconds:g} s: {told} after {took:.2f}"
-                print("  ", *named, said, cells[-1], flush=True)
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "certificate.json"
+            if what == "verify":
+                file_of(curve, count, path)
+            for seconds in asked.seconds:
+                word, took, late, busy = measured(row, seconds, path)
+                cells.append("in time" if late == 0.0 else f"{late:.2f} ({busy:.2f})")
+                if asked.each:
+                    said = f"{seconds:g} s: {word} after {took:.2f}"
+                    print("  ", *named, said, cells[-1], flush=True)
         head = [f"{what}{', ' + first if first else ''}", CURVES[curve], str(count)]
         print("| " + " | ".join([*head, *cells]) + " |", flush=True)
 

@@ -42,6 +42,7 @@ from ...verify import (
     OutOfTime,
     Refused,
     Subject,
+    number,
     read_document,
     verify_certificate,
 )
@@ -71,6 +72,8 @@ CERTIFICATE_FOLDER = Path("trajgap-certificates")
 """Where certificates go, unless the command line says otherwise."""
 NOT_PROVED = 3
 """Exit code where an interval is wider than asked for, or nothing is proved."""
+_SPARE = 1.0
+"""Seconds after the time limit until which an earlier certificate is judged, as a new one is."""
 _SETTLED = (Outcome.CERTIFIED, Outcome.INFEASIBLE)
 """Outcomes that leave nothing to prove."""
 
@@ -138,6 +141,7 @@ def certify_case(
                 if stop.asked:
                     break
                 step(one.name)
+                clock = Clock(seconds + _SPARE)
                 found: Certified | str = (
                     one.problem
                     if isinstance(one.problem, str)
@@ -155,7 +159,7 @@ def certify_case(
                 )
                 kept += not isinstance(found, str) and found.kept
                 unsettled |= isinstance(found, str) or found.outcome not in _SETTLED
-                files = _written(folder, one, found)
+                files = _written(folder, one, found, clock)
                 ids = (case.id, one.posed.problem_id, one.posed.reading_id, one.asked.joint)
                 results.append(certify_result(*ids, subject, found, *files, _why(found)))
         document = CertifyDocument(intervals=tuple(results))
@@ -295,7 +299,7 @@ def _read(path: Path) -> dict[str, Any]:
 
 
 def _written(
-    folder: Path | None, one: Question, found: Certified | str
+    folder: Path | None, one: Question, found: Certified | str, clock: Clock
 ) -> tuple[str | None, str | None]:
     """Write certificate and state; a narrower certificate of the same problem is kept."""
     if folder is None or isinstance(found, str):
@@ -304,7 +308,7 @@ def _written(
     document = state_document(found, one.asked)
     if document is not None:
         replace_output(state, json.dumps(document, separators=(",", ":")) + "\n")
-    if found.proof is not None and not _narrower(certificate, found):
+    if found.proof is not None and not _narrower(certificate, found, clock):
         replace_output(certificate, certificate_text(found, one.asked))
     if document is None:
         # What a state of an earlier run would lead to is there.
@@ -315,15 +319,25 @@ def _written(
     )
 
 
-def _narrower(path: Path, found: Certified) -> bool:
-    """Whether the file there proves a narrower interval of the same problem."""
+def _narrower(path: Path, found: Certified, clock: Clock) -> bool:
+    """Whether the file there proves a narrower interval of the same problem.
+
+    Where the time is too short to prove it again, one that nobody altered is taken at its word:
+    what took long to prove is not thrown away.
+    """
     old = _read(path)
     if not fits(old, found.problem, found.subject):
         return False
-    verdict = verify_certificate(old)
-    if not verdict.proves or verdict.lower is None or verdict.upper is None:
+    verdict = verify_certificate(old, clock=clock)
+    lower, upper = verdict.lower, verdict.upper
+    if verdict.out_of_time and not verdict.altered:
+        try:
+            lower, upper = (number(old["claim"][key]) for key in ("lower", "upper"))
+        except (Refused, LookupError, TypeError):
+            return False
+    if lower is None or upper is None:
         return False
-    return found.upper is None or verdict.upper - verdict.lower < found.upper - found.lower
+    return found.upper is None or upper - lower < found.upper - found.lower
 
 
 class _Stop:

@@ -1,0 +1,108 @@
+"""Time limits on the command line: `solve --time`, `verify --time`, and what lies in a folder."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from support.command_line import Run, strict
+from support.documents import assert_valid
+from support.shipped_problems import POSED
+from trajgap.compare.cli import certifying, solving
+from trajgap.nlp import shipped
+from trajgap.nlp.optimum import unsearched
+from trajgap.problem import Verdict, check, load_case
+from trajgap.verify import reading
+from trajgap.verify.ranges import MOST_BYTES
+
+SHARED = ("solve", "mine.toml", "--coupling", "shared")
+IRB = "irb460-pso-353"
+ONE = (IRB, "--problem", "limit-80", "--reading", "waypoints-rad")
+NAME = f"{IRB}.limit-80.waypoints-rad"
+
+
+def test_a_solve_without_time_leaves_its_best_motion_and_says_so(run: Run) -> None:
+    code, out, err = run(*SHARED, "--time", "0", "--json")
+    assert (code, err) == (0, "")
+    assert_valid(strict(out), "solve")
+    (part,) = strict(out)["results"]
+    assert part["status"] == "feasible"
+    assert unsearched.CUT_SHORT in part["status_why"]
+    problem = load_case("mine.toml").problem()
+    assert check(problem, part["segment_durations"]).limits is Verdict.PASS
+    (whole,) = strict(run(*SHARED, "--json")[1])["results"]
+    assert (whole["status"], whole["status_why"]) == ("optimal", None)
+    assert part["total_time"] >= whole["total_time"] * (1 - 1e-9)
+    code, out, _ = run(*SHARED, "--time", "0")
+    assert code == 0
+    assert unsearched.CUT_SHORT in " ".join(out.split())
+
+
+def test_time_that_is_not_needed_changes_nothing(run: Run) -> None:
+    answers = []
+    for limit in ((), ("--time", "1e6")):
+        (found,) = strict(run(*SHARED, *limit, "--json")[1])["results"]
+        answers.append((found["status"], found["total_time"], found["segment_durations"]))
+    assert answers[0] == answers[1]
+
+
+def test_the_limit_is_that_of_each_problem(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[float] = []
+    real = solving.stopping_after
+
+    def noted(seconds: float) -> Any:
+        asked.append(seconds)
+        return real(seconds)
+
+    monkeypatch.setattr(solving, "stopping_after", noted)
+    code, out, _ = run("solve", IRB, "--problem", "limit-80", "--time", "0", "--json")
+    assert code == 0
+    assert asked == [0.0] * len(strict(out)["results"])
+    assert len(asked) > 1
+
+
+def test_no_time_is_negative(run: Run) -> None:
+    code, _, err = run(*SHARED, "--time", "-1")
+    assert code == 2
+    assert "--time" in err
+
+
+def test_reading_a_file_is_part_of_the_time(run: Run) -> None:
+    with Path("hole.json").open("wb") as file:
+        file.truncate(MOST_BYTES // 2)  # takes no room on the disk
+    seconds = 0.9 * MOST_BYTES / 2 / reading.PACE
+    for more in ((), ("--case", IRB)):
+        code, out, _ = run("verify", "hole.json", "--time", str(seconds), "--json", *more)
+        assert code == 1
+        (one,) = strict(out)["verified"]
+        assert one["worth"] == "out of time"
+
+
+def test_what_cannot_be_proved_again_in_time_is_not_thrown_away(
+    run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Judging an earlier certificate is within the limit, too: it is kept if nobody altered it."""
+    path = Path(f"trajgap-certificates/{NAME}.json")
+    path.parent.mkdir()
+    document = shipped(POSED[NAME])
+    assert document is not None
+    narrow = json.dumps(document)
+    path.write_text(narrow)
+    limits: list[float] = []
+
+    class Late(certifying.Clock):
+        def __init__(self, seconds: float) -> None:
+            limits.append(seconds)
+            super().__init__(-1.0)
+
+    monkeypatch.setattr(certifying, "Clock", Late)
+    assert run("solve", *ONE, "--certify", "--gap", "0.2", "--time", "50")[0] == 0
+    assert limits == [50.0 + certifying._SPARE]
+    assert path.read_text() == narrow
+    document["claim"]["lower"] = "0"
+    for wrong in (document, {**document, "claim": {**document["claim"], "upper": None}}):
+        path.write_text(json.dumps(wrong))
+        assert run("solve", *ONE, "--certify", "--gap", "0.2", "--time", "50")[0] == 0
+        assert path.read_text() != json.dumps(wrong)
