@@ -146,6 +146,7 @@ def distance_of(case: dict[str, Any]) -> tuple[str, str, str, str]:
         steps = {step["name"]: step for step in entry["steps"] if step["time"] is not None}
         if PUBLISHED in steps and SHARED_OPTIMUM in steps:
             printed, best = steps[PUBLISHED]["time"], steps[SHARED_OPTIMUM]
-            share = f"{printed / best['time'] - 1:.1%}" if entry["claim"] not in otherwise else "–"
+            # A total rounded to just below its optimum is at no distance, and at none below.
+            share = f"{printed / best['time'] - 1:z.1%}" if entry["claim"] not in otherwise else "–"
             return f"{printed:g}", f"{best['time']:.4f}", share, best["evidence"]
     return "–", "–", "–", ""

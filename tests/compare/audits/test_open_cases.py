@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 
 import numpy as np
@@ -9,7 +10,8 @@ import pytest
 from numpy.polynomial import Polynomial
 from support.checkout import ROOT
 from trajgap.compare import CaseAudit, ClaimVerdict, audit
-from trajgap.compare.documents import Severity
+from trajgap.compare.documents import Severity, json_text
+from trajgap.compare.sphinx import distance_of
 from trajgap.problem import load_case
 
 EXAMPLES = ROOT / "docs" / "examples"
@@ -79,3 +81,8 @@ def test_a_largest_value_that_is_another_is_told_with_both(name: str) -> None:
     assert f"printed is {load_case(EXAMPLES / f'{name}.toml').claim(claim).value}" in said.message
     told = float(said.message.split(" is ")[1].split()[0])
     assert told == pytest.approx(truth, rel=1e-4)
+
+
+def test_a_total_rounded_to_below_its_optimum_is_shown_without_a_minus_sign() -> None:
+    shown = distance_of(json.loads(json_text(examined("robotics1-2016-04-01").document)))
+    assert shown == ("3.6926", "3.6926", "0.0%", "certified")
