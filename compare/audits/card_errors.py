@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from ...problem import Case
 from ...problem.cases import AnyClaim, DurationsClaim, ImprovementClaim, MaximumClaim
-from ..documents import Cause, Finding, Gap, Severity
+from ..documents import Cause, Finding, Gap, Severity, quoted
 from .explanations import TABLES
 from .stated import place, spoken
 
@@ -34,7 +34,10 @@ def plainly(case: Case, cause: Cause) -> str:
     count, every = len(cause.readings), len(case.readings)
     if not 0 < count < every or f"{_UNDER}{count} of" in sentence:
         return sentence
-    return f"{_UNDER.capitalize()}{count} of {every} readings: {sentence}"
+    which = f"{count} of {every} readings"
+    if count == 1:
+        which = quoted(cause.readings[0], case.labels)
+    return f"{_UNDER.capitalize()}{which}: {sentence}"
 
 
 def _plain(case: Case, cause: Cause) -> str:

@@ -176,7 +176,7 @@ def told(
     if len(one.each) > 1:
         # Where a sentence names its readings, none is named again.
         first = quoted(one.readings[0], named.labels)
-        shown = f", here with the numbers of {first}"
+        shown = f" (numbers of {first})"
         where += " (numbers of the first)" if first in where else shown
     elif len(one.readings) == len(computed) and not word:
         return one.message

@@ -20,6 +20,7 @@ from ..documents import (
     Scope,
     Severity,
     qualified,
+    quoted,
     reasons,
     told,
     under,
@@ -191,11 +192,14 @@ def _told(one: CaseAudit, cause: Cause) -> bool:
 def _behind(one: CaseAudit, cause: Cause) -> Behind:
     says = plainly(one.case, cause)
     says, *_ = _opened([says])[0] or (says,)
+    # The one reading of a cause stands in front of it already.
+    only = [quoted(reading, one.case.labels) for reading in cause.readings]
+    known = f", under {only[0]}" if len(only) == 1 else "\0"
     hit = dict.fromkeys(c.claim for c in cause.consequences if c.claim and c.claim != cause.claim)
     return Behind(
         weight=word(cause.severity),
         says=says,
-        explanations=tuple(f"{e.change} {e.effect}" for e in cause.explanations),
+        explanations=tuple(f"{e.change} {e.effect}".replace(known, "") for e in cause.explanations),
         follows=tuple(_to(one, claim) for claim in hit),
     )
 

@@ -66,6 +66,11 @@ def cause(rule: str, claim: str, kind: str, readings: tuple[str, ...], **changes
             "limit.",
         ),
         (
+            cause("TG201", "after", "breaks", IDS[:1]),
+            "Under “angles in rad, limits in rad/s and rad/s², stretched segments”: The durations "
+            "in Table 4, row after optimisation break a limit.",
+        ),
+        (
             cause("TG201", "after", "breaks", IDS),
             "The durations in Table 4, row after optimisation break a limit.",
         ),

@@ -52,8 +52,7 @@ def test_reasons_that_differ_in_numbers_alone_are_one_with_those_of_the_default(
         NAMED,
     )
     assert [told(one, READINGS, NAMED) for one in found] == [
-        "Under 3 of 6 readings, here with the numbers of “third”: The velocity reaches 430 °/s, "
-        "limit 172 °/s.",
+        "Under 3 of 6 readings (numbers of “third”): The velocity reaches 430 °/s, limit 172 °/s.",
         "Under “fourth”: The velocity jumps.",
     ]
     # To the digit, with every reading, nothing is left out.

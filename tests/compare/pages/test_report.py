@@ -184,8 +184,8 @@ def test_the_card_stands_on_top_in_page_markdown_and_index(
 
 def test_where_readings_differ_each_has_its_verdict(page: Seen) -> None:
     assert (
-        "refuted under “way-points in radians”, supported under the implausible "
-        "reading “way-points in degrees”"
+        "refuted under “way-points in radians”, supported under the implausible “way-points in "
+        "degrees”"
     ) in page.words
     assert "depends on the reading" in page.words
 
