@@ -1,6 +1,6 @@
 """How far answers come after their time limit: `solve`, `certify`, `verify` and `audit`.
 
-    python benchmarks/time_limits.py           the table, from runs now (a quarter of an hour)
+    python benchmarks/time_limits.py           the table, from runs now (half an hour)
     python benchmarks/time_limits.py --only "certify quintic"    rows with all these words
     python benchmarks/time_limits.py --each    every run by itself, as it ends
 

@@ -22,9 +22,10 @@ _NUMBER = re.compile(
     rf"-?\d{{1,{_N}}}(/[1-9]\d{{0,{_N - 1}}}|\.\d{{1,{_N}}})?(e-?\d{{1,2}})?", re.ASCII
 )
 """An integer, a decimal or a quotient, perhaps with a power of ten; ASCII digits only."""
-PACE = 8_000_000
-"""Bytes of JSON that are read in a second, at least: 8 to 40 million were measured. Reading has no
-steps between which the clock could be looked at, so it is not begun where it would end too late."""
+PACE = 3_000_000
+"""Bytes of JSON that are read in a second: half of the slowest that was measured, millions of tiny
+lists. Reading has no steps between which the clock could be looked at, so it is not begun where it
+would end too late."""
 
 
 class Refused(ValueError):

@@ -30,7 +30,7 @@ _EACH = 3
 MAKE_SECONDS = 20.0
 """For making one of them."""
 STATE_SECONDS = (0.2, 1.0, 5.0)
-"""For a stopped run, until it has proved something: the first is often too short on a busy machine."""
+"""For a stopped run, until it has proved something: on a busy machine the first is too short."""
 
 
 def _certified(kind: str, number: int, seconds: float) -> list[dict[str, Any]]:
