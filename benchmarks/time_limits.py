@@ -6,7 +6,7 @@
 
 Each run is a process of its own, after imports, after a small problem of its kind, and with one
 thread for linear algebra. `verify` is the command, with certificates that a run of `MAKING` seconds
-left, with a state of a long spline, and with a file of nearly the largest size. `audit` has a case of
+left, a state of a long spline, and a file of nearly the largest size. `audit` has a case of
 three problems, and what counts is the time in which it certifies them. Two numbers are taken:
 seconds from the limit to the answer, and the processor seconds that the process took in them, read
 from the system by another process. The first grows with whatever else the machine does, the second
