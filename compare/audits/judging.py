@@ -18,7 +18,7 @@ from ..documents import (
     Scope,
     Severity,
     Why,
-    reasons,
+    grouped,
     told,
 )
 
@@ -74,7 +74,7 @@ def judge(
         evidence = max((f.evidence for f in behind), key=_RANK.index, default=Evidence.NONE)
         said = (Said(f.verdict, f.message, f.rule, f.reading) for f in behind)
         depends = verdict is ClaimVerdict.DEPENDS
-        behind_it = reasons(said, tuple(each), named)
+        behind_it = grouped(said, tuple(each), named)
         why = " ".join(told(one, tuple(each), named, word=depends, why=True) for one in behind_it)
         confidence = _confidence(behind, verdict)
     return Judgement(

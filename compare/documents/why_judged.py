@@ -81,7 +81,7 @@ class Reason:
     each: tuple[tuple[str, tuple[str, ...]], ...]
 
 
-def reasons(said: Iterable[Said], computed: Sequence[str], named: Named = NAMELESS) -> list[Reason]:
+def grouped(said: Iterable[Said], computed: Sequence[str], named: Named = NAMELESS) -> list[Reason]:
     """What decides, each reason once.
 
     Parameters

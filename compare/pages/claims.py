@@ -19,9 +19,9 @@ from ..documents import (
     Said,
     Scope,
     Severity,
+    grouped,
     qualified,
     quoted,
-    reasons,
     told,
     under,
     worth_little,
@@ -170,7 +170,7 @@ def _why(one: CaseAudit, judgement: Judgement) -> Iterator[str]:
         for f in one.findings
         if f.claim == judgement.claim and f.decides
     ]
-    found = reasons(said, tuple(judgement.readings), names(one))
+    found = grouped(said, tuple(judgement.readings), names(one))
     if not found:
         yield judgement.why
     depends = judgement.verdict is ClaimVerdict.DEPENDS

@@ -6,8 +6,7 @@ from typing import Any
 
 from docutils import nodes
 
-from ..documents import ClaimVerdict, Named, Said, in_full, told
-from ..documents import reasons as grouped
+from ..documents import ClaimVerdict, Named, Said, grouped, in_full, told
 from .parts import paragraph
 
 _PLAIN = 2

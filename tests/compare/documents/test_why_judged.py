@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from trajgap.compare.documents import Named, Said, in_full, reasons, told, under
+from trajgap.compare.documents import Named, Said, grouped, in_full, told, under
 
 READINGS = tuple("abcdef")
 LABELS = {"a": "first", "b": "second", "c": "third", "d": "fourth", "e": "fifth", "f": "sixth"}
@@ -42,7 +42,7 @@ def test_an_implausible_reading_is_named_as_one_with_its_reason_where_asked() ->
 
 
 def test_reasons_that_differ_in_numbers_alone_are_one_with_those_of_the_default() -> None:
-    found = reasons(
+    found = grouped(
         [
             *said("a", "The velocity reaches 7.5 rad/s, limit 3 rad/s."),
             *said("bc", "The velocity reaches 430 °/s, limit 172 °/s."),
@@ -63,13 +63,13 @@ def test_reasons_that_differ_in_numbers_alone_are_one_with_those_of_the_default(
 
 
 def test_two_numbers_of_one_reading_stay_two_reasons() -> None:
-    found = reasons([*said("a", "Row 1: 3 s."), *said("a", "Row 2: 4 s.")], READINGS, NAMED)
+    found = grouped([*said("a", "Row 1: 3 s."), *said("a", "Row 2: 4 s.")], READINGS, NAMED)
     assert [one.message for one in found] == ["Row 1: 3 s.", "Row 2: 4 s."]
 
 
 def test_the_strongest_word_stands_first_then_the_default_and_implausible_ones_last() -> None:
     named = Named(LABELS, {"a": "far"}, "c")
-    found = reasons(
+    found = grouped(
         [
             *said("a", "far away."),
             *said("b", "near."),
@@ -86,13 +86,13 @@ def test_the_strongest_word_stands_first_then_the_default_and_implausible_ones_l
 
 
 def test_what_holds_under_every_reading_has_none_before_it_unless_words_differ() -> None:
-    (one,) = reasons([Said("refuted", "always.", "TG101")], READINGS, NAMED)
+    (one,) = grouped([Said("refuted", "always.", "TG101")], READINGS, NAMED)
     assert told(one, READINGS, NAMED) == "always."
     assert told(one, READINGS, NAMED, word=True) == "Refuted under every reading: always."
 
 
 def test_rules_that_say_the_same_are_told_together() -> None:
-    (one,) = reasons(
+    (one,) = grouped(
         [*said("a", "same.", rule="TG201"), *said("b", "same.", rule="TG302")], READINGS, NAMED
     )
     assert (one.rules, one.readings) == (("TG201", "TG302"), ("a", "b"))
