@@ -251,7 +251,7 @@ def test_audit_writes_pages(run: Run, stand_in: dict[str, Any]) -> None:
     assert stand_in["seeds"] == 100
     assert stand_in["workers"] == os.cpu_count()
     assert "refuted" in out
-    assert "error TG302 Table 4, column 80 °/s: text" in out
+    assert "error TG302 [1 of 2 readings] Table 4, column 80 °/s: text" in out
     # The card comes first, then the claims by their texts.
     assert out.index("Under the default") < out.index("Durations of joint 5 under 80 °/s.")
     assert out.endswith(f"pages: {Path('trajgap-audit') / 'index.html'}\n")
