@@ -94,6 +94,8 @@ def papers_table() -> str:
     ]
     for name in results.names:
         case = results.case(name)
+        if case["source"]["kind"] != "paper":
+            continue
         printed = " | ".join(distance_of(case))
         lines.append(
             f"| [{case['title']}](docs/reports/{name}.md) | {printed} | {case['card']['limits']} |"

@@ -38,6 +38,8 @@ class StatedClaim(Entry):
 class StatedSource(Entry):
     """Where the numbers were printed; an empty text is not named in the case file."""
 
+    kind: str
+    """``paper``, ``teaching``, ``software`` or ``unpublished``."""
     authors: str
     title: str
     journal: str

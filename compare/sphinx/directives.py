@@ -220,10 +220,13 @@ class WaterfallShown(FromResults):
 
 
 class Papers(FromResults):
-    """``{trajgap-papers}``: all audited cases, one a row."""
+    """``{trajgap-papers}``: all audited cases, or those of some kinds of source, one a row."""
 
     required_arguments = 0
-    option_spec: ClassVar[dict[str, Any]] = {"pages": directives.unchanged}
+    option_spec: ClassVar[dict[str, Any]] = {
+        "pages": directives.unchanged,
+        "kinds": directives.unchanged,
+    }
 
     def made(self, results: Results) -> list[nodes.Node]:
         """Claimed total, whether limits are kept, optimum, distance, evidence; sortable."""
@@ -234,6 +237,9 @@ class Papers(FromResults):
                 continue
             self.env.note_dependency(str(results.folder / f"{name}.json"))
             case = results.case(name)
+            kind = case["source"]["kind"]
+            if kind not in self.options.get("kinds", kind).split():
+                continue
             *best, evidence = distance_of(case)
             word = badge(evidence) if evidence else ""
             paper = self._linked(name, case["title"])

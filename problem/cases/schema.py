@@ -59,6 +59,8 @@ LISTS = (
 class Source(Strict):
     """Where the numbers were printed."""
 
+    kind: Literal["paper", "teaching", "software", "unpublished"] = "paper"
+    """What printed them: a paper, an exam or a lecture, a library's tests, or nothing public."""
     authors: str = ""
     title: str = ""
     journal: str = ""

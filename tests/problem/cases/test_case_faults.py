@@ -49,7 +49,7 @@ FAULTS = [
     (('labels = ["A", "B", "C", "D"]\n', 'waypoint_rows = [["1", "2"]]\n'), "waypoints: needs one of joint_rows, waypoint_rows and line; give one"),
     (('joint_rows = [["0.0", "10.5", "-3.25", "4"], ["1", "2", "3", "4"]]\n', ""), "waypoints: needs one of joint_rows, waypoint_rows and line; give one"),
     (('"C", "D"]', '"C"]'), "waypoints.labels: 3 labels for 4 way-points; give one each"),
-    (("[waypoints]\n", "[source.x]\n"), "source.x: unknown key; known: authors, title, journal, year, doi, note"),
+    (("[waypoints]\n", "[source.x]\n"), "source.x: unknown key; known: kind, authors, title, journal, year, doi, note"),
     (("[100, ", "[-100, "), "limits.velocity[0]: -100 is negative; give 0 or more"),
     (("acceleration = 60", "acceleration = nan"), "limits.acceleration: 'NaN' is not a finite decimal number; write the printed digits alone, such as \"0.660\""),
     (("acceleration = 60", "acceleration = -inf"), "limits.acceleration: -inf is negative; write inf where there is no limit"),
