@@ -196,9 +196,10 @@ def _differing(study: Study, found: Mapping[str, set[ClaimVerdict]], where: str)
     far = implausible(study)
     said = {word: own for word, own in groups.items() if own}
     if len(found) > _FEW:
-        counts = [f"{word} under {len(own)}" for word, own in said.items()]
-        share = f"{', '.join(counts)} of {len(found)}"
-        return f"Whether the limits are kept{where} depends on the reading: {share}"
+        (first, own), *others = said.items()
+        shares = [f"{first} under {len(own)} of {len(found)} readings"]
+        shares += [f"{word} under {len(those)}" for word, those in others]
+        return f"The limits{where} are {', '.join(shares)}"
     ordered = sorted(said.items(), key=lambda item: all(one in far for one in item[1]))
     parts = []
     for word, own in ordered:

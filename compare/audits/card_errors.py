@@ -81,7 +81,7 @@ def _not_optimal(head: Finding, cause: Cause, readings: int) -> str:
     count = len(cause.readings)
     if not isinstance(head.gap, Gap):
         where = f"{_UNDER}{count} of {readings} readings " if 0 < count < readings else ""
-        others = f", and under the others {cause.elsewhere}" if cause.elsewhere else ""
+        others = f"; under the others {cause.elsewhere}" if cause.elsewhere else ""
         return f"{where}a checked motion within the limits is shorter{others}"
     percent = 100 * head.gap.highest
     share = f"{percent:.1f} % longer than" if percent >= 1 else f"{percent:.2g} % longer than"

@@ -99,7 +99,7 @@ def _elsewhere(
     left = {reading.id for reading in study.case.readings} - readings
     breaking = {f.reading for f in against if f.claim == first.claim and f.kind == "breaks"}
     told = first.kind == "longer" and left and left <= breaking
-    return "the durations break a limit" if told else ""
+    return "a limit is broken" if told else ""
 
 
 def _mildest(study: Study, first: Finding, group: list[Finding]) -> Finding:

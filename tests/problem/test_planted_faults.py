@@ -122,8 +122,8 @@ CHECKER: list[tuple[str, str, Killer]] = [
         named("test_verdicts", "test_position_limits"),
     ),
     (
-        "float((high - low) / 2)",
-        "float(high - low)",
+        "half = half_range(low, high, limit)",
+        "half = 2 * half_range(low, high, limit)",
         named("test_verdicts", "test_position_limits"),
     ),
     (

@@ -40,10 +40,10 @@ def cause(rule: str, claim: str, kind: str, readings: tuple[str, ...], **changes
                 "time-optimal",
                 "longer",
                 IDS[:13],
-                elsewhere="the durations break a limit",
+                elsewhere="a limit is broken",
             ),
             "Called optimal in the abstract, but under 13 of 19 readings a checked motion within "
-            "the limits is shorter, and under the others the durations break a limit.",
+            "the limits is shorter; under the others a limit is broken.",
         ),
         (
             cause("TG302", "time-optimal", "longer", IDS[:4]),

@@ -248,7 +248,7 @@ def test_the_polishing_case_shows_jumps_and_polygon(irb1600: Study) -> None:
     assert "under 9 of 19 readings" in picture.caption
     # The default does not jump; the picture is of the first reading that does.
     stretched = "angles-rad-v-rad-a-rad-stretched"
-    assert stretched in picture.caption
+    assert irb1600.case.labels[stretched] in picture.caption
     (grid,) = folded.blocks
     assert isinstance(grid, Grid)
     found = irb1600.claim_check(irb1600.case.claim("after"), "nine-segments", stretched)

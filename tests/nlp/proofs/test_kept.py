@@ -306,13 +306,15 @@ def test_two_at_once_leave_one_whole_file(tmp_path):
 def test_the_oldest_proofs_make_way(tmp_path, monkeypatch):
     found = certify(posed(), gap=GAP)
     store = KeptProofs(tmp_path)
-    store.keep(found, GAP, 0)
-    size = only(tmp_path).stat().st_size
-    monkeypatch.setattr(kept, "MOST_KEPT", 2 * size + size // 2)
-    for age, seed in ((30, 1), (20, 2), (10, 3)):
-        for file in tmp_path.glob("*.json"):
-            os.utime(file, (time.time() - age, time.time() - age - file.stat().st_ino % 2))
+    seen: set[Path] = set()
+    for seed in range(4):
         store.keep(found, GAP, seed)
+        (file,) = set(tmp_path.glob("*.json")) - seen
+        seen.add(file)
+        aged = time.time() - 100 + seed
+        os.utime(file, (aged, aged))
+        if not seed:
+            monkeypatch.setattr(kept, "MOST_KEPT", int(2.5 * file.stat().st_size))
     assert len(list(tmp_path.glob("*.json"))) == 2
     deadline = kept.Deadline.after(9)
     assert store.taken(found.problem, found.subject, GAP, 3, deadline) is not None

@@ -14,6 +14,7 @@ from trajgap.nlp.proofs.exact import exact_problem
 from trajgap.nlp.proofs.outcome import Outcome
 from trajgap.problem import Limits, Problem, fit, solve_in_closed_form, uniform_cubic_b_spline
 from trajgap.verify import verify_certificate as verify
+from trajgap.verify import Clock
 from trajgap.verify.curve import _uniform
 
 
@@ -60,7 +61,7 @@ def test_the_curve_is_the_same_by_three_routes() -> None:
     # From the control vertices, from the slopes at the way-points, and from the fit in floats.
     q = [Fraction(x) for x in ("0.3", "1.25", "-0.75", "2", "1.9")]
     vertices = uniform_coefficients([[x] for x in q])[0]
-    assert vertices == _uniform(q)
+    assert vertices == _uniform(q, Clock(60))
     curve = fit(
         uniform_cubic_b_spline(5, "stretched"), np.array([[float(x)] for x in q]), [1.0] * 4
     )
