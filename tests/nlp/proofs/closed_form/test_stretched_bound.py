@@ -13,8 +13,8 @@ from trajgap.nlp.proofs.document import certificate
 from trajgap.nlp.proofs.exact import exact_problem
 from trajgap.nlp.proofs.outcome import Outcome
 from trajgap.problem import Limits, Problem, fit, solve_in_closed_form, uniform_cubic_b_spline
-from trajgap.verify import verify_certificate as verify
 from trajgap.verify import Clock
+from trajgap.verify import verify_certificate as verify
 from trajgap.verify.curve import _uniform
 
 
