@@ -63,8 +63,8 @@ def _plain(case: Case, cause: Cause) -> str:
         "TG203": f"The peak in {where} is not that of the printed durations",
         "TG208": f"The mean or integral in {where} is not that of the printed durations",
         "TG205": f"Control vertices in {where} do not follow from the way-points",
-        "TG301": "Under a velocity limit alone times scale with it, so the two printed results "
-        "cannot both be shortest",
+        "TG301": "Under a velocity limit alone, times scale inversely with it, so the two printed "
+        "results cannot both be shortest",
         "TG302": f"Called optimal in {where}, but {_not_optimal(head, cause, len(case.readings))}",
         "TG304": f"The total in {where} is not the shortest of its profile",
         "TG601": "Printed joint angles and positions do not fit the printed robot",
@@ -82,7 +82,7 @@ def _not_optimal(head: Finding, cause: Cause, readings: int) -> str:
     if not isinstance(head.gap, Gap):
         where = f"{_UNDER}{count} of {readings} readings " if 0 < count < readings else ""
         others = f"; under the others {cause.elsewhere}" if cause.elsewhere else ""
-        return f"{where}a checked motion within the limits is shorter{others}"
+        return f"{where}the same curve is faster within the limits{others}"
     percent = 100 * head.gap.highest
     share = f"{percent:.1f} % longer than" if percent >= 1 else f"{percent:.2g} % longer than"
     if head.gap.many_times:

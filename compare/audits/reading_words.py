@@ -136,7 +136,7 @@ def _of_fit(summary: ReadingsSummary) -> Iterable[str]:
         *(["the velocity jumps"] if any(o.jumps for o in own) else []),
     ]
     if len(nearest) == len(summary.fits):
-        which = "The printed durations fit every reading alike"
+        which = "The printed durations lie alike under every reading"
     else:
         best = under(nearest, summary.admissible, _names(summary), most=3)
         which = f"The printed durations fit best {best}"

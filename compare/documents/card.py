@@ -67,14 +67,14 @@ def tally(judgements: Sequence[Judgement]) -> str:
     said = sum(claims_nothing(j) for j in judgements)
     left = len(judgements) - len(own) - held - said
     parts += [f"{left} {'is' if left == 1 else 'are'} open"] if left else []
-    parts += [f"{said} {'claims' if said == 1 else 'claim'} no result"] if said else []
+    parts += [f"{said} {'states' if said == 1 else 'state'} no result"] if said else []
     count = f"{len(judgements)} claim{'' if len(judgements) == 1 else 's'}"
     return f"Verdicts on {count}: {', '.join(parts)}." if parts else "No claims."
 
 
 _KNOWN = {
     Confidence.DIGITS: ("follows from the printed digits", "follow from the printed digits"),
-    Confidence.PROVEN: ("is proven under a reading", "are proven under a reading"),
+    Confidence.PROVEN: ("rests on a proof under a reading", "rest on proofs under a reading"),
     Confidence.BEST_KNOWN: ("rests on a best known motion", "rest on best known motions"),
     Confidence.REPLAY: ("rests on replays", "rest on replays"),
 }

@@ -114,8 +114,8 @@ def same_reason(text: str, where: str, own: str) -> str:
     -------
     str
     """
-    called = where if where != own else f"“{text.rstrip('.')}”"
-    return f"For the same reason as {called}."
+    called = f"at {where}" if where != own else f"for “{text.rstrip('.')}”"
+    return f"For the reason given {called}."
 
 
 def claims_nothing(judgement: Judgement) -> bool:

@@ -242,7 +242,7 @@ def _not_computed(one: CaseAudit) -> Section:
     reason = "" if one.readings is not None else f" ({why})"
     said = Prose(
         f"No problem is posed, since way-points are not printed{reason}: there are no optima, "
-        "motions, replays or landscapes."
+        "motions, replays or landscapes of its own."
     )
     return Section("not-computed", "Not computed", (said,))
 

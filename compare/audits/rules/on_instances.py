@@ -55,7 +55,9 @@ def placed(result: InstancesResult) -> str:
     for reading in result.readings:
         if reading not in inside:
             sides.setdefault(_aside(result, reading), []).append(reading)
-    said = f"On {drawn}, the printed reduction of {percent_range(*result.printed)} is "
+    said = (
+        f"On {drawn}, the reduction of {percent_range(*result.printed)} by the printed numbers is "
+    )
     middle = f"the middle {100 * MIDDLE:g} % of the reductions of one run against one run"
     parts = (
         [f"usual under {', '.join(quoted(one, result.labels) for one in inside)}, within {middle}"]
@@ -95,7 +97,7 @@ def _aside(result: InstancesResult, reading: str) -> str:
     found = distribution(result.reductions(reading, Effect.BOTH))
     if found.missing == found.pairs or result.printed is None:
         return "no pair of answers"
-    return "larger there" if found.median > result.printed[1] else "smaller there"
+    return "most are larger there" if found.median > result.printed[1] else "most are smaller there"
 
 
 def medians(result: InstancesResult, effect: Effect, at: int = 0) -> tuple[float, float] | None:
@@ -139,7 +141,7 @@ def _under(result: InstancesResult, reading: str) -> Finding:
             ("usual", "within") if reproduced(result, reading) else ("unusual", "outside")
         )
         parts.append(
-            f"The printed reduction of {percent_range(*result.printed)} is {usual} here: it lies "
+            f"The reduction of {percent_range(*result.printed)} by the printed numbers is {usual} here: it lies "
             f"{inside} the middle {100 * MIDDLE:g} % of the reductions, and {100 * least:.3g} % of "
             "them are at least as large."
         )

@@ -42,13 +42,13 @@ def cause(rule: str, claim: str, kind: str, readings: tuple[str, ...], **changes
                 IDS[:13],
                 elsewhere="a limit is broken",
             ),
-            "Called optimal in the abstract, but under 13 of 19 readings a checked motion within "
-            "the limits is shorter; under the others a limit is broken.",
+            "Called optimal in the abstract, but under 13 of 19 readings the same curve is "
+            "faster within the limits; under the others a limit is broken.",
         ),
         (
             cause("TG302", "time-optimal", "longer", IDS[:4]),
-            "Called optimal in the abstract, but under 4 of 19 readings a checked motion within "
-            "the limits is shorter.",
+            "Called optimal in the abstract, but under 4 of 19 readings the same curve is "
+            "faster within the limits.",
         ),
         (
             cause("TG302", "time-optimal", "longer", IDS, gap=GAP),

@@ -59,7 +59,7 @@ def test_a_replay_alone_decides_nothing_and_the_tally_says_what_is_open() -> Non
     assert alone.confidence == UNDECIDED
     proven = judge("c", under_both(ClaimVerdict.REFUTED, Basis.OPTIMUM), READINGS)
     both: list[Judgement] = [alone, proven, proven]
-    assert tally(both) == "Verdicts on 3 claims: 2 are proven under a reading, 1 is open."
+    assert tally(both) == "Verdicts on 3 claims: 2 rest on proofs under a reading, 1 is open."
     assert tally([]) == "No claims."
 
 

@@ -39,7 +39,9 @@ def test_a_reason_and_a_long_caveat_are_told_once() -> None:
     again = replace(FIGURE_5, text="It is faster.", where="Figure 7")
     first, second = shown_once([FIGURE_5, again])
     assert first == FIGURE_5
-    assert second.why == ("For the same reason as Figure 5.",)
+    assert second.why == ("For the reason given at Figure 5.",)
     here = replace(again, where="Figure 5")
-    assert list(shown_once([FIGURE_5, here]))[1].why == ("For the same reason as “It is better”.",)
+    assert list(shown_once([FIGURE_5, here]))[1].why == (
+        "For the reason given for “It is better”.",
+    )
     assert second.caveats == ("Rests on doubt (see above).",)
