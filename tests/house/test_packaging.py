@@ -23,7 +23,7 @@ PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 
 
 README_COMMANDS = [
-    "python -m pip install . && trajgap audit",
+    "python -m pip install . && trajgap audit docs/examples/fang2020-task1.toml --out first",
     'python -m pip install ".[test,docs]" && python -m pytest',
     'python -m pip install ".[docs]" && python -m sphinx -W -b html docs build/site',
 ]

@@ -141,8 +141,8 @@ def _under(result: InstancesResult, reading: str) -> Finding:
             ("usual", "within") if reproduced(result, reading) else ("unusual", "outside")
         )
         parts.append(
-            f"The reduction of {percent_range(*result.printed)} by the printed numbers is {usual} here: it lies "
-            f"{inside} the middle {100 * MIDDLE:g} % of the reductions, and {100 * least:.3g} % of "
+            f"The reduction of {percent_range(*result.printed)} by the printed numbers is {usual} "
+            f"here: it lies {inside} the middle {100 * MIDDLE:g} % of the reductions, and {100 * least:.3g} % of "
             "them are at least as large."
         )
     steps = ", ".join(f"{step:g}" for step in block.lengths)

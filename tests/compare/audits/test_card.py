@@ -35,8 +35,8 @@ def test_the_palletisers_card():
         "The conditions in section 4.2 cannot all hold: 18 conditions on 14 coefficients."
     )
     assert card.errors[1] == (
-        "Under a velocity limit alone, times scale inversely with it, so the two printed results cannot both "
-        "be shortest."
+        "Under a velocity limit alone, times scale inversely with it, so the two printed results "
+        "cannot both be shortest."
     )
     assert card.more == 0
 
