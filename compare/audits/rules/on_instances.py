@@ -142,8 +142,8 @@ def _under(result: InstancesResult, reading: str) -> Finding:
         )
         parts.append(
             f"The reduction of {percent_range(*result.printed)} by the printed numbers is {usual} "
-            f"here: it lies {inside} the middle {100 * MIDDLE:g} % of the reductions, and {100 * least:.3g} % of "
-            "them are at least as large."
+            f"here: it lies {inside} the middle {100 * MIDDLE:g} % of the reductions, and "
+            f"{100 * least:.3g} % of them are at least as large."
         )
     steps = ", ".join(f"{step:g}" for step in block.lengths)
     parts += [
