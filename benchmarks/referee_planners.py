@@ -9,7 +9,7 @@ import importlib
 import importlib.metadata
 import logging
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -92,18 +92,49 @@ def _toppra(question: Question, cells: int | None, output: str) -> Motion:
 def _copp_robot(
     question: Question, path: PPoly, order: int, cells: int = CELLS
 ) -> tuple[Any, Array]:
+    grid = np.linspace(0.0, 1.0, cells * (question.waypoints.shape[0] - 1) + 1)
+    sizes = (question.velocity, question.acceleration, question.jerk)
+    return copp_robot(path, grid, sizes[:order]), grid
+
+
+def copp_robot(path: PPoly, grid: Array, sizes: Sequence[Array]) -> Any:
+    """copp's robot on a path, with finite limits of as many derivatives as ``sizes`` has."""
     import copp_py
 
-    grid = np.linspace(0.0, 1.0, cells * (question.waypoints.shape[0] - 1) + 1)
-    robot = copp_py.Robot(question.waypoints.shape[1], capacity=grid.size)
+    robot = copp_py.Robot(sizes[0].size, capacity=grid.size)
     robot.append_s(grid)
     values = [np.ascontiguousarray(path(grid, r)) for r in range(4)]
     robot.set_q(*values[:3], 0, dddq=values[3])
-    sizes = (question.velocity, question.acceleration, question.jerk)
     adds = (robot.add_velocity_limits, robot.add_acceleration_limits, robot.add_jerk_limits)
-    for size, add in list(zip(sizes, adds, strict=True))[:order]:
+    for size, add in zip(sizes, adds, strict=False):
         add(size, -size, start_idx_s=0, length=grid.size)
-    return robot, grid
+    return robot
+
+
+def copp_third(
+    robot: Any, about: Array, slope: Array | None, rounds: int, speed: float, stationary: int
+) -> Any:
+    """copp's profile of third order, linearised about a profile and then about its own answers.
+
+    ``speed`` is that along the path at both ends, squared; ``stationary`` the most intervals at
+    either end in which it may rise from 0.
+    """
+    from copp_py.solver import topp3_socp
+
+    profile = None
+    for _ in range(rounds):
+        asked = topp3_socp.Problem(
+            robot.constraints,
+            about,
+            idx_s_start=0,
+            a_boundary=(speed, speed),
+            b_boundary=(0.0, 0.0),
+            num_stationary_max=stationary,
+            b_linearization=slope,
+        )
+        profile = topp3_socp.solve(asked)
+        about, slope = profile.a, profile.b
+    return profile
 
 
 def _copp_second(robot: Any, grid: Array) -> Array:
@@ -125,23 +156,10 @@ def _topp2(question: Question) -> Motion:
 def _topp3(question: Question, rounds: int, cells: int = CELLS) -> Motion:
     """TOPP3 as its guide shows: linearised about TOPP2's answer, then again about its own."""
     from copp_py.interpolation import s_to_t_topp3
-    from copp_py.solver import topp3_socp
 
     path = question.quintic
     robot, grid = _copp_robot(question, path, 3, cells)
-    about, slope = _copp_second(robot, grid), None
-    for _ in range(rounds):
-        asked = topp3_socp.Problem(
-            robot.constraints,
-            about,
-            idx_s_start=0,
-            a_boundary=(0.0, 0.0),
-            b_boundary=(0.0, 0.0),
-            num_stationary_max=1,
-            b_linearization=slope,
-        )
-        profile = topp3_socp.solve(asked)
-        about, slope = profile.a, profile.b
+    profile = copp_third(robot, _copp_second(robot, grid), None, rounds, 0.0, 1)
     _, times = s_to_t_topp3(grid, profile, 0.0)
     return third_order(path, grid, profile, np.asarray(times))
 

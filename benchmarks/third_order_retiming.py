@@ -20,7 +20,6 @@ import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +30,7 @@ from trajgap.problem.suite import BenchmarkInstance, list_instances
 
 sys.path.insert(0, str(Path(__file__).parent))
 from referee_motions import third_order
+from referee_planners import copp_robot, copp_third
 
 Array = NDArray[np.float64]
 CELLS = (25, 50, 100)
@@ -77,36 +77,6 @@ def path_of(motion: Trajectory) -> PPoly:
     return PPoly(np.stack(powers[::-1]), times)
 
 
-def profile_of(path: PPoly, grid: Array, limits: Array) -> Any:
-    """copp's profile of third order on a path; ``limits`` by joint and derivative, inf for none."""
-    import copp_py
-    from copp_py.solver import topp3_socp
-
-    robot = copp_py.Robot(limits.shape[0], capacity=grid.size)
-    robot.append_s(grid)
-    values = [np.ascontiguousarray(path(grid, order)) for order in range(4)]
-    robot.set_q(*values[:3], 0, dddq=values[3])
-    adds = (robot.add_velocity_limits, robot.add_acceleration_limits, robot.add_jerk_limits)
-    for size, add in zip(limits.T, adds, strict=True):
-        size = np.where(np.isfinite(size), size, NO_LIMIT)
-        add(size, -size, start_idx_s=0, length=grid.size)
-    profile, squares, slopes = None, np.ones(grid.size), np.zeros(grid.size)
-    for _ in range(ROUNDS):
-        asked = topp3_socp.Problem(
-            robot.constraints,
-            squares,
-            idx_s_start=0,
-            # The motion itself starts and ends with s' = 1 and s'' = 0.
-            a_boundary=(1.0, 1.0),
-            b_boundary=(0.0, 0.0),
-            num_stationary_max=0,
-            b_linearization=slopes,
-        )
-        profile = topp3_socp.solve(asked)
-        squares, slopes = profile.a, profile.b
-    return profile
-
-
 def retimed(motion: Trajectory, limits: Array, cells: int) -> Retimed:
     """The path of a motion as TOPP3 times it, judged for all t."""
     from copp_py.interpolation import s_to_t_topp3
@@ -114,7 +84,11 @@ def retimed(motion: Trajectory, limits: Array, cells: int) -> Retimed:
     path = path_of(motion)
     ends = zip(motion.breaks[:-1], motion.breaks[1:], strict=True)
     grid = np.unique(np.concatenate([np.linspace(a, b, cells + 1) for a, b in ends]))
-    profile = profile_of(path, grid, limits)
+    finite = np.where(np.isfinite(limits), limits, NO_LIMIT)
+    robot = copp_robot(path, grid, [np.array(size) for size in finite.T])
+    # The motion itself starts and ends with s' = 1 and s'' = 0.
+    still, steady = np.zeros(grid.size), np.ones(grid.size)
+    profile = copp_third(robot, steady, still, ROUNDS, 1.0, 0)
     _, times = s_to_t_topp3(grid, profile, 0.0)
     found = third_order(path, grid, profile, np.asarray(times))
     return Retimed(found.total_time, *_judged(found, limits))

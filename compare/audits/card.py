@@ -137,13 +137,13 @@ def _explanation(causes: Sequence[Cause], room: int) -> str | None:
 
 def _within(study: Study, sets: Sequence[DurationsClaim | MaximumClaim]) -> str:
     """Whether it takes the rounding of the digits to keep the limits."""
-    printed = [
-        study.claim_check(one, *pair).limits is Verdict.PASS
+    checked = [
+        study.motion_check(one, *pair)
         for one in sets
         if study.has_durations(one)
         for pair in study.claim_pairs(one)
-        if study.unmoved(one, *pair) is None
     ]
+    printed = [found.limits is Verdict.PASS for found in checked if found is not None]
     return "" if all(printed) else " within rounding"
 
 

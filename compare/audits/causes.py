@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from ...problem import TrajgapError
 from ...problem.cases import AnyClaim, ImprovementClaim, MaximumClaim, StatementClaim
 from ..documents import (
     DOUBTED,
@@ -176,18 +175,11 @@ def _rests_on(claim: AnyClaim) -> tuple[str, ...]:
 def _jumps(study: Study, claim: AnyClaim, rid: str) -> bool:
     """Whether the velocity of a motion that a claim speaks about jumps under a reading."""
     about = [claim, *(study.case.claim(i) for i in _rests_on(claim))]
-    return any(
-        _jumping(study, one, pid, rid)
+    checked = [
+        study.motion_check(one, pid, rid)
         for one in about
         if study.has_durations(one)
         for pid, reading in study.claim_pairs(one)
         if reading == rid
-    )
-
-
-def _jumping(study: Study, claim: AnyClaim, pid: str, rid: str) -> bool:
-    try:
-        found = study.claim_check(claim, pid, rid)
-    except TrajgapError:  # the printed numbers define no motion, as a finding says
-        return False
-    return any(jump.order == 1 for jump in found.jumps)
+    ]
+    return any(jump.order == 1 for found in checked if found is not None for jump in found.jumps)

@@ -41,16 +41,17 @@ def implausible(study: Study) -> dict[str, str]:
 
 def _stretch(study: Study, rid: str) -> float | None:
     """By what all durations of one claim times this just reach the limits, the farthest from 1."""
-    stretches = [
-        study.claim_check(claim, pid, reading).stretch
+    checked = [
+        study.motion_check(claim, pid, reading)
         for claim in study.case.claims
         if isinstance(claim, DurationsClaim | MaximumClaim)
         if claim.state != "before"
         and study.has_durations(claim)
         and other_objective(study.case, claim) is None
         for pid, reading in study.claim_pairs(claim)
-        if reading == rid and study.unmoved(claim, pid, reading) is None
+        if reading == rid
     ]
+    stretches = [found.stretch for found in checked if found is not None]
     real = [one for one in stretches if isfinite(one) and one > 0]
     return max(real, key=lambda one: abs(log(one)), default=None)
 

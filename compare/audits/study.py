@@ -261,6 +261,13 @@ class Study(ReplayedCase):
 
         return self.once(("check", claim.id, pid, rid), compute)
 
+    def motion_check(self, claim: Claim, pid: str, rid: str) -> Check | None:
+        """`claim_check`; None where the printed numbers define no motion, as a finding says."""
+        try:
+            return self.claim_check(claim, pid, rid)
+        except TrajgapError:
+            return None
+
     def claim_rounding(self, claim: Claim, pid: str, rid: str) -> RoundingVerdict:
         """The printed durations judged over the box of all inputs that round to the digits."""
         return self.once(

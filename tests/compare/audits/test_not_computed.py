@@ -225,6 +225,15 @@ where = "text"
 checks = "continuous"
 of = ["fast"]
 """
+    two = """[[readings]]
+id = "as-printed"
+why = "the header"
+[[readings]]
+id = "degrees"
+why = "another table"
+units = { velocity = "deg/s" }
+"""
+    assert audit(parse_case(text + two, "together.toml"), certify_seconds=0).cases[0].judgements
     found = audit(parse_case(text, "together.toml"), certify_seconds=0).cases[0]
     words = {j.claim: j.verdict for j in found.judgements}
     assert words == {"fast": ClaimVerdict.SUPPORTED, "smooth": ClaimVerdict.NOT_CHECKABLE}
