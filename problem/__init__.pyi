@@ -42,6 +42,7 @@ from .curves import (
     three_five_three,
     uniform_cubic_b_spline,
 )
+from .described import Described
 from .errors import CaseError, CurveError, ProcessError, TrajgapError
 from .evaluation import Evaluation, evaluate, keeps_limits, reachable_total
 from .fields import LimitPair, Strict
@@ -104,6 +105,7 @@ __all__ = [
     "Coupling",
     "Curve",
     "CurveError",
+    "Described",
     "DurationBox",
     "Evaluation",
     "Extremum",

@@ -9,7 +9,6 @@ from difflib import get_close_matches
 from typing import Annotated, Any, Literal
 
 from pydantic import (
-    BaseModel,
     BeforeValidator,
     ConfigDict,
     Discriminator,
@@ -22,6 +21,7 @@ from pydantic import (
 )
 from pydantic_core import PydanticCustomError
 
+from .described import Described
 from .errors import TrajgapError
 from .printed import Printed
 from .units import CHOICES, Quantity, check_unit
@@ -61,12 +61,10 @@ def nearest(word: str, known: Iterable[str]) -> str:
     return f"known: {', '.join(choices)}" if choices else "none are declared"
 
 
-class Strict(BaseModel):
+class Strict(Described):
     """Immutable block of a case file in which every key must be known."""
 
-    model_config = ConfigDict(
-        extra="forbid", frozen=True, arbitrary_types_allowed=True, use_attribute_docstrings=True
-    )
+    model_config = ConfigDict(extra="forbid", frozen=True, arbitrary_types_allowed=True)
 
     @model_validator(mode="before")
     @classmethod

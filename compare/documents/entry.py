@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import Annotated, Any, Literal, TypeAlias, TypeVar
 
 from pydantic import (
-    BaseModel,
     ConfigDict,
     Field,
     GetJsonSchemaHandler,
@@ -20,7 +19,7 @@ from pydantic.fields import FieldInfo
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
-from ...problem import escaped
+from ...problem import Described, escaped
 
 T = TypeVar("T")
 
@@ -93,14 +92,13 @@ def reason(value: object) -> str | None:
     return None
 
 
-class Entry(BaseModel):
+class Entry(Described):
     """An object of a document; its fields are the keys, in their order."""
 
     model_config = ConfigDict(
         frozen=True,
         arbitrary_types_allowed=True,
         populate_by_name=True,
-        use_attribute_docstrings=True,
         protected_namespaces=(),
     )
 
@@ -122,7 +120,7 @@ class Entry(BaseModel):
     def __get_pydantic_json_schema__(
         cls, core_schema: CoreSchema, handler: GetJsonSchemaHandler
     ) -> JsonSchemaValue:
-        reference = handler(core_schema)
+        reference = super().__get_pydantic_json_schema__(core_schema, handler)
         shape = handler.resolve_ref_schema(reference)
         keys = shape.get("properties", {})
         shape["required"], reasons = [], []

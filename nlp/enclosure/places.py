@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import linprog
 
 from ...problem import Array, Extremum, Problem, extrema, fit
 
@@ -87,6 +86,8 @@ def linear_program(
     matrix = np.hstack([slope, -np.ones((level.size, 1))])
     cost = np.append(np.zeros(low.size), 1.0)
     bounds = np.column_stack([np.append(low, -np.inf), np.append(high, np.inf)])
+    from scipy.optimize import linprog  # a quarter of a second, and few need it
+
     result = linprog(cost, A_ub=matrix, b_ub=-level, bounds=bounds, method="highs")
     if result.status != 0:
         return None

@@ -10,8 +10,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import LinAlgError, cholesky, solve_triangular
-from scipy.optimize import nnls
 
 from ...problem import Array, Problem
 from .clock import time_up
@@ -59,6 +57,9 @@ def least_point(
     chapter 23): of u ≥ 0 with least |[Gᵀ; wᵀ]u − e|, e the last unit vector, the residual ρ gives
     y = −ρ_{1..n}/ρ_{n+1}, and −u/ρ_{n+1} are the multipliers.
     """
+    from scipy.linalg import cholesky, solve_triangular  # a quarter of a second, and few need it
+    from scipy.optimize import nnls
+
     lower = cholesky(hessian, lower=True)
     shift = solve_triangular(lower, slope, lower=True)
     turned = solve_triangular(lower, rows.T, lower=True).T
@@ -271,6 +272,8 @@ def _curved(hessian: Array, before: ExactRows, after: ExactRows, weights: Array)
     share = 1.0 if along >= 0.2 * bend else 0.8 * bend / (bend - along)
     mixed = share * change + (1.0 - share) * image
     updated = hessian - np.outer(image, image) / bend + np.outer(mixed, mixed) / float(step @ mixed)
+    from scipy.linalg import LinAlgError, cholesky  # a quarter of a second, and few need it
+
     try:
         cholesky(updated, lower=True)
     except LinAlgError:

@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy.optimize import least_squares
 
 from ...problem import Array, CurveError, Problem, check, fit
 from .clock import time_up
@@ -112,6 +111,8 @@ def jump_equations(problem: Problem) -> tuple[int, int]:
 
 def _onto(jumps: Callable[[Array], Array], start: Array) -> Array | None:
     """The nearest ratios without a jump, if a search from the start ends at some."""
+    from scipy.optimize import least_squares  # a quarter of a second, and few need it
+
     end = least_squares(jumps, start, bounds=(-WIDEST, WIDEST), max_nfev=STEPS, **LAST_BITS)
     return end.x if np.abs(end.fun).max() <= MATCHED else None
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import nnls
 
 from ...problem import QUANTITIES, Array, Extremum, Problem, extrema, fit, peak_gradients
 
@@ -162,6 +161,8 @@ def kkt(
     objective = np.concatenate([durations / total, np.zeros(free * joints)])
     matrix = np.hstack([columns, walls])
     if matrix.shape[1]:
+        from scipy.optimize import nnls  # a quarter of a second; a check does without
+
         weights, _ = nnls(matrix, -objective, maxiter=30 * matrix.shape[1] + 100)
     else:
         weights = np.zeros(0)

@@ -165,7 +165,7 @@ def unpack(
         return h, nodal * scaled.angle_unit / scaled.time_unit**orders
     top = max(interpolant.degrees) + 1
     c = x[n:].reshape((top, joints, n)).transpose(2, 0, 1) * scaled.angle_unit
-    return h, free_values(interpolant, Trajectory(None, h, c, interpolant.degrees))
+    return h, free_values(interpolant, Trajectory(h, c, interpolant.degrees))
 
 
 def free_values(interpolant: Interpolant, trajectory: Trajectory) -> Array:

@@ -7,10 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from ...problem import Array, Limits, Trajectory, TrajgapError, extrema
-from ...problem.curves import trajectory_from_scaled
 from .grid import measure, sample
 from .path import jump, pieces
 
@@ -187,8 +185,8 @@ def retime_joints(
     """
     return tuple(
         retime(
-            trajectory_from_scaled(
-                trajectory.scaled[:, :, j : j + 1], trajectory.degrees, trajectory.durations
+            Trajectory(
+                trajectory.durations, trajectory.scaled[:, :, j : j + 1], trajectory.degrees
             ),
             limits.joint(j),
             gridpoints=gridpoints,
@@ -260,6 +258,8 @@ def extrapolate(cells: Sequence[int], durations: Array) -> tuple[float | None, f
     if second == 0.0 or mismatch(0.25) * mismatch(4.0) > 0 or first * second < 0:
         limit = last - second / (1.0 / n[1] - 1.0)
         return None, float(limit), noise + abs(first) + abs(second)
+    from scipy.optimize import brentq  # a quarter of a second, and few need it
+
     order = float(brentq(mismatch, 0.25, 4.0))
     limit = last - second / (float(n[1]) ** -order - 1.0)
     return order, limit, noise + abs(limit - last)

@@ -28,7 +28,6 @@ from .spline import (
     layout,
     motion_values,
     right_hand_sides,
-    trajectory_from_scaled,
 )
 from .stretched import Timing, segment_peaks, shape_of, solve_in_closed_form
 from .timed import ClockedTrajectory, numerators
@@ -102,7 +101,6 @@ __all__ = [
     "step_sizes",
     "three_five_three",
     "tops",
-    "trajectory_from_scaled",
     "uniform_cubic_b_spline",
     "vertex_matrix",
 ]

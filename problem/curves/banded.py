@@ -15,7 +15,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg.lapack import dgbtrf, dgbtrs
 
 from ..arrays import Array
 from .kernel import compiled
@@ -56,6 +55,8 @@ class Factors:
 
     def solve(self, right: Array, transposed: bool = False) -> Array:
         """Solution of Ax = b, or of Aᵀx = b, for right-hand sides of shape (size, vectors)."""
+        from scipy.linalg.lapack import dgbtrs  # a quarter of a second, and few need it
+
         found, _ = dgbtrs(
             self.packed.T, self.lower, self.upper, right, self.swapped, trans=int(transposed)
         )
@@ -64,6 +65,8 @@ class Factors:
 
 def factorise(rows: Array, lower: int, upper: int) -> Factors:
     """Factors of the band matrix with entry (i, c) at ``rows[i, c − i + lower]``."""
+    from scipy.linalg.lapack import dgbtrf  # a quarter of a second, and few need it
+
     size = len(rows)
     packed = np.zeros((size, 2 * lower + upper + 1))
     for d in range(-lower, upper + 1):  # entry (i, i + d)

@@ -15,7 +15,8 @@ from .clamped_knots import average_matrix, fractions_of
 from .clamped_system import EPS, Numbers, Spline, interpolated
 from .kind import Enclosed, PeakGradients, Shape, as_waypoints, derivative_row, value_errors
 from .peak import Extremum
-from .spline import as_durations, trajectory_from_scaled
+from .spline import as_durations
+from .trajectory import Trajectory
 
 if TYPE_CHECKING:
     from .clamped import ClampedBSpline
@@ -204,7 +205,7 @@ def clamped_enclosed(curve: ClampedBSpline, waypoints: Array, durations: Array) 
     found = _joined(_splines(curve, wide, durations.astype(np.longdouble)), waypoints.shape[1])
     lengths = np.diff(np.asarray(found.breaks, dtype=np.float64))
     scaled = np.asarray(found.scaled, dtype=np.float64)
-    trajectory = trajectory_from_scaled(scaled, (curve.degree,) * lengths.size, lengths)
+    trajectory = Trajectory(lengths, scaled, (curve.degree,) * lengths.size)
     return Enclosed(trajectory, value_errors(trajectory, found.error))
 
 

@@ -25,7 +25,6 @@ from .kind import (
     value_errors,
 )
 from .peak import Extremum
-from .spline import trajectory_from_scaled
 from .trajectory import Trajectory
 
 _DENSE = 300
@@ -151,12 +150,12 @@ class Interpolant(Curve):
     def fitted(self, waypoints: Array, durations: Array, nodal: Array | None = None) -> Trajectory:
         """`fit` by one banded elimination."""
         scaled = spline.coefficients(self, waypoints, durations, nodal)
-        return trajectory_from_scaled(scaled, self.degrees, durations)
+        return Trajectory(durations, scaled, self.degrees)
 
     def enclosed(self, waypoints: Array, durations: Array, nodal: Array | None = None) -> Enclosed:
         """`fit` refined in extended precision, with the bound of `refined_coefficients`."""
         scaled, error = refined.refined_coefficients(self, waypoints, durations, nodal)
-        trajectory = trajectory_from_scaled(scaled, self.degrees, durations)
+        trajectory = Trajectory(durations, scaled, self.degrees)
         return Enclosed(trajectory, value_errors(trajectory, error))
 
     def motion_values(self, waypoints: Array, nodal: Array | None = None) -> Array:

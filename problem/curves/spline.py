@@ -11,14 +11,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import PPoly
 
 from ..arrays import Array
 from ..errors import TrajgapError
 from . import kernel
 from .compilation import Deferred
 from .condition import ConditionKind
-from .trajectory import Trajectory
 
 if TYPE_CHECKING:
     from .interpolant import Interpolant
@@ -204,16 +202,6 @@ def as_durations(durations: ArrayLike, segments: int) -> Array:
             f"durations: {h.tolist()} s must all lie between {1 / _LONGEST:g} and {_LONGEST:g} s"
         )
     return h
-
-
-def trajectory_from_scaled(scaled: Array, degrees: tuple[int, ...], durations: Array) -> Trajectory:
-    """Trajectory over scipy's ``PPoly`` from coefficients in s, shape (segments, power, joints)."""
-    top = max(degrees)
-    powers = np.arange(top + 1)
-    in_time = scaled[:, : top + 1] / (durations[:, None] ** powers)[:, :, None]
-    breaks = np.concatenate([[0.0], np.cumsum(durations)])
-    polynomial = PPoly(np.ascontiguousarray(in_time[:, ::-1].transpose(1, 0, 2)), breaks)
-    return Trajectory(polynomial, durations, scaled, degrees)
 
 
 def motion_values(

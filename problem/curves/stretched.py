@@ -21,7 +21,7 @@ from .kind import (
     value_errors,
 )
 from .peak import Extremum, critical_points
-from .spline import trajectory_from_scaled
+from .trajectory import Trajectory
 
 
 class Timing(StrEnum):
@@ -130,7 +130,7 @@ class StretchedCurve(Curve):
         """Pieces of the shape, each over its share of the segment's duration."""
         form = shape_of(self, waypoints)
         lengths = durations[form.segment] * form.share
-        found = trajectory_from_scaled(form.scaled, (form.degree,) * lengths.size, lengths)
+        found = Trajectory(lengths, form.scaled, (form.degree,) * lengths.size)
         return Enclosed(found, value_errors(found, form.error))
 
     def motion_values(self, waypoints: Array, nodal: Array | None = None) -> Array:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import PPoly
 
 from ..arrays import Array
 from ..errors import CurveError, TrajgapError
@@ -15,6 +15,9 @@ from . import kernel, timed_kernel
 from .kind import Enclosed
 from .peak import Extremum, critical_points
 from .trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from scipy.interpolate import PPoly
 
 Numbers = NDArray[np.inexact]
 """Real or complex, of any precision: gradients are taken by complex steps."""
@@ -84,6 +87,14 @@ class ClockedTrajectory(Trajectory):
     """
 
     clock: Array
+
+    @cached_property
+    def polynomial(self) -> PPoly:
+        """The joint angles over e as scipy's ``PPoly``, values of shape (joints,), rad."""
+        from scipy.interpolate import PPoly  # half a second, and no peak needs it
+
+        angles = np.ascontiguousarray(self.scaled[:, 3::-1].transpose(1, 0, 2))
+        return PPoly(angles, np.arange(len(self.clock) + 1.0))
 
     @cached_property
     def breaks(self) -> Array:
@@ -215,11 +226,8 @@ def _checked_clock(clock: Array) -> None:
 
 
 def _trajectory(scaled: Array, clock: Array) -> ClockedTrajectory:
-    polynomial = PPoly(
-        np.ascontiguousarray(scaled[:, 3::-1].transpose(1, 0, 2)), np.arange(len(clock) + 1.0)
-    )
     breaks = np.append(clock[:, 0], clock[-1].sum())
-    return ClockedTrajectory(polynomial, np.diff(breaks), scaled, (3,) * len(clock), clock)
+    return ClockedTrajectory(np.diff(breaks), scaled, (3,) * len(clock), clock)
 
 
 def enclosed_with_clock(q: Numbers, t: Numbers, waypoints: Array, durations: Array) -> Enclosed:

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import PPoly
 
 from ..arrays import Array
 from .peak import Extremum, critical_points, polynomial_extrema
+
+if TYPE_CHECKING:
+    from scipy.interpolate import PPoly
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,8 +22,6 @@ class Trajectory:
 
     Attributes
     ----------
-    polynomial : scipy.interpolate.PPoly
-        Values of shape (joints,), rad over s.
     durations : ndarray, shape (pieces,)
         Durations of the pieces, s: the segments, except where a curve has its knots elsewhere.
     scaled : ndarray, shape (pieces, powers, joints)
@@ -29,10 +30,18 @@ class Trajectory:
         Degree of each piece.
     """
 
-    polynomial: PPoly
     durations: Array
     scaled: Array
     degrees: tuple[int, ...]
+
+    @cached_property
+    def polynomial(self) -> PPoly:
+        """The trajectory as scipy's ``PPoly``, values of shape (joints,), rad over s."""
+        from scipy.interpolate import PPoly  # half a second, and no peak needs it
+
+        powers = np.arange(max(self.degrees) + 1)
+        in_time = self.scaled[:, : powers.size] / (self.durations[:, None] ** powers)[:, :, None]
+        return PPoly(np.ascontiguousarray(in_time[:, ::-1].transpose(1, 0, 2)), self.breaks)
 
     def __call__(self, time: ArrayLike, order: int = 0) -> Array:
         """Derivative ``order`` at ``time`` (s); shape of ``time`` plus (joints,)."""
@@ -41,7 +50,7 @@ class Trajectory:
     @cached_property
     def breaks(self) -> Array:
         """Times at which the pieces meet, s."""
-        return np.asarray(self.polynomial.x, dtype=np.float64)
+        return np.concatenate([[0.0], np.cumsum(self.durations)])
 
     @property
     def total_time(self) -> float:

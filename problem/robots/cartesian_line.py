@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.spatial.transform import Rotation, Slerp
 
 from ..arrays import Array
 from ..curves import Trajectory
@@ -161,6 +160,8 @@ def _poses(first: ArrayLike, last: ArrayLike, points: int) -> Array:
     poses = np.tile(np.eye(4), (points, 1, 1))
     a, b = (pose[:3, 3] for pose in ends)
     poses[:, :3, 3] = a + share[:, None] * (b - a)
+    from scipy.spatial.transform import Rotation, Slerp  # a quarter of a second, and few need it
+
     turn = Slerp([0.0, 1.0], Rotation.from_matrix([pose[:3, :3] for pose in ends]))
     poses[:, :3, :3] = turn(share).as_matrix()
     return poses

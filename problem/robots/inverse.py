@@ -8,7 +8,6 @@ from enum import StrEnum
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.spatial.transform import Rotation
 
 from ..arrays import Array
 from ..errors import TrajgapError
@@ -207,6 +206,8 @@ def _residual(goal: Array, ends: Array, turning: bool) -> Array:
     residual[:, :3] = goal[:3, 3] - ends[:, :3, 3]
     if turning:
         turn = goal[:3, :3] @ np.swapaxes(ends[:, :3, :3], 1, 2)
+        from scipy.spatial.transform import Rotation  # a quarter of a second, and few need it
+
         residual[:, 3:] = Rotation.from_matrix(turn).as_rotvec()
     return residual
 

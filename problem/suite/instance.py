@@ -8,9 +8,10 @@ from importlib.resources import files
 from importlib.resources.abc import Traversable
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import ConfigDict, Field
 
 from ..cases import SUITE_PREFIX, Case, load_case
+from ..described import Described
 from ..problem import Problem
 
 Seconds = Annotated[float, Field(ge=0)]
@@ -32,8 +33,8 @@ class BoundEvidence(StrEnum):
     """The lower bound is proved; the upper one is proved too far from it, or checked only."""
 
 
-class _Strict(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
+class _Strict(Described):
+    model_config = ConfigDict(extra="forbid", frozen=True)
 
 
 class Hardness(_Strict):

@@ -10,7 +10,6 @@ from trajgap.problem import (
     Trajectory,
     fit,
 )
-from trajgap.problem.curves.spline import trajectory_from_scaled
 
 PUMA_353 = np.array([0.98201, 1.22974, 1.08496])
 """Optimal durations of the shared 3-5-3 problem, rounded up."""
@@ -23,7 +22,7 @@ def trajectory(coefficients: list[ArrayLike], durations: ArrayLike) -> Trajector
     scaled = np.zeros((h.size, 10, blocks[0].shape[1]))
     for k, c in enumerate(blocks):
         scaled[k, : len(c)] = c * h[k] ** np.arange(len(c))[:, None]
-    return trajectory_from_scaled(scaled, tuple(len(c) - 1 for c in blocks), h)
+    return Trajectory(h, scaled, tuple(len(c) - 1 for c in blocks))
 
 
 def hermite(times: ArrayLike, nodes: ArrayLike) -> Trajectory:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 
 from ....problem import Array, Extremum, Trajectory, fit, peak_gradients
 from ....problem.cases import AnyClaim
@@ -86,6 +85,8 @@ def _top(trajectory: Trajectory, piece: int, order: int) -> tuple[float, int, fl
         places = np.linspace(0.0, 1.0, _PLACES)
         k = int(norm(places).argmax())
         around = (places[max(k - 1, 0)], places[min(k + 1, _PLACES - 1)])
+        from scipy.optimize import minimize_scalar  # a quarter of a second, and few need it
+
         best = minimize_scalar(lambda s: -float(norm(np.array([s]))[0]), bounds=around)
         places = np.append(places, best.x)
     values = norm(places)

@@ -10,7 +10,6 @@ from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import linprog
 
 from ....problem import Array
 from ..exact import ExactProblem
@@ -314,6 +313,8 @@ def _game(table: Array) -> Array | None:
     rows, columns = table.shape
     cost = np.append(np.zeros(rows), -1.0)
     matrix = np.hstack([-table.T, np.ones((columns, 1))])
+    from scipy.optimize import linprog  # a quarter of a second, and few need it
+
     result = linprog(
         cost,
         A_ub=matrix,
