@@ -141,6 +141,9 @@ def run_each(
 def warm() -> None:
     """Import and compile once what every child needs."""
     import matplotlib.pyplot  # noqa: F401
+    import scipy.interpolate
+    import scipy.optimize
+    import scipy.spatial.transform  # noqa: F401
     import trajgap.problem.curves.clamped_fit
     import trajgap.problem.curves.timed  # noqa: F401
     from trajgap.compare.audits import audit  # noqa: F401
