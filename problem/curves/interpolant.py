@@ -179,6 +179,19 @@ class Interpolant(Curve):
         sides = zip(wanted, (-1.0, 1.0), strict=True)
         return np.stack([spline.batch_peaks(self, values, h, part, sign) for part, sign in sides])
 
+    def range_values(self, waypoints: Array, nodal: Array | None = None) -> Array:
+        """Right-hand sides, as for peaks."""
+        return self.motion_values(waypoints, nodal)
+
+    def batch_ranges(self, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
+        """Least and largest positions by the compiled kernel, of the joints that are asked for."""
+        h = as_batch(self, durations)
+        found = np.zeros((len(h), wanted.size, 2))
+        asked = np.ascontiguousarray(values[:, wanted])
+        if asked.size:
+            found[:, wanted] = spline.batch_ranges(self, asked, h)
+        return found
+
     def value_gradients(
         self,
         waypoints: Array,

@@ -223,6 +223,40 @@ class Curve(ABC):
         found[~np.broadcast_to(wanted[:, None], found.shape) & np.isfinite(found)] = 0.0
         return found
 
+    def range_values(self, waypoints: Array, nodal: Array | None = None) -> Array:
+        """What `batch_ranges` needs to know of the way-points."""
+        return waypoints - waypoints[0]
+
+    def batch_ranges(self, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
+        """Least and largest positions, one vector after the other unless a kind has a quicker way.
+
+        Parameters
+        ----------
+        values : ndarray
+            From `range_values`.
+        durations : ndarray, shape (batch, segments)
+            s.
+        wanted : ndarray of bool, shape (joints,)
+            Which joints are asked for; the others' ranges are returned as 0.
+
+        Returns
+        -------
+        ndarray, shape (batch, joints, 2)
+            rad, counted from the first way-point; −inf and inf for vectors that define no curve.
+        """
+        h = as_batch(self, durations)
+        found = np.zeros((len(h), wanted.size, 2))
+        for v, one in enumerate(h):
+            try:
+                trajectory = self.fitted(values, as_durations(one, self.segments))
+            except TrajgapError:
+                found[v] = -np.inf, np.inf
+                continue
+            for j in np.flatnonzero(wanted).tolist():
+                q = np.array([e.value for e in extrema(trajectory, j, 0)])
+                found[v, j] = (q.min(), q.max()) if np.isfinite(q).all() else (-np.inf, np.inf)
+        return found
+
     @abstractmethod
     def value_gradients(
         self,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import lru_cache
@@ -15,7 +16,7 @@ from scipy.interpolate import PPoly
 
 from ..arrays import Array
 from ..errors import TrajgapError
-from . import kernel
+from . import kernel, range_kernel
 from .compilation import Deferred
 from .condition import ConditionKind
 from .trajectory import Trajectory
@@ -277,12 +278,55 @@ def batch_peaks(
             peaks[part],
         )
 
-    work = h.shape[0] * values.shape[1]
+    _in_parts(run, h.shape[0], values.shape[1])
+    return peaks
+
+
+def batch_ranges(interpolant: Interpolant, values: Array, durations: Array) -> Array:
+    """Least and largest positions for a batch of duration vectors.
+
+    Parameters
+    ----------
+    interpolant : Interpolant
+    values : ndarray, shape (rows, joints)
+        From `motion_values`, of the joints that are asked for.
+    durations : ndarray, shape (batch, segments)
+        Durations, s.
+
+    Returns
+    -------
+    ndarray, shape (batch, joints, 2)
+        rad from the first way-point; −inf and inf for vectors that define no curve.
+    """
+    plan, h = layout(interpolant), durations
+    ranges = np.empty((h.shape[0], values.shape[1], 2))
+
+    def run(part: slice) -> None:
+        range_kernel.batch_ranges(
+            h[part],
+            values,
+            plan.kinds,
+            plan.breaks,
+            plan.orders,
+            plan.degrees,
+            plan.column,
+            plan.lower,
+            plan.upper,
+            PERM,
+            ranges[part],
+        )
+
+    _in_parts(run, h.shape[0], values.shape[1])
+    return ranges
+
+
+def _in_parts(run: Callable[[slice], None], vectors: int, joints: int) -> None:
+    """Run a kernel on parts of a batch, on several threads where that pays."""
+    work = vectors * joints
     if work < _THREAD_WORK:
         run(slice(None))
-        return peaks
+        return
     workers = os.cpu_count() or 1
-    cuts = np.linspace(0, h.shape[0], min(2 * workers, work // 1000) + 1).astype(int)
+    cuts = np.linspace(0, vectors, min(2 * workers, work // 1000) + 1).astype(int)
     with ThreadPoolExecutor(workers) as pool:
         list(pool.map(run, map(slice, cuts[:-1], cuts[1:])))
-    return peaks
