@@ -162,7 +162,7 @@ def _asked_of(problem: Problem, nodal: Array | None) -> _PositionsAsked | None:
     half = [[half_range(low, high, limit) for limit in (low, high)] for low, high in ends]
     return _PositionsAsked(
         values=problem.curve.range_values(q, nodal),
-        wanted=np.isfinite(ends).any(axis=1),
+        wanted=np.asarray(np.isfinite(ends).any(axis=1)),
         room=ends - q[0][:, None],
         half=np.array(half),
     )

@@ -225,7 +225,7 @@ class Curve(ABC):
 
     def range_values(self, waypoints: Array, nodal: Array | None = None) -> Array:
         """What `batch_ranges` needs to know of the way-points."""
-        return waypoints - waypoints[0]
+        return np.asarray(waypoints - waypoints[0])
 
     def batch_ranges(self, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
         """Least and largest positions, one vector after the other unless a kind has a quicker way.

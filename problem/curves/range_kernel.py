@@ -44,9 +44,7 @@ def batch_ranges(  # type: ignore[no-untyped-def]
         for k in range(n):
             for side in range(2):
                 sign = 2.0 * side - 1.0
-                lane_peaks(
-                    scaled[k], degrees[k], perm, joints * vectors, cuts, state, sign, peak
-                )
+                lane_peaks(scaled[k], degrees[k], perm, joints * vectors, cuts, state, sign, peak)
                 for v in range(vectors):
                     for j in range(joints):
                         top = peak[j * vectors + v]

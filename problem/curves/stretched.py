@@ -203,7 +203,8 @@ class StretchedCurve(Curve):
     def batch_ranges(self, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
         """The path's own for every vector that is positive and finite."""
         h = as_batch(self, durations)
-        return ranges_where((np.isfinite(h) & (h > 0)).all(axis=1), values, wanted)
+        valid = np.asarray((np.isfinite(h) & (h > 0)).all(axis=1))
+        return ranges_where(valid, values, wanted)
 
     def value_gradients(
         self,
