@@ -16,7 +16,7 @@ from .interpolant import (
     three_five_three,
 )
 from .kernel import MAX_COEFFICIENTS, roots_in_unit
-from .kind import Curve, PeakGradients, as_curve, fit
+from .kind import Curve, Derivatives, PeakGradients, as_curve, fit
 from .peak import Extremum, critical_points, extrema, largest
 from .piece_kernel import divided_extremes, one_sided_extreme, piece_extremes
 from .pieces import MANY_PIECES, largest_of_each, may_jump, near_extrema, step_sizes, tops
@@ -49,6 +49,7 @@ __all__ = [
     "Count",
     "Curve",
     "Deferred",
+    "Derivatives",
     "Extremum",
     "Interpolant",
     "Knots",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -46,7 +46,8 @@ class Interpolant(Curve):
     continuity : tuple of int
         For each interior break, the highest derivative order that is continuous there (2 for C2).
     prescribed : tuple, one entry per break
-        ``((order, value), ...)``: derivatives (rad/sᵒʳᵈᵉʳ) that both sides take at that break.
+        ``((order, value), ...)``: derivatives (rad/sᵒʳᵈᵉʳ) that both sides take at that break; a
+        value is one number for all joints, or a sequence with one per joint.
     virtual : tuple of int
         Interior breaks without a way-point: their position is free.
 
@@ -90,13 +91,21 @@ class Interpolant(Curve):
             raise TrajgapError("interpolant.continuity: every order must be 0 or more")
         if any(not 0 < b < n for b in self.virtual):
             raise TrajgapError("interpolant.virtual: only interior breaks can be virtual")
+        object.__setattr__(self, "prescribed", tuple(map(_alike, self.prescribed)))
+        told = {len(v) for at in self.prescribed for _, v in at if isinstance(v, tuple)}
+        if len(told) > 1:
+            raise TrajgapError(
+                "interpolant.prescribed: given for "
+                f"{' and for '.join(map(str, sorted(told)))} joints; give one value for all "
+                "joints, or one for each of them"
+            )
         for b, entries in enumerate(self.prescribed):
             orders = [order for order, _ in entries]
             if len(set(orders)) != len(orders) or any(order < 1 for order in orders):
                 raise TrajgapError(
                     f"interpolant.prescribed[{b}]: orders must be distinct and at least 1"
                 )
-            if not all(math.isfinite(value) for _, value in entries):
+            if not all(map(math.isfinite, _values(entries))):
                 raise TrajgapError(f"interpolant.prescribed[{b}]: values must be finite")
         if self.conditions > self.coefficients:
             raise TrajgapError(
@@ -143,6 +152,22 @@ class Interpolant(Curve):
     def prescribed_at(self, break_index: int) -> Derivatives:
         """Derivatives that both sides take at a break."""
         return self.prescribed[break_index]
+
+    @cached_property
+    def told_joints(self) -> int | None:
+        """Joints that prescribed derivatives differ between."""
+        several = (v for at in self.prescribed for _, v in at if isinstance(v, tuple))
+        return next(map(len, several), None)
+
+    def for_joint(self, waypoints: Array, index: int) -> Interpolant:
+        """The declaration with the derivatives that are prescribed for one joint."""
+        if self.told_joints is None:
+            return self
+        own = tuple(
+            tuple((r, v[index] if isinstance(v, tuple) else v) for r, v in at)
+            for at in self.prescribed
+        )
+        return replace(self, prescribed=own)
 
     def smooth_order(self, break_index: int) -> int:
         """Order of continuity that is declared."""
@@ -327,6 +352,24 @@ class Interpolant(Curve):
         return matrix
 
 
+def _values(entries: Derivatives) -> list[float]:
+    """All values that are prescribed at a break, of every joint."""
+    return [x for _, v in entries for x in (v if isinstance(v, tuple) else (v,))]
+
+
+def _alike(entries: Derivatives) -> Derivatives:
+    """Derivatives at a break, with one number wherever all joints have the same."""
+    found: list[tuple[int, float | tuple[float, ...]]] = []
+    for order, value in entries:
+        if isinstance(value, Sequence | np.ndarray):
+            each = tuple(map(float, value))
+            same = len(set(each)) == 1
+            found.append((order, each[0] if same else each))
+        else:
+            found.append((order, value))
+    return tuple(found)
+
+
 _SIDES: tuple[tuple[ConditionKind, Callable[[int, int], bool]], ...] = (
     (ConditionKind.LEFT_VALUE, lambda b, n: b > 0),
     (ConditionKind.RIGHT_VALUE, lambda b, n: b < n),
@@ -337,8 +380,9 @@ _SIDES: tuple[tuple[ConditionKind, Callable[[int, int], bool]], ...] = (
 def piecewise(
     degrees: tuple[int, ...],
     continuity: int = 2,
-    ends: tuple[tuple[int, float], ...] = ((1, 0.0), (2, 0.0)),
+    ends: Derivatives = ((1, 0.0), (2, 0.0)),
     name: str | None = None,
+    finish: Derivatives | None = None,
 ) -> Interpolant:
     """Polynomials of the given degrees, equally continuous at all via-points.
 
@@ -349,7 +393,9 @@ def piecewise(
     continuity : int
         Highest continuous derivative order at the via-points.
     ends : tuple of (order, value)
-        Derivatives prescribed at both ends.
+        Derivatives prescribed at both ends, rad/sᵒʳᵈᵉʳ: one value for all joints, or one for each.
+    finish : tuple of (order, value), optional
+        What is prescribed at the last way-point, where it differs; ``ends`` is the start then.
 
     Returns
     -------
@@ -360,7 +406,7 @@ def piecewise(
     return Interpolant(
         tuple(degrees),
         (continuity,) * max(n - 1, 0),
-        (tuple(ends), *inner, tuple(ends)),
+        (tuple(ends), *inner, tuple(ends if finish is None else finish)),
         name=name or "-".join(map(str, degrees)) + f" polynomials, C{continuity}",
     )
 
@@ -370,25 +416,62 @@ def three_five_three() -> Interpolant:
     return piecewise((3, 5, 3), 2, name="3-5-3 polynomials")
 
 
-def cubic_spline(segments: int, ends: tuple[tuple[int, float], ...] = ((1, 0.0),)) -> Interpolant:
-    """C2 cubic spline; clamped (velocity 0 at the ends) unless ``ends`` says otherwise."""
-    return piecewise((3,) * segments, 2, ends, name=_spline_name(ends))
+def cubic_spline(
+    segments: int, ends: Derivatives = ((1, 0.0),), finish: Derivatives | None = None
+) -> Interpolant:
+    """C2 cubic spline; clamped (velocity 0 at the ends) unless ``ends`` says otherwise.
+
+    Parameters
+    ----------
+    segments : int
+    ends : tuple of (order, value)
+        Derivatives prescribed at both ends, rad/sᵒʳᵈᵉʳ: one value for all joints, or one for each.
+    finish : tuple of (order, value), optional
+        What is prescribed at the last way-point, where it differs; ``ends`` is the start then.
+
+    Examples
+    --------
+    Two joints that start at 0.5 and −0.2 rad/s and come to rest:
+
+    >>> cubic_spline(3, ((1, (0.5, -0.2)),), finish=((1, 0.0),)).prescribed
+    (((1, (0.5, -0.2)),), (), (), ((1, 0.0),))
+    """
+    return piecewise((3,) * segments, 2, ends, _spline_name(ends, finish), finish)
 
 
-def _spline_name(ends: tuple[tuple[int, float], ...]) -> str:
+def _spline_name(ends: Derivatives, finish: Derivatives | None) -> str:
     """What tells a cubic spline from others: what holds at its ends."""
-    if ends == ((1, 0.0),):
-        return "clamped C2 cubic spline"
-    if ends == ((2, 0.0),):
-        return "natural C2 cubic spline"
+    if _alike(ends) == _alike(ends if finish is None else finish):
+        if _alike(ends) == ((1, 0.0),):
+            return "clamped C2 cubic spline"
+        if _alike(ends) == ((2, 0.0),):
+            return "natural C2 cubic spline"
+        return f"C2 cubic spline with {_given_words(ends)} given at the ends"
+    start, last = _given_words(ends), _given_words(finish or ())
+    if start == last:
+        return f"C2 cubic spline with {start} given at the ends"
+    return f"C2 cubic spline with {start} given at the start, {last} at the finish"
+
+
+def _given_words(at: Derivatives) -> str:
     words = ("", "velocity", "acceleration", "jerk")
-    given = [words[order] for order, _ in ends if order < len(words)]
-    return f"C2 cubic spline with {' and '.join(given) or 'nothing'} given at the ends"
+    return " and ".join(words[order] for order, _ in at if order < len(words)) or "nothing"
 
 
-def quintic_spline(segments: int) -> Interpolant:
-    """C4 quintic spline with zero velocity and acceleration at both ends."""
-    return piecewise((5,) * segments, 4, name="C4 quintic spline")
+def quintic_spline(
+    segments: int,
+    ends: Derivatives = ((1, 0.0), (2, 0.0)),
+    finish: Derivatives | None = None,
+) -> Interpolant:
+    """C4 quintic spline; velocity and acceleration are 0 at both ends unless told otherwise.
+
+    Parameters
+    ----------
+    segments : int
+    ends, finish : tuple of (order, value)
+        As `cubic_spline` takes them.
+    """
+    return piecewise((5,) * segments, 4, ends, "C4 quintic spline", finish)
 
 
 def cubic_spline_virtual(waypoints: int) -> Interpolant:

@@ -18,8 +18,9 @@ from .trajectory import Trajectory
 if TYPE_CHECKING:
     from .interpolant import Interpolant
 
-Derivatives = tuple[tuple[int, float], ...]
-"""Derivatives ``(order, value)`` prescribed at one break, rad/sᵒʳᵈᵉʳ."""
+Derivatives = tuple[tuple[int, float | tuple[float, ...]], ...]
+"""Derivatives ``(order, value)`` prescribed at one break, rad/sᵒʳᵈᵉʳ: one value for all joints, or
+one for each where they differ."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,6 +112,11 @@ class Curve(ABC):
     def ends(self) -> tuple[Derivatives, Derivatives]:
         """Derivatives prescribed at the start, and at the end."""
         return self.prescribed_at(0), self.prescribed_at(self.segments)
+
+    @property
+    def told_joints(self) -> int | None:
+        """Number of joints that prescribed derivatives are told apart for; None where all agree."""
+        return None
 
     @property
     def homogeneous(self) -> bool:

@@ -79,12 +79,12 @@ def layout(interpolant: Interpolant) -> Layout:
     used = beyond >= 0
     lower = max(lower, int((equation - beyond)[used].max(initial=0)))
     upper = max(upper, int((beyond - equation)[used].max(initial=0)))
-    values = np.zeros((n + 1, kernel.MAX_COEFFICIENTS + 1))
+    values = np.zeros((n + 1, kernel.MAX_COEFFICIENTS + 1, full.told_joints or 1))
     for b, entries in enumerate(full.prescribed):
         for order, value in entries:
             if order < values.shape[1]:
                 values[b, order] = value
-    free = np.full(values.shape, -1, dtype=np.int64)
+    free = np.full(values.shape[:2], -1, dtype=np.int64)
     if full.free == 0:
         for i, (b, order) in enumerate(interpolant.free_derivatives):
             free[b, order] = i
@@ -99,7 +99,7 @@ def layout(interpolant: Interpolant) -> Layout:
         unknowns=int(unknown.sum()),
         lower=lower,
         upper=upper,
-        prescribed=np.where(match, 0.0, values[breaks, orders]),
+        prescribed=np.where(match[:, None], 0.0, values[breaks, orders]),
         waypoint=np.where((orders == 0) & ~match, waypoint[breaks], -1),
         nodal=np.where(match, -1, free[breaks, orders]),
     )
@@ -120,7 +120,12 @@ def right_hand_sides(interpolant: Interpolant, waypoints: Array, nodal: Array | 
             f"{interpolant.coefficients} coefficients; give nodal derivatives of shape "
             f"({interpolant.free}, {joints}) or add conditions"
         )
-    values = np.repeat(plan.prescribed[:, None], joints, axis=1)
+    if interpolant.told_joints not in (None, joints):
+        raise TrajgapError(
+            f"interpolant {interpolant.name}: prescribes derivatives for "
+            f"{interpolant.told_joints} joints, the way-points have {joints}"
+        )
+    values = np.array(np.broadcast_to(plan.prescribed, (plan.kinds.size, joints)))
     rows = plan.waypoint >= 0
     values[rows] = waypoints[plan.waypoint[rows]]
     if interpolant.free and nodal is not None:
