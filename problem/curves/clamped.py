@@ -21,7 +21,7 @@ from .clamped_knots import (
     fractions_of,
     nearest_reading,
 )
-from .interpolant import piecewise, quintic_spline
+from .families import piecewise, quintic_spline
 from .kind import Curve, Derivatives, Enclosed, PeakGradients, Shape, as_batch
 from .peak import Extremum
 from .stretched import StretchedCurve, Timing

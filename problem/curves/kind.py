@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -326,6 +327,19 @@ def fit(
     q = as_waypoints(as_curve(curve), waypoints)
     extra = None if nodal is None else np.asarray(nodal, dtype=np.float64)
     return curve.fitted(q, as_durations(durations, curve.segments), extra)
+
+
+def told_once(entries: Derivatives) -> Derivatives:
+    """Derivatives at a break, with one number wherever all joints have the same value."""
+    found: list[tuple[int, float | tuple[float, ...]]] = []
+    for order, value in entries:
+        if isinstance(value, Sequence | np.ndarray):
+            each = tuple(map(float, value))
+            same = len(set(each)) == 1
+            found.append((order, each[0] if same else each))
+        else:
+            found.append((order, value))
+    return tuple(found)
 
 
 def as_curve(given: object) -> Curve:

@@ -27,7 +27,7 @@ CURVES: dict[str, Curve] = {
     "4-3-4": piecewise((4, 3, 4)),
     "cubic": cubic_spline(3),
     "natural cubic": cubic_spline(3, ((2, 0.0),)),
-    "cubic that starts and ends moving": cubic_spline(3, ((1, 0.4),)),
+    "cubic that starts and ends moving": cubic_spline(3, ((1, (0.4, -0.3, 0.1)),), ((1, 0.2),)),
     "cubic with virtual way-points": cubic_spline_virtual(4),
     "quintic": quintic_spline(3),
     "rest-to-rest 3": rest_to_rest(3, 3),
