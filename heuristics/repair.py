@@ -91,7 +91,7 @@ class Stretch:
         within = (stretched >= lower) & (stretched <= upper)
         proper = (durations > 0) & (stretched > 0) & np.isfinite(stretched)
         kept: NDArray[np.bool_] = np.all(within & proper, axis=1)
-        if self.problem.limits.limits_position:
+        if found.positions_limited:
             kept &= (found.positions <= 1 + TOLERANCE / 2).all(axis=1)
         return stretched, kept
 

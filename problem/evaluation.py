@@ -31,6 +31,11 @@ class Evaluation:
     ratios: Array
     _reach: Callable[[], Array] | None = field(default=None, repr=False)
 
+    @property
+    def positions_limited(self) -> bool:
+        """Whether some joint has a position limit."""
+        return self._reach is not None
+
     @cached_property
     def positions(self) -> Array:
         """How far each joint goes towards its position limits, shape (batch, joints).

@@ -181,7 +181,7 @@ def tight_total(problem: Problem, shares: Array) -> Array:
         T·c* in s; inf where a joint with limit 0 moves, or the path leaves a position range.
     """
     found = evaluate(problem, shares)
-    if not problem.limits.limits_position:
+    if not found.positions_limited:
         return found.stretch
     outside = (found.positions > 1 + TOLERANCE).any(axis=1)
     return np.where(outside, np.inf, found.stretch)
