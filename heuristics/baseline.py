@@ -44,6 +44,12 @@ def uniform_rescaling(problem: Problem) -> Array:
             "give positive lower duration bounds"
         )
     found = check(problem, durations)
+    beyond = [p for p in found.peaks if p.quantity == "position" and p.ratio > 1 + found.tolerance]
+    if beyond:
+        raise TrajgapError(
+            f"uniform rescaling: equal durations lead joint {beyond[0].joint} beyond a position "
+            "limit; no uniform stretch moves the path"
+        )
     if found.verdict is not Verdict.PASS:
         clipped = " set to the duration bounds" if (durations != equal).any() else ""
         raise TrajgapError(

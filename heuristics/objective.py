@@ -52,14 +52,14 @@ class DeathPenalty:
     Raises
     ------
     TrajgapError
-        If the penalty is not positive or some admissible total reaches it, if a position limit is
-        set, or if the curve leaves derivatives free: the batch evaluation sees neither.
+        If the penalty is not positive or some admissible total reaches it, or if the curve leaves
+        derivatives free, which no duration stands for.
 
     Notes
     -----
     A vector outside the duration bounds of the problem, or with a duration of 0 or less, is
-    infeasible. Peaks are exact, where the authors' programs sample them; jumps between segments
-    are not looked for, only `trajgap.problem.check` sees those.
+    infeasible. Peaks are exact, positions included, where the authors' programs sample them; jumps
+    between segments are not looked for, only `trajgap.problem.check` sees those.
     """
 
     problem: Problem
@@ -75,12 +75,6 @@ class DeathPenalty:
             raise TrajgapError(
                 f"penalty: {self.penalty:g} does not exceed the largest admissible total of "
                 f"{largest:g} s; raise it"
-            )
-        limits = problem.limits
-        if np.isfinite(limits.position_lower).any() or np.isfinite(limits.position_upper).any():
-            raise TrajgapError(
-                "limits.position: the heuristics' objective judges velocity, acceleration and "
-                "jerk only; drop the position limits"
             )
         if problem.curve.free:
             raise TrajgapError(

@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ..problem import Array, Problem, TrajgapError, evaluate
+from ..problem import TOLERANCE, Array, Problem, TrajgapError, evaluate
 from .objective import DeathPenalty
 from .settings import checked
 
@@ -50,7 +50,8 @@ class Stretch:
         All joints share one duration vector, whatever its coupling says.
     penalty : float
         Fitness where no stretch helps, s: a duration of 0 or less, stretched durations outside the
-        problem's bounds, a joint with limit 0 that moves.
+        problem's bounds, a joint with limit 0 that moves, a path beyond a position limit, which
+        no stretch moves.
     shorten : bool
         Whether a vector with c* < 1 is shortened too.
 
@@ -80,7 +81,8 @@ class Stretch:
 
     def _stretched(self, durations: Array) -> tuple[Array, NDArray[np.bool_]]:
         """Stretched vectors, and whether each is admissible."""
-        factor = evaluate(self.problem, durations).stretch
+        found = evaluate(self.problem, durations)
+        factor = found.stretch
         if not self.shorten:
             factor = np.maximum(factor, 1.0)
         with np.errstate(invalid="ignore", over="ignore"):
@@ -89,6 +91,8 @@ class Stretch:
         within = (stretched >= lower) & (stretched <= upper)
         proper = (durations > 0) & (stretched > 0) & np.isfinite(stretched)
         kept: NDArray[np.bool_] = np.all(within & proper, axis=1)
+        if found.positions_limited:
+            kept &= (found.positions <= 1 + TOLERANCE / 2).all(axis=1)
         return stretched, kept
 
     def decode(self, durations: Array) -> Array:
@@ -164,4 +168,7 @@ def compile_judge(problem: Problem, handling: str = Handling.DEATH_PENALTY) -> N
     TrajgapError
         As `judge_of`.
     """
-    judge_of(problem, np.inf, handling)(np.ones((2, problem.segments)))
+    ones = np.ones((2, problem.segments))
+    judge_of(problem, np.inf, handling)(ones)
+    if problem.limits.limits_position:
+        _ = evaluate(problem, ones).positions  # a penalty asks for them only within other limits

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from functools import cached_property, lru_cache, partial
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,7 +13,7 @@ from .arrays import Array
 from .checker import TOLERANCE
 from .curves import as_durations
 from .errors import TrajgapError
-from .limits import Limits
+from .limits import Limits, half_range
 from .problem import Problem
 
 
@@ -28,6 +29,22 @@ class Evaluation:
     """
 
     ratios: Array
+    _reach: Callable[[], Array] | None = field(default=None, repr=False)
+
+    @property
+    def positions_limited(self) -> bool:
+        """Whether some joint has a position limit."""
+        return self._reach is not None
+
+    @cached_property
+    def positions(self) -> Array:
+        """How far each joint goes towards its position limits, shape (batch, joints).
+
+        As `Peak.ratio`: 1 at a limit, above 1 beyond it; −inf where there is none. No uniform
+        stretch changes it where the curve is homogeneous, and `stretch` leaves it out. Computed
+        on first use.
+        """
+        return np.full(self.ratios.shape[:2], -np.inf) if self._reach is None else self._reach()
 
     @cached_property
     def stretch(self) -> Array:
@@ -41,7 +58,7 @@ class Evaluation:
 
 
 def evaluate(problem: Problem, durations: ArrayLike, nodal: ArrayLike | None = None) -> Evaluation:
-    """Exact peak ratios for many duration vectors at once.
+    """Exact peak ratios for many duration vectors at once, and how far positions go.
 
     Parameters
     ----------
@@ -64,19 +81,21 @@ def evaluate(problem: Problem, durations: ArrayLike, nodal: ArrayLike | None = N
         h = np.asarray(durations, dtype=np.float64)
     except (TypeError, ValueError):
         raise TrajgapError("durations: not numbers; give seconds, (batch, segments)") from None
+    extra = None if nodal is None else np.asarray(nodal, dtype=np.float64)
+    asked = _positions_asked(problem) if extra is None else _asked_of(problem, extra)
+    reach = None if asked is None else partial(_reached, problem, asked, h.copy())
     if problem.limits.uneven:
-        return Evaluation(_uneven_ratios(problem, h, nodal))
-    if nodal is None:
-        values, limits, wanted, plain = _fixed_question(problem)
-    else:
-        values, limits, wanted, plain = _question(problem, np.asarray(nodal, dtype=np.float64))
+        return Evaluation(_uneven_ratios(problem, h, extra), reach)
+    values, limits, wanted, plain = (
+        _fixed_question(problem) if extra is None else _question(problem, extra)
+    )
     peaks = problem.curve.batch_peaks(values, h, wanted)
     if plain:
-        return Evaluation(peaks / limits)
+        return Evaluation(peaks / limits, reach)
     with np.errstate(invalid="ignore", divide="ignore"):
         ratios = peaks / limits
     ratios[np.isnan(ratios)] = 0.0  # 0/0 is kept
-    return Evaluation(ratios)
+    return Evaluation(ratios, reach)
 
 
 def keeps_limits(problem: Problem, durations: Array, tolerance: float) -> NDArray[np.bool_]:
@@ -96,7 +115,8 @@ def keeps_limits(problem: Problem, durations: Array, tolerance: float) -> NDArra
         Sooner than all ratios, where bounds decide: what a death penalty asks.
     """
     if problem.limits.uneven:
-        return np.asarray((_uneven_ratios(problem, durations) <= 1 + tolerance).all(axis=(1, 2)))
+        sided = np.asarray((_uneven_ratios(problem, durations) <= 1 + tolerance).all(axis=(1, 2)))
+        return _within_positions(problem, durations, sided, tolerance)
     values, divisors, wanted, _ = _fixed_question(problem)
     ceilings = np.where(wanted, divisors, np.inf) * (1 + tolerance)
     peaks = problem.curve.decided_peaks(values, durations, wanted, ceilings)
@@ -104,15 +124,79 @@ def keeps_limits(problem: Problem, durations: Array, tolerance: float) -> NDArra
         ratios = peaks / divisors
     # 0/0 keeps a limit of 0, inf/inf keeps nothing.
     kept: NDArray[np.bool_] = ((ratios <= 1 + tolerance) | (peaks == 0.0)).all(axis=(1, 2))
-    return kept
+    return _within_positions(problem, durations, kept, tolerance)
 
 
-def _uneven_ratios(problem: Problem, h: Array, nodal: ArrayLike | None = None) -> Array:
+def _within_positions(
+    problem: Problem, durations: Array, kept: NDArray[np.bool_], tolerance: float
+) -> NDArray[np.bool_]:
+    """Which of the vectors that keep all other limits keep those of position too."""
+    asked = _positions_asked(problem)
+    if asked is None or not kept.any():
+        return kept
+    within = kept.copy()
+    within[kept] = (_reached(problem, asked, durations[kept]) <= 1 + tolerance).all(axis=1)
+    return within
+
+
+@dataclass(frozen=True, eq=False)
+class _PositionsAsked:
+    """The position limits of a problem beside what its curve knows of the way-points.
+
+    Attributes
+    ----------
+    values : ndarray
+        From `Curve.range_values`.
+    wanted : ndarray of bool, shape (joints,)
+    room, half : ndarray, shape (joints, 2)
+        Way from the first way-point to the lower and the upper limit, and what an excess beyond
+        it is set beside.
+    """
+
+    values: Array
+    wanted: NDArray[np.bool_]
+    room: Array
+    half: Array
+
+
+def _asked_of(problem: Problem, nodal: Array | None) -> _PositionsAsked | None:
+    limits, q = problem.limits, problem.waypoints
+    if not limits.limits_position:
+        return None
+    ends = np.stack([limits.position_lower, limits.position_upper], axis=1)
+    half = [[half_range(low, high, limit) for limit in (low, high)] for low, high in ends]
+    return _PositionsAsked(
+        values=problem.curve.range_values(q, nodal),
+        wanted=np.asarray(np.isfinite(ends).any(axis=1)),
+        room=ends - q[0][:, None],
+        half=np.array(half),
+    )
+
+
+@lru_cache(maxsize=64)
+def _positions_asked(problem: Problem) -> _PositionsAsked | None:
+    """Keyed by the problem's identity, as `_fixed_question`; None where no position is limited."""
+    return _asked_of(problem, None)
+
+
+def _reached(problem: Problem, asked: _PositionsAsked, durations: Array) -> Array:
+    """The larger ratio of both limits, shape (batch, joints), as the checker's; −inf for none."""
+    ranges = problem.curve.batch_ranges(asked.values, durations, asked.wanted)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        excess = np.array([-1.0, 1.0]) * (ranges - asked.room)
+        ratios = 1.0 + excess / asked.half
+    # A range of no width is kept by what stands there.
+    narrow = np.where(excess > 0, np.inf, 0.0)
+    ratios = np.where(asked.half > 0, ratios, narrow)
+    ratios = np.where(np.isfinite(asked.room), ratios, -np.inf)
+    return np.asarray(ratios.max(axis=2))
+
+
+def _uneven_ratios(problem: Problem, h: Array, nodal: Array | None = None) -> Array:
     """The larger ratio of both sides, shape (batch, joints, 3)."""
     sides = problem.limits.sides
     wanted = np.isfinite(sides)
-    extra = None if nodal is None else np.asarray(nodal, dtype=np.float64)
-    peaks = problem.curve.batch_sides(problem.waypoints, h, wanted, extra)
+    peaks = problem.curve.batch_sides(problem.waypoints, h, wanted, nodal)
     with np.errstate(invalid="ignore", divide="ignore"):
         found = peaks / np.where(wanted, sides, 1.0)[:, None]
     found[np.isnan(found)] = 0.0  # 0/0 is kept

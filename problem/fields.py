@@ -308,6 +308,12 @@ OneOrEachUpperPosition = Annotated[
     Discriminator(_form),
 ]
 
+OneOrEachNumber = Annotated[
+    Annotated[Number, Tag("scalar")]
+    | Annotated[tuple[Number, ...], BeforeValidator(_nonempty), Tag("list")],
+    Discriminator(_form),
+]
+
 PrintedRows = Annotated[
     tuple[Annotated[tuple[Number, ...], Field(min_length=1, max_length=MOST_WAYPOINTS + 2)], ...],
     Field(min_length=1, max_length=MOST_WAYPOINTS),

@@ -90,9 +90,17 @@ def _ends(one: Statement) -> str:
     """What is prescribed at the ends of a spline whose name does not say it."""
     if one.declaration.family != "cubic-spline":
         return ""
-    orders = [_DERIVATIVES.get(k, f"derivative {k}") for k in one.declaration.orders]
-    value = "0" if one.declaration.end_derivatives is None else "given"
-    return f", {' and '.join(orders)} {value} at the ends" if orders else ""
+    block = one.declaration
+    if block.finish_orders is None and block.finish_derivatives is None:
+        return _told(block.orders, block.end_derivatives, "at the ends")
+    start = _told(block.orders, block.end_derivatives, "at the start")
+    return start + _told(block.last_orders, block.last_derivatives, "at the finish")
+
+
+def _told(orders: Sequence[int], values: object, where: str) -> str:
+    """What is 0 at an end; where something else is given, the curve's name says so."""
+    names = " and ".join(_DERIVATIVES.get(k, f"derivative {k}") for k in orders)
+    return f", {names} 0 {where}" if names and values is None else ""
 
 
 def _limit(one: Statement, quantity: Literal["velocity", "acceleration", "jerk"]) -> str:

@@ -87,7 +87,8 @@ def motion_picture(
         rows = [(motion, j) for j in range(joints)]
     else:
         rows = [
-            (fit(problem.curve, problem.waypoints[:, j : j + 1], h[j]), 0) for j in range(joints)
+            (fit(one.curve, one.waypoints, h[j]), 0)
+            for j, one in enumerate(map(problem.joint, range(joints)))
         ]
     orders = [0, 1, 2] + ([3] if np.isfinite(problem.limits.sides[:, :, 2]).any() else [])
     description = "; ".join(

@@ -13,7 +13,7 @@ from matplotlib.tri import Triangulation
 from numpy.typing import ArrayLike, NDArray
 
 from ...nlp import Solution
-from ...problem import Array, Problem, TrajgapError, evaluate
+from ...problem import TOLERANCE, Array, Problem, TrajgapError, evaluate
 from .drawing import (
     INK,
     MUTED,
@@ -39,6 +39,8 @@ _CORNERS: Array = np.array([[0.0, 0.0], [1.0, 0.0], [0.5, np.sqrt(3) / 2]])
 # colour of the theme, which a page would replace.
 _DARK = "#101418"  # on the light part of the map
 _LIGHT = "#fefefe"  # on its dark part
+_ENDLESS = 1e100
+"""Stands for an infinite total where shares are multiplied by it."""
 _PRINTED = ("D", "s", "P", "X")
 """Markers of printed durations, in their order."""
 _ENDS = (("o", SKY), ("^", PURPLE), ("v", _LIGHT), ("<", ORANGE))
@@ -73,7 +75,8 @@ def landscape(
     Returns
     -------
     Picture
-        Where a bound on the durations forbids the tight total, the map is hatched.
+        Where a bound on the durations or a position limit forbids the tight total, the map is
+        hatched.
 
     Raises
     ------
@@ -150,14 +153,17 @@ def _words(
 ) -> str:
     parts = [
         f"optimum {best:.6g} s at shares " + ", ".join(f"{100 * s:.1f} %" for s in centre),
-        *(
-            f"{label}: {100 * (tight_total(problem, _shares(h))[0] / best - 1):+.3g} % after free "
-            "rescaling"
-            for label, h in printed
-        ),
+        *(f"{label}: {_rescaled(problem, h, best)}" for label, h in printed),
         *(f"{name}: {len(s)} end points" for name, s in runs.items()),
     ]
     return "; ".join(parts)
+
+
+def _rescaled(problem: Problem, durations: ArrayLike, best: float) -> str:
+    total = float(tight_total(problem, _shares(durations))[0])
+    if np.isinf(total):
+        return "no rescaling keeps the limits"
+    return f"{100 * (total / best - 1):+.3g} % after free rescaling"
 
 
 def tight_total(problem: Problem, shares: Array) -> Array:
@@ -172,9 +178,13 @@ def tight_total(problem: Problem, shares: Array) -> Array:
     Returns
     -------
     ndarray, shape (points,)
-        T·c* in s; inf where a joint with limit 0 moves.
+        T·c* in s; inf where a joint with limit 0 moves, or the path leaves a position range.
     """
-    return evaluate(problem, shares).stretch
+    found = evaluate(problem, shares)
+    if not found.positions_limited:
+        return found.stretch
+    outside = (found.positions > 1 + TOLERANCE).any(axis=1)
+    return np.where(outside, np.inf, found.stretch)
 
 
 def _grid(corner: Array) -> tuple[Array, NDArray[np.int64]]:
@@ -214,9 +224,10 @@ def _map(axes: Axes, problem: Problem, corner: Array, best: float, colours: Arra
     if below:
         axes.tricontourf(mesh, excess, levels=[-101.0, -_BELOW], colors=_LIGHT)
     low, high = problem.duration_lower, problem.duration_upper
-    if (low > 0).any() or np.isfinite(high).any():
-        tight = shares * total[:, None]
+    if _forbids(problem):
+        tight = shares * np.minimum(total, _ENDLESS)[:, None]
         margin = np.min(np.hstack([tight / np.maximum(low, 1e-12), high / tight]), axis=1)
+        margin[np.isinf(total)] = 0.0
         axes.tricontourf(
             mesh, np.minimum(margin, 2.0), levels=[-1.0, 1.0], colors="none", hatches=["xx"]
         )
@@ -291,12 +302,19 @@ def _mark(
     )  # fmt: skip
 
 
+def _forbids(problem: Problem) -> str:
+    """What a tight total may break, in words; empty if it keeps all."""
+    bounded = (problem.duration_lower > 0).any() or np.isfinite(problem.duration_upper).any()
+    words = ["a bound on the durations"] if bounded else []
+    return " or ".join(words + ["a position limit"] * problem.limits.limits_position)
+
+
 def _note(problem: Problem, below: bool) -> str:
     text = (
         "Each point: durations of these shares, stretched until a limit is reached (tight total)."
     )
-    if (problem.duration_lower > 0).any() or np.isfinite(problem.duration_upper).any():
-        text += " Hatched: a bound on the durations forbids it."
+    if _forbids(problem):
+        text += f" Hatched: {_forbids(problem)} forbids it."
     return text + (" White: below the optimum." if below else "")
 
 

@@ -62,7 +62,9 @@ def _prescribed_beyond_limit(problem: Problem) -> str | None:
         for order, value in problem.curve.prescribed_at(b):
             if order > 3:
                 continue
-            over = abs(value) > problem.limits.sides[int(value > 0.0), :, order - 1]
+            each = np.broadcast_to(np.asarray(value, dtype=np.float64), len(problem.joints))
+            below, above = problem.limits.sides[:, :, order - 1]
+            over = np.abs(each) > np.where(each > 0.0, above, below)
             if over.any():
                 joint = problem.joints[int(np.argmax(over))]
                 quantity = QUANTITIES[order - 1]

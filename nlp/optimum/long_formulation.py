@@ -122,7 +122,7 @@ class LongProgram:
             if r == 0:
                 wanted = self._q[b.tolist(), :] - self._q[(b - 1).tolist(), :]
             elif kind == ConditionKind.LEFT_VALUE:
-                given = plan.prescribed[i, None] * unit**r / self.angle
+                given = plan.prescribed[i] * unit**r / self.angle
                 wanted = ca.DM(given)
             else:
                 there = self.degrees[b] >= r
@@ -193,7 +193,7 @@ class LongProgram:
             lower = -upper
             i = np.flatnonzero(right & (plan.orders == r))
             at = self._row[r][plan.breaks[i]]
-            lower[at] = upper[at] = plan.prescribed[i, None] * unit**r / self.angle
+            lower[at] = upper[at] = plan.prescribed[i] * unit**r / self.angle
             low.append(lower.ravel("F"))
             high.append(upper.ravel("F"))
         first = problem.waypoints[0]

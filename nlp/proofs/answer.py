@@ -118,7 +118,9 @@ def exact_coefficients(
             line[first[row.at] + row.order] = value
         if row.kind != ConditionKind.MATCH:
             given = dict(interpolant.prescribed[row.at])
-            values = [Fraction(given[row.order])] * joints if row.order else list(at[row.at])
+            held = given[row.order] if row.order else 0.0
+            own = held if isinstance(held, tuple) else (held,) * joints
+            values = [Fraction(x) for x in own] if row.order else list(at[row.at])
         matrix.append(line)
         right.append(values)
     if len(matrix) != first[-1]:

@@ -15,7 +15,7 @@ from ...problem import Curve, Interpolant, Problem, TrajgapError, replace_file
 from ...problem.curves import StretchedUniformBSpline, TimedUniformBSpline
 from ...problem.suite import list_instances
 from ...verify import CERTIFICATE_FORMAT, CertifiedQuestion, Refused, Subject, number, seal
-from .exact import ExactProblem, Real, decimal, exact_problem
+from .exact import ExactProblem, Real, decimal, exact_problem, one_velocity
 from .outcome import Certified, Outcome
 
 _WORDS = ("unit", "joints", "curve")
@@ -83,7 +83,7 @@ def problem_seal(problem: Problem) -> str:
 
 def _other(curve: Curve) -> dict[str, Any]:
     """A curve of another kind: its name, and the velocities prescribed at its ends, if any."""
-    ends = [dict(side).get(1) for side in curve.ends]
+    ends = [one_velocity(side) for side in curve.ends]
     if ends == [None, None]:
         return {"curve": _named(curve)}
     return {
@@ -103,7 +103,12 @@ def _declaration(interpolant: Interpolant) -> dict[str, Any]:
         "degrees": list(interpolant.degrees),
         "continuity": list(interpolant.continuity),
         "prescribed": [
-            [[order, decimal(Fraction(value))] for order, value in entries]
+            [
+                [order, [decimal(Fraction(x)) for x in value]]
+                if isinstance(value, tuple)
+                else [order, decimal(Fraction(value))]
+                for order, value in entries
+            ]
             for entries in interpolant.prescribed
         ],
         "virtual": list(interpolant.virtual),

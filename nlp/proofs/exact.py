@@ -12,7 +12,10 @@ from numpy.typing import NDArray
 
 from ...problem import Curve, Interpolant, LimitPair, Printed, Problem, Scale, TrajgapError, scale
 from ...problem.cases import Statement
+from ...problem.curves import Derivatives
 
+JOINTS_APART = "derivatives at the ends that differ from joint to joint are not covered"
+"""Why there is no proof; certificates state one value for all joints."""
 _PI = Scale(Fraction(1), 1).bounds
 """Rational bounds of π, the same as for printed numbers."""
 
@@ -193,6 +196,20 @@ class ExactProblem:
         """Looser ends of the limits as floats, shape (joints, 3); inf where there is none."""
         values = [[np.inf if x is None else float(x.high) for x in row] for row in self.limits]
         return np.array(values, dtype=np.float64)
+
+
+def one_velocity(end: Derivatives) -> float | None:
+    """The velocity that is prescribed for all joints at an end; None if none is.
+
+    Raises
+    ------
+    TrajgapError
+        If it differs from joint to joint.
+    """
+    value = dict(end).get(1)
+    if isinstance(value, tuple):
+        raise TrajgapError(f"certify: {JOINTS_APART}")
+    return value
 
 
 def exact_problem(problem: Problem) -> ExactProblem:

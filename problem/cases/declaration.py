@@ -12,6 +12,7 @@ from pydantic import Field, PlainValidator, StrictInt, WithJsonSchema, model_val
 from ..curves import (
     ClampedBSpline,
     Curve,
+    Derivatives,
     Knots,
     Parameters,
     Timing,
@@ -24,11 +25,13 @@ from ..curves import (
     three_five_three,
     uniform_cubic_b_spline,
 )
-from ..fields import Number, Strict, fault
+from ..fields import Number, OneOrEachNumber, Strict, fault
 from .literature import meant_by
 
-Ends = tuple[tuple[int, float], ...]
-"""Derivatives ``(order, value)`` prescribed at both ends, rad/sᵒʳᵈᵉʳ."""
+Ends = tuple[Derivatives, Derivatives]
+"""Derivatives ``(order, value)`` prescribed at the start and at the finish, rad/sᵒʳᵈᵉʳ."""
+Values = tuple[Number | tuple[Number, ...], ...]
+"""As printed: for each order one value for all joints, or one for each of them."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +41,7 @@ class Family:
     Attributes
     ----------
     curve : callable
-        From the block, the number of way-points and the prescribed derivatives to the curve.
+        From the block, the number of way-points and the derivatives at both ends to the curve.
     needed, allowed : tuple of str
         Keys of the block that it asks for, and that it takes beside.
     """
@@ -49,7 +52,8 @@ class Family:
 
 
 def _polynomials(block: InterpolantBlock, count: int, ends: Ends) -> Curve:
-    return piecewise(block.degrees or (), 2 if block.continuity is None else block.continuity, ends)
+    continuity = 2 if block.continuity is None else block.continuity
+    return piecewise(block.degrees or (), continuity, ends[0], finish=ends[1])
 
 
 def _clamped(block: InterpolantBlock, count: int, ends: Ends) -> Curve:
@@ -58,13 +62,17 @@ def _clamped(block: InterpolantBlock, count: int, ends: Ends) -> Curve:
     return ClampedBSpline(count, block.degree or 0, knots, parameters, time, block.orders)
 
 
-_ENDS = ("end_orders", "end_derivatives", "free")
+_VALUES = ("end_derivatives", "finish_derivatives")
+"""Keys of the families whose ends may move."""
+_ENDS = ("end_orders", "finish_orders", *_VALUES, "free")
 """Keys of the families whose ends can be chosen."""
 FAMILIES = {
     "3-5-3": Family(lambda block, count, ends: three_five_three()),
     "polynomials": Family(_polynomials, ("degrees",), ("continuity", *_ENDS)),
-    "cubic-spline": Family(lambda block, count, ends: cubic_spline(count - 1, ends), (), _ENDS),
-    "quintic-spline": Family(lambda block, count, ends: quintic_spline(count - 1)),
+    "cubic-spline": Family(lambda block, count, ends: cubic_spline(count - 1, *ends), (), _ENDS),
+    "quintic-spline": Family(
+        lambda block, count, ends: quintic_spline(count - 1, *ends), (), _VALUES
+    ),
     "cubic-spline-virtual": Family(lambda block, count, ends: cubic_spline_virtual(count)),
     "rest-to-rest": Family(
         lambda block, count, ends: rest_to_rest(count - 1, block.degree or 0), ("degree",)
@@ -109,8 +117,13 @@ class InterpolantBlock(Strict):
     """Polynomials: highest continuous derivative at the via-points; 2 if absent."""
     end_orders: tuple[Annotated[StrictInt, Field(ge=1, le=8)], ...] | None = None
     """Orders of the derivatives prescribed at both ends; [1, 2] if absent (cubic-spline: [1])."""
-    end_derivatives: tuple[Number, ...] | None = None
-    """Their values, in the units of the file; all 0 if absent."""
+    finish_orders: tuple[Annotated[StrictInt, Field(ge=1, le=8)], ...] | None = None
+    """Those at the last way-point, where they are others; end_orders are the start's then."""
+    end_derivatives: tuple[OneOrEachNumber, ...] | None = None
+    """Their values, in the units of the file, each one for all joints or one per joint; all 0 if
+    absent."""
+    finish_derivatives: tuple[OneOrEachNumber, ...] | None = None
+    """Those at the last way-point, where they differ; end_derivatives are the start's then."""
     degree: StrictInt | None = None
     """Rest-to-rest: degree of every segment, 3, 5, 7 or 9. Clamped B-spline: 3 to 7."""
     knots: Literal["waypoints", "averaged", "averaged-continued"] | None = None
@@ -140,30 +153,48 @@ class InterpolantBlock(Strict):
                     ".degree",
                     f"{self.degree} is not allowed; use {words} or {allowed_degrees[-1]}",
                 )
-        if self.end_orders is not None and len(set(self.end_orders)) != len(self.end_orders):
-            raise fault(".end_orders", "names an order twice; leave one out")
-        if self.end_derivatives is not None:
-            orders = self.orders
-            if len(self.end_derivatives) != len(orders):
-                raise fault(
-                    ".end_derivatives",
-                    f"{len(self.end_derivatives)} values for the {len(orders)} orders "
-                    f"{list(orders)}; give one value per order",
-                )
-            for index, (order, value) in enumerate(zip(orders, self.end_derivatives, strict=True)):
-                if order > 3 and value.fraction != 0:
-                    raise fault(
-                        f".end_derivatives[{index}]",
-                        f"order {order} has no unit; only 0 can be prescribed above jerk",
-                    )
+        for end, orders in (("end", self.orders), ("finish", self.last_orders)):
+            if len(set(orders)) != len(orders):
+                raise fault(f".{end}_orders", "names an order twice; leave one out")
+            _check_values(f".{end}_derivatives", getattr(self, f"{end}_derivatives"), orders)
         return self
 
     @property
     def orders(self) -> tuple[int, ...]:
-        """Orders prescribed at both ends."""
+        """Orders prescribed at the start, and at the finish unless it has its own."""
         if self.end_orders is not None:
             return self.end_orders
         return (1,) if self.family == "cubic-spline" else (1, 2)
+
+    @property
+    def last_orders(self) -> tuple[int, ...]:
+        """Orders prescribed at the finish."""
+        return self.orders if self.finish_orders is None else self.finish_orders
+
+    @property
+    def last_derivatives(self) -> Values | None:
+        """Values at the finish: its own, or the start's where both prescribe the same orders."""
+        own = self.finish_derivatives is not None or self.finish_orders is not None
+        return self.finish_derivatives if own else self.end_derivatives
+
+
+def _check_values(key: str, values: Values | None, orders: tuple[int, ...]) -> None:
+    """Find out whether there is a value for each order, and a unit for each value."""
+    if values is None:
+        return
+    if len(values) != len(orders):
+        raise fault(
+            key,
+            f"{len(values)} values for the {len(orders)} orders {list(orders)}; "
+            "give one value per order",
+        )
+    for index, (order, value) in enumerate(zip(orders, values, strict=True)):
+        each = value if isinstance(value, tuple) else (value,)
+        if order > 3 and any(one.fraction != 0 for one in each):
+            raise fault(
+                f"{key}[{index}]",
+                f"order {order} has no unit; only 0 can be prescribed above jerk",
+            )
 
 
 @lru_cache(maxsize=128)
@@ -175,8 +206,9 @@ def declare(block: InterpolantBlock, count: int, ends: Ends) -> Curve:
     block : InterpolantBlock
     count : int
         Number of way-points.
-    ends : tuple of (order, value)
-        Derivatives prescribed at both ends, rad/sᵒʳᵈᵉʳ, where the family leaves them open.
+    ends : tuple
+        Derivatives ``(order, value)`` prescribed at the start and at the finish, rad/sᵒʳᵈᵉʳ, where
+        the family leaves them open.
 
     Returns
     -------

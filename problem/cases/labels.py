@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 
 from ..problem import Coupling
 from ..units import CHOICES
-from .declaration import InterpolantBlock
+from .declaration import InterpolantBlock, Values
 from .schema import CaseFile, Reading
 
 _UNITS = {
@@ -160,12 +160,19 @@ def _declared(block: InterpolantBlock) -> Iterator[str]:
         yield _TIME[block.time]
     if block.time_ends is not None:
         yield _TIME_ENDS[block.time_ends]
-    values = block.end_derivatives or ("0",) * len(block.orders)
-    if block.end_orders is not None or block.end_derivatives is not None:
-        for order, value in zip(block.orders, values, strict=True):
-            yield f"end {_DERIVATIVES.get(order, f'derivative {order}')} {value}"
+    apart = block.finish_orders is not None or block.finish_derivatives is not None
+    if block.end_orders is not None or block.end_derivatives is not None or apart:
+        yield from _end_words("start" if apart else "end", block.orders, block.end_derivatives)
+    if apart:
+        yield from _end_words("finish", block.last_orders, block.last_derivatives)
     if block.free:
         yield f"{block.free} free coefficients"
+
+
+def _end_words(end: str, orders: tuple[int, ...], values: Values | None) -> Iterator[str]:
+    for order, value in zip(orders, values or ("0",) * len(orders), strict=True):
+        each = " ".join(map(str, value)) if isinstance(value, tuple) else value
+        yield f"{end} {_DERIVATIVES.get(order, f'derivative {order}')} {each}"
 
 
 def _durations(document: CaseFile, reading: Reading) -> Iterator[str]:

@@ -10,14 +10,14 @@ from math import tau
 import numpy as np
 
 from ..arrays import Array
-from ..curves import Curve
+from ..curves import Curve, Derivatives
 from ..errors import CaseError, TrajgapError
 from ..fields import LimitPair
 from ..limits import Limits
 from ..printed import Printed
 from ..problem import Coupling, Problem
 from ..units import CHOICES, Measured, Quantity, to_si
-from .declaration import InterpolantBlock, declare
+from .declaration import InterpolantBlock, Values, declare
 from .faults import Faults
 from .schema import Durations, LimitsBlock, Units, Waypoints
 
@@ -202,9 +202,10 @@ class Statement:
             If the conditions don't determine the curve, or it needs another number of way-points.
         """
         block, count = self.declaration, self.waypoints.number
-        ends = tuple((order, self._end_value(order)) for order in block.orders)
+        start = self._end("end_derivatives", block.end_derivatives, block.orders)
+        finish = self._end("finish_derivatives", block.last_derivatives, block.last_orders)
         try:
-            curve = declare(block, count, ends)
+            curve = declare(block, count, (start, finish))
         except TrajgapError as error:
             raise self.fail("interpolant", _unprefixed(error)) from None
         if len(curve.waypoint_breaks) != count:
@@ -228,14 +229,36 @@ class Statement:
     @property
     def loose_ends(self) -> bool:
         """Whether some derivative at the ends is a printed number, which stands for an interval."""
-        return any(not number.exact for number in self.declaration.end_derivatives or ())
+        block = self.declaration
+        every = (*(block.end_derivatives or ()), *(block.finish_derivatives or ()))
+        each = (n for one in every for n in (one if isinstance(one, tuple) else (one,)))
+        return any(not number.exact for number in each)
 
-    def _end_value(self, order: int) -> float:
-        values = self.declaration.end_derivatives
-        if values is None or order > len(_DERIVATIVES):
-            return 0.0
-        number = values[self.declaration.orders.index(order)]
-        return 0.0 if number.fraction == 0 else self.si(number, _DERIVATIVES[order - 1]).value
+    def _end(self, key: str, values: Values | None, orders: tuple[int, ...]) -> Derivatives:
+        """Derivatives at one end in rad and s, of the joints that take part."""
+        if values is None:
+            return tuple((order, 0.0) for order in orders)
+        return tuple(
+            (order, self._end_value(f"interpolant.{key}[{index}]", order, value))
+            for index, (order, value) in enumerate(zip(orders, values, strict=True))
+        )
+
+    def _end_value(
+        self, field: str, order: int, given: Printed | tuple[Printed, ...]
+    ) -> float | tuple[float, ...]:
+        if isinstance(given, tuple):
+            if len(given) != len(self.labels):
+                raise self.fail(
+                    field,
+                    f"{len(given)} values for {len(self.labels)} joints; give one for all, "
+                    "or one each",
+                )
+            return tuple(self._in_si(field, order, given[j]) for j in self.joints)
+        return self._in_si(field, order, given)
+
+    def _in_si(self, field: str, order: int, number: Printed) -> float:
+        zero = number.fraction == 0 or order > len(_DERIVATIVES)
+        return 0.0 if zero else self.si(number, _DERIVATIVES[order - 1], field).value
 
     def problem(self, digits: Digits = Digits.PRINTED) -> Problem:
         """Problem in radians and seconds.

@@ -5,8 +5,7 @@ from .clamped_fit import clamped_control_points
 from .clamped_knots import Knots, Parameters, average_matrix, fractions_of
 from .compilation import Deferred, at_hand, by_elements, compiler, interpreted
 from .condition import Condition, ConditionKind
-from .interpolant import (
-    Interpolant,
+from .families import (
     cubic_spline,
     cubic_spline_virtual,
     jtraj,
@@ -15,8 +14,9 @@ from .interpolant import (
     rest_to_rest,
     three_five_three,
 )
+from .interpolant import Interpolant
 from .kernel import MAX_COEFFICIENTS, roots_in_unit
-from .kind import Curve, PeakGradients, as_curve, fit
+from .kind import Curve, Derivatives, PeakGradients, as_curve, fit
 from .peak import Extremum, critical_points, extrema, largest
 from .piece_kernel import divided_extremes, one_sided_extreme, piece_extremes
 from .pieces import MANY_PIECES, largest_of_each, may_jump, near_extrema, step_sizes, tops
@@ -48,6 +48,7 @@ __all__ = [
     "Count",
     "Curve",
     "Deferred",
+    "Derivatives",
     "Extremum",
     "Interpolant",
     "Knots",

@@ -21,7 +21,7 @@ from .clamped_knots import (
     fractions_of,
     nearest_reading,
 )
-from .interpolant import piecewise, quintic_spline
+from .families import piecewise, quintic_spline
 from .kind import Curve, Derivatives, Enclosed, PeakGradients, Shape, as_batch
 from .peak import Extremum
 from .stretched import StretchedCurve, Timing
@@ -228,20 +228,34 @@ class ClampedBSpline(StretchedCurve):
         sides = zip(wanted, (-1.0, 1.0), strict=True)
         return np.stack([self._peaks(waypoints, durations, part, sign) for part, sign in sides])
 
+    def range_values(self, waypoints: Array, nodal: Array | None = None) -> Array:
+        """The way-points themselves, unless stretched."""
+        return super().range_values(waypoints) if self._stretched else waypoints
+
+    def batch_ranges(self, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
+        """Least and largest positions by the compiled kernel."""
+        if self._stretched:
+            return super().batch_ranges(values, durations, wanted)
+        h = as_batch(self, durations)
+        ranges = np.empty((h.shape[0], values.shape[1], 2))
+        clamped_kernel.batch_ranges(h, *self._placed(values), wanted, ranges)
+        return ranges
+
     def _peaks(
         self, values: Array, durations: Array, wanted: NDArray[np.bool_], side: float
     ) -> Array:
         h = as_batch(self, durations)
-        average, orders = _plan(self)
-        rows = fractions_of(self, values)
-        fractions = np.empty((0, self.waypoints)) if rows is None else np.array(rows)
         peaks = np.empty((h.shape[0], values.shape[1], 3))
-        # A copy may be written into: one type of array, for which the kernel is compiled once.
-        clamped_kernel.batch_peaks(
-            h, np.array(values, order="C"), average, fractions, self.degree, orders, wanted, side,
-            peaks,
-        )  # fmt: skip
+        clamped_kernel.batch_peaks(h, *self._placed(values), wanted, side, peaks)
         return peaks
+
+    def _placed(self, waypoints: Array) -> tuple[Array, Array, Array, int, NDArray[np.int64]]:
+        """What the kernel asks for of way-points and declaration."""
+        average, orders = _plan(self)
+        rows = fractions_of(self, waypoints)
+        fractions = np.empty((0, self.waypoints)) if rows is None else np.array(rows)
+        # A copy may be written into: one type of array, for which the kernel is compiled once.
+        return np.array(waypoints, order="C"), average, fractions, self.degree, orders
 
     def value_gradients(
         self,

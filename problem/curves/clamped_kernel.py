@@ -146,6 +146,67 @@ def _peaks(knots, degree, bases, control, wanted, side, top):  # type: ignore[no
 
 
 @compiled
+def _timed(durations, v, times):  # type: ignore[no-untyped-def]
+    """Times of the way-points; False where a duration is not positive and finite."""
+    valid, count = True, times.size
+    times[0] = 0.0
+    for k in range(count - 1):
+        valid = valid and 0.0 < durations[v, k] < np.inf
+        times[k + 1] = times[k] + durations[v, k]
+    return valid and 0.0 < times[count - 1] < np.inf
+
+
+@compiled
+def _placed(waypoints, times, average, fractions, g, degree, knots, right):  # type: ignore[no-untyped-def]
+    """Knots of group ``g``, and its way-points, counted from the first, into ``right``."""
+    inner, columns, total = average.shape[0], right.shape[1], times[times.size - 1]
+    for i in range(degree + 1):
+        knots[i] = 0.0
+        knots[inner + degree + 1 + i] = total
+    for i in range(inner):
+        knot = 0.0
+        for w in range(times.size):
+            place = fractions[g, w] * total if fractions.shape[0] > 0 else times[w]
+            knot += average[i, w] * place
+        knots[degree + 1 + i] = knot
+    right[:] = 0.0
+    for w in range(times.size):
+        for j in range(columns):
+            right[w, j] = waypoints[w, g * columns + j] - waypoints[0, g * columns + j]
+
+
+@compiled
+def _ranges(bases, control, wanted, found):  # type: ignore[no-untyped-def]
+    """Least and largest values of each wanted column of ``control``."""
+    degree = bases.shape[1] - 1
+    a, derivative = np.empty(ROOM), np.empty(ROOM)
+    roots, work = np.empty(ROOM), np.empty((ROOM, ROOM))
+    for j in range(control.shape[1]):
+        found[j] = 0.0
+        if not wanted[j]:
+            continue
+        low, high = np.inf, -np.inf
+        for p in range(bases.shape[0]):
+            for m in range(degree + 1):
+                a[m] = 0.0
+                for f in range(degree + 1):
+                    a[m] += bases[p, f, m] * control[p + f, j]
+            for m in range(degree):
+                derivative[m] = (m + 1) * a[m + 1]
+            turns = roots_in_unit(derivative, degree - 1, work, roots)
+            for i in range(turns + 2):
+                s = 0.0 if i == turns else (1.0 if i == turns + 1 else roots[i])
+                value = 0.0
+                for m in range(degree, -1, -1):
+                    value = value * s + a[m]
+                if not value >= low:
+                    low = value if value == value else -np.inf
+                if not value <= high:
+                    high = value if value == value else np.inf
+        found[j, 0], found[j, 1] = low, high
+
+
+@compiled
 def batch_peaks(  # type: ignore[no-untyped-def]
     durations, waypoints, average, fractions, degree, orders, wanted, side, peaks
 ):
@@ -167,28 +228,10 @@ def batch_peaks(  # type: ignore[no-untyped-def]
     matrix = np.empty((size, size))
     right = np.empty((size, columns))
     for v in range(durations.shape[0]):
-        valid = True
-        times[0] = 0.0
-        for k in range(count - 1):
-            valid = valid and 0.0 < durations[v, k] < np.inf
-            times[k + 1] = times[k] + durations[v, k]
-        total = times[count - 1]
-        valid = valid and 0.0 < total < np.inf
+        valid = _timed(durations, v, times)
         peaks[v] = 0.0
         for g in range(groups if valid else 0):
-            for i in range(degree + 1):
-                knots[i] = 0.0
-                knots[inner + degree + 1 + i] = total
-            for i in range(inner):
-                knot = 0.0
-                for w in range(count):
-                    place = fractions[g, w] * total if fractions.shape[0] > 0 else times[w]
-                    knot += average[i, w] * place
-                knots[degree + 1 + i] = knot
-            right[:] = 0.0
-            for w in range(count):
-                for j in range(columns):
-                    right[w, j] = waypoints[w, g * columns + j] - waypoints[0, g * columns + j]
+            _placed(waypoints, times, average, fractions, g, degree, knots, right)
             valid = _curve(times, knots, degree, orders, right, bases, work, matrix)
             if not valid:
                 break
@@ -196,3 +239,36 @@ def batch_peaks(  # type: ignore[no-untyped-def]
             _peaks(knots, degree, bases, right, wanted[part], side, peaks[v, part])
         if not valid:
             peaks[v] = np.inf
+
+
+@compiled
+def batch_ranges(  # type: ignore[no-untyped-def]
+    durations, waypoints, average, fractions, degree, orders, wanted, ranges
+):
+    """Find the least and the largest positions for many duration vectors.
+
+    ``ranges[vector, joint, side]`` receives them for each ``wanted[joint]``, counted from the first
+    way-point; −inf and inf where the durations define no curve. The rest as in `batch_peaks`.
+    """
+    count, inner = durations.shape[1] + 1, average.shape[0]
+    size = inner + degree + 1
+    groups = max(1, fractions.shape[0])
+    columns = waypoints.shape[1] // groups
+    times = np.empty(count)
+    knots = np.empty(inner + 2 * degree + 2)
+    bases = np.empty((inner + 1, degree + 1, degree + 1))
+    work = np.empty((degree + 1, degree + 1))
+    matrix = np.empty((size, size))
+    right = np.empty((size, columns))
+    for v in range(durations.shape[0]):
+        valid = _timed(durations, v, times)
+        for g in range(groups if valid else 0):
+            _placed(waypoints, times, average, fractions, g, degree, knots, right)
+            valid = _curve(times, knots, degree, orders, right, bases, work, matrix)
+            if not valid:
+                break
+            part = slice(g * columns, (g + 1) * columns)
+            _ranges(bases, right, wanted[part], ranges[v, part])
+        if not valid:
+            ranges[v, :, 0] = -np.inf
+            ranges[v, :, 1] = np.inf

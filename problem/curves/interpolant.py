@@ -22,6 +22,7 @@ from .kind import (
     PeakGradients,
     as_batch,
     derivative_row,
+    told_once,
     value_errors,
 )
 from .peak import Extremum
@@ -45,7 +46,8 @@ class Interpolant(Curve):
     continuity : tuple of int
         For each interior break, the highest derivative order that is continuous there (2 for C2).
     prescribed : tuple, one entry per break
-        ``((order, value), ...)``: derivatives (rad/sᵒʳᵈᵉʳ) that both sides take at that break.
+        ``((order, value), ...)``: derivatives (rad/sᵒʳᵈᵉʳ) that both sides take at that break; a
+        value is one number for all joints, or a sequence with one per joint.
     virtual : tuple of int
         Interior breaks without a way-point: their position is free.
 
@@ -89,13 +91,21 @@ class Interpolant(Curve):
             raise TrajgapError("interpolant.continuity: every order must be 0 or more")
         if any(not 0 < b < n for b in self.virtual):
             raise TrajgapError("interpolant.virtual: only interior breaks can be virtual")
+        object.__setattr__(self, "prescribed", tuple(map(told_once, self.prescribed)))
+        told = {len(v) for at in self.prescribed for _, v in at if isinstance(v, tuple)}
+        if len(told) > 1:
+            raise TrajgapError(
+                "interpolant.prescribed: given for "
+                f"{' and for '.join(map(str, sorted(told)))} joints; give one value for all "
+                "joints, or one for each of them"
+            )
         for b, entries in enumerate(self.prescribed):
             orders = [order for order, _ in entries]
             if len(set(orders)) != len(orders) or any(order < 1 for order in orders):
                 raise TrajgapError(
                     f"interpolant.prescribed[{b}]: orders must be distinct and at least 1"
                 )
-            if not all(math.isfinite(value) for _, value in entries):
+            if not all(map(math.isfinite, _values(entries))):
                 raise TrajgapError(f"interpolant.prescribed[{b}]: values must be finite")
         if self.conditions > self.coefficients:
             raise TrajgapError(
@@ -143,6 +153,22 @@ class Interpolant(Curve):
         """Derivatives that both sides take at a break."""
         return self.prescribed[break_index]
 
+    @cached_property
+    def told_joints(self) -> int | None:
+        """Joints that prescribed derivatives differ between."""
+        several = (v for at in self.prescribed for _, v in at if isinstance(v, tuple))
+        return next(map(len, several), None)
+
+    def for_joint(self, waypoints: Array, index: int) -> Interpolant:
+        """The declaration with the derivatives that are prescribed for one joint."""
+        if self.told_joints is None:
+            return self
+        own = tuple(
+            tuple((r, v[index] if isinstance(v, tuple) else v) for r, v in at)
+            for at in self.prescribed
+        )
+        return replace(self, prescribed=own)
+
     def smooth_order(self, break_index: int) -> int:
         """Order of continuity that is declared."""
         return self.continuity[break_index - 1]
@@ -177,6 +203,19 @@ class Interpolant(Curve):
         values, h = self.motion_values(waypoints, nodal), as_batch(self, durations)
         sides = zip(wanted, (-1.0, 1.0), strict=True)
         return np.stack([spline.batch_peaks(self, values, h, part, sign) for part, sign in sides])
+
+    def range_values(self, waypoints: Array, nodal: Array | None = None) -> Array:
+        """Right-hand sides, as for peaks."""
+        return self.motion_values(waypoints, nodal)
+
+    def batch_ranges(self, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
+        """Least and largest positions by the compiled kernel, of the joints that are asked for."""
+        h = as_batch(self, durations)
+        found = np.zeros((len(h), wanted.size, 2))
+        asked = np.ascontiguousarray(values[:, wanted])
+        if asked.size:
+            found[:, wanted] = spline.batch_ranges(self, asked, h)
+        return found
 
     def value_gradients(
         self,
@@ -313,109 +352,13 @@ class Interpolant(Curve):
         return matrix
 
 
+def _values(entries: Derivatives) -> list[float]:
+    """All values that are prescribed at a break, of every joint."""
+    return [x for _, v in entries for x in (v if isinstance(v, tuple) else (v,))]
+
+
 _SIDES: tuple[tuple[ConditionKind, Callable[[int, int], bool]], ...] = (
     (ConditionKind.LEFT_VALUE, lambda b, n: b > 0),
     (ConditionKind.RIGHT_VALUE, lambda b, n: b < n),
 )
 """Kinds of condition on a value, and at which of the breaks 0..n their side exists."""
-
-
-def piecewise(
-    degrees: tuple[int, ...],
-    continuity: int = 2,
-    ends: tuple[tuple[int, float], ...] = ((1, 0.0), (2, 0.0)),
-    name: str | None = None,
-) -> Interpolant:
-    """Polynomials of the given degrees, equally continuous at all via-points.
-
-    Parameters
-    ----------
-    degrees : tuple of int
-        Degree of each segment.
-    continuity : int
-        Highest continuous derivative order at the via-points.
-    ends : tuple of (order, value)
-        Derivatives prescribed at both ends.
-
-    Returns
-    -------
-    Interpolant
-    """
-    n = len(degrees)
-    inner: tuple[Derivatives, ...] = ((),) * max(n - 1, 0)
-    return Interpolant(
-        tuple(degrees),
-        (continuity,) * max(n - 1, 0),
-        (tuple(ends), *inner, tuple(ends)),
-        name=name or "-".join(map(str, degrees)) + f" polynomials, C{continuity}",
-    )
-
-
-def three_five_three() -> Interpolant:
-    """3-5-3 polynomials, C2, at rest with zero acceleration at both ends (puma560 (1)–(8))."""
-    return piecewise((3, 5, 3), 2, name="3-5-3 polynomials")
-
-
-def cubic_spline(segments: int, ends: tuple[tuple[int, float], ...] = ((1, 0.0),)) -> Interpolant:
-    """C2 cubic spline; clamped (velocity 0 at the ends) unless ``ends`` says otherwise."""
-    return piecewise((3,) * segments, 2, ends, name=_spline_name(ends))
-
-
-def _spline_name(ends: tuple[tuple[int, float], ...]) -> str:
-    """What tells a cubic spline from others: what holds at its ends."""
-    if ends == ((1, 0.0),):
-        return "clamped C2 cubic spline"
-    if ends == ((2, 0.0),):
-        return "natural C2 cubic spline"
-    words = ("", "velocity", "acceleration", "jerk")
-    given = [words[order] for order, _ in ends if order < len(words)]
-    return f"C2 cubic spline with {' and '.join(given) or 'nothing'} given at the ends"
-
-
-def quintic_spline(segments: int) -> Interpolant:
-    """C4 quintic spline with zero velocity and acceleration at both ends."""
-    return piecewise((5,) * segments, 4, name="C4 quintic spline")
-
-
-def cubic_spline_virtual(waypoints: int) -> Interpolant:
-    """C2 cubic spline with two virtual way-points and v = a = 0 at both ends.
-
-    The virtual breaks follow the first and precede the last way-point.
-    """
-    if waypoints < 2:
-        raise TrajgapError("interpolant: at least two way-points are needed")
-    n = waypoints + 1
-    ends = ((1, 0.0), (2, 0.0))
-    inner: tuple[Derivatives, ...] = ((),) * (n - 1)
-    return Interpolant(
-        (3,) * n,
-        (2,) * (n - 1),
-        (ends, *inner, ends),
-        virtual=(1, n - 1),
-        name="C2 cubic spline with two virtual way-points",
-    )
-
-
-def rest_to_rest(segments: int, degree: int) -> Interpolant:
-    """Polynomials of odd degree that stand still at every way-point.
-
-    Degree 3: velocity 0; degree 5: also acceleration 0; degree 7: also jerk 0.
-    """
-    if degree not in (3, 5, 7, 9):
-        raise TrajgapError("interpolant.degree: rest-to-rest needs degree 3, 5, 7 or 9")
-    orders = tuple((r, 0.0) for r in range(1, (degree + 1) // 2))
-    return Interpolant(
-        (degree,) * segments,
-        (0,) * (segments - 1),
-        (orders,) * (segments + 1),
-        name=f"rest-to-rest polynomials of degree {degree}",
-    )
-
-
-def jtraj(segments: int) -> Interpolant:
-    """Quintic from rest to rest in every segment, as the robot toolboxes' ``jtraj`` joins points.
-
-    The same curve as ``rest_to_rest(segments, 5)`` under the name that papers compare with:
-    velocity and acceleration are 0 at every way-point.
-    """
-    return replace(rest_to_rest(segments, 5), name="jtraj (rest-to-rest quintics)")

@@ -15,7 +15,7 @@ from .compilation import by_elements, compiler
 
 MAX_COEFFICIENTS = 10
 """Coefficients of degree 9, the highest that a declaration may have."""
-_LANES = 192
+LANES = 192
 """Polynomials handled side by side: loops of that length vectorise, and a block fits a cache."""
 _SETTLED = 1e-6
 """Newton step below which a lane rests: the next error is its square, 1e-12, and a peak's error
@@ -26,6 +26,7 @@ KERNELS = (
     "clamped_kernel.py",
     "piece_kernel.py",
     "pieces.py",
+    "range_kernel.py",
     "timed_kernel.py",
 )
 """Every file of compiled functions here: they call each other, so they share a stamp."""
@@ -283,7 +284,7 @@ def _lane_level(a, order, degree, perm, lanes, count, cuts, state):  # type: ign
 
 
 @compiled
-def _lane_peaks(a, degree, perm, lanes, cuts, state, side, peak):  # type: ignore[no-untyped-def]
+def lane_peaks(a, degree, perm, lanes, cuts, state, side, peak):  # type: ignore[no-untyped-def]
     """Largest absolute value on [0, 1] of the polynomials ``a[power, lane]``.
 
     With ``side`` 1 the largest value instead, with −1 that of the polynomials' negatives.
@@ -327,7 +328,7 @@ def batch_peaks(  # type: ignore[no-untyped-def]
     where there is none.
     """
     n, joints, unknowns = degrees.size, values.shape[1], column.max() + 1
-    block = min(max(1, _LANES // joints), durations.shape[0])
+    block = min(max(1, LANES // joints), durations.shape[0])
     h = np.empty((n, block))
     system = np.empty((unknowns, 2 * lower + upper + 1, block))
     right = np.empty((unknowns, joints * block))
@@ -360,7 +361,7 @@ def batch_peaks(  # type: ignore[no-untyped-def]
                 for i in range(degree + 1):
                     for x in range(joints * vectors):
                         a[i, x] = perm[i + r, r] * scaled[k, i + r, x]
-                _lane_peaks(a, degree, perm, joints * vectors, cuts, state, side, peak)
+                lane_peaks(a, degree, perm, joints * vectors, cuts, state, side, peak)
                 for v in range(vectors):
                     rate = (1.0 / h[k, v]) ** r
                     for j in range(joints):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -18,8 +19,9 @@ from .trajectory import Trajectory
 if TYPE_CHECKING:
     from .interpolant import Interpolant
 
-Derivatives = tuple[tuple[int, float], ...]
-"""Derivatives ``(order, value)`` prescribed at one break, rad/sᵒʳᵈᵉʳ."""
+Derivatives = tuple[tuple[int, float | tuple[float, ...]], ...]
+"""Derivatives ``(order, value)`` prescribed at one break, rad/sᵒʳᵈᵉʳ: one value for all joints, or
+one for each where they differ."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,6 +113,11 @@ class Curve(ABC):
     def ends(self) -> tuple[Derivatives, Derivatives]:
         """Derivatives prescribed at the start, and at the end."""
         return self.prescribed_at(0), self.prescribed_at(self.segments)
+
+    @property
+    def told_joints(self) -> int | None:
+        """Number of joints that prescribed derivatives are told apart for; None where all agree."""
+        return None
 
     @property
     def homogeneous(self) -> bool:
@@ -223,6 +230,40 @@ class Curve(ABC):
         found[~np.broadcast_to(wanted[:, None], found.shape) & np.isfinite(found)] = 0.0
         return found
 
+    def range_values(self, waypoints: Array, nodal: Array | None = None) -> Array:
+        """What `batch_ranges` needs to know of the way-points."""
+        return np.asarray(waypoints - waypoints[0])
+
+    def batch_ranges(self, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
+        """Least and largest positions, one vector after the other unless a kind has a quicker way.
+
+        Parameters
+        ----------
+        values : ndarray
+            From `range_values`.
+        durations : ndarray, shape (batch, segments)
+            s.
+        wanted : ndarray of bool, shape (joints,)
+            Which joints are asked for; the others' ranges are returned as 0.
+
+        Returns
+        -------
+        ndarray, shape (batch, joints, 2)
+            rad, counted from the first way-point; −inf and inf for vectors that define no curve.
+        """
+        h = as_batch(self, durations)
+        found = np.zeros((len(h), wanted.size, 2))
+        for v, one in enumerate(h):
+            try:
+                trajectory = self.fitted(values, as_durations(one, self.segments))
+            except TrajgapError:
+                found[v] = -np.inf, np.inf
+                continue
+            for j in np.flatnonzero(wanted).tolist():
+                q = np.array([e.value for e in extrema(trajectory, j, 0)])
+                found[v, j] = (q.min(), q.max()) if np.isfinite(q).all() else (-np.inf, np.inf)
+        return found
+
     @abstractmethod
     def value_gradients(
         self,
@@ -286,6 +327,19 @@ def fit(
     q = as_waypoints(as_curve(curve), waypoints)
     extra = None if nodal is None else np.asarray(nodal, dtype=np.float64)
     return curve.fitted(q, as_durations(durations, curve.segments), extra)
+
+
+def told_once(entries: Derivatives) -> Derivatives:
+    """Derivatives at a break, with one number wherever all joints have the same value."""
+    found: list[tuple[int, float | tuple[float, ...]]] = []
+    for order, value in entries:
+        if isinstance(value, Sequence | np.ndarray):
+            each = tuple(map(float, value))
+            same = len(set(each)) == 1
+            found.append((order, each[0] if same else each))
+        else:
+            found.append((order, value))
+    return tuple(found)
 
 
 def as_curve(given: object) -> Curve:

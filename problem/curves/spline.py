@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import lru_cache
@@ -14,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array
 from ..errors import TrajgapError
-from . import kernel
+from . import kernel, range_kernel
 from .compilation import Deferred
 from .condition import ConditionKind
 
@@ -76,12 +77,12 @@ def layout(interpolant: Interpolant) -> Layout:
     used = beyond >= 0
     lower = max(lower, int((equation - beyond)[used].max(initial=0)))
     upper = max(upper, int((beyond - equation)[used].max(initial=0)))
-    values = np.zeros((n + 1, kernel.MAX_COEFFICIENTS + 1))
+    values = np.zeros((n + 1, kernel.MAX_COEFFICIENTS + 1, full.told_joints or 1))
     for b, entries in enumerate(full.prescribed):
         for order, value in entries:
             if order < values.shape[1]:
                 values[b, order] = value
-    free = np.full(values.shape, -1, dtype=np.int64)
+    free = np.full(values.shape[:2], -1, dtype=np.int64)
     if full.free == 0:
         for i, (b, order) in enumerate(interpolant.free_derivatives):
             free[b, order] = i
@@ -96,7 +97,7 @@ def layout(interpolant: Interpolant) -> Layout:
         unknowns=int(unknown.sum()),
         lower=lower,
         upper=upper,
-        prescribed=np.where(match, 0.0, values[breaks, orders]),
+        prescribed=np.where(match[:, None], 0.0, values[breaks, orders]),
         waypoint=np.where((orders == 0) & ~match, waypoint[breaks], -1),
         nodal=np.where(match, -1, free[breaks, orders]),
     )
@@ -117,7 +118,12 @@ def right_hand_sides(interpolant: Interpolant, waypoints: Array, nodal: Array | 
             f"{interpolant.coefficients} coefficients; give nodal derivatives of shape "
             f"({interpolant.free}, {joints}) or add conditions"
         )
-    values = np.repeat(plan.prescribed[:, None], joints, axis=1)
+    if interpolant.told_joints not in (None, joints):
+        raise TrajgapError(
+            f"interpolant {interpolant.name}: prescribes derivatives for "
+            f"{interpolant.told_joints} joints, the way-points have {joints}"
+        )
+    values = np.array(np.broadcast_to(plan.prescribed, (plan.kinds.size, joints)))
     rows = plan.waypoint >= 0
     values[rows] = waypoints[plan.waypoint[rows]]
     if interpolant.free and nodal is not None:
@@ -265,12 +271,55 @@ def batch_peaks(
             peaks[part],
         )
 
-    work = h.shape[0] * values.shape[1]
+    _in_parts(run, h.shape[0], values.shape[1])
+    return peaks
+
+
+def batch_ranges(interpolant: Interpolant, values: Array, durations: Array) -> Array:
+    """Least and largest positions for a batch of duration vectors.
+
+    Parameters
+    ----------
+    interpolant : Interpolant
+    values : ndarray, shape (rows, joints)
+        From `motion_values`, of the joints that are asked for.
+    durations : ndarray, shape (batch, segments)
+        Durations, s.
+
+    Returns
+    -------
+    ndarray, shape (batch, joints, 2)
+        rad from the first way-point; −inf and inf for vectors that define no curve.
+    """
+    plan, h = layout(interpolant), durations
+    ranges = np.empty((h.shape[0], values.shape[1], 2))
+
+    def run(part: slice) -> None:
+        range_kernel.batch_ranges(
+            h[part],
+            values,
+            plan.kinds,
+            plan.breaks,
+            plan.orders,
+            plan.degrees,
+            plan.column,
+            plan.lower,
+            plan.upper,
+            PERM,
+            ranges[part],
+        )
+
+    _in_parts(run, h.shape[0], values.shape[1])
+    return ranges
+
+
+def _in_parts(run: Callable[[slice], None], vectors: int, joints: int) -> None:
+    """Run a kernel on parts of a batch, on several threads where that pays."""
+    work = vectors * joints
     if work < _THREAD_WORK:
         run(slice(None))
-        return peaks
+        return
     workers = os.cpu_count() or 1
-    cuts = np.linspace(0, h.shape[0], min(2 * workers, work // 1000) + 1).astype(int)
+    cuts = np.linspace(0, vectors, min(2 * workers, work // 1000) + 1).astype(int)
     with ThreadPoolExecutor(workers) as pool:
         list(pool.map(run, map(slice, cuts[:-1], cuts[1:])))
-    return peaks

@@ -123,6 +123,36 @@ def solve_in_closed_form(curve: Curve, waypoints: ArrayLike, limits: ArrayLike) 
     return np.asarray((ratios ** (1.0 / np.arange(1, len(QUANTITIES) + 1))).max(axis=(1, 2)))
 
 
+def path_ranges(curve: Curve, waypoints: Array) -> Array:
+    """Least and largest positions of a curve whose path no duration moves, shape (joints, 2).
+
+    Parameters
+    ----------
+    curve : Curve
+    waypoints : ndarray, shape (way-points, joints)
+        rad; positions are counted from the first.
+    """
+    every = np.ones(waypoints.shape[1], dtype=bool)
+    unit = np.ones((1, curve.segments))
+    return np.asarray(Curve.batch_ranges(curve, waypoints - waypoints[0], unit, every)[0])
+
+
+def ranges_where(valid: NDArray[np.bool_], ranges: Array, wanted: NDArray[np.bool_]) -> Array:
+    """The same ranges for every valid vector, as `Curve.batch_ranges` returns them.
+
+    Parameters
+    ----------
+    valid : ndarray of bool, shape (batch,)
+        Whether a vector defines a curve.
+    ranges : ndarray, shape (joints, 2)
+        From `path_ranges`.
+    wanted : ndarray of bool, shape (joints,)
+    """
+    asked = np.where(wanted[:, None], ranges, 0.0)
+    nowhere = np.broadcast_to([-np.inf, np.inf], asked.shape)
+    return np.where(valid[:, None, None], asked, nowhere)
+
+
 class StretchedCurve(Curve):
     """A curve that is known by its `Curve.shape`: a subclass provides that, and these follow."""
 
@@ -165,6 +195,16 @@ class StretchedCurve(Curve):
         peaks[:, ~wanted] = 0.0
         peaks[~valid] = np.inf
         return peaks
+
+    def range_values(self, waypoints: Array, nodal: Array | None = None) -> Array:
+        """`path_ranges`, which is all that a batch needs."""
+        return path_ranges(self, waypoints)
+
+    def batch_ranges(self, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
+        """The path's own for every vector that is positive and finite."""
+        h = as_batch(self, durations)
+        valid = np.asarray((np.isfinite(h) & (h > 0)).all(axis=1))
+        return ranges_where(valid, values, wanted)
 
     def value_gradients(
         self,

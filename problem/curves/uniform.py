@@ -15,7 +15,7 @@ from . import timed_kernel
 from .kernel import MAX_COEFFICIENTS
 from .kind import Curve, Enclosed, PeakGradients, Shape, as_batch
 from .peak import Extremum
-from .stretched import StretchedCurve, Timing
+from .stretched import StretchedCurve, Timing, path_ranges, ranges_where
 from .timed import enclosed_with_clock, value_at
 from .uniform_matrices import clock_matrix, shape_matrix
 
@@ -164,6 +164,16 @@ class TimedUniformBSpline(UniformBSpline):
         nodes = _nodes(self.waypoints, self.natural_clock)
         timed_kernel.batch_peaks(h, values, nodes, wanted, low, above, peaks)
         return peaks
+
+    def range_values(self, waypoints: Array, nodal: Array | None = None) -> Array:
+        """Least and largest q(e), which no duration moves; shape (joints, 2)."""
+        return path_ranges(self, waypoints)
+
+    def batch_ranges(self, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
+        """The path's own for every vector by which time runs forwards."""
+        still, nothing = np.zeros((self.segments, 4, 1)), np.zeros((1, 3), dtype=bool)
+        found = self.batch_peaks(still, durations, nothing)
+        return ranges_where(np.isfinite(found[:, 0, 0]), values, wanted)
 
     def value_gradients(
         self,

@@ -115,7 +115,7 @@ _LIMITS = ("velocity", "acceleration", "jerk")
 def _prescribed(curve: Interpolant, joints: int) -> list[tuple[int, int, list[float]]]:
     """Break, order, and value of each joint."""
     return [
-        (b, order, [float(value)] * joints)
+        (b, order, list(map(float, value if isinstance(value, tuple) else (value,) * joints)))
         for b, entries in enumerate(curve.prescribed)
         for order, value in entries
     ]

@@ -73,9 +73,7 @@ def test_upper_bound_too_short() -> None:
 
 def test_position_limit_in_the_way() -> None:
     limits = Limits(6.0, 8.0, position_upper=0.5, joints=2)
-    with pytest.raises(
-        TrajgapError, match=r"s per segment is violated; no uniform stretch repairs"
-    ):
+    with pytest.raises(TrajgapError, match=r"lead joint 1 beyond a position limit; no uniform"):
         uniform_rescaling(posed(limits))
 
 

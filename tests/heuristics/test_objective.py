@@ -141,14 +141,6 @@ def test_penalty_must_exceed_every_admissible_total() -> None:
     DeathPenalty(posed(), 7.6)
 
 
-@pytest.mark.parametrize("side", ["position_lower", "position_upper"])
-def test_position_limits_are_not_judged(side: str) -> None:
-    value = -4.0 if side == "position_lower" else 4.0
-    limits = Limits(5.0, joints=2, **{side: value})
-    with pytest.raises(TrajgapError, match=r"limits.position: .* drop the position limits"):
-        DeathPenalty(posed(limits=limits))
-
-
 def test_free_derivatives_are_not_searched() -> None:
     free = piecewise((5, 5, 5), 2, ((1, 0.0), (2, 0.0)))
     with pytest.raises(TrajgapError, match=r"leaves 4 derivatives per joint free.*prescribe them"):

@@ -29,6 +29,7 @@ from trajgap.problem import (
     Verdict,
     check,
     cubic_spline,
+    piecewise,
     quintic_spline,
     three_five_three,
 )
@@ -148,8 +149,9 @@ def test_a_prescribed_derivative_cannot_be_stretched() -> None:
 def test_it_refuses_what_the_death_penalty_refuses() -> None:
     with pytest.raises(TrajgapError, match=r"^penalty: must be positive"):
         Stretch(posed(), 0.0)
-    with pytest.raises(TrajgapError, match=r"limits.position: .* drop the position limits"):
-        Stretch(posed(limits=Limits(5.0, position_upper=4.0, joints=2)))
+    free = piecewise((5, 5, 5), 2, ((1, 0.0), (2, 0.0)))
+    with pytest.raises(TrajgapError, match=r"leaves 4 derivatives per joint free"):
+        Stretch(posed(curve=free))
 
 
 def test_handlings_by_name() -> None:

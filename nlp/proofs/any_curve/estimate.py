@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ....problem import Problem, TrajgapError
 from ...optimum import Evidence, time_up
+from ..exact import JOINTS_APART, one_velocity
 from .local import KEPT, LocalQuestion, local_optimum, starting_points
 from .reach import profile
 
@@ -187,8 +188,8 @@ def _initial(problem: Problem, initial: ArrayLike | None) -> NDArray[np.float64]
 
 
 def _ends(problem: Problem) -> tuple[float | None, float | None]:
-    start, end = problem.curve.ends
-    return dict(start).get(1), dict(end).get(1)
+    start, end = map(one_velocity, problem.curve.ends)
+    return start, end
 
 
 def _restless(problem: Problem) -> NDArray[np.bool_]:
@@ -205,6 +206,8 @@ def _matter(problem: Problem) -> NDArray[np.bool_]:
 
 def _not_covered(problem: Problem) -> str | None:
     """The reason why there is no value, as far as it can be told before solving."""
+    if problem.curve.told_joints is not None:
+        return JOINTS_APART
     limits, restless = problem.limits, _restless(problem)
     if limits.uneven:
         return "lower and upper limits differ; this optimum is computed within equal ones only"

@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from ..exact import ExactProblem, Real
+from ..exact import ExactProblem, Real, one_velocity
 
 _STRETCHES = (Fraction(0), *(Fraction(1, 10**k) for k in range(13, 6, -1)))
 """Shares by which a motion is stretched until it is feasible, as in `answer.prove_feasible`."""
@@ -69,7 +69,7 @@ class FreeQuestion:
 
 def ends_of(problem: ExactProblem) -> tuple[Number, Number]:
     """Velocities that the curve prescribes at its ends; None if free."""
-    start, end = (dict(side).get(1) for side in problem.curve.ends)
+    start, end = map(one_velocity, problem.curve.ends)
     return None if start is None else Fraction(start), None if end is None else Fraction(end)
 
 

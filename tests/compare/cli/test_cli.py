@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 from support.checkout import ROOT
-from support.command_line import IRB, PUMA, Run, assert_refused, program, strict
+from support.command_line import CASE, IRB, PUMA, Run, assert_refused, program, strict
 from support.documents import assert_valid
 from trajgap.compare.audits import RULES
 from trajgap.problem import load_case, published_ids
@@ -168,6 +168,18 @@ def test_show(run: Run) -> None:
     document = strict(run("show", PUMA, "--reading", "durations-positive", "--json")[1])
     assert_valid(document, "show")
     assert [r["id"] for r in document["readings"]] == ["durations-positive"]
+
+
+def test_show_says_what_holds_at_each_end(run: Run) -> None:
+    text = CASE.replace(
+        '{ family = "3-5-3" }',
+        '{ family = "cubic-spline", end_derivatives = [[0.2, -0.1]], finish_orders = [2] }',
+    )
+    Path("ends.toml").write_text(text, encoding="utf-8")
+    code, out, err = run("show", "ends.toml")
+    assert (code, err) == (0, "")
+    words = "velocity given at the start, acceleration at the finish, acceleration 0 at the finish"
+    assert words in " ".join(out.split())
 
 
 def test_check_judges_printed_digits(run: Run) -> None:

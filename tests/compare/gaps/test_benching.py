@@ -44,6 +44,9 @@ from trajgap.problem import (
     Limits,
     Problem,
     TrajgapError,
+    Verdict,
+    check,
+    cubic_spline,
     rest_to_rest,
 )
 
@@ -273,6 +276,18 @@ def test_what_cannot_take_part_is_told_before_anything_runs() -> None:
         plan_bench(TOY, "pso", handling="death")
     with pytest.raises(TrajgapError, match="defined at the top of a module"):
         plan_bench(TOY, lambda fun, bounds, budget, rng: None)
+
+
+@pytest.mark.parametrize("handling", ["death-penalty", "stretch", "rescale"])
+def test_a_path_that_swings_beyond_a_position_limit_is_no_answer(handling: str) -> None:
+    limits = Limits([1.1, 1.7], [3.0, 2.2], position_upper=[0.92, 0.38])
+    q = [[0.3, -1.0], [0.9, -0.55], [0.2, 0.35], [-0.45, 0.1]]
+    swinging = Problem(q, limits, cubic_spline(3), 0.25, 6.0, name="swinging")
+    runs = bench(swinging, ["random"], seeds=2, budget=300, handling=handling)
+    answers = [row.durations for row in runs.rows if row.durations is not None]
+    assert len(answers) >= 5
+    assert all(check(swinging, h).verdict is Verdict.PASS for h in answers)
+    assert min(map(sum, answers)) >= solve(swinging).total_time * (1 - 1e-9)
 
 
 # --- what optimisers do wrong ---------------------------------------------------------------------

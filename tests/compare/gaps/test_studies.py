@@ -241,11 +241,18 @@ def test_bad_input_is_one_line_with_file_and_field(
 def test_a_problem_that_the_objective_cannot_judge_is_refused(tmp_path: Path) -> None:
     path = written(tmp_path)
     case = (tmp_path / "mine.toml").read_text()
+    free = '{ family = "polynomials", degrees = [5, 5, 5], free = 4 }'
     (tmp_path / "mine.toml").write_text(
-        case.replace("[limits]", "[limits]\nposition_upper = 3") + "durations = { upper = 9000 }\n"
+        case.replace('{ family = "3-5-3" }', free) + "durations = { upper = 9000 }\n"
     )
-    with pytest.raises(CaseError, match=r"problems\[0\]: main, plain: limits.position: the heur"):
+    with pytest.raises(
+        CaseError, match=r"problems\[0\]: main, plain: interpolant 5-5-5 .* leaves 4"
+    ):
         load_study(path)
+    # A position limit is judged.
+    held = case.replace("[limits]", "[limits]\nposition_upper = 3")
+    (tmp_path / "mine.toml").write_text(held + "durations = { upper = 9000 }\n")
+    assert load_study(path).problems[0].problem.limits.limits_position
 
 
 def test_a_lost_engine_leaves_what_is_finished(plan: StudyPlan, tmp_path: Path) -> None:

@@ -21,12 +21,13 @@ from trajgap.compare.pictures.searches import convergence, endings
 from trajgap.compare.pictures.totals_map import landscape, tight_total
 from trajgap.compare.pictures.waterfall import seconds, waterfall_picture
 from trajgap.heuristics import JointRuns, Run
-from trajgap.nlp import Solution, Status
+from trajgap.nlp import Solution, Status, solve
 from trajgap.problem import (
     Limits,
     Problem,
     TrajgapError,
     check,
+    cubic_spline,
     quintic_spline,
 )
 
@@ -195,6 +196,27 @@ def test_bounds_on_the_durations_are_hatched(problem: Problem, optimum: Solution
     assert any(c.hatches[0] for c in bounded.axes[0].collections if hasattr(c, "hatches"))
     assert "Hatched" in words(bounded)
     assert "Hatched" not in words(free)
+
+
+def test_shares_whose_path_leaves_its_range_are_hatched() -> None:
+    """Without bounds on the durations; no share there lies below the optimum within the limits."""
+    limits = Limits([1.1, 1.7], [3.0, 2.2], position_upper=[0.92, 0.38])
+    q = [[0.3, -1.0], [0.9, -0.55], [0.2, 0.35], [-0.45, 0.1]]
+    swinging = Problem(q, limits, cubic_spline(3))
+    shares = np.random.default_rng(3).dirichlet((9, 9, 9), 30)
+    own = [check(swinging, 3 * s).tight_time for s in shares]
+    found = tight_total(swinging, shares)
+    assert found == pytest.approx([np.inf if t is None else t for t in own], rel=1e-9)
+    assert 3 <= np.isinf(found).sum() <= 27
+    at = solve(swinging)
+    far = [("printed", [1.0, 0.2, 2.0])]
+    drawn = landscape(swinging, at, far, {}, title="Range")
+    assert "Hatched: a position limit forbids it" in words(drawn)
+    assert "White" not in words(drawn)
+    assert "printed: no rescaling keeps the limits" in drawn.description
+    both = replace(swinging, duration_lower=0.1)
+    text = words(landscape(both, at, [], {}, title="Both"))
+    assert "Hatched: a bound on the durations or a position limit forbids it" in text
 
 
 def test_totals_below_the_optimum_are_shown(problem: Problem, optimum: Solution) -> None:

@@ -42,6 +42,7 @@ CURVES = {
     "virtual": cubic_spline_virtual(SEGMENTS - 1),
     "degrees of two kinds": piecewise((4, *(3,) * (SEGMENTS - 2), 4), 2),
     "moving ends": cubic_spline(SEGMENTS, ((1, 0.25),)),
+    "ends apart": cubic_spline(SEGMENTS, ((1, (0.25, -0.4)),), ((1, (-0.1, 0.3)),)),
 }
 
 

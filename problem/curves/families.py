@@ -1,0 +1,150 @@
+"""Interpolants that papers name: how many degrees, how smooth, and what holds at the ends."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from ..errors import TrajgapError
+from .interpolant import Interpolant
+from .kind import Derivatives, told_once
+
+
+def piecewise(
+    degrees: tuple[int, ...],
+    continuity: int = 2,
+    ends: Derivatives = ((1, 0.0), (2, 0.0)),
+    name: str | None = None,
+    finish: Derivatives | None = None,
+) -> Interpolant:
+    """Polynomials of the given degrees, equally continuous at all via-points.
+
+    Parameters
+    ----------
+    degrees : tuple of int
+        Degree of each segment.
+    continuity : int
+        Highest continuous derivative order at the via-points.
+    ends : tuple of (order, value)
+        Derivatives prescribed at both ends, rad/sᵒʳᵈᵉʳ: one value for all joints, or one for each.
+    finish : tuple of (order, value), optional
+        What is prescribed at the last way-point, where it differs; ``ends`` is the start then.
+
+    Returns
+    -------
+    Interpolant
+    """
+    n = len(degrees)
+    inner: tuple[Derivatives, ...] = ((),) * max(n - 1, 0)
+    return Interpolant(
+        tuple(degrees),
+        (continuity,) * max(n - 1, 0),
+        (tuple(ends), *inner, tuple(ends if finish is None else finish)),
+        name=name or "-".join(map(str, degrees)) + f" polynomials, C{continuity}",
+    )
+
+
+def three_five_three() -> Interpolant:
+    """3-5-3 polynomials, C2, at rest with zero acceleration at both ends (puma560 (1)–(8))."""
+    return piecewise((3, 5, 3), 2, name="3-5-3 polynomials")
+
+
+def cubic_spline(
+    segments: int, ends: Derivatives = ((1, 0.0),), finish: Derivatives | None = None
+) -> Interpolant:
+    """C2 cubic spline; clamped (velocity 0 at the ends) unless ``ends`` says otherwise.
+
+    Parameters
+    ----------
+    segments : int
+    ends : tuple of (order, value)
+        Derivatives prescribed at both ends, rad/sᵒʳᵈᵉʳ: one value for all joints, or one for each.
+    finish : tuple of (order, value), optional
+        What is prescribed at the last way-point, where it differs; ``ends`` is the start then.
+
+    Examples
+    --------
+    Two joints that start at 0.5 and −0.2 rad/s and come to rest:
+
+    >>> cubic_spline(3, ((1, (0.5, -0.2)),), finish=((1, 0.0),)).prescribed
+    (((1, (0.5, -0.2)),), (), (), ((1, 0.0),))
+    """
+    return piecewise((3,) * segments, 2, ends, _spline_name(ends, finish), finish)
+
+
+def _spline_name(ends: Derivatives, finish: Derivatives | None) -> str:
+    """What tells a cubic spline from others: what holds at its ends."""
+    if told_once(ends) == told_once(ends if finish is None else finish):
+        if told_once(ends) == ((1, 0.0),):
+            return "clamped C2 cubic spline"
+        if told_once(ends) == ((2, 0.0),):
+            return "natural C2 cubic spline"
+        return f"C2 cubic spline with {_given_words(ends)} given at the ends"
+    start, last = _given_words(ends), _given_words(finish or ())
+    if start == last:
+        return f"C2 cubic spline with {start} given at the ends"
+    return f"C2 cubic spline with {start} given at the start, {last} at the finish"
+
+
+def _given_words(at: Derivatives) -> str:
+    words = ("", "velocity", "acceleration", "jerk")
+    return " and ".join(words[order] for order, _ in at if order < len(words)) or "nothing"
+
+
+def quintic_spline(
+    segments: int,
+    ends: Derivatives = ((1, 0.0), (2, 0.0)),
+    finish: Derivatives | None = None,
+) -> Interpolant:
+    """C4 quintic spline; velocity and acceleration are 0 at both ends unless told otherwise.
+
+    Parameters
+    ----------
+    segments : int
+    ends, finish : tuple of (order, value)
+        As `cubic_spline` takes them.
+    """
+    return piecewise((5,) * segments, 4, ends, "C4 quintic spline", finish)
+
+
+def cubic_spline_virtual(waypoints: int) -> Interpolant:
+    """C2 cubic spline with two virtual way-points and v = a = 0 at both ends.
+
+    The virtual breaks follow the first and precede the last way-point.
+    """
+    if waypoints < 2:
+        raise TrajgapError("interpolant: at least two way-points are needed")
+    n = waypoints + 1
+    ends = ((1, 0.0), (2, 0.0))
+    inner: tuple[Derivatives, ...] = ((),) * (n - 1)
+    return Interpolant(
+        (3,) * n,
+        (2,) * (n - 1),
+        (ends, *inner, ends),
+        virtual=(1, n - 1),
+        name="C2 cubic spline with two virtual way-points",
+    )
+
+
+def rest_to_rest(segments: int, degree: int) -> Interpolant:
+    """Polynomials of odd degree that stand still at every way-point.
+
+    Degree 3: velocity 0; degree 5: also acceleration 0; degree 7: also jerk 0.
+    """
+    if degree not in (3, 5, 7, 9):
+        raise TrajgapError("interpolant.degree: rest-to-rest needs degree 3, 5, 7 or 9")
+    orders = tuple((r, 0.0) for r in range(1, (degree + 1) // 2))
+    return Interpolant(
+        (degree,) * segments,
+        (0,) * (segments - 1),
+        (orders,) * (segments + 1),
+        name=f"rest-to-rest polynomials of degree {degree}",
+    )
+
+
+def jtraj(segments: int) -> Interpolant:
+    """Quintic from rest to rest in every segment, as the robot toolboxes' ``jtraj`` joins points.
+
+    The same curve as ``rest_to_rest(segments, 5)`` under the name that papers compare with:
+    velocity and acceleration are 0 at every way-point.
+    """
+    return replace(rest_to_rest(segments, 5), name="jtraj (rest-to-rest quintics)")

@@ -1,0 +1,152 @@
+"""Searches under position limits: judged between way-points too, not repaired by a stretch."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from support.positions import CURVES, WAYPOINTS, limited
+from trajgap.heuristics import (
+    PSO,
+    DeathPenalty,
+    Run,
+    Stretch,
+    find_optimizer,
+    run,
+    run_per_joint,
+    run_within,
+    search_box,
+    uniform_rescaling,
+)
+from trajgap.heuristics.repair import compile_judge
+from trajgap.nlp import Status, solve
+from trajgap.problem import (
+    Array,
+    Limits,
+    Problem,
+    TrajgapError,
+    Verdict,
+    check,
+    cubic_spline,
+    evaluate,
+)
+from trajgap.problem.curves import range_kernel
+
+SWARM = PSO(particles=20, iterations=60, position_initial=(0.2, 4.0))
+SWINGING = Problem(
+    WAYPOINTS[:, :2],
+    Limits([1.1, 1.7], [3.0, 2.2], position_upper=[0.92, 0.38]),
+    cubic_spline(3),
+    0.05,
+    6.0,
+)
+"""Left beyond the way-points: the shortest cubic spline swings further, some others do not."""
+
+
+def unlimited(problem: Problem) -> Problem:
+    """The same question without position limits."""
+    count = len(problem.joints)
+    everywhere = problem.limits.with_positions([-np.inf] * count, [np.inf] * count)
+    return replace(problem, limits=everywhere)
+
+
+def drawn(problem: Problem, count: int) -> Array:
+    return np.random.default_rng(5).uniform(0.3, 4.0, (count, problem.segments))
+
+
+@pytest.mark.parametrize("name", CURVES)
+@pytest.mark.parametrize("penalty", [np.inf, 1e6])
+def test_the_penalty_falls_where_the_checker_finds_a_violation(name: str, penalty: float) -> None:
+    problem = limited(CURVES[name], 0.1)
+    h = drawn(problem, 50)
+    for one, fitness in zip(h, DeathPenalty(problem, penalty)(h), strict=True):
+        kept = check(problem, one).limits is Verdict.PASS
+        assert fitness == (one.sum() if kept else penalty)
+
+
+@pytest.mark.parametrize("shorten", [False, True])
+def test_a_stretch_repairs_what_the_checker_says_it_does(shorten: bool) -> None:
+    problem = replace(SWINGING, duration_lower=0.0, duration_upper=np.inf)
+    h = 0.3 * drawn(problem, 60)
+    judge = Stretch(problem, shorten=shorten)
+    found = [check(problem, one) for one in h]
+    times = [f.tight_time if shorten else f.feasible_time for f in found]
+    fitness = judge(h)
+    np.testing.assert_allclose(fitness, [np.inf if t is None else t for t in times], rtol=1e-12)
+    beyond = np.isinf(fitness)
+    assert 5 <= (~beyond).sum() <= 55
+    np.testing.assert_array_equal(judge.decode(h)[beyond], h[beyond])
+    for one in judge.decode(h)[~beyond]:
+        assert check(problem, one).verdict is Verdict.PASS
+
+
+@pytest.mark.parametrize("handling", ["death-penalty", "stretch", "rescale"])
+def test_a_search_ends_within_the_limits_above_the_optimum(handling: str) -> None:
+    problem = SWINGING
+    found = run(SWARM, problem, 1, objective=handling)
+    assert found.feasible
+    assert check(problem, found.durations).verdict is Verdict.PASS
+    best = solve(problem).total_time
+    assert best * (1 - 1e-9) <= found.reported_time <= 1.5 * best
+    # The limits matter: without them the shortest motion is shorter, and the search goes there.
+    wild = solve(unlimited(problem))
+    assert wild.total_time < best * (1 - 1e-2)
+    assert check(problem, wild.durations).verdict is Verdict.VIOLATED
+    freed = run(SWARM, unlimited(problem), 1, objective="rescale")
+    assert freed.reported_time < best * (1 - 1e-2)
+
+
+def test_the_same_seed_beside_other_seeds_and_libraries() -> None:
+    problem = SWINGING
+    for name in ("random", "multistart", "scipy:differential_evolution"):
+        one = run_within(find_optimizer(name, 400), problem, 3, 400, "rescale")
+        again = run_within(find_optimizer(name, 400), problem, 3, 400, "rescale")
+        np.testing.assert_array_equal(one.durations, again.durations)
+        assert check(problem, one.durations).verdict is Verdict.PASS
+        assert one.reported_time == one.totals.min() >= solve(problem).total_time * (1 - 1e-9)
+
+
+def test_where_no_motion_stays_within_nothing_is_feasible() -> None:
+    """A way-point beyond its limit: `solve` proves that there is none."""
+    limits = SWINGING.limits.with_positions([-np.inf] * 2, [0.5, np.inf])
+    problem = replace(SWINGING, limits=limits)
+    assert solve(problem).status is Status.INFEASIBLE
+    for handling in ("death-penalty", "stretch", "rescale"):
+        found: Run = run(SWARM, problem, 2, 10, handling)
+        assert not found.feasible
+        assert found.reported_time == np.inf
+        np.testing.assert_array_equal(found.durations, found.position)
+
+
+def test_each_joint_keeps_its_own_range() -> None:
+    problem = SWINGING
+    found = run_per_joint(SWARM, problem, 3, objective="rescale")
+    for j, one in enumerate(found.runs):
+        assert check(problem.joint(j), one.durations).verdict is Verdict.PASS
+
+
+def test_equal_durations_that_swing_too_far_are_no_baseline() -> None:
+    tight = limited(cubic_spline(3), 0.001)
+    assert (evaluate(tight, np.ones((1, 3))).positions[0] > 1).any()
+    with pytest.raises(
+        TrajgapError, match=r"equal durations lead joint \d beyond a position limit; no uniform"
+    ):
+        uniform_rescaling(tight)
+    with pytest.raises(
+        TrajgapError, match=r"no upper bound .* beyond a position limit; .*; give them one"
+    ):
+        search_box(replace(tight, duration_upper=np.inf))
+    np.testing.assert_array_equal(search_box(tight).upper, [6.0, 6.0, 6.0])
+    one = run_within(find_optimizer("rescale"), tight, 0, 100)
+    assert one.reported_time == np.inf
+
+
+def test_processes_find_every_kernel_compiled() -> None:
+    """Ones break a limit of velocity here: a penalty alone would not look at positions."""
+    problem = limited(cubic_spline(3), 0.3, Limits(0.1, joints=3))
+    kernel, asked = range_kernel.batch_ranges, []
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(range_kernel, "batch_ranges", lambda *a: asked.append(kernel(*a)))
+        DeathPenalty(problem)(np.ones((2, 3)))
+        assert not asked
+        compile_judge(problem)
+    assert asked

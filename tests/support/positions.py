@@ -1,0 +1,62 @@
+"""Problems whose paths swing beyond their way-points, by every kind of curve."""
+
+from __future__ import annotations
+
+import numpy as np
+from trajgap.problem import (
+    Array,
+    Curve,
+    Limits,
+    Problem,
+    Timing,
+    clamped_readings,
+    cubic_spline,
+    cubic_spline_virtual,
+    fit,
+    piecewise,
+    quintic_spline,
+    rest_to_rest,
+    three_five_three,
+    uniform_cubic_b_spline,
+)
+
+WAYPOINTS = np.array([[0.3, -1.0, 2.1], [0.9, -0.55, 2.6], [0.2, 0.35, 1.4], [-0.45, 0.1, 1.9]])
+"""Four of three joints, none at 0, each turning at another place."""
+CURVES: dict[str, Curve] = {
+    "3-5-3": three_five_three(),
+    "4-3-4": piecewise((4, 3, 4)),
+    "cubic": cubic_spline(3),
+    "natural cubic": cubic_spline(3, ((2, 0.0),)),
+    "cubic that starts and ends moving": cubic_spline(3, ((1, (0.4, -0.3, 0.1)),), ((1, 0.2),)),
+    "cubic with virtual way-points": cubic_spline_virtual(4),
+    "quintic": quintic_spline(3),
+    "rest-to-rest 3": rest_to_rest(3, 3),
+    "rest-to-rest 9": rest_to_rest(3, 9),
+    "straight lines": piecewise((1, 1, 1), 0, ()),
+    "B-spline, stretched": uniform_cubic_b_spline(4, Timing.STRETCHED),
+    "B-spline, timed": uniform_cubic_b_spline(4, Timing.TIMED),
+    "B-spline, timed, natural": uniform_cubic_b_spline(4, Timing.TIMED, True),
+    **{
+        one.curve.name: one.curve
+        for one in clamped_readings(4)
+        if one.curve is not None and one.curve.degree in (4, 5)
+    },
+}
+"""Every kind of curve that a case file can declare, through four way-points."""
+
+
+def sampled_range(problem: Problem, h: Array, places: int = 401) -> Array:
+    """Least and largest position of every joint at dense places of each piece, (joints, 2)."""
+    motion = fit(problem.curve, problem.waypoints, h)
+    parts = zip(motion.breaks[:-1], motion.breaks[1:], strict=True)
+    q = np.vstack([motion(np.linspace(a, b, places)) for a, b in parts])
+    return np.stack([q.min(axis=0), q.max(axis=0)], axis=1)
+
+
+def limited(curve: Curve, room: float, limits: Limits | None = None) -> Problem:
+    """A problem that leaves ``room`` beyond the way-points: joint 1 above, 2 below, 3 on both."""
+    low, high = WAYPOINTS.min(axis=0) - room, WAYPOINTS.max(axis=0) + room
+    within = (limits or Limits([1.5, 1.8, 2.4], [6.0, 7.0, 9.0])).with_positions(
+        [-np.inf, low[1], low[2]], [high[0], np.inf, high[2]]
+    )
+    return Problem(WAYPOINTS, within, curve, 0.05, 6.0)
