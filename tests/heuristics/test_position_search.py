@@ -57,7 +57,7 @@ def drawn(problem: Problem, count: int) -> Array:
 @pytest.mark.parametrize("penalty", [np.inf, 1e6])
 def test_the_penalty_falls_where_the_checker_finds_a_violation(name: str, penalty: float) -> None:
     problem = limited(CURVES[name], 0.1)
-    h = drawn(problem, 50)
+    h = drawn(problem, 8)
     for one, fitness in zip(h, DeathPenalty(problem, penalty)(h), strict=True):
         kept = check(problem, one).limits is Verdict.PASS
         assert fitness == (one.sum() if kept else penalty)

@@ -39,7 +39,7 @@ def test_the_batch_says_what_the_checker_says(name: str) -> None:
     """Verdicts and ratios, on both sides of the limits wherever durations move the path."""
     for room in (0.003, 0.05, 0.4):
         problem = limited(CURVES[name], room, UNLIMITED)
-        h = drawn(problem, 40)
+        h = drawn(problem, 8)
         found, kept = evaluate(problem, h).positions, keeps_limits(problem, h, 5e-10)
         for one, ratios, inside in zip(h, found, kept, strict=True):
             own = check(problem, one)
@@ -54,7 +54,7 @@ def test_the_batch_says_what_the_checker_says(name: str) -> None:
 @pytest.mark.parametrize("name", CURVES)
 def test_verdicts_with_all_limits_are_the_checkers(name: str) -> None:
     problem = limited(CURVES[name], 0.1)
-    h = 3.0 * drawn(problem, 60, spread=0.7)
+    h = 3.0 * drawn(problem, 12, spread=0.7)
     kept = keeps_limits(problem, h, 5e-10)
     within = (h <= problem.duration_upper).all(axis=1)
     for one, inside in zip(h[within], kept[within], strict=True):
@@ -64,7 +64,7 @@ def test_verdicts_with_all_limits_are_the_checkers(name: str) -> None:
 @pytest.mark.parametrize("name", CURVES)
 def test_ratios_are_those_of_dense_samples(name: str) -> None:
     problem = limited(CURVES[name], 0.1)
-    for one in drawn(problem, 5, spread=0.4):
+    for one in drawn(problem, 2, spread=0.4):
         (least, most), low, high = (
             sampled_range(problem, one).T,
             problem.limits.position_lower,

@@ -6,6 +6,7 @@ import numpy as np
 from trajgap.problem import (
     Array,
     Curve,
+    Knots,
     Limits,
     Problem,
     Timing,
@@ -22,6 +23,8 @@ from trajgap.problem import (
 
 WAYPOINTS = np.array([[0.3, -1.0, 2.1], [0.9, -0.55, 2.6], [0.2, 0.35, 1.4], [-0.45, 0.1, 1.9]])
 """Four of three joints, none at 0, each turning at another place."""
+_CLAMPED = ((4, Knots.CONTINUED), (5, Knots.WAYPOINTS))
+"""Degrees and knots of clamped B-splines: with either, every way to place and to time them."""
 CURVES: dict[str, Curve] = {
     "3-5-3": three_five_three(),
     "4-3-4": piecewise((4, 3, 4)),
@@ -39,7 +42,7 @@ CURVES: dict[str, Curve] = {
     **{
         one.curve.name: one.curve
         for one in clamped_readings(4)
-        if one.curve is not None and one.curve.degree in (4, 5)
+        if one.curve is not None and (one.curve.degree, one.knots) in _CLAMPED
     },
 }
 """Every kind of curve that a case file can declare, through four way-points."""

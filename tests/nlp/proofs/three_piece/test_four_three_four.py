@@ -299,7 +299,8 @@ def test_where_nothing_moves_in_the_middle_the_interval_holds() -> None:
 def test_what_is_covered() -> None:
     q = fixed().waypoints
     block = InterpolantBlock(family="polynomials", degrees=(4, 3, 4))
-    declared = declare(block, 4, ((1, 0.0), (2, 0.0)))
+    rest = ((1, 0.0), (2, 0.0))
+    declared = declare(block, 4, (rest, rest))
     assert shape_of(declared) is SHAPES[1]
     assert covered(exact_problem(Problem(q, Limits(1.0), declared))) is None
     for curve in (piecewise((4, 3, 4), 2, ((1, 0.1), (2, 0.0))), piecewise((3, 4, 4))):
