@@ -230,10 +230,36 @@ def under(
             reason = f" ({far[readings[0]]})" if why else ""
             return f"under the implausible {which}{reason}"
         return f"under {which}"
-    count = f"under {len(readings)} of {len(computed)} readings"
+    count = f"under {among(readings, len(computed), far)}"
     if len(left) <= _FEW:
         return f"{count} (not under {_and([quoted(one, labels) for one in left])})"
     return count
+
+
+def among(readings: Sequence[str], count: int, far: Iterable[str] = ()) -> str:
+    """How many of all readings, and how many of these are implausible.
+
+    Parameters
+    ----------
+    readings : sequence of str
+    count : int
+        Of all readings.
+    far : iterable of str
+        Those that are implausible.
+
+    Returns
+    -------
+    str
+        Such as "13 of 19 readings (5 implausible)".
+    """
+    return f"{len(readings)} of {count} readings{implausibly(readings, far)}"
+
+
+def implausibly(readings: Sequence[str], far: Iterable[str]) -> str:
+    """How many of some readings are implausible, in brackets; empty where none is."""
+    many = len(set(readings) & set(far))
+    every = many == len(readings)
+    return f" ({'all' if every and many > 1 else many} implausible)" if many else ""
 
 
 def quoted(reading: str, labels: Mapping[str, str]) -> str:
