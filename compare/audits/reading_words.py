@@ -26,7 +26,7 @@ KEPT = {
     Keeping.BREAKS: "broken",
     Keeping.UNDECIDED: "not checkable",
 }
-"""What the words say of limits, within a sentence: as verdicts on the claim that they are kept do."""
+"""What the words say of limits, within a sentence; what is open has the word that the claim has."""
 
 
 def answers(summary: ReadingsSummary) -> tuple[str, ...]:

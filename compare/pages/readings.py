@@ -89,7 +89,11 @@ def _held(one: CaseAudit, outcomes: list[ReadingOutcome]) -> tuple[Block, ...]:
             continue
         steps = held.steps
         vertices = None if isinstance(held.vertices, Why) else f"{held.vertices:.4g}"
-        whose = place(one.case.claim(outcome.claim)) if outcome.claim else outcome.problem
+        whose = (
+            place(one.case.claim(outcome.claim))
+            if outcome.claim
+            else problem_cell(one.case, outcome.problem)
+        )
         rows.append(
             (
                 text(whose),
@@ -118,7 +122,7 @@ def _outcomes(one: CaseAudit, summary: ReadingsSummary) -> list[Block]:
     grids: list[Block] = []
     for (claim, problem), own in printed.items():
         rows = tuple(_row(outcome, default, summary) for outcome in own)
-        where = place(one.case.claim(claim)) if claim else problem
+        where = place(one.case.claim(claim)) if claim else problem_cell(one.case, problem)
         grids.append(Grid(names, rows, where).filled)
     note = (
         "Limits are judged for every value that rounds, or is cut off, to the printed digits; "
