@@ -31,7 +31,7 @@ from ..documents import (
     quoted,
 )
 from .card_errors import plainly
-from .card_optimum import limited, optimum_line
+from .card_optimum import limited, on_doubted_points, optimum_line
 from .plausibility import implausible
 from .rules import said_to_keep
 from .stated import place
@@ -64,14 +64,10 @@ def verdict_card(
     """
     words = {judgement.claim: judgement for judgement in judgements}
     limits, judged = _limits(study, words)
-
-    def doubted(claim: str) -> bool:
-        return claim in words and _on_points_in_doubt(words[claim])
-
-    before = any(doubted(one) for one in judged)
+    before = any(on_doubted_points(words[one]) for one in judged if one in words)
     if before:
         limits = f"On doubted way-points, {limits[:1].lower()}{limits[1:]}"
-    optimum = optimum_line(study, waterfalls, doubted, before)
+    optimum = optimum_line(study, waterfalls, words, before)
     improvement, improved = _improvement(study, words)
     # What the first lines have said is not said again.
     said = {("TG201", one) for one in judged} | {("TG103", one) for one in improved}
@@ -220,10 +216,6 @@ def _in_doubt(sets: Sequence[AnyClaim], words: Mapping[str, Judgement]) -> str:
     if len(doubtful) == len(sets) or not 0 < len(places) <= _FEW:
         return ""
     return f" in {' and '.join(places)}"
-
-
-def _on_points_in_doubt(judgement: Judgement) -> bool:
-    return any(c.kind is CaveatKind.POINTS for c in judgement.caveats)
 
 
 def _jumping(judgements: Iterable[Judgement]) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,7 +17,7 @@ from ...problem.cases import (
     TimeClaim,
     TotalTimeClaim,
 )
-from ..documents import Rounding, Waterfall, count_words
+from ..documents import CaveatKind, ClaimVerdict, Judgement, Rounding, Waterfall, count_words
 from .stated import other_objective
 from .study import Study
 
@@ -27,10 +27,12 @@ _MANY_TIMES = 10.0
 """Distance beyond which a multiple says more than a percentage."""
 _OBJECTIVE_WORDS = 8
 """Words of an objective that the card repeats; a longer one is left to the claims."""
+_PLURALS = {"proven optimum": "proven optima", "best known total": "best known totals"}
+"""What an optimum is called, and several of them."""
 
 
 def optimum_line(
-    study: Study, waterfalls: Sequence[Waterfall], doubted: Callable[[str], bool], before: bool
+    study: Study, waterfalls: Sequence[Waterfall], words: Mapping[str, Judgement], before: bool
 ) -> str:
     """How far the printed totals are from the optimum under the default reading.
 
@@ -38,10 +40,10 @@ def optimum_line(
     ----------
     study : Study
     waterfalls : sequence of Waterfall
-    doubted : callable
-        Whether a claim, by its id, rests on way-points in doubt.
+    words : mapping of str to Judgement
+        Of each claim, by its id.
     before : bool
-        Whether the line before has said so.
+        Whether the line before has said that way-points are in doubt.
 
     Returns
     -------
@@ -50,19 +52,81 @@ def optimum_line(
     if not study.posed:
         return "The optimum is not checkable either."
     main = [w for w in waterfalls if w.reading == study.main_reading]
+    beside = [found for found in (_beside(study, w) for w in main) if found is not None]
+    if not beside:
+        return _without_totals(study, words)
     where = ["under the default reading"] if len(study.readings) > 1 else []
-    if any(w.claim is not None and doubted(w.claim) for w in main):
+    if any(w.claim in words and on_doubted_points(words[w.claim]) for w in main if w.claim):
         where.insert(0, "on them" if before else "on doubted way-points")
-    parts = [_beside(study, w) for w in main]
+    told = ", ".join([*where, _side_by_side(beside)])
+    return f"{told[:1].upper()}{told[1:]}."
+
+
+def on_doubted_points(judgement: Judgement) -> bool:
+    """Whether a claim was judged by motions through way-points in doubt."""
+    return any(c.kind is CaveatKind.POINTS for c in judgement.caveats)
+
+
+def _side_by_side(parts: Sequence[_Part]) -> str:
+    """Printed totals beside their optima: what differs first, then how many agree."""
     above = [part for part in parts if isinstance(part, _Above)]
     if len(parts) == len(above) == _FEW and len({part.name for part in above}) == 1:
-        said = _together(above)
-    else:
-        said = "; ".join(map(str, parts[:_FEW]))
-    if len(parts) > _FEW:
-        said += f"; {len(parts) - _FEW} more below"
-    told = ", ".join([*where, said])
-    return f"{told[:1].upper()}{told[1:]}."
+        return _together(above)
+    agreeing = [part for part in parts if isinstance(part, _Agrees)]
+    unknown = [part for part in parts if isinstance(part, _Unknown)]
+    others = [part for part in parts if part not in agreeing and part not in unknown]
+    differing = list(dict.fromkeys(map(str, others)))
+    said = differing[:_FEW]
+    if len(differing) > _FEW:
+        said.append(f"{len(differing) - _FEW} more below")
+    said += [_agreement(agreeing, bool(others), len(parts))] if agreeing else []
+    for why in dict.fromkeys(part.why for part in unknown):
+        said.append(f"elsewhere {why}" if len(unknown) < len(parts) else why)
+    return "; ".join(said)
+
+
+def _agreement(agreeing: Sequence[_Agrees], others: bool, parts: int) -> str:
+    """One total that agrees in full; of several how many do."""
+    if len(agreeing) == 1:
+        return str(agreeing[0])
+    which = f"{len(agreeing)} {'more ' if others else ''}printed totals"
+    if len(agreeing) == parts:
+        which = "both printed totals" if parts == _FEW else f"all {which}"
+    names = {_PLURALS[part.name] for part in agreeing}
+    return f"{which} agree with their {names.pop() if len(names) == 1 else 'optima'}"
+
+
+def _without_totals(study: Study, words: Mapping[str, Judgement]) -> str:
+    """What is said of printed times where none is on the curve whose optimum is known.
+
+    The case file's curve may only stand in for one that it cannot name, and its optimum is none of
+    the paper's.
+    """
+    timed = [c for c in study.case.claims if isinstance(c, TimeClaim) and c.id in words]
+    profiles = dict.fromkeys(
+        str(c.profile) for c in timed if isinstance(c, TotalTimeClaim) and c.profile is not None
+    )
+    judged = [c for c in timed if getattr(c, "profile", None) is not None]
+    if judged:
+        own = f"shortest {' or '.join(profiles)} profile"
+        agree = sum(words[c.id].verdict is ClaimVerdict.SUPPORTED for c in judged)
+        if len(judged) == 1:
+            return f"The printed time {'agrees' if agree else 'does not agree'} with the {own}."
+        which = f"{agree} of {len(judged)}"
+        if agree == len(judged):
+            which = "Both" if agree == _FEW else f"All {agree}"
+        return f"{which} printed times agree with their {own}s."
+    curves = dict.fromkeys(c.other_curve for c in timed if c.other_curve is not None)
+    if curves:
+        return f"Printed times are of another curve ({', '.join(curves)}) and are not judged."
+    return "No printed total stands beside an optimum."
+
+
+@dataclass(frozen=True)
+class _Unknown:
+    """A problem that has no optimum to compare with."""
+
+    why: str
 
 
 @dataclass(frozen=True)
@@ -77,6 +141,22 @@ class _Above:
 
     def __str__(self) -> str:
         return f"{_named(self)} is {self.percent} above the {self.name} {self.best}"
+
+
+@dataclass(frozen=True)
+class _Agrees:
+    """A printed total within whose rounding the optimum lies."""
+
+    said: str
+    name: str
+    best: str
+
+    def __str__(self) -> str:
+        return f"{self.said} agrees with the {self.best}"
+
+
+_Part = str | _Above | _Agrees | _Unknown
+"""What is said of one problem; plain words where a total differs otherwise."""
 
 
 def _named(one: _Above) -> str:
@@ -100,8 +180,7 @@ def _together(parts: Sequence[_Above]) -> str:
             strict=True,
         )
     )
-    name = {"proven optimum": "proven optima", "best known total": "best known totals"}
-    return f"{shown} are {percents} above the {name[parts[0].name]} {bests}"
+    return f"{shown} are {percents} above the {_PLURALS[parts[0].name]} {bests}"
 
 
 def limited(study: Study, pid: str, rid: str) -> bool:
@@ -110,14 +189,15 @@ def limited(study: Study, pid: str, rid: str) -> bool:
     return limits.limits_position or bool(np.isfinite(limits.sides).any())
 
 
-def _beside(study: Study, waterfall: Waterfall) -> str | _Above:
+def _beside(study: Study, waterfall: Waterfall) -> _Part | None:
+    """A printed total beside its optimum; None where none is printed."""
     rid, pid = waterfall.reading, waterfall.problem
     solution = study.optimum(pid, rid)
     why = _unknown(solution)
     if why and not limited(study, pid, rid):
-        return "without limits no motion is the shortest: there is no optimum to compare with"
+        why = "without limits no motion is the shortest: there is no optimum to compare with"
     if why:
-        return why
+        return _Unknown(why)
     certified = solution.evidence is Evidence.CERTIFIED
     name = "proven optimum" if certified else "best known total"
     shown_best = f"{solution.best:.4f} s{_together_where_apart(study, pid, rid)}"
@@ -125,7 +205,7 @@ def _beside(study: Study, waterfall: Waterfall) -> str | _Above:
     claim = _totalled(study, waterfall)
     total = None if claim is None else study.claim_total(claim, rid)
     if total is None or not isinstance(claim, TimeClaim):
-        return f"the {best} has no printed total beside it"
+        return None
     shown, (low, high) = total
     shown = shown.split(" (")[0]
     seconds = _seconds(study, claim, rid)
@@ -144,7 +224,7 @@ def _beside(study: Study, waterfall: Waterfall) -> str | _Above:
     if joints is not None:
         return f"{said} {joints}"
     if low <= solution.best <= high:
-        return f"{said} agrees with the {best}"
+        return _Agrees(said, name, best)
     if share >= _MANY_TIMES:
         return f"{said} is {1 + share:.1f} times the {best}"
     if share > 0:

@@ -20,7 +20,7 @@ from ...problem.cases import (
     TotalTimeClaim,
 )
 from ..audits import claim_text
-from ..documents import ShowDocument, json_text, quoted, show_document
+from ..documents import ShowDocument, capital, json_text, quoted, show_document
 from .input import read_case
 from .output import emit, new_output
 from .table import Columns, line
@@ -46,14 +46,14 @@ def _tables(document: ShowDocument, case: Case) -> list[RenderableType]:
     lines = [
         document.title,
         *([cited] if cited else []),
-        f"{robot.name}, joints {', '.join(robot.joints)}",
+        f"{robot.name}, joint{'s' * (len(robot.joints) > 1)} {', '.join(robot.joints)}",
         *([f"minimised: {objective}, not time alone"] if objective else []),
         "",
     ]
     problems = [(p.id, p.title or p.why) for p in document.problems]
     labels = case.labels
     readings = [
-        (r.id + (" (default)" if r.default else ""), f"{labels[r.id]}. {r.why}".strip())
+        (r.id + (" (default)" if r.default else ""), f"{capital(labels[r.id])}. {r.why}".strip())
         for r in document.readings
     ]
     parts: list[RenderableType] = [

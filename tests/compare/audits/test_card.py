@@ -117,7 +117,13 @@ durations = ["1.0", "1.0", "1.0"]
 
 @pytest.mark.parametrize(
     ("curve", "says"),
-    [("", "below the"), ('other_curve = "straight lines"', "has no printed total beside it")],
+    [
+        ("", "below the"),
+        (
+            'other_curve = "straight lines"',
+            "Printed times are of another curve (straight lines) and are not judged.",
+        ),
+    ],
 )
 def test_no_total_on_another_curve_stands_beside_the_optimum(curve, says):
     total = f"""
