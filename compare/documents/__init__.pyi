@@ -130,7 +130,7 @@ from .vocabulary import (
     meaning,
     meanings,
 )
-from .waterfall import EXACT, PUBLISHED, SHARED_OPTIMUM, Step, Waterfall
+from .waterfall import EXACT, OWN_OPTIMA, PUBLISHED, SHARED_OPTIMUM, Step, Waterfall
 from .why_judged import (
     DECIDING,
     NAMELESS,
@@ -157,6 +157,7 @@ __all__ = [
     "EXACT",
     "NAMELESS",
     "OVERALL_COLUMNS",
+    "OWN_OPTIMA",
     "POINTS",
     "PUBLISHED",
     "SCHEMA",

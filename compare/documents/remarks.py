@@ -15,7 +15,7 @@ from .vocabulary import ClaimVerdict, Confidence
 
 DOUBTED = "rests on numbers that other printed numbers contradict"
 """How a caveat begins where a claim rests on a contradiction in print."""
-POINTS = "rests on way-points in doubt"
+POINTS = "rests on doubted way-points"
 """How one begins where a claim was judged by motions through way-points that a finding doubts."""
 BUILT = "true of any such curve"
 """How one begins where nothing that is printed could make the claim false."""

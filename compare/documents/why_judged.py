@@ -176,8 +176,9 @@ def told(
     if len(one.each) > 1:
         # Where a sentence names its readings, none is named again.
         first = quoted(one.readings[0], named.labels)
-        shown = f" (numbers of {first})"
-        where += " (numbers of the first)" if first in where else shown
+        numbers = "numbers of the first" if first in where else f"numbers of {first}"
+        # One pair of brackets holds both how many are implausible and whose numbers follow.
+        where = f"{where[:-1]}; {numbers})" if where.endswith(")") else f"{where} ({numbers})"
     elif len(one.readings) == len(computed) and not word:
         return one.message
     return f"{capital(f'{one.verdict} {where}' if word else where)}: {one.message}"
@@ -231,9 +232,10 @@ def under(
             return f"under the implausible {which}{reason}"
         return f"under {which}"
     count = f"under {among(readings, len(computed), far)}"
-    if len(left) <= _FEW:
-        return f"{count} (not under {_and([quoted(one, labels) for one in left])})"
-    return count
+    if len(left) > _FEW:
+        return count
+    exceptions = f"not under {_and([quoted(one, labels) for one in left])}"
+    return f"{count[:-1]}; {exceptions})" if count.endswith(")") else f"{count} ({exceptions})"
 
 
 def among(readings: Sequence[str], count: int, far: Iterable[str] = ()) -> str:

@@ -166,7 +166,7 @@ def foundations(one: CaseAudit) -> list[Section]:
         (
             text(a.text),
             text(a.choice),
-            text(", ".join(dict.fromkeys(_affected(case, one) for one in a.affects))),
+            text("; ".join(dict.fromkeys(_affected(case, one) for one in a.affects))),
         )
         for a in case.assumptions
     )

@@ -80,7 +80,7 @@ def test_what_was_judged_on_doubted_way_points_says_so() -> None:
         "supported, but on doubted way-points"
     )
     # The law of scaling refutes it whatever the way-points are.
-    assert by["time-optimal"].caveats[0].text.startswith("partly rests on way-points in doubt: ")
+    assert by["time-optimal"].caveats[0].text.startswith("partly rests on doubted way-points: ")
     # A count of conditions, and what any curve of the kind does, need no way-points.
     for claim in ("rest-at-all-points", "conditions-14", "continuous", "inverse-kinematics"):
         assert CaveatKind.POINTS not in {c.kind for c in by[claim].caveats}
