@@ -69,6 +69,7 @@ def test_tables_alike_stand_on_the_card_with_the_claim_that_falls():
     )
 
 
+@pytest.mark.slow
 def test_the_polishing_robots_card():
     """13 readings break a limit, of which 5 lie a tenth or ten times from it; 3 have velocities
     that jump. Its explanation has its effect beside it."""
@@ -239,6 +240,12 @@ def test_the_explanation_of_an_error_is_called_one():
     assert _explanation([cause], 8) == "An innocent explanation: two columns may be swapped."
     assert _explanation([cause], 5) == "Two columns may be swapped."
     assert _explanation([cause], 4) is None
+    # The effect has a shorter form before it is left out.
+    brief = explanation.model_copy(update={"effect": "Then all is well, whatever.", "brief": "So?"})
+    short = cause.model_copy(update={"explanations": (brief,)})
+    assert _explanation([short], 10) == "Two columns may be swapped. Then all is well, whatever."
+    assert _explanation([short], 9) == "An innocent explanation: two columns may be swapped. So?"
+    assert _explanation([short], 6) == "Two columns may be swapped. So?"
     # What leaves a limit broken says so, or is not said: alone it would sound as if it settled it.
     partly = explanation.model_copy(update={"settles": False})
     left = cause.model_copy(update={"explanations": (partly,)})
