@@ -205,7 +205,7 @@ def _told(one: CaseAudit, cause: Cause) -> bool:
 
 
 def _behind(one: CaseAudit, cause: Cause) -> Behind:
-    says = plainly(one.case, cause)
+    says = plainly(one.case, cause, names(one).implausible)
     says, *_ = _opened([says])[0] or (says,)
     # The one reading of a cause stands in front of it already.
     only = [quoted(reading, one.case.labels) for reading in cause.readings]
