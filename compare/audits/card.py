@@ -3,12 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 
-import numpy as np
-
-from ...nlp import Evidence, Solution, Status
-from ...problem import Coupling, Verdict
+from ...problem import Verdict
 from ...problem.cases import (
     AnyClaim,
     DurationsClaim,
@@ -27,23 +23,22 @@ from ..documents import (
     VerdictCard,
     Waterfall,
     Why,
+    among,
     count_words,
+    implausibly,
     known,
     more_errors,
     quoted,
 )
 from .card_errors import plainly
+from .card_optimum import limited, on_doubted_points, optimum_line
 from .plausibility import implausible
 from .rules import said_to_keep
-from .stated import other_objective, place
+from .stated import place
 from .study import Study
 
 _FEW = 2
-"""Totals that are each set beside their optimum; more are told as a range."""
-_MANY_TIMES = 10.0
-"""Distance beyond which a multiple says more than a percentage."""
-_OBJECTIVE_WORDS = 8
-"""Words of an objective that the card repeats; a longer one is left to the claims."""
+"""Readings or places that a sentence names; more are counted."""
 
 
 def verdict_card(
@@ -69,18 +64,21 @@ def verdict_card(
     """
     words = {judgement.claim: judgement for judgement in judgements}
     limits, judged = _limits(study, words)
-    optimum = _optimum(study, waterfalls)
+    before = any(on_doubted_points(words[one]) for one in judged if one in words)
+    if before:
+        limits = f"On doubted way-points, {limits[:1].lower()}{limits[1:]}"
+    optimum = optimum_line(study, waterfalls, words, before)
     improvement, improved = _improvement(study, words)
     # What the first lines have said is not said again.
     said = {("TG201", one) for one in judged} | {("TG103", one) for one in improved}
     grave = [c for c in causes if c.severity is Severity.ERROR and (c.rule, c.claim) not in said]
-    sentences = [plainly(study.case, cause) for cause in grave]
+    far = implausible(study)
+    sentences = [plainly(study.case, cause, far) for cause in grave]
     left = CARD_WORDS - sum(map(count_words, (limits, optimum)))
     errors, more = _fitting(sentences, left)
     # Where an error on the card says which percentage falls by it, no line says so again.
-    told = not {plainly(study.case, c) for c in grave if _tells(study, c, improved)}.isdisjoint(
-        errors
-    )
+    tells = {plainly(study.case, c, far) for c in grave if _tells(study, c, improved)}
+    told = not tells.isdisjoint(errors)
     if improvement is not None and not told:
         left -= count_words(improvement)
         errors, more = _fitting(sentences, left)
@@ -126,7 +124,8 @@ def _explanation(causes: Sequence[Cause], room: int) -> str | None:
             plain = explanation.change
             called = f"An innocent explanation: {plain[:1].lower()}{plain[1:]}"
             # What it explains and what follows matter more than what it is called.
-            said = [f"{one} {explanation.effect}" for one in (called, plain)]
+            effects = dict.fromkeys((explanation.effect, explanation.brief or explanation.effect))
+            said = [f"{one} {effect}" for effect in effects for one in (called, plain)]
             short = (called, plain) if explanation.settles else ()
             return next((e for e in (*said, *short) if count_words(e) <= room), None)
     return None
@@ -176,8 +175,8 @@ def _limits(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[str]
     kept = sum(each == {ClaimVerdict.SUPPORTED} for each in under.values())
     jump = _jumping(words[one] for one in asked)
     spoken = {*asked, *(c.id for c in sets)}
-    if kept == len(under) and not any(_limited(study, *pair) for pair in study.pairs):
-        return f"No limits are stated, so that none can be broken{jump}.", spoken
+    if kept == len(under) and not any(limited(study, *pair) for pair in study.pairs):
+        return f"No limits are stated, so that none can be broken{jump}.", set()
     if kept == len(under):
         return f"The printed durations keep the limits{_within(study, sets)}{jump}.", spoken
     if broken == len(under):
@@ -189,24 +188,25 @@ def _limits(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[str]
 
 def _differing(study: Study, found: Mapping[str, set[ClaimVerdict]], where: str) -> str:
     """Under which readings limits are kept, broken or neither; an implausible one stands last."""
-    groups: dict[str, list[str]] = {"kept": [], "broken": [], "undecided": []}
+    open_ = str(ClaimVerdict.NOT_CHECKABLE)
+    groups: dict[str, list[str]] = {"kept": [], "broken": [], open_: []}
     for reading, words in found.items():
         broken, kept = ClaimVerdict.REFUTED in words, words == {ClaimVerdict.SUPPORTED}
-        groups["broken" if broken else "kept" if kept else "undecided"].append(reading)
+        groups["broken" if broken else "kept" if kept else open_].append(reading)
     far = implausible(study)
     said = {word: own for word, own in groups.items() if own}
     if len(found) > _FEW:
         (first, own), *others = said.items()
-        shares = [f"{first} under {len(own)} of {len(found)} readings"]
-        shares += [f"{word} under {len(those)}" for word, those in others]
-        return f"The limits{where} are {', '.join(shares)}"
+        shares = [f"{first} under {among(own, len(found), far)}"]
+        shares += [f"{word} under {len(those)}{implausibly(those, far)}" for word, those in others]
+        return f"Limits{where} are {', '.join(shares)}"
     ordered = sorted(said.items(), key=lambda item: all(one in far for one in item[1]))
     parts = []
     for word, own in ordered:
         mark = "the implausible " if all(one in far for one in own) else ""
         which = " and ".join(quoted(one, study.case.labels) for one in own)
         parts.append(f"{word} under {mark}{which}")
-    return f"The limits{where} are {', '.join(parts)}"
+    return f"Limits{where} are {', '.join(parts)}"
 
 
 def _in_doubt(sets: Sequence[AnyClaim], words: Mapping[str, Judgement]) -> str:
@@ -216,12 +216,6 @@ def _in_doubt(sets: Sequence[AnyClaim], words: Mapping[str, Judgement]) -> str:
     if len(doubtful) == len(sets) or not 0 < len(places) <= _FEW:
         return ""
     return f" in {' and '.join(places)}"
-
-
-def _limited(study: Study, pid: str, rid: str) -> bool:
-    """Whether a problem limits anything that moves."""
-    limits = study.problem(pid, rid).limits
-    return limits.limits_position or bool(np.isfinite(limits.sides).any())
 
 
 def _jumping(judgements: Iterable[Judgement]) -> str:
@@ -238,137 +232,6 @@ def _broken(sets: Sequence[AnyClaim], words: Mapping[str, Judgement]) -> str:
     if len(places) <= _FEW:
         return f"The durations in {' and '.join(places)} break a limit"
     return f"{len(wrong)} of {len(sets)} printed sets of durations break a limit"
-
-
-# --- optimum --------------------------------------------------------------------------------------
-
-
-def _optimum(study: Study, waterfalls: Sequence[Waterfall]) -> str:
-    """How far the printed totals are from the optimum under the default reading."""
-    if not study.posed:
-        return "The optimum is not checkable either."
-    main = [w for w in waterfalls if w.reading == study.main_reading]
-    several = len(study.readings) > 1
-    under = f"Under the default of {len(study.readings)} readings, " if several else ""
-    parts = [_beside(study, w) for w in main]
-    above = [part for part in parts if isinstance(part, _Above)]
-    if len(parts) == len(above) == _FEW and len({part.name for part in above}) == 1:
-        said = _together(above)
-    else:
-        said = "; ".join(map(str, parts[:_FEW]))
-    if len(parts) > _FEW:
-        said += f"; {len(parts) - _FEW} more below"
-    return f"{under}{said}." if under else f"{said[:1].upper()}{said[1:]}."
-
-
-@dataclass(frozen=True)
-class _Above:
-    """A printed total that is longer than its optimum."""
-
-    shown: str
-    percent: str
-    name: str
-    best: str
-
-    def __str__(self) -> str:
-        return f"{self.shown} is {self.percent} above the {self.name} {self.best}"
-
-
-def _together(parts: Sequence[_Above]) -> str:
-    """Several printed totals beside their optima in one phrase."""
-    shown, percents, bests = (
-        " and ".join(one)
-        for one in zip(*((p.shown, p.percent, p.best) for p in parts), strict=True)
-    )
-    name = {"proven optimum": "proven optima", "best known total": "best known totals"}
-    return f"{shown} are {percents} above the {name[parts[0].name]} {bests}"
-
-
-def _beside(study: Study, waterfall: Waterfall) -> str | _Above:
-    rid, pid = waterfall.reading, waterfall.problem
-    solution = study.optimum(pid, rid)
-    why = _unknown(solution)
-    if why and not _limited(study, pid, rid):
-        return "without limits no motion is the shortest: there is no optimum to compare with"
-    if why:
-        return why
-    name = "proven optimum" if solution.evidence is Evidence.CERTIFIED else "best known total"
-    shown_best = f"{solution.best:.4f} s{_together_where_apart(study, pid, rid)}"
-    best = f"{name} {shown_best}"
-    claim = _totalled(study, waterfall)
-    total = None if claim is None else study.claim_total(claim, rid)
-    if total is None or not isinstance(claim, TimeClaim):
-        return f"the {best} has no printed total beside it"
-    shown, (low, high) = total
-    shown = shown.split(" (")[0]
-    if low <= solution.best <= high:
-        return f"{shown} agrees with the {best}"
-    share = _seconds(study, claim, rid) / solution.best - 1
-    minimised = other_objective(study.case, claim)
-    if minimised is not None and share > 0:
-        certified = solution.evidence is Evidence.CERTIFIED
-        motion = "shortest motion" if certified else "shortest known motion"
-        called = f" ({minimised})" if count_words(minimised) <= _OBJECTIVE_WORDS else ""
-        return (
-            f"{shown} was not minimised for time alone{called}; the {motion} takes "
-            f"{solution.best:.4f} s{', proven' if certified else ''}"
-        )
-    if share >= _MANY_TIMES:
-        return f"{shown} is {1 + share:.1f} times the {best}"
-    if share > 0:
-        return _Above(shown, _percent(share), name, shown_best)
-    return f"{shown} is {_percent(-share)} below the {best}"
-
-
-def _together_where_apart(study: Study, pid: str, rid: str) -> str:
-    """What the optimum is of, where the paper plans each joint by itself: that has another one."""
-    problem = study.problem(pid, rid)
-    apart = problem.coupling is Coupling.PER_JOINT and len(problem.joints) > 1
-    return " of all joints together" if apart else ""
-
-
-def _seconds(study: Study, claim: TimeClaim, rid: str) -> float:
-    """A printed total; the sum of the printed durations where none is printed."""
-    number = claim.value if isinstance(claim, TotalTimeClaim) else None
-    if isinstance(claim, DurationsClaim | MaximumClaim):
-        number = claim.total
-    if number is None:
-        return float(study.case.claim_durations(claim, rid).value.sum())
-    return study.case.measured(number, "time", claim.problem, rid).value
-
-
-def _percent(share: float) -> str:
-    percent = 100 * share
-    return f"{percent:.1f} %" if percent >= 1 else f"{percent:.2g} %"
-
-
-def _unknown(solution: Solution) -> str:
-    """Why there is no optimum to compare with; empty where there is one."""
-    if solution.infimum is not None or solution.status is Status.NOT_ATTAINED:
-        return "no shortest motion exists: the total only approaches its infimum"
-    if solution.status is Status.INFEASIBLE:
-        return "no motion through the printed way-points keeps the limits: proved"
-    if solution.durations is None:
-        return "the optimum is not checkable: the solver found no motion within the limits"
-    if solution.status is not Status.OPTIMAL and solution.evidence is not Evidence.CERTIFIED:
-        return "the optimum is not checkable: the solver did not converge"
-    return ""
-
-
-def _totalled(study: Study, waterfall: Waterfall) -> AnyClaim | None:
-    """The printed total beside an optimum: that of the waterfall, else the last bare one."""
-    if waterfall.claim is not None:
-        return study.case.claim(waterfall.claim)
-    bare = [
-        c
-        for c in study.case.claims
-        if isinstance(c, TotalTimeClaim)
-        and (c.joint, c.other_curve) == (None, None)
-        and c.problem in (None, waterfall.problem)
-    ]
-    faster = {c.faster for c in study.case.claims if isinstance(c, ImprovementClaim)}
-    better = [c for c in bare if c.id in faster]
-    return next(iter([*better, *reversed(bare)]), None)
 
 
 # --- improvement ----------------------------------------------------------------------------------
@@ -390,6 +253,9 @@ def _improvement(study: Study, words: Mapping[str, Judgement]) -> tuple[str | No
         shown = f"saving of {claim.seconds} {unit}"
     judgement = words[claim.id]
     doubted = any(c.kind is CaveatKind.DOUBTED for c in judgement.caveats)
+    if judgement.verdict is ClaimVerdict.SUPPORTED and shown != "improvement" and not doubted:
+        digits = f"{claim.percent} %" if claim.percent is not None else f"{claim.seconds} {unit}"
+        return f"The printed totals give the claimed {digits}.", {claim.id}
     what = {
         ClaimVerdict.SUPPORTED: "follows from the printed totals"
         + (", which other printed numbers contradict" if doubted else ""),

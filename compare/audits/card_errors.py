@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 from ...problem import Case
-from ...problem.cases import AnyClaim, DurationsClaim, ImprovementClaim, MaximumClaim
-from ..documents import Cause, Finding, Gap, Severity, quoted
+from ...problem.cases import (
+    AnyClaim,
+    DurationsClaim,
+    ImprovementClaim,
+    MaximumClaim,
+    StatementClaim,
+)
+from ..documents import Cause, Finding, Gap, Severity, among, quoted
 from .explanations import TABLES
 from .stated import place, spoken
 
@@ -15,32 +21,39 @@ _LONGEST = 24
 
 _UNDER = "under "
 """How a sentence says under how many readings it holds."""
+_EVERY = "every reading"
+"""How it says that something speaks against a claim under each of them, if not the same."""
 
 
-def plainly(case: Case, cause: Cause) -> str:
+def plainly(case: Case, cause: Cause, far: Collection[str] = ()) -> str:
     """A cause as one plain sentence.
 
     Parameters
     ----------
     case : Case
     cause : Cause
+    far : collection of str
+        Readings that are implausible.
 
     Returns
     -------
     str
         By claims' texts and places, never by ids. What holds under some readings alone says so.
     """
-    sentence = _plain(case, cause)
+    sentence = _plain(case, cause, far)
     count, every = len(cause.readings), len(case.readings)
-    if not 0 < count < every or f"{_UNDER}{count} of" in sentence:
+    if not 0 < count < every or any(
+        said in sentence for said in (f"{_UNDER}{count} of", f"{_EVERY} allows")
+    ):
         return sentence
-    which = f"{count} of {every} readings"
+    which = among(cause.readings, every, far)
     if count == 1:
-        which = quoted(cause.readings[0], case.labels)
+        mark = "the implausible " if cause.readings[0] in far else ""
+        which = f"{mark}{quoted(cause.readings[0], case.labels)}"
     return f"{_UNDER.capitalize()}{which}: {sentence}"
 
 
-def _plain(case: Case, cause: Cause) -> str:
+def _plain(case: Case, cause: Cause, far: Collection[str]) -> str:
     """The sentence, without the readings unless they stand within it."""
     head, claim = cause.head, case.claim(cause.claim) if cause.claim else None
     if head is not None and head.root.startswith(f"{TABLES} "):
@@ -57,15 +70,17 @@ def _plain(case: Case, cause: Cause) -> str:
         "TG102": f"The longest durations in {where} are not those of its rows",
         "TG103": f"From the printed totals {_claimed(claim)} would be {computed}, not {printed}",
         "TG105": f"{place(claim)} prints {printed} for the total that a table gives as {computed}",
-        "TG107": f"The conditions in {where} cannot all hold: {computed}",
+        "TG107": f"The conditions in {where} cannot all hold: "
+        # They have been called conditions.
+        f"{computed.replace(' conditions', '', 1)}",
         "TG201": f"The durations in {where} break a limit",
         "TG202": f"The motion of {where} is not continuous",
         "TG203": f"The peak in {where} is not that of the printed durations",
         "TG208": f"The mean or integral in {where} is not that of the printed durations",
         "TG205": f"Control vertices in {where} do not follow from the way-points",
-        "TG301": "Under a velocity limit alone, times scale inversely with it, so the two printed "
-        "results cannot both be shortest",
-        "TG302": f"Called optimal in {where}, but {_not_optimal(head, cause, len(case.readings))}",
+        "TG301": "Under velocity limits alone, times scale inversely with them: the printed two "
+        "cannot both be shortest",
+        "TG302": f"Called optimal in {where}, but {_not_optimal(case, head, cause, far)}",
         "TG304": f"The total in {where} is not the shortest of its profile",
         "TG601": "Printed joint angles and positions do not fit the printed robot",
     }.get(cause.rule)
@@ -74,21 +89,34 @@ def _plain(case: Case, cause: Cause) -> str:
     return f"{_capital(sentence or _contradicted(claim))}."
 
 
-def _not_optimal(head: Finding, cause: Cause, readings: int) -> str:
+def _not_optimal(case: Case, head: Finding, cause: Cause, far: Collection[str]) -> str:
     """Why a time is not the shortest, and how much longer it is under every reading, if it is."""
     if head.kind == "breaks":
         return "no answer within the limits"
-    count = len(cause.readings)
+    readings, every = cause.readings, len(case.readings)
     if not isinstance(head.gap, Gap):
-        where = f"{_UNDER}{count} of {readings} readings " if 0 < count < readings else ""
-        others = f"; under the others {cause.elsewhere}" if cause.elsewhere else ""
-        return f"{where}the same curve is faster within the limits{others}"
-    percent = 100 * head.gap.highest
+        if cause.elsewhere:
+            return f"{_EVERY} allows a faster motion or finds {cause.elsewhere}"
+        where = f"{_UNDER}{among(readings, every, far)} " if 0 < len(readings) < every else ""
+        return f"{where}the same curve is faster within the limits"
+    # The printed digits, not the end of their rounding that lies farther away.
+    percent = 50 * (head.gap.lowest + head.gap.highest)
     share = f"{percent:.1f} % longer than" if percent >= 1 else f"{percent:.2g} % longer than"
     if head.gap.many_times:
-        share = f"{1 + head.gap.highest:.1f} times as long as"
-    mildest = ", under the mildest reading" if count > 1 else ""
-    return f"up to {share} a checked motion within the limits{mildest}"
+        share = f"{1 + percent / 100:.1f} times as long as"
+    mildest = f", {_UNDER}the mildest reading" if len(readings) > 1 else ""
+    return f"{_whose(case, head)}{share} a motion within the limits{mildest}"
+
+
+def _whose(case: Case, head: Finding) -> str:
+    """Whose total lies farthest from a motion that is shorter, where several are called optimal."""
+    statement = case.claim(head.claim) if head.claim else None
+    if not head.farthest or not isinstance(statement, StatementClaim) or len(statement.of) < 2:
+        return ""
+    claim = case.claim(head.farthest)
+    if claim.joint is not None and len(case.robot.joints) > 1:
+        return f"joint {claim.joint} takes "
+    return f"{place(claim)} is "
 
 
 def _tables_alike(case: Case, cause: Cause, tables: Sequence[str]) -> str:

@@ -6,7 +6,10 @@ from collections.abc import Iterable, Iterator
 
 from ...problem.cases import AnyClaim, ImprovementClaim, MaximumClaim, StatementClaim
 from ..documents import (
+    DECIDING,
     DOUBTED,
+    POINTS,
+    Basis,
     Cause,
     Caveat,
     CaveatKind,
@@ -25,6 +28,8 @@ from .study import Study
 
 _AGAINST = (Severity.ERROR, Severity.WARNING)
 """What a cause may weigh; what only informs has none."""
+_ON_WAYPOINTS = (Basis.ENCLOSURE, Basis.CHECK, Basis.OPTIMUM)
+"""What is computed with a motion through the printed way-points."""
 
 
 def find_causes(study: Study, findings: Iterable[Finding]) -> tuple[Cause, ...]:
@@ -73,10 +78,13 @@ def _cause(
     if any(f.reading is None for f in group):
         readings = {}
     consequences: dict[tuple[str, str | None], Consequence] = {}
-    for f in (*group, *below):
-        if (f.rule, f.claim) != (first.rule, first.claim):
-            one = Consequence(rule=f.rule, claim=f.claim, says=f.message)
-            consequences.setdefault((f.rule, f.claim), one)
+    own = {f.message for f in group}
+    # Further evidence on the same claim does not follow from the first, nor does what says of a
+    # part, word for word, what is said of the whole.
+    others = [f for f in group if f.claim != first.claim]
+    for f in (*others, *(f for f in below if f.message not in own)):
+        one = Consequence(rule=f.rule, claim=f.claim, says=f.message)
+        consequences.setdefault((f.rule, f.claim), one)
     weights = [f.severity for f in (*group, *below)]
     return Cause(
         severity=next(s for s in Severity if s in weights),
@@ -98,18 +106,19 @@ def _elsewhere(
     left = {reading.id for reading in study.case.readings} - readings
     breaking = {f.reading for f in against if f.claim == first.claim and f.kind == "breaks"}
     told = first.kind == "longer" and left and left <= breaking
-    return "a limit is broken" if told else ""
+    return "limits broken" if told else ""
 
 
 def _mildest(study: Study, first: Finding, group: list[Finding]) -> Finding:
     """The first finding, with the least distance that holds under every reading; or with none."""
     if first.kind != "longer":
         return first
-    under = {f.reading: f.gap for f in group if f.claim == first.claim}
-    gaps = [gap for gap in under.values() if isinstance(gap, Gap)]
-    everywhere = {r.id for r in study.case.readings} <= set(under) and len(gaps) == len(under)
-    least = min(gaps, key=lambda gap: gap.highest) if everywhere else Why("not of every reading")
-    return first.model_copy(update={"gap": least})
+    under = {f.reading: f for f in group if f.claim == first.claim and f.kind == "longer"}
+    gaps = [(f.gap.highest, f) for f in under.values() if isinstance(f.gap, Gap)]
+    if not {r.id for r in study.case.readings} <= set(under) or len(gaps) < len(under):
+        return first.model_copy(update={"gap": Why("not of every reading")})
+    _, least = min(gaps, key=lambda one: one[0])
+    return first.model_copy(update={"gap": least.gap, "farthest": least.farthest})
 
 
 def with_caveats(
@@ -118,7 +127,8 @@ def with_caveats(
     """Judgements that say what goes with their word.
 
     Where two printed things contradict each other neither side is taken: every claim that rests on
-    either says so. What is supported on a curve whose velocity jumps says that too.
+    either says so, and so does every claim that was judged by motions through way-points in doubt.
+    What is supported on a curve whose velocity jumps says that too.
     """
     found = list(findings)
     against = _contradictions(found)
@@ -153,17 +163,65 @@ def _caveats(
     timed = not isinstance(claim, ImprovementClaim)
     jumping = [r for r in held if timed and _jumps(study, claim, r)]
     if jumping:
-        many = f" under {len(jumping)} of the {len(held)} readings that support it"
-        count = "" if len(judgement.readings) == 1 else many
-        yield Caveat(CaveatKind.JUMPING, f"on a curve whose velocity jumps{count}")
+        yield Caveat(CaveatKind.JUMPING, _jumping(len(jumping), len(held), len(judgement.readings)))
     if isinstance(claim, StatementClaim) and claim.nature is not None:
         yield Caveat(CaveatKind.STATED, nature_remark(claim.nature))
+    doubts = _doubts(study, claim, own, findings)
+    if doubts:
+        partly = "partly " if _without_points(judgement, own) else ""
+        yield Caveat(CaveatKind.POINTS, f"{partly}{POINTS}: {' '.join(doubts)}")
     rests = {claim.id, *_rests_on(claim)}
     if judgement.verdict is ClaimVerdict.INCONSISTENT:
         return
     for message, sides in against.items():
         if rests & sides:
             yield Caveat(CaveatKind.DOUBTED, f"{DOUBTED}: {message}")
+
+
+def _jumping(jumping: int, held: int, readings: int) -> str:
+    """The caveat on support by a curve whose velocity jumps, with the readings where it does."""
+    said = "the velocity of the curve jumps"
+    if readings == 1:
+        return said
+    which = "the only reading" if held == 1 else f"{jumping} of the {held} readings"
+    verb = "supports" if held == 1 else "support"
+    if jumping == held and held > 1:
+        which = "both readings" if held == 2 else f"all {held} readings"
+    return f"{said} under {which} that {verb} it"
+
+
+def _doubts(
+    study: Study, claim: AnyClaim, own: list[Finding], findings: list[Finding]
+) -> list[str]:
+    """What puts in doubt the way-points by which a claim was judged, a sentence each.
+
+    A sum, a count or a law of scaling holds whatever the way-points, and so does what any curve of
+    a kind does.
+    """
+    if not any(_through_points(f) for f in own):
+        return []
+    about = {study.case.claim(i).joint for i in _rests_on(claim)} | {claim.joint}
+    joints = about - {None} or set(study.case.robot.joints)
+    return list(
+        dict.fromkeys(
+            f"{f.message.split('. ')[0].rstrip('.')}."
+            for f in findings
+            if joints.intersection(f.doubts)
+        )
+    )
+
+
+def _through_points(finding: Finding) -> bool:
+    decided = finding.verdict in DECIDING and not finding.built
+    return decided and finding.basis in _ON_WAYPOINTS
+
+
+def _without_points(judgement: Judgement, own: list[Finding]) -> bool:
+    """Whether what needs no way-points is against a claim under every reading by itself."""
+    against = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT)
+    said = [f for f in own if f.verdict == judgement.verdict and not _through_points(f)]
+    every = all(any(f.reading in (None, r) for f in said) for r in judgement.readings)
+    return judgement.verdict in against and every
 
 
 def _rests_on(claim: AnyClaim) -> tuple[str, ...]:

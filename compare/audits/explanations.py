@@ -28,6 +28,11 @@ make a duration long enough, and such a change explains nothing."""
 _LEAST_GAIN = 0.9
 """Share of the excess that a change must leave at most to be called an improvement."""
 
+_KEPT = "Then every limit is kept"
+"""How the effect of a change begins that brings durations within their limits."""
+_KEPT_BY_DEFAULT = "Then the default reading keeps every limit"
+"""The same on a card, where the reading has been named."""
+
 LIMITS, TABLES, SUM, OPTIMAL = "limits", "tables", "sum", "optimal"
 """First words of the roots that several rules share: limits broken, tables alike, a sum that is not
 its parts, durations that are not the shortest."""
@@ -70,7 +75,18 @@ def explained(study: Study, root: str, finding: Finding) -> tuple[Explanation, .
         if len(study.readings) == 1:
             return tuple(found)
         under = f", under {quoted(finding.reading, study.case.labels)}."
-        return tuple(e.model_copy(update={"effect": e.effect[:-1] + under}) for e in found)
+        default = finding.reading == study.case.default_reading.id
+        return tuple(
+            e.model_copy(
+                update={
+                    "effect": e.effect[:-1] + under,
+                    "brief": e.effect.replace(_KEPT, _KEPT_BY_DEFAULT)
+                    if default and _KEPT in e.effect
+                    else "",
+                }
+            )
+            for e in found
+        )
     return ()
 
 
@@ -222,7 +238,7 @@ def _kept(problem: Problem, durations: Array, widths: Array) -> str:
     """What the changed digits settle; empty where no value that rounds to them keeps the limits."""
     h = RoundingBox(durations, durations - widths, durations + widths)
     q = RoundingBox(problem.waypoints, problem.waypoints, problem.waypoints)
-    some = "Then every limit is kept within rounding."
-    return {Rounding.KEEPS: "Then every limit is kept.", Rounding.CONSISTENT: some}.get(
+    some = f"{_KEPT} within rounding."
+    return {Rounding.KEEPS: f"{_KEPT}.", Rounding.CONSISTENT: some}.get(
         judge_rounding(problem, h, q).verdict, ""
     )

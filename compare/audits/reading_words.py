@@ -22,11 +22,11 @@ from ..documents import (
 KEPT = {
     Keeping.KEEPS: "kept",
     Keeping.CONSISTENT: "kept by some values that round to the digits",
-    Keeping.DISCONTINUOUS: "kept between velocity jumps",
+    Keeping.DISCONTINUOUS: "not checkable (velocity jumps)",
     Keeping.BREAKS: "broken",
-    Keeping.UNDECIDED: "undecided",
+    Keeping.UNDECIDED: "not checkable",
 }
-"""What the words say of limits, within a sentence."""
+"""What the words say of limits, within a sentence; what is open has the word that the claim has."""
 
 
 def answers(summary: ReadingsSummary) -> tuple[str, ...]:

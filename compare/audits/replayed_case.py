@@ -17,6 +17,7 @@ from ...heuristics import (
 from ...problem import Coupling, TrajgapError
 from .chosen_case import ChosenCase
 from .replay_settings import LISTED, spread_settings
+from .stated import posed_as
 
 Replays = tuple[Run, ...] | tuple[JointRuns, ...]
 """Runs of one algorithm, one for each seed: of all joints, or of each joint by itself."""
@@ -83,7 +84,9 @@ class ReplayedCase(ChosenCase):
         self, algorithm: Algorithm[Any], name: str, pid: str, rid: str, seeds: int
     ) -> Replays:
         problem = self.problem(pid, rid)
-        self._progress(f"{self.case.id}: {seeds} replays of {name}, {pid}, {rid}")
+        called = next((a.name for a in self.case.algorithms if a.id == name), name)
+        under = posed_as(self.case, pid, rid)
+        self._progress(f"{self.case.id}: {seeds} replays of {called}; {under}")
         if problem.coupling is Coupling.PER_JOINT and len(problem.joints) > 1:
             return run_many_per_joint(algorithm, problem, range(seeds), self.workers)
         return run_many(algorithm, problem, range(seeds), self.workers)

@@ -7,6 +7,7 @@ import re
 from ...problem import Case
 from ...problem.cases import (
     AnyClaim,
+    Claim,
     ConditionsClaim,
     ConvergenceClaim,
     DurationsClaim,
@@ -139,7 +140,14 @@ def spoken(case: Case, text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
-def place(claim: AnyClaim) -> str:
+def posed_as(case: Case, problem: str, reading: str) -> str:
+    """A problem and a reading in words, each where the case has several; else the problem."""
+    title = next((p.title for p in case.problems if p.id == problem), "") or problem
+    said = [title] if len(case.problems) > 1 or len(case.readings) < 2 else []
+    return "; ".join([*said, *([case.labels[reading]] if len(case.readings) > 1 else [])])
+
+
+def place(claim: Claim) -> str:
     """Where a claim stands, as short as it can be found: the first place that it names."""
     first = claim.where.split(";")[0].strip()
     # A title names its field as often as it claims: what stands elsewhere too is found there.

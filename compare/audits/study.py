@@ -47,6 +47,7 @@ from .chosen_case import Pair
 from .instances import InstancesResult, examined, readings_of
 from .replayed_case import ReplayedCase, Replays
 from .rounding import RoundingBox, RoundingVerdict, judge_rounding
+from .stated import place, posed_as
 from .total_bound import excludes_total
 
 RELAXED_SECONDS = 15.0
@@ -70,7 +71,7 @@ class Study(ReplayedCase):
         def compute() -> Solution:
             problem = self.problem(pid, rid)
             which = "all joints" if joint is None else f"joint {joint}"
-            self._progress(f"{self.case.id}: optimum of {which}, {pid}, {rid}")
+            self._progress(f"{self.case.id}: optimum of {which}; {posed_as(self.case, pid, rid)}")
             index = None if joint is None else problem.joints.index(joint)
             one = problem if index is None else problem.joint(index)
             try:
@@ -116,7 +117,7 @@ class Study(ReplayedCase):
         """Each joint by itself, with the ranges within half a printed digit and 1e-6 s."""
 
         def compute() -> PerJointSolution:
-            self._progress(f"{self.case.id}: each joint by itself, {pid}, {rid}")
+            self._progress(f"{self.case.id}: each joint by itself; {posed_as(self.case, pid, rid)}")
             slacks = dict.fromkeys((*self.half_digits(pid, rid), OPTIMUM_SLACK))
             problem = self.problem(pid, rid)
             known = {label: self.known_motions(pid, rid, label) for label in problem.joints}
@@ -149,7 +150,7 @@ class Study(ReplayedCase):
             if given is None:
                 why = "only a declared piecewise polynomial is a member of its relaxed family"
                 return Solution(problem, Status.FAILED, why)
-            self._progress(f"{self.case.id}: relaxed family, {pid}, {rid}")
+            self._progress(f"{self.case.id}: relaxed family; {posed_as(self.case, pid, rid)}")
             inner = problem.segments - 1
             family = Interpolant(
                 tuple(max(5, degree) for degree in given.degrees),
@@ -281,7 +282,9 @@ class Study(ReplayedCase):
         )
 
     def _judged_box(self, claim: Claim, pid: str, rid: str, cut: bool) -> RoundingVerdict:
-        self._progress(f"{self.case.id}: rounding box of {claim.id}, {rid}")
+        self._progress(
+            f"{self.case.id}: rounding of {place(claim)}; {posed_as(self.case, pid, rid)}"
+        )
         problem = self._determined(claim, pid, rid)
         printed = self.case.claim_durations(claim, rid)
         durations = RoundingBox(printed.value, printed.lower, printed.upper)
@@ -316,7 +319,9 @@ class Study(ReplayedCase):
             best = self.claim_optimum(claim, pid, rid)
             if best.durations is not None and best.best <= longest:
                 return False  # a motion within the limits takes no longer
-            self._progress(f"{self.case.id}: total of {claim.id}, {rid}")
+            self._progress(
+                f"{self.case.id}: total of {place(claim)}; {posed_as(self.case, pid, rid)}"
+            )
             problem = self.claim_problem(claim, pid, rid, Digits.LOOSEST_CUT)
             waypoints = self.waypoint_box(problem, pid, rid).or_cut_off()
             with self.intervals.lent() as seconds:

@@ -11,7 +11,7 @@ from ...nlp.proofs.any_curve import estimate_any_curve
 from ...nlp.retiming import retime
 from ...problem import Coupling, down, fit, up
 from ...problem.cases import AnyClaim, DurationsClaim, MaximumClaim
-from ..documents import EXACT, PUBLISHED, SHARED_OPTIMUM, Step, Waterfall, Why
+from ..documents import EXACT, OWN_OPTIMA, PUBLISHED, SHARED_OPTIMUM, Step, Waterfall, Why
 from .stated import other_objective
 from .study import Study
 
@@ -135,7 +135,7 @@ def _minimised(study: Study, claim: AnyClaim) -> str:
 
 def _procedure(study: Study, pid: str, rid: str) -> Step:
     answer = study.per_joint(pid, rid)
-    name = "each joint at its optimum, longest per segment"
+    name = OWN_OPTIMA
     if answer.check is None:
         return Step.missing(name, answer.why or "")
     boundless = [joint.boundless for joint in answer.joints]

@@ -9,7 +9,7 @@ from pathlib import Path
 from rich.console import RenderableType
 
 from ...problem import Case, Check, Coupling, Peak, check
-from ..audits import Point, RoundingBox, RoundingVerdict, judge_rounding
+from ..audits import Point, RoundingBox, RoundingVerdict, judge_rounding, posed_as
 from ..documents import (
     BrokenPlace,
     CheckDocument,
@@ -58,11 +58,11 @@ def check_durations(
         results = []
         with progress("check", len(posed)) as step, naming(case.file):
             for one, box in zip(posed, boxes, strict=True):
-                step(f"{one.problem_id}, {one.reading_id}")
+                step(posed_as(case, one.problem_id, one.reading_id))
                 results.append(_checked(case, one, box))
         document = CheckDocument(results=tuple(results))
         write(json_text(document))
-    emit(document, _tables, as_json)
+    emit(document, lambda shown: _tables(shown, case), as_json)
     return 0
 
 
@@ -171,7 +171,7 @@ _COLUMNS = ("verdict", "rounding", ">total s", ">feasible s", ">tight s", ">wors
 """What the table says of each result, or of each of its joints."""
 
 
-def _tables(document: CheckDocument) -> list[RenderableType]:
+def _tables(document: CheckDocument, case: Case) -> list[RenderableType]:
     results = document.results
     shown = " ".join(f"{d:.6g}" for d in results[0].segment_durations)
     note = (
@@ -180,9 +180,9 @@ def _tables(document: CheckDocument) -> list[RenderableType]:
     )
     return [
         line(f"{results[0].case}: durations {shown} s", "bold"),
-        *by_result(results, _COLUMNS, _cells, "all"),
+        *by_result(results, _COLUMNS, _cells, "all", case),
         line(note, "dim"),
-        *reasons(results, _missing),
+        *reasons(results, _missing, case),
     ]
 
 

@@ -9,6 +9,8 @@ from typing import Any, Protocol, TypeVar
 from rich.console import RenderableType
 from rich.text import Text
 
+from ...problem import Case
+from ..audits import posed_as
 from ..documents import ActiveLimit, Why, WorstPeak
 from .table import Columns, line
 
@@ -30,7 +32,7 @@ Cells = Callable[[Any], tuple[object, ...]]
 
 
 def by_result(
-    results: Sequence[Result], columns: Sequence[str], cells: Cells, whole: str
+    results: Sequence[Result], columns: Sequence[str], cells: Cells, whole: str, case: Case
 ) -> list[RenderableType]:
     """One table of all results, or one for each where the joints stand by themselves."""
     if not any(result.joints for result in results):
@@ -39,15 +41,18 @@ def by_result(
     parts: list[RenderableType] = []
     for result in results:
         joints = [(one.joint, *cells(one)) for one in result.joints or ()]
-        parts.append(line(f"problem {result.problem}, reading {result.reading}"))
+        where = f"problem {result.problem}, reading {result.reading}"
+        parts.append(line(f"{posed_as(case, result.problem, result.reading)} ({where})"))
         parts.append(Columns(("joint", *columns), [*joints, (whole, *cells(result))]))
     return parts
 
 
-def reasons(results: Iterable[R], told: Callable[[R], Mapping[str, str | None]]) -> list[Text]:
+def reasons(
+    results: Iterable[R], told: Callable[[R], Mapping[str, str | None]], case: Case
+) -> list[Text]:
     """Why a number is missing, for each result without joints of its own."""
     return [
-        line(f"{name}: {why} ({result.problem}, {result.reading})", "dim")
+        line(f"{name}: {why} ({posed_as(case, result.problem, result.reading)})", "dim")
         for result in results
         if not result.joints
         for name, why in told(result).items()

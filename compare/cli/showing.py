@@ -19,7 +19,8 @@ from ...problem.cases import (
     Statement,
     TotalTimeClaim,
 )
-from ..documents import ShowDocument, json_text, show_document
+from ..audits import claim_text
+from ..documents import ShowDocument, capital, json_text, quoted, show_document
 from .input import read_case
 from .output import emit, new_output
 from .table import Columns, line
@@ -45,25 +46,29 @@ def _tables(document: ShowDocument, case: Case) -> list[RenderableType]:
     lines = [
         document.title,
         *([cited] if cited else []),
-        f"{robot.name}, joints {', '.join(robot.joints)}",
+        f"{robot.name}, joint{'s' * (len(robot.joints) > 1)} {', '.join(robot.joints)}",
         *([f"minimised: {objective}, not time alone"] if objective else []),
         "",
     ]
     problems = [(p.id, p.title or p.why) for p in document.problems]
-    readings = [(r.id + (" (default)" if r.default else ""), r.why) for r in document.readings]
+    labels = case.labels
+    readings = [
+        (r.id + (" (default)" if r.default else ""), f"{capital(labels[r.id])}. {r.why}".strip())
+        for r in document.readings
+    ]
     parts: list[RenderableType] = [
         line(document.id, "bold"),
         *(line(said) for said in lines),
         Columns(("problem", "~title"), problems),
         *_asked(document, case),
-        Columns(("reading", "~why it is admissible"), readings),
+        Columns(("reading", "~what it means, and why it is admissible"), readings),
     ]
     if document.claims:
-        claims = [(c.id, c.quantity, _stated(c), c.where) for c in document.claims]
-        parts.append(Columns(("claim", "quantity", "printed", "…where"), claims))
+        claims = [(c.id, _stated(c), f"{claim_text(case, c)} ({c.where})") for c in document.claims]
+        parts.append(Columns(("claim", "printed", "~what is said, and where"), claims))
     if document.assumptions:
-        choices = [(a.id, a.choice) for a in document.assumptions]
-        parts.append(Columns(("left open", "…what was chosen"), choices))
+        choices = [(str(k), f"{a.text} {a.choice}") for k, a in enumerate(document.assumptions, 1)]
+        parts.append(Columns(("choice", "~what is left open, and what was chosen"), choices))
     return parts
 
 
@@ -79,7 +84,8 @@ def _asked(document: ShowDocument, case: Case) -> list[RenderableType]:
         limits = "; ".join(each for each in said if each) or "none"
         rows.append((problem.id, curve, size, one.units.position or "", limits))
     names = ("problem", "curve", "way-points × joints", "angles in", "~limits")
-    return [line(f"Curve, units and limits under reading {reading}:"), Columns(names, rows)]
+    under = f" under {quoted(reading, case.labels)}" if len(document.readings) > 1 else ""
+    return [line(f"Curve, units and limits{under}:"), Columns(names, rows)]
 
 
 _DERIVATIVES = {1: "velocity", 2: "acceleration", 3: "jerk"}

@@ -19,7 +19,7 @@ from ...nlp import (
 from ...nlp.optimum import OPTIMUM_SLACK, stopping_after
 from ...nlp.retiming import Retiming, retime
 from ...problem import Case, Coupling, fit
-from ..audits import Study
+from ..audits import Study, posed_as
 from ..documents import (
     Answer,
     SolveDocument,
@@ -59,7 +59,7 @@ def solve_case(
         results, written = [], None
         with progress("solve", len(posed)) as step, naming(case.file):
             for one in posed:
-                step(f"{one.problem_id}, {one.reading_id}")
+                step(posed_as(case, one.problem_id, one.reading_id))
                 with stopping_after(math.inf if limit is None else limit):
                     result, answer = _solved(case, one, starts, seed)
                 results.append(result)
@@ -68,7 +68,7 @@ def solve_case(
                     write_samples(text)
         document = SolveDocument(results=tuple(results), written=written)
         write(json_text(document))
-    emit(document, _tables, as_json)
+    emit(document, lambda shown: _tables(shown, case), as_json)
     return 0
 
 
@@ -103,20 +103,20 @@ _COLUMNS = ("status", ">total s", "evidence", "durations s", "starts", "KKT", ">
 """What the table says of each result, or of each of its joints."""
 
 
-def _tables(document: SolveDocument) -> list[RenderableType]:
+def _tables(document: SolveDocument, case: Case) -> list[RenderableType]:
     results = document.results
     parts: list[RenderableType] = [line(results[0].case, "bold")]
-    parts += by_result(results, _COLUMNS, _cells, "longest")
-    parts += [line(said) for result in results for said in _procedure(result)]
+    parts += by_result(results, _COLUMNS, _cells, "longest", case)
+    parts += [line(said) for result in results for said in _procedure(result, case)]
     active = [
-        (r.problem, r.reading, place(a), f"{a.multiplier:.6g}", f"{a.sensitivity:+.4f}")
-        for r in results
+        (name, place(a), f"{a.multiplier:.6g}", f"{a.sensitivity:+.4f}")
+        for r, name in ((r, posed_as(case, r.problem, r.reading)) for r in results)
         for a in r.active
     ]
     if active:
-        limits = ("problem", "reading", "limit reached", ">multiplier s", ">10 % more changes s")
-        parts.append(Columns(limits, _without_repeats(active, 2)))
-    parts += reasons(results, lambda r: {"status": r.status_why, "toppra": reason(r.toppra)})
+        limits = ("~problem", "limit reached", ">multiplier s", ">10 % more changes s")
+        parts.append(Columns(limits, _without_repeats(active, 1)))
+    parts += reasons(results, lambda r: {"status": r.status_why, "toppra": reason(r.toppra)}, case)
     build, solve = sum(r.build_seconds for r in results), sum(r.solve_seconds for r in results)
     if document.written is not None:
         parts += [line(said) for said in written_lines(document.written)]
@@ -139,14 +139,15 @@ def _cells(result: Answer) -> tuple[object, ...]:
     )
 
 
-def _procedure(result: SolveResult) -> list[str]:
+def _procedure(result: SolveResult, case: Case) -> list[str]:
     """What is known of the longest durations per segment, where joints are solved one by one."""
     longest = result.longest_per_segment
     if longest is None:
         return []
-    name = f"{result.problem}, {result.reading}: longest per segment"
+    under = posed_as(case, result.problem, result.reading)
+    name = f"{under}: longest per segment"
     shared = result.shared
-    together = [] if shared is None else [_together(result, shared)]
+    together = [] if shared is None else [f"{under}: {_together(shared)}"]
     if isinstance(longest.verdict, Why):
         return [*together, f"{name}: none, {longest.verdict}"]
     lines = [*together, f"{name}: {longest.verdict}, tight at {seconds(longest.tight_time)} s"]
@@ -158,13 +159,12 @@ def _procedure(result: SolveResult) -> list[str]:
     return lines
 
 
-def _together(result: SolveResult, shared: Answer) -> str:
+def _together(shared: Answer) -> str:
     """The optimum with durations that all joints share."""
     durations = " ".join(f"{d:.4f}" for d in given(shared.segment_durations) or ())
     return (
-        f"{result.problem}, {result.reading}: all joints with the same durations: {shared.status}, "
-        f"{seconds(shared.total_time)} s, {shared.evidence}"
-        + (f" ({durations} s)" if durations else "")
+        f"all joints with the same durations: {shared.status}, {seconds(shared.total_time)} s, "
+        f"{shared.evidence}" + (f" ({durations} s)" if durations else "")
     )
 
 

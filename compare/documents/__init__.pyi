@@ -69,6 +69,7 @@ from .provenance import Provenance, UsedCertificate
 from .remarks import (
     BUILT,
     DOUBTED,
+    POINTS,
     built_remark,
     evident,
     nature_remark,
@@ -129,15 +130,17 @@ from .vocabulary import (
     meaning,
     meanings,
 )
-from .waterfall import EXACT, PUBLISHED, SHARED_OPTIMUM, Step, Waterfall
+from .waterfall import EXACT, OWN_OPTIMA, PUBLISHED, SHARED_OPTIMUM, Step, Waterfall
 from .why_judged import (
     DECIDING,
     NAMELESS,
     Named,
     Reason,
     Said,
+    among,
     capital,
     grouped,
+    implausibly,
     in_full,
     quoted,
     told,
@@ -154,6 +157,8 @@ __all__ = [
     "EXACT",
     "NAMELESS",
     "OVERALL_COLUMNS",
+    "OWN_OPTIMA",
+    "POINTS",
     "PUBLISHED",
     "SCHEMA",
     "SHARED_OPTIMUM",
@@ -267,6 +272,7 @@ __all__ = [
     "WorstPeak",
     "Worth",
     "WrittenMotion",
+    "among",
     "bench_cells",
     "built_remark",
     "capital",
@@ -282,6 +288,7 @@ __all__ = [
     "gap_cell",
     "given",
     "grouped",
+    "implausibly",
     "in_full",
     "instance_document",
     "json_text",

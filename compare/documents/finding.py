@@ -119,6 +119,10 @@ class Finding(Entry):
     """Whether it holds of any curve of the declared kind, whatever is printed; not in JSON."""
     between: tuple[str, ...] = Field(default=(), exclude=True)
     """Claims that contradict each other: neither side is taken; not in JSON."""
+    doubts: tuple[str, ...] = Field(default=(), exclude=True)
+    """Joints whose printed way-points it puts in doubt; not in JSON."""
+    farthest: str = Field(default="", exclude=True)
+    """Claim whose total lies as far from a shorter motion as `gap` says; not in JSON."""
 
 
 class CaveatKind(Enum):
@@ -128,6 +132,8 @@ class CaveatKind(Enum):
     """A motion's velocity jumps."""
     DOUBTED = auto()
     """Printed numbers contradict each other."""
+    POINTS = auto()
+    """It was judged by motions through way-points that a finding puts in doubt."""
     BUILT = auto()
     """A claim holds of any curve of its kind."""
     STATED = auto()

@@ -15,6 +15,8 @@ from .vocabulary import ClaimVerdict, Confidence
 
 DOUBTED = "rests on numbers that other printed numbers contradict"
 """How a caveat begins where a claim rests on a contradiction in print."""
+POINTS = "rests on doubted way-points"
+"""How one begins where a claim was judged by motions through way-points that a finding doubts."""
 BUILT = "true of any such curve"
 """How one begins where nothing that is printed could make the claim false."""
 _STATED = {
@@ -25,11 +27,16 @@ _STATED = {
 }
 """How one begins where nothing is claimed that numbers could decide."""
 _BESIDE = {
-    DOUBTED: (ClaimVerdict.SUPPORTED, "but on doubted numbers"),
     BUILT: (ClaimVerdict.SUPPORTED, "by construction"),
     **{said: (ClaimVerdict.NOT_CHECKABLE, said) for said in _STATED.values()},
 }
 """What stands beside which verdict, by the beginning of a caveat."""
+_DOUBTS = {
+    DOUBTED: ((ClaimVerdict.SUPPORTED,), "numbers"),
+    POINTS: (tuple(v for v in ClaimVerdict if v is not ClaimVerdict.NOT_CHECKABLE), "way-points"),
+}
+"""What a doubt is of, beside which verdicts: a word that is against a claim may rest on way-points,
+and then they are in doubt for it as they are for one in its favour."""
 
 
 def built_remark() -> str:
@@ -73,13 +80,19 @@ def _beside(verdict: str, caveats: Iterable[object]) -> list[str]:
         for start, (word, said) in _BESIDE.items()
         if word == verdict and any(text.startswith(start) for text in texts)
     }
-    if BUILT in found:
-        found.pop(DOUBTED, None)
+    doubts = [
+        what
+        for start, (words, what) in _DOUBTS.items()
+        if verdict in words and any(text.startswith(start) for text in texts)
+    ]
+    if doubts and BUILT not in found:
+        joins = "and" if verdict == ClaimVerdict.DEPENDS else "but"
+        return [f"{joins} on doubted {' and '.join(doubts)}", *found.values()]
     return list(found.values())
 
 
 def worth_little(judgements: Sequence[Judgement]) -> str:
-    """How many of some claims hold by construction or on doubted numbers; empty where none does.
+    """How many of some claims hold by construction or on what is doubted; empty where none does.
 
     Parameters
     ----------

@@ -11,6 +11,8 @@ EXACT = Why("a single value, not an interval")
 """Why a value has no interval."""
 PUBLISHED = "published"
 """Name of the step that is the printed total."""
+OWN_OPTIMA = "each joint at its optimum, longest per segment"
+"""Name of the step that such a total is set beside where the paper plans each joint by itself."""
 SHARED_OPTIMUM = "optimum of the same curve, shared durations"
 """Name of the step that distances are counted from."""
 

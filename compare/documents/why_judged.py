@@ -176,8 +176,9 @@ def told(
     if len(one.each) > 1:
         # Where a sentence names its readings, none is named again.
         first = quoted(one.readings[0], named.labels)
-        shown = f" (numbers of {first})"
-        where += " (numbers of the first)" if first in where else shown
+        numbers = "numbers of the first" if first in where else f"numbers of {first}"
+        # One pair of brackets holds both how many are implausible and whose numbers follow.
+        where = f"{where[:-1]}; {numbers})" if where.endswith(")") else f"{where} ({numbers})"
     elif len(one.readings) == len(computed) and not word:
         return one.message
     return f"{capital(f'{one.verdict} {where}' if word else where)}: {one.message}"
@@ -230,10 +231,37 @@ def under(
             reason = f" ({far[readings[0]]})" if why else ""
             return f"under the implausible {which}{reason}"
         return f"under {which}"
-    count = f"under {len(readings)} of {len(computed)} readings"
-    if len(left) <= _FEW:
-        return f"{count} (not under {_and([quoted(one, labels) for one in left])})"
-    return count
+    count = f"under {among(readings, len(computed), far)}"
+    if len(left) > _FEW:
+        return count
+    exceptions = f"not under {_and([quoted(one, labels) for one in left])}"
+    return f"{count[:-1]}; {exceptions})" if count.endswith(")") else f"{count} ({exceptions})"
+
+
+def among(readings: Sequence[str], count: int, far: Iterable[str] = ()) -> str:
+    """How many of all readings, and how many of these are implausible.
+
+    Parameters
+    ----------
+    readings : sequence of str
+    count : int
+        Of all readings.
+    far : iterable of str
+        Those that are implausible.
+
+    Returns
+    -------
+    str
+        Such as "13 of 19 readings (5 implausible)".
+    """
+    return f"{len(readings)} of {count} readings{implausibly(readings, far)}"
+
+
+def implausibly(readings: Sequence[str], far: Iterable[str]) -> str:
+    """How many of some readings are implausible, in brackets; empty where none is."""
+    many = len(set(readings) & set(far))
+    every = many == len(readings)
+    return f" ({'all' if every and many > 1 else many} implausible)" if many else ""
 
 
 def quoted(reading: str, labels: Mapping[str, str]) -> str:

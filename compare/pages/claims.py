@@ -11,7 +11,10 @@ from ...problem import file_name
 from ...problem.cases import AnyClaim
 from ..audits import CaseAudit, claim_text, digits_of, place, plainly, spoken
 from ..documents import (
+    POINTS,
     Cause,
+    Caveat,
+    CaveatKind,
     ClaimVerdict,
     Confidence,
     Judgement,
@@ -19,6 +22,7 @@ from ..documents import (
     Said,
     Scope,
     Severity,
+    capital,
     grouped,
     qualified,
     quoted,
@@ -90,14 +94,25 @@ def claimed(one: CaseAudit, judgement: Judgement) -> Claimed:
         ),
         holds=_holds(judgement, names(one)),
         why=why,
-        more=more,
-        caveats=tuple(
-            f"{spoken(one.case, caveat.text).rstrip('.')}." for caveat in judgement.caveats
-        ),
+        more=(*more, *(_in_full(one, c) for c in judgement.caveats if c.kind is CaveatKind.POINTS)),
+        caveats=tuple(_caveats(one, judgement)),
         anchor=file_name("claim", claim.id),
         id=claim.id,
         answer=answered(claim),
     )
+
+
+def _caveats(one: CaseAudit, judgement: Judgement) -> Iterator[str]:
+    """What goes with the word; of doubted way-points the word has said so, or a short line does."""
+    for caveat in judgement.caveats:
+        if caveat.kind is not CaveatKind.POINTS:
+            yield _in_full(one, caveat)
+        elif not caveat.text.startswith(POINTS):
+            yield f"{capital(caveat.text.partition(':')[0])}."
+
+
+def _in_full(one: CaseAudit, caveat: Caveat) -> str:
+    return f"{spoken(one.case, caveat.text).rstrip('.')}."
 
 
 def answered(claim: AnyClaim) -> str:
@@ -190,7 +205,7 @@ def _told(one: CaseAudit, cause: Cause) -> bool:
 
 
 def _behind(one: CaseAudit, cause: Cause) -> Behind:
-    says = plainly(one.case, cause)
+    says = plainly(one.case, cause, names(one).implausible)
     says, *_ = _opened([says])[0] or (says,)
     # The one reading of a cause stands in front of it already.
     only = [quoted(reading, one.case.labels) for reading in cause.readings]

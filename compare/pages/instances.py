@@ -6,11 +6,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ...problem import file_name
-from ..audits import CaseAudit, Study
+from ...problem import Case, file_name
+from ..audits import CaseAudit, Study, place
 from ..audits.instances import STARTS, InstancesResult, percent_range
 from ..audits.rules import HANDLED, attributed, placed
-from ..documents import Effect, ExaminedInstances, Reduction, Why
+from ..documents import Effect, ExaminedInstances, Procedure, Reduction, Why
 from ..pictures import instances_picture, svg
 from .blocks import (
     Block,
@@ -39,7 +39,8 @@ def other_instances(one: CaseAudit) -> tuple[Section, ...]:
 
 def _examined(study: Study, result: InstancesResult, examined: ExaminedInstances) -> list[Block]:
     block = result.block
-    title = f"Reduction of the total, {block.claim}, on {result.instances} instances"
+    stands = place(study.case.claim(block.claim))
+    title = f"Reduction of the total, {stands}, on {result.instances} instances"
     picture = instances_picture(result, title=title)
     caption = (
         "Every pair of one run of each, and every pair of optima; strokes are medians. Instances "
@@ -62,7 +63,7 @@ def _examined(study: Study, result: InstancesResult, examined: ExaminedInstances
                 for step in block.lengths
             ),
         ),
-        Folded(f"Totals of every instance, {block.id}", (_instances(examined, result.labels),)),
+        Folded(f"Totals of every instance, {stands}", (_instances(examined, result.labels),)),
     ]
 
 
@@ -73,8 +74,9 @@ def _design(study: Study, result: InstancesResult) -> tuple[tuple[str, str], ...
     kind = "largest change of any joint" if block.kind == "joint" else "way of the end"
     objectives = "; ".join(f"{name}: {HANDLED[name]}" for name in block.objectives)
     pairs = [
-        ("compared", f"{fast.algorithm} on {fast.problem} against {slow.algorithm} on "
-         f"{slow.problem}, both with the settings and the choices of the case file"),
+        ("compared", f"the faster one, {_procedure(study.case, fast)}, against the slower one, "
+         f"{_procedure(study.case, slow)}, both with the settings and the choices of the case "
+         "file"),
         ("printed", "no reduction" if result.printed is None else
          f"{percent_range(*result.printed)} less"),
         ("instances", f"{block.instances} for each step of {steps} {block.unit} ({kind}), "
@@ -88,6 +90,13 @@ def _design(study: Study, result: InstancesResult) -> tuple[tuple[str, str], ...
         ("objectives", objectives),
     ]  # fmt: skip
     return tuple(pairs)
+
+
+def _procedure(case: Case, one: Procedure) -> str:
+    """An algorithm on a problem, by their names."""
+    names = {block.id: block.name for block in case.algorithms}
+    called = next((p.title for p in case.problems if p.id == one.problem), "") or one.problem
+    return f"{names[one.algorithm]} (“{called}”)"
 
 
 _COLUMNS = (
@@ -138,12 +147,7 @@ def _row(found: Reduction, result: InstancesResult) -> tuple[Cell, ...]:
 
 
 def _instances(examined: ExaminedInstances, labels: Mapping[str, str]) -> Grid:
-    slow, fast = examined.slower, examined.faster
-    routes = (
-        f"{slow.algorithm} on {slow.problem}",
-        f"{slow.algorithm} on {fast.problem}",
-        f"{fast.algorithm} on {fast.problem}",
-    )
+    routes = ("slower", "slower algorithm on the faster curve", "faster")
     rows = []
     for one in examined.instances:
         for own in one.readings:
@@ -166,8 +170,8 @@ def _instances(examined: ExaminedInstances, labels: Mapping[str, str]) -> Grid:
         "reading",
         f"step, {examined.unit}",
         "instance",
-        f"optimum of {slow.problem}",
-        f"optimum of {fast.problem}",
+        "optimum of the slower curve",
+        "optimum of the faster curve",
         *(f"{route}, {objective}" for objective in examined.objectives for route in routes),
     )
     return Grid(names, tuple(rows), "Totals in s, one line for each run")

@@ -70,7 +70,7 @@ def _block(page: Page, block: Block) -> str:
     if isinstance(block, Claimed):
         return _claimed(block)
     if isinstance(block, Behind):
-        lines = (*block.explanations, *(f"Rests on it: {cell.text}" for cell in block.follows))
+        lines = (*block.explanations, *(f"Also affected: {cell.text}" for cell in block.follows))
         head = f"- **{plain(block.weight.text)}**: {_line(block.says)}"
         return "\n".join([head, *(f"  - {_line(line)}" for line in lines)])
     return _grid(block)

@@ -11,6 +11,7 @@ from ...nlp import Solution, weakest
 from ...problem import Array, Problem, TrajgapError, file_name
 from ...problem.cases import AnyClaim, DurationsClaim, MaximumClaim, TotalTimeClaim
 from ..audits import CaseAudit, Study, place
+from ..documents import OWN_OPTIMA
 from ..pictures import Picture, Runs, convergence, endings, landscape, motion_picture, svg
 from .blocks import Block, Drawn, Folded, Grid, Prose, Section
 from .numbers import REPLAY_COLUMNS, noted, problem_name, replay_rows
@@ -238,7 +239,7 @@ def _totals(study: Study, pid: str, rid: str) -> tuple[dict[str, float], dict[st
     if len(problem.joints) > 1 and problem.coupling == "per-joint":
         answer = study.per_joint(pid, rid)
         if answer.durations is not None:
-            references["each joint at its optimum, longest per segment"] = answer.total_time
+            references[OWN_OPTIMA] = answer.total_time
     printed: dict[str, list[str]] = {}
     values: dict[str, float] = {}
     for claim in study.case.claims:

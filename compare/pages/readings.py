@@ -8,7 +8,7 @@ from dataclasses import replace
 from ...problem import Case
 from ...problem.curves import ClampedBSpline, Parameters, clamped_readings
 from ..audits import CaseAudit, place, segments, spoken
-from ..documents import ReadingOutcome, ReadingsSummary, Why
+from ..documents import ClaimVerdict, Keeping, ReadingOutcome, ReadingsSummary, Why
 from .blocks import (
     Block,
     Cell,
@@ -25,6 +25,8 @@ from .numbers import problem_cell
 
 _FEW = 4
 """Rows of a table that stand in the open; a longer one is folded."""
+_OPEN = (Keeping.DISCONTINUOUS, Keeping.UNDECIDED)
+"""What decides nothing about limits."""
 
 
 def side_by_side(one: CaseAudit) -> Section:
@@ -87,7 +89,11 @@ def _held(one: CaseAudit, outcomes: list[ReadingOutcome]) -> tuple[Block, ...]:
             continue
         steps = held.steps
         vertices = None if isinstance(held.vertices, Why) else f"{held.vertices:.4g}"
-        whose = place(one.case.claim(outcome.claim)) if outcome.claim else outcome.problem
+        whose = (
+            place(one.case.claim(outcome.claim))
+            if outcome.claim
+            else problem_cell(one.case, outcome.problem)
+        )
         rows.append(
             (
                 text(whose),
@@ -116,7 +122,7 @@ def _outcomes(one: CaseAudit, summary: ReadingsSummary) -> list[Block]:
     grids: list[Block] = []
     for (claim, problem), own in printed.items():
         rows = tuple(_row(outcome, default, summary) for outcome in own)
-        where = place(one.case.claim(claim)) if claim else problem
+        where = place(one.case.claim(claim)) if claim else problem_cell(one.case, problem)
         grids.append(Grid(names, rows, where).filled)
     note = (
         "Limits are judged for every value that rounds, or is cut off, to the printed digits; "
@@ -144,7 +150,12 @@ def _row(outcome: ReadingOutcome, default: str, summary: ReadingsSummary) -> tup
         plural = "s" if len(outcome.excesses) > 1 else ""
         over = f"segment{plural} {segments(outcome.excesses)}\n{whose}, ratio {worst.ratio:.4g}"
     jumps = f"\n{outcome.jumps} velocity jumps" if outcome.jumps else ""
-    limits = text(None) if isinstance(outcome.keeping, Why) else word(outcome.keeping)
+    limits = text(None)
+    if not isinstance(outcome.keeping, Why):
+        limits = word(outcome.keeping)
+        if outcome.keeping in _OPEN:
+            # The word that the claim has under this reading; its reason is behind the link.
+            limits = replace(limits, text=str(ClaimVerdict.NOT_CHECKABLE))
     return (
         text(summary.labels[outcome.reading] + mark),
         replace(limits, text=limits.text + jumps),

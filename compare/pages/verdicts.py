@@ -164,10 +164,9 @@ def foundations(one: CaseAudit) -> list[Section]:
     )
     assumed = tuple(
         (
-            text(a.id),
             text(a.text),
             text(a.choice),
-            text(", ".join(case.labels.get(one, one) for one in a.affects)),
+            text("; ".join(dict.fromkeys(_affected(case, one) for one in a.affects))),
         )
         for a in case.assumptions
     )
@@ -177,7 +176,7 @@ def foundations(one: CaseAudit) -> list[Section]:
         for a in case.algorithms
         if a.open
     ]
-    choices = (Grid(("name", "left open", "chosen", "affects"), assumed),) if assumed else ()
+    choices = (Grid(("left open", "chosen", "affects"), assumed),) if assumed else ()
     return [
         Section(
             "readings",
@@ -198,6 +197,18 @@ def foundations(one: CaseAudit) -> list[Section]:
             folded=True,
         ),
     ]
+
+
+def _affected(case: Case, one: str) -> str:
+    """What an assumption affects, as a reader calls it: no id stands for a name."""
+    places = {c.id: place(c) for c in case.claims}
+    printed = {t.id: t.where for t in case.tables}
+    printed |= {t.id: t.where for t in case.columns} | {t.id: t.where for t in case.cartesian}
+    names = {a.id: a.name for a in case.algorithms}
+    titles = {p.id: p.title or p.id for p in case.problems}
+    words = {"waypoints": "way-points", "interpolant": "curve"}
+    called: dict[str, str] = {**words, **titles, **printed, **names, **places, **case.labels}
+    return called.get(one, one)
 
 
 def _numbered(lines: Iterable[str]) -> tuple[tuple[str, str], ...]:

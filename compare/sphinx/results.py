@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ...problem import TrajgapError
-from ..documents import PUBLISHED, SHARED_OPTIMUM, Step, Waterfall, Why
+from ..documents import OWN_OPTIMA, PUBLISHED, SHARED_OPTIMUM, Rounding, Step, Waterfall, Why
 
 LOCK = "lock.json"
 """File beside the results with the hash of each, and of what they were made from."""
@@ -128,7 +128,10 @@ def _read(entry: Mapping[str, Any], name: str) -> Any:
 
 
 def distance_of(case: dict[str, Any]) -> tuple[str, str, str, str]:
-    """Printed total, optimum with shared durations, distance and evidence, of the first problem.
+    """Printed total, optimum, distance and evidence, of the first problem.
+
+    The optimum is that of shared durations; where the paper plans each joint by itself, it is what
+    the joints' own optima give.
 
     Parameters
     ----------
@@ -145,8 +148,17 @@ def distance_of(case: dict[str, Any]) -> tuple[str, str, str, str]:
     for entry in case["waterfalls"]:
         steps = {step["name"]: step for step in entry["steps"] if step["time"] is not None}
         if PUBLISHED in steps and SHARED_OPTIMUM in steps:
-            printed, best = steps[PUBLISHED]["time"], steps[SHARED_OPTIMUM]
+            printed, best = steps[PUBLISHED]["time"], steps.get(OWN_OPTIMA, steps[SHARED_OPTIMUM])
+            ends = [best["time"] if OWN_OPTIMA not in steps else best.get(end) or best["time"]
+                    for end in ("low", "high")]  # fmt: skip
+            known = " to ".join(dict.fromkeys(f"{one:.4f}" for one in ends))
             # A total rounded to just below its optimum is at no distance, and at none below.
-            share = f"{printed / best['time'] - 1:z.1%}" if entry["claim"] not in otherwise else "–"
-            return f"{printed:g}", f"{best['time']:.4f}", share, best["evidence"]
+            shares = sorted(printed / one - 1 for one in ends)
+            if shares[0] < 0 < shares[1]:
+                shares = [0.0]
+            share = " to ".join(dict.fromkeys(f"{one:z.1%}" for one in shares))
+            if steps[PUBLISHED]["note"].endswith(f": {Rounding.BREAKS}"):
+                share += ", but breaks a limit"
+            share = share if entry["claim"] not in otherwise else "–"
+            return f"{printed:g}", known, share, best["evidence"]
     return "–", "–", "–", ""

@@ -238,6 +238,7 @@ class _Sides:
 
     longer: list[str] = field(default_factory=list)
     most: Gap | None = None
+    farthest: str = ""
     breaking: list[str] = field(default_factory=list)
     roots: list[str] = field(default_factory=list)
     agreeing: list[str] = field(default_factory=list)
@@ -259,7 +260,7 @@ def _weigh(study: Study, claim: AnyClaim, pid: str, rid: str, sides: _Sides) -> 
         said, distance = shorter
         sides.longer.append(said)
         if sides.most is None or distance.highest > sides.most.highest:
-            sides.most = distance
+            sides.most, sides.farthest = distance, claim.id
         return
     found = solution.durations is not None and solution.status is not Status.NOT_ATTAINED
     # Whether a bare total is too short takes a proof, which is tried only where it may succeed.
@@ -389,6 +390,7 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
             reading=rid,
             message=message,
             gap=known(sides.most, "no time is set beside a motion"),
+            farthest=sides.farthest,
             kind="longer" if longer else "breaks" if breaking else str(evidence),
             root=f"{OPTIMAL} {statement.id}" if longer else "",
             follows=() if longer else tuple(sides.roots),

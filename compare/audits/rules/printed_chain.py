@@ -248,6 +248,7 @@ def _judged(
         printed="; ".join(dict.fromkeys(place.where for _, place in places)),
         computed=f"farthest position, as near as it gets: {worst}",
         message=message,
+        doubts=tuple(printed) if verdict is ClaimVerdict.INCONSISTENT else (),
     )
 
 

@@ -228,6 +228,7 @@ def _repeated_digits(study: Study) -> Iterator[Finding]:
                     severity=Severity.WARNING,
                     basis=Basis.DIGITS,
                     decides=False,
+                    doubts=(label,),
                     printed=", ".join(repeated),
                     message=f"{len(repeated)} of the {len(entries)} way-points of joint {label} "
                     f"({posing.waypoints.where}: {', '.join(repeated)}) repeat digits of {where}, "

@@ -40,10 +40,10 @@ def cause(rule: str, claim: str, kind: str, readings: tuple[str, ...], **changes
                 "time-optimal",
                 "longer",
                 IDS[:13],
-                elsewhere="a limit is broken",
+                elsewhere="limits broken",
             ),
-            "Called optimal in the abstract, but under 13 of 19 readings the same curve is "
-            "faster within the limits; under the others a limit is broken.",
+            "Called optimal in the abstract, but every reading allows a faster motion or finds "
+            "limits broken.",
         ),
         (
             cause("TG302", "time-optimal", "longer", IDS[:4]),
@@ -52,8 +52,8 @@ def cause(rule: str, claim: str, kind: str, readings: tuple[str, ...], **changes
         ),
         (
             cause("TG302", "time-optimal", "longer", IDS, gap=GAP),
-            "Called optimal in the abstract, but up to 40.3 % longer than a checked motion within "
-            "the limits, under the mildest reading.",
+            "Called optimal in the abstract, but 40.2 % longer than a motion within the limits, "
+            "under the mildest reading.",
         ),
         (
             cause("TG302", "time-optimal", "breaks", IDS[:6]),
@@ -82,3 +82,29 @@ def cause(rule: str, claim: str, kind: str, readings: tuple[str, ...], **changes
 )
 def test_a_sentence_says_under_how_many_readings_it_holds(made: Cause, wanted: str) -> None:
     assert plainly(CASE, made) == wanted
+
+
+@pytest.mark.parametrize(
+    ("readings", "far", "front"),
+    [
+        (IDS[:13], IDS[10:], "Under 13 of 19 readings (3 implausible): "),
+        (IDS[:13], IDS[13:], "Under 13 of 19 readings: "),
+        (IDS[:2], IDS[:2], "Under 2 of 19 readings (all implausible): "),
+        (IDS[:1], IDS[:1], "Under the implausible “angles in rad"),
+    ],
+)
+def test_a_count_says_how_many_of_its_readings_are_implausible(
+    readings: tuple[str, ...], far: tuple[str, ...], front: str
+) -> None:
+    said = plainly(CASE, cause("TG201", "after", "breaks", readings), far)
+    assert said.startswith(front)
+
+
+def test_the_joint_whose_total_lies_farthest_is_named() -> None:
+    """Six joints are called optimal one by one: a share of none of them would be of all."""
+    puma = load_case("puma560-mnam-pso-353")
+    made = cause("TG302", "time-optimal", "longer", ("durations-at-least-0.3",), gap=GAP)
+    assert made.head is not None
+    head = made.head.model_copy(update={"farthest": "mnam-joint-3"})
+    said = plainly(puma, made.model_copy(update={"head": head}))
+    assert said.endswith("but joint 3 takes 40.2 % longer than a motion within the limits.")

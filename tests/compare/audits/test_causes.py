@@ -8,7 +8,7 @@ from support.studies import audited
 from trajgap.compare import audit
 from trajgap.compare.audits.case_audit import CaseAudit
 from trajgap.compare.audits.explanations import one_digit_off
-from trajgap.compare.documents import CaveatKind, ClaimVerdict, Severity
+from trajgap.compare.documents import CaveatKind, ClaimVerdict, Severity, qualified
 from trajgap.problem import Printed, parse_case
 
 TWO_SEGMENTS = HEAD.replace('durations = ["{time}"]', "durations = [{time}]\ntotal = {total}")
@@ -54,7 +54,9 @@ def test_neither_side_of_a_contradiction_in_print_is_taken() -> None:
 def test_a_motion_and_a_scaling_law_that_refute_one_claim_are_one_error() -> None:
     one = audited("irb460-pso-353")
     (error,) = [c for c in one.causes if c.claim == "time-optimal"]
-    assert {c.rule for c in error.consequences} == {"TG301", "TG302"}
+    # Neither follows from the other, and the printed times, one of which is too long, from none.
+    assert {f.rule for f in one.findings if f.claim == "time-optimal"} == {"TG301", "TG302"}
+    assert error.consequences == ()
     (broken,) = [c for c in one.causes if c.claim == "durations-110" and c.rule == "TG201"]
     assert [c.claim for c in broken.consequences] == ["limits-kept"]
     changes = [e.change for e in broken.explanations]
@@ -63,6 +65,25 @@ def test_a_motion_and_a_scaling_law_that_refute_one_claim_are_one_error() -> Non
         "Then every limit is kept, under “way-points in radians”."
     )
     assert "0.4854 in place of 0.3854" in changes[1]
+
+
+def test_what_was_judged_on_doubted_way_points_says_so() -> None:
+    """Way-points of joint 5 repeat digits of positions, and do not lead to those positions."""
+    one = audited("irb460-pso-353")
+    by = {j.claim: j for j in one.judgements}
+    for claim in ("durations-80", "durations-110", "limits-kept", "time-optimal"):
+        (said,) = by[claim].caveats
+        assert said.kind is CaveatKind.POINTS
+        assert "repeat digits of Table 2" in said.text
+        assert "the printed angles do not lead to the printed positions" in said.text
+    assert qualified(by["durations-80"].verdict, by["durations-80"].caveats) == (
+        "supported, but on doubted way-points"
+    )
+    # The law of scaling refutes it whatever the way-points are.
+    assert by["time-optimal"].caveats[0].text.startswith("partly rests on doubted way-points: ")
+    # A count of conditions, and what any curve of the kind does, need no way-points.
+    for claim in ("rest-at-all-points", "conditions-14", "continuous", "inverse-kinematics"):
+        assert CaveatKind.POINTS not in {c.kind for c in by[claim].caveats}
 
 
 def test_rest_at_all_points_may_be_meant_of_the_ends() -> None:

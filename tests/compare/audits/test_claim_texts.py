@@ -1,9 +1,13 @@
 """A claim is called by its text; one without is called by a sentence from its own numbers."""
 
+import re
+from itertools import permutations
+
 import pytest
 from support.base_case import BASE
 from trajgap.compare.audits.stated import claim_text, stated_claims
-from trajgap.problem import parse_case
+from trajgap.problem import load_case, parse_case, published_ids
+from trajgap.problem.cases import ConditionsClaim, StatementClaim
 
 HEAD = BASE.split("[[claims]]")[0]
 TIMES = """
@@ -155,3 +159,16 @@ def test_three_rows_of_means_are_told_apart():
     texts = [one.text for one in stated_claims(parse_case(f"{HEAD}{TIMES}{rows}", "x"))]
     assert len(set(texts)) == len(texts)
     assert not any("Measure" in text for text in texts)
+
+
+@pytest.mark.parametrize("case_id", published_ids())
+def test_no_sentence_is_judged_twice(case_id):
+    """Where one printed sentence is two claims, neither holds the other: each could be judged
+    otherwise, and the same words would stand in two rows with two verdicts."""
+    stated = [
+        c for c in load_case(case_id).claims if isinstance(c, StatementClaim | ConditionsClaim)
+    ]
+    for one, other in permutations(stated, 2):
+        alone, among = (set(re.findall("[a-z]{4,}", c.text.lower())) for c in (one, other))
+        alone -= {"motion", "that", "with", "from", "they"}
+        assert one.where != other.where or not alone <= among, (one.id, other.id)

@@ -160,9 +160,12 @@ def test_show(run: Run) -> None:
     case = load_case(PUMA)
     for word in (case.title, "durations-at-least-0.3 (default)", "0.961 1.258 1.078, total 3.298"):
         assert word in out
+    plain = " ".join(out.split())
     for claim in case.claims:
+        # By its id, which other commands ask for, once; and by what it says.
         assert claim.id in out
-    asked = out[out.index("under reading durations-at-least-0.3:") :]
+        assert claim.text[:20] in plain
+    asked = out[out.index("under “durations of at least 0.3 s”:") :]
     for word in ("3-5-3 polynomials", "4 × 6", "velocity 6 rad/s; acceleration 8 rad/s^2"):
         assert word in asked
     document = strict(run("show", PUMA, "--reading", "durations-positive", "--json")[1])

@@ -5,7 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from support.command_line import Run
+from support.command_line import IRB, Run
+from trajgap.compare.audits import Study
+from trajgap.problem import load_case
 
 MEANS = "".join(
     f"""
@@ -67,3 +69,21 @@ def test_the_summary_says_why_claims_are_not_checkable_each_reason_once(run: Run
     assert out.count("No durations are printed of whose motion") == 1
     assert "18.0 s was not minimised for time alone" in out
     assert "not checkable, abstract" not in out
+
+
+def test_solve_names_a_problem_by_its_id_once_and_then_by_its_words(run: Run) -> None:
+    out = run("solve", IRB)[1]
+    plain = " ".join(out.split())
+    # The table that says what each id stands for has one row for each problem.
+    assert out.count("waypoints-rad") == out.count("waypoints-deg") == 2
+    assert "could jump (Shortest time of joint 5 under 80 °/s; way-points in radians)" in plain
+
+
+def test_what_an_audit_is_doing_is_said_in_words() -> None:
+    said: list[str] = []
+    study = Study(load_case(IRB), seeds=2, certify_seconds=0, progress=said.append)
+    study.claim_rounding(study.case.claim("durations-110"), "limit-110", "waypoints-rad")
+    assert said == [
+        f"{IRB}: rounding of Table 4, column 110 °/s; Shortest time of joint 5 under 110 °/s; "
+        "way-points in radians"
+    ]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from trajgap.compare.documents import (
     DOUBTED,
+    POINTS,
     Caveat,
     CaveatKind,
     ClaimVerdict,
@@ -21,7 +22,9 @@ from trajgap.nlp import Evidence
 from trajgap.problem.cases import Nature
 
 S, R, N = ClaimVerdict.SUPPORTED, ClaimVerdict.REFUTED, ClaimVerdict.NOT_CHECKABLE
+D = ClaimVerdict.DEPENDS
 DOUBT = Caveat(CaveatKind.DOUBTED, f"{DOUBTED}: two tables are alike.")
+PLACES = Caveat(CaveatKind.POINTS, f"{POINTS}: they repeat the digits of another table.")
 BUILT = Caveat(CaveatKind.BUILT, built_remark())
 
 
@@ -49,11 +52,18 @@ def judged(verdict: ClaimVerdict, *caveats: Caveat) -> Judgement:
         (S, (BUILT, DOUBT), "supported, by construction"),
         # What is refuted is so, whatever the numbers are worth.
         (R, (DOUBT,), "refuted"),
+        # Way-points in doubt are so for what speaks against a claim as for what speaks for it.
+        (S, (PLACES,), "supported, but on doubted way-points"),
+        (R, (PLACES,), "refuted, but on doubted way-points"),
+        (D, (PLACES,), "depends on the reading, and on doubted way-points"),
+        (N, (PLACES,), "not checkable"),
+        (S, (DOUBT, PLACES), "supported, but on doubted numbers and way-points"),
+        (R, (f"partly {POINTS}: digits repeat.",), "refuted"),
         (N, (nature_remark(Nature.DEFINITION),), "not checkable, a definition"),
         (N, (nature_remark(Nature.IDENTITY),), "not checkable, a mathematical identity"),
         (N, (nature_remark(Nature.AIM),), "not checkable, an aim"),
         (N, (nature_remark(Nature.JUDGEMENT),), "not checkable, a judgement"),
-        (S, ("on a curve whose velocity jumps",), "supported"),
+        (S, ("the velocity of the curve jumps",), "supported"),
     ],
 )
 def test_a_word_has_what_it_is_worth_beside_it(verdict, caveats, wanted) -> None:

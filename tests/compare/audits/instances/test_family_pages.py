@@ -102,7 +102,7 @@ def test_the_page_has_the_comparison(report) -> None:
     (section,) = (s for s in page.sections if s.id == "families")
     text = markdown(replace(page, sections=(section,)))
     assert "refuted" not in text
-    assert "![Reduction of the total, better, on 4 instances]" in text
+    assert "![Reduction of the total, Table 1, on 4 instances]" in text
     assert "4 for each step" not in text
     assert "2 for each step of 0.3, 0.9 rad (largest change of any joint)" in text
     assert "| as-printed | 0.9 | 2 |" in text

@@ -1,0 +1,331 @@
+"""The second line of a card: how far the printed totals are from the optimum."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...nlp import Evidence, Solution, Status
+from ...problem import Coupling
+from ...problem.cases import (
+    AnyClaim,
+    DurationsClaim,
+    ImprovementClaim,
+    MaximumClaim,
+    TimeClaim,
+    TotalTimeClaim,
+)
+from ..documents import CaveatKind, ClaimVerdict, Judgement, Rounding, Waterfall, count_words
+from .stated import other_objective
+from .study import Study
+
+_FEW = 2
+"""Totals that are each set beside their optimum; more are counted."""
+_MANY_TIMES = 10.0
+"""Distance beyond which a multiple says more than a percentage."""
+_OBJECTIVE_WORDS = 8
+"""Words of an objective that the card repeats; a longer one is left to the claims."""
+_PLURALS = {"proven optimum": "proven optima", "best known total": "best known totals"}
+"""What an optimum is called, and several of them."""
+
+
+def optimum_line(
+    study: Study, waterfalls: Sequence[Waterfall], words: Mapping[str, Judgement], before: bool
+) -> str:
+    """How far the printed totals are from the optimum under the default reading.
+
+    Parameters
+    ----------
+    study : Study
+    waterfalls : sequence of Waterfall
+    words : mapping of str to Judgement
+        Of each claim, by its id.
+    before : bool
+        Whether the line before has said that way-points are in doubt.
+
+    Returns
+    -------
+    str
+    """
+    if not study.posed:
+        return "The optimum is not checkable either."
+    main = [w for w in waterfalls if w.reading == study.main_reading]
+    beside = [found for found in (_beside(study, w) for w in main) if found is not None]
+    if not beside:
+        return _without_totals(study, words)
+    where = ["under the default reading"] if len(study.readings) > 1 else []
+    if any(w.claim in words and on_doubted_points(words[w.claim]) for w in main if w.claim):
+        where.insert(0, "on them" if before else "on doubted way-points")
+    told = ", ".join([*where, _side_by_side(beside)])
+    return f"{told[:1].upper()}{told[1:]}."
+
+
+def on_doubted_points(judgement: Judgement) -> bool:
+    """Whether a claim was judged by motions through way-points in doubt."""
+    return any(c.kind is CaveatKind.POINTS for c in judgement.caveats)
+
+
+def _side_by_side(parts: Sequence[_Part]) -> str:
+    """Printed totals beside their optima: what differs first, then how many agree."""
+    above = [part for part in parts if isinstance(part, _Above)]
+    if len(parts) == len(above) == _FEW and len({part.name for part in above}) == 1:
+        return _together(above)
+    agreeing = [part for part in parts if isinstance(part, _Agrees)]
+    unknown = [part for part in parts if isinstance(part, _Unknown)]
+    others = [part for part in parts if part not in agreeing and part not in unknown]
+    differing = list(dict.fromkeys(map(str, others)))
+    said = differing[:_FEW]
+    if len(differing) > _FEW:
+        said.append(f"{len(differing) - _FEW} more below")
+    said += [_agreement(agreeing, bool(others), len(parts))] if agreeing else []
+    for why in dict.fromkeys(part.why for part in unknown):
+        said.append(f"elsewhere {why}" if len(unknown) < len(parts) else why)
+    return "; ".join(said)
+
+
+def _agreement(agreeing: Sequence[_Agrees], others: bool, parts: int) -> str:
+    """One total that agrees in full; of several how many do."""
+    if len(agreeing) == 1:
+        return str(agreeing[0])
+    which = f"{len(agreeing)} {'more ' if others else ''}printed totals"
+    if len(agreeing) == parts:
+        which = "both printed totals" if parts == _FEW else f"all {which}"
+    names = {_PLURALS[part.name] for part in agreeing}
+    return f"{which} agree with their {names.pop() if len(names) == 1 else 'optima'}"
+
+
+def _without_totals(study: Study, words: Mapping[str, Judgement]) -> str:
+    """What is said of printed times where none is on the curve whose optimum is known.
+
+    The case file's curve may only stand in for one that it cannot name, and its optimum is none of
+    the paper's.
+    """
+    timed = [c for c in study.case.claims if isinstance(c, TimeClaim) and c.id in words]
+    profiles = dict.fromkeys(
+        str(c.profile) for c in timed if isinstance(c, TotalTimeClaim) and c.profile is not None
+    )
+    judged = [c for c in timed if getattr(c, "profile", None) is not None]
+    if judged:
+        own = f"shortest {' or '.join(profiles)} profile"
+        agree = sum(words[c.id].verdict is ClaimVerdict.SUPPORTED for c in judged)
+        if len(judged) == 1:
+            return f"The printed time {'agrees' if agree else 'does not agree'} with the {own}."
+        which = f"{agree} of {len(judged)}"
+        if agree == len(judged):
+            which = "Both" if agree == _FEW else f"All {agree}"
+        return f"{which} printed times agree with their {own}s."
+    curves = dict.fromkeys(c.other_curve for c in timed if c.other_curve is not None)
+    if curves:
+        return f"Printed times are of another curve ({', '.join(curves)}) and are not judged."
+    return "No printed total stands beside an optimum."
+
+
+@dataclass(frozen=True)
+class _Unknown:
+    """A problem that has no optimum to compare with."""
+
+    why: str
+
+
+@dataclass(frozen=True)
+class _Above:
+    """A printed total that is longer than its optimum."""
+
+    shown: str
+    remark: str
+    percent: str
+    name: str
+    best: str
+
+    def __str__(self) -> str:
+        return f"{_named(self)} is {self.percent} above the {self.name} {self.best}"
+
+
+@dataclass(frozen=True)
+class _Agrees:
+    """A printed total within whose rounding the optimum lies."""
+
+    said: str
+    name: str
+    best: str
+
+    def __str__(self) -> str:
+        return f"{self.said} agrees with the {self.best}"
+
+
+_Part = str | _Above | _Agrees | _Unknown
+"""What is said of one problem; plain words where a total differs otherwise."""
+
+
+def _named(one: _Above) -> str:
+    return _remarked(one.shown, one.remark)
+
+
+def _remarked(shown: str, remark: str) -> str:
+    """A printed total, with what its durations do to the limits, as the subject of a sentence."""
+    return f"{shown}, which {remark}," if remark else shown
+
+
+def _together(parts: Sequence[_Above]) -> str:
+    """Several printed totals beside their optima in one phrase."""
+    shown, percents, bests = (
+        " and ".join(one)
+        for one in zip(
+            *(
+                (f"{p.shown} ({p.remark})" if p.remark else p.shown, p.percent, p.best)
+                for p in parts
+            ),
+            strict=True,
+        )
+    )
+    return f"{shown} are {percents} above the {_PLURALS[parts[0].name]} {bests}"
+
+
+def limited(study: Study, pid: str, rid: str) -> bool:
+    """Whether a problem limits anything that moves."""
+    limits = study.problem(pid, rid).limits
+    return limits.limits_position or bool(np.isfinite(limits.sides).any())
+
+
+def _beside(study: Study, waterfall: Waterfall) -> _Part | None:
+    """A printed total beside its optimum; None where none is printed."""
+    rid, pid = waterfall.reading, waterfall.problem
+    solution = study.optimum(pid, rid)
+    why = _unknown(solution)
+    if why and not limited(study, pid, rid):
+        why = "without limits no motion is the shortest: there is no optimum to compare with"
+    if why:
+        return _Unknown(why)
+    certified = solution.evidence is Evidence.CERTIFIED
+    name = "proven optimum" if certified else "best known total"
+    shown_best = f"{solution.best:.4f} s{_together_where_apart(study, pid, rid)}"
+    best = f"{name} {shown_best}"
+    claim = _totalled(study, waterfall)
+    total = None if claim is None else study.claim_total(claim, rid)
+    if total is None or not isinstance(claim, TimeClaim):
+        return None
+    shown, (low, high) = total
+    shown = shown.split(" (")[0]
+    seconds = _seconds(study, claim, rid)
+    share = seconds / solution.best - 1
+    minimised = other_objective(study.case, claim)
+    if minimised is not None and share > 0:
+        motion = "shortest motion" if certified else "shortest known motion"
+        called = f" ({minimised})" if count_words(minimised) <= _OBJECTIVE_WORDS else ""
+        return (
+            f"{shown} was not minimised for time alone{called}; the {motion} takes "
+            f"{solution.best:.4f} s{', proven' if certified else ''}"
+        )
+    remark = _kept_there(study, claim, pid, rid)
+    said = _remarked(shown, remark)
+    joints = _joint_by_joint(study, claim, pid, rid, seconds)
+    if joints is not None:
+        return f"{said} {joints}"
+    if low <= solution.best <= high:
+        return _Agrees(said, name, best)
+    if share >= _MANY_TIMES:
+        return f"{said} is {1 + share:.1f} times the {best}"
+    if share > 0:
+        return _Above(shown, remark, _percent(share), name, shown_best)
+    return f"{said} is {_percent(-share)} below the {best}"
+
+
+def _kept_there(study: Study, claim: AnyClaim, pid: str, rid: str) -> str:
+    """What the durations behind a total do to the limits, unless they are shown to keep them.
+
+    A distance from the optimum is one of a motion only where that motion keeps its limits.
+    """
+    if not study.has_durations(claim) or study.unmoved(claim, pid, rid) is not None:
+        return ""
+    verdict = study.claim_rounding(claim, pid, rid).verdict
+    if verdict is Rounding.BREAKS:
+        verdict = study.claim_cut(claim, pid, rid).verdict
+    if verdict in (Rounding.KEEPS, Rounding.CONSISTENT):
+        return ""
+    if verdict is Rounding.BREAKS:
+        return "breaks a limit"
+    jumping = any(jump.order == 1 for jump in study.claim_check(claim, pid, rid).jumps)
+    return "jumps in velocity" if jumping else "may break a limit"
+
+
+def _apart(study: Study, pid: str, rid: str) -> bool:
+    """Whether the paper plans each of several joints by itself."""
+    problem = study.problem(pid, rid)
+    return problem.coupling is Coupling.PER_JOINT and len(problem.joints) > 1
+
+
+def _together_where_apart(study: Study, pid: str, rid: str) -> str:
+    """What the optimum is of, where the paper plans each joint by itself: that has another one."""
+    return " of all joints together" if _apart(study, pid, rid) else ""
+
+
+def _joint_by_joint(
+    study: Study, claim: AnyClaim, pid: str, rid: str, seconds: float
+) -> str | None:
+    """A total beside what the joints' own optima give, where each is planned by itself."""
+    if not _apart(study, pid, rid) or claim.joint is not None:
+        return None
+    if claim.coupling is Coupling.SHARED and not isinstance(claim, MaximumClaim):
+        return None  # the longest durations of joints that are each planned alone are shared too
+    answer = study.per_joint(pid, rid)
+    total = study.claim_total(claim, rid)
+    if not answer.ranges or answer.check is None or total is None:
+        return None
+    wide = answer.ranges[0]
+    proven = answer.joint_evidence is Evidence.CERTIFIED
+    own = f"the joints' own {'proven' if proven else 'best known'} optima give"
+    ends = list(dict.fromkeys(f"{one:.4f}" for one in (wide.lowest, wide.highest)))
+    span = f"{' to '.join(ends)} s"
+    low, high = total[1]
+    if low <= wide.highest and high >= wide.lowest:
+        return f"agrees with what {own}, {span}"
+    longer = seconds > wide.highest
+    shares = sorted(abs(seconds / one - 1) for one in (wide.highest, wide.lowest))
+    shown = list(dict.fromkeys(_percent(share).removesuffix(" %") for share in shares))
+    return f"is {' to '.join(shown)} % {'above' if longer else 'below'} what {own}, {span}"
+
+
+def _seconds(study: Study, claim: TimeClaim, rid: str) -> float:
+    """A printed total; the sum of the printed durations where none is printed."""
+    number = claim.value if isinstance(claim, TotalTimeClaim) else None
+    if isinstance(claim, DurationsClaim | MaximumClaim):
+        number = claim.total
+    if number is None:
+        return float(study.case.claim_durations(claim, rid).value.sum())
+    return study.case.measured(number, "time", claim.problem, rid).value
+
+
+def _percent(share: float) -> str:
+    percent = 100 * share
+    return f"{percent:.1f} %" if percent >= 1 else f"{percent:.2g} %"
+
+
+def _unknown(solution: Solution) -> str:
+    """Why there is no optimum to compare with; empty where there is one."""
+    if solution.infimum is not None or solution.status is Status.NOT_ATTAINED:
+        return "no shortest motion exists: the total only approaches its infimum"
+    if solution.status is Status.INFEASIBLE:
+        return "no motion through the printed way-points keeps the limits: proved"
+    if solution.durations is None:
+        return "the optimum is not checkable: the solver found no motion within the limits"
+    if solution.status is not Status.OPTIMAL and solution.evidence is not Evidence.CERTIFIED:
+        return "the optimum is not checkable: the solver did not converge"
+    return ""
+
+
+def _totalled(study: Study, waterfall: Waterfall) -> AnyClaim | None:
+    """The printed total beside an optimum: that of the waterfall, else the last bare one."""
+    if waterfall.claim is not None:
+        return study.case.claim(waterfall.claim)
+    bare = [
+        c
+        for c in study.case.claims
+        if isinstance(c, TotalTimeClaim)
+        and (c.joint, c.other_curve) == (None, None)
+        and c.problem in (None, waterfall.problem)
+    ]
+    faster = {c.faster for c in study.case.claims if isinstance(c, ImprovementClaim)}
+    better = [c for c in bare if c.id in faster]
+    return next(iter([*better, *reversed(bare)]), None)
