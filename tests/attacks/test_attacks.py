@@ -76,6 +76,14 @@ def test_faults_in_every_command(attack: Attack) -> None:
     holds(attack, 3 * attack.quick)
 
 
+def test_samples_that_are_rounding_alone_refute_no_feasible_time() -> None:
+    """13.8 rad to 10.6 rad in 6 ns: scipy's own rounding is larger than the limit."""
+    (peaks,) = (attack for attack in ATTACKS if attack.name == "peaks")
+    account = Account(peaks)
+    tried(account, 20261201, 2)
+    assert [f.why for f in account.broken] == []
+
+
 def test_every_family_and_claim_is_drawn() -> None:
     assert tuple(declaration.FAMILIES) == FAMILIES
     assert CLAIMS == QUANTITY_KINDS
