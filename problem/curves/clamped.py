@@ -21,10 +21,14 @@ from .clamped_knots import (
     fractions_of,
     nearest_reading,
 )
+from .compilation import Deferred
 from .interpolant import piecewise, quintic_spline
 from .kind import Curve, Derivatives, Enclosed, PeakGradients, Shape, as_batch
 from .peak import Extremum
 from .stretched import StretchedCurve, Timing
+
+_peaks_of_many = Deferred(clamped_kernel.batch_peaks, 12.0)
+"""True peaks of a batch; compiling it takes eleven to twelve seconds."""
 
 
 @dataclass(frozen=True)
@@ -237,7 +241,7 @@ class ClampedBSpline(StretchedCurve):
         fractions = np.empty((0, self.waypoints)) if rows is None else np.array(rows)
         peaks = np.empty((h.shape[0], values.shape[1], 3))
         # A copy may be written into: one type of array, for which the kernel is compiled once.
-        clamped_kernel.batch_peaks(
+        _peaks_of_many(
             h, np.array(values, order="C"), average, fractions, self.degree, orders, wanted, side,
             peaks,
         )  # fmt: skip

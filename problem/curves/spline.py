@@ -15,7 +15,7 @@ from scipy.interpolate import PPoly
 
 from ..arrays import Array
 from ..errors import TrajgapError
-from . import kernel
+from . import kernel, lanes
 from .compilation import Deferred
 from .condition import ConditionKind
 from .trajectory import Trajectory
@@ -29,6 +29,10 @@ PERM = np.array(
 """PERM[p, r] = p!/(p − r)!: the factor of sᵖ⁻ʳ in the r-th derivative of sᵖ."""
 _fit_one = Deferred(kernel.fit_coefficients, 2.0)
 """The fit of one vector; compiling it takes two to three seconds."""
+_fit_many = Deferred(kernel.fit_coefficients, 2.0, lanes.fit_coefficients)
+"""The fit of many."""
+_peaks_of_many = Deferred(kernel.batch_peaks, 10.0, lanes.batch_peaks)
+"""True peaks of a batch; compiling it takes eight to twelve seconds."""
 _THREAD_WORK = 4000
 """Polynomials (vectors times joints) below which starting threads costs more than it saves."""
 _LONGEST = 1e30
@@ -142,7 +146,7 @@ def batch_coefficients(
     values = right_hand_sides(interpolant, waypoints, nodal)
     vectors, joints = len(durations), waypoints.shape[1]
     out = np.zeros((interpolant.segments, kernel.MAX_COEFFICIENTS, joints * vectors))
-    fitted = _fit_one if vectors == 1 else kernel.fit_coefficients
+    fitted = _fit_one if vectors == 1 else _fit_many
     fitted(
         np.array(durations.T, order="C"),  # one that may be written into: compiled for it alone
         vectors,
@@ -261,7 +265,7 @@ def batch_peaks(
     peaks = np.empty((h.shape[0], values.shape[1], 3))
 
     def run(part: slice) -> None:
-        kernel.batch_peaks(
+        _peaks_of_many(
             h[part],
             values,
             plan.kinds,
@@ -278,7 +282,7 @@ def batch_peaks(
         )
 
     work = h.shape[0] * values.shape[1]
-    if work < _THREAD_WORK:
+    if work < _THREAD_WORK or not _peaks_of_many.ready():
         run(slice(None))
         return peaks
     workers = os.cpu_count() or 1
