@@ -114,7 +114,8 @@ class Intervals:
             return None  # nothing limits its total
         finally:
             self._left -= time.monotonic() - began
-        if answer.proof is not None and answer.outcome is not Outcome.OPEN:
+        bounded = answer.upper is not None or answer.outcome is Outcome.INFEASIBLE
+        if answer.proof is not None and bounded:
             document = certificate(answer)
             found = interval_of(document, problem, verdict=answer.verdict)
             if found is not None:

@@ -24,7 +24,8 @@ class Outcome(StrEnum):
     INFEASIBLE = "infeasible"
     """No durations within their bounds keep the limits: proved."""
     INTERVAL = "interval"
-    """Stopped early: the optimum lies in the interval, which is wider than asked for."""
+    """Stopped early: the optimum lies in the interval, which is wider than asked for; without an
+    upper end no motion is proved to keep the limits."""
     OPEN = "open"
     """Nothing is proved."""
 
