@@ -114,8 +114,7 @@ class Intervals:
             return None  # nothing limits its total
         finally:
             self._left -= time.monotonic() - began
-        bounded = answer.upper is not None or answer.outcome is Outcome.INFEASIBLE
-        if answer.proof is not None and bounded:
+        if answer.proof is not None and answer.outcome is not Outcome.OPEN:
             document = certificate(answer)
             found = interval_of(document, problem, verdict=answer.verdict)
             if found is not None:

@@ -24,10 +24,9 @@ class Outcome(StrEnum):
     INFEASIBLE = "infeasible"
     """No durations within their bounds keep the limits: proved."""
     INTERVAL = "interval"
-    """Stopped early: the optimum lies in the interval, which is wider than asked for; without an
-    upper end no motion is proved to keep the limits."""
+    """Stopped early: the optimum lies in the interval, which is wider than asked for."""
     OPEN = "open"
-    """Nothing is proved."""
+    """No motion is proved to keep the limits; a lower bound may be proved."""
 
 
 @dataclass(frozen=True)

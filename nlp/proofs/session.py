@@ -381,8 +381,7 @@ class Session:
         elif self.infeasible:
             outcome = Outcome.INFEASIBLE
         else:
-            known = self.one_sided or self.proof is not None
-            outcome = Outcome.INTERVAL if known else Outcome.OPEN
+            outcome = Outcome.INTERVAL if self.one_sided else Outcome.OPEN
         return Certified(
             self.exact,
             outcome,
