@@ -366,6 +366,9 @@ def check(
     if serious:
         feasible_time, tight_time = None, None
         feasible_why = tight_why = "the motion jumps at a break; stretching does not repair that"
+    elif any(p.quantity in roots and _slack(problem, p) >= 1.0 for p in peaks):
+        feasible_time, tight_time = None, None
+        feasible_why = tight_why = "rounding hides whether a stretch repairs it"
     return Check(
         verdict=verdict,
         limits=about_limits,

@@ -14,6 +14,7 @@ from .ranges import (
     MOST_QUINTIC_JOINTS,
     MOST_QUINTIC_SEGMENTS,
     MOST_WEIGHT,
+    SHORTEST_TOTAL,
     SMALLEST,
     TICKS,
 )
@@ -44,6 +45,7 @@ __all__ = [
     "OLD_FORMATS",
     "OPEN",
     "SECONDS",
+    "SHORTEST_TOTAL",
     "SMALLEST",
     "STATE_FORMAT",
     "TICKS",

@@ -94,7 +94,10 @@ def _of_gaps(own: Sequence[ReadingOutcome], summary: ReadingsSummary) -> str:
             low, high = min(g.lowest for g in gaps), max(g.highest for g in gaps)
             parts.append(f"{_away(low, high)}{where}")
     evidence = weakest(o.evidence for o in plain if o.evidence is not Evidence.NONE)
-    beside = f"{evidence} optimum" if evidence is Evidence.CERTIFIED else "best known total"
+    beside = {
+        Evidence.CERTIFIED: "certified optimum",
+        Evidence.UNCONVERGED: "total at which the search stopped",
+    }.get(evidence, "best known total")
     left = len(own) - len(plain)
     without = f" ({left} implausible reading{'s' * (left > 1)} left out)" if left else ""
     return f" Printed total beside the {beside}: {', and '.join(parts)}{without}." if parts else ""

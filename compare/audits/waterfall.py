@@ -141,7 +141,11 @@ def _procedure(study: Study, pid: str, rid: str) -> Step:
     boundless = [joint.boundless for joint in answer.joints]
     if boundless[0] is not None and None not in boundless:
         return Step.missing(name, boundless[0])
-    note = f"check: {answer.check.verdict}; the optimum of each joint is {answer.joint_evidence}"
+    note = f"check: {answer.check.verdict}; " + (
+        "the search of some joint did not converge"
+        if answer.joint_evidence is Evidence.UNCONVERGED
+        else f"the optimum of each joint is {answer.joint_evidence}"
+    )
     low: float | Why = EXACT
     high: float | Why = EXACT
     if answer.ranges:

@@ -21,6 +21,8 @@ from .table import Columns, line, plain
 
 _PROVED: dict[str, str] = {Outcome.INFEASIBLE: "infeasible: proved", Outcome.OPEN: "nothing proved"}
 """Outcomes whose word alone might be taken for a guess."""
+_BOUNDED = "no motion proved"
+"""Of an open outcome whose lower bound is proved."""
 _COLUMNS = (">lower s", ">upper s", ">gap", ">nodes", ">open", ">seconds", "outcome")
 """What the table says of each interval."""
 
@@ -43,13 +45,14 @@ def certified(document: CertifyDocument) -> list[RenderableType]:
 
 def _cells(result: CertifiedResult) -> tuple[object, ...]:
     gap, seconds = result.gap, result.seconds
+    bounded = result.outcome == Outcome.OPEN and Fraction(result.lower_exact or 0) > 0
     return (
         _bound(result.lower_exact, -1),
         _bound(result.upper_exact, 1),
         "" if isinstance(gap, Why) else f"{gap:.1e}",
         *("" if isinstance(n, Why) else n for n in (result.nodes, result.open_nodes)),
         "" if isinstance(seconds, Why) else f"{seconds:.1f}",
-        _PROVED.get(result.outcome, result.outcome),
+        _BOUNDED if bounded else _PROVED.get(result.outcome, result.outcome),
     )
 
 

@@ -76,6 +76,10 @@ _KNOWN = {
     Confidence.DIGITS: ("follows from the printed digits", "follow from the printed digits"),
     Confidence.PROVEN: ("rests on a proof under a reading", "rest on proofs under a reading"),
     Confidence.BEST_KNOWN: ("rests on a best known motion", "rest on best known motions"),
+    Confidence.UNCONVERGED: (
+        "rests on a search that did not converge",
+        "rest on searches that did not converge",
+    ),
     Confidence.REPLAY: ("rests on replays", "rest on replays"),
 }
 """How verdicts are known, of one and of several."""

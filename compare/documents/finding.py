@@ -34,8 +34,10 @@ def _confidence(data: dict[str, Any]) -> Confidence | Why:
         return Confidence.REPLAY
     if data.get("verdict") is ClaimVerdict.NOT_CHECKABLE:
         return UNDECIDED
-    if data.get("evidence") in (Evidence.BEST_KNOWN, Evidence.UNCONVERGED):
+    if data.get("evidence") is Evidence.BEST_KNOWN:
         return Confidence.BEST_KNOWN
+    if data.get("evidence") is Evidence.UNCONVERGED:
+        return Confidence.UNCONVERGED
     own = data.get("reading") is None and data.get("basis") in _DIGITS_ALONE
     return Confidence.DIGITS if own else Confidence.PROVEN
 

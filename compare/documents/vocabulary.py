@@ -104,6 +104,8 @@ class Confidence(StrEnum):
     the rounding, by exact extrema of the printed motion, or by a certified bound."""
     BEST_KNOWN = "best known"
     """It rests on the best motion found under a reading, with nothing proved below it."""
+    UNCONVERGED = "not converged"
+    """It rests on a checked motion at which a search stopped early: shorter ones are expected."""
     REPLAY = "replay"
     """It rests on seeded runs of the algorithm under listed choices; no verdict is of this kind,
     and findings that are only inform."""

@@ -43,6 +43,7 @@ _KNOWN = {
     Confidence.DIGITS: "follows from the printed digits",
     Confidence.PROVEN: "proven",
     Confidence.BEST_KNOWN: "against the best known motion",
+    Confidence.UNCONVERGED: "against a search that did not converge",
     Confidence.REPLAY: "by replays",
 }
 """How a verdict is known, beside its claim."""

@@ -13,6 +13,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 
+from ...problem.curves import compiling_until
+
 _END: ContextVar[float] = ContextVar("end", default=math.inf)
 """Reading of the clock at which the searches of this thread end: none without `stopping_after`."""
 CAPS = (0.25, 2.0, 16.0, 128.0)
@@ -35,9 +37,11 @@ def stopping_after(seconds: float) -> Iterator[None]:
     seconds : float
         0 or less: at the first step.
     """
-    token = _END.set(min(_END.get(), time.perf_counter() + seconds))
+    end = min(_END.get(), time.perf_counter() + seconds)
+    token = _END.set(end)
     try:
-        yield
+        with compiling_until(end):
+            yield
     finally:
         _END.reset(token)
 

@@ -14,7 +14,7 @@ import numpy as np
 from ...problem import Array, Curve, Problem
 from ...problem.curves import (
     MAX_COEFFICIENTS,
-    roots_in_unit,
+    unit_roots,
 )
 from .clock import look_ahead, seconds_left
 from .curve_symbols import Symbols, derived, evaluated, numbers, shape_key, symbols
@@ -324,7 +324,7 @@ def _put(a: Array, turning: Array, places: Array, weights: Array) -> None:
         return
     roots = np.empty(MAX_COEFFICIENTS)
     work = np.empty((MAX_COEFFICIENTS, MAX_COEFFICIENTS))
-    count = roots_in_unit(np.ascontiguousarray(turning), degree, work, roots)
+    count = unit_roots(np.ascontiguousarray(turning), degree, work, roots)
     zeros = roots[:count]
     slope = polynomial.polyval(zeros, polynomial.polyder(turning))
     free = list(range(places.size))

@@ -47,7 +47,7 @@ LIMIT = 1e-8
 """KKT residual up to which an answer is taken: that of `judgement.KKT_TOLERANCE`."""
 DESCENT = 20.0
 """Places that a descent costs: measured 9 to 22. Where so much is not left, none is begun."""
-_descents = Deferred(kernel.descents, 10.0, seconds_left)
+_descents = Deferred(kernel.descents, 10.0)
 """The descents; compiling them takes ten seconds, interpreting them a tenth to a half of one."""
 
 

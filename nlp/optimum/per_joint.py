@@ -85,8 +85,10 @@ class PerJointSolution:
 
     @property
     def evidence(self) -> Evidence:
-        """Best known if every joint has an answer: the procedure's output is no optimum."""
-        return Evidence.NONE if self.durations is None else Evidence.BEST_KNOWN
+        """Of the output, which is no optimum: best known at most, where every search converged."""
+        if self.durations is None:
+            return Evidence.NONE
+        return weakest([Evidence.BEST_KNOWN, self.joint_evidence])
 
     def __str__(self) -> str:
         lines = [f"{self.problem.name}: each joint by itself, then the longest per segment"]

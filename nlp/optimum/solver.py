@@ -45,7 +45,7 @@ STARTS = 4
 """Equal durations first, then three screened random ones: a second opinion at small cost."""
 FLOORS = (1e-3, 1e-4)
 """Smallest durations tried, relative to the mean, where the case sets no lower bound."""
-DEEPER = (1e-6, 1e-8)
+DEEPER = (1e-6, 1e-8, 1e-10)
 """Further floors where way-points nearly coincide: the total may rise again below the others."""
 ROUNDED = 2e-9
 """Relative gain of a known motion that counts: twice what the checker's tolerance gives away."""

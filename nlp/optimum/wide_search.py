@@ -8,7 +8,7 @@ import numpy as np
 
 from ...problem import Array, CurveError, Problem, evaluate, fit
 from ...problem.curves import batch_coefficients
-from .clock import time_up
+from .clock import seconds_left, time_up
 from .descent import LogBox
 
 MEMBERS, MOST_MEMBERS = 16, 128
@@ -25,6 +25,9 @@ PLACES = 17
 """Places of a piece at which positions are looked at; `check` judges what comes of it."""
 REPAIRS = 3
 """Stretches, each put back into the box, that try to keep the limits."""
+PART = 16
+"""Members of a first population after which the clock is looked at: a quarter of a second where 25
+segments of a curve are not evaluated by compiled code yet."""
 HOPELESS = 10.0
 """Excess of a vector that defines no curve: worse than any that does."""
 
@@ -87,6 +90,19 @@ def _worth(excess: Array, total: Array, scale: float) -> Array:
     return np.where(kept, total / scale, 1e6 * (1.0 + excess))
 
 
+def _first(problem: Problem, h: Array, box: LogBox) -> tuple[Array, Array, Array]:
+    """`excess_and_total` of a first population, or of as many of it as the time is there for."""
+    if seconds_left() == np.inf:
+        return excess_and_total(problem, h, box)
+    found = [excess_and_total(problem, h[:PART], box)]
+    for k in range(PART, len(h), PART):
+        if time_up():
+            break
+        found.append(excess_and_total(problem, h[k : k + PART], box))
+    z, excess, total = zip(*found, strict=True)
+    return np.concatenate(z), np.concatenate(excess), np.concatenate(total)
+
+
 @dataclass(frozen=True, eq=False)
 class Basin:
     """One of the mutually distant best members.
@@ -137,11 +153,13 @@ def basins(
     spread = generator.uniform(0.0, 1.0, (size, n))
     z[:, narrow] = box.low[narrow] + spread[:, narrow] * (box.high - box.low)[narrow]
     z[0] = np.log(base)
-    z, excess, total = excess_and_total(problem, np.exp(z), box)
+    z, excess, total = _first(problem, np.exp(z), box)
+    size, took = len(z), 0.0
     scale = float(base.sum())
     worth = _worth(excess, total, scale)
     for _ in range(GENERATIONS):
-        if time_up():
+        left = seconds_left()
+        if left <= took:
             break
         a, b = generator.integers(size, size=(2, size))
         best = np.argsort(worth, kind="stable")[generator.integers(max(2, size // 4), size=size)]
@@ -156,6 +174,7 @@ def basins(
         better = trial_worth <= worth
         z[better], worth[better] = trial[better], trial_worth[better]
         excess[better], total[better] = trial_excess[better], trial_total[better]
+        took = max(took, left - seconds_left()) if left < np.inf else 0.0
     chosen: list[int] = []
     for i in np.argsort(worth, kind="stable"):
         if len(chosen) == count:

@@ -26,7 +26,7 @@ class Outcome(StrEnum):
     INTERVAL = "interval"
     """Stopped early: the optimum lies in the interval, which is wider than asked for."""
     OPEN = "open"
-    """Nothing is proved."""
+    """No motion is proved to keep the limits; a lower bound may be proved."""
 
 
 @dataclass(frozen=True)

@@ -46,6 +46,8 @@ SAFE = 1.5
 
 UNBOUNDED = "the time ended before a lower bound was proved"
 """What was left out where a search had to end before its first proof."""
+BARE = "the time ended before a bound better than that of the mean velocities was proved"
+"""What was left out where all that is proved is what needs no search."""
 UNPROVED = "a motion was found, and the exact proof that it keeps its limits was cut short"
 """What was left out where `ANSWERING` is over."""
 
@@ -136,6 +138,7 @@ class Session:
         self.infeasible = self.one_sided = False
         self.left_out: str | None = None
         self.nodes = self.open_boxes = self.judged_boxes = 0
+        self._at_once: Argument | None = None
         self._judging: float | None = None
         self._answering = 0.0
         self._began = time.perf_counter()
@@ -202,8 +205,8 @@ class Session:
         seconds = self.seconds
         judging = JUDGING * seconds if self._judging is None else self._judging * self.judged_boxes
         if seconds + judging + self._answering + ahead > self.request.seconds:
-            if self.proof is None and self.left_out is None:
-                self.left_out = UNBOUNDED
+            if self.proof is self._at_once and self.left_out is None:
+                self.left_out = UNBOUNDED if self.proof is None else BARE
             raise OutOfTime
 
     @property
@@ -298,6 +301,12 @@ class Session:
         """Keep a proof if it is the best."""
         if lower > self.lower:
             self.lower, self.proof = lower, proof
+
+    def keep_at_once(self, lower: Fraction, proof: Argument) -> None:
+        """Keep a proof that needs no search, before one begins: with no time left it is there."""
+        self.keep(lower, proof)
+        if self.proof is proof:
+            self._at_once = proof
 
     def climb(
         self,

@@ -3,7 +3,7 @@ from .clamped import ClampedBSpline
 from .clamped_counts import ClampedReading, Count, clamped_readings
 from .clamped_fit import clamped_control_points
 from .clamped_knots import Knots, Parameters, average_matrix, fractions_of
-from .compilation import Deferred, at_hand, by_elements, compiler, interpreted
+from .compilation import Deferred, at_hand, by_elements, compiler, compiling_until, interpreted
 from .condition import Condition, ConditionKind
 from .families import (
     cubic_spline,
@@ -17,7 +17,7 @@ from .families import (
 from .interpolant import Interpolant
 from .kernel import MAX_COEFFICIENTS, roots_in_unit
 from .kind import Curve, Derivatives, PeakGradients, as_curve, fit
-from .peak import Extremum, critical_points, extrema, largest
+from .peak import Extremum, critical_points, extrema, largest, unit_roots
 from .piece_kernel import divided_extremes, one_sided_extreme, piece_extremes
 from .pieces import MANY_PIECES, largest_of_each, may_jump, near_extrema, step_sizes, tops
 from .refined import coefficient_gradient
@@ -70,6 +70,7 @@ __all__ = [
     "clock_matrix",
     "coefficient_gradient",
     "compiler",
+    "compiling_until",
     "control_vertices",
     "critical_points",
     "cubic_spline",
@@ -103,5 +104,6 @@ __all__ = [
     "three_five_three",
     "tops",
     "uniform_cubic_b_spline",
+    "unit_roots",
     "vertex_matrix",
 ]

@@ -21,10 +21,16 @@ from .clamped_knots import (
     fractions_of,
     nearest_reading,
 )
+from .compilation import Deferred
 from .families import piecewise, quintic_spline
 from .kind import Curve, Derivatives, Enclosed, PeakGradients, Shape, as_batch
 from .peak import Extremum
 from .stretched import StretchedCurve, Timing
+
+_peaks_of_many = Deferred(clamped_kernel.batch_peaks, 12.0)
+"""True peaks of a batch; compiling it takes eleven to twelve seconds."""
+_ranges_of_many = Deferred(clamped_kernel.batch_ranges, 8.0)
+"""Positions of a batch; compiling it takes six to ten seconds."""
 
 
 @dataclass(frozen=True)
@@ -238,7 +244,7 @@ class ClampedBSpline(StretchedCurve):
             return super().batch_ranges(values, durations, wanted)
         h = as_batch(self, durations)
         ranges = np.empty((h.shape[0], values.shape[1], 2))
-        clamped_kernel.batch_ranges(h, *self._placed(values), wanted, ranges)
+        _ranges_of_many(h, *self._placed(values), wanted, ranges)
         return ranges
 
     def _peaks(
@@ -246,7 +252,7 @@ class ClampedBSpline(StretchedCurve):
     ) -> Array:
         h = as_batch(self, durations)
         peaks = np.empty((h.shape[0], values.shape[1], 3))
-        clamped_kernel.batch_peaks(h, *self._placed(values), wanted, side, peaks)
+        _peaks_of_many(h, *self._placed(values), wanted, side, peaks)
         return peaks
 
     def _placed(self, waypoints: Array) -> tuple[Array, Array, Array, int, NDArray[np.int64]]:

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import ast
+import builtins
 import hashlib
 import inspect
 import math
 import sys
 import textwrap
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from functools import cache
 from pathlib import Path
 from types import FunctionType
@@ -21,6 +24,30 @@ from numba.core.registry import CPUDispatcher
 
 LOOK = 0.1
 """Share of the time of compiling after which it is looked again whether another process did it."""
+BUSY = 3.0
+"""Times as long as on an idle machine that compiling may take: where less is left none begins."""
+_UNTIL: ContextVar[float] = ContextVar("until", default=math.inf)
+"""Reading of the clock by which everything is to have ended: none without `compiling_until`."""
+
+
+@contextmanager
+def compiling_until(end: float) -> Iterator[None]:
+    """Let nothing be compiled within that would not be ready in time; what is not is interpreted.
+
+    Parameters
+    ----------
+    end : float
+        Reading of `time.perf_counter`. Within an earlier end it has no effect.
+    """
+    token = _UNTIL.set(min(_UNTIL.get(), end))
+    try:
+        yield
+    finally:
+        _UNTIL.reset(token)
+
+
+def _left() -> float:
+    return _UNTIL.get() - time.perf_counter()
 
 
 def compiler(*sources: Path) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
@@ -96,6 +123,7 @@ def interpreted(function: Any) -> Callable[..., Any]:
         name: interpreted(value) if isinstance(value, CPUDispatcher) else value
         for name, value in _globals_of(plain)
     }
+    names["__builtins__"] = builtins  # numpy looks for them where it is called
     on_arrays = FunctionType(plain.__code__, names, plain.__name__, plain.__defaults__)
     writes = getattr(function, "writes", None)
     return on_arrays if writes is None else _through_lists(function, writes, on_arrays)
@@ -193,14 +221,14 @@ class Deferred:
     function : numba dispatcher
     seconds : float
         Time that compiling it takes.
-    left : callable, optional
-        How much time there is. It is compiled only where that is enough to compile it.
+    plainly : callable, optional
+        What runs meanwhile, with the same bits; without it the function itself is interpreted.
     """
 
     def __init__(
-        self, function: Any, seconds: float, left: Callable[[], float] = lambda: math.inf
+        self, function: Any, seconds: float, plainly: Callable[..., Any] | None = None
     ) -> None:
-        self._function, self._left = function, left
+        self._function, self._plainly = function, plainly
         self._seconds, self._spent, self._look = seconds, 0.0, 0.0
         self._ready = False
 
@@ -209,17 +237,21 @@ class Deferred:
         """Whether the last call was one of the compiled function."""
         return self._ready
 
-    def __call__(self, *arguments: Any) -> Any:
-        """Call the function, one way or the other."""
+    def ready(self) -> bool:
+        """Whether the next call is one of the compiled function, which it may compile."""
         if not self._ready and self._spent >= self._look:
-            worth = self._spent >= self._seconds and self._left() > self._seconds
+            worth = self._spent >= self._seconds and _left() > BUSY * self._seconds
             self._ready = worth or at_hand(self._function)
             self._look = self._spent + LOOK * self._seconds
-        if self._ready:
+        return self._ready
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Call the function, one way or the other."""
+        if self.ready():
             return self._function(*arguments)
         began = time.thread_time()
         with np.errstate(all="ignore"):
-            found = interpreted(self._function)(*arguments)
+            found = (self._plainly or interpreted(self._function))(*arguments)
         self._spent += time.thread_time() - began
         return found
 

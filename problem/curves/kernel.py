@@ -17,7 +17,7 @@ MAX_COEFFICIENTS = 10
 """Coefficients of degree 9, the highest that a declaration may have."""
 LANES = 192
 """Polynomials handled side by side: loops of that length vectorise, and a block fits a cache."""
-_SETTLED = 1e-6
+SETTLED = 1e-6
 """Newton step below which a lane rests: the next error is its square, 1e-12, and a peak's error
 the square of that of its place."""
 KERNELS = (
@@ -271,10 +271,10 @@ def _lane_level(a, order, degree, perm, lanes, count, cuts, state):  # type: ign
                 hi = high[x] if before else here
                 step = here - value[x] / slope[x]
                 step = step if lo < step < hi else 0.5 * (lo + hi)
-                step = step if moved[x] > _SETTLED else here
+                step = step if moved[x] > SETTLED else here
                 change = abs(step - here)
                 low[x], high[x], s[x], moved[x] = lo, hi, step, change
-                busy += 1 if change > _SETTLED else 0
+                busy += 1 if change > SETTLED else 0
             if busy == 0:
                 break
         for x in range(lanes):
@@ -363,7 +363,9 @@ def batch_peaks(  # type: ignore[no-untyped-def]
                         a[i, x] = perm[i + r, r] * scaled[k, i + r, x]
                 lane_peaks(a, degree, perm, joints * vectors, cuts, state, side, peak)
                 for v in range(vectors):
-                    rate = (1.0 / h[k, v]) ** r
+                    rate = 1.0 / h[k, v]
+                    for _ in range(r - 1):
+                        rate *= 1.0 / h[k, v]
                     for j in range(joints):
                         top = peak[j * vectors + v] * rate
                         if wanted[j, r - 1] and not top <= peaks[first + v, j, r - 1]:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from .trajectory import Trajectory
 
 
-_roots_in_unit = Deferred(kernel.roots_in_unit, 1.0)
+unit_roots = Deferred(kernel.roots_in_unit, 1.0)
 """The root finder; compiling it takes about a second."""
 
 
@@ -58,7 +58,7 @@ def critical_points(a: Array) -> Array:
     derivative = a[1:] * np.arange(1, degree + 1)
     roots = np.empty(kernel.MAX_COEFFICIENTS)
     work = np.empty((kernel.MAX_COEFFICIENTS, kernel.MAX_COEFFICIENTS))
-    count = _roots_in_unit(np.ascontiguousarray(derivative), degree - 1, work, roots)
+    count = unit_roots(np.ascontiguousarray(derivative), degree - 1, work, roots)
     return roots[:count].copy()
 
 

@@ -129,6 +129,10 @@ def _largest_of_each(scaled, degrees, powers, error, wanted, tops, reach):  # ty
 
 _each = Deferred(_largest_of_each, 2.0)
 """Of a few pieces; compiling it takes two to three seconds."""
+_deciding = Deferred(_tops, 2.0)
+"""Of many pieces; compiling it takes as long."""
+_beyond = Deferred(_near, 2.0)
+"""Extrema beyond two values; compiling it takes as long."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,7 +169,7 @@ def tops(trajectory: Trajectory, error: Array, joint: int, order: int) -> Tops:
     -------
     Tops
     """
-    found, reach = _tops(*_given(trajectory, order), error, joint, order)
+    found, reach = _deciding(*_given(trajectory, order), error, joint, order)
     breaks = trajectory.breaks
     points = [
         Extremum(
@@ -239,7 +243,7 @@ def near_extrema(
     room = 2 * len(trajectory.durations)
     while True:
         pieces, found = np.empty(room, dtype=np.int64), np.empty((room, 2))
-        count = _near(*given, joint, order, low, high, pieces, found)
+        count = _beyond(*given, joint, order, low, high, pieces, found)
         if count <= room:
             return pieces[:count], found[:count, 0], found[:count, 1]
         room = count

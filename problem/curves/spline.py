@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array
 from ..errors import TrajgapError
-from . import kernel, range_kernel
+from . import kernel, lanes, range_kernel
 from .compilation import Deferred
 from .condition import ConditionKind
 
@@ -28,6 +28,12 @@ PERM = np.array(
 """PERM[p, r] = p!/(p − r)!: the factor of sᵖ⁻ʳ in the r-th derivative of sᵖ."""
 _fit_one = Deferred(kernel.fit_coefficients, 2.0)
 """The fit of one vector; compiling it takes two to three seconds."""
+_fit_many = Deferred(kernel.fit_coefficients, 2.0, lanes.fit_coefficients)
+"""The fit of many."""
+_peaks_of_many = Deferred(kernel.batch_peaks, 10.0, lanes.batch_peaks)
+"""True peaks of a batch; compiling it takes eight to twelve seconds."""
+_ranges_of_many = Deferred(range_kernel.batch_ranges, 8.0)
+"""Positions of a batch; compiling it takes six to ten seconds."""
 _THREAD_WORK = 4000
 """Polynomials (vectors times joints) below which starting threads costs more than it saves."""
 _LONGEST = 1e30
@@ -146,7 +152,7 @@ def batch_coefficients(
     values = right_hand_sides(interpolant, waypoints, nodal)
     vectors, joints = len(durations), waypoints.shape[1]
     out = np.zeros((interpolant.segments, kernel.MAX_COEFFICIENTS, joints * vectors))
-    fitted = _fit_one if vectors == 1 else kernel.fit_coefficients
+    fitted = _fit_one if vectors == 1 else _fit_many
     fitted(
         np.array(durations.T, order="C"),  # one that may be written into: compiled for it alone
         vectors,
@@ -255,7 +261,7 @@ def batch_peaks(
     peaks = np.empty((h.shape[0], values.shape[1], 3))
 
     def run(part: slice) -> None:
-        kernel.batch_peaks(
+        _peaks_of_many(
             h[part],
             values,
             plan.kinds,
@@ -271,7 +277,7 @@ def batch_peaks(
             peaks[part],
         )
 
-    _in_parts(run, h.shape[0], values.shape[1])
+    _in_parts(run, _peaks_of_many, h.shape[0], values.shape[1])
     return peaks
 
 
@@ -295,7 +301,7 @@ def batch_ranges(interpolant: Interpolant, values: Array, durations: Array) -> A
     ranges = np.empty((h.shape[0], values.shape[1], 2))
 
     def run(part: slice) -> None:
-        range_kernel.batch_ranges(
+        _ranges_of_many(
             h[part],
             values,
             plan.kinds,
@@ -309,14 +315,14 @@ def batch_ranges(interpolant: Interpolant, values: Array, durations: Array) -> A
             ranges[part],
         )
 
-    _in_parts(run, h.shape[0], values.shape[1])
+    _in_parts(run, _ranges_of_many, h.shape[0], values.shape[1])
     return ranges
 
 
-def _in_parts(run: Callable[[slice], None], vectors: int, joints: int) -> None:
+def _in_parts(run: Callable[[slice], None], kernel: Deferred, vectors: int, joints: int) -> None:
     """Run a kernel on parts of a batch, on several threads where that pays."""
     work = vectors * joints
-    if work < _THREAD_WORK:
+    if work < _THREAD_WORK or not kernel.ready():
         run(slice(None))
         return
     workers = os.cpu_count() or 1

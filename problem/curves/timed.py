@@ -11,9 +11,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array
 from ..errors import CurveError, TrajgapError
-from . import kernel, timed_kernel
+from . import timed_kernel
+from .compilation import Deferred
+from .kernel import MAX_COEFFICIENTS
 from .kind import Enclosed
-from .peak import Extremum, critical_points
+from .peak import Extremum, critical_points, unit_roots
 from .trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -21,6 +23,8 @@ if TYPE_CHECKING:
 
 Numbers = NDArray[np.inexact]
 """Real or complex, of any precision: gradients are taken by complex steps."""
+_least_speed = Deferred(timed_kernel.least_speed, 0.5)
+"""Smallest value of t′ on a piece; compiling it takes half a second."""
 
 
 def _derived(a: Numbers) -> Numbers:
@@ -159,7 +163,7 @@ class ClockedTrajectory(Trajectory):
         following = self._numerators[order][piece, joint]
         roots = np.empty(timed_kernel.ROOM)
         work = np.empty((timed_kernel.ROOM, timed_kernel.ROOM))
-        count = kernel.roots_in_unit(following, following.size - 1, work, roots)
+        count = unit_roots(following, following.size - 1, work, roots)
         return roots[:count].copy()
 
     def derivative(self, segment: int, joint: int, order: int) -> Array:
@@ -213,7 +217,7 @@ def _checked_clock(clock: Array) -> None:
     ------
     CurveError
     """
-    worst = [timed_kernel.least_speed(_derived(a)) for a in clock]
+    worst = [_least_speed(_derived(a)) for a in clock]
     k = int(np.argmin([value for value, _ in worst]))
     value, e = worst[k]
     if not value > 0:
@@ -248,7 +252,7 @@ def enclosed_with_clock(q: Numbers, t: Numbers, waypoints: Array, durations: Arr
     epsilon = np.finfo(np.float64).eps
     tiny = np.finfo(np.longdouble).eps * (waypoints.shape[0] + 4)
     n, joints = durations.size, waypoints.shape[1]
-    scaled, error = np.zeros((2, n, kernel.MAX_COEFFICIENTS, joints))
+    scaled, error = np.zeros((2, n, MAX_COEFFICIENTS, joints))
     scaled[:, :4] = q @ wide
     error[:, :4] = tiny * (np.abs(q) @ np.abs(wide)) + epsilon * np.abs(scaled[:, :4])
     clock = np.asarray(t @ long, dtype=np.float64)
@@ -269,7 +273,7 @@ def _errors(found: ClockedTrajectory, error: Array, clock_error: Array) -> Array
     t = np.abs(found.clock)[:, None, :]
     dq = error[:, :4].transpose(0, 2, 1) + epsilon * q
     dt = clock_error[:, None, :] + epsilon * t
-    least = np.array([timed_kernel.least_speed(_derived(a))[0] for a in found.clock])[:, None]
+    least = np.array([_least_speed(_derived(a))[0] for a in found.clock])[:, None]
     slow = _derived(dt).sum(axis=-1) / least
     bounds = np.empty((len(found.clock), 4, found.joints))
     bounds[:, 0] = 2.0 * dq.sum(axis=-1)

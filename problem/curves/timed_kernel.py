@@ -63,6 +63,18 @@ def least_speed(speed):  # type: ignore[no-untyped-def]
 
 
 @compiled
+def _power(x, n):  # type: ignore[no-untyped-def]
+    """xⁿ for n ≥ 1 by squaring, as compiled code has it: Python's own ** rounds otherwise."""
+    result = 1.0
+    while n > 0:
+        if n % 2 == 1:
+            result *= x
+        x *= x
+        n //= 2
+    return result
+
+
+@compiled
 def _at_least_at_most(shape, speeds, k, j, order, least):  # type: ignore[no-untyped-def]
     """Numbers that the peak of order 1 or 2 on a piece is not below, or not above."""
     a, b, c = shape[k, 1, j], 2.0 * shape[k, 2, j], 3.0 * shape[k, 3, j]
@@ -77,10 +89,12 @@ def _at_least_at_most(shape, speeds, k, j, order, least):  # type: ignore[no-unt
         room = _BEYOND_ROUNDING * (abs(a) + abs(b) + abs(c))
     if least:
         power = 2 * order - 1
-        value = max((abs(a) - room) / first**power, (abs(a + b + c) - room) / last**power)
+        value = max(
+            (abs(a) - room) / _power(first, power), (abs(a + b + c) - room) / _power(last, power)
+        )
         return value * (1.0 - _BEYOND_ROUNDING)
     top = max(abs(a), abs(a + b + c), abs(a + 0.5 * b)) + room  # Bernstein coefficients
-    return top / speeds[k, 3] ** (2 * order - 1) * (1.0 + _BEYOND_ROUNDING)
+    return top / _power(speeds[k, 3], 2 * order - 1) * (1.0 + _BEYOND_ROUNDING)
 
 
 @compiled
@@ -93,7 +107,7 @@ def _largest(a, na, speed, order, turning, turns):  # type: ignore[no-untyped-de
         for m in range(na - 1, -1, -1):
             value = value * e + a[m]
         t = speed[0] + e * (speed[1] + e * speed[2])
-        value = abs(value) / t ** (2 * order - 1)
+        value = abs(value) / _power(t, 2 * order - 1)
         if not value <= top:
             top = value
     return top

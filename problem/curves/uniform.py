@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..errors import TrajgapError
 from . import timed_kernel
+from .compilation import Deferred
 from .kernel import MAX_COEFFICIENTS
 from .kind import Curve, Enclosed, PeakGradients, Shape, as_batch
 from .peak import Extremum
@@ -24,6 +25,8 @@ _STEP = 1e-30
 
 _UNDECIDED = 1e-9
 """Relative distance from a ceiling within which peaks are computed: bounds know them to 1e-12."""
+_peaks_of_many = Deferred(timed_kernel.batch_peaks, 6.0)
+"""True peaks of a batch; compiling it takes five to six seconds."""
 
 
 @lru_cache(maxsize=16)
@@ -162,7 +165,7 @@ class TimedUniformBSpline(UniformBSpline):
         peaks = np.empty((h.shape[0], values.shape[2], 3))
         above = np.broadcast_to(np.asarray(high, dtype=np.float64), low.shape).copy()
         nodes = _nodes(self.waypoints, self.natural_clock)
-        timed_kernel.batch_peaks(h, values, nodes, wanted, low, above, peaks)
+        _peaks_of_many(h, values, nodes, wanted, low, above, peaks)
         return peaks
 
     def range_values(self, waypoints: Array, nodal: Array | None = None) -> Array:

@@ -25,6 +25,7 @@ from trajgap.problem import (
     quintic_spline,
     rest_to_rest,
     three_five_three,
+    uniform_cubic_b_spline,
 )
 
 # --- verdicts ------------------------------------------------------------------------------------
@@ -213,6 +214,21 @@ def test_position_limits() -> None:
     assert check(one_sided, [1.0, 0.5]).verdict is Verdict.VIOLATED
     # the derivative limits alone make c*
     assert broken.stretch == pytest.approx(result.stretch)
+
+
+def test_what_rounding_hides_has_no_repair() -> None:
+    # A straight line at constant speed, 3 rad in 6 ns: its acceleration is 0, and nobody sees it.
+    line = uniform_cubic_b_spline(2, "timed")
+    hidden = check(one_joint([13.8194, 10.6226], line, acceleration=126.6), [5.6e-9])
+    assert hidden.verdict is Verdict.UNDECIDED
+    assert hidden.worst is not None
+    assert hidden.worst.error > hidden.worst.limit
+    assert hidden.feasible_time is hidden.tight_time is None
+    assert hidden.feasible_why == "rounding hides whether a stretch repairs it"
+    assert hidden.tight_why == hidden.feasible_why
+    seen = check(one_joint([13.8194, 10.6226], line, acceleration=126.6), [5.6e-3])
+    assert seen.verdict is Verdict.PASS
+    assert seen.feasible_time == pytest.approx(5.6e-3)
 
 
 def test_joint_fixed_in_place() -> None:

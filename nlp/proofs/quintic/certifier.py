@@ -12,7 +12,13 @@ import numpy as np
 
 from ....problem import Array, Interpolant, Verdict, check
 from ....problem.curves import at_hand
-from ....verify import MOST_POWER, MOST_QUINTIC_JOINTS, MOST_QUINTIC_SEGMENTS, SMALLEST
+from ....verify import (
+    MOST_POWER,
+    MOST_QUINTIC_JOINTS,
+    MOST_QUINTIC_SEGMENTS,
+    SHORTEST_TOTAL,
+    SMALLEST,
+)
 from ..certifier import Certifier
 from ..exact import ExactProblem, decimal
 from ..executors import executor_for
@@ -37,6 +43,9 @@ COMPILING = 25.0
 """Seconds that compiling the search takes, once after an installation: 22 were measured."""
 UNCOMPILED = f"compiling the search takes about {COMPILING:.0f} s, once after an installation"
 """What is left out where there is less time than that."""
+_SPARE = Fraction(1, 10**9)
+"""Share by which a total stays below the sum of the least durations, so that the first box is empty
+by far more than the verifier's slack."""
 _SLIGHT = 1e-7
 """Share by which durations must be shorter to be worth a new start of the ladder."""
 _NEAR = 8
@@ -213,8 +222,23 @@ def _power(size: float) -> int:
     return 0 if abs(power) <= _NEAR else max(-MOST_POWER, min(MOST_POWER, power))
 
 
+def _keep_mean_velocities(session: Session) -> None:
+    """Bound the total by the sum of the least durations: one leaf proves it, in no time."""
+    units = _units(session.exact)
+    low = shortest(session.exact.in_units(units.powers, units.second))
+    total = below(sum(low, Fraction(0)) * (1 - _SPARE))
+    if total > SHORTEST_TOTAL:
+        n = len(low)
+        none = Windows(
+            np.zeros(0, np.int64), np.zeros((0, n + 1)), np.zeros((0, n)), np.zeros((0, 2 * n + 1))
+        )
+        tree = Tree(units, total, low, none, Leaves.of_nothing())
+        session.keep_at_once(total * units.time, tree)
+
+
 def _prove(session: Session) -> bool:
     # A stage that was interrupted begins anew: of a stopped run only the proof counts.
+    _keep_mean_velocities(session)
     session.seek()
     if session.upper is None:
         return False

@@ -46,6 +46,14 @@ class Leaves:
             np.zeros(3, np.int64),
         )
 
+    @classmethod
+    def of_nothing(cls) -> Leaves:
+        """The tree of a single box that is empty."""
+        one = cls.empty((1, 1, 0))
+        one.kinds[0] = EMPTY
+        one.sizes[:2] = 1
+        return one
+
     @property
     def arrays(self) -> tuple[NDArray[Any], ...]:
         """In the order of `search`."""

@@ -39,6 +39,10 @@ def test_a_finding_is_known_by_what_it_rests_on() -> None:
     assert finding(held, Basis.CHECK, None).confidence is Confidence.PROVEN
     best = finding(held, Basis.OPTIMUM, "one", evidence=Evidence.BEST_KNOWN)
     assert best.confidence is Confidence.BEST_KNOWN
+    early = finding(held, Basis.OPTIMUM, "one", evidence=Evidence.UNCONVERGED)
+    assert early.confidence is Confidence.UNCONVERGED
+    judged = judge("c", [early], ("one",))
+    assert tally([judged]) == "Verdicts on 1 claim: 1 rests on a search that did not converge."
     assert finding(held, Basis.REPLAY, None).confidence is Confidence.REPLAY
     assert finding(ClaimVerdict.NOT_CHECKABLE, Basis.TEXT, None).confidence == UNDECIDED
 

@@ -326,12 +326,14 @@ def test_the_document_carries_every_number(made: Callable[[], CaseAudit]) -> Non
 def test_the_page_has_a_row_for_each_reading() -> None:
     one = polish()
     page = markdown(Page("irb1600", "t", (side_by_side(one),)))
-    for outcome in summary_of(one).outcomes:
+    summary = summary_of(one)
+    for outcome in summary.outcomes:
+        label = summary.labels[outcome.reading]
         (line,) = [
             x
             for x in page.splitlines()
-            # One id may begin with another.
-            if x.startswith((f"| {outcome.reading} |", f"| {outcome.reading}<br>"))
+            # One label may begin with another.
+            if x.startswith((f"| {label} |", f"| {label}<br>"))
         ]
         assert f"| {outcome.keeping}" in line
         assert f"{outcome.optimum:.6f} s<br>{outcome.evidence}" in line
@@ -374,7 +376,7 @@ def test_the_terminal_says_once_what_many_readings_say() -> None:
     document = AuditDocument(cases=(changed,))
     lines = terminal(document)
     assert [line for line in lines if line.startswith(("error", "warning"))] == [
-        f"error TG302 [3 readings] {one.where}: Not shortest: 0.5 s. More of it.",
+        f"error TG302 [3 of 19 readings] {one.where}: Not shortest: 0.5 s. More of it.",
         "warning TG106 m.",
     ]
     (row,) = [line for line in lines if line.startswith("depends on the reading ")]

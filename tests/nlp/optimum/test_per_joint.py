@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
-from trajgap.nlp import Status, solve, solve_per_joint
+from trajgap.nlp import Evidence, Status, solve, solve_per_joint
+from trajgap.nlp.optimum import stopping_after
 from trajgap.problem import Limits, Problem, load_case, piecewise, rest_to_rest
 
 
@@ -60,3 +61,13 @@ def test_a_joint_without_answer_leaves_the_procedure_without_one() -> None:
     assert answer.durations is None
     assert "joint 2" in answer.why
     assert "joint 2" in str(answer)
+
+
+def test_the_longest_of_searches_that_did_not_converge_is_not_called_best_known() -> None:
+    problem = puma("durations-at-least-0.3")
+    with stopping_after(0.0):
+        stopped = solve_per_joint(problem)
+    assert {s.evidence for s in stopped.joints} == {Evidence.UNCONVERGED}
+    assert stopped.durations is not None
+    assert stopped.evidence is Evidence.UNCONVERGED
+    assert solve_per_joint(problem).evidence is Evidence.BEST_KNOWN

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 from trajgap.nlp import Status, certify, solve
-from trajgap.nlp.optimum import call_cap, clock, ipopt, solver, stopping_after, time_up
+from trajgap.nlp.optimum import call_cap, clock, ipopt, solver, stopping_after, time_up, wide_search
+from trajgap.nlp.optimum.exact_multistart import box_above
 from trajgap.nlp.optimum.ipopt import compiled, structure_of
 from trajgap.nlp.optimum.tracking import solve_coarse
 from trajgap.nlp.proofs import session
@@ -196,6 +197,20 @@ def test_a_certification_without_time_has_an_answer() -> None:
     assert found.upper > certify(MANY, seconds=60.0, gap=0.5).upper * (1 - 1e-9)
 
 
+def test_a_first_population_is_as_large_as_the_time_is_there_for() -> None:
+    box = box_above(MANY, np.zeros(MANY.segments))
+    h = np.exp(np.random.default_rng(3).normal(size=(3 * wide_search.PART, MANY.segments)))
+    whole = wide_search.excess_and_total(MANY, h.copy(), box)
+    with stopping_after(1e6):
+        in_parts = wide_search._first(MANY, h.copy(), box)
+    for one, other in zip(whole, in_parts, strict=True):
+        np.testing.assert_array_equal(one, other)
+    with stopping_after(0.0):
+        z, excess, total = wide_search._first(MANY, h.copy(), box)
+    assert len(z) == len(excess) == len(total) == wide_search.PART
+    np.testing.assert_array_equal(z, whole[0][: wide_search.PART])
+
+
 def test_the_windows_of_a_proof_look_at_the_clock() -> None:
     looks = 0
 
@@ -214,7 +229,10 @@ def test_the_windows_of_a_proof_look_at_the_clock() -> None:
         Limits([1.0] * 2, [2.0] * 2),
         quintic_spline(3),
     )
-    assert certify(quintic, seconds=0.0).lower == 0
+    found = certify(quintic, seconds=0.0)
+    mean = np.abs(steps).max(axis=1).sum()  # at 1 rad/s
+    assert found.nodes == 0
+    assert float(found.lower) == pytest.approx(mean, rel=1e-8)
 
 
 def test_a_formulation_that_is_kept_costs_no_second_solve_any_time() -> None:

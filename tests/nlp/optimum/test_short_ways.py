@@ -139,3 +139,15 @@ def test_segments_that_stand_alone_are_not_searched_again(monkeypatch: pytest.Mo
     monkeypatch.setattr("trajgap.nlp.optimum.solver.shortened", never)
     rows = np.array([[0.0], [1.0], [1.0001], [2.0]])
     assert solve(Problem(rows, Limits(1.0, 1.0, joints=1), rest_to_rest(3, 5))).total_time > 0
+
+
+def test_a_way_of_billionths_has_an_attained_optimum() -> None:
+    """Its duration cannot go to 0, since the way takes time at the velocity limit."""
+    q = np.array([[-1.01242], [-1.63634], [0.667012], [0.6670120075188035]])
+    problem = Problem(q, Limits(31.6217), cubic_spline(3))
+    # What differential evolution on samples found.
+    known = [0.0409030746, 0.109872101, 7.03078214e-10]
+    assert check(problem, known).verdict is Verdict.PASS
+    found = solve(problem)
+    assert found.status is Status.OPTIMAL
+    assert found.best < sum(known)

@@ -204,13 +204,14 @@ def test_what_would_be_compiled_beyond_the_limit_is_interpreted(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(compilation, "at_hand", lambda _: False)
-    left = 5.0
-    function = Deferred(newton_kernel._shares, 6.0, lambda: left)
+    function = Deferred(newton_kernel._shares, 6.0)
     z, slope, again = np.array([0.3, -0.2, 1.0]), np.empty(3), np.empty(3)
     function._spent = 7.0
-    early = function(z, slope)
+    with stopping_after(6.0 * compilation.BUSY - 1.0), stopping_after(1000.0):
+        early = function(z, slope)
     assert not function.compiled
-    left, function._spent = 7.0, 9.0
-    assert function(z, again) == early
+    function._spent = 9.0
+    with stopping_after(1000.0):
+        assert function(z, again) == early
     assert function.compiled
     assert (slope == again).all()

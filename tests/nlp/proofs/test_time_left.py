@@ -9,11 +9,13 @@ import pytest
 from trajgap.nlp.proofs import session
 from trajgap.nlp.proofs.answer import prove_feasible, solve_exactly
 from trajgap.nlp.proofs.certifiers import certify
+from trajgap.nlp.proofs.document import certificate
 from trajgap.nlp.proofs.exact import exact_problem
 from trajgap.nlp.proofs.outcome import Outcome, Request
 from trajgap.nlp.proofs.quintic import certifier
 from trajgap.nlp.proofs.session import OutOfTime, Session
 from trajgap.problem import Limits, Problem, cubic_spline, quintic_spline
+from trajgap.verify import verify_certificate
 
 RNG = np.random.default_rng(20261128)
 Q = RNG.normal(size=(6, 2))
@@ -94,7 +96,7 @@ def test_a_search_is_not_compiled_where_that_takes_longer_than_is_left(
         patch.setattr(certifier, "at_hand", lambda _: False)
         patch.setattr(certifier, "search", never)
         found = certify(QUINTIC, gap=0.5, seconds=0.9 * certifier.COMPILING)
-    assert (found.outcome, found.lower) == (Outcome.INTERVAL, 0)
+    assert (found.outcome, found.nodes) == (Outcome.INTERVAL, 0)
     assert found.left_out == certifier.UNCOMPILED
     assert found.upper is not None
 
@@ -123,8 +125,31 @@ def test_what_a_search_may_take_is_what_the_clock_leaves_it(
     assert one.left_out == session.UNBOUNDED
 
 
+def test_without_time_mean_velocities_bound_a_quintic_spline() -> None:
+    problem = Problem(Q, Limits([1.1, 0.7], [1.9] * 2), quintic_spline(5))
+    found = certify(problem, gap=1e-6, seconds=0.0)
+    # No joint is faster on average than at all: |Δq|/V of the slowest one, segment by segment.
+    least = (np.abs(np.diff(Q, axis=0)) / [1.1, 0.7]).max(axis=1).sum()
+    assert float(found.lower) == pytest.approx(least, rel=1e-8)
+    assert found.lower < least
+    verdict = verify_certificate(certificate(found), seconds=5.0)
+    assert verdict.proves, verdict.reason
+    assert verdict.lower == found.lower
+    assert found.outcome is (Outcome.OPEN if found.upper is None else Outcome.INTERVAL)
+    assert found.stopped
+    assert found.left_out in (session.BARE, session.UNPROVED)
+
+
+def test_a_search_proves_more_than_mean_velocities() -> None:
+    at_once = certify(QUINTIC, gap=0.2, seconds=0.0)
+    searched = certify(QUINTIC, gap=0.2, seconds=60.0)
+    assert searched.outcome is Outcome.CERTIFIED
+    assert at_once.lower < searched.lower
+
+
 def test_an_interval_without_a_lower_bound_says_why() -> None:
-    found = certify(QUINTIC, gap=1e-6, seconds=0.0)
+    unlimited = Problem(Q[:3], Limits([np.inf] * 2, [1.9] * 2), quintic_spline(2))
+    found = certify(unlimited, gap=1e-6, seconds=0.0)
     assert (found.lower, found.proof) == (0, None)
     assert found.upper is None or found.outcome is Outcome.INTERVAL
     assert found.left_out in (session.UNBOUNDED, session.UNPROVED, certifier.UNCOMPILED)
