@@ -112,7 +112,12 @@ class Solution:
 
     @property
     def best(self) -> float:
-        """The infimum where it is not attained, else the total, s; inf without an answer."""
+        """The infimum where it is not attained, else the total, s; inf without an answer.
+
+        Where nothing keeps the total from 0, what the floors of the search left of it is not told.
+        """
+        if self.boundless is not None:
+            return 0.0
         return self.infimum if self.infimum is not None else self.total_time
 
     @property

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from support.one_joint import one_joint
 from trajgap.compare.cli import main
+from trajgap.compare.gaps import reference_of
 from trajgap.nlp import Solution, Status, solve
 from trajgap.problem import Limits, Problem, rest_to_rest
 
@@ -58,3 +59,12 @@ def test_limits_that_hold_nothing_back_are_not_called_missing() -> None:
     )
     assert none.boundless is not None
     assert "without limits" not in none.boundless
+
+
+def test_no_total_is_set_beside_an_infimum_that_rounding_keeps_from_zero() -> None:
+    problem = Problem([[0.0], [1.0]], Limits(velocity=float("inf")), rest_to_rest(1, 5))
+    found = Solution(
+        problem, Status.NOT_ATTAINED, durations=problem.duration_lower + 0.01, infimum=3.3e-14
+    )
+    assert found.best == 0.0
+    assert reference_of(found) is None
