@@ -98,7 +98,7 @@ def test_numpy_fits_the_coefficients_of_the_compiled_kernel_to_the_last_bit(
         (ClampedBSpline(5, 5, "averaged-continued"), clamped, clamped_kernel.batch_peaks),
         (ClampedBSpline(5, 4, "averaged-continued", "chord"), clamped, clamped_kernel.batch_peaks),
     ],
-    ids=str,
+    ids=["uniform", "clamped, degree 5", "clamped, degree 4"],
 )
 def test_b_splines_have_the_same_bits_interpreted(
     curve: Curve, module: Any, compiled: Any, monkeypatch: pytest.MonkeyPatch
