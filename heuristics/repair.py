@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..problem import TOLERANCE, Array, Problem, TrajgapError, evaluate
+from ..problem.curves import compiling_at_once
 from .objective import DeathPenalty
 from .settings import checked
 
@@ -153,7 +154,7 @@ def judge_of(problem: Problem, penalty: float, handling: str = Handling.DEATH_PE
 
 
 def compile_judge(problem: Problem, handling: str = Handling.DEATH_PENALTY) -> None:
-    """Judge two vectors of a problem, so that what that compiles lies on disk.
+    """Compile what judges vectors of a problem, so that it lies on disk.
 
     Processes that start afterwards find it there; otherwise each of them compiles it once more.
 
@@ -169,6 +170,7 @@ def compile_judge(problem: Problem, handling: str = Handling.DEATH_PENALTY) -> N
         As `judge_of`.
     """
     ones = np.ones((2, problem.segments))
-    judge_of(problem, np.inf, handling)(ones)
-    if problem.limits.limits_position:
-        _ = evaluate(problem, ones).positions  # a penalty asks for them only within other limits
+    with compiling_at_once():
+        judge_of(problem, np.inf, handling)(ones)
+        if problem.limits.limits_position:
+            _ = evaluate(problem, ones).positions  # a penalty asks only within other limits

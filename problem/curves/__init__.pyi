@@ -3,7 +3,15 @@ from .clamped import ClampedBSpline
 from .clamped_counts import ClampedReading, Count, clamped_readings
 from .clamped_fit import clamped_control_points
 from .clamped_knots import Knots, Parameters, average_matrix, fractions_of
-from .compilation import Deferred, at_hand, by_elements, compiler, compiling_until, interpreted
+from .compilation import (
+    Deferred,
+    at_hand,
+    by_elements,
+    compiler,
+    compiling_at_once,
+    compiling_until,
+    interpreted,
+)
 from .condition import Condition, ConditionKind
 from .families import (
     cubic_spline,
@@ -70,6 +78,7 @@ __all__ = [
     "clock_matrix",
     "coefficient_gradient",
     "compiler",
+    "compiling_at_once",
     "compiling_until",
     "control_vertices",
     "critical_points",

@@ -28,6 +28,8 @@ BUSY = 3.0
 """Times as long as on an idle machine that compiling may take: where less is left none begins."""
 _UNTIL: ContextVar[float] = ContextVar("until", default=math.inf)
 """Reading of the clock by which everything is to have ended: none without `compiling_until`."""
+_AT_ONCE: ContextVar[bool] = ContextVar("at once", default=False)
+"""Whether compiling is worth it from the first call on."""
 
 
 @contextmanager
@@ -44,6 +46,16 @@ def compiling_until(end: float) -> Iterator[None]:
         yield
     finally:
         _UNTIL.reset(token)
+
+
+@contextmanager
+def compiling_at_once() -> Iterator[None]:
+    """Have what is called within compiled at its first call: processes that follow find it."""
+    token = _AT_ONCE.set(True)
+    try:
+        yield
+    finally:
+        _AT_ONCE.reset(token)
 
 
 def _left() -> float:
@@ -239,8 +251,10 @@ class Deferred:
 
     def ready(self) -> bool:
         """Whether the next call is one of the compiled function, which it may compile."""
-        if not self._ready and self._spent >= self._look:
-            worth = self._spent >= self._seconds and _left() > BUSY * self._seconds
+        at_once = _AT_ONCE.get()
+        if not self._ready and (at_once or self._spent >= self._look):
+            due = at_once or self._spent >= self._seconds
+            worth = due and _left() > BUSY * self._seconds
             self._ready = worth or at_hand(self._function)
             self._look = self._spent + LOOK * self._seconds
         return self._ready

@@ -61,7 +61,7 @@ KERNEL: list[tuple[str, str, Killer]] = [
     ("crosses = ((f < 0.0) != (g < 0.0))", "crosses = ((f < 0.0) == (g < 0.0))", waves),
     ("moved[x] = 1.0 if crosses else 0.0", "moved[x] = 0.0", waves),
     ("if crosses else low[x]", "if crosses else 0.0", waves),
-    ("_SETTLED = 1e-6", "_SETTLED = 1e-2", waves),
+    ("SETTLED = 1e-6", "SETTLED = 1e-2", waves),
     ("before = (value[x] < 0.0) == (start[x] < 0.0)", "before = value[x] < 0.0", waves),
     ("start[x] = end[x]", "pass", waves),
     ("low[x] = cuts[piece, x]", "pass", waves),
@@ -72,7 +72,7 @@ KERNEL: list[tuple[str, str, Killer]] = [
     ("for piece in range(degree - 1):", "for piece in range(degree - 2):", waves),
     ("abs(value[x]) if abs(value[x]) > peak[x]", "value[x] if value[x] > peak[x]", waves),
     # batches
-    ("rate = (1.0 / h[k, v]) ** r", "rate = 1.0 / h[k, v]", agreement),
+    ("rate *= 1.0 / h[k, v]", "rate *= 1.0", agreement),
     (
         "if top == top else np.inf",
         "if top == top else 0.0",

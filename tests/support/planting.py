@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 from support.checkout import ROOT
 from support.samples import DECLARATIONS
-from trajgap.problem.curves import interpolant, kernel, peak, pieces, spline, trajectory
+from trajgap.problem.curves import Deferred, interpolant, kernel, peak, pieces, spline, trajectory
 from trajgap.problem.curves import kind as curve
 
 checker = importlib.import_module("trajgap.problem.checker")
@@ -90,7 +90,9 @@ def use(
         monkeypatch.setattr(peak, "kernel", mutant)
         # What runs interpreted at first holds the kernels themselves.
         monkeypatch.setattr(spline, "_fit_one", mutant.fit_coefficients)
-        monkeypatch.setattr(peak, "_roots_in_unit", mutant.roots_in_unit)
+        monkeypatch.setattr(spline, "_fit_many", mutant.fit_coefficients)
+        monkeypatch.setattr(spline, "_peaks_of_many", Deferred(mutant.batch_peaks, 0.0))
+        monkeypatch.setattr(peak, "unit_roots", mutant.roots_in_unit)
         plain = planted(pieces, "from __future__ import annotations", "")
         monkeypatch.setattr(plain, "roots_in_unit", mutant.roots_in_unit)
         monkeypatch.setattr(checker, "largest_of_each", plain.largest_of_each)
