@@ -108,18 +108,28 @@ def _without_totals(study: Study, words: Mapping[str, Judgement]) -> str:
     )
     judged = [c for c in timed if getattr(c, "profile", None) is not None]
     if judged:
-        own = f"shortest {' or '.join(profiles)} profile"
-        agree = sum(words[c.id].verdict is ClaimVerdict.SUPPORTED for c in judged)
-        if len(judged) == 1:
-            return f"The printed time {'agrees' if agree else 'does not agree'} with the {own}."
-        which = f"{agree} of {len(judged)}"
-        if agree == len(judged):
-            which = "Both" if agree == _FEW else f"All {agree}"
-        return f"{which} printed times agree with their {own}s."
+        return _beside_profiles([words[c.id].verdict for c in judged], " or ".join(profiles))
     curves = dict.fromkeys(c.other_curve for c in timed if c.other_curve is not None)
     if curves:
         return f"Printed times are of another curve ({', '.join(curves)}) and are not judged."
     return "No printed total stands beside an optimum."
+
+
+def _beside_profiles(verdicts: Sequence[ClaimVerdict], profile: str) -> str:
+    """How many printed times agree with their shortest profiles; what is open accuses none."""
+    own = f"shortest {profile} profile"
+    agree = verdicts.count(ClaimVerdict.SUPPORTED)
+    differ = verdicts.count(ClaimVerdict.INCONSISTENT) + verdicts.count(ClaimVerdict.REFUTED)
+    if len(verdicts) == 1:
+        if not agree and not differ:
+            return f"Whether the printed time agrees with the {own} is open."
+        return f"The printed time {'agrees' if agree else 'does not agree'} with the {own}."
+    which = f"{agree} of {len(verdicts)}"
+    if agree == len(verdicts):
+        which = "Both" if agree == _FEW else f"All {agree}"
+    left = len(verdicts) - agree - differ
+    note = f"; {left} {'is' if left == 1 else 'are'} open" if left else ""
+    return f"{which} printed times agree with their {own}s{note}."
 
 
 @dataclass(frozen=True)

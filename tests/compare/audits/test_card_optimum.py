@@ -5,8 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from trajgap.compare.audits.card_optimum import _beside_profiles
 from trajgap.compare.audits.case_audit import audit_case
 from trajgap.compare.audits.study import Study
+from trajgap.compare.documents import ClaimVerdict
 from trajgap.problem import load_case, parse_case
 
 EXAMPLES = Path(__file__).parents[3] / "docs" / "examples"
@@ -117,3 +119,22 @@ def test_a_distance_is_told_with_the_limit_that_its_motion_breaks(times: str, sa
 )
 def test_the_card_of_an_example_speaks_of_its_own_numbers(example: str, said: str) -> None:
     assert line(example) == said
+
+
+@pytest.mark.parametrize(
+    ("verdicts", "said"),
+    [
+        (
+            "not checkable",
+            "Whether the printed time agrees with the shortest s-curve profile is open.",
+        ),
+        ("inconsistent", "The printed time does not agree with the shortest s-curve profile."),
+        (
+            "supported, refuted, not checkable",
+            "1 of 3 printed times agree with their shortest s-curve profiles; 1 is open.",
+        ),
+    ],
+)
+def test_a_time_that_was_not_judged_is_not_said_to_disagree(verdicts: str, said: str) -> None:
+    words = [ClaimVerdict(word) for word in verdicts.split(", ")]
+    assert _beside_profiles(words, "s-curve") == said
