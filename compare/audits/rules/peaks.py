@@ -11,7 +11,16 @@ from typing import TypeVar
 
 import numpy as np
 
-from ....problem import QUANTITIES, Array, Extremum, Printed, extrema, fit, peak_gradients
+from ....problem import (
+    QUANTITIES,
+    Array,
+    Extremum,
+    Printed,
+    TrajgapError,
+    extrema,
+    fit,
+    peak_gradients,
+)
 from ....problem.cases import AnyClaim, MotionValueClaim, PeakClaim, motions_of
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..study import Study
@@ -36,6 +45,8 @@ _NEAR_FACTOR = 0.01
 """Relative distance from such a ratio below which the unit is named as an explanation."""
 
 
+_CORNERS = 6
+"""Corners of the rounding box that are looked at in turn: the third is the last new one, mostly."""
 _WIDE = 0.05
 """Share of a peak above which the room that digits leave is said: what then fits tells little."""
 _NO_MOTION = "No durations are printed whose motion could have this peak."
@@ -69,7 +80,11 @@ class Beside:
     exact : float
         The exact peak, at the printed durations and way-points.
     reach : float
-        Its first-order change over all values that round to the printed digits.
+        Its change over all values that round to the printed digits: of first order, and where that
+        does not reach the printed peak the largest that is found, if it is larger.
+    far : float
+        The same over values that are cut off to the printed digits, which lie up to a whole last
+        place away.
     sampled : float
         The least peak that coarse sampling of that motion finds.
     norm : Beside, optional
@@ -84,6 +99,7 @@ class Beside:
     cut_upper: float
     exact: float
     reach: float
+    far: float
     sampled: float
     norm: Beside | None = None
 
@@ -100,11 +116,11 @@ class Beside:
         low, high = self.exact - self.reach, self.exact + self.reach
         if self.lower <= high and low <= self.upper:
             return Class.ROUNDING
-        # Durations and way-points whose digits are cut off lie up to a whole last place away.
-        low, high, widest = low - self.reach, high + self.reach, max(self.upper, self.cut_upper)
+        low, high = self.exact - self.far, self.exact + self.far
+        widest = max(self.upper, self.cut_upper)
         if min(self.lower, self.cut_lower) <= high and low <= widest:
             return Class.CUT_OFF
-        if self.sampled - 2 * self.reach <= widest and self.value < self.exact:
+        if self.sampled - self.far <= widest and self.value < self.exact:
             return Class.SAMPLING
         if self.norm is not None and self.norm.kind in FITS:
             return Class.NORM
@@ -133,6 +149,62 @@ def box_reach(study: Study, claim: AnyClaim, pid: str, rid: str, point: Extremum
     by_time = np.abs(g.durations[0]) @ (box.upper - box.lower) / 2
     by_angle = np.abs(g.waypoints[0]) @ (upper[:, joint] - lower[:, joint]) / 2
     return float(by_time + by_angle)
+
+
+def farthest(
+    study: Study, claim: AnyClaim, pid: str, rid: str, top: Extremum, alone: bool, share: float
+) -> float:
+    """Largest change of a peak that is found in the rounding box.
+
+    The first order at the printed numbers tells little where a segment lasts few units of its last
+    digit. So the corner is taken to which the gradient points, then the corner to which the
+    gradient there points, and so on, upwards and downwards.
+
+    Parameters
+    ----------
+    study : Study
+    claim : AnyClaim
+        A claim of durations.
+    pid, rid : str
+        Problem and reading.
+    top : Extremum
+        The peak at the printed numbers.
+    alone : bool
+        Whether it is that of its own joint, and not of all.
+    share : float
+        How wide the box is: 1 for rounded digits, 2 for digits that may be cut off.
+
+    Returns
+    -------
+    float
+        In the SI unit of the peak.
+    """
+    problem = study.claim_problem(claim, pid, rid)
+    box, q = study.case.claim_durations(claim, rid), problem.waypoints
+    columns = [study.problem(pid, rid).joints.index(joint) for joint in problem.joints]
+    low, high = (ends[:, columns] - q for ends in study.case.waypoint_box(pid, rid))
+    joints = [top.joint] if alone else range(len(problem.joints))
+    widest = 0.0
+    for side in (1.0, -1.0):
+        h, w, here = box.value, q, top
+        for _ in range(_CORNERS):
+            g = peak_gradients(replace(problem, waypoints=w), h, [here])
+            way = side * np.sign(here.value)
+            turn = np.zeros_like(q)
+            turn[:, here.joint] = way * g.waypoints[0]
+            longer = way * g.durations[0] > 0
+            h = box.value + share * np.where(longer, box.upper - box.value, box.lower - box.value)
+            w = q + share * np.where(turn > 0, high, np.where(turn < 0, low, 0.0))
+            if not (h > 0).all():
+                break
+            try:
+                moved = fit(problem.curve, w, h)
+            except TrajgapError:
+                break
+            ends = (e for j in joints for e in extrema(moved, j, top.order))
+            here = max(ends, key=lambda e: abs(e.value))
+            widest = max(widest, side * (abs(here.value) - abs(top.value)))
+    return float(widest)
 
 
 def largest(study: Study, claim: AnyClaim, pid: str, rid: str, order: int) -> list[Extremum]:
@@ -199,6 +271,7 @@ def beside(
     measured = study.case.measured(printed, claim.derivative, pid, rid)
     cut = measured.cut_off()
     samples = _samples(study, motion, pid, rid, order)
+    reach = box_reach(study, motion, pid, rid, top)
     found = Beside(
         printed,
         measured.value,
@@ -207,14 +280,22 @@ def beside(
         cut.lower,
         cut.upper,
         abs(top.value),
-        box_reach(study, motion, pid, rid, top),
+        reach,
+        2 * reach,
         min(float((v if joint is None else v[:, top.joint]).max()) for v in samples),
     )
+    if found.kind not in FITS:
+        near, far = (
+            farthest(study, motion, pid, rid, top, joint is not None, share) for share in (1.0, 2.0)
+        )
+        found = replace(found, reach=max(reach, near), far=max(2 * reach, far))
     if joint is not None or len(tops) == 1 or found.kind in FITS:
         return found
     whole = largest_norm(study, motion, pid, rid, order)
     sampled = min(float(np.linalg.norm(v, axis=1).max()) for v in samples)
-    norm = replace(found, exact=whole.largest, reach=whole.reach, sampled=sampled)
+    norm = replace(
+        found, exact=whole.largest, reach=whole.reach, far=2 * whole.reach, sampled=sampled
+    )
     return replace(found, norm=norm)
 
 
