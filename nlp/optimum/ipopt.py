@@ -49,6 +49,7 @@ def ipopt_options(warm: bool, adaptive: bool = False, cap: float | None = None) 
     """Options of IPOPT that reach 1e-9, from a cold or a warm start, in ``cap`` seconds a call."""
     options: dict[str, Any] = {
         "print_time": False,
+        "show_eval_warnings": False,  # the status says where a function is not defined
         "ipopt.print_level": 0,
         "ipopt.sb": "yes",
         "ipopt.tol": 1e-9,

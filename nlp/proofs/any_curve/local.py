@@ -82,6 +82,7 @@ def _solver(segments: int, joints: int, cap: float | None) -> Any:
     }
     options: dict[str, Any] = {
         "print_time": False,
+        "show_eval_warnings": False,  # the status says where a function is not defined
         "ipopt.print_level": 0,
         "ipopt.sb": "yes",
         "ipopt.tol": 1e-10,
