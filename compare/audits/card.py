@@ -28,6 +28,7 @@ from ..documents import (
     implausibly,
     known,
     more_errors,
+    noted,
     quoted,
 )
 from .card_errors import plainly
@@ -198,7 +199,9 @@ def _differing(study: Study, found: Mapping[str, set[ClaimVerdict]], where: str)
     if len(found) > _FEW:
         (first, own), *others = said.items()
         shares = [f"{first} under {among(own, len(found), far)}"]
-        shares += [f"{word} under {len(those)}{implausibly(those, far)}" for word, those in others]
+        shares += [
+            noted(f"{word} under {len(those)}", implausibly(those, far)) for word, those in others
+        ]
         return f"Limits{where} are {', '.join(shares)}"
     ordered = sorted(said.items(), key=lambda item: all(one in far for one in item[1]))
     parts = []

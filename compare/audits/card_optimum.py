@@ -17,7 +17,7 @@ from ...problem.cases import (
     TimeClaim,
     TotalTimeClaim,
 )
-from ..documents import CaveatKind, ClaimVerdict, Judgement, Rounding, Waterfall, count_words
+from ..documents import CaveatKind, ClaimVerdict, Judgement, Keeping, Waterfall, count_words
 from .stated import other_objective
 from .study import Study
 
@@ -29,6 +29,12 @@ _OBJECTIVE_WORDS = 8
 """Words of an objective that the card repeats; a longer one is left to the claims."""
 _PLURALS = {"proven optimum": "proven optima", "best known total": "best known totals"}
 """What an optimum is called, and several of them."""
+_REMARKS = {
+    Keeping.BREAKS: "breaks a limit",
+    Keeping.DISCONTINUOUS: "jumps in velocity",
+    Keeping.UNDECIDED: "may break a limit",
+}
+"""What is said beside a total whose durations are not shown to keep the limits."""
 
 
 def optimum_line(
@@ -249,15 +255,7 @@ def _kept_there(study: Study, claim: AnyClaim, pid: str, rid: str) -> str:
     """
     if not study.has_durations(claim) or study.unmoved(claim, pid, rid) is not None:
         return ""
-    verdict = study.claim_rounding(claim, pid, rid).verdict
-    if verdict is Rounding.BREAKS:
-        verdict = study.claim_cut(claim, pid, rid).verdict
-    if verdict in (Rounding.KEEPS, Rounding.CONSISTENT):
-        return ""
-    if verdict is Rounding.BREAKS:
-        return "breaks a limit"
-    jumping = any(jump.order == 1 for jump in study.claim_check(claim, pid, rid).jumps)
-    return "jumps in velocity" if jumping else "may break a limit"
+    return _REMARKS.get(study.claim_keeping(claim, pid, rid), "")
 
 
 def _apart(study: Study, pid: str, rid: str) -> bool:
@@ -285,7 +283,8 @@ def _joint_by_joint(
         return None
     wide = answer.ranges[0]
     proven = answer.joint_evidence is Evidence.CERTIFIED
-    own = f"the joints' own {'proven' if proven else 'best known'} optima give"
+    # The joints' optima may be proven; the range that they leave is the widest that is found.
+    own = f"the joints' own {'proven' if proven else 'best known'} optima were found to give"
     ends = list(dict.fromkeys(f"{one:.4f}" for one in (wide.lowest, wide.highest)))
     span = f"{' to '.join(ends)} s"
     low, high = total[1]

@@ -8,7 +8,7 @@ from math import exp, isfinite, log
 
 import numpy as np
 
-from ...problem import QUANTITIES, Verdict, extrema, fit
+from ...problem import QUANTITIES, extrema, fit
 from ...problem.cases import AnyClaim
 from ..documents import (
     Excess,
@@ -20,7 +20,6 @@ from ..documents import (
     Limited,
     ReadingOutcome,
     ReadingsSummary,
-    Rounding,
     Tally,
     Waterfall,
     Why,
@@ -109,7 +108,7 @@ def _outcome(study: Study, waterfall: Waterfall) -> ReadingOutcome:
         unmoved = study.unmoved(claim, pid, rid)
         if unmoved is None:
             found = study.claim_check(claim, pid, rid)
-            keeping = _keeping(study, claim, pid, rid)
+            keeping = study.claim_keeping(claim, pid, rid)
             jumps = sum(jump.order == 1 for jump in found.jumps)
             held = held_otherwise(study, claim, pid, rid)
             stretch = found.stretch if isfinite(found.stretch) and found.stretch > 0 else None
@@ -140,17 +139,6 @@ def _shortest(study: Study, outcome: ReadingOutcome) -> bool:
     """Whether a printed answer is meant as a shortest one, which uses a limit up."""
     claim = None if outcome.claim is None else study.case.claim(outcome.claim)
     return claim is None or other_objective(study.case, claim) is None
-
-
-def _keeping(study: Study, claim: AnyClaim, pid: str, rid: str) -> Keeping:
-    verdict = study.claim_rounding(claim, pid, rid).verdict
-    if verdict is Rounding.BREAKS:
-        verdict = study.claim_cut(claim, pid, rid).verdict
-    found = study.claim_check(claim, pid, rid)
-    jumping = any(jump.order == 1 for jump in found.jumps)
-    if verdict is Rounding.UNDECIDED and jumping and found.limits is Verdict.PASS:
-        return Keeping.DISCONTINUOUS
-    return Keeping(str(verdict))
 
 
 def _excesses(study: Study, claim: AnyClaim, pid: str, rid: str) -> tuple[Excess, ...]:

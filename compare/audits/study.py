@@ -30,6 +30,7 @@ from ...problem import (
     Problem,
     ProcessError,
     TrajgapError,
+    Verdict,
     check,
     fit,
     reachable_total,
@@ -43,6 +44,7 @@ from ...problem.cases import (
     TimeClaim,
     TotalTimeClaim,
 )
+from ..documents import Keeping, Rounding
 from .chosen_case import Pair
 from .instances import InstancesResult, examined, readings_of
 from .replayed_case import ReplayedCase, Replays
@@ -280,6 +282,17 @@ class Study(ReplayedCase):
         return self.once(
             ("cut", claim.id, pid, rid), lambda: self._judged_box(claim, pid, rid, cut=True)
         )
+
+    def claim_keeping(self, claim: Claim, pid: str, rid: str) -> Keeping:
+        """Whether the motion of a claim keeps the limits, its digits rounded or cut off."""
+        verdict = self.claim_rounding(claim, pid, rid).verdict
+        if verdict is Rounding.BREAKS:
+            verdict = self.claim_cut(claim, pid, rid).verdict
+        found = self.claim_check(claim, pid, rid)
+        jumping = any(jump.order == 1 for jump in found.jumps)
+        if verdict is Rounding.UNDECIDED and jumping and found.limits is Verdict.PASS:
+            return Keeping.DISCONTINUOUS
+        return Keeping(str(verdict))
 
     def _judged_box(self, claim: Claim, pid: str, rid: str, cut: bool) -> RoundingVerdict:
         self._progress(

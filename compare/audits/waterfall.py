@@ -114,6 +114,7 @@ def _published(study: Study, claim: AnyClaim, pid: str, rid: str) -> list[Step]:
         high=high,
         note=f"printed {shown}{_minimised(study, claim)}; limits, for all that rounds to the "
         f"digits: {rounding.verdict}",
+        keeping=study.claim_keeping(claim, pid, rid),
     )
     if verdict.feasible_time is None:
         note = verdict.feasible_why or ""

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Self
 
 from ...nlp import Evidence
-from .entry import Entry, OrWhy, Why
+from .entry import Entry, OrLeftOut, OrWhy, Why
+from .vocabulary import Keeping
 
 EXACT = Why("a single value, not an interval")
 """Why a value has no interval."""
@@ -29,6 +30,8 @@ class Step(Entry):
     evidence: Evidence = Evidence.NONE
     """Of the value: best known or certified; none for printed and derived values."""
     note: str = ""
+    keeping: OrLeftOut[Keeping] = None
+    """Whether the motion of a printed total keeps the limits; left out where nothing was judged."""
 
     @classmethod
     def missing(cls, name: str, note: str) -> Self:

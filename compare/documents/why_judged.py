@@ -172,15 +172,14 @@ def told(
     -------
     str
     """
-    where = under(one.readings, computed, named, why=why)
+    text, notes = _under(one.readings, computed, named, _FEW, why=why)
     if len(one.each) > 1:
         # Where a sentence names its readings, none is named again.
         first = quoted(one.readings[0], named.labels)
-        numbers = "numbers of the first" if first in where else f"numbers of {first}"
-        # One pair of brackets holds both how many are implausible and whose numbers follow.
-        where = f"{where[:-1]}; {numbers})" if where.endswith(")") else f"{where} ({numbers})"
+        notes += ["numbers of the first" if first in text else f"numbers of {first}"]
     elif len(one.readings) == len(computed) and not word:
         return one.message
+    where = noted(text, *notes)
     return f"{capital(f'{one.verdict} {where}' if word else where)}: {one.message}"
 
 
@@ -221,21 +220,27 @@ def under(
     str
         Such as "under “angles in degrees”" or "under 12 of 16 readings".
     """
+    text, notes = _under(readings, computed, named, most, why=why)
+    return noted(text, *notes)
+
+
+def _under(
+    readings: Sequence[str], computed: Sequence[str], named: Named, most: int, *, why: bool
+) -> tuple[str, list[str]]:
+    """The words of `under`, and what stands in brackets behind them."""
     labels, far = named.labels, named.implausible
     left = [one for one in computed if one not in readings]
     if not left:
-        return "under both readings" if len(computed) == 2 else "under every reading"
+        return ("under both readings" if len(computed) == 2 else "under every reading"), []
     if len(readings) <= most:
         which = _and([quoted(one, labels) for one in readings])
         if len(readings) == 1 and readings[0] in far:
-            reason = f" ({far[readings[0]]})" if why else ""
-            return f"under the implausible {which}{reason}"
-        return f"under {which}"
-    count = f"under {among(readings, len(computed), far)}"
-    if len(left) > _FEW:
-        return count
-    exceptions = f"not under {_and([quoted(one, labels) for one in left])}"
-    return f"{count[:-1]}; {exceptions})" if count.endswith(")") else f"{count} ({exceptions})"
+            return f"under the implausible {which}", [far[readings[0]]] if why else []
+        return f"under {which}", []
+    notes = [implausibly(readings, far)]
+    if len(left) <= _FEW:
+        notes.append(f"not under {_and([quoted(one, labels) for one in left])}")
+    return f"under {len(readings)} of {len(computed)} readings", notes
 
 
 def among(readings: Sequence[str], count: int, far: Iterable[str] = ()) -> str:
@@ -254,14 +259,20 @@ def among(readings: Sequence[str], count: int, far: Iterable[str] = ()) -> str:
     str
         Such as "13 of 19 readings (5 implausible)".
     """
-    return f"{len(readings)} of {count} readings{implausibly(readings, far)}"
+    return noted(f"{len(readings)} of {count} readings", implausibly(readings, far))
 
 
 def implausibly(readings: Sequence[str], far: Iterable[str]) -> str:
-    """How many of some readings are implausible, in brackets; empty where none is."""
+    """How many of some readings are implausible; empty where none is."""
     many = len(set(readings) & set(far))
     every = many == len(readings)
-    return f" ({'all' if every and many > 1 else many} implausible)" if many else ""
+    return f"{'all' if every and many > 1 else many} implausible" if many else ""
+
+
+def noted(text: str, *notes: str) -> str:
+    """A text with notes in one pair of brackets behind it; those that are empty are left out."""
+    said = "; ".join(filter(None, notes))
+    return f"{text} ({said})" if said else text
 
 
 def quoted(reading: str, labels: Mapping[str, str]) -> str:

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ...problem import TrajgapError
-from ..documents import OWN_OPTIMA, PUBLISHED, SHARED_OPTIMUM, Rounding, Step, Waterfall, Why
+from ..documents import OWN_OPTIMA, PUBLISHED, SHARED_OPTIMUM, Keeping, Step, Waterfall, Why
 
 LOCK = "lock.json"
 """File beside the results with the hash of each, and of what they were made from."""
@@ -157,7 +157,7 @@ def distance_of(case: dict[str, Any]) -> tuple[str, str, str, str]:
             if shares[0] < 0 < shares[1]:
                 shares = [0.0]
             share = " to ".join(dict.fromkeys(f"{one:z.1%}" for one in shares))
-            if steps[PUBLISHED]["note"].endswith(f": {Rounding.BREAKS}"):
+            if steps[PUBLISHED].get("keeping") == Keeping.BREAKS:
                 share += ", but breaks a limit"
             share = share if entry["claim"] not in otherwise else "–"
             return f"{printed:g}", known, share, best["evidence"]

@@ -251,8 +251,10 @@ class Deferred:
 
     def ready(self) -> bool:
         """Whether the next call is one of the compiled function, which it may compile."""
+        if self._ready:
+            return True
         at_once = _AT_ONCE.get()
-        if not self._ready and (at_once or self._spent >= self._look):
+        if at_once or self._spent >= self._look:
             due = at_once or self._spent >= self._seconds
             worth = due and _left() > BUSY * self._seconds
             self._ready = worth or at_hand(self._function)

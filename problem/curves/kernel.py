@@ -316,6 +316,17 @@ def lane_peaks(a, degree, perm, lanes, cuts, state, side, peak):  # type: ignore
 
 
 @compiled
+def take_durations(durations, h, v):  # type: ignore[no-untyped-def]
+    """Put one vector into ``h[:, v]``; ones, and false, unless all are positive and finite."""
+    valid = True
+    for k in range(durations.size):
+        valid = valid and 0.0 < durations[k] < np.inf
+    for k in range(durations.size):
+        h[k, v] = durations[k] if valid else 1.0
+    return valid
+
+
+@compiled
 def batch_peaks(  # type: ignore[no-untyped-def]
     durations, values, kinds, breaks, orders, degrees, column, lower, upper, perm, wanted, side,
     peaks,
@@ -341,12 +352,7 @@ def batch_peaks(  # type: ignore[no-untyped-def]
     for first in range(0, durations.shape[0], max(1, block)):
         vectors = min(block, durations.shape[0] - first)
         for v in range(vectors):
-            valid = True
-            for k in range(n):
-                valid = valid and 0.0 < durations[first + v, k] < np.inf
-            for k in range(n):
-                h[k, v] = durations[first + v, k] if valid else 1.0
-            peaks[first + v] = 0.0 if valid else np.inf
+            peaks[first + v] = 0.0 if take_durations(durations[first + v], h, v) else np.inf
         fit_coefficients(
             h, vectors, values, kinds, breaks, orders, degrees, column, lower, upper, perm,
             system, right, scaled,

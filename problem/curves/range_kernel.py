@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .kernel import LANES, MAX_COEFFICIENTS, compiled, fit_coefficients, lane_peaks
+from .kernel import LANES, MAX_COEFFICIENTS, compiled, fit_coefficients, lane_peaks, take_durations
 
 
 @compiled
@@ -30,11 +30,7 @@ def batch_ranges(  # type: ignore[no-untyped-def]
     for first in range(0, durations.shape[0], max(1, block)):
         vectors = min(block, durations.shape[0] - first)
         for v in range(vectors):
-            valid = True
-            for k in range(n):
-                valid = valid and 0.0 < durations[first + v, k] < np.inf
-            for k in range(n):
-                h[k, v] = durations[first + v, k] if valid else 1.0
+            valid = take_durations(durations[first + v], h, v)
             ranges[first + v, :, 0] = np.inf if valid else -np.inf
             ranges[first + v, :, 1] = -np.inf if valid else np.inf
         fit_coefficients(

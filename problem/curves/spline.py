@@ -8,7 +8,7 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -55,6 +55,12 @@ class Layout:
     prescribed: Array
     waypoint: NDArray[np.int64]
     nodal: NDArray[np.int64]
+
+    @property
+    def rows(self) -> tuple[Any, ...]:
+        """What every kernel takes of it, in their order."""
+        told = (self.kinds, self.breaks, self.orders, self.degrees, self.column)
+        return (*told, self.lower, self.upper, PERM)
 
 
 @lru_cache(maxsize=256)
@@ -157,14 +163,7 @@ def batch_coefficients(
         np.array(durations.T, order="C"),  # one that may be written into: compiled for it alone
         vectors,
         values,
-        plan.kinds,
-        plan.breaks,
-        plan.orders,
-        plan.degrees,
-        plan.column,
-        plan.lower,
-        plan.upper,
-        PERM,
+        *plan.rows,
         np.empty((plan.unknowns, 2 * plan.lower + plan.upper + 1, vectors)),
         np.empty((plan.unknowns, joints * vectors)),
         out,
@@ -257,25 +256,11 @@ def batch_peaks(
     ndarray, shape (batch, joints, 3)
         rad/s, rad/s², rad/s³; the same bits whatever the order, the size or the threads.
     """
-    plan, h = layout(interpolant), durations
+    rows, h = layout(interpolant).rows, durations
     peaks = np.empty((h.shape[0], values.shape[1], 3))
 
     def run(part: slice) -> None:
-        _peaks_of_many(
-            h[part],
-            values,
-            plan.kinds,
-            plan.breaks,
-            plan.orders,
-            plan.degrees,
-            plan.column,
-            plan.lower,
-            plan.upper,
-            PERM,
-            wanted,
-            side,
-            peaks[part],
-        )
+        _peaks_of_many(h[part], values, *rows, wanted, side, peaks[part])
 
     _in_parts(run, _peaks_of_many, h.shape[0], values.shape[1])
     return peaks
@@ -297,23 +282,11 @@ def batch_ranges(interpolant: Interpolant, values: Array, durations: Array) -> A
     ndarray, shape (batch, joints, 2)
         rad from the first way-point; −inf and inf for vectors that define no curve.
     """
-    plan, h = layout(interpolant), durations
+    rows, h = layout(interpolant).rows, durations
     ranges = np.empty((h.shape[0], values.shape[1], 2))
 
     def run(part: slice) -> None:
-        _ranges_of_many(
-            h[part],
-            values,
-            plan.kinds,
-            plan.breaks,
-            plan.orders,
-            plan.degrees,
-            plan.column,
-            plan.lower,
-            plan.upper,
-            PERM,
-            ranges[part],
-        )
+        _ranges_of_many(h[part], values, *rows, ranges[part])
 
     _in_parts(run, _ranges_of_many, h.shape[0], values.shape[1])
     return ranges

@@ -80,13 +80,13 @@ KERNEL: list[tuple[str, str, Killer]] = [
     ),
     ("top = peak[j * vectors + v] * rate", "top = peak[v] * rate", agreement),
     (
-        "valid and 0.0 < durations[first + v, k] < np.inf",
-        "valid and durations[first + v, k] < np.inf",
+        "valid and 0.0 < durations[k] < np.inf",
+        "valid and durations[k] < np.inf",
         named("test_check", "test_evaluate_bad_durations_are_infinite_and_nothing_else"),
     ),
     (
-        "h[k, v] = durations[first + v, k] if valid else 1.0",
-        "h[k, v] = durations[first, k] if valid else 1.0",
+        "take_durations(durations[first + v], h, v)",
+        "take_durations(durations[first], h, v)",
         agreement,
     ),
     (

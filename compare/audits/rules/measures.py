@@ -13,7 +13,7 @@ from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..study import Study
 from .peaks import each_motion, has_curve, peak_numbers
 from .printed_digits import hull
-from .wording import called, in_units, unit_shown
+from .wording import UNEXPLAINED, called, in_units, unit_shown
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(10)
 """Gauss-Legendre on -1..1: exact up to degree 19, and squares of declared polynomials have 18."""
@@ -196,7 +196,7 @@ def _measures(study: Study, claim: MeasureClaim, motion: AnyClaim) -> Iterator[F
 def _said(claim: MeasureClaim, joint: str | None, one: _Beside, unit: str) -> str:
     whose = one.meaning if joint is None else f" of joint {joint}"
     exact = f"the {NAMES[claim.measure]} of {claim.derivative}{whose} is {one.exact:.6g} {unit}"
-    how = one.fits or "off by more than rounding, cut-off or sampling explain"
+    how = one.fits or UNEXPLAINED
     return f"{exact}, printed is {one.printed}, {how}"
 
 

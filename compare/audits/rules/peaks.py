@@ -25,7 +25,7 @@ from ....problem.cases import AnyClaim, MotionValueClaim, PeakClaim, motions_of
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..study import Study
 from .norms import largest_norm
-from .wording import called, in_units, unit_shown
+from .wording import UNEXPLAINED, called, in_units, unit_shown
 
 _Value = TypeVar("_Value", bound=MotionValueClaim)
 _SAMPLES = 50
@@ -46,7 +46,8 @@ _NEAR_FACTOR = 0.01
 
 
 _CORNERS = 6
-"""Corners of the rounding box that are looked at in turn: the third is the last new one, mostly."""
+"""Corners of the rounding box that are looked at in turn at most, each way; a search of all of its
+2ⁿ corners would not end where there are many durations and way-points."""
 _WIDE = 0.05
 """Share of a peak above which the room that digits leave is said: what then fits tells little."""
 _NO_MOTION = "No durations are printed whose motion could have this peak."
@@ -193,9 +194,10 @@ def farthest(
             turn = np.zeros_like(q)
             turn[:, here.joint] = way * g.waypoints[0]
             longer = way * g.durations[0] > 0
+            last = h, w
             h = box.value + share * np.where(longer, box.upper - box.value, box.lower - box.value)
             w = q + share * np.where(turn > 0, high, np.where(turn < 0, low, 0.0))
-            if not (h > 0).all():
+            if not (h > 0).all() or (np.array_equal(h, last[0]) and np.array_equal(w, last[1])):
                 break
             try:
                 moved = fit(problem.curve, w, h)
@@ -405,6 +407,6 @@ def described(
             Class.SAMPLING: f" ({away}), slightly below it, as sampling the motion gives it",
             Class.NORM: f" ({away}), as the largest norm over the joints gives it, {norm}",
             Class.UNIT: f" ({away}); their ratio is near {one.factor}",
-            Class.OFF: f" ({away}), off by more than rounding, cut-off or sampling explain",
+            Class.OFF: f" ({away}), {UNEXPLAINED}",
         }[one.kind]
     )

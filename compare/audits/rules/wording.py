@@ -11,6 +11,8 @@ from ..study import Study
 
 _SIGNS = (("deg", "°"), ("^2", "²"), ("^3", "³"))
 """How units of case files are written in a sentence."""
+UNEXPLAINED = "off by more than rounding, cut-off or sampling was found to explain"
+"""Said of a printed value of a motion that is not that of the printed durations."""
 
 
 def unit_shown(study: Study, pid: str, rid: str, quantity: str) -> str:
