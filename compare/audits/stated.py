@@ -147,6 +147,12 @@ def posed_as(case: Case, problem: str, reading: str) -> str:
     return "; ".join([*said, *([case.labels[reading]] if len(case.readings) > 1 else [])])
 
 
+def posed_among(case: Case, problem: str, reading: str) -> str:
+    """The same; empty where the case has one problem and one reading, and nothing needs telling."""
+    several = len(case.problems) > 1 or len(case.readings) > 1
+    return posed_as(case, problem, reading) if several else ""
+
+
 def place(claim: Claim) -> str:
     """Where a claim stands, as short as it can be found: the first place that it names."""
     first = claim.where.split(";")[0].strip()

@@ -13,6 +13,7 @@ from ...nlp import Evidence
 from ...problem import published_ids
 from ..audits import Study
 from ..documents import (
+    SHARED_OPTIMUM,
     Advice,
     AuditDocument,
     AuditedCase,
@@ -23,6 +24,7 @@ from ..documents import (
     Urgency,
     Waterfall,
     Why,
+    capital,
     counted,
     facts,
     more_errors,
@@ -223,11 +225,20 @@ def _time_goes(waterfalls: Sequence[Waterfall], labels: Mapping[str, str]) -> li
     names = dict.fromkeys(name for one in steps for name in one)
     if not names:
         return []
-    rows = [(name, *(cell for one in steps for cell in _step(one.get(name)))) for name in names]
+    # The optimum keeps its row: distances are counted from it.
+    unknown = {name: whys[0] for name in names if name != SHARED_OPTIMUM
+               if (whys := [one[name].time for one in steps if name in one])
+               if all(isinstance(why, Why) for why in whys)}  # fmt: skip
+    rows = [
+        (name, *(cell for one in steps for cell in _step(one.get(name))))
+        for name in names
+        if name not in unknown
+    ]
     columns = [column for problem in first for column in (f">{problem}", "evidence")]
     under = f" ({labels[waterfalls[0].reading]})" if len(labels) > 1 else ""
     title = f"where the time goes, s{under}"
     told = dict.fromkeys(said for one in first.values() for said in one.without_optimum)
+    told |= dict.fromkeys(f"{capital(name)}: {why}." for name, why in unknown.items())
     return [Columns((title, *columns), rows), *(line(said, "dim") for said in told)]
 
 
