@@ -65,8 +65,9 @@ def _drawn(family: str, wanted: dict[str, Any], number: int) -> Asked:
     for attempt in range(1000):
         rng = np.random.default_rng([number, attempt])
         asked = draw_asked(rng, family, 4, 2, bounds=0.3, odd=0.1)
-        small = 3 <= len(asked.waypoints) <= 4 and not any(asked.ends.values())
-        limited = np.isfinite(asked.acceleration).all() and np.isfinite(asked.velocity).all()
+        small = 3 <= len(asked.waypoints) <= 4 and not asked.moving.any()
+        small = small and "finish_orders" not in asked.block
+        limited = bool(np.isfinite(asked.sides[:, :, :2]).all())
         if small and limited and all(asked.block.get(k) == v for k, v in wanted.items()):
             return asked
     raise RuntimeError(f"{family}: nothing drawn")
