@@ -55,10 +55,10 @@ def check_samples(
     check_same_joints(samples.joints, limits)
     peaks: list[MotionPeak] = []
     ranges = [_ranges(samples, limits, r) for r in range(4)]
-    proven = [_proven(samples, r, one) for r, one in enumerate(ranges)]
+    shown = [_proven(samples, r, one) for r, one in enumerate(ranges)]
     for j in range(len(samples.joints)):
         for r in range(4):
-            sides = _peaks(limits, j, r, ranges[r][j], proven[r][j])
+            sides = _peaks(limits, j, r, ranges[r][j], shown[r][j])
             if sides:
                 peaks.append(joined(sides))
     broken = any(p.least_ratio > 1 + tolerance for p in peaks)
