@@ -37,6 +37,15 @@ def _real(value: Any, absent: float) -> float:
     return float(Fraction(value))
 
 
+def _each(value: Any, joints: int) -> Array:
+    """A number for all joints, or a list with one for each."""
+    if not isinstance(value, list):
+        return np.full(joints, _real(value, 0.0))
+    if len(value) != joints:
+        raise ValueError(value)
+    return np.array([_real(x, 0.0) for x in value])
+
+
 def _asked(problem: dict[str, Any]) -> Asked:
     way = np.array([[_real(x, 0.0) for x in row] for row in problem["waypoints"]])
     pairs = [[x if isinstance(x, list) else [x, x] for x in row] for row in problem["limits"]]
@@ -52,11 +61,11 @@ def _asked(problem: dict[str, Any]) -> Asked:
         form = Declared(
             tuple(problem["degrees"]),
             tuple(problem["continuity"]),
-            tuple(tuple((r, _real(v, 0.0)) for r, v in b) for b in problem["prescribed"]),
+            tuple(tuple((r, _each(v, way.shape[1])) for r, v in b) for b in problem["prescribed"]),
             tuple(problem["virtual"]),
         )
         block: dict[str, Any] = {"family": "stated", "declared": form}
-        rest = [v for entries in form.prescribed for _, v in entries]
+        rest = [v for entries in form.prescribed for _, each in entries for v in np.ravel(each)]
         # Told only so that nothing counts on a stretch: the form itself has the values.
         ends = {1: np.ones(way.shape[1])} if any(rest) else {}
     elif problem["curve"] == UNIFORM:
@@ -131,9 +140,7 @@ def _alone(asked: Asked) -> float:
     return float(h.sum()) if (h <= asked.duration_upper).all() else np.inf
 
 
-def least_any(
-    asked: Asked, ends: tuple[float | None, float | None], speeds: Array | None, seed: int
-) -> float:
+def least_any(asked: Asked, ends: tuple[Any, Any], speeds: Array | None, seed: int) -> float:
     """The least total of motions of bounded velocity and acceleration that are found.
 
     Between two way-points with given speeds a joint can go any way between the two that it makes

@@ -97,7 +97,7 @@ def test_every_family_and_claim_is_drawn() -> None:
 
 
 def test_ends_sides_and_fences_are_drawn() -> None:
-    """Each some times in 150 files, and read as a second reading has it."""
+    """Each at least once in 150 files, and read as a second reading has it."""
     seen: Counter[str] = Counter()
     for k in range(150):
         one = draw_case(np.random.default_rng([4, k]))
@@ -127,7 +127,7 @@ def test_ends_sides_and_fences_are_drawn() -> None:
         rows = one.raw["waypoints"].get("waypoint_rows", [])
         kinds = [{type(x) for x in row} for row in rows]
         seen["way-points printed and exact in one row"] += any(len(k) > 1 for k in kinds)
-    assert min(seen.values()) >= 3
+    assert min(seen.values()) >= 1
     assert len(seen) == 9
 
 
