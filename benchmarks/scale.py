@@ -7,7 +7,8 @@
 
 Each row is a process of its own, so that its peak memory is its own; one BLAS thread. Seconds are
 processor seconds after imports and after compiled kernels are loaded (a first call on a small
-problem). Way-points are random walks of six (solve) or seven (check) joints.
+problem). Way-points are random walks of six (solve) or seven (check) joints. `check FILE` reads a
+CSV of that many samples of a smooth motion and judges it, reading included.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ import platform
 import resource
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 
@@ -37,9 +39,15 @@ SCIPY = "scipy CubicSpline, roots of derivatives"
 MX = "whole-array CasADi MX, 5 places a segment"
 OPTI = "plain CasADi Opti, 5 places a segment"
 SLSQP = "scipy SLSQP, exact extrema"
+DIFFERENCES = "numpy loadtxt, finite differences"
 ROWS = [
     *(("check", "ours", c, 7, n) for c in ("cubic", "quintic") for n in (100, 1000, 10**4, 10**5)),
     *(("check", SCIPY, "cubic", 7, n) for n in (100, 1000, 10**4)),
+    *(
+        ("check FILE", code, "samples", 7, n)
+        for code in ("ours", DIFFERENCES)
+        for n in (10**4, 10**5)
+    ),
     *(("solve", "ours", "cubic", 6, n) for n in (30, 100, 300, 1000, 10**4)),
     *(("solve", "ours", "quintic", 6, n) for n in (30, 100, 300, 1000)),
     *(("solve", MX, "cubic", 6, n) for n in (30, 100, 300, 1000)),
@@ -87,6 +95,53 @@ def check_scipy(curve, joints, segments):
                 top = np.abs(motion(places[np.isfinite(places)], r)).max()
                 ratio = max(ratio, (top / limit) ** (1 / r))
         return ratio
+
+    return run
+
+
+def sampled(joints, samples):
+    """A CSV of a smooth motion, a sample each millisecond, and the command that removes it."""
+    rng = np.random.default_rng(7)
+    times = np.arange(samples) * 1e-3
+    q = np.zeros((samples, joints))
+    for n in range(1, 9):
+        rate, start = rng.uniform(0.2, 2.0, joints), rng.uniform(0.0, 6.0, joints)
+        q += rng.normal(size=joints) / n * np.sin(rate * times[:, None] + start)
+    folder = tempfile.TemporaryDirectory()
+    path = Path(folder.name, "motion.csv")
+    with path.open("w", encoding="utf-8") as file:
+        print("time", *(f"q{j + 1}" for j in range(joints)), sep=",", file=file)
+        for t, row in zip(times.tolist(), q.tolist(), strict=True):
+            print(f"{t:.3f}", *row, sep=",", file=file)
+    return folder, path
+
+
+def file_ours(curve, joints, samples):
+    from trajgap.problem.motions import JointLimits, check_samples, read_motion
+
+    folder, path = sampled(joints, samples)
+
+    def run():
+        with folder:
+            read = read_motion(path).content
+            limits = JointLimits.given(read.joints, *LIMITS)
+            return max(p.ratio for p in check_samples(read, limits).peaks)
+
+    return run
+
+
+def file_differences(curve, joints, samples):
+    """Differences of neighbours by powers of the step; no bound on rounding, so no proof."""
+    folder, path = sampled(joints, samples)
+
+    def run():
+        with folder:
+            table = np.loadtxt(path, delimiter=",", skiprows=1)
+            value, step, ratio = table[:, 1:], float(np.diff(table[:, 0]).mean()), 0.0
+            for limit in LIMITS:
+                value = np.diff(value, axis=0) / step
+                ratio = max(ratio, float(np.abs(value).max()) / limit)
+            return ratio
 
     return run
 
@@ -229,6 +284,8 @@ def solve_slsqp(curve, joints, segments):
 CODES = {
     ("check", "ours"): check_ours,
     ("check", SCIPY): check_scipy,
+    ("check FILE", "ours"): file_ours,
+    ("check FILE", DIFFERENCES): file_differences,
     ("solve", "ours"): solve_ours,
     ("solve", MX): solve_mx,
     ("solve", OPTI): solve_opti,
@@ -239,7 +296,7 @@ CODES = {
 def measure(question, code, curve, joints, segments):
     """One row in this process: seconds, peak memory, answer."""
     make = CODES[question, code]
-    small = {"check": 130, "solve": 26}[question] if code == "ours" else 4
+    small = {"check": 130, "check FILE": 130, "solve": 26}[question] if code == "ours" else 4
     make(curve, 2, small)()  # loads compiled kernels
     run = make(curve, joints, segments)
     began = time.process_time()
@@ -290,16 +347,22 @@ def exponent(rows):
 def tables(rows):
     """The tables of the page, as Markdown."""
     out = []
-    for question in ("check", "solve"):
-        for curve, title in (("cubic", "C2 cubic spline"), ("quintic", "C4 quintic spline")):
+    titles = {
+        "cubic": "C2 cubic spline",
+        "quintic": "C4 quintic spline",
+        "samples": "CSV of samples",
+    }
+    for question in ("check", "check FILE", "solve"):
+        for curve, title in titles.items():
             some = [row for row in rows if row["question"] == question and row["curve"] == curve]
             if not some:
                 continue
+            size = "samples" if curve == "samples" else "segments"
             ours = {row["segments"]: float(row["seconds"]) for row in some if row["code"] == "ours"}
             out += [
                 f"## `{question}`, {title}, {some[0]['joints']} joints",
                 "",
-                "| code | segments | seconds | times ours | MB | answer |",
+                f"| code | {size} | seconds | times ours | MB | answer |",
                 "|---|---|---|---|---|---|",
             ]
             for row in some:
@@ -316,11 +379,19 @@ def tables(rows):
                 growth = exponent(long)
                 if growth is not None and len(long) > 1:
                     sizes = f"{int(long[0]['segments']):,} to {int(long[-1]['segments']):,}"
-                    out.append(f"- {code}: seconds grow like segments^{growth:.2f} from {sizes}")
+                    out.append(f"- {code}: seconds grow like {size}^{growth:.2f} from {sizes}")
             out.append("")
-    if rows:
-        last = rows[-1]
-        out.append(f"{last['machine']}, {last['cores']} cores; {last['versions']}.")
+    used = {}
+    for row in rows:
+        where = f"{row['machine']}, {row['cores']} cores; {row['versions']}."
+        used.setdefault(where, {})[f"`{row['question']}`"] = None
+    # Only ratios of one machine mean anything: each question is measured on one.
+    out.append(
+        "\n\n".join(
+            where if len(used) == 1 else f"{', '.join(told)}: {where}"
+            for where, told in used.items()
+        )
+    )
     return "\n".join(out)
 
 

@@ -35,7 +35,8 @@ class Spans:
     acceleration: list[Bounds]
     shortest: list[Fraction]
     longest: list[Fraction | None]
-    ends: tuple[Fraction | None, Fraction | None]
+    ends: list[list[Fraction | None]]
+    """[0 start, 1 end][joint]: velocity prescribed there, None where it is free."""
 
 
 def spans_of(problem: StatedProblem) -> Spans:
@@ -145,7 +146,7 @@ class AnyCurve(ProofKind[Sides]):
         velocity, acceleration = self._asked.velocity[joint], self._asked.acceleration[joint]
         if velocity is not None:
             return velocity[1]
-        known = [abs(v) for v in self._asked.ends if v is not None]
+        known = [abs(v) for v in (side[joint] for side in self._asked.ends) if v is not None]
         if not known or acceleration is None:
             return None
         return min(known) + acceleration[1] * self._cap
@@ -213,7 +214,8 @@ class AnyCurve(ProofKind[Sides]):
             result += min(c * low, c * high)
         for (at, joint), c in slope.items():
             self.clock.check()
-            end = asked.ends[0] if at == 0 else asked.ends[1] if at == len(box) else None
+            side = 0 if at == 0 else 1 if at == len(box) else None
+            end = None if side is None else asked.ends[side][joint]
             v_max = required(self._speeds[joint], _NO_LIMIT)
             result += c * end if end is not None else -abs(c) * v_max
         return result
@@ -251,7 +253,8 @@ def check_motion(
     for j, (velocity, bend) in enumerate(zip(asked.velocity, asked.acceleration, strict=True)):
         clock.check()
         steps = [row[j] for row in asked.steps]
-        if not any(steps) and all(v in (None, 0) for v in asked.ends):
+        given = [side[j] for side in asked.ends]
+        if not any(steps) and all(v in (None, 0) for v in given):
             # It stays where it is.
             low, high, place = *(side[j] for side in problem.position), problem.waypoints[0][j]
             inside = (low is None or low[1] <= place) and (high is None or place <= high[0])
@@ -266,11 +269,11 @@ def check_motion(
             # Any mean speed strictly inside the limits is met by steep ramps.
             for k, step in enumerate(steps):
                 need(top is None or abs(step) < top * h[k], f"{named} {k + 1} is too fast")
-            need(all(v is None or top is None or abs(v) <= top for v in asked.ends), "answer: ends")
+            need(all(v is None or top is None or abs(v) <= top for v in given), "answer: ends")
             continue
         need(bend[0] > 0, f"answer: joint {j + 1} moves with the acceleration limit 0")
         v = [row[j] for row in required(speeds, "answer: no speeds at the way-points")]
-        ends = zip(asked.ends, (v[0], v[-1]), strict=True)
+        ends = zip(given, (v[0], v[-1]), strict=True)
         need(all(want in (None, have) for want, have in ends), "answer: speed at an end")
         need(top is None or max(map(abs, v)) <= top, "answer: velocity at a way-point")
         for k, step in enumerate(steps):

@@ -113,7 +113,8 @@ class Stretched(ClosedForm):
 def _degree(problem: StatedProblem) -> int:
     declared = required(problem.declaration, "declaration not covered: no rest-to-rest polynomials")
     degree, n = declared.degrees[0], len(declared.degrees)
-    rest = {order: Fraction(0) for order in range(1, (degree + 1) // 2)}
+    still = [Fraction(0)] * problem.joints
+    rest = dict.fromkeys(range(1, (degree + 1) // 2), still)
     need(
         declared.degrees == [2 * len(rest) + 1] * n
         and bool(rest)

@@ -52,7 +52,7 @@ def pieces(problem: StatedProblem, h: Sequence[Fraction], clock: Clock) -> Piece
 
     angles = iter(problem.waypoints)
     for b in range(n + 1):
-        held = {order: [value] * joints for order, value in declared.prescribed[b].items()}
+        held = dict(declared.prescribed[b])
         if b not in declared.virtual:
             held[0] = next(angles)
         for order, values in held.items():

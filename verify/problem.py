@@ -43,20 +43,20 @@ class Declaration:
     continuity : list of int
         The highest derivative that agrees at each inner break.
     prescribed : list of dict
-        At each break, the value of some derivatives, by order.
+        At each break, the values of some derivatives, by order: one for each joint.
     virtual : list of int
         Breaks without a way-point.
     """
 
     degrees: list[int]
     continuity: list[int]
-    prescribed: list[dict[int, Fraction]]
+    prescribed: list[dict[int, list[Fraction]]]
     virtual: list[int]
 
     @property
     def at_rest(self) -> bool:
         """Whether every prescribed derivative is 0."""
-        return all(value == 0 for entries in self.prescribed for value in entries.values())
+        return not any(any(each) for entries in self.prescribed for each in entries.values())
 
 
 @dataclass(frozen=True)
@@ -76,8 +76,8 @@ class StatedProblem:
         None for a curve that is no piecewise polynomial with breaks at the way-points.
     curve : str or None
         Name of such a curve.
-    ends : tuple
-        Velocity prescribed at the start and at the end; None where it is free.
+    ends : list, [0 start, 1 end][joint]
+        Velocity prescribed there; None where it is free.
     """
 
     waypoints: list[list[Fraction]]
@@ -88,7 +88,7 @@ class StatedProblem:
     longest: list[Fraction | None]
     declaration: Declaration | None
     curve: str | None
-    ends: tuple[Fraction | None, Fraction | None]
+    ends: list[list[Fraction | None]]
 
     @property
     def joints(self) -> int:
@@ -135,7 +135,7 @@ def read_problem(data: Any) -> StatedProblem:
         [_bounds(x) for x in listed(data[key], key, joints, joints)]
         for key in ("position_lower", "position_upper")
     ]
-    declaration = _declaration(data) if polynomial else None
+    declaration = _declaration(data, joints) if polynomial else None
     n = len(q) - 1 if declaration is None else len(declaration.degrees)
     shortest = [number(x) for x in listed(data["duration_lower"], "duration_lower", n, n)]
     longest = [
@@ -146,15 +146,15 @@ def read_problem(data: Any) -> StatedProblem:
     need(all(x is None or x > 0 for x in longest), "an upper bound of a duration is not positive")
     if declaration is None:
         stated = listed(data.get("ends", [None, None]), "ends", 2, 2)
-        start, end = (None if x is None else number(x) for x in stated)
+        ends: list[list[Fraction | None]] = [
+            [None if x is None else number(x)] * joints for x in stated
+        ]
         curve = text(data["curve"], "curve")
     else:
         need(len(q) == n + 1 - len(declaration.virtual), "malformed: waypoints: one for each break")
-        start, end = (declaration.prescribed[k].get(1) for k in (0, -1))
+        ends = [list(declaration.prescribed[k].get(1, [None] * joints)) for k in (0, -1)]
         curve = None
-    return StatedProblem(
-        q, limits, sides, position, shortest, longest, declaration, curve, (start, end)
-    )
+    return StatedProblem(q, limits, sides, position, shortest, longest, declaration, curve, ends)
 
 
 def _pair(entry: Any) -> tuple[Bounds, Bounds]:
@@ -189,18 +189,25 @@ def _bounds(entry: Any) -> Bounds:
     return min(ends), max(ends)
 
 
-def _declaration(data: dict[str, Any]) -> Declaration:
+def _each(value: Any, joints: int) -> list[Fraction]:
+    """A number for all joints, or a list with one for each."""
+    if type(value) is not list:
+        return [number(value)] * joints
+    return [number(x) for x in listed(value, "prescribed", joints, joints)]
+
+
+def _declaration(data: dict[str, Any], joints: int) -> Declaration:
     degrees = [
         whole(x, 1, MOST_DEGREE) for x in listed(data["degrees"], "degrees", MOST_SEGMENTS, 1)
     ]
     n = len(degrees)
     inner = listed(data["continuity"], "continuity", n - 1, n - 1)
-    prescribed: list[dict[int, Fraction]] = []
+    prescribed: list[dict[int, list[Fraction]]] = []
     for entries in listed(data["prescribed"], "prescribed", n + 1, n + 1):
         pairs = [
             listed(pair, "prescribed", 2, 2) for pair in listed(entries, "prescribed", MOST_DEGREE)
         ]
-        values = {whole(order, 1, MOST_DEGREE): number(value) for order, value in pairs}
+        values = {whole(order, 1, MOST_DEGREE): _each(value, joints) for order, value in pairs}
         need(len(values) == len(pairs), "malformed: prescribed: a derivative occurs twice")
         prescribed.append(values)
     virtual = [whole(b, 1, n - 1) for b in listed(data["virtual"], "virtual", n - 1)]

@@ -187,7 +187,7 @@ class QuinticSpline(ProofKind[Sides]):
 
 def _covered(problem: StatedProblem) -> None:
     declared = problem.declaration
-    rest = {1: Fraction(0), 2: Fraction(0)}
+    rest = {order: [Fraction(0)] * problem.joints for order in (1, 2)}
     n = problem.segments
     need(
         declared is not None

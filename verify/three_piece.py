@@ -116,7 +116,7 @@ class _ThreePieces(ProofKind[Square]):
 
     def _declared(self) -> None:
         need(
-            self.problem.declaration == _at_rest(self.degrees),
+            self.problem.declaration == _at_rest(self.degrees, self.problem.joints),
             "declaration not covered: not the polynomials of this kind of proof, at rest at the "
             "ends",
         )
@@ -249,9 +249,9 @@ class _Row:
         return row
 
 
-def _at_rest(degrees: list[int]) -> Declaration:
+def _at_rest(degrees: list[int], joints: int) -> Declaration:
     """C2 pieces through four way-points, at rest without acceleration at both ends."""
-    rest = {1: Fraction(0), 2: Fraction(0)}
+    rest = {order: [Fraction(0)] * joints for order in (1, 2)}
     return Declaration(degrees, [2, 2], [rest, {}, {}, rest], [])
 
 
@@ -265,7 +265,7 @@ def _unit_curves(proof: type[_ThreePieces]) -> Curves:
     none: list[Bounds] = [None] * 4
     problem = StatedProblem(
         unit, [none[:3]] * 4, [[none[:3]] * 4] * 2, [none, none], [Fraction(0)] * 3, [None] * 3,
-        _at_rest(proof.degrees), None, (None, None),
+        _at_rest(proof.degrees, 4), None, [[None] * 4] * 2,
     )  # fmt: skip
     nodes = [Fraction(x) for x in (1, 2, 3)]
     grid = [(x, y) for x in nodes for y in nodes]

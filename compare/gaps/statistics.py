@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 
 import numpy as np
@@ -92,20 +93,23 @@ def share_interval(slower: Array, faster: Array, reduction: float) -> tuple[floa
     Returns
     -------
     (float, float)
-        nan if there is no pair of finite totals.
+        nan if there is no pair of finite totals, or so few finite totals that some sample has none.
     """
     if not (np.isfinite(slower).any() and np.isfinite(faster).any()):
         return float("nan"), float("nan")
-    from scipy.stats import bootstrap  # half a second, and few need it
+    from scipy.stats import DegenerateDataWarning, bootstrap  # half a second, and few need it
 
-    found = bootstrap(
-        (slower, faster),
-        lambda a, b: share_of_pairs(a, b, reduction),
-        n_resamples=1000,
-        vectorized=False,
-        method="percentile",
-        rng=0,
-    ).confidence_interval
+    with warnings.catch_warnings():
+        # Of samples without a pair, which the answer tells.
+        warnings.simplefilter("ignore", DegenerateDataWarning)
+        found = bootstrap(
+            (slower, faster),
+            lambda a, b: share_of_pairs(a, b, reduction),
+            n_resamples=1000,
+            vectorized=False,
+            method="percentile",
+            rng=0,
+        ).confidence_interval
     return float(found.low), float(found.high)
 
 

@@ -14,7 +14,7 @@ from typing import Any
 from ...problem import Problem, TrajgapError
 from ...verify import Subject
 from .certifier import Certifier
-from .exact import JOINTS_APART, ExactProblem, exact_problem
+from .exact import MOVING, ExactProblem, exact_problem
 from .judged import SPARE, Deadline, judged, unstated
 from .kept import KeptProofs, cache_folder
 from .outcome import GAP, Certified, Progress, Request
@@ -59,8 +59,8 @@ def covered(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> str |
     -------
     str or None
     """
-    if problem.curve.told_joints is not None:
-        return JOINTS_APART
+    if subject is Subject.DECLARED and not problem.curve.homogeneous:
+        return f"{problem.curve.name} {MOVING}"
     certifier = _certifier(problem, subject)
     if certifier is not None:
         return unstated(problem) or certifier.missing(problem)

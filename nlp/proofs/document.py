@@ -53,7 +53,7 @@ def problem_document(problem: ExactProblem) -> dict[str, Any]:
     return {
         "unit": problem.unit,
         "joints": list(problem.joints),
-        **(_declaration(curve) if isinstance(curve, Interpolant) else _other(curve)),
+        **(_declaration(problem, curve) if isinstance(curve, Interpolant) else _other(curve)),
         "waypoints": [[decimal(q) for q in row] for row in problem.waypoints],
         "limits": [
             [_limit(problem, j, r, x) for r, x in enumerate(row, 1)]
@@ -98,7 +98,8 @@ def _named(curve: Curve) -> str:
     return curve.name if uniform else repr(curve)
 
 
-def _declaration(interpolant: Interpolant) -> dict[str, Any]:
+def _declaration(problem: ExactProblem, interpolant: Interpolant) -> dict[str, Any]:
+    told = interpolant.prescribed if problem.prescribed is None else problem.prescribed
     return {
         "degrees": list(interpolant.degrees),
         "continuity": list(interpolant.continuity),
@@ -109,7 +110,7 @@ def _declaration(interpolant: Interpolant) -> dict[str, Any]:
                 else [order, decimal(Fraction(value))]
                 for order, value in entries
             ]
-            for entries in interpolant.prescribed
+            for entries in told
         ],
         "virtual": list(interpolant.virtual),
     }

@@ -14,8 +14,11 @@ from ...problem import Curve, Interpolant, LimitPair, Printed, Problem, Scale, T
 from ...problem.cases import Statement
 from ...problem.curves import Derivatives
 
-JOINTS_APART = "derivatives at the ends that differ from joint to joint are not covered"
-"""Why there is no proof; certificates state one value for all joints."""
+MOVING = (
+    "prescribes derivatives other than 0, and no proof covers such a curve yet; what --any-curve "
+    "proves over any curve is a lower bound for it"
+)
+"""Why there is no proof of a declared curve, and what still holds."""
 _PI = Scale(Fraction(1), 1).bounds
 """Rational bounds of π, the same as for printed numbers."""
 
@@ -63,6 +66,8 @@ class Real:
         return self.ends[1]
 
 
+Prescribed = tuple[tuple[tuple[int, tuple[Fraction, ...]], ...], ...]
+"""At each break derivatives by order, one for each joint, in the problem's unit of angle and s."""
 Pair = tuple[Real | None, Real | None]
 """Sizes of a lower and an upper limit; None where there is none."""
 
@@ -107,6 +112,8 @@ class ExactProblem:
     pairs : tuple of ((joint, order), pair)
         Sizes of the lower and the upper limit, where they differ: all that
         an answer has to keep beside ``limits``.
+    prescribed : tuple or None
+        What the curve prescribes at its breaks, exact, where its own floats are only near to it.
     """
 
     name: str
@@ -120,6 +127,17 @@ class ExactProblem:
     duration_upper: tuple[Fraction | None, ...]
     unit: str = "rad"
     pairs: tuple[tuple[tuple[int, int], Pair], ...] = ()
+    prescribed: Prescribed | None = None
+
+    def end_velocities(self, side: int) -> tuple[Fraction | None, ...]:
+        """Velocities prescribed at the start (0) or the finish (1), joint by joint."""
+        if self.prescribed is not None:
+            own = dict(self.prescribed[0 if side == 0 else -1]).get(1)
+        else:
+            value = dict(self.curve.ends[side]).get(1)
+            each = value if isinstance(value, tuple) else (value,) * len(self.joints)
+            own = None if value is None else tuple(Fraction(v) for v in each if v is not None)
+        return (None,) * len(self.joints) if own is None else own
 
     def sides(self, joint: int, order: int) -> Pair:
         """Sizes of the lower and the upper limit of a derivative."""
@@ -152,9 +170,15 @@ class ExactProblem:
     def joint(self, index: int) -> ExactProblem:
         """The same question for one joint alone."""
         one = slice(index, index + 1)
+        curve = self.curve
+        if isinstance(curve, Interpolant):
+            curve = curve.for_joint(np.empty(0), index)
+        own = self.prescribed
+        if own is not None:
+            own = tuple(tuple((r, each[one]) for r, each in at) for at in own)
         return ExactProblem(
             f"{self.name}, joint {self.joints[index]}",
-            self.curve,
+            curve,
             self.joints[one],
             tuple(row[one] for row in self.waypoints),
             self.limits[one],
@@ -164,10 +188,19 @@ class ExactProblem:
             self.duration_upper,
             self.unit,
             tuple(((0, r), pair) for (j, r), pair in self.pairs if j == index),
+            own,
         )
 
     def in_units(self, powers: Sequence[int], second: int) -> ExactProblem:
-        """The same problem in units of 2**powers[j] of its angle for joint j, and 2**second s."""
+        """The same problem in units of 2**powers[j] of its angle for joint j, and 2**second s.
+
+        Raises
+        ------
+        TrajgapError
+            If derivatives other than 0 are prescribed, which would have to be scaled too.
+        """
+        if not self.curve.homogeneous:
+            raise TrajgapError(f"certify: {MOVING}")
         angle, time = [Fraction(2) ** p for p in powers], Fraction(2) ** second
 
         def over(x: Real | None, unit: Fraction) -> Real | None:
@@ -208,7 +241,7 @@ def one_velocity(end: Derivatives) -> float | None:
     """
     value = dict(end).get(1)
     if isinstance(value, tuple):
-        raise TrajgapError(f"certify: {JOINTS_APART}")
+        raise TrajgapError("certify: end velocities that differ are those of polynomials alone")
     return value
 
 
@@ -264,7 +297,8 @@ def printed_problem(statement: Statement) -> ExactProblem:
     Raises
     ------
     TrajgapError
-        If the interpolant prescribes a derivative that is not 0, or turns are added to angles.
+        If turns are added to angles, or a derivative that is prescribed at an end is an interval
+        or in another unit of angle than the way-points.
     CaseError
         If a unit is missing.
     """
@@ -272,9 +306,10 @@ def printed_problem(statement: Statement) -> ExactProblem:
     if statement.turns:
         raise TrajgapError("certify: angles with whole turns added are not covered")
     problem = statement.problem()
-    if not problem.curve.homogeneous:
-        raise TrajgapError("certify: end derivatives other than 0 are not covered")
     base = scale(str(statement.units.position))
+    curve, prescribed = problem.curve, None
+    if not curve.homogeneous:
+        curve, prescribed = _in_motion(statement, curve, base)
 
     def angle(number: Printed | None, unit: str | None) -> Real | None:
         if number is None or unit is None:
@@ -319,7 +354,7 @@ def printed_problem(statement: Statement) -> ExactProblem:
     shortest, longest = each(statement.durations.lower, n), each(statement.durations.upper, n)
     return ExactProblem(
         problem.name,
-        problem.curve,
+        curve,
         problem.joints,
         tuple(tuple(row[j].fraction for j in statement.joints) for row in rows),
         tuple(zip(*columns, strict=True)),
@@ -329,4 +364,48 @@ def printed_problem(statement: Statement) -> ExactProblem:
         tuple(None if x is None else x.fraction * second for x in longest),
         str(units.position),
         tuple(pairs.items()),
+        prescribed,
     )
+
+
+def _in_motion(statement: Statement, curve: Curve, base: Scale) -> tuple[Interpolant, Prescribed]:
+    """A curve whose ends move, in the unit of the way-points, and its exact derivatives."""
+    polynomials = curve.piecewise
+    if polynomials is None or any(polynomials.prescribed[1:-1]):
+        raise TrajgapError("certify: derivatives are prescribed between the ends")
+    if statement.loose_ends:
+        raise TrajgapError(
+            "certify: a derivative at an end is a printed number, which stands for an interval; "
+            "write it as a bare number"
+        )
+    block = statement.declaration
+    ends: list[tuple[tuple[int, tuple[Fraction, ...]], ...]] = []
+    for orders, values in (
+        (block.orders, block.end_derivatives),
+        (block.last_orders, block.last_derivatives),
+    ):
+        found = []
+        for place, order in enumerate(orders):
+            given = Printed("0", exact=True) if values is None else values[place]
+            each = given if isinstance(given, tuple) else (given,) * len(statement.labels)
+            found.append(
+                (order, tuple(_angular(each[j], order, statement, base) for j in statement.joints))
+            )
+        ends.append(tuple(found))
+    exact = (ends[0], *((),) * (polynomials.segments - 1), ends[1])
+    own = tuple(tuple((r, tuple(map(float, each))) for r, each in at) for at in exact)
+    return replace(polynomials, prescribed=own), exact
+
+
+def _angular(number: Printed, order: int, statement: Statement, base: Scale) -> Fraction:
+    """A derivative at an end in the unit of angle of the way-points, and s."""
+    if number.fraction == 0:
+        return Fraction(0)
+    unit = getattr(statement.units, ("velocity", "acceleration", "jerk")[order - 1])
+    other = scale(str(unit))
+    if other.pi != base.pi:
+        raise TrajgapError(
+            "certify: a derivative at an end is in another unit of angle than the way-points, "
+            "so that no certificate states it exactly; give both in the same"
+        )
+    return number.fraction * other.rational / base.rational

@@ -26,7 +26,7 @@ from .interpolant import Interpolant
 from .kernel import MAX_COEFFICIENTS, roots_in_unit
 from .kind import Curve, Derivatives, PeakGradients, as_curve, fit
 from .peak import Extremum, critical_points, extrema, largest, unit_roots
-from .piece_kernel import divided_extremes, one_sided_extreme, piece_extremes
+from .piece_kernel import one_sided_extreme, piece_extremes
 from .pieces import MANY_PIECES, largest_of_each, may_jump, near_extrema, step_sizes, tops
 from .refined import coefficient_gradient
 from .spline import (
@@ -84,7 +84,6 @@ __all__ = [
     "critical_points",
     "cubic_spline",
     "cubic_spline_virtual",
-    "divided_extremes",
     "extrema",
     "fit",
     "fractions_of",

@@ -10,8 +10,6 @@ import numpy as np
 
 from .kernel import MAX_COEFFICIENTS, compiled, roots_in_unit
 
-_EPS = 2.0**-52
-"""Spacing of float64 at 1."""
 _ROUNDING = 32 * 2.0**-52
 """Relative to the sum of a polynomial's absolute terms: Horner's rounding for ten coefficients is
 20 · 2⁻⁵³, and that of the place of an extremum is of second order."""
@@ -146,48 +144,3 @@ def one_sided_extreme(scaled, durations, noise, clock, perm, j, sign, rest, plac
                     best = abs(signed)
                     place[0], place[1], place[2] = k, cuts[i + end], signed
     return best, most
-
-
-@compiled
-def divided_extremes(times, values, j, order, stride, noise, found):  # type: ignore[no-untyped-def]
-    """What divided differences of samples prove of a derivative, towards both sides.
-
-    ``found[side]`` gets, for the window that proves most, the value of ``order``! times the
-    divided difference, the bound of its error, and the middle of its window; returns the largest
-    error of all windows. Side 0 looks for small values, 1 for large ones.
-    """
-    count = times.size - order * stride
-    widest = 0.0
-    sure0, sure1 = np.inf, -np.inf
-    factorial = 1.0
-    for m in range(2, order + 1):
-        factorial *= m
-    for k in range(count):
-        first = values[k, j]
-        value, error, sizes, clock = 0.0, 0.0, 0.0, 0.0
-        for m in range(order + 1):
-            weight = factorial
-            here = times[k + m * stride]
-            for n in range(order + 1):
-                if n != m:
-                    other = times[k + n * stride]
-                    step = here - other
-                    weight /= step
-                    # Both times carry the rounding of their digits.
-                    clock = max(clock, _EPS * (abs(here) + abs(other)) / abs(step))
-            there = values[k + m * stride, j]
-            # Differences from the first value: the weights of a divided difference sum to 0.
-            term = weight * (there - first) if order > 0 else there
-            value += term
-            sizes += abs(term)
-            error += abs(weight) * (noise + _EPS * abs(there))
-        error += (16 * _EPS + 1.25 * order * clock) * sizes
-        widest = max(widest, error)
-        middle = 0.5 * (times[k] + times[k + order * stride])
-        if value + error < sure0:
-            sure0 = value + error
-            found[0, 0], found[0, 1], found[0, 2] = value, error, middle
-        if value - error > sure1:
-            sure1 = value - error
-            found[1, 0], found[1, 1], found[1, 2] = value, error, middle
-    return widest

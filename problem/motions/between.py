@@ -13,8 +13,8 @@ from dataclasses import replace
 import numpy as np
 
 from ..checker import Verdict
-from ..curves import divided_extremes
 from ..limits import half_range
+from .divided import divided_extremes
 from .joint_limits import BRAKING, ORDERS, JointLimits
 from .judged import (
     MOTION_TOLERANCE,
@@ -54,9 +54,11 @@ def check_samples(
     """
     check_same_joints(samples.joints, limits)
     peaks: list[MotionPeak] = []
+    ranges = [_ranges(samples, limits, r) for r in range(4)]
+    shown = [_proven(samples, r, one) for r, one in enumerate(ranges)]
     for j in range(len(samples.joints)):
         for r in range(4):
-            sides = _peaks(samples, limits, j, r)
+            sides = _peaks(limits, j, r, ranges[r][j], shown[r][j])
             if sides:
                 peaks.append(joined(sides))
     broken = any(p.least_ratio > 1 + tolerance for p in peaks)
@@ -95,53 +97,81 @@ def check_samples(
     )
 
 
-def _proven(samples: Samples, j: int, r: int, enough: float) -> list[tuple[float, float, float]]:
-    """Value, error and time that prove most of a derivative, towards the lower and upper side.
+Proof = list[tuple[float, float, float]]
+"""Value, error and time that prove most of a derivative, towards the lower and upper side."""
 
-    A wider window lowers the error alone: where that is below ``enough`` nothing is to be gained.
+
+def _ranges(samples: Samples, limits: JointLimits, r: int) -> list[tuple[float, float]]:
+    """The range that each joint's derivative is held to."""
+    found = []
+    for j in range(len(samples.joints)):
+        lower, upper = float(limits.lower[j, r]), float(limits.upper[j, r])
+        if r == 2 and np.isfinite(limits.deceleration[j]):
+            # No motion may pass both, speeding up or braking.
+            lower = min(lower, -float(limits.deceleration[j]))
+            upper = max(upper, float(limits.deceleration[j]))
+        found.append((lower, upper))
+    return found
+
+
+def _proven(samples: Samples, r: int, ranges: list[tuple[float, float]]) -> list[Proof]:
+    """What proves most of a derivative, joint by joint; nothing where it has no limit.
+
+    A wider window lowers the error alone: where that is far below a joint's limit nothing is to be
+    gained.
     """
-    best: list[tuple[float, float, float]] = []
+    best: list[Proof] = [[] for _ in ranges]
+    sizes = [[abs(x) for x in one if np.isfinite(x)] for one in ranges]
+    enough = np.array([1e-7 * min(one) if one else np.inf for one in sizes])
+    limited = np.array([j for j, one in enumerate(sizes) if one], dtype=np.intp)
     given = (samples.position, samples.velocity, samples.acceleration)
     for order in range(min(r, 2) + 1):
         values, rows = given[order], samples.has(order)
         differences = r - order
         if values is None or rows.sum() <= differences:
             continue
-        noise = float(samples.margin[j]) if order == 0 else 0.0
+        noise = samples.margin if order == 0 else np.zeros(len(ranges))
         times = samples.time
         if not rows.all():
             times, values = times[rows], values[rows]
+        open_joints = limited
         for stride in (1 << n for n in range(_STRIDES)):
-            if differences * stride >= times.size:
+            if differences * stride >= times.size or not open_joints.size:
                 break
-            found = np.zeros((2, 3))
-            error = divided_extremes(times, values, j, differences, stride, noise, found)
-            here = [(float(a), float(b), float(c)) for a, b, c in found]
-            if not best:
-                best = here
-            if here[0][0] + here[0][1] < best[0][0] + best[0][1]:
-                best[0] = here[0]
-            if here[1][0] - here[1][1] > best[1][0] - best[1][1]:
-                best[1] = here[1]
-            if error <= enough or differences == 0:
+            some = values if open_joints.size == len(ranges) else values[:, open_joints]
+            found, error = divided_extremes(times, some, differences, stride, noise[open_joints])
+            for j, one in zip(open_joints, found, strict=True):
+                best[j] = _better(best[j], [(float(a), float(b), float(c)) for a, b, c in one])
+            if differences == 0:
                 break
+            open_joints = open_joints[~(error <= enough[open_joints])]
     return best
 
 
-def _peaks(samples: Samples, limits: JointLimits, j: int, r: int) -> list[MotionPeak]:
+def _better(best: Proof, here: Proof) -> Proof:
+    """On each side the one that proves more."""
+    if not best:
+        return here
+    low, high = best
+    return [
+        here[0] if here[0][0] + here[0][1] < low[0] + low[1] else low,
+        here[1] if here[1][0] - here[1][1] > high[0] - high[1] else high,
+    ]
+
+
+def _peaks(
+    limits: JointLimits, j: int, r: int, held: tuple[float, float], proven: Proof
+) -> list[MotionPeak]:
     """What is proved of one quantity of one joint, beside each limit it has."""
-    lower, upper = limits.lower[j, r], limits.upper[j, r]
+    lower, upper = held
     quantity, source = ORDERS[r], limits.source(limits.joints[j], ORDERS[r])
-    if r == 2 and np.isfinite(limits.deceleration[j]):
-        # No motion may pass both, speeding up or braking.
-        if limits.deceleration[j] >= upper:
-            source = limits.source(limits.joints[j], BRAKING)
-        lower = min(lower, -limits.deceleration[j])
-        upper = max(upper, limits.deceleration[j])
-    if not (np.isfinite(lower) or np.isfinite(upper)):
-        return []
-    sizes = [abs(x) for x in (lower, upper) if np.isfinite(x)]
-    proven = _proven(samples, j, r, 1e-7 * min(sizes))
+    # Which of the two files or flags the wider side of an acceleration comes from.
+    if (
+        r == 2
+        and np.isfinite(limits.deceleration[j])
+        and limits.deceleration[j] >= limits.upper[j, r]
+    ):
+        source = limits.source(limits.joints[j], BRAKING)
     half = half_range(lower, upper, lower if np.isfinite(lower) else upper) if r == 0 else None
     return [
         replace(peak(limits, j, quantity, time, value, limit, error, side, half), source=source)

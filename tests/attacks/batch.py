@@ -16,7 +16,7 @@ _S = (1.0 - np.cos(np.pi * np.arange(PLACES) / (PLACES - 1))) / 2.0
 
 def form_of(asked: Asked) -> Declared | None:
     """The question's curve as piecewise polynomials, where it is one."""
-    return declared(asked.block, asked.segments, asked.ends)
+    return declared(asked.block, asked.segments, asked.ends, asked.finish)
 
 
 def motions(form: Declared, way: Array, h: Array) -> Array:
@@ -35,10 +35,11 @@ def motions(form: Declared, way: Array, h: Array) -> Array:
 def ratios(asked: Asked, form: Declared, h: Array) -> tuple[Array, Array]:
     """Stretch c* and the largest ratio to a bound that no stretch repairs, one for each h."""
     seen = motions(form, asked.waypoints, h)
-    tops = np.abs(seen[..., 1:]).max(axis=(2, 3))
+    moved = seen[..., 1:]
+    tops = np.stack([-moved.min(axis=(2, 3)), moved.max(axis=(2, 3))], axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):
-        share = np.where(tops > 0, tops / asked.limits, 0.0)
-    c = (share ** (1 / np.arange(1, 4))).max(axis=(1, 2))
+        share = np.where(tops > 0, tops / asked.sides, 0.0)
+    c = (share ** (1 / np.arange(1, 4))).max(axis=(1, 2, 3))
     q = seen[..., 0]
     over = np.maximum(
         (asked.position_lower[:, None, None] - q).max(axis=(1, 2, 3)),

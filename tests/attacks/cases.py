@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from attacks.curves import Array, Asked, NoCurve, peaks, segments_of
+from attacks.declared import Ends
 from attacks.toml_text import Bare, toml_text
 
 Rng = np.random.Generator
@@ -152,10 +153,12 @@ def draw_asked(
         if rng.random() < 0.1:
             value[rng.integers(joints)] = np.inf
         limits.append(value if wanted else np.full(joints, np.inf))
-    ends: dict[int, float] = {}
     if name == "cubic-spline" and "end_orders" not in block and rng.random() < 0.2:
-        ends = {1: float(_rounded(np.array(rng.uniform(-0.3, 0.3) * pace)))}
-        block["end_derivatives"] = [ends[1]]
+        block["end_derivatives"] = [float(_rounded(np.array(rng.uniform(-0.3, 0.3) * pace)))]
+    # A stream of their own: the trials that draw none of it are the ones that they were.
+    own = rng.spawn(1)[0]
+    _draw_ends(own, block, joints, pace)
+    below = _draw_below(own, np.stack(limits, axis=1))
     none = np.full(joints, np.inf)
     asked = Asked(
         block,
@@ -167,20 +170,94 @@ def draw_asked(
         np.full(segments, np.inf),
         tuple(str(j + 1) for j in range(joints)),
         str(rng.choice(["shared", "per-joint"])),
-        ends,
+        *ends_in(block, joints),
+        below,
     )
-    return _bounded(rng, asked) if rng.random() < bounds else asked
+    if rng.random() < bounds:
+        asked = _bounded(rng, asked)
+    return half_bounded(own, asked)
+
+
+MOVING = ("polynomials", "cubic-spline", "quintic-spline")
+"""Families whose ends may be in motion."""
+_OTHER_ORDERS = {(1,): (2,), (2,): (1,), (1, 2): (1, 3), (1, 2, 3): (1, 2, 4)}
+"""As many derivatives at the finish, but not the same ones."""
+
+
+def _draw_ends(rng: Rng, block: dict[str, Any], joints: int, pace: float) -> None:
+    """Ends in motion, sometimes: for each joint or for all, at both ends or at one of them."""
+    if block["family"] not in MOVING or rng.random() > 0.3:
+        return
+    orders = tuple(block.get("end_orders", [1] if block["family"] == "cubic-spline" else [1, 2]))
+
+    def values(wanted: tuple[int, ...]) -> list[Any]:
+        drawn: list[Any] = []
+        for r in wanted:
+            size = joints if rng.random() < 0.6 else 1
+            each = _rounded(rng.uniform(-0.3, 0.3, size) * pace * 2.0**r * (r < 4))
+            each[rng.random(size) < 0.2] = 0.0
+            drawn.append(each.tolist() if size == joints and rng.random() < 0.9 else each[0])
+        return [x if isinstance(x, list) else float(x) for x in drawn]
+
+    if orders:
+        block["end_derivatives"] = values(orders)
+    if block["family"] != "quintic-spline" and orders and rng.random() < 0.2:
+        block["finish_orders"] = list(_OTHER_ORDERS[orders])
+    if rng.random() < 0.5:
+        block["finish_derivatives"] = values(tuple(block.get("finish_orders", orders)))
+
+
+def ends_in(block: dict[str, Any], joints: int) -> tuple[Ends, Ends]:
+    """Derivatives of each joint at the first and at the last way-point, in units of the block."""
+    orders = block.get("end_orders", [1] if block["family"] == "cubic-spline" else [1, 2])
+    start = block.get("end_derivatives", [])
+    own = "finish_orders" in block or "finish_derivatives" in block
+    last = block.get("finish_derivatives", []) if own else start
+    found = (
+        {
+            r: np.array(np.broadcast_to(np.asarray(v, dtype=float), (joints,)))
+            for r, v in zip(which, values, strict=False)
+        }
+        for which, values in ((orders, start), (block.get("finish_orders", orders), last))
+    )
+    return next(found), next(found)
+
+
+def with_ends(asked: Asked, ends: Ends, finish: Ends) -> Asked:
+    """The same question with other derivatives at its ends, of the orders that it prescribes."""
+    block = dict(asked.block)
+    for key, values in (("end_derivatives", ends), ("finish_derivatives", finish)):
+        block.pop(key, None)
+        if values:
+            block[key] = [x.tolist() for x in values.values()]
+    return replace(asked, block=block, ends=ends, finish=finish)
+
+
+def _draw_below(rng: Rng, limits: Array) -> Array | None:
+    """Sizes of lower limits that differ from the upper ones, sometimes."""
+    if rng.random() > 0.25:
+        return None
+    drawn = np.where(np.isfinite(limits), limits, 1.0) * rng.uniform(0.3, 2.0, limits.shape)
+    drawn[rng.random(limits.shape) < 0.1] = np.inf
+    kept = rng.random(limits.shape) < 0.4
+    # No side of a derivative that nothing limits: the file leaves its key out.
+    kept |= ~np.isfinite(limits).any(axis=0)
+    return np.where(kept, limits, _rounded(drawn))
+
+
+def half_bounded(rng: Rng, asked: Asked) -> Asked:
+    """Position limits of some joints alone, or on one side alone, sometimes."""
+    low, high = asked.position_lower.copy(), asked.position_upper.copy()
+    low[rng.random(len(low)) < 0.2] = -np.inf
+    high[rng.random(len(high)) < 0.2] = np.inf
+    if rng.random() < 0.7:
+        return asked
+    return replace(asked, position_lower=low, position_upper=high)
 
 
 def _bounded(rng: Rng, asked: Asked) -> Asked:
     if rng.random() < 0.5:
-        span = np.ptp(asked.waypoints, axis=0) + 0.1
-        wide = span * rng.uniform(0.0, 0.5)
-        return replace(
-            asked,
-            position_lower=_rounded(asked.waypoints.min(axis=0) - wide),
-            position_upper=_rounded(asked.waypoints.max(axis=0) + wide),
-        )
+        return fenced(rng, asked)
     try:
         h = near_limits(rng, asked, 1.0)
     except NoCurve:
@@ -190,6 +267,17 @@ def _bounded(rng: Rng, asked: Asked) -> Asked:
     if rng.random() < 0.4:
         lower = np.zeros(len(h))
     return replace(asked, duration_lower=lower, duration_upper=upper)
+
+
+def fenced(rng: Rng, asked: Asked) -> Asked:
+    """The question with position limits around its way-points."""
+    span = np.ptp(asked.waypoints, axis=0) + 0.1
+    wide = span * rng.uniform(0.0, 0.5)
+    return replace(
+        asked,
+        position_lower=_rounded(asked.waypoints.min(axis=0) - wide),
+        position_upper=_rounded(asked.waypoints.max(axis=0) + wide),
+    )
 
 
 def near_limits(rng: Rng, asked: Asked, spread: float, ratio: float = 1.0) -> Array:
@@ -208,9 +296,9 @@ def near_limits(rng: Rng, asked: Asked, spread: float, ratio: float = 1.0) -> Ar
 
 def stretch(asked: Asked, h: Array) -> float:
     """c*: the factor on all durations that makes the motion tight; 1 if nothing is limited."""
-    low = peaks(asked, h).low
+    low = peaks(asked, h).sided_low
     with np.errstate(divide="ignore", invalid="ignore"):
-        ratios = np.where(asked.limits > 0, low / asked.limits, 0.0)
+        ratios = np.where(asked.sides > 0, low / asked.sides, 0.0)
     c = float(np.max(ratios ** (1 / np.array([1, 2, 3])), initial=0.0))
     return c if c > 0 and math.isfinite(c) else 1.0
 
@@ -224,15 +312,16 @@ def raw_of(asked: Asked, name: str = "drawn") -> dict[str, Any]:
     """A case file that poses one question and nothing else, every number exact."""
 
     def exact(values: Array) -> Any:
-        return [Bare("inf") if np.isinf(x) else Bare(repr(float(x))) for x in values]
+        return [Bare(repr(float(x))) for x in values]
 
-    limits: dict[str, Any] = {
-        key: exact(getattr(asked, key))
-        for key in DERIVATIVES
-        if np.isfinite(getattr(asked, key)).any()
-    }
+    limits: dict[str, Any] = {}
+    for r, key in enumerate(DERIVATIVES):
+        low, high = asked.sides[:, :, r]
+        if np.isfinite([low, high]).any():
+            pairs = zip(exact(-low), exact(high), low != high, strict=True)
+            limits[key] = [[a, b] if uneven else b for a, b, uneven in pairs]
     for key in ("position_lower", "position_upper"):
-        if np.isfinite(getattr(asked, key)).all():
+        if np.isfinite(getattr(asked, key)).any():
             limits[key] = exact(getattr(asked, key))
     durations: dict[str, Any] = {}
     if asked.duration_lower.any():

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import BPoly, BSpline, CubicSpline, PPoly, make_interp_spline
 
-from attacks.declared import coefficients, declared
+from attacks.declared import Ends, coefficients, declared
 
 Array = NDArray[np.float64]
 Derivatives = Callable[[Array], tuple[Array, Array, Array, Array]]
@@ -38,7 +38,9 @@ class Asked:
     """One question in rad and s, as the attacks understand it.
 
     ``block`` is the interpolant as a case file declares it, its end derivatives in rad and s;
-    limits have shape (joints,), absent ones are inf.
+    limits have shape (joints,), absent ones are inf. ``below`` has the sizes of the lower limits
+    where they differ from the upper ones, shape (joints, 3). ``ends`` and ``finish`` have the
+    derivatives of the first and the last way-point by order, shape (joints,) each.
     """
 
     block: dict[str, Any]
@@ -52,7 +54,9 @@ class Asked:
     duration_upper: Array
     labels: tuple[str, ...] = ()
     coupling: str = "shared"
-    ends: dict[int, float] = field(default_factory=dict)
+    ends: Ends = field(default_factory=dict)
+    finish: Ends = field(default_factory=dict)
+    below: Array | None = None
 
     @property
     def family(self) -> str:
@@ -64,8 +68,21 @@ class Asked:
 
     @property
     def limits(self) -> Array:
-        """Shape (joints, 3)."""
+        """Upper limits, and sizes of the lower ones unless ``below`` says more, (joints, 3)."""
         return np.stack([self.velocity, self.acceleration, self.jerk], axis=1)
+
+    @property
+    def sides(self) -> Array:
+        """Sizes of the limits below 0 and above 0, shape (2, joints, 3)."""
+        return np.stack([self.limits if self.below is None else self.below, self.limits])
+
+    @property
+    def moving(self) -> NDArray[np.bool_]:
+        """Which joints have some derivative other than 0 at an end, shape (joints,)."""
+        found = np.zeros(self.waypoints.shape[1], dtype=bool)
+        for values in (*self.ends.values(), *self.finish.values()):
+            found |= np.broadcast_to(values, found.shape) != 0
+        return found
 
     @property
     def free_of_bounds(self) -> bool:
@@ -74,15 +91,23 @@ class Asked:
             not self.duration_lower.any()
             and not np.isfinite(self.duration_upper).any()
             and not np.isfinite([self.position_lower, self.position_upper]).any()
-            and not any(self.ends.values())
+            and not self.moving.any()
         )
 
     def joint(self, j: int) -> Asked:
         """The question of one joint by itself."""
         names = ("velocity", "acceleration", "jerk", "position_lower", "position_upper")
         limits = {name: getattr(self, name)[j : j + 1] for name in names}
-        label = self.labels[j : j + 1]
-        return replace(self, waypoints=self.waypoints[:, j : j + 1], labels=label, **limits)
+        below = None if self.below is None else self.below[j : j + 1]
+        return replace(
+            self,
+            waypoints=self.waypoints[:, j : j + 1],
+            labels=self.labels[j : j + 1],
+            below=below,
+            ends={r: v[j : j + 1] for r, v in self.ends.items()},
+            finish={r: v[j : j + 1] for r, v in self.finish.items()},
+            **limits,
+        )
 
 
 @dataclass(frozen=True)
@@ -95,7 +120,10 @@ class Piece:
 
 @dataclass(frozen=True)
 class Peaks:
-    """Bounds on the true peaks of each joint: ``low`` ≤ peak ≤ ``high``, and the range of q."""
+    """Bounds on the true peaks of each joint: ``low`` ≤ peak ≤ ``high``, and the range of q.
+
+    ``sided_low`` and ``sided_high`` are those below 0 and above 0, shape (2, joints, 3).
+    """
 
     low: Array
     high: Array
@@ -103,6 +131,8 @@ class Peaks:
     top: Array
     jumps: Array
     """Largest jump of velocity and of acceleration at a break, relative, shape (joints, 2)."""
+    sided_low: Array
+    sided_high: Array
 
 
 def segments_of(block: dict[str, Any], points: int) -> int:
@@ -124,16 +154,31 @@ def peaks(asked: Asked, h: Array) -> Peaks:
     """Peaks of every joint, bounded from both sides."""
     low, high, bottom, top, jumps = [], [], [], [], []
     # A joint whose way-points are all one stands still: what the splines show is rounding.
-    still = (np.ptp(asked.waypoints, axis=0) == 0) & (not any(asked.ends.values()))
-    for joint, stands in zip(pieces(asked, h), still, strict=True):
-        values = [np.abs(np.stack(p.at(_PLACES)[1:])).max(axis=1) * (not stands) for p in joint]
+    still = (np.ptp(asked.waypoints, axis=0) == 0) & ~asked.moving
+    sided = np.zeros((2, 2, len(still), 3))
+    for index, (joint, stands) in enumerate(zip(pieces(asked, h), still, strict=True)):
+        signed = [np.stack(p.at(_PLACES)[1:]) * (not stands) for p in joint]
+        values = [np.abs(x).max(axis=1) for x in signed]
+        sided[:, :, index] = _sided(joint, signed)
         positions = np.concatenate([p.at(_PLACES)[0] for p in joint])
         low.append(np.max(values, axis=0))
         high.append(np.max([v * p.excess for v, p in zip(values, joint, strict=True)], axis=0))
         bottom.append(positions.min())
         top.append(positions.max())
         jumps.append(_jumps(joint, low[-1]))
-    return Peaks(*(np.array(x) for x in (low, high, bottom, top, jumps)))
+    return Peaks(*(np.array(x) for x in (low, high, bottom, top, jumps)), *sided)
+
+
+def _sided(joint: list[Piece], signed: list[Array]) -> Array:
+    """Least and largest possible reach below 0 and above 0, shape (2 bounds, 2 sides, 3)."""
+    found = np.zeros((2, 2, 3))
+    for piece, x in zip(joint, signed, strict=True):
+        for side, values in enumerate((-x, x)):
+            top = values.max(axis=1)
+            # The theorem, on the polynomial less the middle of its samples.
+            more = (piece.excess - 1) * (top - values.min(axis=1)) / 2
+            found[:, side] = np.maximum(found[:, side], [top, top + more])
+    return found
 
 
 def _jumps(joint: list[Piece], scale: Array) -> Array:
@@ -150,7 +195,8 @@ def excess(asked: Asked, h: Array) -> tuple[float, float]:
     """Bounds on the largest ratio of any peak to its limit, duration bounds included."""
     found = peaks(asked, h)
     with np.errstate(divide="ignore", invalid="ignore"):
-        ratios = [np.where(x > 0, x / asked.limits, 0.0) for x in (found.low, found.high)]
+        reach = (found.sided_low, found.sided_high)
+        ratios = [np.where(x > 0, x / asked.sides, 0.0) for x in reach]
     least, most = (float(r.max(initial=0.0)) for r in ratios)
     half = np.where(
         np.isfinite(asked.position_upper - asked.position_lower),
@@ -212,10 +258,10 @@ def _times(h: Array) -> Array:
 
 def _joined(asked: Asked, j: int, q: Array, h: Array) -> list[Piece]:
     """Piecewise polynomials by one dense linear system in powers of s."""
-    form = declared(asked.block, len(h), asked.ends)
+    form = declared(asked.block, len(h), asked.ends, asked.finish)
     assert form is not None
     try:
-        c, starts = coefficients(form, q[:, None], h[None])
+        c, starts = coefficients(form.joint(j), q[:, None], h[None])
     except np.linalg.LinAlgError:
         raise NoCurve from None
     return [_polynomial(c[0, a:b, 0], h[k]) for k, (a, b) in enumerate(pairwise(starts))]
@@ -223,19 +269,27 @@ def _joined(asked: Asked, j: int, q: Array, h: Array) -> list[Piece]:
 
 def _cubic(asked: Asked, j: int, q: Array, h: Array) -> list[Piece]:
     (order,) = asked.block.get("end_orders", [1])
-    end = (order, asked.ends.get(order, 0.0))
+    (last,) = asked.block.get("finish_orders", [order])
+    ends = [
+        (r, float(values[r][j]) if r in values else 0.0)
+        for r, values in ((order, asked.ends), (last, asked.finish))
+    ]
     t = _times(h)
-    if len(h) == 1:  # scipy's two-point spline, by Hermite's formula or a straight line
-        if order == 2:
-            return _joined(asked, j, q, h)
-        rows = [[q[0], end[1]], [q[1], end[1]]]
-        return _of_spline(BPoly.from_derivatives(t, rows), 3, t)
-    return _of_spline(CubicSpline(t, q, bc_type=(end, end)), 3, t)
+    if len(h) == 1:  # scipy's two-point spline, by Hermite's formula or as declared
+        if order == last == 1:
+            rows = [[x, v] for x, (_, v) in zip(q, ends, strict=True)]
+            return _of_spline(BPoly.from_derivatives(t, rows), 3, t)
+        return _joined(asked, j, q, h)
+    return _of_spline(CubicSpline(t, q, bc_type=tuple(ends)), 3, t)
 
 
 def _quintic(asked: Asked, j: int, q: Array, h: Array) -> list[Piece]:
-    t, rest = _times(h), [(1, 0.0), (2, 0.0)]
-    return _of_spline(make_interp_spline(t, q, k=5, bc_type=(rest, rest)), 5, t)
+    t = _times(h)
+    ends = [
+        [(r, float(values[r][j]) if r in values else 0.0) for r in (1, 2)]
+        for values in (asked.ends, asked.finish)
+    ]
+    return _of_spline(make_interp_spline(t, q, k=5, bc_type=tuple(ends)), 5, t)
 
 
 def _virtual(asked: Asked, j: int, q: Array, h: Array) -> list[Piece]:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Ends = dict[int, Array]
+"""Derivatives at one end by order, in rad and s, one for each joint."""
 _REST = {3: 1, 5: 2, 7: 3, 9: 4}
 """Derivatives that vanish at every way-point, by degree."""
 
@@ -20,8 +22,19 @@ class Declared:
 
     degrees: tuple[int, ...]
     continuity: tuple[int, ...]
-    prescribed: tuple[tuple[tuple[int, float], ...], ...]
+    prescribed: tuple[tuple[tuple[int, Array | float], ...], ...]
     virtual: tuple[int, ...] = ()
+
+    def joint(self, j: int) -> Declared:
+        """The declaration of one joint by itself."""
+
+        def own(value: Array | float) -> float:
+            each = np.atleast_1d(value)
+            return float(each[j if len(each) > 1 else 0])
+
+        return replace(
+            self, prescribed=tuple(tuple((r, own(v)) for r, v in b) for b in self.prescribed)
+        )
 
     @property
     def breaks(self) -> list[int]:
@@ -29,15 +42,21 @@ class Declared:
         return [b for b in range(len(self.degrees) + 1) if b not in self.virtual]
 
 
-def declared(block: dict[str, Any], segments: int, ends: dict[int, float]) -> Declared | None:
+def declared(
+    block: dict[str, Any], segments: int, ends: Ends, finish: Ends | None = None
+) -> Declared | None:
     """A family of case files in this form; None where it is something else."""
     n = segments
+    last = ends if finish is None else finish
 
     def joined(degrees: Any, continuity: int, orders: Any, virtual: Any = ()) -> Declared:
-        rest = tuple((r, ends.get(r, 0.0)) for r in orders)
         inner = ((),) * (n - 1)
+        start, end = (
+            tuple((r, values.get(r, 0.0)) for r in own)
+            for own, values in ((orders, ends), (block.get("finish_orders", orders), last))
+        )
         return Declared(
-            tuple(degrees), (continuity,) * (n - 1), (rest, *inner, rest), tuple(virtual)
+            tuple(degrees), (continuity,) * (n - 1), (start, *inner, end), tuple(virtual)
         )
 
     match block["family"]:

@@ -15,6 +15,7 @@ from attacks.cases import (
     Drawn,
     Rng,
     draw_asked,
+    ends_in,
     near_limits,
     raw_of,
 )
@@ -75,14 +76,19 @@ def _reword(rng: Rng, raw: dict[str, Any]) -> None:
         raw["units"][key] = str(rng.choice(words))
 
     def said(text: str, unit: str, exact: bool) -> str:
-        if text == "inf":
-            return Bare("inf")
+        if math.isinf(float(text)):
+            return Bare(text)
         digits = f"{float(text) / FACTORS[unit.split('/')[0]]:.6g}"
         return Bare(digits) if exact else digits
 
     exact = bool(rng.random() < 0.5)
+    mixed = bool(rng.random() < 0.3)
     units, way, limits = raw["units"], raw["waypoints"], raw["limits"]
-    rows = [[said(x, units["position"], exact) for x in row] for row in way.pop("joint_rows")]
+    # Printed and exact numbers side by side, as where one entry is a plain 0.
+    rows = [
+        [said(x, units["position"], exact ^ (mixed and bool(rng.random() < 0.3))) for x in row]
+        for row in way.pop("joint_rows")
+    ]
     if rng.random() < 0.3:
         way["waypoint_rows"] = [list(column) for column in zip(*rows, strict=True)]
     else:
@@ -91,17 +97,42 @@ def _reword(rng: Rng, raw: dict[str, Any]) -> None:
         way["labels"] = [f"P{k}" for k in range(len(rows[0]))]
     for key, values in limits.items():
         unit = units["position" if key.startswith("position") else key]
-        limits[key] = [said(x, unit, bool(rng.random() < 0.5)) for x in values]
-        if len(set(limits[key])) == 1 and len(limits[key]) > 1:
-            limits[key] = limits[key][0]
+        limits[key] = [
+            [said(side, unit, bool(rng.random() < 0.5)) for side in x]
+            if isinstance(x, list)
+            else said(x, unit, bool(rng.random() < 0.5))
+            for x in values
+        ]
+        first = limits[key][0]
+        if not isinstance(first, list) and len(values) > 1 and limits[key] == [first] * len(values):
+            limits[key] = first
     for key, values in raw["durations"].items():
         raw["durations"][key] = [said(x, units["time"], exact) for x in values]
-    ends = raw["interpolant"].get("end_derivatives")
-    if ends is not None:
-        raw["interpolant"] = dict(raw["interpolant"])
-        raw["interpolant"]["end_derivatives"] = [
-            said(repr(x), units[DERIVATIVES[r]], True) for r, x in enumerate(ends)
-        ]
+    raw["interpolant"] = ends_said(raw["interpolant"], units, said)
+
+
+def ends_said(block: dict[str, Any], units: dict[str, str], said: Any) -> dict[str, Any]:
+    """A block whose end derivatives, in rad and s, are told in the units of a file."""
+    told = dict(block)
+    first = block.get("end_orders", [1] if block["family"] == "cubic-spline" else [1, 2])
+    for key, orders in (
+        ("end_derivatives", first),
+        ("finish_derivatives", block.get("finish_orders", first)),
+    ):
+        if key in told:
+            told[key] = [
+                _each_said(value, r, units, said)
+                for r, value in zip(orders, told[key], strict=True)
+            ]
+    return told
+
+
+def _each_said(value: Any, order: int, units: dict[str, str], said: Any) -> Any:
+    if isinstance(value, list):
+        return [_each_said(one, order, units, said) for one in value]
+    if order > len(DERIVATIVES):
+        return Bare("0")
+    return said(repr(value), units[DERIVATIVES[order - 1]], True)
 
 
 def _problems(
@@ -121,13 +152,27 @@ def _readings(rng: Rng, raw: dict[str, Any], asked: Asked) -> list[dict[str, Any
     if rng.random() < 0.5:
         return []
     made: list[dict[str, Any]] = [{"id": "as-is", "why": "as printed"}]
-    for kind in rng.permutation(["units", "limits", "durations", "curve", "coupling"])[:2]:
+    many = len(asked.labels)
+    kinds = ["units", "angles", "limits", "sides", "durations", "curve", "ends", "coupling"]
+    for kind in rng.permutation(kinds)[:2]:
         own: dict[str, Any] = {"id": f"r.{kind}", "why": f"another {kind}"}
         match kind:
             case "units":
                 key = str(rng.choice(["velocity", "acceleration"]))
                 other = [u for u in UNITS[key] if u != raw["units"][key]]
                 own["units"] = {key: other[0]}
+            case "angles":
+                own["units"] = {"position": "deg" if raw["units"]["position"] == "rad" else "rad"}
+            case "sides":
+                pairs = [[Bare(f"{-x:.3g}"), f"{y:.3g}"] for x, y in rng.uniform(9, 90, (many, 2))]
+                own["limits"] = {"velocity": pairs}
+            case "ends" if segments_of(asked.block, 9) == 8:
+                start, finish = rng.uniform(-9, 9, (2, many))
+                own["interpolant"] = {
+                    "family": "cubic-spline",
+                    "end_derivatives": [[Bare(f"{x:.3g}") for x in start]],
+                    "finish_derivatives": [[Bare(f"{x:.3g}") for x in finish]],
+                }
             case "limits":
                 own["limits"] = {"acceleration": f"{rng.uniform(30, 90):.3g}", "jerk": Bare("inf")}
             case "durations":
@@ -263,13 +308,19 @@ def asked_of(raw: dict[str, Any], problem: str, reading: str) -> Asked:
             values = [values] * count
         return np.array([float(x) for x in values]) * factor
 
-    def limit(key: str, default: float) -> Array:
+    def limit(key: str, default: float, side: int = 0) -> Array:
         unit = own["position" if key.startswith("position") else key]
-        return each(limits.get(key), len(labels), default, unit)[columns]
+        given = limits.get(key)
+        if isinstance(given, list):
+            given = [(x[1], -float(x[0]))[side] if isinstance(x, list) else x for x in given]
+        return each(given, len(labels), default, unit)[columns]
 
-    orders = block.get("end_orders", [1] if block["family"] == "cubic-spline" else [1, 2])
-    values = block.get("end_derivatives", [])
-    ends = {r: float(x) * own[DERIVATIVES[r - 1]] for r, x in zip(orders, values, strict=False)}
+    below = np.stack([limit(key, np.inf, 1) for key in DERIVATIVES], axis=1)
+    in_si = {r: own[key] for r, key in enumerate(DERIVATIVES, 1)}
+    ends, finish = (
+        {r: v[columns] * in_si.get(r, 1.0) for r, v in end.items()}
+        for end in ends_in(block, len(labels))
+    )
     return Asked(
         block,
         points[:, columns],
@@ -283,4 +334,6 @@ def asked_of(raw: dict[str, Any], problem: str, reading: str) -> Asked:
         tuple(labels[j] for j in columns),
         coupling,
         ends,
+        finish,
+        below,
     )

@@ -9,13 +9,12 @@ from typing import Any
 import numpy as np
 
 from attacks.attack import Attack, demand, keep
-from attacks.cases import FAMILIES, Drawn, Rng, alone, draw_asked, near_limits, raw_of
+from attacks.cases import FAMILIES, Drawn, Rng, alone, draw_asked, near_limits, raw_of, with_ends
 from attacks.curves import Array, Asked, NoCurve, excess, peaks
-from attacks.grammar import FACTORS, asked_of, draw_case
+from attacks.grammar import FACTORS, asked_of, draw_case, ends_said
+from attacks.searches import ROUNDING, judged_alike
 from attacks.toml_text import Bare, toml_text
 
-ROUNDING = 1e-6
-"""What the splines of scipy may be off by, relative: durations differ by at most 1:300 here."""
 TOLERANCE = 1e-9
 """Excess that the judge documents as keeping a limit."""
 SPREAD = 2.0
@@ -63,7 +62,7 @@ def verdict(rng: Rng, folder: Path) -> str | None:
     if found.limits == "undecided":
         # Below, rounding of the way-points alone moves a derivative by a part of its limit.
         noise = 1e-13 * np.abs(asked.waypoints).max() / h.min() ** np.array([1, 2, 3])
-        apart = (least > 1 + 1e-3 or most < 1 - 1e-3) and (noise < 1e-4 * asked.limits).all()
+        apart = (least > 1 + 1e-3 or most < 1 - 1e-3) and (noise < 1e-4 * asked.sides).all()
         demand(not apart, f"undecided where it is clear: {said}")
     jumps = peaks(asked, h).jumps
     if found.verdict == "pass":
@@ -97,16 +96,24 @@ def ratios(rng: Rng, folder: Path) -> str | None:
         j = asked.labels.index(peak.joint)
         r = ("velocity", "acceleration", "jerk").index(peak.quantity)
         low, high = seen.low[j, r], seen.high[j, r]
-        slack = ROUNDING * high + peak.error + 1e-12 * asked.limits[j, r]
+        if asked.sides[0, j, r] != asked.sides[1, j, r]:
+            # Of two sides that differ the judge tells the one that is nearer to its limit.
+            own = int(peak.value > 0)
+            low, high = seen.sided_low[own, j, r], seen.sided_high[own, j, r]
+            shares = seen.sided_low[:, j, r] / asked.sides[:, j, r]
+            nearest = float(shares.max()) * (1 - ROUNDING) - peak.error / peak.limit
+            demand(peak.ratio >= nearest, f"{peak.quantity} at {peak.ratio}, samples {nearest}")
+        slack = ROUNDING * high + peak.error + 1e-12 * asked.sides[:, j, r].max()
         inside = low - slack <= abs(peak.value) <= high + slack
         demand(inside, f"{peak.quantity} {peak.value:.12g}, samples {low:.12g}")
         same = abs(batch[j, r] - peak.ratio) <= 1e-7 * (1 + peak.ratio)
         demand(same, f"the batch says {batch[j, r]!r}, the check {peak.ratio!r}")
         # What the judge says of its own rounding holds for the samples' too.
         slack_of_all = max(slack_of_all, ROUNDING + peak.error / peak.limit)
-    if found.feasible_time is not None and not asked.ends:
+    if found.feasible_time is not None and not asked.moving.any():
         low, _ = excess(asked, h * (found.feasible_time / h.sum()))
         demand(low <= 1 + slack_of_all, f"the feasible time exceeds a limit: {low:.9g}")
+    judged_alike(asked, h, rng, folder)
     return "agrees"
 
 
@@ -120,7 +127,7 @@ def identities(rng: Rng, folder: Path) -> str | None:
         return None
     base = check(_problem(alone(asked)), h)
     kinds = ["time", "angle", "mirror", "shift", "permutation"]
-    if not asked.ends and asked.family != "polynomials":
+    if asked.family != "polynomials" and "finish_orders" not in asked.block:
         kinds.append("reversal")
     kind = str(rng.choice(kinds))
     other, durations = _transformed(rng, kind, asked, h)
@@ -145,14 +152,10 @@ def _worst(found: Any) -> float:
 def _transformed(rng: Rng, kind: str, asked: Asked, h: Array) -> tuple[Asked, Array]:
     if kind == "time":
         c = float(2.0 ** rng.integers(-6, 7))
-        ends = {r: v / c**r for r, v in asked.ends.items()}
-        block = dict(asked.block)
-        if ends:
-            block["end_derivatives"] = [ends[r] for r in sorted(ends)]
+        ends, finish = ({r: v / c**r for r, v in end.items()} for end in (asked.ends, asked.finish))
         moved = replace(
-            asked,
-            block=block,
-            ends=ends,
+            with_ends(asked, ends, finish),
+            below=None if asked.below is None else asked.below / c ** np.array([1, 2, 3]),
             velocity=asked.velocity / c,
             acceleration=asked.acceleration / c**2,
             jerk=asked.jerk / c**3,
@@ -161,9 +164,19 @@ def _transformed(rng: Rng, kind: str, asked: Asked, h: Array) -> tuple[Asked, Ar
         )
         return moved, h * c
     if kind == "reversal":
-        # Each segment's bounds belong to it.
+        # Odd derivatives change sign, and so do their limits; a segment's bounds belong to it.
+        ends, finish = (
+            {r: v * (-1.0) ** r for r, v in end.items()} for end in (asked.finish, asked.ends)
+        )
+        low, high = asked.sides
+        odd = np.array([True, False, True])
+        upper = np.where(odd, low, high)
         return replace(
-            asked,
+            with_ends(asked, ends, finish),
+            below=np.where(odd, high, low),
+            velocity=upper[:, 0],
+            acceleration=upper[:, 1],
+            jerk=upper[:, 2],
             waypoints=asked.waypoints[::-1],
             duration_lower=asked.duration_lower[::-1],
             duration_upper=asked.duration_upper[::-1],
@@ -172,7 +185,10 @@ def _transformed(rng: Rng, kind: str, asked: Asked, h: Array) -> tuple[Asked, Ar
         order = rng.permutation(len(asked.velocity))
         names = ("velocity", "acceleration", "jerk", "position_lower", "position_upper")
         limits = {name: getattr(asked, name)[order] for name in names}
-        return replace(asked, waypoints=asked.waypoints[:, order], **limits), h
+        ends, finish = ({r: v[order] for r, v in end.items()} for end in (asked.ends, asked.finish))
+        below = None if asked.below is None else asked.below[order]
+        way = asked.waypoints[:, order]
+        return replace(with_ends(asked, ends, finish), waypoints=way, below=below, **limits), h
     if kind == "shift":
         by = float(rng.integers(-3, 4))
         return replace(
@@ -183,18 +199,15 @@ def _transformed(rng: Rng, kind: str, asked: Asked, h: Array) -> tuple[Asked, Ar
         ), h
     c = -1.0 if kind == "mirror" else float(2.0 ** rng.integers(-6, 7))
     low, high = asked.position_lower * c, asked.position_upper * c
-    ends = {r: v * c for r, v in asked.ends.items()}
-    block = dict(asked.block)
-    if ends:
-        block["end_derivatives"] = [ends[r] for r in sorted(ends)]
+    ends, finish = ({r: v * c for r, v in end.items()} for end in (asked.ends, asked.finish))
+    below, above = (asked.sides if c > 0 else asked.sides[::-1]) * abs(c)
     return replace(
-        asked,
-        block=block,
-        ends=ends,
+        with_ends(asked, ends, finish),
+        below=below,
         waypoints=asked.waypoints * c,
-        velocity=asked.velocity * abs(c),
-        acceleration=asked.acceleration * abs(c),
-        jerk=asked.jerk * abs(c),
+        velocity=above[:, 0],
+        acceleration=above[:, 1],
+        jerk=above[:, 2],
         position_lower=np.minimum(low, high),
         position_upper=np.maximum(low, high),
     ), h
@@ -270,7 +283,7 @@ def readings(rng: Rng, folder: Path) -> str | None:
         problem = case.problem(*pair)
         for name, mine, theirs in (
             ("way-points", asked.waypoints, problem.waypoints),
-            ("limits", asked.limits, problem.limits.derivatives),
+            ("limits", asked.sides, problem.limits.sides),
             ("lower positions", asked.position_lower, problem.limits.position_lower),
             ("upper positions", asked.position_upper, problem.limits.position_upper),
             ("lower bounds", asked.duration_lower, problem.duration_lower),
@@ -306,9 +319,10 @@ def units(rng: Rng, folder: Path) -> str | None:
     raw = raw_of(asked)
     other = {k: u.replace("rad", "deg") for k, u in raw["units"].items()} | {"time": "ms"}
 
-    def said(values: Any, unit: str) -> list[Bare]:
-        factor = FACTORS[unit.split("/")[0]]
-        return [x if x == "inf" else Bare(repr(float(x) / factor)) for x in values]
+    def said(value: Any, unit: str, _: bool = True) -> Any:
+        if isinstance(value, list):
+            return [said(x, unit) for x in value]
+        return Bare(repr(float(value) / FACTORS[unit.split("/")[0]]))
 
     moved = {**raw, "units": other}
     moved["waypoints"] = {
@@ -319,11 +333,7 @@ def units(rng: Rng, folder: Path) -> str | None:
         for k, v in raw["limits"].items()
     }
     moved["durations"] = {k: said(v, "ms") for k, v in raw["durations"].items()}
-    if asked.ends:
-        moved["interpolant"] = dict(raw["interpolant"])
-        moved["interpolant"]["end_derivatives"] = said(
-            [repr(v) for v in asked.ends.values()], other["velocity"]
-        )
+    moved["interpolant"] = ends_said(raw["interpolant"], other, said)
     text = toml_text(moved)
     keep(folder, case=text, before=toml_text(raw), durations=repr(h.tolist()))
     a = check(_problem(alone(asked)), h)

@@ -87,7 +87,7 @@ def _least(
     if not any_curve:
         return least_declared(asked, seed, known)
     problem = document["problem"]
-    ends: list[float | None] = [None, None]
+    ends: list[Any] = [None, None]
     if "prescribed" in problem:
         form = asked.block["declared"]
         ends = [dict(form.prescribed[k]).get(1) for k in (0, -1)]

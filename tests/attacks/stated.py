@@ -37,9 +37,20 @@ def _real(value: Any, absent: float) -> float:
     return float(Fraction(value))
 
 
+def _each(value: Any, joints: int) -> Array:
+    """A number for all joints, or a list with one for each."""
+    if not isinstance(value, list):
+        return np.full(joints, _real(value, 0.0))
+    if len(value) != joints:
+        raise ValueError(value)
+    return np.array([_real(x, 0.0) for x in value])
+
+
 def _asked(problem: dict[str, Any]) -> Asked:
     way = np.array([[_real(x, 0.0) for x in row] for row in problem["waypoints"]])
-    limits = np.array([[_real(x, np.inf) for x in row] for row in problem["limits"]])
+    pairs = [[x if isinstance(x, list) else [x, x] for x in row] for row in problem["limits"]]
+    below = np.array([[abs(_real(low, -np.inf)) for low, _ in row] for row in pairs])
+    limits = np.array([[_real(high, np.inf) for _, high in row] for row in pairs])
     low, high = (
         np.array([_real(x, side) for x in problem[key]])
         for key, side in (("position_lower", -np.inf), ("position_upper", np.inf))
@@ -50,12 +61,13 @@ def _asked(problem: dict[str, Any]) -> Asked:
         form = Declared(
             tuple(problem["degrees"]),
             tuple(problem["continuity"]),
-            tuple(tuple((r, _real(v, 0.0)) for r, v in b) for b in problem["prescribed"]),
+            tuple(tuple((r, _each(v, way.shape[1])) for r, v in b) for b in problem["prescribed"]),
             tuple(problem["virtual"]),
         )
         block: dict[str, Any] = {"family": "stated", "declared": form}
-        rest = [v for entries in form.prescribed for _, v in entries]
-        ends = {1: 1.0} if any(rest) else {}  # a stretch does not repair such a motion
+        rest = [v for entries in form.prescribed for _, each in entries for v in np.ravel(each)]
+        # Told only so that nothing counts on a stretch: the form itself has the values.
+        ends = {1: np.ones(way.shape[1])} if any(rest) else {}
     elif problem["curve"] == UNIFORM:
         block, ends = {"family": "uniform-cubic-b-spline", "time": "stretched"}, {}
     else:
@@ -63,7 +75,7 @@ def _asked(problem: dict[str, Any]) -> Asked:
     shapes = (way.shape[1], *limits.shape, len(low), len(high), len(last))
     if shapes != (way.shape[1], way.shape[1], 3, way.shape[1], way.shape[1], len(first)):
         raise ValueError(f"shapes {shapes}")
-    return Asked(block, way, *limits.T, low, high, first, last, ends=ends)
+    return Asked(block, way, *limits.T, low, high, first, last, ends=ends, below=below)
 
 
 def claimed(document: dict[str, Any]) -> Array | None:
@@ -115,26 +127,29 @@ def _alone(asked: Asked) -> float:
             q, *values = piece.at(places)
             if q.min() < asked.position_lower[j] or q.max() > asked.position_upper[j]:
                 return np.inf
-            for r, (value, limit) in enumerate(zip(values, asked.limits[j], strict=True), 1):
-                top = float(np.abs(value).max()) * piece.excess
-                if top > 1e-12:
-                    if limit == 0:
-                        return np.inf
-                    h[k] = max(h[k], (top / limit) ** (1 / r))
+            for r, value in enumerate(values, 1):
+                more = (piece.excess - 1) * float(np.abs(value).max())
+                for reach, limit in zip(
+                    (-float(value.min()), float(value.max())), asked.sides[:, j, r - 1], strict=True
+                ):
+                    if reach > 1e-12:
+                        if limit == 0:
+                            return np.inf
+                        h[k] = max(h[k], ((reach + more) / limit) ** (1 / r))
     h = np.maximum(h, asked.duration_lower)
     return float(h.sum()) if (h <= asked.duration_upper).all() else np.inf
 
 
-def least_any(
-    asked: Asked, ends: tuple[float | None, float | None], speeds: Array | None, seed: int
-) -> float:
+def least_any(asked: Asked, ends: tuple[Any, Any], speeds: Array | None, seed: int) -> float:
     """The least total of motions of bounded velocity and acceleration that are found.
 
     Between two way-points with given speeds a joint can go any way between the two that it makes
     by bending one way at full acceleration and then the other, held at its fastest.
     """
     rng = np.random.default_rng(seed)
-    way, v_max, a_max = asked.waypoints, asked.velocity, asked.acceleration
+    # A bound over any curve speaks of the larger side.
+    v_max, a_max, _ = asked.sides.max(axis=0).T
+    way = asked.waypoints
     n, joints = way.shape
     moved = np.ptp(way, axis=0) + 1e-9
     # Where nothing limits the acceleration, one that takes a thousandth of the way is enough.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from pathlib import Path
 
 import numpy as np
@@ -93,6 +94,41 @@ def test_every_family_and_claim_is_drawn() -> None:
     assert {c["quantity"] for one in drawn for c in one.raw["claims"]} == set(CLAIMS)
     for one in drawn[:40]:
         parse_case(one.text, "drawn.toml")
+
+
+def test_ends_sides_and_fences_are_drawn() -> None:
+    """Each at least once in 150 files, and read as a second reading has it."""
+    seen: Counter[str] = Counter()
+    for k in range(150):
+        one = draw_case(np.random.default_rng([4, k]))
+        case = parse_case(one.text, "drawn.toml")
+        for pair, asked in one.asked.items():
+            problem = case.problem(*pair)
+            np.testing.assert_allclose(problem.limits.sides, asked.sides, rtol=1e-14)
+            told = [values for end in (asked.ends, asked.finish) for values in end.values()]
+            seen["a moving end"] += bool(asked.moving.any())
+            seen["joints that differ at an end"] += any(np.ptp(v) > 0 for v in told)
+            seen["another finish"] += any(
+                (asked.finish.get(r, 0.0 * v) != v).any() for r, v in asked.ends.items()
+            )
+            seen["sides"] += bool((asked.sides[0] != asked.sides[1]).any())
+            seen["a side without a limit"] += bool((np.isinf(asked.sides).sum(axis=0) == 1).any())
+            seen["a fence"] += bool(np.isfinite(asked.position_upper).any())
+            seen["half a fence"] += bool(
+                np.isfinite(asked.position_lower).any() and np.isinf(asked.position_upper).any()
+            )
+            curve = problem.curve.piecewise
+            if curve is not None and asked.moving.any():
+                for at, values in ((0, asked.ends), (-1, asked.finish)):
+                    for r, value in curve.prescribed[at]:
+                        np.testing.assert_allclose(value, values.get(r, 0.0), rtol=1e-14)
+        block = one.first.block
+        seen["other orders at the finish"] += "finish_orders" in block
+        rows = one.raw["waypoints"].get("waypoint_rows", [])
+        kinds = [{type(x) for x in row} for row in rows]
+        seen["way-points printed and exact in one row"] += any(len(k) > 1 for k in kinds)
+    assert min(seen.values()) >= 1
+    assert len(seen) == 9
 
 
 def test_damage_is_seeded_and_various() -> None:

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 import trajgap.compare.audits
+import trajgap.heuristics
 import trajgap.nlp
 import trajgap.problem
 from trajgap.compare.cli import output
@@ -29,6 +30,7 @@ pytestmark = pytest.mark.skipif(not available(), reason="children are forked and
 
 Patch = pytest.MonkeyPatch
 CHECK = trajgap.problem.check
+EVALUATE = trajgap.problem.evaluate
 PARSE = trajgap.problem.parse_case
 SOLVE = trajgap.nlp.solve
 
@@ -87,6 +89,58 @@ def degrees_a_little_off(patch: Patch) -> None:
         return Read(PARSE(text, file), '"deg"' in text)
 
     patch.setattr(trajgap.problem, "parse_case", parse)
+
+
+def _posed(patch: Patch, changed: Callable[[Any], Any]) -> None:
+    """Every problem of a case file is another one."""
+
+    class Read:
+        def __init__(self, case: Any) -> None:
+            self.case, self.selections = case, case.selections
+
+        def problem(self, *pair: str) -> Any:
+            return changed(self.case.problem(*pair))
+
+    patch.setattr(trajgap.problem, "parse_case", lambda *given: Read(PARSE(*given)))
+
+
+def sides_are_one_size(patch: Patch) -> None:
+    _posed(patch, lambda problem: replace(problem, limits=problem.limits.hull))
+
+
+def the_finish_is_the_start(patch: Patch) -> None:
+    def changed(problem: Any) -> Any:
+        curve = problem.curve
+        if curve.piecewise is None or curve.virtual:
+            return problem
+        both = (curve.prescribed[0], *curve.prescribed[1:-1], curve.prescribed[0])
+        return replace(problem, curve=replace(curve, prescribed=both))
+
+    _posed(patch, changed)
+
+
+def positions_at_way_points(patch: Patch) -> None:
+    """The reach that searches see is that of the way-points alone."""
+
+    def evaluate(problem: Any, h: Any) -> Any:
+        free = problem.limits.with_positions(*np.full((2, 1), np.inf) * [[-1], [1]])
+        found = EVALUATE(replace(problem, limits=free), h)
+        low, high = problem.limits.position_lower, problem.limits.position_upper
+        half = np.where(np.isfinite(high - low), (high - low) / 2, 1.0)
+        way = problem.waypoints
+        over = 1 + np.maximum(low - way.min(axis=0), way.max(axis=0) - high) / half
+        reach = np.broadcast_to(over, (len(h), way.shape[1]))
+        return replace(found, _reach=lambda: reach)
+
+    patch.setattr(trajgap.problem, "evaluate", evaluate)
+
+
+def nothing_is_penalised(patch: Patch) -> None:
+    class Penalty(trajgap.heuristics.DeathPenalty):
+        def __call__(self, h: Any) -> Any:
+            return np.sum(h, axis=1)
+
+    patch.setattr(trajgap.heuristics, "DeathPenalty", Penalty)
 
 
 def everything_breaks(patch: Patch) -> None:
@@ -193,6 +247,11 @@ PLANTED: list[tuple[str, Callable[[Patch], None], int]] = [
     ("verdicts", check_passes, 20),
     ("verdicts", check_violates, 20),
     ("peaks", peaks_one_per_mille_low, 10),
+    ("peaks", the_finish_is_the_start, 80),
+    ("peaks", positions_at_way_points, 10),
+    ("peaks", nothing_is_penalised, 10),
+    ("readings", sides_are_one_size, 20),
+    ("readings", the_finish_is_the_start, 80),
     ("identities", joint_one_by_a_second, 20),
     ("units", degrees_a_little_off, 20),
     ("readings", degrees_a_little_off, 20),

@@ -94,7 +94,7 @@ def _improvement(study: Study, claim: ImprovementClaim) -> Iterator[Finding]:
         shows = share_of_pairs(slower, faster, least)
         low, high = share_interval(slower, faster, least)
         # Resampling the same runs shows no event that none of them shows.
-        sure = f"95 % interval {_percent(low)} to {_percent(high)}"
+        sure = interval_words(low, high)
         sure = f"in none of the {slower.size * faster.size} pairs" if shows == 0 else sure
         luck = share_of_luck(slower, least)
         each = {
@@ -119,6 +119,13 @@ def _improvement(study: Study, claim: ImprovementClaim) -> Iterator[Finding]:
         median = 1 - spread(faster).median / spread(slower).median
         found = _found(study, "TG401", claim, pid, f"{claim.percent} %")
         yield found(message=message, computed=f"median {100 * median:.3g} %")
+
+
+def interval_words(low: float, high: float) -> str:
+    """A 95 % interval of a probability, or that there is none."""
+    if np.isnan(low) or np.isnan(high):
+        return "too few runs with an answer for an interval"
+    return f"95 % interval {_percent(low)} to {_percent(high)}"
 
 
 def _at(name: str | None, setting: str) -> str:
@@ -154,8 +161,8 @@ def _compared(study: Study, claim: StatementClaim, other: str) -> Iterator[Findi
             message=(
                 f"In {study.seeds} independent runs each under the listed choices, {own} reaches "
                 f"{spread(totals[own])} and {other} {spread(totals[other])}; one run of {own} is "
-                f"no longer than one of {other} with probability {_percent(shorter)} (95 % "
-                f"interval {_percent(low)} to {_percent(high)}): {settled}."
+                f"no longer than one of {other} with probability {_percent(shorter)} "
+                f"({interval_words(low, high)}): {settled}."
             ),
         )
 

@@ -148,14 +148,16 @@ def _local_motion(asked: FreeQuestion, durations: Array) -> Motion | None:
     limits = np.array(
         [[np.inf if x is None else float(x) for x in asked.tight[j]] for j in bent]
     ).reshape(-1, 2)
-    ends = asked.ends
+    ends = [
+        [np.nan if v is None else float(v) for v in (side[j] for j in bent)] for side in asked.ends
+    ]
     core = LocalQuestion(
         np.array([[float(row[j]) for j in bent] for row in asked.steps]),
         limits[:, 0],
         limits[:, 1],
         np.array([float(asked.floor(k)) for k in range(len(asked.steps))]),
         np.array([np.inf if x is None else float(x) for x in asked.longest]),
-        (None if ends[0] is None else float(ends[0]), None if ends[1] is None else float(ends[1])),
+        np.array(ends).reshape(2, -1),
     )
     answer = local_optimum(core, durations) if bent else None
     if answer is None:

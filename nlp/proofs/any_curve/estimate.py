@@ -9,7 +9,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from ....problem import Problem, TrajgapError
 from ...optimum import Evidence, time_up
-from ..exact import JOINTS_APART, one_velocity
 from .local import KEPT, LocalQuestion, local_optimum, starting_points
 from .reach import profile
 
@@ -127,12 +126,13 @@ def estimate_any_curve(
     count = 0
     velocities = np.full(problem.waypoints.shape, np.nan)
     moving = ~((question.steps == 0).all(axis=1) & (question.lower == 0))
-    first, last = question.ends
+    first, last = question.ends[:, bounded]
     if bounded.any() and not moving.any():
-        if first is not None and last is not None and first != last:
+        if (np.abs(first - last) > 0).any():
             still = "nothing moves between the way-points, but the two end velocities differ"
             return AnyCurveEstimate(None, why=still)
-        velocities[:, np.flatnonzero(matter)[bounded]] = first or last or 0.0
+        still_speed = np.nan_to_num(np.where(np.isfinite(first), first, last))
+        velocities[:, np.flatnonzero(matter)[bounded]] = still_speed
     elif bounded.any():
         core = replace(
             question,
@@ -141,6 +141,7 @@ def estimate_any_curve(
             acceleration=question.acceleration[bounded],
             lower=question.lower[moving],
             upper=question.upper[moving],
+            ends=question.ends[:, bounded],
         )
         points = starting_points(core, starts, np.random.default_rng(seed), given[:, moving])
         answers, count = [], 0
@@ -187,15 +188,19 @@ def _initial(problem: Problem, initial: ArrayLike | None) -> NDArray[np.float64]
     return _merge(problem, h)
 
 
-def _ends(problem: Problem) -> tuple[float | None, float | None]:
-    start, end = map(one_velocity, problem.curve.ends)
-    return start, end
+def _ends(problem: Problem) -> NDArray[np.float64]:
+    """Velocities prescribed at start and end, shape (2, joints); NaN where they are free."""
+    found = np.full((2, problem.waypoints.shape[1]), np.nan)
+    for side, end in enumerate(problem.curve.ends):
+        if 1 in dict(end):
+            found[side] = dict(end)[1]
+    return found
 
 
 def _restless(problem: Problem) -> NDArray[np.bool_]:
     """Joints that cannot simply stay where they are."""
     moves = np.ptp(problem.waypoints, axis=0) > 0
-    return np.asarray(moves | any(v not in (None, 0.0) for v in _ends(problem)))
+    return np.asarray(moves | (np.nan_to_num(_ends(problem)) != 0).any(axis=0))
 
 
 def _matter(problem: Problem) -> NDArray[np.bool_]:
@@ -206,8 +211,6 @@ def _matter(problem: Problem) -> NDArray[np.bool_]:
 
 def _not_covered(problem: Problem) -> str | None:
     """The reason why there is no value, as far as it can be told before solving."""
-    if problem.curve.told_joints is not None:
-        return JOINTS_APART
     limits, restless = problem.limits, _restless(problem)
     if limits.uneven:
         return "lower and upper limits differ; this optimum is computed within equal ones only"
@@ -220,7 +223,7 @@ def _not_covered(problem: Problem) -> str | None:
     if not _matter(problem).any():
         return "nothing that moves is limited" if restless.any() else "nothing moves"
     for end, v in zip(("start", "end"), _ends(problem), strict=True):
-        fast = np.flatnonzero(abs(v or 0.0) > limits.velocity)
+        fast = np.flatnonzero(np.abs(v) > limits.velocity)
         if fast.size:
             joint = problem.joints[fast[0]]
             return f"the velocity prescribed at the {end} exceeds the limit of joint {joint}"
@@ -241,7 +244,7 @@ def _pose(problem: Problem, matter: NDArray[np.bool_]) -> LocalQuestion:
             _merge(problem, problem.duration_lower), (np.abs(steps) / velocity).max(axis=1)
         ),
         upper=_merge(problem, problem.duration_upper),
-        ends=_ends(problem),
+        ends=_ends(problem)[:, matter],
     )
 
 
@@ -279,7 +282,7 @@ def _not_attained(question: LocalQuestion, durations: NDArray[np.float64]) -> st
         steps = question.steps[:, j]
         full = np.abs(steps) >= question.velocity[j] * durations * (1 - KEPT)
         wanted = np.where(full, np.sign(steps) * question.velocity[j], np.nan)
-        first, last = (np.nan if end is None else end for end in question.ends)
+        first, last = question.ends[:, j]
         before, after = np.append(first, wanted), np.append(wanted, last)
         if (np.abs(before - after) > KEPT * question.velocity[j]).any():
             return "only velocity is limited: it would have to jump between its limits"

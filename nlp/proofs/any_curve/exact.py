@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from ..exact import ExactProblem, Real, one_velocity
+from ..exact import ExactProblem, Real
 
 _STRETCHES = (Fraction(0), *(Fraction(1, 10**k) for k in range(13, 6, -1)))
 """Shares by which a motion is stretched until it is feasible, as in `answer.prove_feasible`."""
@@ -36,8 +36,8 @@ class FreeQuestion:
         limits, for the lower bound and for answers.
     shortest, longest : tuple of Fraction or None
         Duration bounds between way-points, s.
-    ends : tuple of Fraction or None
-        Velocities prescribed at start and end; None if free.
+    ends : tuple of tuple of Fraction or None
+        [0 start, 1 end][joint]: velocities prescribed there; None if free.
     """
 
     joints: tuple[int, ...]
@@ -46,7 +46,13 @@ class FreeQuestion:
     tight: tuple[tuple[Number, Number], ...]
     shortest: tuple[Fraction, ...]
     longest: tuple[Number, ...]
-    ends: tuple[Number, Number]
+    ends: tuple[tuple[Number, ...], tuple[Number, ...]]
+
+    def end(self, waypoint: int, joint: int) -> Number:
+        """Velocity prescribed at a way-point; None if it is free there."""
+        if waypoint == 0:
+            return self.ends[0][joint]
+        return self.ends[1][joint] if waypoint == len(self.steps) else None
 
     def speed(self, joint: int, cap: Fraction) -> Fraction:
         """Bound on the speed of a joint while the total is below ``cap``."""
@@ -54,7 +60,7 @@ class FreeQuestion:
         if velocity is not None:
             return velocity
         assert acceleration is not None
-        start = min(abs(v) for v in self.ends if v is not None)
+        start = min(abs(v) for v in (side[joint] for side in self.ends) if v is not None)
         return start + acceleration * cap
 
     def floor(self, segment: int) -> Fraction:
@@ -65,12 +71,6 @@ class FreeQuestion:
             if velocity is not None
         ]
         return max([self.shortest[segment], *ways])
-
-
-def ends_of(problem: ExactProblem) -> tuple[Number, Number]:
-    """Velocities that the curve prescribes at its ends; None if free."""
-    start, end = map(one_velocity, problem.curve.ends)
-    return None if start is None else Fraction(start), None if end is None else Fraction(end)
 
 
 def question(problem: ExactProblem) -> FreeQuestion:
@@ -86,7 +86,6 @@ def question(problem: ExactProblem) -> FreeQuestion:
     -------
     FreeQuestion
     """
-    ends = ends_of(problem)
     joints = [j for j in _restless(problem) if any(problem.limits[j][:2])]
     breaks = problem.curve.waypoint_breaks
     spans = [range(a, b) for a, b in pairwise(breaks)]
@@ -109,15 +108,18 @@ def question(problem: ExactProblem) -> FreeQuestion:
         limits(lambda x: x.low),
         tuple(sum((problem.duration_lower[k] for k in s), Fraction(0)) for s in spans),
         tuple(longest(s) for s in spans),
-        ends,
+        (
+            tuple(problem.end_velocities(0)[j] for j in joints),
+            tuple(problem.end_velocities(1)[j] for j in joints),
+        ),
     )
 
 
 def _restless(problem: ExactProblem) -> list[int]:
     """Joints that cannot simply stay where they are."""
-    pushed = any(v not in (None, 0) for v in ends_of(problem))
+    given = list(zip(*map(problem.end_velocities, (0, 1)), strict=True))
     columns = list(zip(*problem.waypoints, strict=True))
-    return [j for j, column in enumerate(columns) if pushed or len(set(column)) > 1]
+    return [j for j, column in enumerate(columns) if any(given[j]) or len(set(column)) > 1]
 
 
 def missing(problem: ExactProblem) -> str | None:
@@ -133,8 +135,10 @@ def missing(problem: ExactProblem) -> str | None:
     asked = question(problem)
     if not asked.joints:
         return "nothing that moves is limited"
-    given = [abs(v) for v in asked.ends if v is not None]
-    for j, (velocity, _), (tight, _) in zip(asked.joints, asked.loose, asked.tight, strict=True):
+    for j, (velocity, _), (tight, _), *ends in zip(
+        asked.joints, asked.loose, asked.tight, *asked.ends, strict=True
+    ):
+        given = [abs(v) for v in ends if v is not None]
         if velocity is None and not given:
             return f"joint {problem.joints[j]} has no velocity limit, and its ends are free"
         if tight is not None and any(v > tight for v in given):
@@ -210,8 +214,8 @@ def keeps_limits(
             ):
                 return False
         if acceleration is not None:
-            for at, end in ((0, asked.ends[0]), (-1, asked.ends[1])):
-                if end is not None and speeds[at][j] != end:
+            for at, side in zip((0, -1), asked.ends, strict=True):
+                if side[j] is not None and speeds[at][j] != side[j]:
                     return False
     return True
 
@@ -242,10 +246,10 @@ def prove_motion(
         h = [x if top is None else min(x, top) for x, top in zip(h, asked.longest, strict=True)]
         rows = []
         for at, row in enumerate(speeds):
-            end = asked.ends[0] if at == 0 else asked.ends[1] if at == len(h) else None
-            limits = (velocity for velocity, _ in asked.tight)
-            pairs = zip(row, limits, strict=True)
-            rows.append(tuple(_speed(end, v, stretch, limit) for v, limit in pairs))
+            each = enumerate(zip(row, asked.tight, strict=True))
+            rows.append(
+                tuple(_speed(asked.end(at, j), v, stretch, limit) for j, (v, (limit, _)) in each)
+            )
         if keeps_limits(asked, h, rows):
             return tuple(h), tuple(rows)
     return None

@@ -32,8 +32,8 @@ class LocalQuestion:
         Limits; rad/s, rad/s².
     lower, upper : ndarray, shape (segments,)
         Duration bounds, s.
-    ends : tuple
-        Velocities prescribed at start and end, rad/s; None if free.
+    ends : ndarray, shape (2, joints)
+        Velocities prescribed at start and end, rad/s; NaN if free.
     """
 
     steps: NDArray[np.float64]
@@ -41,7 +41,7 @@ class LocalQuestion:
     acceleration: NDArray[np.float64]
     lower: NDArray[np.float64]
     upper: NDArray[np.float64]
-    ends: tuple[float | None, float | None]
+    ends: NDArray[np.float64]
 
 
 def starting_points(
@@ -113,9 +113,10 @@ def local_optimum(
     low = np.maximum(question.lower, 1e-6 * time_unit) / time_unit
     v = _slopes(steps, h, cap)
     v_low, v_high = np.tile(-cap, (n + 1, 1)), np.tile(cap, (n + 1, 1))
-    for at, end in ((0, question.ends[0]), (n, question.ends[1])):
-        if end is not None:
-            v[at] = v_low[at] = v_high[at] = end * time_unit / angle
+    for at, end in zip((0, n), question.ends, strict=True):
+        told = np.isfinite(end)
+        for values in (v, v_low, v_high):
+            values[at, told] = (end * time_unit / angle)[told]
     up = np.minimum(cap, (v[:-1] + v[1:] + a * h[:, None]) / 2)
     down = np.minimum(cap, (-v[:-1] - v[1:] + a * h[:, None]) / 2)
     tall = np.tile(cap, (n, 1)).ravel("F")
@@ -157,9 +158,8 @@ def _repaired(
 
     def stretched(c: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         w = np.clip(v / c, -question.velocity, question.velocity)
-        for at, end in ((0, question.ends[0]), (-1, question.ends[1])):
-            if end is not None:
-                w[at] = end
+        for at, end in zip((0, -1), question.ends, strict=True):
+            w[at] = np.where(np.isfinite(end), end, w[at])
         return h * c, w
 
     def keeps(c: float) -> bool:

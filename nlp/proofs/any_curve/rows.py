@@ -128,6 +128,6 @@ def bound(
     for factor, (low, high) in zip(times, box, strict=True):
         total += factor * (low if factor > 0 else high)
     for (at, joint), slope in slopes.items():
-        end = asked.ends[0] if at == 0 else asked.ends[1] if at == len(box) else None
+        end = asked.end(at, joint)
         total += slope * end if end is not None else -abs(slope) * speeds[joint]
     return total

@@ -52,7 +52,7 @@ def floats(asked: FreeQuestion, speeds: tuple[Fraction, ...], time: float) -> Fl
     angle = np.abs(steps).max(axis=0)
     a = np.array([np.nan if x is None else float(x) for _, x in asked.loose])
     angle = np.where(angle > 0, angle, np.where(np.isnan(a), 1.0, a) * time**2)
-    ends = np.array([[np.nan if x is None else float(x)] * len(a) for x in asked.ends])
+    ends = np.array([[np.nan if x is None else float(x) for x in side] for side in asked.ends])
     return Floats(
         np.abs(steps) / angle,
         np.where(steps < 0, -1.0, 1.0),

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from support.studies import hurried
 from trajgap.compare.audits.replay_settings import DESIGN, LISTED, spread_settings
-from trajgap.compare.audits.rules.replays import _typical, judge_replays
+from trajgap.compare.audits.rules.replays import _typical, interval_words, judge_replays
 from trajgap.compare.audits.study import Study
 from trajgap.compare.documents import ClaimVerdict, Severity
 from trajgap.compare.gaps import share_interval, share_of_pairs, spread
@@ -59,6 +59,14 @@ def test_the_interval_of_a_probability_is_that_of_independent_runs() -> None:
         held += low <= truth <= high
     assert held >= 50
     assert np.isnan(share_interval(np.array([np.inf, np.inf]), np.ones(2), 0.1)).all()
+
+
+def test_too_few_runs_with_an_answer_have_no_interval() -> None:
+    """A quarter of the samples of these two has no answer at all: no warning, and words for it."""
+    low, high = share_interval(np.array([1.0, np.inf]), np.array([0.9, 0.95]), 0.08)
+    assert np.isnan([low, high]).all()
+    assert interval_words(low, high) == "too few runs with an answer for an interval"
+    assert interval_words(0.25, 0.5) == "95 % interval 25 % to 50 %"
 
 
 def test_replays_inform_and_judge_nothing() -> None:

@@ -1,0 +1,250 @@
+"""Bounds over any curve where joints start or finish in motion, each in its own."""
+
+from __future__ import annotations
+
+import copy
+import json
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from support.any_curve_proofs import certify_any, proved
+from support.certificate_kinds import KINDS, text
+from trajgap.nlp.proofs.any_curve.estimate import estimate_any_curve
+from trajgap.nlp.proofs.certifiers import certify, covered
+from trajgap.nlp.proofs.document import certificate, sealed
+from trajgap.nlp.proofs.exact import exact_problem, printed_problem
+from trajgap.nlp.proofs.outcome import Certified, Outcome
+from trajgap.problem import Array, Limits, Problem, TrajgapError, cubic_spline, parse_case
+from trajgap.verify import Subject
+from trajgap.verify import verify_certificate as verify
+
+WAY = np.array([[0.25, -0.5], [1.25, -1.0], [0.5, -0.25]])
+V, A = np.array([1.5, 1.25]), np.array([4.0, 2.5])
+START, FINISH = (1.0, -0.25), (0.0, 0.75)
+
+
+def posed(
+    start: tuple[float, ...] = START,
+    finish: tuple[float, ...] = FINISH,
+    way: Array = WAY,
+    v: Array = V,
+    a: Array = A,
+) -> Problem:
+    curve = cubic_spline(len(way) - 1, ((1, start),), ((1, finish),))
+    return Problem(way, Limits(v, a), curve, joints=("a", "b")[: way.shape[1]])
+
+
+@cache
+def found() -> Certified:
+    return certify_any(exact_problem(posed()), gap=1e-5, seconds=60)
+
+
+def within(d: float, h: Array, v0: Array, v1: Array, top: float, bend: float) -> Any:
+    """Whether a way is gone in time h, from the area below the fastest velocities there are."""
+
+    def furthest(b: Array, e: Array) -> Array:
+        peak = (bend * h + b + e) / 2
+        cut = np.maximum(peak - top, 0.0)
+        return (2 * peak**2 - b**2 - e**2) / (2 * bend) - cut**2 / bend
+
+    room = np.abs(v1 - v0) <= bend * h
+    return room & (d <= furthest(v0, v1)) & (-d <= furthest(-v0, -v1))
+
+
+def best_of_a_grid(start: tuple[float, ...], finish: tuple[float, ...]) -> float:
+    """Least total over durations and speeds half-way: each of the two joints by itself."""
+    h = np.linspace(0.3, 2.6, 231)
+    first, last = (np.zeros((h.size, h.size), dtype=bool) for _ in range(2))
+    for j, held in enumerate((first, last)):
+        for speed in np.linspace(-V[j], V[j], 601):
+            d = np.diff(WAY[:, j])
+            one = within(d[0], h, np.array(start[j]), speed, V[j], A[j])
+            two = within(d[1], h, speed, np.array(finish[j]), V[j], A[j])
+            held |= one[:, None] & two[None, :]
+    totals = (h[:, None] + h[None, :])[first & last]
+    return float(totals.min())
+
+
+def test_a_joint_that_starts_in_motion_brakes_in_closed_form() -> None:
+    """Up to a peak p with p² = Ad + v²/2, in (2p − v)/A; another joint has another start."""
+    d, a, v0 = 1.0, 2.0, np.array([0.6, -0.4])
+    way = np.array([[0.0, 3.0], [d, 3.0 + d]])
+    need = (2 * np.sqrt(a * d + v0**2 / 2) - v0) / a
+    result = certify_any(
+        posed(tuple(v0), (0.0, 0.0), way, np.full(2, 9.0), np.full(2, a)), gap=1e-8, seconds=20
+    )
+    proved(result)
+    assert result.outcome is Outcome.CERTIFIED
+    assert float(result.lower) <= need.max() * (1 + 1e-12)
+    assert float(result.upper or 0) >= need.max() * (1 - 1e-12)
+
+
+def test_a_dense_grid_of_durations_and_speeds_agrees() -> None:
+    result = found()
+    proved(result)
+    assert result.outcome is Outcome.CERTIFIED
+    best = best_of_a_grid(START, FINISH)
+    assert float(result.lower) <= best <= 1.03 * float(result.upper or 0)
+    # Bringing both to rest, or exchanging the joints' ends, is another question.
+    for other in (((0.0, 0.0), (0.0, 0.0)), (START[::-1], FINISH[::-1])):
+        assert abs(best_of_a_grid(*other) / best - 1) > 0.02
+
+
+def test_joints_in_another_order_time_run_backwards_and_mirrors() -> None:
+    lower = float(found().lower)
+    backwards = posed(tuple(-x for x in FINISH), tuple(-x for x in START), WAY[::-1])
+    mirrored = posed(tuple(-x for x in START), tuple(-x for x in FINISH), -WAY)
+    exchanged = posed(START[::-1], FINISH[::-1], WAY[:, ::-1], V[::-1], A[::-1])
+    for problem in (backwards, mirrored, exchanged):
+        result = certify_any(problem, gap=1e-5, seconds=60)
+        assert float(result.lower) == pytest.approx(lower, rel=3e-5)
+
+
+def test_a_bound_within_the_larger_sides_keeps_the_ends() -> None:
+    uneven = Limits([[-1.5, 1.0], [-1.25, 1.25]], A)
+    problem = Problem(WAY, uneven, posed().curve)
+    result = certify_any(problem, gap=1e-5, seconds=60)
+    proved(result)
+    assert result.upper is None
+    assert float(result.lower) == pytest.approx(float(found().lower), rel=3e-5)
+
+
+def test_an_estimate_knows_the_ends_of_each_joint() -> None:
+    seen = estimate_any_curve(posed())
+    assert seen.total_time == pytest.approx(float(found().upper or 0), rel=1e-5)
+    assert seen.nodal_velocities is not None
+    np.testing.assert_allclose(seen.nodal_velocities[[0, -1]], [START, FINISH])
+    fast = estimate_any_curve(posed(start=(0.0, 1.3)))
+    assert fast.why == "the velocity prescribed at the start exceeds the limit of joint b"
+    with pytest.raises(TrajgapError, match="exceeds the limit of joint b"):
+        certify_any(posed(start=(0.0, 1.3)))
+    still = posed((0.5, 0.5), (0.5, -0.5), np.zeros((2, 2)))
+    assert "the two end velocities differ" in str(estimate_any_curve(still).why)
+
+
+# --- forged ---------------------------------------------------------------------------------------
+
+
+def without_answer() -> dict[str, Any]:
+    data = copy.deepcopy(certificate(found()))
+    data["claim"] |= {"upper": None, "durations": None, "speeds": None}
+    return data
+
+
+def test_the_bound_alone_proves_and_with_other_ends_only_what_is_true() -> None:
+    assert verify(sealed(without_answer())).proves
+    rng = np.random.default_rng(4)
+    refused, proves = 0, 0
+    for trial in range(24):
+        data = without_answer()
+        ends = np.array([START, FINISH])
+        side, joint = divmod(trial % 4, 2)
+        ends[side, joint] = round(float(rng.uniform(-1.2, 1.2)), 3)
+        for at, own in ((0, ends[0]), (-1, ends[1])):
+            data["problem"]["prescribed"][at] = [[1, [repr(float(x)) for x in own]]]
+        verdict = verify(sealed(data))
+        proves += verdict.proves
+        refused += not verdict.proves
+        if verdict.proves:
+            own = (tuple(ends[0].tolist()), tuple(ends[1].tolist()))
+            # The grid lies above the truth by a few per cent, the estimate by rounding.
+            shown = estimate_any_curve(posed(*own)).total_time
+            assert shown is not None
+            assert float(verdict.lower or 0) <= min(shown * (1 + 1e-9), best_of_a_grid(*own))
+    assert refused >= 3
+    assert proves >= 3
+
+
+def test_exchanged_ends_are_refused() -> None:
+    for at in (0, -1):
+        data = copy.deepcopy(certificate(found()))
+        data["problem"]["prescribed"][at][0][1].reverse()
+        assert not verify(sealed(data)).proves
+
+
+@pytest.mark.parametrize(
+    "value", [["0.5"], ["0.5", "0.5", "0.5"], [], [["0.5"], "1"], ["0.5", None], [0.5, 0.25], None]
+)
+def test_values_that_are_not_one_for_each_joint_are_refused(value: Any) -> None:
+    data = certificate(found())
+    data["problem"]["prescribed"][0][0][1] = value
+    verdict = verify(sealed(data))
+    assert not verdict.proves
+    assert "prescribed" in verdict.reason or "number" in verdict.reason
+
+
+@pytest.mark.parametrize("kind", list(KINDS))
+def test_no_proof_of_a_declared_curve_takes_ends_in_motion(kind: str) -> None:
+    data = json.loads(text(kind))
+    if "prescribed" not in data["problem"]:
+        assert kind == "stretched"
+        return
+    assert verify(data).subject is Subject.DECLARED
+    joints = len(data["problem"]["joints"])
+    for at in (0, -1):
+        for k, (_, value) in enumerate(data["problem"]["prescribed"][at]):
+            listed = copy.deepcopy(data)
+            listed["problem"]["prescribed"][at][k][1] = [value] * joints
+            assert verify(sealed(listed)).proves, "zeros for each joint are the same zeros"
+            for forged in ("0.001", ["0"] * (joints - 1) + ["0.001"]):
+                moving = copy.deepcopy(data)
+                moving["problem"]["prescribed"][at][k][1] = forged
+                assert not verify(sealed(moving)).proves
+
+
+# --- what is said, and printed digits -------------------------------------------------------------
+
+CASE = """
+format = 1
+id = "moving"
+title = "Moving"
+source = { year = 2020 }
+robot = { name = "arm", joints = ["a", "b"] }
+units = { position = "deg", velocity = "deg/s", acceleration = "deg/s^2", time = "s" }
+waypoints = { joint_rows = [["0", "30", "10"], ["5", "-4", "8"]] }
+limits = { velocity = [60, 55], acceleration = [200, 150] }
+interpolant = { family = "cubic-spline", end_derivatives = [[12.1, -7]], finish_derivatives = [0] }
+"""
+
+
+def test_printed_ends_are_exact_in_the_unit_of_the_way_points() -> None:
+    statement = parse_case(CASE, "moving.toml").statement()
+    exact = printed_problem(statement)
+    assert [str(v) for v in exact.end_velocities(0)] == ["121/10", "-7"]
+    assert [str(v) for v in exact.end_velocities(1)] == ["0", "0"]
+    assert [str(v) for v in exact.joint(1).end_velocities(0)] == ["-7"]
+    result = certify_any(exact, gap=1e-4, seconds=30)
+    proved(result)
+    # The same in radians, from floats.
+    other = certify_any(statement.problem(), gap=1e-4, seconds=30)
+    assert float(other.lower) == pytest.approx(float(result.lower), rel=3e-4)
+    assert certificate(result)["problem"]["prescribed"][0] == [[1, ["12.1", "-7"]]]
+
+
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        (("12.1", '"12.1"'), "stands for an interval"),
+        (('velocity = "deg/s"', 'velocity = "rad/s"'), "another unit of angle"),
+    ],
+)
+def test_ends_that_no_certificate_states_exactly(change: tuple[str, str], why: str) -> None:
+    statement = parse_case(CASE.replace(*change), "moving.toml").statement()
+    with pytest.raises(TrajgapError, match=why):
+        printed_problem(statement)
+
+
+def test_a_declared_curve_in_motion_is_refused_in_one_sentence() -> None:
+    for problem in (exact_problem(posed()), exact_problem(posed((0.5, 0.5), (0.5, 0.5)))):
+        why = covered(problem)
+        assert why is not None
+        assert why.endswith(
+            "prescribes derivatives other than 0, and no proof covers such a curve yet; what "
+            "--any-curve proves over any curve is a lower bound for it"
+        )
+        with pytest.raises(TrajgapError, match="no proof covers such a curve yet"):
+            certify(problem, seconds=1.0)
+        with pytest.raises(TrajgapError, match="no proof covers such a curve yet"):
+            problem.in_units([0, 0], 0)
