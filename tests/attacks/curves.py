@@ -116,6 +116,13 @@ class Piece:
 
     at: Derivatives
     excess: float
+    near: Array = field(default_factory=lambda: np.empty(0))
+    """Places beside the Chebyshev points, where derivatives change faster than these tell."""
+
+    @property
+    def samples(self) -> tuple[Array, Array, Array, Array]:
+        """Position, velocity, acceleration and jerk at all its places."""
+        return self.at(np.concatenate([_PLACES, self.near]))
 
 
 @dataclass(frozen=True)
@@ -157,10 +164,11 @@ def peaks(asked: Asked, h: Array) -> Peaks:
     still = (np.ptp(asked.waypoints, axis=0) == 0) & ~asked.moving
     sided = np.zeros((2, 2, len(still), 3))
     for index, (joint, stands) in enumerate(zip(pieces(asked, h), still, strict=True)):
-        signed = [np.stack(p.at(_PLACES)[1:]) * (not stands) for p in joint]
+        sampled = [p.samples for p in joint]
+        signed = [np.stack(x[1:]) * (not stands) for x in sampled]
         values = [np.abs(x).max(axis=1) for x in signed]
         sided[:, :, index] = _sided(joint, signed)
-        positions = np.concatenate([p.at(_PLACES)[0] for p in joint])
+        positions = np.concatenate([x[0] for x in sampled])
         low.append(np.max(values, axis=0))
         high.append(np.max([v * p.excess for v, p in zip(values, joint, strict=True)], axis=0))
         bottom.append(positions.min())
@@ -357,7 +365,11 @@ def _by_clock(curve: Piece, clock: Piece) -> Piece:
         turned = q3 * t1 - q1 * t3
         return q, q1 / t1, turn / t1**3, (turned * t1 - 3 * turn * t2) / t1**5
 
-    return Piece(at, RATIONAL)
+    # About its least value dt/de is m + c (e − e₀)²: jerk, with its fifth power below, peaks on a
+    # stretch of √(m/c), which may be far narrower than the points between which it lies.
+    width = np.sqrt(2.0 * inner.min() / abs(third[0])) if third[0] else 0.0
+    near = np.clip(turning + width * np.linspace(-5.0, 5.0, 2001), 0.0, 1.0)
+    return Piece(at, RATIONAL, near if 0.0 < turning < 1.0 else np.empty(0))
 
 
 def _clamped(asked: Asked, j: int, q: Array, h: Array) -> list[Piece]:

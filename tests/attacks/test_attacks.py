@@ -11,7 +11,7 @@ from trajgap.problem import parse_case
 from trajgap.problem.cases import declaration
 from trajgap.problem.cases.claim import QUANTITY_KINDS
 
-from attacks import faults, true_proofs
+from attacks import curves, faults, true_proofs
 from attacks.attack import Attack
 from attacks.cases import CLAIMS, FAMILIES
 from attacks.grammar import draw_case
@@ -83,6 +83,16 @@ def test_samples_that_are_rounding_alone_refute_no_feasible_time() -> None:
     account = Account(peaks)
     tried(account, 20261201, 2)
     assert [f.why for f in account.broken] == []
+
+
+def test_samples_meet_a_peak_of_jerk_that_a_slow_clock_makes_narrow() -> None:
+    """A peak of 9,255.6 rad/s³, in rational arithmetic, lies between places a hundredth apart."""
+    block = {"family": "uniform-cubic-b-spline", "time": "timed"}
+    points = np.array([[-18.5397], [106.38], [102.461], [-16.7283]])
+    none = np.full(1, np.inf)
+    asked = curves.Asked(block, points, *[none] * 3, -none, none, np.zeros(3), np.full(3, np.inf))
+    found = curves.peaks(asked, np.array([7282.762500000001, 1250.9250000000002, 1600.755]))
+    assert found.low[0, 2] == pytest.approx(9255.61117456801, rel=1e-4)
 
 
 def test_every_family_and_claim_is_drawn() -> None:
