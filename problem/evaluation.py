@@ -128,7 +128,7 @@ def keeps_limits(problem: Problem, durations: Array, tolerance: float) -> NDArra
         # 0/0 keeps a limit of 0, inf/inf keeps nothing.
         within = (ratios <= 1 + tolerance) | (peaks == 0.0)
     # One axis is gone through far quicker than two.
-    kept: NDArray[np.bool_] = within.reshape(len(within), divisors.size).all(axis=1)
+    kept = np.asarray(within.reshape(len(within), divisors.size).all(axis=1))
     return _within_positions(problem, durations, kept, tolerance)
 
 

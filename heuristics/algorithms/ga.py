@@ -150,7 +150,7 @@ class GA:
 
     def parents(self, fitness: Array, rng: np.random.Generator) -> NDArray[np.intp]:
         """Draw as many parents as individuals."""
-        size = fitness.shape[-1]
+        size: int = fitness.shape[-1]
         if self.selection is Selection.ROULETTE:
             return roulette(fitness, rng.random(size))
         rivals = (size * rng.random((2, size))).astype(np.intp)

@@ -211,7 +211,7 @@ class ImprovedGA:
     def parents(self, totals: Array, generation: int, rng: np.random.Generator) -> NDArray[np.intp]:
         """Indices of the mating pool: the best quarter, and a roulette on the middle half."""
         order = np.argsort(totals, axis=-1, kind="stable")  # the worst quarter is dropped
-        quarter = totals.shape[-1] // 4
+        quarter: int = totals.shape[-1] // 4
         best, middle = order[..., :quarter], order[..., quarter : 3 * quarter]
         q = schedule(generation, self.iterations, self.q_best, self.q_worst)  # (13)
         again = best if self.pool_rule is PoolRule.DOUBLE_BEST else best[..., :0]
