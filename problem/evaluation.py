@@ -114,17 +114,35 @@ def keeps_limits(problem: Problem, durations: Array, tolerance: float) -> NDArra
     ndarray of bool, shape (batch,)
         Sooner than all ratios, where bounds decide: what a death penalty asks.
     """
-    if problem.limits.uneven:
+    asked = _asked_to_keep(problem, tolerance)
+    if asked is None:
         sided = np.asarray((_uneven_ratios(problem, durations) <= 1 + tolerance).all(axis=(1, 2)))
         return _within_positions(problem, durations, sided, tolerance)
-    values, divisors, wanted, _ = _fixed_question(problem)
-    ceilings = np.where(wanted, divisors, np.inf) * (1 + tolerance)
+    (values, divisors, wanted, plain), ceilings = asked
     peaks = problem.curve.decided_peaks(values, durations, wanted, ceilings)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        ratios = peaks / divisors
-    # 0/0 keeps a limit of 0, inf/inf keeps nothing.
-    kept: NDArray[np.bool_] = ((ratios <= 1 + tolerance) | (peaks == 0.0)).all(axis=(1, 2))
+    if plain:
+        within = peaks / divisors <= 1 + tolerance
+    else:
+        with np.errstate(invalid="ignore", divide="ignore"):
+            ratios = peaks / divisors
+        # 0/0 keeps a limit of 0, inf/inf keeps nothing.
+        within = (ratios <= 1 + tolerance) | (peaks == 0.0)
+    # One axis is gone through far quicker than two.
+    kept = np.asarray(within.reshape(len(within), divisors.size).all(axis=1))
     return _within_positions(problem, durations, kept, tolerance)
+
+
+@lru_cache(maxsize=64)
+def _asked_to_keep(problem: Problem, tolerance: float) -> tuple[_Question, Array] | None:
+    """What a curve is asked, and the largest peaks that are kept; None where sides differ.
+
+    Keyed by the problem's identity, as `_fixed_question`.
+    """
+    if problem.limits.uneven:
+        return None
+    question = _fixed_question(problem)
+    _, divisors, wanted, _ = question
+    return question, np.where(wanted, divisors, np.inf) * (1 + tolerance)
 
 
 def _within_positions(

@@ -57,11 +57,12 @@ def solve_case(
     samples_file = None if asked is None else asked.file
     with new_output(out) as write, new_output(samples_file, "--samples") as write_samples:
         results, written = [], None
+        retimings: _Retimings = {}
         with progress("solve", len(posed)) as step, naming(case.file):
             for one in posed:
                 step(posed_as(case, one.problem_id, one.reading_id))
                 with stopping_after(math.inf if limit is None else limit):
-                    result, answer = _solved(case, one, starts, seed)
+                    result, answer = _solved(case, one, starts, seed, retimings)
                 results.append(result)
                 if asked is not None and written is None:
                     text, written = write_motion(one, answer, asked)
@@ -72,7 +73,13 @@ def solve_case(
     return 0
 
 
-def _solved(case: Case, one: Posed, starts: int, seed: int) -> tuple[SolveResult, Solution]:
+_Retimings = dict[tuple[object, ...], Retiming]
+"""By motion and limits: readings often leave a joint the same optimum, and a path takes long."""
+
+
+def _solved(
+    case: Case, one: Posed, starts: int, seed: int, retimings: _Retimings
+) -> tuple[SolveResult, Solution]:
     ids = (case.id, one.problem_id, one.reading_id)
     if one.problem.coupling is Coupling.PER_JOINT:
         halves = Study(case).half_digits(one.problem_id, one.reading_id)
@@ -80,23 +87,27 @@ def _solved(case: Case, one: Posed, starts: int, seed: int) -> tuple[SolveResult
         apart = solve_per_joint(one.problem, starts=starts, seed=seed, slacks=slacks)
         apart = with_certificates(apart, case.statement(one.problem_id, one.reading_id))
         together = solve(one.problem, starts=starts, seed=seed)
-        retimed = [_retimed(s) for s in apart.joints]
+        retimed = [_retimed(s, retimings) for s in apart.joints]
         return solve_result(*ids, apart, retimed, together), together
     answer = solve(one.problem, starts=starts, seed=seed)
     answer = with_certificate(
         answer, stated_exactly(case.statement(one.problem_id, one.reading_id))
     )
-    return solve_result(*ids, answer, [_retimed(answer)]), answer
+    return solve_result(*ids, answer, [_retimed(answer, retimings)]), answer
 
 
-def _retimed(answer: Solution) -> Retiming | str:
+def _retimed(answer: Solution, known: _Retimings) -> Retiming | str:
     problem = answer.problem
     if answer.durations is None:
         return "no durations, so no path"
     trajectory = fit(problem.curve, problem.waypoints, answer.durations, answer.nodal)
     if not trajectory.polynomial_in_time:
         return "time is not linear in the curve's parameter: its path is no polynomial in time"
-    return retime(trajectory, problem.limits)
+    motion = (trajectory.durations.tobytes(), trajectory.scaled.shape, trajectory.scaled.tobytes())
+    key = (*motion, problem.limits.sides.tobytes())
+    if key not in known:
+        known[key] = retime(trajectory, problem.limits)
+    return known[key]
 
 
 _COLUMNS = ("status", ">total s", "evidence", "durations s", "starts", "KKT", ">TOPPRA s")

@@ -19,8 +19,10 @@ from .genes import (
     Genetics,
     Mutation,
     MutationUnit,
+    Rate,
     elite_kept,
     fitness_values,
+    members_of,
     roulette,
     shuffled,
 )
@@ -117,6 +119,7 @@ class GA:
     """
 
     kind: ClassVar[str] = "ga"
+    side_by_side: ClassVar[bool] = True
     open_choices: ClassVar[tuple[str, ...]] = OPEN_CHOICES
 
     population: Annotated[int, whole(2)] = 40
@@ -147,12 +150,13 @@ class GA:
 
     def parents(self, fitness: Array, rng: np.random.Generator) -> NDArray[np.intp]:
         """Draw as many parents as individuals."""
-        size = fitness.size
+        size: int = fitness.shape[-1]
         if self.selection is Selection.ROULETTE:
             return roulette(fitness, rng.random(size))
         rivals = (size * rng.random((2, size))).astype(np.intp)
-        first, second = rivals
-        winners: NDArray[np.intp] = np.where(fitness[second] > fitness[first], second, first)
+        first, second = rivals[..., 0, :], rivals[..., 1, :]
+        fitter = np.take_along_axis(fitness, second, -1) > np.take_along_axis(fitness, first, -1)
+        winners: NDArray[np.intp] = np.where(fitter, second, first)
         return winners
 
     def init(self, bounds: Bounds, rng: np.random.Generator, objective: Objective) -> Population:
@@ -165,7 +169,7 @@ class GA:
     ) -> Population:
         """Make the next generation and judge it."""
         fitness = fitness_values(before.fitness, self.penalty, self.fitness_rule)
-        pool = shuffled(before.positions[self.parents(fitness, rng)], rng)
+        pool = shuffled(members_of(before.positions, self.parents(fitness, rng)), rng)
         return bred(
             before, pool, self.genetics, self.crossover_rate, self.mutation_rate, self.elite,
             rng, objective,
@@ -195,8 +199,8 @@ def bred(
     before: Population,
     pool: Array,
     genetics: Genetics,
-    crossover_rate: float,
-    mutation_rate: float,
+    crossover_rate: Rate,
+    mutation_rate: Rate,
     elite: int,
     rng: np.random.Generator,
     objective: Objective,

@@ -1,4 +1,7 @@
-"""Genetic operators on durations: encoding, crossover and mutation of a mating pool."""
+"""Genetic operators on durations: encoding, crossover and mutation of a mating pool.
+
+Of populations that are bred side by side every array has one more axis, the first.
+"""
 
 from __future__ import annotations
 
@@ -11,6 +14,9 @@ from numpy.typing import NDArray
 
 from ...problem import Array, TrajgapError
 from .swarm import held
+
+Rate = float | Array
+"""A chance; of populations side by side that differ in it, of shape (populations, 1, 1)."""
 
 
 class Encoding(StrEnum):
@@ -61,7 +67,7 @@ class FitnessRule(StrEnum):
 
 
 def fitness_values(totals: Array, penalty: float, rule: FitnessRule) -> Array:
-    """Fitness f of a population's totals, shape (members,), in 1/s or s.
+    """Fitness f of a population's totals, shape (..., members), in 1/s or s.
 
     Raises
     ------
@@ -73,8 +79,8 @@ def fitness_values(totals: Array, penalty: float, rule: FitnessRule) -> Array:
     if not feasible.any():
         return fitness
     if rule is FitnessRule.COMPLEMENT:
-        fitness[feasible] = totals[feasible].max() - totals[feasible]
-        return fitness
+        worst = np.where(feasible, totals, -np.inf).max(axis=-1, keepdims=True)
+        return np.where(feasible, worst - totals, fitness)
     if (totals[feasible] <= 0).any():
         raise TrajgapError(
             "fitness_rule: 'inverse' needs positive objective values; take 'complement'"
@@ -109,17 +115,17 @@ class Genetics:
         return (high - low) / float((1 << self.bits) - 1)
 
     def encoded(self, positions: Array) -> Array:
-        """Bits of the nearest lattice points, most significant first, (members, durations·bits)."""
+        """Bits of the nearest lattice points, most significant first, (..., durations·bits)."""
         low, high = self.position_range
         index = np.rint((held(positions, low, high) - low) / self.step).astype(np.int64)
         places = np.arange(self.bits)[::-1]
-        bits = (index[:, :, None] >> places) & 1
-        return bits.reshape(len(positions), -1).astype(np.float64)
+        bits = (index[..., None] >> places) & 1
+        return bits.reshape(*positions.shape[:-1], -1).astype(np.float64)
 
     def decoded(self, bits: Array) -> Array:
         """Positions of bit strings, s."""
         powers = 2.0 ** np.arange(self.bits)[::-1]
-        index = bits.reshape(len(bits), -1, self.bits) @ powers
+        index = bits.reshape(*bits.shape[:-1], -1, self.bits) @ powers
         decoded: Array = self.position_range[0] + index * self.step
         return decoded
 
@@ -130,7 +136,7 @@ class Genetics:
         return positions
 
     def offspring(
-        self, pool: Array, crossover_rate: float, mutation_rate: float, rng: np.random.Generator
+        self, pool: Array, crossover_rate: Rate, mutation_rate: Rate, rng: np.random.Generator
     ) -> Array:
         """Cross neighbours of a shuffled pool of even size, then mutate.
 
@@ -144,13 +150,13 @@ class Genetics:
             bits = self.encoded(crossed(pool, self.crossover, crossover_rate, rng))
         else:
             bits = crossed(self.encoded(pool), self.crossover, crossover_rate, rng)
-        flips = chosen(self.mutated, mutation_rate, bits.shape, rng)
+        flips = chosen(self.mutated, mutation_rate, bits.shape[-2:], rng)
         return self.decoded(np.where(flips, 1.0 - bits, bits))
 
-    def _mutated(self, children: Array, rate: float, rng: np.random.Generator) -> Array:
+    def _mutated(self, children: Array, rate: Rate, rng: np.random.Generator) -> Array:
         low, high = self.position_range
-        where = chosen(self.mutated, rate, children.shape, rng)
-        size = rng.random(children.shape)
+        where = chosen(self.mutated, rate, children.shape[-2:], rng)
+        size = rng.random(children.shape[-2:])
         if self.mutation is Mutation.CREEP:
             reach = self.mutation_reach * (high - low)
             fresh = held(children + reach * (2.0 * size - 1.0), low, high)
@@ -159,10 +165,10 @@ class Genetics:
         return np.where(where, fresh, children)
 
 
-def crossed(pool: Array, rule: Crossover, rate: float, rng: np.random.Generator) -> Array:
+def crossed(pool: Array, rule: Crossover, rate: Rate, rng: np.random.Generator) -> Array:
     """Cross the pairs (0, 1), (2, 3), ... of a pool, each with chance ``rate``."""
-    first, second = pool[0::2], pool[1::2]
-    pairs, genes = first.shape
+    first, second = pool[..., 0::2, :], pool[..., 1::2, :]
+    pairs, genes = first.shape[-2:]
     mates = rng.random((pairs, 1)) < rate
     if rule is Crossover.ARITHMETIC:
         part = rng.random((pairs, 1))
@@ -175,34 +181,49 @@ def crossed(pool: Array, rule: Crossover, rate: float, rng: np.random.Generator)
             swap = rng.random((pairs, genes)) < 0.5
         one, two = np.where(swap, second, first), np.where(swap, first, second)
     children = np.empty_like(pool)
-    children[0::2], children[1::2] = np.where(mates, one, first), np.where(mates, two, second)
+    children[..., 0::2, :] = np.where(mates, one, first)
+    children[..., 1::2, :] = np.where(mates, two, second)
     return children
 
 
 def chosen(
-    unit: MutationUnit, rate: float, shape: tuple[int, ...], rng: np.random.Generator
+    unit: MutationUnit, rate: Rate, shape: tuple[int, ...], rng: np.random.Generator
 ) -> NDArray[np.bool_]:
-    """Draw which genes mutate."""
+    """Draw which genes mutate, of a population of shape (members, genes)."""
     members, genes = shape
     if unit is MutationUnit.GENE:
         each: NDArray[np.bool_] = rng.random(shape) < rate
         return each
-    which, place = rng.random((2, members, 1))
+    drawn = rng.random((2, members, 1))
+    which, place = drawn[..., 0, :, :], drawn[..., 1, :, :]
     one: NDArray[np.bool_] = (which < rate) & (np.arange(genes) == np.floor(place * genes))
     return one
 
 
 def roulette(weights: Array, draws: Array) -> NDArray[np.intp]:
-    """Members drawn with chances proportional to weights ≥ 0; equal chances if all are 0."""
-    total = np.cumsum(weights if weights.any() else np.ones_like(weights))
-    picked = np.searchsorted(total, draws * total[-1], side="right")
-    held_in: NDArray[np.intp] = np.minimum(picked, weights.size - 1)
+    """Members drawn with chances proportional to weights ≥ 0; equal chances if all are 0.
+
+    Weights that all populations share have one axis, and draws any number; otherwise both have
+    the axis of populations.
+    """
+    total = np.cumsum(np.where(weights.any(axis=-1, keepdims=True), weights, 1.0), axis=-1)
+    places = draws * total[..., -1:]
+    if weights.ndim == 1:
+        picked = np.searchsorted(total, places, side="right")
+    else:
+        picked = (total[..., None, :] <= places[..., :, None]).sum(axis=-1)
+    held_in: NDArray[np.intp] = np.minimum(picked, weights.shape[-1] - 1)
     return held_in
+
+
+def members_of(population: Array, which: NDArray[np.intp]) -> Array:
+    """Members of shape (..., members, genes) by their indices (..., members)."""
+    return np.take_along_axis(population, which[..., None], axis=-2)
 
 
 def shuffled(pool: Array, rng: np.random.Generator) -> Array:
     """Shuffle a mating pool, so that neighbours are random pairs."""
-    return pool[np.argsort(rng.random(len(pool)), kind="stable")]
+    return members_of(pool, np.argsort(rng.random(pool.shape[-2]), axis=-1, kind="stable"))
 
 
 def elite_kept(
@@ -211,8 +232,9 @@ def elite_kept(
     """Children whose worst are replaced by the best parents, and their totals."""
     if elite == 0:
         return children, child_totals
-    best = np.argsort(parent_totals, kind="stable")[:elite]
-    worst = np.argsort(child_totals, kind="stable")[child_totals.size - elite :]
+    best = np.argsort(parent_totals, axis=-1, kind="stable")[..., :elite]
+    worst = np.argsort(child_totals, axis=-1, kind="stable")[..., child_totals.shape[-1] - elite :]
     kept, totals = children.copy(), child_totals.copy()
-    kept[worst], totals[worst] = parents[best], parent_totals[best]
+    np.put_along_axis(kept, worst[..., None], members_of(parents, best), axis=-2)
+    np.put_along_axis(totals, worst, np.take_along_axis(parent_totals, best, axis=-1), axis=-1)
     return kept, totals

@@ -28,7 +28,9 @@ from .genes import (
     Genetics,
     Mutation,
     MutationUnit,
+    Rate,
     fitness_values,
+    members_of,
     roulette,
     shuffled,
 )
@@ -148,6 +150,7 @@ class ImprovedGA:
     """
 
     kind: ClassVar[str] = "improved-ga"
+    side_by_side: ClassVar[bool] = True
     open_choices: ClassVar[tuple[str, ...]] = OPEN_CHOICES
 
     population: Annotated[int, whole(2)] = 40
@@ -186,11 +189,18 @@ class ImprovedGA:
         """Encoding and operators."""
         return genetics_of(self)
 
-    def rates(self, fitness: Array) -> tuple[float, float]:
+    def rates(self, fitness: Array) -> tuple[Rate, Rate]:
         """P_c and P_z of a population, (14)(15), or the fixed ones."""
-        top = float(fitness.max())
+        tops, means = fitness.max(axis=-1), fitness.mean(axis=-1)
+        if fitness.ndim == 1:
+            return self._rates(float(means), float(tops))
+        each = map(self._rates, means.tolist(), tops.tolist())
+        crossing, mutating = np.array(list(each)).T[..., None, None]
+        return crossing, mutating
+
+    def _rates(self, mean: float, top: float) -> tuple[float, float]:
         # Rounding may lift the mean of equal numbers above them, and the arcsine out of its domain.
-        at = concentration(min(float(fitness.mean()), top), top)
+        at = concentration(min(mean, top), top)
         crossing = crossover_rate(at, self.k1, self.k4)
         mutating = mutation_rate(at, self.k2, self.k3)
         return (
@@ -200,14 +210,15 @@ class ImprovedGA:
 
     def parents(self, totals: Array, generation: int, rng: np.random.Generator) -> NDArray[np.intp]:
         """Indices of the mating pool: the best quarter, and a roulette on the middle half."""
-        order = np.argsort(totals, kind="stable")  # the worst quarter is dropped
-        quarter = totals.size // 4
-        best, middle = order[:quarter], order[quarter : 3 * quarter]
+        order = np.argsort(totals, axis=-1, kind="stable")  # the worst quarter is dropped
+        quarter: int = totals.shape[-1] // 4
+        best, middle = order[..., :quarter], order[..., quarter : 3 * quarter]
         q = schedule(generation, self.iterations, self.q_best, self.q_worst)  # (13)
-        again = best if self.pool_rule is PoolRule.DOUBLE_BEST else best[:0]
-        draws = rng.random(3 * quarter - again.size)
-        picked = middle[roulette(rank_chances(q, middle.size), draws)]  # (12)
-        return np.concatenate([best, again, picked])
+        again = best if self.pool_rule is PoolRule.DOUBLE_BEST else best[..., :0]
+        draws = rng.random(3 * quarter - again.shape[-1])
+        ranks = roulette(rank_chances(q, middle.shape[-1]), draws)  # (12)
+        picked = np.take_along_axis(middle, ranks, axis=-1)
+        return np.concatenate([best, again, picked], axis=-1)
 
     def init(self, bounds: Bounds, rng: np.random.Generator, objective: Objective) -> Population:
         """Draw and judge the initial population."""
@@ -221,6 +232,6 @@ class ImprovedGA:
         fitness = fitness_values(before.fitness, self.penalty, self.fitness_rule)
         crossing, mutating = self.rates(fitness)
         chosen = self.parents(before.fitness, before.iteration + 1, rng)
-        pool = shuffled(before.positions[chosen], rng)
+        pool = shuffled(members_of(before.positions, chosen), rng)
         elite = self.population // 4 if self.best_quarter is BestQuarter.SURVIVES else 0
         return bred(before, pool, self.genetics, crossing, mutating, elite, rng, objective)

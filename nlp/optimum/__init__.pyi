@@ -1,4 +1,4 @@
-from .clock import call_cap, stopping_after, time_up
+from .clock import call_cap, seconds_left, stopping_after, time_up
 from .formulation import Form, Formulation, Structure, build
 from .ipopt import structure_of
 from .judgement import KKT_TOLERANCE, SAME
@@ -31,6 +31,7 @@ __all__ = [
     "free_values",
     "kkt",
     "random_starts",
+    "seconds_left",
     "solve",
     "solve_per_joint",
     "stopping_after",

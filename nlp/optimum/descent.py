@@ -57,12 +57,16 @@ def least_point(
     chapter 23): of u ≥ 0 with least |[Gᵀ; wᵀ]u − e|, e the last unit vector, the residual ρ gives
     y = −ρ_{1..n}/ρ_{n+1}, and −u/ρ_{n+1} are the multipliers.
     """
-    from scipy.linalg import cholesky, solve_triangular  # a quarter of a second, and few need it
+    from scipy.linalg import LinAlgError  # a quarter of a second, and few need it
+    from scipy.linalg.lapack import dpotrf, dtrtrs
     from scipy.optimize import nnls
 
-    lower = cholesky(hessian, lower=True)
-    shift = solve_triangular(lower, slope, lower=True)
-    turned = solve_triangular(lower, rows.T, lower=True).T
+    # Programs are so small that `cholesky` and `solve_triangular` cost more than what they call.
+    lower, failed = dpotrf(hessian, lower=1)
+    if failed:
+        raise LinAlgError(f"curvature: no positive definite matrix, row {failed}")
+    shift, _ = dtrtrs(lower, slope, lower=1)
+    turned = dtrtrs(lower, rows.T, lower=1)[0].T
     facing, needed = -turned, -room - turned @ shift
     stacked = np.vstack([facing.T, needed])
     target = np.zeros(len(stacked))
@@ -75,7 +79,7 @@ def least_point(
     if not residual[-1] < -1e-14:
         return None
     y = -residual[:-1] / residual[-1]
-    step = solve_triangular(lower.T, y - shift, lower=False)
+    step, _ = dtrtrs(lower, y - shift, lower=1, trans=1)
     # Rows that all but contradict each other give a point far beyond them.
     if not (turned @ y - room - turned @ shift <= 1e-6 * (1.0 + np.abs(room))).all():
         return None

@@ -55,6 +55,13 @@ OPEN = [
     ("woa", {"r_rule": "shared", "counter": "one", "replacement": "feasible", "penalty": 1e6}),
     ("improved-woa", {"exploration": "weighted", "tent_rule": "member"}),
     ("improved-woa", {"exploration": "dropped", "replacement": "greedy", "position_rule": "free"}),
+    ("ga", {"selection": "tournament", "crossover": "one-point", "elite": 3, "penalty": 1e6}),
+    ("ga", {"fitness_rule": "complement", "mutation": "creep", "mutated": "individual"}),
+    ("ga", {"encoding": "binary", "crossover": "uniform", "mutated": "individual"}),
+    ("ga", {"position_range": (0.1, 0.3), "fitness_rule": "complement"}),  # often none is feasible
+    ("improved-ga", {"pool_rule": "double-best", "best_quarter": "survives"}),
+    ("improved-ga", {"encoding": "binary", "adaptive_crossover": False, "penalty": 1e6}),
+    ("improved-ga", {"fitness_rule": "complement", "adaptive_mutation": False}),
 ]
 
 

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ....problem import Problem, TrajgapError
-from ...optimum import Evidence, time_up
+from ...optimum import Evidence, seconds_left, time_up
 from .local import KEPT, LocalQuestion, local_optimum, starting_points
 from .reach import profile
 
@@ -144,13 +146,9 @@ def estimate_any_curve(
             ends=question.ends[:, bounded],
         )
         points = starting_points(core, starts, np.random.default_rng(seed), given[:, moving])
-        answers, count = [], 0
-        for h in points:
-            if count and time_up():
-                break
-            count += 1
-            if (answer := local_optimum(core, h)) is not None:
-                answers.append(answer)
+        search = _Search(core, points)
+        # Where the time is limited an answer depends on the clock, and is not kept.
+        answers, count = _kept(search) if seconds_left() == math.inf else _searched(search)
         if not answers:
             return AnyCurveEstimate(
                 None, why=f"none of {count} starts led to an answer", starts=count
@@ -168,6 +166,49 @@ def estimate_any_curve(
     why = _not_attained(question, durations)
     best = sum(t <= total * (1 + SAME) for t in totals)
     return AnyCurveEstimate(total, durations, velocities, why is None, why, count, best, totals)
+
+
+_Answer = tuple[NDArray[np.float64], NDArray[np.float64]]
+"""Durations and nodal velocities of a local optimum."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Search:
+    """All that a search depends on: readings that differ in their curve alone ask the same."""
+
+    question: LocalQuestion
+    points: NDArray[np.float64]
+
+    @cached_property
+    def _key(self) -> tuple[object, ...]:
+        asked = self.question
+        arrays = (asked.steps, asked.velocity, asked.acceleration, asked.lower, asked.upper)
+        return (
+            asked.ends,
+            *((x.shape, np.ascontiguousarray(x).tobytes()) for x in (*arrays, self.points)),
+        )
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Search) and self._key == other._key
+
+    def __hash__(self) -> int:
+        return hash(self._key)
+
+
+def _searched(search: _Search) -> tuple[tuple[_Answer, ...], int]:
+    """The answers of all starts that led to one, and how many were begun."""
+    answers, count = [], 0
+    for h in search.points:
+        if count and time_up():
+            break
+        count += 1
+        if (answer := local_optimum(search.question, h)) is not None:
+            answers.append(answer)
+    return tuple(answers), count
+
+
+_kept = lru_cache(maxsize=64)(_searched)
+"""Found once a process: an audit asks under each reading, of which a case has some dozen."""
 
 
 def _merge(problem: Problem, values: NDArray[np.float64]) -> NDArray[np.float64]:

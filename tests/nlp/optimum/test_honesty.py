@@ -297,6 +297,8 @@ def test_the_least_point_is_that_of_another_method() -> None:
         assert (weights >= 0).all()
     contradiction = np.array([[1.0, 0, 0, 0], [-1.0, 0, 0, 0]])
     assert least_point(np.eye(4), np.zeros(4), contradiction, np.array([-1.0, -1.0])) is None
+    with pytest.raises(np.linalg.LinAlgError, match="no positive definite matrix, row 2"):
+        least_point(np.diag([1.0, -1.0]), np.zeros(2), np.eye(2), np.ones(2))
 
 
 @pytest.mark.parametrize("curve", [quintic_spline(3), uniform_cubic_b_spline(4, "timed")])

@@ -9,6 +9,8 @@ from support.any_motions import PUMA_PROBLEM, verified
 from support.joint_splines import posed, rest_to_rest_time
 from support.puma import PUMA
 from trajgap.nlp import Evidence, solve
+from trajgap.nlp.optimum import stopping_after
+from trajgap.nlp.proofs.any_curve import estimate
 from trajgap.nlp.proofs.any_curve.estimate import estimate_any_curve
 from trajgap.nlp.retiming.toppra_check import retime
 from trajgap.problem import (
@@ -217,3 +219,27 @@ def test_summary_on_one_screen() -> None:
     for part in ("1.535287930 s", "best known, an upper estimate", "6 of 6"):
         assert part in text
     assert "floor" not in text
+
+
+def test_curves_through_the_same_waypoints_share_a_search(monkeypatch: pytest.MonkeyPatch) -> None:
+    q = np.array([[0.13, 0.4], [0.81, -0.1], [0.32, -1.5], [1.07, 0.6]])
+    problem = Problem(q, Limits([1.6, 1.2], [4.0, 3.0]), cubic_spline(3))
+    searched, search = [], estimate.local_optimum
+    monkeypatch.setattr(
+        estimate, "local_optimum", lambda *asked: searched.append(asked) or search(*asked)
+    )
+    estimate._kept.cache_clear()
+    first = estimate_any_curve(problem, starts=2)
+    assert len(searched) == 2
+    other = estimate_any_curve(replace(problem, curve=quintic_spline(3)), starts=2)
+    assert len(searched) == 2
+    assert other.durations is not None
+    assert other.durations.tobytes() == first.durations.tobytes()
+    # Whatever else differs is another question, and a limited time keeps nothing.
+    slower = replace(problem, limits=Limits([1.6, 1.1], [4.0, 3.0]))
+    assert estimate_any_curve(slower, starts=2).totals > first.totals
+    estimate_any_curve(problem, starts=2, seed=1)
+    assert len(searched) == 6
+    with stopping_after(60.0):
+        estimate_any_curve(problem, starts=2)
+    assert len(searched) == 8
