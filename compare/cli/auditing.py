@@ -109,7 +109,8 @@ def audited(document: AuditDocument) -> list[RenderableType]:
     """Summary of the `audit` document: for each case the card, claims, causes, where time goes."""
     parts: list[RenderableType] = []
     for case in document.cases:
-        parts += [line(case.title, "bold"), line(case.case, "dim"), line("")]
+        below = [line(case.case, "dim")] if case.case != case.title else []
+        parts += [line(case.title, "bold"), *below, line("")]
         card = case.card
         against = {*card.errors, *([more_errors(card.more)] if card.more else [])}
         parts += [line(said, "bold red" if said in against else "") for said in card.sentences]

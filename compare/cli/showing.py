@@ -39,19 +39,23 @@ def show_case(
     return 0
 
 
+_UNTITLED = "as stated below"
+"""What a problem is called that has no title: the next table states it."""
+
+
 def _tables(document: ShowDocument, case: Case) -> list[RenderableType]:
     source, robot = document.source, document.robot
     named = (source.authors, source.title, source.journal, source.year, source.doi)
     objective = case.document.objective
     cited = ". ".join(str(part).rstrip(".") for part in named if part)
     lines = [
-        document.title,
+        *([document.title] if document.title != document.id else []),
         *([cited] if cited else []),
         f"{robot.name}, joint{'s' * (len(robot.joints) > 1)} {', '.join(robot.joints)}",
         *([f"minimised: {objective}, not time alone"] if objective else []),
         "",
     ]
-    problems = [(p.id, p.title or p.why) for p in document.problems]
+    problems = [(p.id, p.title or p.why or _UNTITLED) for p in document.problems]
     labels = case.labels
     readings = [
         (r.id + (" (default)" if r.default else ""), _meaning(r, labels)) for r in document.readings

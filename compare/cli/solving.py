@@ -123,7 +123,7 @@ def _tables(document: SolveDocument, case: Case) -> list[RenderableType]:
     parts += reasons(results, lambda r: {"status": r.status_why, "toppra": reason(r.toppra)}, case)
     build, solve = sum(r.build_seconds for r in results), sum(r.solve_seconds for r in results)
     if document.written is not None:
-        parts += [line(said) for said in written_lines(document.written)]
+        parts += [line(said) for said in written_lines(document.written, case)]
     return [*parts, line(f"build {build:.2f} s, solve {solve:.2f} s", "dim")]
 
 

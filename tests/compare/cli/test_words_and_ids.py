@@ -114,6 +114,54 @@ optimizers = [{ name = "random" }]
     assert "joint 3 alone; durations without a lower bound: Not every duration" in out
 
 
+UNTITLED = """format = 1
+id = "arm"
+title = "arm"
+[source]
+note = "Made up."
+[robot]
+name = "arm"
+joints = ["1"]
+[units]
+position = "rad"
+velocity = "rad/s"
+time = "s"
+[waypoints]
+joint_rows = [[0, 1]]
+[limits]
+velocity = 2
+[interpolant]
+family = "rest-to-rest"
+degree = 5
+"""
+
+
+def test_a_title_that_is_the_id_stands_once(run: Run) -> None:
+    Path("arm.toml").write_text(UNTITLED, encoding="utf-8")
+    lines = told("show", "arm.toml", run=run).splitlines()
+    assert lines[:2] == ["arm", "arm, joint 1"]
+    assert any(line.split() == ["main", "as", "stated", "below"] for line in lines)
+    lines = told("solve", "arm.toml", run=run).splitlines()
+    assert lines[0] == "arm"
+    assert lines[1].startswith("status ")
+    lines = told("audit", "arm.toml", "--certify-seconds", "0", run=run).splitlines()
+    assert lines[:2] == ["arm", ""]
+    assert "arm" not in lines[2:]
+
+
+def test_a_written_motion_is_called_by_words(run: Run) -> None:
+    one = ("--problem", "limit-80", "--reading", "waypoints-rad")
+    out = " ".join(told("solve", IRB, *one, "--samples", "m.csv", run=run).split())
+    assert f"m.csv: the motion as csv ({TITLE}; way-points in radians); read back: pass" in out
+
+
+def test_one_jump_is_in_the_singular(run: Run) -> None:
+    pieces = '{"joints": ["1"], "breaks": [0, 1, 2], "coefficients": [[[-1], [1.5], [0], [0]], '
+    Path("one.json").write_text(pieces + "[[0], [0], [0], [0.5]]]}", encoding="utf-8")
+    out = told("check", "one.json", "--velocity", "1.2", "--acceleration", "4", run=run)
+    assert "at 1 s; it jumps at 1 break\n" in out
+
+
 def test_prose_shares_what_the_window_leaves() -> None:
     """A narrow column of prose takes what it needs, one that would be cut off comes first."""
     words, cut = "some words of prose " * 5, "c" * 50
