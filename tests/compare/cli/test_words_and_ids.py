@@ -177,3 +177,11 @@ def test_prose_shares_what_the_window_leaves() -> None:
 
 def _ids() -> str:
     return "problem limit-80, reading waypoints-rad"
+
+
+def test_where_the_time_goes_is_told_of_each_problem_in_words(run: Run) -> None:
+    out = told("audit", IRB, "--seeds", "2", "--certify-seconds", "0", run=run)
+    for limit in ("80", "110"):
+        words = f"Shortest time of joint 5 under {limit} °/s; way-points in radians"
+        assert f"\nWhere the time goes; {words}\nstep " in out
+    assert all(one not in out for one in IDS)
