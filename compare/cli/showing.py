@@ -95,13 +95,8 @@ def _asked(document: ShowDocument, case: Case) -> list[RenderableType]:
         limits = "; ".join(each for each in said if each) or "none"
         words = (problem.title or problem.id,) if len(document.problems) > 1 else ()
         rows.append((*words, curve, size, one.units.position or "", limits))
-    names = (
-        *("~problem",)[: len(rows) - 1],
-        "curve",
-        "way-points × joints",
-        "angles in",
-        "~limits",
-    )
+    first = ("~problem",) if len(rows) > 1 else ()
+    names = (*first, "~curve", "way-points × joints", "angles in", "~limits")
     under = f" under {quoted(reading, case.labels)}" if len(document.readings) > 1 else ""
     return [line(f"Curve, units and limits{under}:"), Columns(names, rows)]
 
