@@ -96,7 +96,7 @@ def _asked(document: ShowDocument, case: Case) -> list[RenderableType]:
         words = (problem.title or problem.id,) if len(document.problems) > 1 else ()
         rows.append((*words, curve, size, one.units.position or "", limits))
     first = ("~problem",) if len(rows) > 1 else ()
-    names = (*first, "~curve", "way-points × joints", "angles in", "~limits")
+    names = (*first, "curve", "way-points × joints", "angles in", "~limits")
     under = f" under {quoted(reading, case.labels)}" if len(document.readings) > 1 else ""
     return [line(f"Curve, units and limits{under}:"), Columns(names, rows)]
 
