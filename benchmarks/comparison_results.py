@@ -15,7 +15,7 @@ from __future__ import annotations
 import json
 import sys
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import combinations
 from pathlib import Path
 from typing import Any
@@ -286,11 +286,9 @@ def collect(folder: Path) -> list[Comparison]:
                 for one in listed_of(plans["readings"], store, kinds, advantage)
                 if (one.problem, one.reading, one.handling) not in there
             ]
-            # As the paper works first: joint by joint where it does.
             if not listed:  # not run here
                 found += [before[case.id]] if case.id in before else []
                 continue
-            listed.sort(key=lambda one: APART not in one.problem and paper == "pso")
             found.append(
                 Comparison(
                     case=case.id,
@@ -301,14 +299,21 @@ def collect(folder: Path) -> list[Comparison]:
                     advantage=advantage,
                     printed=None if percent is None else f"{percent} %",
                     on=ON[paper],
-                    listed=tuple(listed),
-                    ablated=tuple(
+                    listed=own_first(listed),
+                    ablated=own_first(
                         ablated_of(paper, plans["ablated"], plans["listed"], store, kinds[0])
                     ),
-                    designed=tuple(designed_of(paper, plans["design"], store, kinds, advantage)),
+                    designed=own_first(
+                        designed_of(paper, plans["design"], store, kinds, advantage)
+                    ),
                 )
             )
     return found
+
+
+def own_first(found: Iterable[Any]) -> tuple[Any, ...]:
+    """What is as the paper works first: joint by joint where it does."""
+    return tuple(sorted(found, key=lambda one: APART not in one.problem))
 
 
 def write(found: Sequence[Comparison]) -> None:

@@ -63,19 +63,21 @@ class Intervals:
         """Certificates that were given, and those that this audit made."""
         return (*self._documents, *self._made)
 
-    def interval(self, problem: ExactProblem) -> ProvedInterval | None:
+    def interval(self, problem: ExactProblem, called: str = "the optimum") -> ProvedInterval | None:
         """The interval that is proved for a problem, if there is one.
 
         Parameters
         ----------
         problem : ExactProblem
+        called : str
+            What is proved, in the words of progress lines and of what was left out.
 
         Returns
         -------
         ProvedInterval or None
         """
         if problem not in self._found:
-            self._found[problem] = self._sought(problem)
+            self._found[problem] = self._sought(problem, called)
         return self._found[problem]
 
     def any_curve(self, problem: ExactProblem) -> ProvedInterval | None:
@@ -97,16 +99,16 @@ class Intervals:
         finally:
             self._left -= time.monotonic() - began
 
-    def _sought(self, problem: ExactProblem) -> ProvedInterval | None:
+    def _sought(self, problem: ExactProblem, called: str) -> ProvedInterval | None:
         found = self._given(problem, Subject.DECLARED)
         if found is not None or covered(problem) is not None:
             return found
         seconds = self._left * _SHARE
         if seconds < _LEAST:
             if self._left > 0:
-                self.left_out.append(f"the optimum of {problem.name}: no time was left")
+                self.left_out.append(f"{called}: no time was left")
             return None
-        self._progress(f"certifying {problem.name}, at most {seconds:.0f} s")
+        self._progress(f"certifying {called}, at most {seconds:.0f} s")
         began = time.monotonic()
         try:
             answer = certify(problem, gap=_GAP, seconds=seconds, cache=self._cache)
@@ -121,5 +123,5 @@ class Intervals:
                 self._made.append(document)
                 self.kept += answer.kept
         if found is None:
-            self.left_out.append(f"the optimum of {problem.name}, within {seconds:.0f} s")
+            self.left_out.append(f"{called}, tried for {seconds:.0f} s")
         return found

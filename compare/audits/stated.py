@@ -148,6 +148,12 @@ def posed_as(case: Case, problem: str, reading: str) -> str:
     return "; ".join([*said, *([case.labels[reading]] if len(case.readings) > 1 else [])])
 
 
+def posed_among(case: Case, problem: str, reading: str) -> str:
+    """What `posed_as` says; empty where there is one problem under one reading alone."""
+    several = len(case.problems) > 1 or len(case.readings) > 1
+    return posed_as(case, problem, reading) if several else ""
+
+
 def asked_as(case: Case, problem: str, reading: str) -> str:
     """A problem and a reading in words, with the ids by which a command asks for them if it can."""
     words = posed_as(case, problem, reading)

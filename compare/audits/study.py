@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import cast
 
@@ -12,7 +12,9 @@ from ...heuristics import (
     JointRuns,
 )
 from ...nlp import (
+    ExactProblem,
     PerJointSolution,
+    ProvedInterval,
     Solution,
     Status,
     solve_per_joint,
@@ -44,12 +46,12 @@ from ...problem.cases import (
     TimeClaim,
     TotalTimeClaim,
 )
-from ..documents import Keeping, Rounding
+from ..documents import Keeping, Rounding, noted
 from .chosen_case import Pair
 from .instances import InstancesResult, examined, readings_of
 from .replayed_case import ReplayedCase, Replays
 from .rounding import RoundingBox, RoundingVerdict, judge_rounding
-from .stated import place, posed_as
+from .stated import place, posed_among, posed_as
 from .total_bound import excludes_total
 
 RELAXED_SECONDS = 15.0
@@ -83,7 +85,7 @@ class Study(ReplayedCase):
             except TrajgapError as error:
                 return Solution(one, Status.FAILED, str(error))
             exact = stated_exactly(self.case.statement(pid, rid), index)
-            return with_interval(found, None if exact is None else self.intervals.interval(exact))
+            return with_interval(found, None if exact is None else self._proved(pid, rid)(exact))
 
         if joint is not None and len(self.problem(pid, rid).joints) == 1:
             joint = None
@@ -128,9 +130,20 @@ class Study(ReplayedCase):
             except TrajgapError as error:
                 joints = tuple(self.optimum(pid, rid, label) for label in problem.joints)
                 return PerJointSolution(problem, joints, None, None, (), str(error), 0.0)
-            return with_certificates(found, self.case.statement(pid, rid), self.intervals.interval)
+            return with_certificates(found, self.case.statement(pid, rid), self._proved(pid, rid))
 
         return self.once(("per joint", pid, rid), compute)
+
+    def _proved(self, pid: str, rid: str) -> Callable[[ExactProblem], ProvedInterval | None]:
+        """What gives the proved interval of a problem, or of some of its joints, and names it."""
+
+        def find(exact: ExactProblem) -> ProvedInterval | None:
+            apart = len(exact.joints) < len(self.problem(pid, rid).joints)
+            which = f"joint {' '.join(exact.joints)}" if apart else ""
+            asked = noted("the optimum", which, posed_among(self.case, pid, rid))
+            return self.intervals.interval(exact, asked)
+
+        return find
 
     def half_digits(self, pid: str, rid: str) -> tuple[float, ...]:
         """Half a unit of the last printed place of the totals of single joints, s."""
@@ -340,9 +353,10 @@ class Study(ReplayedCase):
             with self.intervals.lent() as seconds:
                 excluded = excludes_total(problem, longest, waypoints, seconds=seconds)
             if excluded is None:
+                asked = posed_among(self.case, pid, rid)
                 self.intervals.left_out.append(
-                    f"whether any motion of {self.problem(pid, rid).name} takes {total[0]} or "
-                    f"less, within {seconds:.0f} s"
+                    noted(f"whether any motion takes {total[0]} or less", asked)
+                    + f", tried for {seconds:.0f} s"
                 )
             return excluded is True
 

@@ -51,6 +51,8 @@ app.add_typer(case_app, name="case")
 
 BAD_INPUT, FAULT, CLOSED_PIPE = 2, 70, 141
 """Exit codes: that of argument parsers, EX_SOFTWARE, and what a shell says of SIGPIPE."""
+_LONGEST = 1600
+"""Characters of an error line, room for eight faults: a longer one quotes the file at length."""
 
 
 def _version(asked: bool) -> None:
@@ -422,5 +424,9 @@ def _unwritten(error: OSError) -> int:
 def _fail(message: str, code: int) -> int:
     from ...problem import visible
 
-    print(f"trajgap: {visible(' '.join(message.split()))}", file=sys.stderr)
+    line = visible(" ".join(message.split()))
+    if len(line) > _LONGEST:
+        # The file stands in front, how to fix it at the end.
+        line = f"{line[: _LONGEST // 2]} ... {line[-_LONGEST // 2 :]}"
+    print(f"trajgap: {line}", file=sys.stderr)
     return code

@@ -13,6 +13,7 @@ from ...nlp import Evidence
 from ...problem import Case, published_ids
 from ..audits import Study, posed_as
 from ..documents import (
+    SHARED_OPTIMUM,
     Advice,
     AuditDocument,
     AuditedCase,
@@ -23,6 +24,7 @@ from ..documents import (
     Urgency,
     Waterfall,
     Why,
+    capital,
     counted,
     facts,
     more_errors,
@@ -220,15 +222,22 @@ def _time_goes(waterfalls: Sequence[Waterfall], case: Case) -> list[RenderableTy
     first: dict[str, Waterfall] = {}
     for waterfall in waterfalls:
         first.setdefault(waterfall.problem, waterfall)
+    steps = [{step.name: step for step in one.steps} for one in first.values()]
+    names = dict.fromkeys(name for one in steps for name in one)
+    # The optimum keeps its row: distances are counted from it.
+    unknown = {name: whys[0] for name in names if name != SHARED_OPTIMUM
+               if (whys := [one[name].time for one in steps if name in one])
+               if all(isinstance(why, Why) for why in whys)}  # fmt: skip
     several = len(case.problems) > 1 or len(case.readings) > 1
     parts: list[RenderableType] = []
     for pid, one in first.items():
-        if one.steps:
+        rows = [(step.name, *_step(step)) for step in one.steps if step.name not in unknown]
+        if rows:
             under = f"; {posed_as(case, pid, one.reading)}" if several else ""
-            rows = [(step.name, *_step(step)) for step in one.steps]
             parts.append(line(f"Where the time goes{under}"))
             parts.append(Columns(("step", ">time s", "evidence"), rows))
     told = dict.fromkeys(said for one in first.values() for said in one.without_optimum)
+    told |= dict.fromkeys(f"{capital(name)}: {why}." for name, why in unknown.items())
     return [*parts, *(line(said, "dim") for said in told)]
 
 

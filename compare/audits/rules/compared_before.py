@@ -43,16 +43,19 @@ def comparison_words(known: Comparison) -> Iterator[str]:
         f"{known.standard} {_each(known.listed)}."
     )
     if known.designed:
-        pairs, typical = (sum(getattr(o, n) for o in known.designed) for n in ("pairs", "typical"))
+        several = len(known.designed) > 1
+        counts = [
+            f"{one.typical} of {one.pairs} pairs of settings{f' ({one.problem})' * several}"
+            for one in known.designed
+        ]
         best = max(known.designed, key=lambda one: one.most or 0.0)
         yield (
             f"With all that the text leaves open varied together, that is typical (in half of the "
-            f"pairs of runs or more) in {typical} of {pairs} pairs of settings"
+            f"pairs of runs or more) in {' and in '.join(counts)}"
             + (f", most often with {_settings(known, best)} ({_percent(best.most)})." if best.most
                else ".")
         )  # fmt: skip
-    if known.ablated:
-        yield _taken_away(known.ablated)
+    yield from _taken_away(known.ablated)
 
 
 def _each(listed: Sequence[Listed]) -> str:
@@ -80,19 +83,22 @@ def _settings(known: Comparison, best: Designed) -> str:
     return f"{known.standard} at {best.at[0]} and {known.improved} at {best.at[1]}"
 
 
-def _taken_away(ablated: Sequence[Ablated]) -> str:
-    """What single parts of the improvement change, where its own runs are told from the others."""
+def _taken_away(ablated: Sequence[Ablated]) -> Iterator[str]:
+    """What single parts of the improvement change, for each problem in a sentence."""
     alone = [one for one in ablated if len(one.without) == 1 and one.shown.shorter is not None]
-    parts = [
-        f"{' and '.join(one.without)} {_percent(one.shown.shorter)}"
-        + (" (it helps)" if _above(one) else " (it harms)" if _below(one) else "")
-        for one in alone
-    ]
-    return (
-        "Share of pairs in which the whole algorithm is shorter than itself without "
-        + ", ".join(parts)
-        + "."
-    )
+    problems = list(dict.fromkeys(one.problem for one in alone))
+    for problem in problems:
+        parts = [
+            f"{' and '.join(one.without)} {_percent(one.shown.shorter)}"
+            + (" (it helps)" if _above(one) else " (it harms)" if _below(one) else "")
+            for one in alone
+            if one.problem == problem
+        ]
+        where = f" ({problem})" if len(problems) > 1 else ""
+        yield (
+            "Share of pairs in which the whole algorithm is shorter than itself"
+            f"{where} without {', '.join(parts)}."
+        )
 
 
 def _above(one: Ablated) -> bool:

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ....problem import QUANTITIES, Array, Printed, Trajectory, fit
+from ....problem import QUANTITIES, Array, Printed, Trajectory, TrajgapError, fit
 from ....problem.cases import AnyClaim, MeasureClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
+from ..rounding import RoundingBox
 from ..study import Study
-from .peaks import each_motion, has_curve, peak_numbers
+from .peaks import CORNERS, each_motion, has_curve, peak_numbers
 from .printed_digits import hull
 from .wording import UNEXPLAINED, called, in_units, unit_shown
 
@@ -133,12 +134,18 @@ def sampled(trajectory: Trajectory, order: int, measure: str) -> list[MotionMeas
 
 @dataclass(frozen=True)
 class _Beside:
-    """A printed number beside a measure, all in the unit of the paper."""
+    """A printed number beside a measure, all in the unit of the paper.
+
+    ``reach`` is the change of the measure over what rounds to the printed digits: of first order,
+    and where that does not reach the number the largest that is found, if it is larger. ``far`` is
+    the same over what is cut off to them; ``low`` and ``high`` are what samples give.
+    """
 
     printed: Printed
     meaning: str
     exact: float
     reach: float
+    far: float
     low: float
     high: float
 
@@ -149,10 +156,10 @@ class _Beside:
         if float(own.lower) <= self.exact + self.reach and self.exact - self.reach <= own.upper:
             return "equal within the rounding of the printed digits"
         wide = hull(self.printed)
-        reach = 2 * self.reach
-        if float(wide.lower) <= self.exact + reach and self.exact - reach <= wide.upper:
+        far = self.far
+        if float(wide.lower) <= self.exact + far and self.exact - far <= wide.upper:
             return "as digits that are cut off instead of rounded give it"
-        if float(wide.lower) <= self.high + reach and self.low - reach <= wide.upper:
+        if float(wide.lower) <= self.high + far and self.low - far <= wide.upper:
             return f"as {_SAMPLES[0]} or more samples of the motion give it"
         return ""
 
@@ -218,7 +225,8 @@ def _beside(
 ) -> _Beside:
     """A printed number beside the measure that it is nearest to, of those that it may be."""
     problem = study.claim_problem(motion, pid, rid)
-    box = study.case.claim_durations(motion, rid)
+    told = study.case.claim_durations(motion, rid)
+    box = RoundingBox(told.value, told.lower, told.upper)
     points = study.waypoint_box(problem, pid, rid)
     order = QUANTITIES.index(claim.derivative) + 1
     index = None if joint is None else problem.joints.index(joint)
@@ -246,9 +254,58 @@ def _beside(
     tried = []
     for words, value in at_print.items():
         samples = [unit * one.meant(index)[words] for one in coarse]
-        tried.append(_Beside(printed, words, value, reach[words], min(samples), max(samples)))
+        near, far = reach[words], 2 * reach[words]
+        tried.append(_Beside(printed, words, value, near, far, min(samples), max(samples)))
     fitting = [one for one in tried if one.fits]
+    if not fitting:
+        for i, one in enumerate(tried):
+            near, far = (_farthest(meant, one, points, box, share) for share in (1.0, 2.0))
+            tried[i] = replace(one, reach=max(one.reach, near), far=max(one.far, far))
+        fitting = [one for one in tried if one.fits]
     return min(fitting or tried, key=lambda one: abs(one.exact - float(printed.fraction)))
+
+
+def _farthest(
+    meant: Callable[[Array, Array], dict[str, float]],
+    one: _Beside,
+    points: RoundingBox,
+    box: RoundingBox,
+    share: float,
+) -> float:
+    """Largest change of a measure that is found at corners of the rounding box, ``share`` as wide.
+
+    The first order at the printed numbers tells little where a segment lasts few units of its last
+    digit. So every number goes to the end that it is better at while the others stay, and from that
+    corner again, upwards and downwards.
+    """
+    middle, low, high = (
+        np.append(getattr(points, end), getattr(box, end)) for end in ("value", "lower", "upper")
+    )
+    low, high = middle + share * (low - middle), middle + share * (high - middle)
+    count, shape = points.value.size, points.value.shape
+
+    def change(at: Array, side: float) -> float:
+        try:
+            found = meant(at[:count].reshape(shape), at[count:])[one.meaning]
+        except TrajgapError:  # a duration that is not positive, or no curve
+            return -np.inf
+        return side * (found - one.exact)
+
+    widest = 0.0
+    for side in (1.0, -1.0):
+        at, known = middle, 0.0
+        for _ in range(CORNERS):
+            down, up = (
+                np.array([change(_with(at, (k,), end), side) for k in range(at.size)])
+                for end in (low, high)
+            )
+            at = np.where(down > up, low, high)
+            found = change(at, side)
+            if found <= known:
+                break
+            known = found
+        widest = max(widest, known)
+    return widest
 
 
 def _with(values: Array, k: tuple[int, ...], others: Array) -> Array:

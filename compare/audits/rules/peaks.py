@@ -45,7 +45,7 @@ _NEAR_FACTOR = 0.01
 """Relative distance from such a ratio below which the unit is named as an explanation."""
 
 
-_CORNERS = 6
+CORNERS = 6
 """Corners of the rounding box that are looked at in turn at most, each way; a search of all of its
 2ⁿ corners would not end where there are many durations and way-points."""
 _WIDE = 0.05
@@ -188,7 +188,7 @@ def farthest(
     widest = 0.0
     for side in (1.0, -1.0):
         h, w, here = box.value, q, top
-        for _ in range(_CORNERS):
+        for _ in range(CORNERS):
             g = peak_gradients(replace(problem, waypoints=w), h, [here])
             way = side * np.sign(here.value)
             turn = np.zeros_like(q)

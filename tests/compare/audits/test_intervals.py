@@ -77,7 +77,7 @@ def test_what_the_budget_leaves_out_is_said() -> None:
     (one,) = audit(stated(), seeds=2, certify_seconds=0.1).cases
     assert distance_of(one) is Evidence.BEST_KNOWN
     (said,) = one.document.left_out
-    assert said.endswith(": no time was left")
+    assert said == "the optimum: no time was left"
     assert facts(one.document) == [("not certified", said)]
     (terms, *_) = posed(one).blocks
     assert ("not certified", said) in terms.pairs  # page and Markdown

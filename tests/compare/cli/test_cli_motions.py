@@ -2,9 +2,11 @@
 
 import json
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
+from support.command_line import assert_refused
 from support.documents import assert_valid
 from trajgap.compare.cli import main
 
@@ -107,6 +109,15 @@ def test_strict_is_for_scripts(files, capsys):
 
 
 @pytest.mark.slow
+def test_a_name_of_any_length_in_a_file_leaves_the_line_readable(files, capsys):
+    name = "elbow " + 9000 * "- " + "velocity"
+    Path("long.csv").write_text(f"time,a,{name},a velocity\n0,0,0,0\n1,1,1,0\n")
+    code = main(["check", "long.csv", "--velocity", "2"])
+    told = capsys.readouterr()
+    assert_refused((code, told.out, told.err), "long.csv: line 1: ", "; give it for every joint")
+    assert len(told.err) < 2000
+
+
 def test_a_hundred_thousand_samples_of_seven_joints(files, capsys):
     rng = np.random.default_rng(1)
     t = np.linspace(0.0, 100.0, 100_001)

@@ -67,6 +67,22 @@ def test_what_samples_give_is_supported_and_digits_leave_room() -> None:
     assert verdict_on("velocity", "mean", mean, "1.200") is ClaimVerdict.INCONSISTENT
 
 
+@pytest.mark.parametrize(("derivative", "measure"), CLOSED)
+@pytest.mark.parametrize("time", [0.0151, 0.0249])
+def test_a_duration_of_few_last_digits_leaves_more_than_the_first_order(
+    derivative: str, measure: str, time: float
+) -> None:
+    """Both are printed as 0.02 s: the square of jerk changes by a factor of 12 between them."""
+    power = {"velocity": 1, "acceleration": 2, "jerk": 3}[derivative]
+    power = 2 * power - 1 if measure == "integral-square" else power
+    power = 0 if measure == "integral" else power
+    exact = CLOSED[derivative, measure] * (H / time) ** power
+    assert verdict_on(derivative, measure, f"{exact:.4f}", "0.02") is ClaimVerdict.SUPPORTED
+    if 0 < power < 5:  # beyond, numbers are refused for their size
+        far = f"{exact * (time / 0.008) ** power:.4f}"
+        assert verdict_on(derivative, measure, far, "0.02") is ClaimVerdict.INCONSISTENT
+
+
 @pytest.mark.parametrize(
     "curve", [cubic_spline(3, ((2, 0.0),)), uniform_cubic_b_spline(4, "timed")]
 )
