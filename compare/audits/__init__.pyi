@@ -4,7 +4,7 @@ from .provenance import certificate_files, package_version
 from .reading_words import KEPT, segments
 from .rounding import Point, RoundingBox, RoundingVerdict, judge_rounding
 from .rules import EXPLAINED, RULES
-from .stated import claim_text, digits_of, place, posed_as, spoken
+from .stated import asked_as, claim_text, digits_of, place, posed_as, spoken
 from .study import Study
 from .waterfall import waterfalls
 
@@ -18,6 +18,7 @@ __all__ = [
     "RoundingBox",
     "RoundingVerdict",
     "Study",
+    "asked_as",
     "audit",
     "certificate_files",
     "claim_text",

@@ -37,7 +37,6 @@ _FIXES = {
 }
 """How to fix what a rule finds, where no number is needed."""
 _COMPUTED = {
-    "TG101": "Print {computed} as the total, or correct the parts.",
     "TG103": "Print {computed}, or correct the totals that it compares.",
     "TG105": "Print one total in both places: {printed} or {computed}.",
     "TG203": "Print {computed} as the largest value, taken at the true extremum.",
@@ -107,6 +106,8 @@ def _change(study: Study, claim: AnyClaim | None, head: Finding) -> str:
     """How to fix what a finding is about; empty where there is nothing special to say."""
     if head.rule in _FIXES:
         return _FIXES[head.rule]
+    if head.rule == "TG101" and isinstance(claim, DurationsClaim | MaximumClaim):
+        return f"Print {_sum_of(study, claim)} as the total, or correct the parts."
     if head.rule in _COMPUTED and head.computed is not None:
         return _COMPUTED[head.rule].format(computed=head.computed, printed=head.printed)
     if claim is None or head.rule not in ("TG201", "TG301", "TG302"):
@@ -120,6 +121,11 @@ def _change(study: Study, claim: AnyClaim | None, head: Finding) -> str:
         if said:
             return said
     return ""
+
+
+def _sum_of(study: Study, claim: DurationsClaim | MaximumClaim) -> str:
+    """The sum of printed parts to the last of their digits, which a paper can print."""
+    return f"{sum(one.decimal for one in claim.durations)} {study.time_unit}"
 
 
 def _pairs(study: Study, head: Finding) -> Iterator[Pair]:

@@ -18,7 +18,7 @@ from ...problem.cases import (
     TimeClaim,
     TotalTimeClaim,
 )
-from ..documents import StatedAnswer, StatedClaim, StatedSource, known
+from ..documents import StatedAnswer, StatedClaim, StatedSource, known, noted
 from .sentences import sentence_of
 
 _TIME = "time"
@@ -142,15 +142,24 @@ def spoken(case: Case, text: str) -> str:
 
 def posed_as(case: Case, problem: str, reading: str) -> str:
     """A problem and a reading in words, each where the case has several; else the problem."""
-    title = next((p.title for p in case.problems if p.id == problem), "") or problem
+    only = case.title if len(case.problems) == 1 else problem
+    title = next((p.title for p in case.problems if p.id == problem), "") or only
     said = [title] if len(case.problems) > 1 or len(case.readings) < 2 else []
     return "; ".join([*said, *([case.labels[reading]] if len(case.readings) > 1 else [])])
 
 
 def posed_among(case: Case, problem: str, reading: str) -> str:
-    """The same; empty where the case has one problem and one reading, and nothing needs telling."""
+    """What `posed_as` says; empty where there is one problem under one reading alone."""
     several = len(case.problems) > 1 or len(case.readings) > 1
     return posed_as(case, problem, reading) if several else ""
+
+
+def asked_as(case: Case, problem: str, reading: str) -> str:
+    """A problem and a reading in words, with the ids by which a command asks for them if it can."""
+    words = posed_as(case, problem, reading)
+    if len(case.problems) == len(case.readings) == 1:
+        return words
+    return noted(words, f"problem {problem}, reading {reading}")
 
 
 def place(claim: Claim) -> str:

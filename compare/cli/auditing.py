@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from rich.console import RenderableType
 
 from ...nlp import Evidence
-from ...problem import published_ids
-from ..audits import Study
+from ...problem import Case, published_ids
+from ..audits import Study, posed_as
 from ..documents import (
     SHARED_OPTIMUM,
     Advice,
@@ -99,7 +99,8 @@ def audit_cases(
 
             step("archive")
             bundle(crate_of(report))
-    emit(report.document, audited, as_json)
+    cases = [one.case for one in report.cases]
+    emit(report.document, lambda shown: audited(shown, cases), as_json)
     if folder is not None and not as_json:
         say(f"pages: {folder / 'index.html'}\n")
     if report.kept and not as_json:
@@ -107,11 +108,12 @@ def audit_cases(
     return 1 if strict and report.errors else 0
 
 
-def audited(document: AuditDocument) -> list[RenderableType]:
+def audited(document: AuditDocument, cases: Sequence[Case]) -> list[RenderableType]:
     """Summary of the `audit` document: for each case the card, claims, causes, where time goes."""
     parts: list[RenderableType] = []
-    for case in document.cases:
-        parts += [line(case.title, "bold"), line(case.case, "dim"), line("")]
+    for case, asked in zip(document.cases, cases, strict=True):
+        below = [line(case.case, "dim")] if case.case != case.title else []
+        parts += [line(case.title, "bold"), *below, line("")]
         card = case.card
         against = {*card.errors, *([more_errors(card.more)] if card.more else [])}
         parts += [line(said, "bold red" if said in against else "") for said in card.sentences]
@@ -132,8 +134,7 @@ def audited(document: AuditDocument) -> list[RenderableType]:
         parts += [line(said, "dim") for said in _unchecked(case)]
         advice = () if isinstance(case.advice, Why) else case.advice
         parts += _advised(advice) if advice else [line(one) for one in _causes(case)]
-        labels = {} if isinstance(case.readings, Why) else case.readings.labels
-        parts += [line(""), *_time_goes(case.waterfalls, labels)]
+        parts += [line(""), *_time_goes(case.waterfalls, asked)]
         parts += [line(f"{words}: {value}", "dim") for words, value in facts(case)]
     return parts
 
@@ -216,34 +217,30 @@ def _causes(case: AuditedCase) -> list[str]:
     return found
 
 
-def _time_goes(waterfalls: Sequence[Waterfall], labels: Mapping[str, str]) -> list[RenderableType]:
+def _time_goes(waterfalls: Sequence[Waterfall], case: Case) -> list[RenderableType]:
     """Where the time goes, for each problem under its first reading."""
     first: dict[str, Waterfall] = {}
     for waterfall in waterfalls:
         first.setdefault(waterfall.problem, waterfall)
     steps = [{step.name: step for step in one.steps} for one in first.values()]
     names = dict.fromkeys(name for one in steps for name in one)
-    if not names:
-        return []
     # The optimum keeps its row: distances are counted from it.
     unknown = {name: whys[0] for name in names if name != SHARED_OPTIMUM
                if (whys := [one[name].time for one in steps if name in one])
                if all(isinstance(why, Why) for why in whys)}  # fmt: skip
-    rows = [
-        (name, *(cell for one in steps for cell in _step(one.get(name))))
-        for name in names
-        if name not in unknown
-    ]
-    columns = [column for problem in first for column in (f">{problem}", "evidence")]
-    under = f" ({labels[waterfalls[0].reading]})" if len(labels) > 1 else ""
-    title = f"where the time goes, s{under}"
+    several = len(case.problems) > 1 or len(case.readings) > 1
+    parts: list[RenderableType] = []
+    for pid, one in first.items():
+        rows = [(step.name, *_step(step)) for step in one.steps if step.name not in unknown]
+        if rows:
+            under = f"; {posed_as(case, pid, one.reading)}" if several else ""
+            parts.append(line(f"Where the time goes{under}"))
+            parts.append(Columns(("step", ">time s", "evidence"), rows))
     told = dict.fromkeys(said for one in first.values() for said in one.without_optimum)
     told |= dict.fromkeys(f"{capital(name)}: {why}." for name, why in unknown.items())
-    return [Columns((title, *columns), rows), *(line(said, "dim") for said in told)]
+    return [*parts, *(line(said, "dim") for said in told)]
 
 
-def _step(step: Step | None) -> tuple[str, str]:
+def _step(step: Step) -> tuple[str, str]:
     """Time of a step, and the word for what stands behind it, if any does."""
-    if step is None:
-        return "", ""
     return seconds(step.time), "" if step.evidence is Evidence.NONE else str(step.evidence)

@@ -17,6 +17,7 @@ from ...nlp import Evidence, Solution, solve, stated_exactly, with_certificate
 from ...problem import Case, CaseError, Coupling, TrajgapError
 from ...problem.cases import SUITE_PREFIX
 from ...problem.suite import instance_of, select_instances
+from ..audits import asked_as
 from ..documents import (
     BENCH_COLUMNS,
     OVERALL_COLUMNS,
@@ -25,6 +26,7 @@ from ..documents import (
     Reference,
     bench_cells,
     known,
+    noted,
     overall_cells,
 )
 from ..gaps import (
@@ -153,6 +155,14 @@ class _Asked:
     posed: Posed
     plan: BenchPlan
 
+    @property
+    def words(self) -> str:
+        """What a reader calls it, with the ids that a command takes."""
+        case = self.case
+        if instance_of(case) is not None:
+            return noted(case.title, f"{SUITE_PREFIX}{case.id}")
+        return asked_as(case, self.posed.problem_id, self.posed.reading_id)
+
 
 def _run(
     asked: Sequence[_Asked], workers: int, kept: Path | None
@@ -161,7 +171,7 @@ def _run(
     with progress("solve", len(asked)) as solving:
         optima = []
         for one in asked:
-            solving(f"the optimum of {one.case.id}, {one.posed.problem_id}, {one.posed.reading_id}")
+            solving(f"the optimum: {one.words}")
             with naming(one.case.file):
                 optima.append(_optimum(one.case, one.posed))
     with ExitStack() as stack:
@@ -172,7 +182,8 @@ def _run(
         for one, optimum in zip(asked, optima, strict=True):
             with naming(one.case.file):
                 runs = run_bench(one.plan, engine, lambda row: step.done(row.optimizer), store)
-                results.append((measure_gaps(runs, optimum), runs))
+                result = measure_gaps(runs, optimum).model_copy(update={"words": one.words})
+                results.append((result, runs))
     return results
 
 
@@ -189,8 +200,8 @@ def _optimum(case: Case, one: Posed) -> Solution | Reference:
     if not 0 < answer.best < math.inf:
         why = answer.why or str(answer.status)
         raise TrajgapError(
-            f"{case.file}: {one.problem_id}, {one.reading_id}: no positive optimum to measure gaps "
-            f"against ({why})"
+            f"{case.file}: {asked_as(case, one.problem_id, one.reading_id)}: no positive optimum "
+            f"to measure gaps against ({why})"
         )
     return answer
 
@@ -213,5 +224,5 @@ def _tables(document: BenchDocument) -> list[RenderableType]:
             for one in result.standings
             for message in one.messages
         ]
-        parts += [line(note, "dim") for note in result.notes]
-    return parts
+        parts += [line(note, "dim") for note in result.notes] + [line("")]
+    return parts[:-1]

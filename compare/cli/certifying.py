@@ -46,6 +46,7 @@ from ...verify import (
     read_document,
     verify_certificate,
 )
+from ..audits import posed_as
 from ..documents import (
     CertifiedResult,
     CertifyDocument,
@@ -87,6 +88,8 @@ class Question:
     asked: CertifiedQuestion
     problem: ExactProblem | str
     """Or why it is not covered."""
+    words: str = ""
+    """What it is called while it is proved."""
     subject: Subject = Subject.DECLARED
     """What the interval is to speak about."""
 
@@ -140,7 +143,7 @@ def certify_case(
             for one in asked:
                 if stop.asked:
                     break
-                step(one.name)
+                step(one.words)
                 clock = Clock(seconds + _SPARE)
                 found: Certified | str = (
                     one.problem
@@ -152,7 +155,7 @@ def certify_case(
                         seconds=seconds,
                         seed=seed,
                         resume=states[one.name].document if one.name in states else None,
-                        report=stop.reporting(one.name, step),
+                        report=stop.reporting(one.words, step),
                         workers=workers,
                         cache=cache,
                     )
@@ -164,7 +167,7 @@ def certify_case(
                 results.append(certify_result(*ids, subject, found, *files, _why(found)))
         document = CertifyDocument(intervals=tuple(results))
         write(json_text(document))
-    emit(document, cli_proofs.certified, as_json)
+    emit(document, lambda shown: cli_proofs.certified(shown, case), as_json)
     if folder is not None and not as_json and any(r.certificate for r in results):
         say(f"certificates: {folder}\n")
     if kept and not as_json:
@@ -210,12 +213,14 @@ def _stated(case: Case, one: Posed, coupling: Coupling) -> Iterator[Question]:
     """What is asked under one reading, covered or not."""
     statement = case.statement(one.problem_id, one.reading_id)
     name = f"{case.id}.{one.problem_id}.{one.reading_id}"
+    said = posed_as(case, one.problem_id, one.reading_id)
     ids, content = (case.id, one.problem_id, one.reading_id), _hash(case)
     labels: list[str | None] = [None]
     if coupling is Coupling.PER_JOINT:
         labels = list(one.problem.joints)
     for j, label in enumerate(labels):
         own = name if label is None else f"{name}.joint-{label}"
+        words = said if label is None else f"joint {label} alone; {said}"
         exact: ExactProblem | str
         try:
             exact = printed_problem(statement)
@@ -224,7 +229,7 @@ def _stated(case: Case, one: Posed, coupling: Coupling) -> Iterator[Question]:
             raise
         except TrajgapError as error:
             exact = str(error)
-        yield Question(own, one, CertifiedQuestion(*ids, label, content), exact)
+        yield Question(own, one, CertifiedQuestion(*ids, label, content), exact, words)
 
 
 def _hash(case: Case) -> str | None:
@@ -389,8 +394,8 @@ def verify_files(
     for path in files:
         check_regular(path)
     asked = None
-    if case is not None:
-        stated = read_case(case)
+    stated = None if case is None else read_case(case)
+    if stated is not None:
         asked = [
             question
             for one in select(stated, None, None)
@@ -408,7 +413,7 @@ def verify_files(
     if as_json:
         emit(document, lambda _: (), as_json)
     else:
-        say(cli_proofs.verified(document))
+        say(cli_proofs.verified(document, stated))
     good = all(verdict.proves and not isinstance(about, str) for _, verdict, about in verdicts)
     return 0 if good else 1
 

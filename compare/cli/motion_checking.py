@@ -274,7 +274,7 @@ def _verdict(result: CheckedMotion, units: Mapping[str, str]) -> list[Renderable
             line(
                 f"jump: {one.quantity} of joint {one.joint} by "
                 f"{_number(one.size, units[one.joint])} {unit} at {one.time:.6g} s; "
-                f"it jumps at {one.breaks} breaks"
+                f"it jumps at {one.breaks} break{'s' * (one.breaks > 1)}"
             )
         )
     repaired = given(result.feasible_time)

@@ -16,6 +16,7 @@ from ...problem.motions import (
     motion_text,
     read_back,
 )
+from ..audits import posed_as
 from ..documents import WrittenMotion, given
 from .input import Posed
 from .motion_checking import checked_motion
@@ -98,13 +99,14 @@ def write_motion(one: Posed, answer: Solution, asked: AskedSamples) -> tuple[str
     )
 
 
-def written_lines(written: WrittenMotion) -> list[str]:
+def written_lines(written: WrittenMotion, case: Case) -> list[str]:
     """What the terminal says of a written file."""
     result = written.result
     worst = given(result.worst)
     ratio = "" if worst is None else f", largest ratio {worst.ratio:.6f}"
     lines = [
-        f"{written.file}: the motion of {written.problem}, {written.reading} as {written.form}; "
+        f"{written.file}: the motion as {written.form} "
+        f"({posed_as(case, written.problem, written.reading)}); "
         f"read back: {result.verdict}{ratio} ({result.concluded[0].rstrip('.')})"
     ]
     if result.verdict != "pass" and written.form is MotionForm.CSV:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from decimal import Decimal
 from fractions import Fraction
 
 from rich.console import RenderableType
 
 from ...nlp import Outcome
+from ...problem import Case
+from ..audits import asked_as, posed_as
 from ..documents import (
     UNNAMED,
     AskedQuestion,
@@ -17,7 +20,8 @@ from ..documents import (
     VerifyDocument,
     Why,
 )
-from .table import Columns, line, plain
+from .result_tables import by_question
+from .table import line, plain
 
 _PROVED: dict[str, str] = {Outcome.INFEASIBLE: "infeasible: proved", Outcome.OPEN: "nothing proved"}
 """Outcomes whose word alone might be taken for a guess."""
@@ -27,17 +31,19 @@ _COLUMNS = (">lower s", ">upper s", ">gap", ">nodes", ">open", ">seconds", "outc
 """What the table says of each interval."""
 
 
-def certified(document: CertifyDocument) -> list[RenderableType]:
+def certified(document: CertifyDocument, case: Case) -> list[RenderableType]:
     """Summary of the `solve --certify` document."""
     results = document.intervals
     if not results:
         return [line("nothing was begun", "dim")]
-    joint = any(r.joint is not None for r in results)
-    head = ("problem", "reading", *(("joint",) if joint else ()), *_COLUMNS)
-    rows = [
-        (r.problem, r.reading, *((r.joint or "all",) if joint else ()), *_cells(r)) for r in results
-    ]
-    parts: list[RenderableType] = [line(results[0].case, "bold"), Columns(head, rows)]
+    apart = any(r.joint is not None for r in results)
+    rows: dict[tuple[str, str], list[Sequence[object]]] = {}
+    for r in results:
+        row = ((r.joint or "all",) if apart else ()) + _cells(r)
+        rows.setdefault((r.problem, r.reading), []).append(row)
+    columns = (("joint",) if apart else ()) + _COLUMNS
+    parts: list[RenderableType] = [line(results[0].case, "bold")]
+    parts += by_question(rows, columns, apart, case)
     reasons = dict.fromkeys(r.outcome_why for r in results if r.outcome_why)
     parts += [line(reason, "dim") for reason in reasons]
     return parts + [line(f"go on with --resume {r.state}") for r in results if r.state]
@@ -64,18 +70,33 @@ def _bound(exact: str | None, side: int) -> str:
     return f"{Decimal(math.floor(steps) if side < 0 else math.ceil(steps)).scaleb(-9):.9f}"
 
 
-def verified(document: VerifyDocument) -> str:
-    """Text of the `verify` document: a line a file, whatever the window, and what was asked."""
+def verified(document: VerifyDocument, case: Case | None) -> str:
+    """Text of the `verify` document: a line a file, whatever the window, and what was asked.
+
+    A file's problem has the ids that the file names; in the case it is called by words, with ids
+    only where the file names other ones.
+    """
     lines = []
     for one in document.verified:
         lines.append(f"{one.file}: {one.worth}: {one.reason}")
         if one.problem_hash is not None:
             lines.append(f"    {_asked(one.question)}; problem sha256 {one.problem_hash}")
         if isinstance(one.in_case, AskedQuestion):
-            lines.append(f"    the same problem as in the case: {_asked(one.in_case)}")
+            found = _found(one.in_case, one.question, case)
+            lines.append(f"    the same problem as in the case: {found}")
         elif one.in_case.reason not in (UNNAMED, one.worth):
             lines.append(f"    not in the case: {one.in_case.reason}")
     return "".join(f"{plain(line)}\n" for line in lines)
+
+
+def _found(found: AskedQuestion, named: AskedQuestion, case: Case | None) -> str:
+    """A question of a case in words."""
+    if case is None or found.problem is None or found.reading is None:
+        return _asked(found)
+    ids = (found.problem, found.reading)
+    words = posed_as if ids == (named.problem, named.reading) else asked_as
+    joint = "" if found.joint is None else f"joint {found.joint} alone; "
+    return f"{joint}{words(case, *ids)}"
 
 
 def _asked(question: AskedQuestion) -> str:

@@ -10,7 +10,7 @@ from rich.console import RenderableType
 from rich.text import Text
 
 from ...problem import Case
-from ..audits import posed_as
+from ..audits import asked_as, posed_as
 from ..documents import ActiveLimit, Why, WorstPeak
 from .table import Columns, line
 
@@ -29,22 +29,51 @@ class Result(Protocol):
 R = TypeVar("R", bound=Result)
 Cells = Callable[[Any], tuple[object, ...]]
 """What a row says of a result, or of one of its joints."""
+Rows = Sequence[Sequence[object]]
+"""Rows of a table."""
 
 
 def by_result(
     results: Sequence[Result], columns: Sequence[str], cells: Cells, whole: str, case: Case
 ) -> list[RenderableType]:
     """One table of all results, or one for each where the joints stand by themselves."""
-    if not any(result.joints for result in results):
-        rows = [(r.problem, r.reading, *cells(r)) for r in results]
-        return [Columns(("problem", "reading", *columns), rows)]
-    parts: list[RenderableType] = []
+    rows: dict[tuple[str, str], Rows] = {}
+    apart = any(result.joints for result in results)
     for result in results:
         joints = [(one.joint, *cells(one)) for one in result.joints or ()]
-        where = f"problem {result.problem}, reading {result.reading}"
-        parts.append(line(f"{posed_as(case, result.problem, result.reading)} ({where})"))
-        parts.append(Columns(("joint", *columns), [*joints, (whole, *cells(result))]))
+        own = [*joints, (whole, *cells(result))] if apart else [cells(result)]
+        rows[result.problem, result.reading] = own
+    return by_question(rows, ("joint", *columns) if apart else columns, apart, case)
+
+
+def by_question(
+    rows: Mapping[tuple[str, str], Rows], columns: Sequence[str], apart: bool, case: Case
+) -> list[RenderableType]:
+    """What is said of each problem and reading, which are called by words; an id stands once.
+
+    One table of them all, or one for each where they are set apart or there is only one.
+    """
+    if not apart and len(rows) > 1:
+        told = [(posed_as(case, *ids), *row) for ids, own in rows.items() for row in own]
+        return [Columns(("~problem", *columns), told), *_ids(rows, case)]
+    parts: list[RenderableType] = []
+    for ids, own in rows.items():
+        words = asked_as(case, *ids)
+        # The tables stand below the case's id.
+        parts += [line(words)] if words != case.id else []
+        parts.append(Columns(columns, own))
     return parts
+
+
+def _ids(asked: Iterable[tuple[str, str]], case: Case) -> list[RenderableType]:
+    """What a command has to be given so that it takes one problem or one reading alone."""
+    problems, readings = (dict.fromkeys(ids) for ids in zip(*asked, strict=True))
+    titles = {p.id: p.title or p.id for p in case.problems}
+    rows = [
+        *((f"--problem {one}", titles[one]) for one in problems if len(titles) > 1),
+        *((f"--reading {one}", case.labels[one]) for one in readings if len(case.readings) > 1),
+    ]
+    return [Columns(("for one alone", "~which"), rows)]
 
 
 def reasons(

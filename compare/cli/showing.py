@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Literal
 
@@ -16,6 +16,7 @@ from ...problem.cases import (
     ImprovementClaim,
     MaximumClaim,
     MotionValueClaim,
+    Reading,
     Statement,
     TotalTimeClaim,
 )
@@ -38,23 +39,26 @@ def show_case(
     return 0
 
 
+_UNTITLED = "as stated below"
+"""What a problem is called that has no title: the next table states it."""
+
+
 def _tables(document: ShowDocument, case: Case) -> list[RenderableType]:
     source, robot = document.source, document.robot
     named = (source.authors, source.title, source.journal, source.year, source.doi)
     objective = case.document.objective
     cited = ". ".join(str(part).rstrip(".") for part in named if part)
     lines = [
-        document.title,
+        *([document.title] if document.title != document.id else []),
         *([cited] if cited else []),
         f"{robot.name}, joint{'s' * (len(robot.joints) > 1)} {', '.join(robot.joints)}",
         *([f"minimised: {objective}, not time alone"] if objective else []),
         "",
     ]
-    problems = [(p.id, p.title or p.why) for p in document.problems]
+    problems = [(p.id, p.title or p.why or _UNTITLED) for p in document.problems]
     labels = case.labels
     readings = [
-        (r.id + (" (default)" if r.default else ""), f"{capital(labels[r.id])}. {r.why}".strip())
-        for r in document.readings
+        (r.id + (" (default)" if r.default else ""), _meaning(r, labels)) for r in document.readings
     ]
     parts: list[RenderableType] = [
         line(document.id, "bold"),
@@ -72,6 +76,13 @@ def _tables(document: ShowDocument, case: Case) -> list[RenderableType]:
     return parts
 
 
+def _meaning(reading: Reading, labels: Mapping[str, str]) -> str:
+    """A reading's words and why it is admissible; the reason alone where it has no words."""
+    label = labels[reading.id]
+    said = [f"{capital(label)}."] if label != reading.id or not reading.why else []
+    return " ".join([*said, capital(reading.why)]).strip()
+
+
 def _asked(document: ShowDocument, case: Case) -> list[RenderableType]:
     """Curve, angles and limits of each problem, in the digits and units that are read."""
     reading = next((r.id for r in document.readings if r.default), document.readings[0].id)
@@ -82,8 +93,10 @@ def _asked(document: ShowDocument, case: Case) -> list[RenderableType]:
         curve = one.curve().name + _ends(one)
         said = (_limit(one, name) for name in ("velocity", "acceleration", "jerk"))
         limits = "; ".join(each for each in said if each) or "none"
-        rows.append((problem.id, curve, size, one.units.position or "", limits))
-    names = ("problem", "curve", "way-points × joints", "angles in", "~limits")
+        words = (problem.title or problem.id,) if len(document.problems) > 1 else ()
+        rows.append((*words, curve, size, one.units.position or "", limits))
+    first = ("~problem",) if len(rows) > 1 else ()
+    names = (*first, "curve", "way-points × joints", "angles in", "~limits")
     under = f" under {quoted(reading, case.labels)}" if len(document.readings) > 1 else ""
     return [line(f"Curve, units and limits{under}:"), Columns(names, rows)]
 

@@ -125,12 +125,16 @@ def _tables(document: SolveDocument, case: Case) -> list[RenderableType]:
         for a in r.active
     ]
     if active:
-        limits = ("~problem", "limit reached", ">multiplier s", ">10 % more changes s")
-        parts.append(Columns(limits, _without_repeats(active, 1)))
+        limits = ("limit reached", ">multiplier s", ">10 % more changes s")
+        parts.append(
+            Columns(("~problem", *limits), _without_repeats(active, 1))
+            if len(results) > 1
+            else Columns(limits, [row[1:] for row in active])
+        )
     parts += reasons(results, lambda r: {"status": r.status_why, "toppra": reason(r.toppra)}, case)
     build, solve = sum(r.build_seconds for r in results), sum(r.solve_seconds for r in results)
     if document.written is not None:
-        parts += [line(said) for said in written_lines(document.written)]
+        parts += [line(said) for said in written_lines(document.written, case)]
     return [*parts, line(f"build {build:.2f} s, solve {solve:.2f} s", "dim")]
 
 

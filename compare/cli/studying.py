@@ -9,7 +9,7 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from datetime import timedelta
 from itertools import groupby
@@ -20,8 +20,11 @@ from statistics import median
 from rich.console import RenderableType
 
 from ...problem import CaseError
+from ..audits import posed_as
+from ..documents import noted
 from ..gaps import (
     Engine,
+    PosedProblem,
     Row,
     RowStatus,
     Store,
@@ -41,6 +44,14 @@ from .table import Columns, line
 
 _ENDING = ".sqlite"
 """Of the store beside a study file."""
+_ONE_BY_ONE = 6
+"""Problems up to which each has a table of its own, as in `bench`; of more there is one, in which
+they are called as in the exports."""
+_COLUMNS = ("optimiser", "~settings", "handling", ">runs", ">failed", ">feasible", ">best gap %",
+            ">median gap %")  # fmt: skip
+"""What a table says of the runs of one optimiser under one settings."""
+Cells = tuple[object, ...]
+"""A row of such a table."""
 _MESSAGES = 5
 """Different messages of failed runs that are printed: the store and the exports have all."""
 
@@ -133,7 +144,8 @@ def _summary(
     exports: Sequence[Path],
     again: Sequence[str],
 ) -> list[RenderableType]:
-    rows, messages, failed = [], dict[str, int](), 0
+    found: dict[tuple[str, str], list[Cells]] = {}
+    messages, failed = dict[str, int](), 0
     for (problem, reading, optimizer, settings, handling), group in groupby(
         study_rows(plan, kept), _named
     ):
@@ -143,23 +155,14 @@ def _summary(
             messages[message] = messages.get(message, 0) + 1
         failed += len(bad)
         passed = sum(row.feasible for row in runs)
-        rows.append(
-            (problem, reading, optimizer, _readable(settings), handling, len(runs), len(bad),
-             passed, *_gaps(runs))
-        )  # fmt: skip
-    notes = dict.fromkeys(
-        f"{posed.name}, {posed.reading}: {note}" for posed in plan.problems for note in posed.notes
-    )
+        found.setdefault((problem, reading), []).append(
+            (optimizer, _readable(settings), handling, len(runs), len(bad), passed, *_gaps(runs))
+        )
     parts: list[RenderableType] = [
         line(f"{path}: {session.run:,} runs done now, {session.resumed:,} were there", "bold"),
-        Columns(
-            ("problem", "reading", "optimiser", "~settings", "handling", ">runs", ">failed",
-             ">feasible", ">best gap %", ">median gap %"),
-            rows,
-        ),
+        *_tables(plan, found),
         line("A gap is that of the feasible time, (T − U)/U against the best known total U."),
-    ]  # fmt: skip
-    parts += [line(note) for note in notes]
+    ]
     for message, count in sorted(messages.items(), key=lambda one: -one[1])[:_MESSAGES]:
         parts.append(line(f"failed, {count:,} times: {message}", "yellow"))
     if len(messages) > _MESSAGES:
@@ -173,6 +176,31 @@ def _summary(
         name = f"{Path(plan.file).stem}.csv"
         parts.append(line(f"next: {shlex.join([*again, '--export', name])}"))
     return parts
+
+
+def _tables(
+    plan: StudyPlan, found: Mapping[tuple[str, str], Sequence[Cells]]
+) -> list[RenderableType]:
+    """What the runs on each problem came to, with what was chosen for it."""
+    if len(plan.problems) > _ONE_BY_ONE:
+        rows = [(*ids, *cells) for ids, own in found.items() for cells in own]
+        notes = dict.fromkeys(
+            f"{_words(one)}: {note}" for one in plan.problems for note in one.notes
+        )
+        return [Columns(("problem", "reading", *_COLUMNS), rows), *map(line, notes)]
+    parts: list[RenderableType] = []
+    for one in plan.problems:
+        ids = (one.name, one.reading)
+        parts.append(line(noted(_words(one), ", ".join(ids))))
+        parts.append(Columns(_COLUMNS, found.get(ids, ())))
+        parts += [line(note, "dim") for note in one.notes] + [line("")]
+    return parts
+
+
+def _words(one: PosedProblem) -> str:
+    """What a problem of a study is called."""
+    joint = "" if one.joint is None else f"joint {one.joint} alone; "
+    return f"{joint}{posed_as(one.case, one.problem_id, one.reading)}"
 
 
 def _named(row: Row) -> tuple[str, str, str, str, str]:

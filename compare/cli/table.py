@@ -52,7 +52,7 @@ def line(text: object, style: str = "") -> Text:
 
 
 class Columns:
-    """Table in which one column of prose takes what the window leaves.
+    """Table in which columns of prose share what the window leaves.
 
     Before a column's name, > aligns right, ~ lets its prose wrap, … lets it be cut off. Whatever
     else is cut off would say something else, so a table may be wider than the window.
@@ -65,6 +65,20 @@ class Columns:
         lines = [self._names, *self._rows]
         self._widths = [max(map(cell_len, column)) for column in zip(*lines, strict=True)]
 
+    def _shared(self, window: int) -> list[int]:
+        """Width of each column: what would be cut off comes first, then the narrow ones."""
+        shared = list(self._widths)
+        prose = [i for i, kind in enumerate(self._kinds) if kind in ("~", "…")]
+        prose.sort(key=lambda i: (self._kinds[i] == "~", self._widths[i]))
+        left = window - self._total(0)
+        for after, i in enumerate(prose, 1):
+            others = len(prose) - after
+            cut = self._kinds[i] == "…"
+            most = left - others * _NARROWEST if cut else left // (others + 1)
+            shared[i] = min(self._widths[i], max(_NARROWEST, most))
+            left -= shared[i]
+        return shared
+
     def _total(self, prose: int) -> int:
         widths = zip(self._widths, self._kinds, strict=True)
         firm = sum(w if kind not in ("~", "…") else min(w, prose) for w, kind in widths)
@@ -74,15 +88,15 @@ class Columns:
         return Measurement(self._total(_NARROWEST), self._total(options.max_width))
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        prose = max(_NARROWEST, options.max_width - self._total(0))
+        widths = self._shared(options.max_width)
         table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=(0, 1, 0, 0))
-        for name, kind, width in zip(self._names, self._kinds, self._widths, strict=True):
+        for name, kind, width in zip(self._names, self._kinds, widths, strict=True):
             table.add_column(
                 name,
                 justify="right" if kind == ">" else "left",
                 no_wrap=kind != "~",
                 overflow="fold" if kind == "~" else "ellipsis",
-                width=min(width, prose) if kind in ("~", "…") else width,
+                width=width,
             )
         for row in self._rows:
             table.add_row(*(Text(cell, style=_STYLES.get(cell, "")) for cell in row))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from pydantic import Field
 
 from .entry import Count, Document, Entry, OrWhy, Real, Why
 from .finding import Reference
@@ -81,6 +82,8 @@ class BenchResult(Entry):
     problem: str
     """As rows call it: the case and its problem."""
     reading: str
+    words: str = Field(default="", exclude=True)
+    """What a reader calls both, with the ids that a command takes; not in JSON."""
     budget: Count
     """Evaluations of each run."""
     seeds: Count
@@ -93,8 +96,8 @@ class BenchResult(Entry):
 
     @property
     def title(self) -> str:
-        """The problem, with its reading where it has several."""
-        return ", ".join(part for part in (self.problem, self.reading) if part)
+        """The problem in words where there are some; else as rows call it, with its reading."""
+        return self.words or ", ".join(part for part in (self.problem, self.reading) if part)
 
     @property
     def verdict(self) -> str:

@@ -17,7 +17,7 @@ from .statistics import (
     spread,
 )
 from .store import Store
-from .studies import StudyPlan, load_study, parse_study
+from .studies import PosedProblem, StudyPlan, load_study, parse_study
 from .targets import TARGETS, band, expected_running_time, share_of_targets, share_within
 from .trial_process import TrialOutcome, run_apart
 from .trials import origin_of, run_trial
@@ -30,6 +30,7 @@ __all__ = [
     "Bracket",
     "Engine",
     "Entrant",
+    "PosedProblem",
     "Row",
     "RowStatus",
     "Runs",

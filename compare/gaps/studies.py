@@ -120,6 +120,12 @@ class PosedProblem:
     ----------
     name, reading : str
         As rows state them.
+    case : Case
+        Where it is stated.
+    problem_id : str
+        Its id there.
+    joint : str or None
+        The joint that is searched by itself; None for all together.
     problem : Problem
         As stated.
     box : Bounds
@@ -134,6 +140,9 @@ class PosedProblem:
 
     name: str
     reading: str
+    case: Case
+    problem_id: str
+    joint: str | None
     problem: Problem
     box: Bounds
     stream: tuple[int, ...]
@@ -334,6 +343,9 @@ def _posed_of(
             yield PosedProblem(
                 name=f"{case.id}/{pid}{label}",
                 reading=rid,
+                case=case,
+                problem_id=pid,
+                joint=None if joint is None else problem.joints[joint],
                 problem=one,
                 box=box,
                 stream=() if joint is None else (joint,),

@@ -172,12 +172,12 @@ def _page(results: Sequence[tuple[BenchResult, Runs]]) -> Page:
         f"trajgap {package_version('trajgap')}."
     )
     links = (("JSON", _MARK), ("rows (CSV)", _ROWS))
-    title = f"Optimisers against the optimum: {first.problem}"
+    title = f"Optimisers against the optimum: {first.title}"
     many = len(results) > _ONE_BY_ONE
     sections = _all_sections(results) if len(results) > 1 else []
-    if many:
+    if len(results) > 1:
         title = f"Optimisers against the optimum: {len(results)} problems"
-    else:
+    if not many:
         sections += [
             section
             for i, (result, runs) in enumerate(results)
@@ -209,7 +209,7 @@ def _all_sections(results: Sequence[tuple[BenchResult, Runs]]) -> list[Section]:
     profile = profile_picture(profiles, title=f"Where runs end: {len(results)} problems")
     notes = dict.fromkeys(note for result, _ in results for note in result.notes)
     messages = tuple(
-        Prose(f"{result.problem}: {one.optimizer}: {message}", "note")
+        Prose(f"{result.title}: {one.optimizer}: {message}", "note")
         for result, _ in results
         for one in result.standings
         for message in one.messages

@@ -43,21 +43,26 @@ def judge_improvements(study: Study) -> Iterator[Finding]:
             yield compared("TG103", *said, mixed=mixed)
         if claim.percent is None and claim.seconds is None:
             yield _unquantified(study, claim, slower, faster, seconds)
-        tables = [_table_total(study, c.algorithm, c.problem) for c in (slower_claim, faster_claim)]
-        totals = [printed_total(t) for t in tables if t is not None]
+        tables = [_table_total(study, c) for c in (slower_claim, faster_claim)]
+        # One table cannot say how two totals differ.
+        apart = tables[0] is not tables[1]
+        totals = [printed_total(t) for t in tables if t is not None and apart]
         if claim.percent is not None and len(totals) == 2 and None not in totals:
             fits = _meets(study, claim, claim.percent, slower, faster)
             own = f"{between} give {claim.percent} %, but from" if fits else "From"
             yield from _against_tables(study, claim, claim.percent, tables, totals, own)
 
 
-def _table_total(study: Study, algorithm: str | None, problem: str | None) -> AnyClaim | None:
-    """The claim that prints an algorithm's total for all joints in a table."""
-    for claim in study.case.claims:
-        same = claim.algorithm == algorithm and claim.problem == problem
-        if isinstance(claim, MaximumClaim) and same and claim.total is not None:
-            return claim
-    return None
+def _table_total(study: Study, claim: AnyClaim) -> AnyClaim | None:
+    """The claim that prints a total's sum for all joints in a table; none where several might."""
+    found = [
+        one
+        for one in study.case.claims
+        if isinstance(one, MaximumClaim)
+        and one.total is not None
+        and (one.algorithm, one.problem) == (claim.algorithm, claim.problem)
+    ]
+    return claim if claim in found else found[0] if len(found) == 1 else None
 
 
 def _difference(slower: Interval, faster: Interval) -> Interval:

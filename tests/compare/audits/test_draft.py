@@ -68,6 +68,13 @@ def numbers(change):
     return [float(x) for x in found[1].split(", ")], float(found[2])
 
 
+def test_a_total_that_is_no_sum_is_replaced_by_one_number():
+    """0.9000 + 1.1000 + 0.8500 is 2.8500, and no paper prints an interval."""
+    _, one = drafted(["0.9000", "1.1000", "0.8500"], "2.900")
+    advice = next(a for a in one.advice if a.claim == "best")
+    assert advice.change == "Print 2.8500 s as the total, or correct the parts."
+
+
 def test_durations_that_break_a_limit_are_lengthened_until_they_keep_it():
     case, one = drafted(["0.300", "0.400", "0.350"], "1.050")
     advice = next(a for a in one.advice if a.claim == "best")

@@ -21,7 +21,8 @@ def test_a_table_a_page_and_the_verdict_first(run: Run, folder: Path) -> None:
     code, out, err = run("bench", PUMA, "--optimizer", "pso,random", *SMALL)
     assert (code, err) == (0, "")
     lines = out.splitlines()
-    assert lines[0] == f"{PUMA}/six-joints, durations-at-least-0.3"
+    ids = "problem six-joints, reading durations-at-least-0.3"
+    assert lines[0] == f"durations of at least 0.3 s ({ids})"
     assert lines[1].startswith("Closest: ")
     # The interval of the shipped certificate.
     assert lines[2].startswith("Optimum: 3.2966934 to 3.2966963 s, certified; ")
@@ -118,7 +119,7 @@ def test_instances_of_the_suite_and_what_all_of_them_say(run: Run, folder: Path)
         assert target["solved"] == sum(rate >= 0.5 for rate in rates)
     page = (folder / "pages" / "index.html").read_text("utf-8")
     assert "All 2 problems" in page
-    assert all(f">{name}<" in page for name in names)
+    assert all(f" (suite:{name})<" in page for name in names)
     # Nothing that the store holds is run again.
     began = (folder / "runs.sqlite").read_bytes()
     code, out, _ = run(*arguments, "--store", "runs.sqlite")

@@ -79,12 +79,12 @@ def test_shared_durations_are_one_question(run: Run) -> None:
 
 def test_bounds_are_printed_outwards(run: Run) -> None:
     _, out, _ = run("solve", *ONE, "--certify", "--gap", "0.1")
-    row = next(line for line in out.splitlines() if line.startswith("limit-80")).split()
+    row = out.splitlines()[-3].split()
     verdict = verify(f"trajgap-certificates/{NAME}.json")
     assert verdict.lower is not None
     assert verdict.upper is not None
-    assert Fraction(row[2]) <= verdict.lower
-    assert Fraction(row[3]) >= verdict.upper
+    assert Fraction(row[0]) <= verdict.lower
+    assert Fraction(row[1]) >= verdict.upper
     assert row[-1] == "certified"
 
 
@@ -265,7 +265,7 @@ def test_verify_compares_with_a_case_number_by_number(run: Run, tmp_path: Path) 
     run("solve", *ONE, "--certify", "--gap", "0.1")
     file = Path(f"trajgap-certificates/{NAME}.json")
     code, out, _ = run("verify", str(file), "--case", IRB)
-    asked = f"case {IRB}, problem limit-80, reading waypoints-rad"
+    asked = "Shortest time of joint 5 under 80 °/s; way-points in radians"
     assert code == 0
     assert out.splitlines()[2] == f"    the same problem as in the case: {asked}"
     # 5.0 is the same number as 5, another name and a hash of nothing change no question.
@@ -273,6 +273,10 @@ def test_verify_compares_with_a_case_number_by_number(run: Run, tmp_path: Path) 
     document["problem"]["duration_lower"] = ["0.0", "0/7", "0e9"]
     document["question"] = dict.fromkeys(document["question"])
     file.write_text(json.dumps(document))
+    # The file names nothing that a command could be given.
+    _, out, _ = run("verify", str(file), "--case", IRB)
+    ids = "problem limit-80, reading waypoints-rad"
+    assert out.splitlines()[2] == f"    the same problem as in the case: {asked} ({ids})"
     code, out, _ = run("verify", str(file), "--case", IRB, "--json")
     assert code == 0
     (one,) = strict(out)["verified"]

@@ -37,7 +37,9 @@ def test_a_study_is_run_exported_and_gone_on_with(run: Run) -> None:
     assert lines[0] == "few.sqlite: 8 runs done now, 0 were there"
     assert out.count("support.optimizers:raises") >= 2
     assert "failed, 4 times: ZeroDivisionError: one over nothing" in " ".join(out.split())
-    assert "mine/main, plain: Not every duration has an upper bound." in out
+    assert lines[1] == "Mine (mine/main, plain)"
+    assert out.count("mine/main") == 1
+    assert "\nNot every duration has an upper bound." in out
     assert "particles 10" in out
     assert "{" not in out
     assert "written: few.csv" in lines
@@ -53,7 +55,7 @@ def test_a_study_is_run_exported_and_gone_on_with(run: Run) -> None:
         "next: trajgap study few.toml --store few.sqlite --export few.csv"
     )
     gaps = [float(row["feasible_gap_lowest"]) for row in rows[:2]]
-    shown = next(line for line in out.splitlines() if " pso " in line).split()
+    shown = next(line for line in out.splitlines() if line.startswith("pso ")).split()
     assert shown[-2:] == [f"{100 * min(gaps):+.3g}", f"{50 * sum(gaps):+.3g}"]
 
 

@@ -60,6 +60,64 @@ def test_quoted_bounds_on_durations_are_intervals() -> None:
     assert said_of(study_of(bare), judge_motions, "d", "TG201")[0].verdict == "refuted"
 
 
+TABLE_AND_TOTALS = """
+[[claims]]
+id = "longest"
+quantity = "maximum"
+where = "Table 3, last row"
+of = ["d"]
+durations = ["2.5"]
+total = "2.5"
+{other}
+[[claims]]
+id = "standard"
+quantity = "total_time"
+where = "Table 4"
+value = "3.961"
+{slower}
+[[claims]]
+id = "improved"
+quantity = "total_time"
+where = "Table 4"
+value = "3.528"
+[[claims]]
+id = "gain"
+quantity = "improvement"
+where = "conclusion"
+slower = "standard"
+faster = "improved"
+percent = "10.9"
+"""
+SECOND_TABLE = """
+[[claims]]
+id = "other"
+quantity = "maximum"
+where = "Table 2, last row"
+of = ["d"]
+durations = ["2.5"]
+total = "2.5"
+"""
+METHOD_2000 = """
+[[algorithms]]
+id = "rival"
+name = "method of 2000"
+"""
+
+
+def test_one_table_does_not_say_how_two_totals_differ() -> None:
+    """1 - 3.528/3.961 is 10.93 %; a table that either total might stand in speaks against none."""
+    text = one_joint("0, 1", "9", "2.5", "within_limits")
+    for other in ("", SECOND_TABLE):
+        study = study_of(text + TABLE_AND_TOTALS.format(other=other, slower=""))
+        (found,) = said_of(study, judge_improvements, "gain", "TG103")
+        assert (found.verdict, found.severity) == (ClaimVerdict.SUPPORTED, Severity.INFO)
+    # Each total has a table of its own, and these print the same number.
+    rival = SECOND_TABLE + 'algorithm = "rival"'
+    told = TABLE_AND_TOTALS.format(other=rival, slower='algorithm = "rival"') + METHOD_2000
+    _, found = said_of(study_of(text + told), judge_improvements, "gain", "TG103")
+    assert (found.verdict, found.severity) == (ClaimVerdict.INCONSISTENT, Severity.ERROR)
+
+
 BEFORE = """
 [[claims]]
 id = "better"
