@@ -183,10 +183,8 @@ class _Search:
     def _key(self) -> tuple[object, ...]:
         asked = self.question
         arrays = (asked.steps, asked.velocity, asked.acceleration, asked.lower, asked.upper)
-        return (
-            asked.ends,
-            *((x.shape, np.ascontiguousarray(x).tobytes()) for x in (*arrays, self.points)),
-        )
+        every = (*arrays, asked.ends, self.points)
+        return tuple((x.shape, np.ascontiguousarray(x).tobytes()) for x in every)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, _Search) and self._key == other._key
