@@ -284,16 +284,16 @@ def _joint_by_joint(
     wide = answer.ranges[0]
     proven = answer.joint_evidence is Evidence.CERTIFIED
     # The joints' optima may be proven; the range that they leave is the widest that is found.
-    own = f"the joints' own {'proven' if proven else 'best known'} optima were found to give"
+    own = f"found at the joints' own {'proven' if proven else 'best known'} optima"
     ends = list(dict.fromkeys(f"{one:.4f}" for one in (wide.lowest, wide.highest)))
     span = f"{' to '.join(ends)} s"
     low, high = total[1]
     if low <= wide.highest and high >= wide.lowest:
-        return f"agrees with what {own}, {span}"
+        return f"agrees with {span}, {own}"
     longer = seconds > wide.highest
     shares = sorted(abs(seconds / one - 1) for one in (wide.highest, wide.lowest))
     shown = list(dict.fromkeys(_percent(share).removesuffix(" %") for share in shares))
-    return f"is {' to '.join(shown)} % {'above' if longer else 'below'} what {own}, {span}"
+    return f"is {' to '.join(shown)} % {'above' if longer else 'below'} {span}, {own}"
 
 
 def _seconds(study: Study, claim: TimeClaim, rid: str) -> float:

@@ -73,8 +73,8 @@ def test_a_total_of_joints_that_are_planned_alone_stands_beside_their_own_optima
     1 s or in 1 and 2 s, and the longest durations take 4 s, as all joints together do; up to
     4.001 s while each joint stays within half a printed digit, 0.0005 s, of its own."""
     said = line(TWO.format(coupling="per-joint"))
-    assert said.startswith("4.400 s is 10.0 % above what the joints' own ")
-    assert said.endswith(" optima were found to give, 4.0000 to 4.0010 s.")
+    assert said.startswith("4.400 s is 10.0 % above 4.0000 to 4.0010 s, found at the joints' own ")
+    assert said.endswith(" optima.")
     shared = line(TWO.format(coupling="shared"))
     assert shared.startswith("4.400 s is 10.0 % above the ")
     assert "joints' own" not in shared
