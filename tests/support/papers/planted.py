@@ -253,6 +253,8 @@ def _waypoint(rng: np.random.Generator, draft: Draft) -> Planted:
     places = [k for k, c in enumerate(text) if c.isdigit()]
     k = int(rng.choice(places))
     other = str((int(text[k]) + int(rng.integers(1, 10))) % 10)
+    if other == "0" and k == places[0] and text[k + 1 : k + 2].isdigit():
+        other = "2" if text[k] == "1" else "1"  # no number is printed as 02
     draft.points[j][i] = text[:k] + other + text[k + 1 :]
     return _observed(draft)
 
