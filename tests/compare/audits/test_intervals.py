@@ -81,7 +81,9 @@ def test_what_the_budget_leaves_out_is_said() -> None:
     assert facts(one.document) == [("not certified", said)]
     (terms, *_) = posed(one).blocks
     assert ("not certified", said) in terms.pairs  # page and Markdown
-    assert f"not certified: {said}" in map(str, audited(AuditDocument(cases=(one.document,))))
+    assert f"not certified: {said}" in map(
+        str, audited(AuditDocument(cases=(one.document,)), [stated()])
+    )
 
 
 def test_a_given_certificate_counts_once_it_is_proved_again() -> None:
