@@ -312,9 +312,7 @@ class Study(ReplayedCase):
             f"{self.case.id}: rounding of {place(claim)}; {posed_as(self.case, pid, rid)}"
         )
         problem = self._determined(claim, pid, rid)
-        printed = self.case.claim_durations(claim, rid)
-        durations = RoundingBox(printed.value, printed.lower, printed.upper)
-        waypoints = self.waypoint_box(problem, pid, rid)
+        durations, waypoints = self.claim_boxes(claim, pid, rid)
         if cut:
             durations, waypoints = durations.or_cut_off(), waypoints.or_cut_off()
         loosest = Digits.LOOSEST_CUT if cut else Digits.LOOSEST
@@ -329,6 +327,12 @@ class Study(ReplayedCase):
     def waypoint_box(self, problem: Problem, pid: str, rid: str) -> RoundingBox:
         """The way-points of ``problem``, all of its joints or one, and what rounds to them."""
         return RoundingBox(problem.waypoints, *self._box_columns(problem, pid, rid))
+
+    def claim_boxes(self, claim: Claim, pid: str, rid: str) -> tuple[RoundingBox, RoundingBox]:
+        """Durations and way-points of a claim's motion, and what rounds to them."""
+        printed = self.case.claim_durations(claim, rid)
+        waypoints = self.waypoint_box(self.claim_problem(claim, pid, rid), pid, rid)
+        return RoundingBox(printed.value, printed.lower, printed.upper), waypoints
 
     def excluded_total(self, claim: Claim, pid: str, rid: str) -> bool:
         """Whether no motion within the limits takes a claim's total or less.

@@ -1,6 +1,6 @@
 """A case file of one joint that moves from rest to rest, with places to fill in."""
 
-HEAD = """
+QUESTION = """
 format = 1
 id = "fair"
 title = "one joint from rest to rest"
@@ -21,7 +21,10 @@ velocity = {limit}
 [interpolant]
 family = "rest-to-rest"
 degree = 5
-[[claims]]
+"""
+HEAD = (
+    QUESTION
+    + """[[claims]]
 id = "d"
 quantity = "durations"
 where = "Table 2"
@@ -33,6 +36,7 @@ where = "abstract"
 checks = "{checks}"
 of = ["d"]
 """
+)
 UNITS = """
 [[readings]]
 id = "header"

@@ -12,7 +12,8 @@ from ....problem.cases import AnyClaim, MeasureClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..rounding import RoundingBox
 from ..study import Study
-from .peaks import CORNERS, each_motion, has_curve, peak_numbers
+from .corners import Look, largest_change
+from .peaks import each_motion, has_curve, peak_numbers
 from .printed_digits import hull
 from .wording import UNEXPLAINED, called, in_units, unit_shown
 
@@ -225,9 +226,7 @@ def _beside(
 ) -> _Beside:
     """A printed number beside the measure that it is nearest to, of those that it may be."""
     problem = study.claim_problem(motion, pid, rid)
-    told = study.case.claim_durations(motion, rid)
-    box = RoundingBox(told.value, told.lower, told.upper)
-    points = study.waypoint_box(problem, pid, rid)
+    box, points = study.claim_boxes(motion, pid, rid)
     order = QUANTITIES.index(claim.derivative) + 1
     index = None if joint is None else problem.joints.index(joint)
     own, by_time = _POWERS[claim.measure]
@@ -241,14 +240,8 @@ def _beside(
 
     at_print = meant(points.value, box.value)
     reach = dict.fromkeys(at_print, 0.0)
-    moved = [(points.value, _with(box.value, k, box.upper)) for k in np.ndindex(box.value.shape)]
-    moved += [
-        (_with(points.value, k, points.upper), box.value)
-        for k in np.ndindex(points.value.shape)
-        if points.upper[k] > points.value[k]
-    ]
-    for waypoints, durations in moved:
-        for words, value in meant(waypoints, durations).items():
+    for moved in _each_moved(box, points, "upper"):
+        for words, value in meant(*moved).items():
             reach[words] += abs(value - at_print[words])
     coarse = sampled(fit(problem.curve, points.value, box.value), order, claim.measure)
     tried = []
@@ -259,7 +252,7 @@ def _beside(
     fitting = [one for one in tried if one.fits]
     if not fitting:
         for i, one in enumerate(tried):
-            near, far = (_farthest(meant, one, points, box, share) for share in (1.0, 2.0))
+            near, far = (_farthest(meant, one.meaning, box, points, share) for share in (1.0, 2.0))
             tried[i] = replace(one, reach=max(one.reach, near), far=max(one.far, far))
         fitting = [one for one in tried if one.fits]
     return min(fitting or tried, key=lambda one: abs(one.exact - float(printed.fraction)))
@@ -267,45 +260,36 @@ def _beside(
 
 def _farthest(
     meant: Callable[[Array, Array], dict[str, float]],
-    one: _Beside,
-    points: RoundingBox,
-    box: RoundingBox,
+    words: str,
+    durations: RoundingBox,
+    waypoints: RoundingBox,
     share: float,
 ) -> float:
-    """Largest change of a measure that is found at corners of the rounding box, ``share`` as wide.
+    """Largest change of a measure that is found in the rounding box, ``share`` as wide."""
 
-    The first order at the printed numbers tells little where a segment lasts few units of its last
-    digit. So every number goes to the end that it is better at while the others stay, and from that
-    corner again, upwards and downwards.
-    """
-    middle, low, high = (
-        np.append(getattr(points, end), getattr(box, end)) for end in ("value", "lower", "upper")
-    )
-    low, high = middle + share * (low - middle), middle + share * (high - middle)
-    count, shape = points.value.size, points.value.shape
+    def look(h: RoundingBox, q: RoundingBox) -> Look:
+        here = meant(q.value, h.value)[words]
 
-    def change(at: Array, side: float) -> float:
-        try:
-            found = meant(at[:count].reshape(shape), at[count:])[one.meaning]
-        except TrajgapError:  # a duration that is not positive, or no curve
-            return -np.inf
-        return side * (found - one.exact)
+        def changes(end: str) -> Array:
+            found = []
+            for moved in _each_moved(h, q, end):
+                try:
+                    found.append(meant(*moved)[words] - here)
+                except TrajgapError:  # a duration that is not positive, or no curve
+                    found.append(np.nan)
+            return np.array(found)
 
-    widest = 0.0
-    for side in (1.0, -1.0):
-        at, known = middle, 0.0
-        for _ in range(CORNERS):
-            down, up = (
-                np.array([change(_with(at, (k,), end), side) for k in range(at.size)])
-                for end in (low, high)
-            )
-            at = np.where(down > up, low, high)
-            found = change(at, side)
-            if found <= known:
-                break
-            known = found
-        widest = max(widest, known)
-    return widest
+        return Look(here, changes("lower"), changes("upper"))
+
+    return largest_change(durations, waypoints, share, look)
+
+
+def _each_moved(h: RoundingBox, q: RoundingBox, end: str) -> Iterator[tuple[Array, Array]]:
+    """Way-points and durations with one number at an end: the durations first, row by row."""
+    for k in np.ndindex(h.value.shape):
+        yield q.value, _with(h.value, k, getattr(h, end))
+    for k in np.ndindex(q.value.shape):
+        yield _with(q.value, k, getattr(q, end)), h.value
 
 
 def _with(values: Array, k: tuple[int, ...], others: Array) -> Array:

@@ -50,19 +50,17 @@ def largest_norm(study: Study, claim: AnyClaim, pid: str, rid: str, order: int) 
     Norm
     """
     problem = study.claim_problem(claim, pid, rid)
-    box = study.case.claim_durations(claim, rid)
-    trajectory = fit(problem.curve, problem.waypoints, box.value)
+    durations, waypoints = study.claim_boxes(claim, pid, rid)
+    trajectory = fit(problem.curve, problem.waypoints, durations.value)
     top, piece, s = max(_top(trajectory, k, order) for k in range(len(trajectory.durations)))
     values = _values(trajectory, piece, order, np.array([s]))[:, 0]
     points = [Extremum(j, piece, order, s, 0.0, float(v)) for j, v in enumerate(values)]
-    g = peak_gradients(problem, box.value, points)
+    g = peak_gradients(problem, durations.value, points)
     # The norm's gradient weighs each joint's by its share; at the top its place does not count.
     share = values / top if top else np.zeros_like(values)
-    lower, upper = study.case.waypoint_box(pid, rid)
-    every = study.problem(pid, rid).joints
-    half = (upper - lower)[:, [every.index(joint) for joint in problem.joints]] / 2
-    by_time = np.abs(share @ g.durations) @ (box.upper - box.lower) / 2
-    by_angle = np.sum(np.abs(share[:, None] * g.waypoints) * half.T)
+    by_time = np.abs(share @ g.durations) @ (durations.upper - durations.lower) / 2
+    half = (waypoints.upper - waypoints.lower).T / 2
+    by_angle = np.sum(np.abs(share[:, None] * g.waypoints) * half)
     return Norm(top, float(by_time + by_angle))
 
 

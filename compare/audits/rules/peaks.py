@@ -16,14 +16,15 @@ from ....problem import (
     Array,
     Extremum,
     Printed,
-    TrajgapError,
     extrema,
     fit,
     peak_gradients,
 )
 from ....problem.cases import AnyClaim, MotionValueClaim, PeakClaim, motions_of
 from ...documents import Basis, ClaimVerdict, Finding, Severity
+from ..rounding import RoundingBox
 from ..study import Study
+from .corners import Look, largest_change
 from .norms import largest_norm
 from .wording import UNEXPLAINED, called, in_units, unit_shown
 
@@ -45,9 +46,6 @@ _NEAR_FACTOR = 0.01
 """Relative distance from such a ratio below which the unit is named as an explanation."""
 
 
-CORNERS = 6
-"""Corners of the rounding box that are looked at in turn at most, each way; a search of all of its
-2ⁿ corners would not end where there are many durations and way-points."""
 _WIDE = 0.05
 """Share of a peak above which the room that digits leave is said: what then fits tells little."""
 _NO_MOTION = "No durations are printed whose motion could have this peak."
@@ -143,23 +141,17 @@ class Beside:
 def box_reach(study: Study, claim: AnyClaim, pid: str, rid: str, point: Extremum) -> float:
     """First-order change of an extremum over the rounding box."""
     problem = study.claim_problem(claim, pid, rid)
-    box = study.case.claim_durations(claim, rid)
-    lower, upper = study.case.waypoint_box(pid, rid)
-    joint = study.problem(pid, rid).joints.index(problem.joints[point.joint])
-    g = peak_gradients(problem, box.value, [point])
-    by_time = np.abs(g.durations[0]) @ (box.upper - box.lower) / 2
-    by_angle = np.abs(g.waypoints[0]) @ (upper[:, joint] - lower[:, joint]) / 2
-    return float(by_time + by_angle)
+    durations, waypoints = study.claim_boxes(claim, pid, rid)
+    g = peak_gradients(problem, durations.value, [point])
+    by_time = np.abs(g.durations[0]) @ (durations.upper - durations.lower) / 2
+    half = (waypoints.upper - waypoints.lower)[:, point.joint] / 2
+    return float(by_time + np.abs(g.waypoints[0]) @ half)
 
 
 def farthest(
     study: Study, claim: AnyClaim, pid: str, rid: str, top: Extremum, alone: bool, share: float
 ) -> float:
     """Largest change of a peak that is found in the rounding box.
-
-    The first order at the printed numbers tells little where a segment lasts few units of its last
-    digit. So the corner is taken to which the gradient points, then the corner to which the
-    gradient there points, and so on, upwards and downwards.
 
     Parameters
     ----------
@@ -181,32 +173,23 @@ def farthest(
         In the SI unit of the peak.
     """
     problem = study.claim_problem(claim, pid, rid)
-    box, q = study.case.claim_durations(claim, rid), problem.waypoints
-    columns = [study.problem(pid, rid).joints.index(joint) for joint in problem.joints]
-    low, high = (ends[:, columns] - q for ends in study.case.waypoint_box(pid, rid))
     joints = [top.joint] if alone else range(len(problem.joints))
-    widest = 0.0
-    for side in (1.0, -1.0):
-        h, w, here = box.value, q, top
-        for _ in range(CORNERS):
-            g = peak_gradients(replace(problem, waypoints=w), h, [here])
-            way = side * np.sign(here.value)
-            turn = np.zeros_like(q)
-            turn[:, here.joint] = way * g.waypoints[0]
-            longer = way * g.durations[0] > 0
-            last = h, w
-            h = box.value + share * np.where(longer, box.upper - box.value, box.lower - box.value)
-            w = q + share * np.where(turn > 0, high, np.where(turn < 0, low, 0.0))
-            if not (h > 0).all() or (np.array_equal(h, last[0]) and np.array_equal(w, last[1])):
-                break
-            try:
-                moved = fit(problem.curve, w, h)
-            except TrajgapError:
-                break
-            ends = (e for j in joints for e in extrema(moved, j, top.order))
-            here = max(ends, key=lambda e: abs(e.value))
-            widest = max(widest, side * (abs(here.value) - abs(top.value)))
-    return float(widest)
+
+    def look(h: RoundingBox, q: RoundingBox) -> Look:
+        moved = fit(problem.curve, q.value, h.value)
+        ends = (e for j in joints for e in extrema(moved, j, top.order))
+        here = max(ends, key=lambda e: abs(e.value))
+        g = peak_gradients(replace(problem, waypoints=q.value), h.value, [here])
+        by_angle = np.zeros_like(q.value)
+        by_angle[:, here.joint] = g.waypoints[0]
+        slopes = np.sign(here.value) * np.append(g.durations[0], by_angle)
+        down, up = (
+            slopes * np.append(getattr(h, end) - h.value, getattr(q, end) - q.value)
+            for end in ("lower", "upper")
+        )
+        return Look(abs(here.value), down, up)
+
+    return largest_change(*study.claim_boxes(claim, pid, rid), share, look)
 
 
 def largest(study: Study, claim: AnyClaim, pid: str, rid: str, order: int) -> list[Extremum]:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from support.command_line import IRB, PUMA, Run
+from support.one_joint import QUESTION
 from trajgap.compare.audits import asked_as, posed_as
 from trajgap.compare.cli import output as cli_output
 from trajgap.compare.cli import table as cli_table
@@ -114,26 +115,12 @@ optimizers = [{ name = "random" }]
     assert "joint 3 alone; durations without a lower bound: Not every duration" in out
 
 
-UNTITLED = """format = 1
-id = "arm"
-title = "arm"
-[source]
-note = "Made up."
-[robot]
-name = "arm"
-joints = ["1"]
-[units]
-position = "rad"
-velocity = "rad/s"
-time = "s"
-[waypoints]
-joint_rows = [[0, 1]]
-[limits]
-velocity = 2
-[interpolant]
-family = "rest-to-rest"
-degree = 5
-"""
+UNTITLED = (
+    QUESTION.format(points="0, 1", limit=2)
+    .replace('"fair"', '"arm"')
+    .replace("one joint from rest to rest", "arm")
+    .replace("year = 2024", 'note = "Made up."')
+)
 
 
 def test_a_title_that_is_the_id_stands_once(run: Run) -> None:
