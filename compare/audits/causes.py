@@ -156,7 +156,8 @@ def _caveats(
 ) -> Iterator[Caveat]:
     claim = study.case.claim(judgement.claim)
     own = [f for f in findings if f.claim == claim.id and f.decides]
-    if judgement.verdict is ClaimVerdict.SUPPORTED and own and all(f.built for f in own):
+    built = judgement.verdict is ClaimVerdict.SUPPORTED and own and all(f.built for f in own)
+    if built:
         yield Caveat(CaveatKind.BUILT, built_remark())
     held = [r for r, v in judgement.readings.items() if v is ClaimVerdict.SUPPORTED]
     # What follows from printed totals alone needs no curve.
@@ -171,7 +172,8 @@ def _caveats(
         partly = "partly " if _without_points(judgement, own) else ""
         yield Caveat(CaveatKind.POINTS, f"{partly}{POINTS}: {' '.join(doubts)}")
     rests = {claim.id, *_rests_on(claim)}
-    if judgement.verdict is ClaimVerdict.INCONSISTENT:
+    # What holds whatever the numbers are rests on none of them.
+    if built or judgement.verdict is ClaimVerdict.INCONSISTENT:
         return
     for message, sides in against.items():
         if rests & sides:

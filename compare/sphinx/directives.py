@@ -85,6 +85,7 @@ class Claims(FromResults):
         if wanted:
             chosen.sort(key=lambda one: wanted.index(one["verdict"]))
         told: set[str] = set()
+        innocent = _explained(case)
         reasoned: dict[str, tuple[str, str]] = {}
         groups: dict[tuple[str, ...], list[dict[str, Any]]] = {}
         for one in chosen:
@@ -107,6 +108,8 @@ class Claims(FromResults):
             for one in others:
                 if one["why"] != verdict["why"]:
                     box += paragraph(f"{stated[one['claim']]['where']}: {one['why']}")
+            for one in (verdict, *others):
+                box += [paragraph(said) for said in innocent.get(one["claim"], ())]
             for caveat in verdict["caveats"]:
                 # One long reason is told once.
                 short = f"{caveat.partition(':')[0]} (see above)." if caveat in told else caveat
@@ -114,6 +117,18 @@ class Claims(FromResults):
                 box += paragraph(f"{short[:1].upper()}{short[1:]}", "trajgap-beside")
             found.append(box)
         return found or [paragraph("None.")]
+
+
+def _explained(case: dict[str, Any]) -> dict[str, list[str]]:
+    """What may innocently explain what does not fit, by the claim below which it stands."""
+    found: dict[str, list[str]] = {}
+    for cause in case["causes"]:
+        hit = [cause["claim"], *(one["claim"] for one in cause["consequences"])]
+        below = next(filter(None, hit), None)
+        if below is not None:
+            said = [f"{e['change']} {e['effect']}" for e in cause["explanations"]]
+            found.setdefault(below, []).extend(f"An innocent explanation: {one}" for one in said)
+    return found
 
 
 def _with_places(

@@ -121,7 +121,8 @@ def degenerate(rng: Rng, folder: Path) -> str | None:
 def _jumps(asked: Asked, h: Array) -> bool:
     """Whether velocity jumps, or acceleration where jerk is limited: limits are not kept there."""
     found = peaks(asked, h).jumps > _JUMP
-    return bool(found[:, 0].any() or (found[:, 1] & np.isfinite(asked.jerk)).any())
+    limited = np.isfinite(asked.sides[:, :, 2]).any(axis=0)
+    return bool(found[:, 0].any() or (found[:, 1] & limited).any())
 
 
 def tight_bounds(rng: Rng, folder: Path) -> str | None:
