@@ -84,6 +84,12 @@ def verdict_card(
         left -= count_words(improvement)
         errors, more = _fitting(sentences, left)
     left -= sum(map(count_words, errors)) + (count_words(more_errors(more)) if more else 0)
+    explanation = _explanation(causes, left)
+    if not more:
+        left -= count_words(explanation or "")
+        warned = [c for c in causes if _falls(c, words) and (c.rule, c.claim) not in said]
+        briefly = [plainly(study.case, cause, far, brief=True) for cause in warned]
+        errors += _fitting(briefly, left)[0]
     return VerdictCard(
         limits=limits,
         optimum=optimum,
@@ -92,8 +98,18 @@ def verdict_card(
         else known(improvement, "no improvement is claimed"),
         errors=errors,
         more=more,
-        explanation=known(_explanation(causes, left), "none that was tried fits, or has room"),
+        explanation=known(explanation, "none that was tried fits, or has room"),
     )
+
+
+_FALLEN = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT)
+"""Words that are against a claim under every reading."""
+
+
+def _falls(cause: Cause, words: Mapping[str, Judgement]) -> bool:
+    """Whether a cause that is no error is what a claim falls by."""
+    own = words.get(cause.claim or "")
+    return cause.severity is Severity.WARNING and own is not None and own.verdict in _FALLEN
 
 
 def _tells(study: Study, cause: Cause, improved: set[str]) -> bool:

@@ -25,7 +25,7 @@ _EVERY = "every reading"
 """How it says that something speaks against a claim under each of them, if not the same."""
 
 
-def plainly(case: Case, cause: Cause, far: Collection[str] = ()) -> str:
+def plainly(case: Case, cause: Cause, far: Collection[str] = (), *, brief: bool = False) -> str:
     """A cause as one plain sentence.
 
     Parameters
@@ -34,13 +34,15 @@ def plainly(case: Case, cause: Cause, far: Collection[str] = ()) -> str:
     cause : Cause
     far : collection of str
         Readings that are implausible.
+    brief : bool
+        Whether a warning is told as shortly as an error: where the claim falls by it.
 
     Returns
     -------
     str
         By claims' texts and places, never by ids. What holds under some readings alone says so.
     """
-    sentence = _plain(case, cause, far)
+    sentence = _plain(case, cause, far, brief)
     count, every = len(cause.readings), len(case.readings)
     if not 0 < count < every or any(
         said in sentence for said in (f"{_UNDER}{count} of", f"{_EVERY} allows")
@@ -53,14 +55,14 @@ def plainly(case: Case, cause: Cause, far: Collection[str] = ()) -> str:
     return f"{_UNDER.capitalize()}{which}: {sentence}"
 
 
-def _plain(case: Case, cause: Cause, far: Collection[str]) -> str:
+def _plain(case: Case, cause: Cause, far: Collection[str], brief: bool) -> str:
     """The sentence, without the readings unless they stand within it."""
     head, claim = cause.head, case.claim(cause.claim) if cause.claim else None
     if head is not None and head.root.startswith(f"{TABLES} "):
         return _tables_alike(case, cause, head.root.split(" ")[1:])
     if claim is None or head is None:
         return spoken(case, cause.says.split(". ")[0].rstrip(".") + ".")
-    if cause.severity is not Severity.ERROR and cause.rule != "TG201":
+    if cause.severity is not Severity.ERROR and cause.rule != "TG201" and not brief:
         # A warning proves nothing: it is told in its own words.
         return spoken(case, cause.says)
     where = place(claim)

@@ -28,7 +28,7 @@ from .study import Study
 
 _AGAINST = (Severity.ERROR, Severity.WARNING)
 """What a cause may weigh; what only informs has none."""
-_ON_WAYPOINTS = (Basis.ENCLOSURE, Basis.CHECK, Basis.OPTIMUM)
+_ON_WAYPOINTS = (Basis.ENCLOSURE, Basis.CHECK, Basis.COMPUTED, Basis.OPTIMUM)
 """What is computed with a motion through the printed way-points."""
 
 

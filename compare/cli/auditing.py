@@ -13,7 +13,7 @@ from ...nlp import Evidence
 from ...problem import Case, published_ids
 from ..audits import Study, posed_as
 from ..documents import (
-    SHARED_OPTIMUM,
+    OPTIMA_STEPS,
     Advice,
     AuditDocument,
     AuditedCase,
@@ -225,7 +225,7 @@ def _time_goes(waterfalls: Sequence[Waterfall], case: Case) -> list[RenderableTy
     steps = [{step.name: step for step in one.steps} for one in first.values()]
     names = dict.fromkeys(name for one in steps for name in one)
     # The optimum keeps its row: distances are counted from it.
-    unknown = {name: whys[0] for name in names if name != SHARED_OPTIMUM
+    unknown = {name: whys[0] for name in names if name not in OPTIMA_STEPS
                if (whys := [one[name].time for one in steps if name in one])
                if all(isinstance(why, Why) for why in whys)}  # fmt: skip
     several = len(case.problems) > 1 or len(case.readings) > 1

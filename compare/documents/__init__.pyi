@@ -130,7 +130,16 @@ from .vocabulary import (
     meaning,
     meanings,
 )
-from .waterfall import EXACT, OWN_OPTIMA, PUBLISHED, SHARED_OPTIMUM, Step, Waterfall
+from .waterfall import (
+    EXACT,
+    OPTIMA_STEPS,
+    OWN_OPTIMA,
+    PUBLISHED,
+    SHARED_OPTIMUM,
+    STAND_IN_OPTIMUM,
+    Step,
+    Waterfall,
+)
 from .why_judged import (
     DECIDING,
     NAMELESS,
@@ -157,12 +166,14 @@ __all__ = [
     "DOUBTED",
     "EXACT",
     "NAMELESS",
+    "OPTIMA_STEPS",
     "OVERALL_COLUMNS",
     "OWN_OPTIMA",
     "POINTS",
     "PUBLISHED",
     "SCHEMA",
     "SHARED_OPTIMUM",
+    "STAND_IN_OPTIMUM",
     "TERMS",
     "TIMES",
     "UNCERTIFIED",

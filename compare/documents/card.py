@@ -75,6 +75,7 @@ def tally(judgements: Sequence[Judgement]) -> str:
 _KNOWN = {
     Confidence.DIGITS: ("follows from the printed digits", "follow from the printed digits"),
     Confidence.PROVEN: ("rests on a proof under a reading", "rest on proofs under a reading"),
+    Confidence.COMPUTED: ("is computed under a reading", "are computed under a reading"),
     Confidence.BEST_KNOWN: ("rests on a best known motion", "rest on best known motions"),
     Confidence.UNCONVERGED: (
         "rests on a search that did not converge",

@@ -38,6 +38,8 @@ def _confidence(data: dict[str, Any]) -> Confidence | Why:
         return Confidence.BEST_KNOWN
     if data.get("evidence") is Evidence.UNCONVERGED:
         return Confidence.UNCONVERGED
+    if data.get("basis") is Basis.COMPUTED:
+        return Confidence.COMPUTED
     own = data.get("reading") is None and data.get("basis") in _DIGITS_ALONE
     return Confidence.DIGITS if own else Confidence.PROVEN
 

@@ -80,6 +80,8 @@ class Basis(StrEnum):
     """True peaks for every value that rounds to the printed digits."""
     CHECK = "check"
     """True peaks at the printed point."""
+    COMPUTED = "computed"
+    """The same; what rounding of other digits, or sampling, changes is estimated, not enclosed."""
     IDENTITY = "identity"
     """A scaling law that needs no solver."""
     OPTIMUM = "optimum"
@@ -102,6 +104,9 @@ class Confidence(StrEnum):
     PROVEN = "proven under a reading"
     """It follows from the curve, way-points and limits as a reading has them: by an enclosure over
     the rounding, by exact extrema of the printed motion, or by a certified bound."""
+    COMPUTED = "computed under a reading"
+    """It follows from exact extrema of the printed motion as a reading has it; what the rounding of
+    the other printed digits, or sampling, makes of them is estimated, not enclosed."""
     BEST_KNOWN = "best known"
     """It rests on the best motion found under a reading, with nothing proved below it."""
     UNCONVERGED = "not converged"

@@ -16,6 +16,11 @@ OWN_OPTIMA = "each joint at its optimum, longest per segment"
 """Name of the step that such a total is set beside where the paper plans each joint by itself."""
 SHARED_OPTIMUM = "optimum of the same curve, shared durations"
 """Name of the step that distances are counted from."""
+STAND_IN_OPTIMUM = "optimum of the case file's curve, of which no time is printed"
+"""Name of that step where every printed time is of a curve that a case file cannot name."""
+
+OPTIMA_STEPS = (SHARED_OPTIMUM, STAND_IN_OPTIMUM)
+"""Names that the optimum of the declared curve may have."""
 
 
 class Step(Entry):
@@ -52,7 +57,7 @@ class Waterfall(Entry):
     @property
     def without_optimum(self) -> tuple[str, ...]:
         """Why the optimum of the printed curve has no time, in a sentence; empty where it has."""
-        why = next((s.time for s in self.steps if s.name == SHARED_OPTIMUM), None)
+        why = next((s.time for s in self.steps if s.name in OPTIMA_STEPS), None)
         if not isinstance(why, Why):
             return ()
         return (f"No optimum: {why}.",)

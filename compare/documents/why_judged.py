@@ -179,18 +179,25 @@ def told(
         notes += ["numbers of the first" if first in text else f"numbers of {first}"]
     elif len(one.readings) == len(computed) and not word:
         return one.message
-    where = noted(text, *notes)
-    return f"{capital(f'{one.verdict} {where}' if word else where)}: {one.message}"
+    return f"{capital(_worded(one, noted(text, *notes), computed, word))}: {one.message}"
+
+
+def _worded(one: Reason, where: str, computed: Sequence[str], word: bool) -> str:
+    """Where a reason holds, with its word in front if it is not the word of every reading.
+
+    What holds under every reading decides none of them alone where they differ.
+    """
+    return f"{one.verdict} {where}" if word and len(one.readings) < len(computed) else where
 
 
 def in_full(
     one: Reason, computed: Sequence[str], named: Named = NAMELESS, *, word: bool = False
 ) -> list[str]:
     """Every message of a reason with all its readings named; nothing is left out."""
-    front = f"{one.verdict} " if word else ""
     return [
-        f"{capital(f'{front}{under(readings, computed, named, most=len(computed))}')}: {message}"
+        f"{capital(_worded(one, where, computed, word))}: {message}"
         for message, readings in one.each
+        for where in (under(readings, computed, named, most=len(computed)),)
     ]
 
 

@@ -42,6 +42,7 @@ _OPEN_WORDS = 30
 _KNOWN = {
     Confidence.DIGITS: "follows from the printed digits",
     Confidence.PROVEN: "proven",
+    Confidence.COMPUTED: "computed",
     Confidence.BEST_KNOWN: "against the best known motion",
     Confidence.UNCONVERGED: "against a search that did not converge",
     Confidence.REPLAY: "by replays",

@@ -89,7 +89,7 @@ def _distances(waterfall: Waterfall, caption: str) -> Grid:
         for s in waterfall.steps
         if not isinstance(s.time, Why)
     )
-    names = ("step", "total", "the first beside this one", "evidence")
+    names = ("step", "total", "the first is longer by", "evidence")
     return Grid(names, rows, caption).filled
 
 

@@ -13,7 +13,16 @@ from sphinx.util.docutils import SphinxDirective
 
 from ...problem import TrajgapError, file_name
 from ..audits import KEPT
-from ..documents import ClaimVerdict, Keeping, counted, more_errors, qualified, same_reason, worth
+from ..documents import (
+    OWN_OPTIMA,
+    ClaimVerdict,
+    Keeping,
+    counted,
+    more_errors,
+    qualified,
+    same_reason,
+    worth,
+)
 from ..pictures import waterfall_picture
 from .parts import badge, paragraph, picture, table
 from .proofs import proved_again
@@ -188,7 +197,9 @@ def readings_of(case: dict[str, Any]) -> list[nodes.Node]:
     rows = [_under(case, outcome, marked) for outcome in said["outcomes"]]
     if not rows:
         return [head, *told, known]
-    columns = ["reading", "durations of", "limits", "largest ratio", "shortest, s", "evidence"]
+    alone = any(step["name"] == OWN_OPTIMA for w in case["waterfalls"] for step in w["steps"])
+    shortest = "shortest if the joints share durations, s" if alone else "shortest, s"
+    columns = ["reading", "durations of", "limits", "largest ratio", shortest, "evidence"]
     shown: list[nodes.Node] = [head, *told]
     places = {row[1] for row in rows}
     if len(places) == 1:  # a column of one text would take the room of the others
@@ -259,7 +270,8 @@ class Papers(FromResults):
             word = badge(evidence) if evidence else ""
             paper = self._linked(name, case["title"])
             rows.append([paper, *best, word, case["card"]["limits"], _counted(case)])
-        columns = ("paper", "printed, s", "optimum, s", "above it", "evidence", "limits", "claims")
+        best_known = "optimum or best known, s"
+        columns = ("paper", "printed, s", best_known, "above it", "evidence", "limits", "claims")
         return [table(columns, rows, "trajgap-sortable", "trajgap-papers")]
 
     def _linked(self, name: str, title: str) -> nodes.Node:

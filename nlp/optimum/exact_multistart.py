@@ -20,6 +20,9 @@ ROUND = 1e-9
 """Relative room below a least duration, which rounding may take: the checker's tolerance."""
 LEAST_SHARE = 1e-12
 """Of the usual duration: no search goes below, where float64 has lost the curve."""
+MOST_TIMES = 1e12
+"""The same upwards: where limits let a search drift, such as those that all but forbid one side,
+durations would leave the range in which a curve has coefficients."""
 UNEQUAL = 0.02
 """A duration below this share of the mean makes the tracked NLP slow and blunt: it counts in
 durations, not in their logarithms."""
@@ -66,10 +69,10 @@ def made_up(problem: Problem, floor: float) -> Array:
 
 def box_above(problem: Problem, floor: Array) -> LogBox:
     """Bounds on log durations: the problem's own, the least durations, and the floors."""
-    tiny = LEAST_SHARE * float(equal_start(problem).mean())
-    low = np.maximum(np.maximum(least_durations(problem), floor), tiny)
+    usual = float(equal_start(problem).mean())
+    low = np.maximum(np.maximum(least_durations(problem), floor), LEAST_SHARE * usual)
     # A least duration above an upper bound leaves no motion; the box stays one for the search.
-    high = np.maximum(problem.duration_upper, low)
+    high = np.maximum(np.minimum(problem.duration_upper, MOST_TIMES * usual), low)
     return LogBox(np.log(low), np.log(high))
 
 

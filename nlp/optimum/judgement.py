@@ -26,6 +26,11 @@ _ON_FLOOR = 1.01
 and floors lie orders of magnitude below durations that any limit asks for."""
 
 
+def unmet(residual: float) -> str:
+    """Why an answer is not called optimal, of its KKT residual."""
+    return f"KKT residual {residual:.1e}, above {KKT_TOLERANCE:g}"
+
+
 def judged(problem: Problem, found: list[Local], floor: Array, starts: int) -> Solution:
     """The best answer that the checker passes, with its optimality conditions.
 
@@ -65,7 +70,7 @@ def judged(problem: Problem, found: list[Local], floor: Array, starts: int) -> S
         beyond = max(0.0, inside.total / float(durations.sum()) - 1.0)
     durations, nodal = passing
     status = Status.OPTIMAL if report.residual <= KKT_TOLERANCE else Status.FEASIBLE
-    why = None if status is Status.OPTIMAL else f"KKT residual {report.residual:.1e}"
+    why = None if status is Status.OPTIMAL else unmet(report.residual)
     if beyond > BLURRED:
         status = Status.FEASIBLE
     if beyond > KKT_TOLERANCE:

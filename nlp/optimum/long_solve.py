@@ -12,7 +12,7 @@ from .asked import Ask
 from .clock import time_up
 from .decided import decided, kept
 from .exact_multistart import made_up
-from .judgement import BLURRED, KKT_TOLERANCE, SAME, still_falling
+from .judgement import BLURRED, KKT_TOLERANCE, SAME, still_falling, unmet
 from .long_search import LongLocal, long_search, way_start
 from .solution import Solution, Status
 from .starts import SETTLED_SEGMENTS, equal_start
@@ -125,7 +125,7 @@ def _judged(problem: Problem, local: LongLocal, floor: Array) -> Solution | None
     status, why = Status.OPTIMAL, None
     if residual > KKT_TOLERANCE:
         stopped = "the search ended before it met the conditions of an optimum"
-        why = stopped if local.kkt is None else f"KKT residual {residual:.1e}"
+        why = stopped if local.kkt is None else unmet(residual)
         status = Status.FEASIBLE
     elif beyond > KKT_TOLERANCE:
         why = f"longer by {beyond:.1e} (relative) than a tight motion, which rounding errors blur"

@@ -180,7 +180,8 @@ def _at_rest(
                 ]
         if not judged:
             continue
-        names = " and ".join(QUANTITIES[r - 1] for r in orders if r <= len(QUANTITIES))
+        derivatives = [QUANTITIES[r - 1] for r in orders if r <= len(QUANTITIES)]
+        names = f"{' and '.join(derivatives)} {'is' if len(derivatives) == 1 else 'are'}"
         yield Finding(
             rule="TG207",
             severity=Severity.WARNING if moving else Severity.INFO,
@@ -191,7 +192,7 @@ def _at_rest(
             message="The motion is said to be at rest at both ends, but not on the stated curve: "
             f"{'; '.join(moving)}."
             if moving
-            else f"On the stated curve {names} are 0 at both ends of every printed motion.",
+            else f"On the stated curve {names} 0 at both ends of every printed motion.",
             built=built and not moving,
         )
 

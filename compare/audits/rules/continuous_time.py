@@ -69,7 +69,7 @@ def durations_text(study: Study, claim: AnyClaim) -> str:
 def _ratio(study: Study, claim: AnyClaim, pid: str, rid: str) -> str:
     worst = study.claim_check(claim, pid, rid).worst
     if worst is None:
-        return "nothing is limited"
+        return "no limit applies"
     if worst.quantity == "curve":
         return "the printed durations define no curve"
     whose = f"joint {worst.joint}" if worst.joint is not None else f"segment {worst.segment + 1}"

@@ -151,6 +151,12 @@ class _Beside:
     high: float
 
     @property
+    def met(self) -> bool:
+        """Whether the measure rounds to the printed digits, the other numbers as printed."""
+        own = self.printed.interval
+        return bool(own.lower <= self.exact <= own.upper)
+
+    @property
     def fits(self) -> str:
         """How the two agree; empty if they do not."""
         own = self.printed.interval
@@ -189,7 +195,7 @@ def _measures(study: Study, claim: MeasureClaim, motion: AnyClaim) -> Iterator[F
             rule="TG208",
             severity=Severity.WARNING if wrong else Severity.INFO,
             verdict=ClaimVerdict.INCONSISTENT if wrong else ClaimVerdict.SUPPORTED,
-            basis=Basis.CHECK,
+            basis=Basis.CHECK if all(one.met for _, one in found) else Basis.COMPUTED,
             claim=claim.id,
             problem=pid,
             reading=rid,

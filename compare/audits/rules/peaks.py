@@ -42,6 +42,9 @@ _FACTORS = {
     30 / pi: "as turns per minute instead of radians per second",
 }
 """Ratios between units that are mixed up, and what that would mean; their inverses count too."""
+_ROOTS = (2, 3, 5)
+"""Numbers whose square roots closed forms of peaks hold, such as 10/√3 of degree 5 and 84√5/25 of
+degree 7: one that is lost in print is named as an explanation."""
 _NEAR_FACTOR = 0.01
 """Relative distance from such a ratio below which the unit is named as an explanation."""
 
@@ -60,6 +63,7 @@ class Class(StrEnum):
     SAMPLING = "sampling"
     NORM = "norm over the joints"
     UNIT = "other unit"
+    ROOT = "root left out"
     OFF = "off"
 
 
@@ -103,6 +107,11 @@ class Beside:
     norm: Beside | None = None
 
     @property
+    def met(self) -> bool:
+        """Whether the exact peak rounds to the printed digits, the other numbers as printed."""
+        return self.lower <= self.exact <= self.upper
+
+    @property
     def distance(self) -> float:
         """Relative distance of the printed peak from the exact one."""
         if self.exact == 0.0:
@@ -123,7 +132,16 @@ class Beside:
             return Class.SAMPLING
         if self.norm is not None and self.norm.kind in FITS:
             return Class.NORM
+        if self.root is not None:
+            return Class.ROOT
         return Class.OFF if self.factor is None else Class.UNIT
+
+    @property
+    def root(self) -> int | None:
+        """Whose square root a printed peak lacks, if with it the two agree within rounding."""
+        low, high = self.exact - self.reach, self.exact + self.reach
+        fitting = (n for n in _ROOTS if n**0.5 * self.lower <= high and low <= n**0.5 * self.upper)
+        return next(fitting, None)
 
     @property
     def factor(self) -> str | None:
@@ -352,7 +370,7 @@ def _peaks(study: Study, claim: PeakClaim, motion: AnyClaim) -> Iterator[Finding
             rule="TG203",
             severity=Severity.WARNING if wrong else Severity.INFO,
             verdict=ClaimVerdict.INCONSISTENT if wrong else ClaimVerdict.SUPPORTED,
-            basis=Basis.CHECK,
+            basis=Basis.CHECK if all(one.met for _, one in found) else Basis.COMPUTED,
             claim=claim.id,
             problem=pid,
             reading=rid,
@@ -380,7 +398,7 @@ def described(
     room = ""
     if one.exact and one.reach > _WIDE * one.exact:
         room = f", which leaves {100 * one.reach / one.exact:.2g} % either way"
-    norm = "" if one.norm is None else _exact(study, claim, one.norm, pid, rid)
+    norm = "" if one.norm is None else _of_norm(study, claim, one.norm, pid, rid)
     away = f"{100 * one.distance:+.2g} %"
     return (
         said
@@ -388,8 +406,18 @@ def described(
             Class.ROUNDING: f", equal within the rounding of the printed digits{room}",
             Class.CUT_OFF: f" ({away}), as digits that are cut off instead of rounded give it",
             Class.SAMPLING: f" ({away}), slightly below it, as sampling the motion gives it",
-            Class.NORM: f" ({away}), as the largest norm over the joints gives it, {norm}",
+            Class.NORM: f" ({away}), {norm}",
             Class.UNIT: f" ({away}); their ratio is near {one.factor}",
+            Class.ROOT: f" ({away}); a factor √{one.root} may have been lost in print",
             Class.OFF: f" ({away}), {UNEXPLAINED}",
         }[one.kind]
     )
+
+
+def _of_norm(study: Study, claim: PeakClaim, one: Beside, pid: str, rid: str) -> str:
+    """How a printed peak that is not that of a joint is the norm over the joints."""
+    norm = f"the largest norm over the joints, {_exact(study, claim, one, pid, rid)}"
+    return {
+        Class.CUT_OFF: f"as {norm}, cut off instead of rounded gives it",
+        Class.SAMPLING: f"slightly below {norm}, as sampling the motion gives it",
+    }.get(one.kind, f"equal to {norm}, within rounding")

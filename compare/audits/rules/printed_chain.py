@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, product
 
 import numpy as np
 
@@ -17,6 +17,9 @@ from ..study import Study
 
 _NEGLIGIBLE = 1e-9
 """Distance that float arithmetic alone could leave, m."""
+
+_COARSE = 0.1
+"""Share of what rounding explains to which a distance is bounded where signs are searched."""
 
 Joints = dict[str, tuple[Measured, ...]]
 """Angles of the printed joints at every way-point."""
@@ -33,6 +36,9 @@ class _Match:
     """The same for every other choice of signs."""
     radial: float
     """Largest miss of the distance from the base's origin beyond rounding, or 0, m."""
+    unsigned: tuple[int, float] | None
+    """The position that is missed most with the best signs of twists, angles and coordinates, and
+    by how much at least, m; None where none is missed beyond rounding, or signs are certain."""
 
     @property
     def fits(self) -> bool:
@@ -161,7 +167,42 @@ def _match(
         away = min(proximity(chain, point, held, radial=True).lower for chain in variants)
         radial = max(radial, away if away > allowed else 0.0)
     first, *others = (tuple(found) for found in near)
-    return _Match(convention, first, tuple(slack), tuple(others), radial)
+    unsigned = _unsigned(variants, joints, places, first, slack) if others else None
+    return _Match(convention, first, tuple(slack), tuple(others), radial, unsigned)
+
+
+def _unsigned(
+    variants: list[Chain],
+    joints: Joints,
+    places: list[tuple[int | None, Cartesian]],
+    near: tuple[Proximity, ...],
+    slack: list[float],
+) -> tuple[int, float] | None:
+    """A position that is missed beyond rounding whatever minus signs the text has lost.
+
+    Each sign may be lost by itself, so that one position that no signs lead to is enough: those
+    that are missed most as printed are tried first.
+    """
+    for at in sorted(range(len(places)), key=lambda at: -near[at].lower):
+        k, place = places[at]
+        assert k is not None
+        point = np.array([to_si(number, place.unit).value for number in place.values])
+        held, _ = _held(variants[0], joints, k)
+        least = min(
+            proximity(chain, xyz, angles, tolerance=_COARSE * slack[at]).lower
+            for chain in variants
+            for xyz in _signs(point)
+            for angles in _signs(held)
+        )
+        if least > slack[at]:
+            return at, least
+    return None
+
+
+def _signs(values: Array) -> list[Array]:
+    """Some numbers with every choice of their signs; free ones and zeros have none."""
+    signed = [(v, -v) if np.isfinite(v) and v != 0.0 else (v,) for v in values]
+    return [np.array(one) for one in product(*signed)]
 
 
 def _held(chain: Chain, joints: Joints, k: int) -> tuple[Array, float]:
@@ -218,20 +259,25 @@ def _judged(
             f"{given} The end then comes no nearer to the printed positions than {listed}. "
             f"Rounding explains at most {rounding} m."
         )
-        if all(m.misses for m in matches):
+        lost = [m for m in matches if m.signed and m.misses and m.unsigned is None]
+        if all(m.misses for m in matches) and not lost:
             verdict, severity = ClaimVerdict.INCONSISTENT, Severity.WARNING
             do = "does" if len(free) == 1 else "do"
             whatever = f", whatever {_named(free)} {do}" if free else ""
             message = (
                 "On the robot as printed, the printed angles do not lead to the printed "
-                f"positions{whatever}. {nearest}{_whatever(matches)} The base frame, the zeros of "
-                "the angles and the origin of the last frame as the end are those of the table."
+                f"positions{whatever}. {nearest}{_whatever(matches, names)} The base frame, the "
+                "zeros of the angles and the origin of the last frame as the end are those of the "
+                "table."
             )
         else:
             verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
             signed = any(_fits(near, m.slack) for m in matches for near in m.signed)
             message = (
-                "With other signs of the twists, which the text may have lost, the end meets "
+                "With other signs of the twists, the angles or the positions, which the text may "
+                "have lost, no printed position is out of reach."
+                if lost
+                else "With other signs of the twists, which the text may have lost, the end meets "
                 "every printed position."
                 if signed
                 else "Whether rounding explains the distances to the printed positions is not "
@@ -261,19 +307,29 @@ def _named(labels: list[str]) -> str:
     )
 
 
-def _whatever(matches: list[_Match]) -> str:
-    """What holds whatever the signs of the twists and the axes of the base."""
+def _whatever(matches: list[_Match], names: list[str]) -> str:
+    """What holds whatever the signs that the text may have lost, and the axes of the base."""
     said = ""
-    if any(m.signed for m in matches):
-        worst = " and ".join(f"{_down(m.worst)} m ({m.convention})" for m in matches)
-        said += f" With any other signs of the twists, some position stays {worst} away."
+    missed = [(m, *m.unsigned) for m in matches if m.unsigned is not None]
+    if missed:
+        worst = _listed([f"{names[at]} {_down(far)} m ({m.convention})" for m, at, far in missed])
+        said += (
+            " Whatever signs the twists, the angles and the positions have, the end stays away "
+            f"from them: {worst} at least."
+        )
     turned = [f"{_down(m.radial)} m ({m.convention})" for m in matches if m.radial > 0]
     if turned:
         said += (
             " With any other axes of the base, the distance from its origin still misses by up to "
-            f"{' and '.join(turned)}."
+            f"{_listed(turned)}"
         )
+        met = [str(m.convention) for m in matches if not m.radial > 0]
+        said += f"; in the {_listed(met)} convention it need not." if met else "."
     return said
+
+
+def _listed(parts: list[str]) -> str:
+    return " and ".join(parts)
 
 
 def _down(metres: float) -> str:

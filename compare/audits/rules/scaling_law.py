@@ -103,7 +103,7 @@ def _stretched(
         "With velocity limits only, shortest time times limit is a constant, so the two printed "
         "results cannot both be shortest. "
         f"The durations in {called_under(source, pairs[0][0])} sum to {summed:.6g} s. Times "
-        f"{factor:.6g}, the ratio of the two limits, that is {exact}. So stretched they keep the "
+        f"{factor:.6g}, the ratio of the two limits, that is {exact}. So scaled they keep the "
         f"limit of {called_under(target, pairs[1][0])}; {shown}, printed there, is longer."
     )
     beside = Finding(

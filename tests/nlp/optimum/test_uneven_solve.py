@@ -107,3 +107,13 @@ def test_too_little_time_is_proved_by_the_larger_side() -> None:
     found = solve(problem)
     assert found.status is Status.INFEASIBLE
     assert "velocity limit" in str(found.why)
+
+
+def test_a_search_stays_where_curves_have_coefficients() -> None:
+    """One side is all but forbidden, and the joint has to turn: longer durations never keep it."""
+    line = np.array([[-0.507552], [-0.232662], [0.0889934], [-0.112367]])
+    limits = Limits(velocity=[[-1.145e-5, 1.042]])
+    found = solve(Problem(line, limits, cubic_spline(3, ((1, 0.0212686),))))
+    assert found.status is Status.NONE_FOUND
+    assert found.why is not None
+    assert "least excess" in found.why

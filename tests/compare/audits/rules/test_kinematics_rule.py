@@ -144,7 +144,14 @@ def test_signs_that_may_be_lost_are_tried():
     wrong = [[x, y, "-900.0"] for x, y, _ in points]
     neither = one(case_text(wrong, TABLE + 'alpha_signs = "uncertain"\n', third))
     assert neither.verdict is ClaimVerdict.INCONSISTENT
-    assert "With any other signs of the twists, some position stays" in neither.message
+    assert "Whatever signs the twists, the angles and the positions have" in neither.message
+    # A minus sign that one coordinate lacks explains the distance, so that nothing is decided.
+    lost = [[*points[0][:2], str(points[0][2]).lstrip("-")], *points[1:]]
+    assert lost != points
+    unsigned = one(case_text(lost, TABLE + 'alpha_signs = "uncertain"\n', third))
+    assert unsigned.verdict is ClaimVerdict.NOT_CHECKABLE
+    assert "which the text may have lost, no printed position is out of reach" in unsigned.message
+    assert one(case_text(lost, TABLE, third)).verdict is ClaimVerdict.INCONSISTENT
 
 
 def test_another_admitted_convention_may_fit():
