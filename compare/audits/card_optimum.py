@@ -63,7 +63,7 @@ def optimum_line(
         return _without_totals(study, words)
     where = ["under the default reading"] if len(study.readings) > 1 else []
     if any(w.claim in words and on_doubted_points(words[w.claim]) for w in main if w.claim):
-        where.insert(0, "with these way-points" if before else "on doubted way-points")
+        where.insert(0, "through them" if before else "on doubted way-points")
     told = ", ".join([*where, _side_by_side(beside)])
     return f"{told[:1].upper()}{told[1:]}."
 

@@ -137,11 +137,16 @@ def _published(study: Study, claim: AnyClaim, pid: str, rid: str) -> list[Step]:
         note = verdict.feasible_why or ""
         return [printed, Step.missing("feasible after repair", note)]
     stretch = verdict.feasible_time / verdict.total_time
-    if stretch <= 1:
-        name, note = "sum of the printed durations", "no repair needed"
-    else:
-        name, note = "feasible after repair", f"stretched by {stretch:.6g}"
-    return [printed, Step(name=name, time=verdict.feasible_time, note=note)]
+    if stretch > 1:
+        note = f"stretched by {stretch:.6g}"
+        return [printed, Step(name="feasible after repair", time=verdict.feasible_time, note=note)]
+    # A total that is printed beside its parts may be another one, within their rounding.
+    if value is None or abs(verdict.total_time - value) <= _ROUNDING * value:
+        return [printed]
+    summed = Step(
+        name="sum of the printed durations", time=verdict.total_time, note="no repair needed"
+    )
+    return [printed, summed]
 
 
 def _minimised(study: Study, claim: AnyClaim) -> str:

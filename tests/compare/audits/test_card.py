@@ -28,8 +28,8 @@ def test_the_palletisers_card():
     )
     # 1.869/1.817473 and 1.6041/1.321799 by hand; the second is no time of a motion within limits.
     assert card.optimum == (
-        "With these way-points, under the default reading, 1.8690 s and 1.6041 s (breaks a limit) "
-        "are 2.8 % and 21.4 % above the proven optima 1.8175 s and 1.3218 s."
+        "Through them, under the default reading, 1.8690 s and 1.6041 s (breaks a limit) are 2.8 % "
+        "and 21.4 % above the proven optima 1.8175 s and 1.3218 s."
     )
     assert card.improvement == Why("no improvement is claimed")
     assert card.errors[0] == (
