@@ -57,7 +57,7 @@ def test_of_many_reasons_the_default_stands_first_and_the_others_are_folded() ->
 def test_what_needs_no_reading_stands_first() -> None:
     found = [finding("a", "one."), finding("b", "two."), finding(None, "three.")]
     case = {"readings": {"default": "d"}, "findings": found}
-    assert texts(case)[0] == "Refuted under every reading: three."
+    assert texts(case)[0] == "Under every reading: three."
 
 
 def test_what_differs_in_numbers_is_told_once_and_every_number_is_folded() -> None:
