@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 from functools import cached_property
+from itertools import pairwise
 from typing import NamedTuple
 
 from .errors import TrajgapError
@@ -168,6 +170,20 @@ class Printed:
     def upper(self) -> float:
         """Upper end of `interval`, rounded outwards; `value` for an exact number."""
         return self.value if self.exact else up(self.interval.upper)
+
+    @property
+    def digit_places(self) -> list[int]:
+        """Where in the text the digits stand."""
+        return [k for k, character in enumerate(self.text) if character.isdigit()]
+
+    def neighbours_exchanged(self) -> Iterator[Printed]:
+        """The number with two neighbouring digits exchanged, as a slip of the keys leaves it."""
+        text = self.text
+        for one, other in pairwise(self.digit_places):
+            a, b = text[one], text[other]
+            if a != b:
+                slipped = f"{text[:one]}{b}{text[one + 1 : other]}{a}{text[other + 1 :]}"
+                yield Printed(slipped)
 
     def __str__(self) -> str:
         return self.text

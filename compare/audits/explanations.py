@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from itertools import combinations, islice, pairwise
+from itertools import combinations, islice
 from math import isclose, tau
 
 import numpy as np
@@ -92,13 +92,8 @@ def explained(study: Study, root: str, finding: Finding) -> tuple[Explanation, .
 
 def one_digit_off(number: Printed) -> Iterator[Printed]:
     """The number with one digit changed, or two neighbouring digits exchanged."""
-    places = [k for k, character in enumerate(number.text) if character.isdigit()]
-    for one, next_ in pairwise(places):
-        a, b = number.text[one], number.text[next_]
-        if a != b:
-            text = f"{number.text[:one]}{b}{number.text[one + 1 : next_]}{a}"
-            yield Printed(text + number.text[next_ + 1 :])
-    for at in reversed(places):
+    yield from number.neighbours_exchanged()
+    for at in reversed(number.digit_places):
         for digit in "0123456789":
             if digit != number.text[at]:
                 yield Printed(f"{number.text[:at]}{digit}{number.text[at + 1 :]}")

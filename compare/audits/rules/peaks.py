@@ -409,9 +409,18 @@ def described(
             Class.NORM: f" ({away}), {norm}",
             Class.UNIT: f" ({away}); their ratio is near {one.factor}",
             Class.ROOT: f" ({away}); a factor √{one.root} may have been lost in print",
-            Class.OFF: f" ({away}), {UNEXPLAINED}",
+            Class.OFF: f" ({away}), {_slipped(study, claim, one, pid, rid) or UNEXPLAINED}",
         }[one.kind]
     )
+
+
+def _slipped(study: Study, claim: PeakClaim, one: Beside, pid: str, rid: str) -> str:
+    """With which two digits exchanged a printed peak would agree; empty where it would not."""
+    for other in one.printed.neighbours_exchanged():
+        meant = study.case.measured(other, claim.derivative, pid, rid)
+        if meant.lower <= one.exact + one.reach and one.exact - one.reach <= meant.upper:
+            return f"which {other.text} would agree with: two digits may have been exchanged"
+    return ""
 
 
 def _of_norm(study: Study, claim: PeakClaim, one: Beside, pid: str, rid: str) -> str:

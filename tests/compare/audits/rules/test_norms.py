@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from support.findings import said_of, study_of
+from support.one_joint import one_joint
 from trajgap.compare.audits.rules.norms import _top, largest_norm
 from trajgap.compare.audits.rules.peaks import judge_peaks
-from trajgap.compare.documents import ClaimVerdict
+from trajgap.compare.documents import ClaimVerdict, Confidence
 from trajgap.problem import fit, rest_to_rest
 
 ARM = """
@@ -110,3 +111,41 @@ def test_the_largest_norm_is_that_of_a_dense_grid_and_never_below_it() -> None:
         dense = np.linalg.norm(trajectory(times, order), axis=1).max()
         assert dense <= top * (1 + 1e-12)
         assert top == pytest.approx(dense, rel=1e-4 if order == 3 else 1e-8)
+
+
+def test_a_sampled_norm_is_not_called_equal() -> None:
+    """Metrics of the natural cubic are sampled: 4.2253 beside a largest norm of 4.2398."""
+    study = study_of(_arm(NATURAL, "acceleration", 'value = "4.225276"'))
+    (found,) = said_of(study, judge_peaks, "p", "TG203")
+    assert found.verdict is ClaimVerdict.SUPPORTED
+    assert "slightly below the largest norm over the joints, 4.23976" in found.message
+    assert found.confidence is Confidence.COMPUTED
+
+
+def test_what_a_slip_explains_is_named() -> None:
+    """Degree 7 has its largest acceleration 84√5/25 of the way by the squared time, 7.5132."""
+    unit = one_joint("0, 1", "9", "1.00000", "within_limits", PEAK).replace("degree = 5", "degree = 7")
+    for value, said in (
+        ("3.36", "a factor √5 may have been lost in print"),
+        ("7.5312", "which 7.5132 would agree with: two digits may have been exchanged"),
+        ("7.61", "off by more than"),
+    ):
+        text = unit.replace('time = "s"', 'time = "s"\nacceleration = "rad/s^2"')
+        (found,) = said_of(study_of(text.replace("VALUE", value)), judge_peaks, "p", "TG203")
+        assert found.verdict is ClaimVerdict.INCONSISTENT
+        assert said in found.message
+        assert found.confidence is Confidence.COMPUTED
+    exact = study_of(text.replace("VALUE", "7.51"))
+    (found,) = said_of(exact, judge_peaks, "p", "TG203")
+    assert (found.verdict, found.confidence) == (ClaimVerdict.SUPPORTED, Confidence.PROVEN)
+
+
+PEAK = """
+[[claims]]
+id = "p"
+quantity = "peak"
+where = "text"
+of = "d"
+derivative = "acceleration"
+value = "VALUE"
+"""
