@@ -168,7 +168,8 @@ def peaks(asked: Asked, h: Array) -> Peaks:
         signed = [np.stack(x[1:]) * (not stands) for x in sampled]
         values = [np.abs(x).max(axis=1) for x in signed]
         sided[:, :, index] = _sided(joint, signed)
-        positions = np.concatenate([x[0] for x in sampled])
+        own = asked.waypoints[:, index]
+        positions = own if stands else np.concatenate([x[0] for x in sampled])
         low.append(np.max(values, axis=0))
         high.append(np.max([v * p.excess for v, p in zip(values, joint, strict=True)], axis=0))
         bottom.append(positions.min())
@@ -322,7 +323,10 @@ def _rest(asked: Asked, j: int, q: Array, h: Array) -> list[Piece]:
     still = [0.0] * ((degree - 1) // 2)
     t = _times(h)
     curve = BPoly.from_derivatives(t, [[x, *still] for x in q])
-    return _of_spline(PPoly.from_bernstein_basis(curve), degree, t)
+    powers = PPoly.from_bernstein_basis(curve)
+    # Where nothing moves, the powers are rounding, and a short segment would make a jerk of it.
+    powers.c[:-1, np.diff(q) == 0.0] = 0.0
+    return _of_spline(powers, degree, t)
 
 
 def _vertices(q: Array) -> Array:
