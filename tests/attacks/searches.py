@@ -71,6 +71,14 @@ def _reaches(asked: Asked, seen: Peaks, h: Array) -> tuple[Array, Array]:
     ):
         there = np.isfinite(limit)
         half = np.where(np.isfinite(span), span / 2, np.maximum(1.0, np.abs(limit)))[there]
-        low[there] = np.maximum(low[there], 1.0 + over[there] / half)
-        high[there] = np.maximum(high[there], 1.0 + (over + slack)[there] / half)
-    return low, high
+        least, most = (_share(room[there], half) for room in (over, over + slack))
+        low[there], high[there] = np.maximum(low[there], least), np.maximum(high[there], most)
+    # In a range of no width a joint that stands there is somewhere up to its limits.
+    point = (span == 0.0) & ~np.isposinf(low)
+    return np.where(point, -np.inf, low), np.where(point, 1.0, high)
+
+
+def _share(over: Array, half: Array) -> Array:
+    """1 at a limit, in half ranges."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray(1.0 + np.nan_to_num(over / half, nan=0.0, posinf=np.inf, neginf=-np.inf))

@@ -124,7 +124,9 @@ def test_a_sampled_norm_is_not_called_equal() -> None:
 
 def test_what_a_slip_explains_is_named() -> None:
     """Degree 7 has its largest acceleration 84√5/25 of the way by the squared time, 7.5132."""
-    unit = one_joint("0, 1", "9", "1.00000", "within_limits", PEAK).replace("degree = 5", "degree = 7")
+    unit = one_joint("0, 1", "9", "1.00000", "within_limits", PEAK).replace(
+        "degree = 5", "degree = 7"
+    )
     for value, said in (
         ("3.36", "a factor √5 may have been lost in print"),
         ("7.5312", "which 7.5132 would agree with: two digits may have been exchanged"),
