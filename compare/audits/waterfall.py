@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from decimal import ROUND_FLOOR, Context, Decimal, localcontext
 from fractions import Fraction
 
@@ -10,7 +10,15 @@ from ...nlp import Evidence, Solution, Status, stated_exactly
 from ...nlp.proofs.any_curve import estimate_any_curve
 from ...nlp.retiming import retime
 from ...problem import Coupling, down, fit, up
-from ...problem.cases import AnyClaim, DurationsClaim, MaximumClaim, TimeClaim
+from ...problem.cases import (
+    AnyClaim,
+    DurationsClaim,
+    ImprovementClaim,
+    MaximumClaim,
+    StatementClaim,
+    TimeClaim,
+    TotalTimeClaim,
+)
 from ..documents import (
     EXACT,
     OWN_OPTIMA,
@@ -34,7 +42,11 @@ def waterfalls(study: Study) -> tuple[Waterfall, ...]:
 
 
 def _starting_claim(study: Study, pid: str) -> AnyClaim | None:
-    """The last printed set of durations for all joints, of the state before only if no other."""
+    """The printed durations for all joints that the paper calls its result.
+
+    Those that are called optimal, else those that an improvement leads to, else those that it does
+    not start from, and the last of several; of the state before only where there are no others.
+    """
     whole = [
         c
         for c in study.case.claims
@@ -43,7 +55,28 @@ def _starting_claim(study: Study, pid: str) -> AnyClaim | None:
         and (c.joint is None or len(study.problem(pid, study.main_reading).joints) == 1)
     ]
     answers = [c for c in whole if c.state != "before"] or whole
+    claims = study.case.claims
+    improved = [c for c in claims if isinstance(c, ImprovementClaim)]
+    optimal = (c for c in claims if isinstance(c, StatementClaim) and c.checks == "optimal")
+    left = _meant(study, [c.slower for c in improved], answers)
+    for meant in (
+        [c for c in answers if c.id in {one for statement in optimal for one in statement.of}],
+        _meant(study, [c.faster for c in improved], answers),
+        [c for c in answers if c not in left],
+    ):
+        if meant:
+            return meant[-1]
     return answers[-1] if answers else None
+
+
+def _meant(
+    study: Study, ids: Iterable[str], answers: Sequence[DurationsClaim | MaximumClaim]
+) -> list[DurationsClaim | MaximumClaim]:
+    """The durations behind some claims of a time: their own, or those of the same algorithm."""
+    found = [study.case.claim(one) for one in ids]
+    named = {c.id for c in found} | {c.of for c in found if isinstance(c, TotalTimeClaim)}
+    by = {c.algorithm for c in found} - {None}
+    return [c for c in answers if c.id in named or c.algorithm in by]
 
 
 def _known(name: str, solution: Solution, note: str = "") -> Step:
