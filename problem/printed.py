@@ -171,19 +171,18 @@ class Printed:
         """Upper end of `interval`, rounded outwards; `value` for an exact number."""
         return self.value if self.exact else up(self.interval.upper)
 
-    @property
-    def digit_places(self) -> list[int]:
-        """Where in the text the digits stand."""
-        return [k for k, character in enumerate(self.text) if character.isdigit()]
-
-    def neighbours_exchanged(self) -> Iterator[Printed]:
-        """The number with two neighbouring digits exchanged, as a slip of the keys leaves it."""
+    def one_digit_off(self) -> Iterator[Printed]:
+        """The number with two neighbouring digits exchanged or one changed, in this order."""
         text = self.text
-        for one, other in pairwise(self.digit_places):
+        places = [k for k, character in enumerate(text) if character.isdigit()]
+        for one, other in pairwise(places):
             a, b = text[one], text[other]
             if a != b:
-                slipped = f"{text[:one]}{b}{text[one + 1 : other]}{a}{text[other + 1 :]}"
-                yield Printed(slipped)
+                yield Printed(f"{text[:one]}{b}{text[one + 1 : other]}{a}{text[other + 1 :]}")
+        for at in reversed(places):
+            for digit in "0123456789":
+                if digit != text[at]:
+                    yield Printed(f"{text[:at]}{digit}{text[at + 1 :]}")
 
     def __str__(self) -> str:
         return self.text

@@ -74,7 +74,10 @@ def verdict_card(
     said = {("TG201", one) for one in judged} | {("TG103", one) for one in improved}
     grave = [c for c in causes if c.severity is Severity.ERROR and (c.rule, c.claim) not in said]
     far = implausible(study)
-    sentences = [plainly(study.case, cause, far) for cause in grave]
+    alike: dict[tuple[str, str], list[Cause]] = {}
+    for cause in grave:
+        alike.setdefault((cause.rule, cause.says), []).append(cause)
+    sentences = [plainly(study.case, first, far, also=also) for first, *also in alike.values()]
     left = CARD_WORDS - sum(map(count_words, (limits, optimum)))
     errors, more = _fitting(sentences, left)
     # Where an error on the card says which percentage falls by it, no line says so again.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Sequence
 
 from ...problem import Case
@@ -12,7 +13,7 @@ from ...problem.cases import (
     MaximumClaim,
     StatementClaim,
 )
-from ..documents import Cause, Finding, Gap, Severity, among, quoted
+from ..documents import Cause, Finding, Gap, Severity, among, first_sentence, quoted
 from .explanations import TABLES
 from .stated import place, spoken
 
@@ -25,7 +26,14 @@ _EVERY = "every reading"
 """How it says that something speaks against a claim under each of them, if not the same."""
 
 
-def plainly(case: Case, cause: Cause, far: Collection[str] = (), *, brief: bool = False) -> str:
+def plainly(
+    case: Case,
+    cause: Cause,
+    far: Collection[str] = (),
+    *,
+    also: Sequence[Cause] = (),
+    brief: bool = False,
+) -> str:
     """A cause as one plain sentence.
 
     Parameters
@@ -34,6 +42,8 @@ def plainly(case: Case, cause: Cause, far: Collection[str] = (), *, brief: bool 
     cause : Cause
     far : collection of str
         Readings that are implausible.
+    also : sequence of Cause
+        Others that say the same of other claims: one sentence names all their places.
     brief : bool
         Whether a warning is told as shortly as an error: where the claim falls by it.
 
@@ -42,7 +52,7 @@ def plainly(case: Case, cause: Cause, far: Collection[str] = (), *, brief: bool 
     str
         By claims' texts and places, never by ids. What holds under some readings alone says so.
     """
-    sentence = _plain(case, cause, far, brief)
+    sentence = _plain(case, cause, far, also, brief)
     count, every = len(cause.readings), len(case.readings)
     if not 0 < count < every or any(
         said in sentence for said in (f"{_UNDER}{count} of", f"{_EVERY} allows")
@@ -55,17 +65,20 @@ def plainly(case: Case, cause: Cause, far: Collection[str] = (), *, brief: bool 
     return f"{_UNDER.capitalize()}{which}: {sentence}"
 
 
-def _plain(case: Case, cause: Cause, far: Collection[str], brief: bool) -> str:
+def _plain(
+    case: Case, cause: Cause, far: Collection[str], also: Sequence[Cause], brief: bool
+) -> str:
     """The sentence, without the readings unless they stand within it."""
     head, claim = cause.head, case.claim(cause.claim) if cause.claim else None
     if head is not None and head.root.startswith(f"{TABLES} "):
         return _tables_alike(case, cause, head.root.split(" ")[1:])
     if claim is None or head is None:
-        return spoken(case, cause.says.split(". ")[0].rstrip(".") + ".")
+        return spoken(case, first_sentence(cause.says) + ".")
     if cause.severity is not Severity.ERROR and cause.rule != "TG201" and not brief:
         # A warning proves nothing: it is told in its own words.
         return spoken(case, cause.says)
-    where = place(claim)
+    claims = [claim, *(case.claim(one.claim) for one in also if one.claim)]
+    where = " and ".join(dict.fromkeys(map(place, claims)))
     printed, computed = head.printed or "", head.computed or ""
     sentence = {
         "TG101": f"In {where} the parts add up to {computed}, not {printed}",
@@ -101,13 +114,18 @@ def _not_optimal(case: Case, head: Finding, cause: Cause, far: Collection[str]) 
             return f"{_EVERY} allows a faster motion or finds {cause.elsewhere}"
         where = f"{_UNDER}{among(readings, every, far)} " if 0 < len(readings) < every else ""
         return f"{where}the same curve is faster within the limits"
-    # The printed digits, not the end of their rounding that lies farther away.
-    percent = 50 * (head.gap.lowest + head.gap.highest)
-    share = f"{percent:.1f} % longer than" if percent >= 1 else f"{percent:.2g} % longer than"
+    # Rounded down, for it is a bound: way-points that round to the digits allow other optima.
+    percent = 100 * head.gap.lowest
+    share = f"{_down(percent, 1)} % longer than" if percent >= 1 else f"{percent:.2g} % longer than"
     if head.gap.many_times:
-        share = f"{1 + percent / 100:.1f} times as long as"
-    mildest = f", {_UNDER}the mildest reading" if len(readings) > 1 else ""
-    return f"{_whose(case, head)}{share} a motion within the limits{mildest}"
+        share = f"{_down(1 + percent / 100, 1)} times as long as"
+    return f"{_whose(case, head)}at least {share} a motion within the limits"
+
+
+def _down(number: float, places: int) -> str:
+    """A number rounded down to some decimals."""
+    unit = 10**places
+    return f"{math.floor(number * unit) / unit:.{places}f}"
 
 
 def _whose(case: Case, head: Finding) -> str:

@@ -21,6 +21,7 @@ from ..documents import (
     Severity,
     Why,
     built_remark,
+    first_sentence,
     nature_remark,
 )
 from .explanations import explained
@@ -138,21 +139,29 @@ def with_caveats(
     )
 
 
-def _contradictions(findings: list[Finding]) -> dict[str, set[str]]:
-    """The message of the first finding of each root, and the claims on either side of it."""
+_OF_MOTIONS = ("TG203", "TG208")
+"""Rules that set printed values of a motion beside the motion itself."""
+
+
+def _contradictions(findings: list[Finding]) -> dict[str, tuple[set[str], bool]]:
+    """First message of each root, the claims on its sides, and whether it is about a motion."""
     heads: dict[str, Finding] = {}
     for f in findings:
         heads.setdefault(_root(f), f)
-    sides: dict[str, set[str]] = {}
+    sides: dict[str, tuple[set[str], bool]] = {}
     for f in findings:
         if f.between:
             up = next((heads[r] for r in f.follows if r in heads), heads[_root(f)])
-            sides.setdefault(up.message, set()).update(f.between)
+            of_motions = up.rule in _OF_MOTIONS
+            sides.setdefault(up.message, (set(), of_motions))[0].update(f.between)
     return sides
 
 
 def _caveats(
-    study: Study, judgement: Judgement, against: dict[str, set[str]], findings: list[Finding]
+    study: Study,
+    judgement: Judgement,
+    against: dict[str, tuple[set[str], bool]],
+    findings: list[Finding],
 ) -> Iterator[Caveat]:
     claim = study.case.claim(judgement.claim)
     own = [f for f in findings if f.claim == claim.id and f.decides]
@@ -175,8 +184,9 @@ def _caveats(
     # What holds whatever the numbers are rests on none of them.
     if built or judgement.verdict is ClaimVerdict.INCONSISTENT:
         return
-    for message, sides in against.items():
-        if rests & sides:
+    for message, (sides, of_motions) in against.items():
+        # A percentage rests on printed totals, whatever the peaks of their motions are.
+        if rests & sides and not (of_motions and isinstance(claim, ImprovementClaim)):
             yield Caveat(CaveatKind.DOUBTED, f"{DOUBTED}: {message}")
 
 
@@ -206,9 +216,7 @@ def _doubts(
     joints = about - {None} or set(study.case.robot.joints)
     return list(
         dict.fromkeys(
-            f"{f.message.split('. ')[0].rstrip('.')}."
-            for f in findings
-            if joints.intersection(f.doubts)
+            f"{first_sentence(f.message)}." for f in findings if joints.intersection(f.doubts)
         )
     )
 

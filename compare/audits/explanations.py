@@ -90,15 +90,6 @@ def explained(study: Study, root: str, finding: Finding) -> tuple[Explanation, .
     return ()
 
 
-def one_digit_off(number: Printed) -> Iterator[Printed]:
-    """The number with one digit changed, or two neighbouring digits exchanged."""
-    yield from number.neighbours_exchanged()
-    for at in reversed(number.digit_places):
-        for digit in "0123456789":
-            if digit != number.text[at]:
-                yield Printed(f"{number.text[:at]}{digit}{number.text[at + 1 :]}")
-
-
 def _at_the_ends(study: Study, claim: ConditionsClaim) -> Iterator[Explanation]:
     """Rest that is said of all way-points and may be meant of the ends."""
     available = sum(degree + 1 for degree in claim.degrees)
@@ -130,11 +121,11 @@ def _sums(claim: AnyClaim, total: Printed) -> Iterator[Explanation]:
             effect="Then the printed total is the sum of its parts.",
         )
 
-    for other in one_digit_off(total):
+    for other in total.one_digit_off():
         if other.interval.lower <= high and low <= other.interval.upper:
             yield said("The total", total, other)
     for k, part in enumerate(parts):
-        for other in one_digit_off(part):
+        for other in part.one_digit_off():
             shift_low = low - part.interval.lower + other.interval.lower
             shift_high = high - part.interval.upper + other.interval.upper
             if total.interval.lower <= shift_high and shift_low <= total.interval.upper:
@@ -180,7 +171,7 @@ def _kept_if(
     digits = []
     statement = study.case.statement(pid, rid)
     for k, number in enumerate(claim.durations):
-        for other in one_digit_off(number):
+        for other in number.one_digit_off():
             h = printed.value.copy()
             h[k] = statement.si(other, "time").value
             if not 1 / _LIKELY <= h[k] / printed.value[k] <= _LIKELY:

@@ -46,7 +46,7 @@ class ReplayedCase(ChosenCase):
         found = []
         for block in self.case.algorithms:
             if block.kind is None:
-                found.append(f"{block.name}: the case file names no kind.")
+                found.append(f"{block.name}: the case file names no algorithm that trajgap has.")
             elif block.kind not in KINDS:
                 try:
                     from_settings(block.kind, {})

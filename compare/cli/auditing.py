@@ -27,6 +27,7 @@ from ..documents import (
     capital,
     counted,
     facts,
+    first_sentence,
     more_errors,
     qualified,
     tally,
@@ -174,7 +175,7 @@ def _unchecked(case: AuditedCase) -> list[str]:
     for one in case.verdicts:
         # What only informs stands with the claim on its page: it is no reason.
         if one.verdict is ClaimVerdict.NOT_CHECKABLE and not one.why.endswith(_INFORMS):
-            first = one.why.split(". ")[0].rstrip(".")
+            first = first_sentence(one.why)
             reasons.setdefault(first, []).append(places[one.claim])
     told = [
         f"not checkable, {where[0] if len(where) == 1 else f'{len(where)} claims'}: {why}."

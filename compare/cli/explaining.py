@@ -35,7 +35,7 @@ def _document(asked: Sequence[str]) -> ExplainDocument:
     known = {name.casefold(): name for name in names}
     for one, said in zip(wanted, asked, strict=True):
         if one not in known:
-            near = get_close_matches(one, known, n=1)
+            near = get_close_matches(one, known, n=1) or [name for name in known if one in name]
             meant = f"did you mean {known[near[0]]!r}?" if near else "`trajgap explain` lists all"
             raise CaseError(repr(said), "", f"is no rule and no word of the reports; {meant}")
     return ExplainDocument(

@@ -77,6 +77,7 @@ from .remarks import (
     same_reason,
     worth_little,
 )
+from .sentence_ends import first_sentence, sentences_of
 from .side_by_side import (
     Excess,
     Fit,
@@ -297,6 +298,7 @@ __all__ = [
     "evident",
     "facts",
     "filled",
+    "first_sentence",
     "gap_cell",
     "given",
     "grouped",
@@ -318,6 +320,7 @@ __all__ = [
     "reason",
     "same_reason",
     "schema_text",
+    "sentences_of",
     "show_document",
     "solve_result",
     "suite_document",

@@ -321,6 +321,12 @@ TERMS = {
     "whatever the curve; joints meet at the way-points only.",
     "KKT residual": "How far the answer is from meeting the first-order conditions of an optimum, "
     "scaled; near 0 it meets them, which proves no global optimum.",
+    "on doubted numbers": "Printed numbers that a verdict rests on are contradicted by others in "
+    "the same paper; neither side is taken.",
+    "on doubted way-points": "A verdict was reached with way-points of which a finding says that "
+    "they may be misprinted.",
+    "by construction": "True of every curve of that kind, whatever the printed numbers: no "
+    "evidence for them.",
     "starts at best": "How many starts of the local solver ended at the lowest total found.",
 }
 """Terms of the pages that are no member of an enumeration: steps, optima and runs."""

@@ -26,6 +26,7 @@ from ..documents import (
     grouped,
     qualified,
     quoted,
+    sentences_of,
     told,
     under,
     worth_little,
@@ -132,7 +133,7 @@ def _opened(reasons: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
     shown: list[str] = []
     room = _OPEN_WORDS
     for reason in reasons[:1]:
-        for sentence in _sentences(reason):
+        for sentence in sentences_of(reason):
             count = len(sentence.split())
             if shown and count > room:
                 break
@@ -144,11 +145,6 @@ def _opened(reasons: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
         opened = reasons[0]
     rest = [reason.removeprefix(opened).strip() for reason in reasons[:1]] + list(reasons[1:])
     return ((opened,) if opened else ()), tuple(reason for reason in rest if reason)
-
-
-def _sentences(text: str) -> list[str]:
-    parts = text.split(". ")
-    return [*(f"{part}." for part in parts[:-1]), parts[-1]]
 
 
 def _holds(judgement: Judgement, named: Named) -> str:

@@ -242,9 +242,14 @@ def _limits_statement(study: Study, claim: StatementClaim) -> Iterator[Finding]:
         elif all(one.verdict is ClaimVerdict.SUPPORTED for _, _, one in judged):
             verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
             every = all_called(c for c, _, _ in judged)
+            which = (
+                f"The printed durations ({every}) keep"
+                if len(judged) == 1
+                else f"Every printed set of durations ({every}) keeps"
+            )
             message = (
-                f"Every printed set of durations ({every}) keeps the limits for all t, as printed "
-                "or for some values that round to its digits."
+                f"{which} the limits for all t, as printed or for some values that round to "
+                f"{'their' if len(judged) == 1 else 'its'} digits."
             )
         else:
             verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO

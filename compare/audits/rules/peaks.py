@@ -45,6 +45,9 @@ _FACTORS = {
 _ROOTS = (2, 3, 5)
 """Numbers whose square roots closed forms of peaks hold, such as 10/√3 of degree 5 and 84√5/25 of
 degree 7: one that is lost in print is named as an explanation."""
+_TELLING = 3
+"""Digits that a printed peak has at least if one that is changed explains anything: of two, one in
+five numbers is a slip away."""
 _NEAR_FACTOR = 0.01
 """Relative distance from such a ratio below which the unit is named as an explanation."""
 
@@ -415,12 +418,22 @@ def described(
 
 
 def _slipped(study: Study, claim: PeakClaim, one: Beside, pid: str, rid: str) -> str:
-    """With which two digits exchanged a printed peak would agree; empty where it would not."""
-    for other in one.printed.neighbours_exchanged():
+    """With which digit changed a printed peak would agree; empty where it would not."""
+    other = meant_peak(study, claim, one, pid, rid)
+    if other is None:
+        return ""
+    return f"which {other.text} would agree with: one digit, or the order of two, may be misprinted"
+
+
+def meant_peak(study: Study, claim: PeakClaim, one: Beside, pid: str, rid: str) -> Printed | None:
+    """A number that is one slip of the keys away from a printed peak and agrees with the motion."""
+    if sum(character.isdigit() for character in one.printed.text.lstrip("-0.")) < _TELLING:
+        return None
+    for other in one.printed.one_digit_off():
         meant = study.case.measured(other, claim.derivative, pid, rid)
         if meant.lower <= one.exact + one.reach and one.exact - one.reach <= meant.upper:
-            return f"which {other.text} would agree with: two digits may have been exchanged"
-    return ""
+            return other
+    return None
 
 
 def _of_norm(study: Study, claim: PeakClaim, one: Beside, pid: str, rid: str) -> str:

@@ -7,7 +7,6 @@ from support.one_joint import HEAD
 from support.studies import audited
 from trajgap.compare import audit
 from trajgap.compare.audits.case_audit import CaseAudit
-from trajgap.compare.audits.explanations import one_digit_off
 from trajgap.compare.documents import CaveatKind, ClaimVerdict, Severity, qualified
 from trajgap.problem import Printed, parse_case
 
@@ -178,7 +177,7 @@ def test_what_no_small_change_explains_has_no_explanation() -> None:
 
 
 def test_one_digit_off_is_one_digit_or_two_neighbours_exchanged() -> None:
-    off = {p.text for p in one_digit_off(Printed("1.20"))}
+    off = {p.text for p in Printed("1.20").one_digit_off()}
     assert len(off) == 3 * 9 + 2  # 2.10 and 1.02 are the exchanges
     assert {"2.10", "1.02", "1.29", "9.20"} <= off
     assert "1.20" not in off
