@@ -109,5 +109,3 @@ def test_the_joint_whose_total_lies_farthest_is_named() -> None:
     said = plainly(puma, made.model_copy(update={"head": head}))
     wanted = "joint 3 takes at least 40.0 % longer than a motion within the limits."
     assert said.endswith(wanted)
-        "but joint 3 takes at least 40.0 % longer than a motion within the limits."
-    )
