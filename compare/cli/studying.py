@@ -15,8 +15,8 @@ from datetime import timedelta
 from itertools import groupby
 from math import inf
 from pathlib import Path
-from statistics import median
 
+import numpy as np
 from rich.console import RenderableType
 
 from ...problem import CaseError
@@ -35,6 +35,7 @@ from ..gaps import (
     load_study,
     on_dask,
     on_this_machine,
+    quantiles,
     run_study,
     study_rows,
 )
@@ -218,7 +219,8 @@ def _gaps(runs: Sequence[Row]) -> tuple[str, str]:
     if all(row.reference_upper is None for row in runs):
         return "no optimum", ""
     found = [inf if row.feasible_gap is None else row.feasible_gap[0] for row in runs]
-    return _percent(min(found)), _percent(median(found))
+    best, median = quantiles(np.array(found), [0.0, 0.5])
+    return _percent(best), _percent(median)
 
 
 def _percent(gap: float) -> str:

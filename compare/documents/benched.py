@@ -48,7 +48,8 @@ class Standing(Entry):
     lower_quartile: OrWhy[float]
     median: OrWhy[float]
     upper_quartile: OrWhy[float]
-    """Gaps of a quarter, half and three quarters of all runs; none if as many have no answer."""
+    """Gaps of a quarter, half and three quarters of all runs. What falls between two runs is the
+    mean of both; none if either has no answer."""
     median_total: OrWhy[float]
     """s"""
     median_highest: OrWhy[float]
@@ -217,7 +218,7 @@ def closest(standings: tuple[Standing, ...]) -> str:
     """Which optimiser is closest to the optimum by its median gap, in a sentence."""
     known = [(s.median, s) for s in standings if isinstance(s.median, float)]
     if not known:
-        return "No optimiser found a feasible answer in half of its runs."
+        return "No optimiser found a feasible answer in more than half of its runs."
     median, first = known[0]
     runs = "1 run" if first.runs == 1 else f"{first.runs} runs"
     said = f"Closest: {first.optimizer} (median gap {percent(median)} over {runs})"

@@ -10,6 +10,7 @@ from .standings import bench_result, totals_of
 from .statistics import (
     SETTLED,
     Spread,
+    quantiles,
     settled_at,
     share_interval,
     share_of_luck,
@@ -61,6 +62,7 @@ __all__ = [
     "overall",
     "parse_study",
     "plan_bench",
+    "quantiles",
     "reference_of",
     "relative_rows",
     "run_apart",

@@ -9,6 +9,7 @@ import numpy as np
 
 from ...problem import Array
 from .rows import Row
+from .statistics import quantiles
 
 TARGETS = (0.1, 0.01, 1e-3, 1e-4, 1e-6)
 """Relative gaps that are asked for: 10 % is a poor answer, 1 % and 0.1 % are what papers' printed
@@ -139,7 +140,7 @@ def share_within(totals: Array, optimum: float) -> tuple[Array, Array]:
 
 
 def band(rows: Sequence[Row], optimum: float, levels: Sequence[float]) -> tuple[Array, Array]:
-    """Quantiles over the runs of the gap of the best so far, at log-spaced evaluations.
+    """`quantiles` over the runs of the gap of the best so far, at log-spaced evaluations.
 
     Parameters
     ----------
@@ -162,5 +163,4 @@ def band(rows: Sequence[Row], optimum: float, levels: Sequence[float]) -> tuple[
         at = np.searchsorted(points, [when for when, _ in row.trace]).tolist()
         for (start, end), (_, best) in zip(pairwise([*at, len(points)]), row.trace, strict=True):
             known[i, start:end] = best
-    gaps = np.quantile(known / optimum - 1, levels, axis=0, method="inverted_cdf")
-    return np.array(points, dtype=np.float64), gaps
+    return np.array(points, dtype=np.float64), quantiles(known / optimum - 1, levels)

@@ -390,10 +390,11 @@ def _drawn(at: int | str, name: str, picture: Picture) -> Drawn:
 def _reading() -> Section:
     said = (
         ("median gap", "how far above the optimum the middle run ends: (T − U)/U, where U is the "
-         "upper end of the optimum's interval"),
+         "upper end of the optimum's interval. Of an even number it is the mean of the two middle "
+         "runs; none if either has no answer"),
         ("T", "the total that the checker finds for the answer, stretched if it broke a limit"),
         ("quartiles, best", "a quarter of the runs end below the first and a quarter above the "
-         "second; the closest run"),
+         "second, with the same rule where that falls between two runs; the closest run"),
         ("feasible", "answers that keep every limit at all times"),
         ("≤ 1 %", "share of runs that come within that gap"),
         ("evaluations to 1 %", "what restarts need on average until one reaches the gap, which may "

@@ -186,7 +186,7 @@ def _legend(
 def _words(one: Anytime) -> str:
     last = 100 * one.gaps[:, -1]
     if not np.isfinite(last[1]):
-        return f"{one.label}: half of its {one.runs} runs find no feasible answer"
+        return f"{one.label}: half of its {one.runs} runs or more find no feasible answer"
     upper = f"{last[2]:.3g}" if np.isfinite(last[2]) else "no answer"
     reached = f"{100 * one.shares[-1]:.0f}" if one.shares.size else "0"
     return (

@@ -9,6 +9,7 @@ import json
 import re
 from dataclasses import replace
 from pathlib import Path
+from statistics import median
 
 import numpy as np
 import pytest
@@ -30,6 +31,7 @@ from trajgap.compare.gaps import (
     measure_gaps,
     on_this_machine,
     plan_bench,
+    quantiles,
     share_of_targets,
     share_within,
     vargha_delaney,
@@ -170,10 +172,46 @@ def test_hits_targets_and_bands_of_known_traces() -> None:
     at, gaps = band(rows, 1.0, (0.0, 0.5, 1.0))
     assert at.tolist() == [1, 10, 100, 1000]
     assert gaps[0] == pytest.approx([1.0, 0.2, 0.0, 0.0])
+    even = band(rows[:2], 1.0, (0.5,))[1]
+    assert even[0] == pytest.approx([np.inf, (0.5 + 0.2) / 2, (0.0 + 0.2) / 2, (0.0 + 0.2) / 2])
     assert gaps[1] == pytest.approx([np.inf, 0.5, 0.2, 0.2])
     assert gaps[2].tolist() == [np.inf] * 4
     ratios, shares = share_within(np.array([1.5, 1.0, np.inf, 1.5]), 1.0)
     assert (ratios.tolist(), shares.tolist()) == ([1.0, 1.5], [0.25, 0.75])
+
+
+@pytest.mark.parametrize(
+    ("values", "expected"),
+    [
+        ([4.0, 1.0, 3.0], (1.0, 1.0, 3.0, 4.0)),
+        ([8.0, 1.0, 4.0, 2.0], (1.0, 1.5, 3.0, 6.0)),
+        ([np.inf, 1.0, 4.0, 2.0], (1.0, 1.5, 3.0, np.inf)),
+        ([np.inf, 1.0, np.inf, 2.0], (1.0, 1.5, np.inf, np.inf)),
+        ([7.0], (7.0, 7.0, 7.0, 7.0)),
+    ],
+)
+def test_quantiles_between_two_runs_are_their_mean(
+    values: list[float], expected: tuple[float, ...]
+) -> None:
+    assert quantiles(np.array(values), (0.0, 0.25, 0.5, 0.75)).tolist() == list(expected)
+
+
+def test_quantiles_of_finite_runs_are_those_of_numpy() -> None:
+    levels = (0.0, 0.25, 0.5, 0.75, 1.0)
+    for runs in range(1, 12):
+        values = np.random.default_rng(runs).normal(2.0, 1.0, (runs, 3))
+        expected = np.quantile(values, levels, axis=0, method="averaged_inverted_cdf")
+        assert quantiles(values, levels) == pytest.approx(expected)
+
+
+def test_a_median_without_one_of_its_two_runs_is_none() -> None:
+    rows = [row([(1, 1.5)], 5), row([], 5, None)]
+    found = bench_result({"half": rows}, 1.0, problem="", reading="", budget=5, seeds=2)
+    (standing,) = found.standings
+    assert isinstance(standing.median, Why)
+    assert isinstance(standing.median_total, Why)
+    assert standing.best == pytest.approx(0.5)
+    assert found.verdict == "No optimiser found a feasible answer in more than half of its runs."
 
 
 @pytest.mark.parametrize(
@@ -206,7 +244,7 @@ def test_gaps_against_a_closed_form(runs: Runs) -> None:
         assert one.feasible == one.runs
         assert one.best >= -1e-8
         ends = np.sort([r.feasible_time for r in runs.by_label[one.optimizer]]) / EXACT.sum() - 1
-        assert one.median == pytest.approx(ends[(len(ends) - 1) // 2], abs=1e-12)
+        assert one.median == pytest.approx(median(ends), abs=1e-12)
         rates = [target.rate for target in one.targets]
         assert rates == sorted(rates, reverse=True)
     medians = [one.median for one in found.standings]
