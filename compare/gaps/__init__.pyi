@@ -1,6 +1,6 @@
 from .benching import BenchPlan, Entrant, Runs, bench, measure_gaps, plan_bench, run_bench
 from .engines import Engine, on_dask, on_this_machine, outcomes
-from .exports import COLUMNS, check_export, export_rows
+from .exports import COLUMNS, check_export, export_rows, rows_text
 from .many_problems import overall, relative_rows
 from .optimality_gap import gap, reference_of
 from .pairs import compare_pairs, vargha_delaney
@@ -65,6 +65,7 @@ __all__ = [
     "quantiles",
     "reference_of",
     "relative_rows",
+    "rows_text",
     "run_apart",
     "run_bench",
     "run_study",

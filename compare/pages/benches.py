@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import os
-from collections.abc import Iterable, Sequence
-from dataclasses import asdict
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from ...problem import CaseError, file_name, recover_folder, replace_folder
@@ -30,12 +27,14 @@ from ..documents import (
     percent,
 )
 from ..gaps import (
+    Bracket,
     Row,
     Runs,
+    against,
     band,
-    canonical,
     overall,
     relative_rows,
+    rows_text,
     share_of_targets,
     share_within,
     totals_of,
@@ -51,7 +50,7 @@ _PAGE = "index.html"
 _MARK = "bench.json"
 """The document, by which the folder of an earlier bench is known."""
 _ROWS = "rows.csv"
-"""Every run."""
+"""Every run, as an export of a study has it."""
 _ONE_BY_ONE = 6
 """Problems up to which each has its own tables and pictures on the page; JSON and CSV have all."""
 _TOLD = 0.01
@@ -81,7 +80,7 @@ def write_bench(results: Sequence[tuple[BenchResult, Runs]], out: Path) -> None:
     files = {
         _PAGE: page_text(page),
         _MARK: json_text(bench_document(results)),
-        _ROWS: rows_text(row for _, runs in results for row in runs.rows),
+        _ROWS: rows_text(row for each in results for row in _rows(*each)),
     }
     for drawn in page.pictures:
         files[page.picture(drawn)] = themed(drawn.document)
@@ -126,19 +125,11 @@ def _unwritten(out: Path, error: OSError) -> CaseError:
     return CaseError(str(out), "--out", f"cannot be written ({reason}); name another place")
 
 
-def rows_text(rows: Iterable[Row]) -> str:
-    """Rows as CSV: one line a run; lists and pairs are JSON in one cell."""
-    table = io.StringIO()
-    writer = csv.writer(table, lineterminator="\n")
-    head: list[str] = []
-    for row in rows:
-        values = asdict(row)
-        if not head:
-            head = list(values)
-            writer.writerow(head)
-        cells = (values[name] for name in head)
-        writer.writerow(canonical(c) if isinstance(c, list | tuple) else c for c in cells)
-    return table.getvalue()
+def _rows(result: BenchResult, runs: Runs) -> Iterator[Row]:
+    """Every run with its gaps: a bench makes its runs before it sets them against the optimum."""
+    upper, lower = result.optimum.upper, given(result.optimum.lower)
+    bracket = Bracket(upper, min(lower, upper) if lower else None)
+    return (against(row, bracket) for row in runs.rows)
 
 
 def bench_picture(result: BenchResult, runs: Runs) -> Picture:

@@ -18,6 +18,7 @@ from support import faulty
 from support.documents import assert_valid
 from trajgap.compare.documents import BenchDocument, Why, json_text, percent
 from trajgap.compare.gaps import (
+    COLUMNS,
     Row,
     RowStatus,
     Runs,
@@ -381,7 +382,20 @@ def test_the_page_the_picture_and_the_rows(runs: Runs, tmp_path: Path) -> None:
     table = list(csv.DictReader(io.StringIO((out / "rows.csv").read_text("utf-8"))))
     assert [one["key"] for one in table] == [one.key for one in runs.rows]
     assert float(table[0]["feasible_time"]) == runs.rows[0].feasible_time
-    assert json.loads(table[0]["trace"]) == [list(step) for step in runs.rows[0].trace]
+    # The columns of a study's export, each gap set against the optimum above the table.
+    assert list(table[0]) == list(COLUMNS)
+    assert json.loads(table[0]["trace_totals"]) == [total for _, total in runs.rows[0].trace]
+    assert runs.rows[0].feasible_time is not None
+    exact = runs.rows[0].feasible_time / EXACT.sum() - 1
+    assert float(table[0]["feasible_gap_lowest"]) == pytest.approx(exact, rel=1e-9)
+    assert {float(one["reference_upper"]) for one in table} == {float(EXACT.sum())}
+    wide = result.model_copy(
+        update={"optimum": result.optimum.model_copy(update={"lower": EXACT.sum() * 0.9})}
+    )
+    write_bench([(wide, runs)], tmp_path / "wide")
+    (first, *_) = csv.DictReader(io.StringIO((tmp_path / "wide" / "rows.csv").read_text("utf-8")))
+    assert float(first["feasible_gap_lowest"]) == pytest.approx(exact, rel=1e-9)
+    assert 1 + float(first["feasible_gap_highest"]) == pytest.approx((1 + exact) / 0.9)
     write_bench([(result, runs)], out)  # an earlier bench is replaced
     (out / "mine.txt").write_text("kept")
     with pytest.raises(CaseError, match=r"holds mine.txt, which is no bench"):
