@@ -157,11 +157,13 @@ class _Asked:
 
     @property
     def words(self) -> str:
-        """What a reader calls it, with the ids that a command takes."""
+        """What a reader calls case, problem and reading, with the ids that a command takes."""
         case = self.case
-        if instance_of(case) is not None:
-            return noted(case.title, f"{SUITE_PREFIX}{case.id}")
-        return asked_as(case, self.posed.problem_id, self.posed.reading_id)
+        name = case.id if instance_of(case) is None else f"{SUITE_PREFIX}{case.id}"
+        head = noted(case.title, "" if name == case.title else name)
+        if len(case.problems) == len(case.readings) == 1:
+            return head
+        return f"{head}; {asked_as(case, self.posed.problem_id, self.posed.reading_id)}"
 
 
 def _run(

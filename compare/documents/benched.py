@@ -84,7 +84,8 @@ class BenchResult(Entry):
     """As rows call it: the case and its problem."""
     reading: str
     words: str = Field(default="", exclude=True)
-    """What a reader calls both, with the ids that a command takes; not in JSON."""
+    """What a reader calls case, problem and reading, with the ids that a command takes; not in
+    JSON."""
     budget: Count
     """Evaluations of each run."""
     seeds: Count

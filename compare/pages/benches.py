@@ -170,9 +170,8 @@ def _page(results: Sequence[tuple[BenchResult, Runs]]) -> Page:
         title = f"Optimisers against the optimum: {len(results)} problems"
     if not many:
         sections += [
-            section
+            _section(i, "" if len(results) == 1 else result.title, result, runs)
             for i, (result, runs) in enumerate(results)
-            for section in _sections(i, result, runs)
         ]
     return Page("bench", title, (*sections, _reading()), trail=trail, links=links).filled
 
@@ -270,8 +269,8 @@ def _by_problem(
     return Grid(columns, tuple(rows), "Median gap of each optimiser")
 
 
-def _sections(at: int, result: BenchResult, runs: Runs) -> list[Section]:
-    head = result.title
+def _section(at: int, head: str, result: BenchResult, runs: Runs) -> Section:
+    """What the runs on one problem say; a problem that heads the page is not named again."""
     blocks: list[Block] = [Prose(result.verdict, "lead"), Prose(optimum_said(result.optimum))]
     blocks.append(_table(result.standings))
     blocks.append(_drawn(at, "gaps", bench_picture(result, runs)))
@@ -285,13 +284,13 @@ def _sections(at: int, result: BenchResult, runs: Runs) -> list[Section]:
         one.optimizer: share_within(totals_of(runs.by_label[one.optimizer]), result.optimum.upper)
         for one in result.standings
     }
-    profile = profile_picture(profiles, title=f"Where runs end: {head}")
+    profile = profile_picture(profiles, title=f"Where runs end: {result.title}")
     blocks.append(Folded("Where runs end", (_drawn(at, "profile", profile),)))
     blocks.append(Folded("Every target", (_targets(result.standings),)))
     if result.pairs:
         blocks.append(Folded("Run against run", (_pairs(result.pairs),)))
     blocks.append(Folded("Settings", (_settings(result.standings),)))
-    return [Section(f"result-{at}", head, tuple(blocks))]
+    return Section(f"result-{at}", head or "Where each optimiser ends", tuple(blocks))
 
 
 def optimum_said(optimum: Reference) -> str:

@@ -9,6 +9,7 @@ import pytest
 from support.checkout import ROOT
 from support.command_line import Run, assert_refused, strict
 from support.documents import assert_valid
+from trajgap.problem import load_case
 from trajgap.problem.suite import load_instance
 
 PUMA = "puma560-mnam-pso-353"
@@ -20,12 +21,14 @@ GUIDE = (ROOT / "docs" / "guides" / "enter-your-optimiser.md").read_text(encodin
 def test_a_table_a_page_and_the_verdict_first(run: Run, folder: Path) -> None:
     code, out, err = run("bench", PUMA, "--optimizer", "pso,random", *SMALL)
     assert (code, err) == (0, "")
-    lines = out.splitlines()
+    head, _, rest = out.partition("\nClosest: ")
+    lines = f"Closest: {rest}".splitlines()
     ids = "problem six-joints, reading durations-at-least-0.3"
-    assert lines[0] == f"durations of at least 0.3 s ({ids})"
-    assert lines[1].startswith("Closest: ")
+    title = load_case(PUMA).title
+    head = " ".join(head.split())
+    assert head == f"{title} ({PUMA}); durations of at least 0.3 s ({ids})"
     # The interval of the shipped certificate.
-    assert lines[2].startswith("Optimum: 3.2966934 to 3.2966963 s, certified; ")
+    assert lines[1].startswith("Optimum: 3.2966934 to 3.2966963 s, certified; ")
     table = [line for line in lines if re.match(r"(pso|random) ", line)]
     assert len(table) == 2
     assert all("2 of 2" in line or "of 2" in line for line in table)
@@ -39,7 +42,13 @@ def test_a_table_a_page_and_the_verdict_first(run: Run, folder: Path) -> None:
         "trajgap-bench/rows.csv",
     ]
     page = (folder / "trajgap-bench" / "index.html").read_text("utf-8")
-    assert lines[1] in page
+    assert lines[0] in page
+    heads = re.findall(r"<h[12][^>]*>(.*?)</h[12]>", page)
+    assert heads[0] == f"Optimisers against the optimum: {head}"
+    assert heads[1] == "Where each optimiser ends"
+    for name in ("gaps", "profile"):
+        drawn = (folder / f"trajgap-bench/pictures/bench-{name}-0.svg").read_text("utf-8")
+        assert f"{title} ({PUMA}); " in drawn
     found = re.findall(r'(?:href|src)="([^"#]+)"', page)
     targets = {one for one in found if not one.startswith("data:")}  # the icon is in the page
     assert targets
@@ -79,6 +88,7 @@ def test_settings_and_reading(run: Run) -> None:
 def test_joints_that_the_case_searches_apart_are_told(run: Run) -> None:
     code, out, err = run("bench", "mine.toml", "--optimizer", "random", *SMALL)
     assert (code, err) == (0, "")
+    assert out.splitlines()[0] == "Mine (mine)"
     assert "The case searches each joint by itself; here all joints share their durations." in out
     assert "best known; true gaps may be larger" in out
 
@@ -91,7 +101,7 @@ def test_a_faulty_optimiser_is_told_and_ends_nothing(run: Run, folder: Path) -> 
     code, out, err = run("bench", PUMA, "--optimizer", "theirs:f,random", *SMALL)
     assert (code, err) == (0, "")
     assert "theirs:f: 2 of 2 runs failed: theirs:f: its process ended 2 times (exit code 3)" in out
-    assert out.splitlines()[1].startswith("Closest: random")
+    assert "\nClosest: random" in out
 
 
 def test_instances_of_the_suite_and_what_all_of_them_say(run: Run, folder: Path) -> None:
