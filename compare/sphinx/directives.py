@@ -15,6 +15,7 @@ from ...problem import TrajgapError, file_name
 from ..audits import KEPT
 from ..documents import ClaimVerdict, Keeping, counted, more_errors, qualified, same_reason, worth
 from ..pictures import waterfall_picture
+from .claim_words import none_said, wanted_words
 from .parts import badge, paragraph, picture, table
 from .proofs import proved_again
 from .reasons import names as reading_names
@@ -78,7 +79,7 @@ class Claims(FromResults):
     def made(self, results: Results) -> list[nodes.Node]:
         """The claims with one of the words asked for, in their order; all without the option."""
         case = results.case(self.arguments[0])
-        wanted = [w.strip() for w in self.options.get("verdict", "").split(",") if w.strip()]
+        wanted = wanted_words(self.options.get("verdict", ""))
         stated = {one["claim"]: one for one in case["claims"]}
         found: list[nodes.Node] = []
         chosen = [one for one in case["verdicts"] if not wanted or one["verdict"] in wanted]
@@ -116,7 +117,7 @@ class Claims(FromResults):
                 told.add(caveat)
                 box += paragraph(f"{short[:1].upper()}{short[1:]}", "trajgap-beside")
             found.append(box)
-        return found or [paragraph("None.")]
+        return found or [paragraph(none_said(wanted))]
 
 
 def _explained(case: dict[str, Any]) -> dict[str, list[str]]:

@@ -318,6 +318,12 @@ def test_a_foreign_project_shows_an_audit(tmp_path):
             lambda text: re.sub(r'("lower":\s*")(\d+)', r"\g<1>9\2", text),
             "not proved",
         ),
+        pytest.param(
+            "# T\n\n```{trajgap-claims} irb460-pso-353\n:verdict: refutedd\n```\n",
+            None,
+            ":verdict: 'refutedd' is no verdict on a claim",
+            marks=pytest.mark.slow,
+        ),
     ],
 )
 def test_a_page_that_lies_does_not_build(tmp_path, text, alter, said):
