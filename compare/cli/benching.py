@@ -40,7 +40,7 @@ from ..gaps import (
 )
 from ..pages import bench_document, check_bench_folder, most_solved, optimum_said, write_bench
 from .input import Posed, naming, read_case, select
-from .output import emit, progress, say
+from .output import NEVER_RAN, emit, progress, say
 from .table import Columns, line
 
 _ONE_BY_ONE = 6
@@ -97,7 +97,8 @@ def bench_case(
     emit(bench_document(results), _tables, as_json)
     if folder is not None and not as_json:
         say(f"page: {folder / 'index.html'}\n")
-    return 0
+    every = [one for result, _ in results for one in result.standings]
+    return NEVER_RAN if any(one.failed == one.runs for one in every) else 0
 
 
 def _cases(source: str) -> list[Case]:

@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 
 D = TypeVar("D", bound=Document)
 
+NEVER_RAN = 1
+"""Exit code where every run of an optimiser failed: as of other answers that a script must not take
+for a success. What the other optimisers came to is printed and written."""
 _PIPE_WIDTH = 120
 """Columns where nobody's window limits them."""
 

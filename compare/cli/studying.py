@@ -40,7 +40,7 @@ from ..gaps import (
     study_rows,
 )
 from .interrupt import INTERRUPTED
-from .output import progress, rendered, say
+from .output import NEVER_RAN, progress, rendered, say
 from .table import Columns, line
 
 _ENDING = ".sqlite"
@@ -94,8 +94,9 @@ def conduct(
             return INTERRUPTED
         for one in exports:
             export_rows(study_rows(plan, kept), one)
-        say(rendered(_summary(plan, kept, session, path, exports, again)))
-    return 0
+        parts, never_ran = _summary(plan, kept, session, path, exports, again)
+        say(rendered(parts))
+    return NEVER_RAN if never_ran else 0
 
 
 def _engine(workers: int | None, dask: str | None) -> AbstractContextManager[Engine]:
@@ -144,9 +145,10 @@ def _summary(
     path: Path,
     exports: Sequence[Path],
     again: Sequence[str],
-) -> list[RenderableType]:
+) -> tuple[list[RenderableType], bool]:
+    """What the runs came to, and whether all of some optimiser on some problem failed."""
     found: dict[tuple[str, str], list[Cells]] = {}
-    messages, failed = dict[str, int](), 0
+    messages, failed, never_ran = dict[str, int](), 0, False
     for (problem, reading, optimizer, settings, handling), group in groupby(
         study_rows(plan, kept), _named
     ):
@@ -155,6 +157,7 @@ def _summary(
         for message in bad:
             messages[message] = messages.get(message, 0) + 1
         failed += len(bad)
+        never_ran |= len(bad) == len(runs)
         passed = sum(row.feasible for row in runs)
         found.setdefault((problem, reading), []).append(
             (optimizer, _readable(settings), handling, len(runs), len(bad), passed, *_gaps(runs))
@@ -176,7 +179,7 @@ def _summary(
     if not exports:
         name = f"{Path(plan.file).stem}.csv"
         parts.append(line(f"next: {shlex.join([*again, '--export', name])}"))
-    return parts
+    return parts, never_ran
 
 
 def _tables(

@@ -16,7 +16,7 @@ from ..objective import Bounds, Counted
 from ..settings import checked, nearest, whole
 from .baselines import rescale_equal, search_locally, search_randomly
 from .borrowed import Borrowed, BorrowedTask
-from .callables import call_function, call_given, load_function
+from .callables import call_function, call_given, check_call, load_function
 from .libraries import (
     check_cma,
     check_mealpy,
@@ -27,7 +27,7 @@ from .libraries import (
     minimise_by_pygmo,
     minimise_by_pymoo,
 )
-from .scipy_methods import check_scipy, minimise_by_scipy
+from .scipy_methods import check_scipy, check_scipy_settings, minimise_by_scipy
 
 Searching = Callable[[Mapping[str, Any], BorrowedTask], object]
 """A search with its settings."""
@@ -98,6 +98,7 @@ def find_optimizer(
     budget = checked(_BUDGET, "budget", budget)
     if callable(name):
         said = f"{getattr(name, '__module__', '?')}:{getattr(name, '__qualname__', name)}"
+        check_call(said, name, settings)
         return _borrowed(said, partial(call_given, name), budget, settings)
     if name in KINDS:
         algorithm = from_settings(name, settings)
@@ -117,8 +118,10 @@ def find_optimizer(
     if source in _LIBRARIES:
         check, minimise = _LIBRARIES[source]
         check(rest)
+        if source == "scipy":
+            check_scipy_settings(rest, settings)
         return _borrowed(name, partial(minimise, rest), budget, settings)
-    load_function(name)
+    check_call(name, load_function(name), settings)
     return _borrowed(name, partial(call_function, name), budget, settings)
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from ...problem import Array, TrajgapError
 from ..settings import nearest
 from .borrowed import BorrowedTask
+from .callables import check_settings
 
 _UNENDING = 10**6
 """Iterations that no budget reaches."""
@@ -34,6 +35,23 @@ def check_scipy(name: str) -> None:
     """
     if name not in ENDED_BY_BUDGET:
         raise TrajgapError(f"scipy:{name}: unknown; {nearest(name, ENDED_BY_BUDGET)}")
+
+
+def check_scipy_settings(name: str, settings: Mapping[str, object]) -> None:
+    """Find out whether scipy's function has such settings.
+
+    Raises
+    ------
+    TrajgapError
+        If it has not; names the nearest.
+    """
+    if not settings:
+        return  # scipy need not be loaded
+    from scipy import optimize
+
+    known = inspect.signature(getattr(optimize, name)).parameters
+    # Versions from 1.15 on take both words for the generator; the signature names one.
+    check_settings(f"scipy:{name}", settings, {*known, "rng", "seed"})
 
 
 def minimise_by_scipy(name: str, options: Mapping[str, Any], task: BorrowedTask) -> object:

@@ -93,13 +93,27 @@ def test_joints_that_the_case_searches_apart_are_told(run: Run) -> None:
     assert "best known; true gaps may be larger" in out
 
 
+def test_an_optimiser_that_always_fails_is_told_by_the_exit_code(run: Run) -> None:
+    arguments = ("bench", PUMA, *SMALL, "--optimizer")
+    code, out, err = run(*arguments, "random,support.faulty:raises")
+    assert (code, err) == (1, "")
+    assert "support.faulty:raises: 2 of 2 runs failed: ZeroDivisionError: of its own" in out
+    assert "page: trajgap-bench/index.html" in out
+    code, out, _ = run(*arguments, "random,support.faulty:raises", "--json")
+    assert code == 1
+    assert {one["failed"] for one in strict(out)["results"][0]["standings"]} == {0, 2}
+    code, out, _ = run(*arguments, "support.faulty:raises_at_times", "--seeds", "8")
+    assert re.search("[1-7] of 8 runs failed: ZeroDivisionError: at times", out)
+    assert code == 0
+
+
 @pytest.mark.slow
 def test_a_faulty_optimiser_is_told_and_ends_nothing(run: Run, folder: Path) -> None:
     (folder / "theirs.py").write_text(
         "def f(fun, bounds, budget, rng):\n    import os; os._exit(3)\n"
     )
     code, out, err = run("bench", PUMA, "--optimizer", "theirs:f,random", *SMALL)
-    assert (code, err) == (0, "")
+    assert (code, err) == (1, "")
     assert "theirs:f: 2 of 2 runs failed: theirs:f: its process ended 2 times (exit code 3)" in out
     assert "\nClosest: random" in out
 
@@ -151,6 +165,10 @@ def test_instances_that_the_suite_does_not_have(run: Run, wanted: str) -> None:
         (("--optimizer", "pso", "--set", "pso"), ("--set", "give JSON after the =")),
         (("--optimizer", "pso", "--set", "ga={}"), ("'ga'", "it does not take part")),
         (("--optimizer", "pso", "--set", 'pso={"partikles": 3}'), ("partikles", "particles")),
+        (
+            ("--optimizer", "support.faulty:fair", "--set", 'support.faulty:fair={"member": 3}'),
+            ("support.faulty:fair: member: unknown setting", "did you mean 'members'"),
+        ),
         (("--optimizer", "pso", "--handling", "death"), ("death", "death-penalty")),
         (("--optimizer", "pso", "--reading", "no"), ("no reading 'no'",)),
         (("--optimizer", "pso", "--budget", "0"), ("--budget",)),

@@ -4,6 +4,7 @@ import sys
 import threading
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -100,6 +101,31 @@ def test_one_shared_duration_is_uniform_rescaling() -> None:
     for handling in ("death-penalty", "stretch", "rescale"):
         found = run_within(find_optimizer("rescale", 200), PROBLEM, 0, 200, handling)
         assert found.durations == pytest.approx(uniform_rescaling(PROBLEM), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("name", "settings", "said"),
+    [
+        ("support.faulty:fair", {"membres": 9}, "membres: unknown setting; did you mean 'members'"),
+        ("support.faulty:raises", {"step": 1}, "step: unknown setting; it has none"),
+        (faulty.fair, {"membres": 9}, "support.faulty:fair: membres: unknown setting"),
+        ("time:sleep_not", {}, "has no 'sleep_not'"),
+        ("support.faulty:generator_of", {}, "is called with fun, bounds, budget and rng; it takes"),
+        ("scipy:direct", {"maxitr": 9}, "scipy:direct: maxitr: unknown setting; did you mean"),
+    ],
+)
+def test_what_cannot_be_called_is_told_before_it_runs(
+    name: Any, settings: dict[str, Any], said: str
+) -> None:
+    with pytest.raises(TrajgapError, match=said):
+        find_optimizer(name, 90, **settings)
+
+
+def test_what_has_no_signature_or_takes_anything_is_left_to_itself() -> None:
+    assert find_optimizer("support.faulty:anything", 90, whatever=3).iterations == 89
+    assert find_optimizer(dict, 90, whatever=3).iterations == 89
+    for word in ("seed", "rng"):  # scipy takes both, and its signature names one
+        assert find_optimizer("scipy:differential_evolution", 90, **{word: 1}).iterations == 89
 
 
 def test_a_function_by_itself_and_by_its_name() -> None:
