@@ -19,12 +19,20 @@ from .statistics import (
 )
 from .store import Store
 from .studies import PosedProblem, StudyPlan, load_study, parse_study
-from .targets import TARGETS, band, expected_running_time, share_of_targets, share_within
+from .targets import (
+    CURVE_TARGETS,
+    TARGETS,
+    band,
+    expected_running_time,
+    share_of_targets,
+    share_within,
+)
 from .trial_process import TrialOutcome, run_apart
 from .trials import origin_of, run_trial
 
 __all__ = [
     "COLUMNS",
+    "CURVE_TARGETS",
     "SETTLED",
     "TARGETS",
     "BenchPlan",

@@ -17,7 +17,7 @@ digits can tell apart, 0.01 % is below them, 1e-6 is a solver's answer."""
 
 _SAMPLES = 2000
 """Bootstrap samples of an interval: its ends move by about 1 % of its width with the seed."""
-_CURVE = tuple(float(g) for g in np.logspace(0, -6, 61))
+CURVE_TARGETS = tuple(float(g) for g in np.logspace(0, -6, 61))
 """Targets of the share of targets reached, ten for every tenfold: from twice the optimum to a
 millionth above it."""
 
@@ -94,7 +94,7 @@ def success_interval(successes: int, runs: int) -> tuple[float, float]:
 
 
 def share_of_targets(
-    rows: Sequence[Row], optimum: float, targets: Iterable[float] = _CURVE
+    rows: Sequence[Row], optimum: float, targets: Iterable[float] = CURVE_TARGETS
 ) -> tuple[Array, Array]:
     """Share of pairs of run and target that are reached after so many evaluations (ECDF).
 

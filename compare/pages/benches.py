@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
-from ...problem import CaseError, file_name, recover_folder, replace_folder
+from ...problem import Array, CaseError, file_name, recover_folder, replace_folder
 from ..audits import package_version
 from ..documents import (
     BENCH_COLUMNS,
@@ -27,6 +27,7 @@ from ..documents import (
     percent,
 )
 from ..gaps import (
+    CURVE_TARGETS,
     Bracket,
     Row,
     Runs,
@@ -142,18 +143,34 @@ def bench_picture(result: BenchResult, runs: Runs) -> Picture:
     runs : Runs
     """
     upper, lower = result.optimum.upper, given(result.optimum.lower)
-    optimisers = []
-    for standing in result.standings:
-        rows = runs.by_label[standing.optimizer]
-        steps, shares = share_of_targets(rows, upper)
-        known = band(rows, upper, _QUARTILES)
-        optimisers.append(Anytime(standing.optimizer, *known, steps, shares, len(rows)))
     return gap_picture(
-        optimisers,
+        _anytime(runs.by_label, upper),
         title=f"Gap to the optimum over the evaluations: {result.title}",
         uncertainty=None if lower is None else 1 - lower / upper,
         budget=result.budget,
+        targets=len(CURVE_TARGETS),
     )
+
+
+def _anytime(rows: Mapping[str, Sequence[Row]], optimum: float) -> list[Anytime]:
+    """What a picture draws, in the order in which optimisers were named.
+
+    Colours so stay what they are in the next picture, whoever is closest there.
+    """
+    return [
+        Anytime(label, *band(own, optimum, _QUARTILES), *share_of_targets(own, optimum), len(own))
+        for label, own in rows.items()
+    ]
+
+
+def ends_picture(result: BenchResult, runs: Runs) -> Picture:
+    """Share of the runs of every optimiser that end within each gap; parameters as there."""
+    profiles = _profiles(runs.by_label, result.optimum.upper)
+    return profile_picture(profiles, title=f"Where runs end: {result.title}")
+
+
+def _profiles(rows: Mapping[str, Sequence[Row]], optimum: float) -> dict[str, tuple[Array, Array]]:
+    return {label: share_within(totals_of(own), optimum) for label, own in rows.items()}
 
 
 def _page(results: Sequence[tuple[BenchResult, Runs]]) -> Page:
@@ -182,21 +199,16 @@ def _all_sections(results: Sequence[tuple[BenchResult, Runs]]) -> list[Section]:
     rows = relative_rows(results)
     first = results[0][0]
     head = f"All {len(results)} problems"
-    optimisers = [
-        Anytime(one.optimizer, *band(own, 1.0, _QUARTILES), *share_of_targets(own, 1.0), len(own))
-        for one in standings
-        for own in (rows[one.optimizer],)
-    ]
     gaps = gap_picture(
-        optimisers,
+        _anytime(rows, 1.0),
         title=f"Gap to the optimum over the evaluations: {len(results)} problems",
         uncertainty=max(_width(result) for result, _ in results),
         budget=first.budget,
+        targets=len(CURVE_TARGETS),
     )
-    profiles = {
-        one.optimizer: share_within(totals_of(rows[one.optimizer]), 1.0) for one in standings
-    }
-    profile = profile_picture(profiles, title=f"Where runs end: {len(results)} problems")
+    profile = profile_picture(
+        _profiles(rows, 1.0), title=f"Where runs end: {len(results)} problems"
+    )
     notes = dict.fromkeys(note for result, _ in results for note in result.notes)
     messages = tuple(
         Prose(f"{result.title}: {one.optimizer}: {message}", "note")
@@ -280,12 +292,7 @@ def _section(at: int, head: str, result: BenchResult, runs: Runs) -> Section:
         for one in result.standings
         for message in one.messages
     ]
-    profiles = {
-        one.optimizer: share_within(totals_of(runs.by_label[one.optimizer]), result.optimum.upper)
-        for one in result.standings
-    }
-    profile = profile_picture(profiles, title=f"Where runs end: {result.title}")
-    blocks.append(Folded("Where runs end", (_drawn(at, "profile", profile),)))
+    blocks.append(Folded("Where runs end", (_drawn(at, "profile", ends_picture(result, runs)),)))
     blocks.append(Folded("Every target", (_targets(result.standings),)))
     if result.pairs:
         blocks.append(Folded("Run against run", (_pairs(result.pairs),)))
@@ -390,7 +397,8 @@ def _reading() -> Section:
         ("evaluations to 1 %", "what restarts need on average until one reaches the gap, which may "
          "be more than one run's budget: all evaluations of all runs, up to the hit, over the "
          "number of hits; in brackets a 95 % interval"),
-        ("targets reached", "share of pairs of a run and one of 61 gaps from 100 % to 0.0001 %"),
+        ("(run, target) pairs reached", f"each run has {len(CURVE_TARGETS)} targets, gaps from "
+         "100 % to 0.0001 %; the share of those of all runs that are reached so far"),
         ("random, rescale, multistart", "baselines: uniform draws; one duration for all segments; "
          "local searches from random starts"),
         ("death-penalty, stretch, rescale", "under Settings: what happens to durations that break "

@@ -39,7 +39,8 @@ from trajgap.compare.gaps import (
 )
 from trajgap.compare.gaps.pairs import compare_pair, corrected
 from trajgap.compare.gaps.targets import hit, running_time_interval, success_interval
-from trajgap.compare.pages import bench_picture, write_bench
+from trajgap.compare.pages import bench_picture, ends_picture, write_bench
+from trajgap.compare.pictures.drawing import SERIES
 from trajgap.heuristics import search_box
 from trajgap.nlp import solve
 from trajgap.problem import (
@@ -365,13 +366,35 @@ def test_failing_is_not_cheap() -> None:
 # --- what is written ------------------------------------------------------------------------------
 
 
+def test_pictures_follow_the_order_in_which_optimisers_were_named() -> None:
+    """Colours, so that two pictures can be compared: who is first by its gaps may differ."""
+    runs = bench(TOY, ["random", "pso"], seeds=2, budget=60, name="toy", baselines=False)
+    by_time = {one.optimizer: one for one in measure_gaps(runs, float(EXACT.sum())).standings}
+    for order in (["random", "pso"], ["pso", "random"]):
+        result = measure_gaps(runs, float(EXACT.sum())).model_copy(
+            update={"standings": tuple(by_time[name] for name in order)}
+        )
+        for drawn in (bench_picture(result, runs), ends_picture(result, runs)):
+            (legend,) = drawn.legends
+            words = [one.get_text().partition(",")[0] for one in legend.get_texts()]
+            assert words[:2] == ["random", "pso"]
+            colours = [line.get_color() for line in legend.get_lines()[:2]]
+            assert colours == [colour for colour, _ in SERIES[:2]]
+
+
 def test_the_page_the_picture_and_the_rows(runs: Runs, tmp_path: Path) -> None:
     result = measure_gaps(runs, float(EXACT.sum()))
     assert_valid(json.loads(json_text(BenchDocument(results=(result,)))), "bench")
     picture = bench_picture(result, runs)
     assert picture.title == "Gap to the optimum over the evaluations: toy"
     for one in result.standings:
-        assert f"{one.optimizer}: {one.runs} runs end " in picture.description
+        ends = f"{one.runs} runs end" if one.runs > 1 else "1 run ends"
+        assert f"{one.optimizer}: {ends} " in picture.description
+    assert [axes.get_title("left") for axes in picture.axes] == [
+        "median and quartiles over the runs",
+        "61 targets from 100 % to 0.0001 % for each run",
+    ]
+    assert picture.axes[1].get_ylabel() == "(run, target) pairs reached, %"
     out = tmp_path / "out"
     write_bench([(result, runs)], out)
     page = (out / "index.html").read_text("utf-8")
