@@ -22,7 +22,7 @@ from ..documents import (
 )
 from ..pages import suite_pages
 from .output import emit, new_output, progress, say
-from .table import Columns, line
+from .table import Columns, command, line
 
 _MARK = "suite.json"
 """The file by which a folder that was written so is known."""
@@ -93,9 +93,10 @@ def _shown(document: SuiteShowDocument) -> list[RenderableType]:
         ("best known", ", ".join(f"{h:.9g}" for h in one.segment_durations) + " s"),
         ("tight in", ", ".join(one.tight)),
         ("certificate", str(one.certificate)),
-        ("made by", one.command),
-        ("verify", str(document.verify)),
     ]
+    verify = given(document.verify)
+    if verify is None:
+        facts.append(("verify", str(document.verify)))
     if hard is not None:
         facts += [
             ("basins", f"{hard.basins} found by {hard.starts} random starts; "
@@ -115,6 +116,9 @@ def _shown(document: SuiteShowDocument) -> list[RenderableType]:
         line(one.name, "bold"),
         line(document.title),
         Columns(("what", "~of this instance"), facts),
+        line("made by:"),
+        command(one.command),
+        *([] if verify is None else [line("verify it:"), command(verify)]),
     ]
 
 
