@@ -74,7 +74,7 @@ def conduct(
         if exports.count(one) > 1:
             raise CaseError(str(one), "--export", "is named twice; name it once")
     plan = load_study(file)
-    again = ["trajgap", "study", str(file), *([] if store is None else ["--store", str(store)])]
+    again = ["trajgap", "study", str(file), *_options("--store", [] if store is None else [store])]
     with Store(path) as kept:
         session = StudySession(total=len(plan), resumed=0)
         try:
@@ -90,13 +90,18 @@ def conduct(
                 with _interruptible():
                     session = run_study(plan, kept, engine, retry=retry, told=told)
         except KeyboardInterrupt:
-            print(f"\ntrajgap: {_interrupted(session, again)}", file=sys.stderr)
+            rest = [*([] if dask is None else ["--dask", dask]), *_options("--export", exports)]
+            print(f"\ntrajgap: {_interrupted(session, [*again, *rest])}", file=sys.stderr)
             return INTERRUPTED
         for one in exports:
             export_rows(study_rows(plan, kept), one)
         parts, never_ran = _summary(plan, kept, session, path, exports, again)
         say(rendered(parts))
     return NEVER_RAN if never_ran else 0
+
+
+def _options(name: str, paths: Sequence[Path]) -> list[str]:
+    return [word for one in paths for word in (name, str(one))]
 
 
 def _engine(workers: int | None, dask: str | None) -> AbstractContextManager[Engine]:

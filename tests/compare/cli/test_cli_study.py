@@ -100,6 +100,25 @@ def test_bad_input_is_one_line(
     assert_refused(run("study", *arguments), *words)
 
 
+def test_the_command_that_goes_on_still_exports(
+    run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from trajgap.compare.cli import studying
+
+    def interrupted(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(studying, "run_study", interrupted)
+    code, out, err = run(
+        "study", "few.toml", "--export", "a b.csv", "--export", "few.ioh", "--workers", "1"
+    )
+    assert (code, out) == (130, "")
+    assert "`trajgap study few.toml --export 'a b.csv' --export few.ioh` goes on from there" in err
+    assert not (folder / "few.ioh").exists()
+    _, _, err = run("study", "few.toml", "--store", "kept.sqlite", "--workers", "1")
+    assert "`trajgap study few.toml --store kept.sqlite` goes on from there" in err
+
+
 @pytest.mark.slow
 def test_ctrl_c_keeps_what_is_finished_and_says_how_to_go_on(study: Path) -> None:
     study.write_text(
