@@ -144,7 +144,11 @@ def _coupling_said(case: Case, one: Posed, plan: BenchPlan) -> BenchPlan:
     stated = case.problem(one.problem_id, one.reading_id).coupling
     if stated is Coupling.SHARED or len(one.problem.joints) == 1:
         return plan
-    note = "The case searches each joint by itself; here all joints share their durations."
+    note = (
+        "The case searches each joint by itself; here all joints share their durations. So this "
+        "optimum is not the one that the audit sets the paper's total beside, which is what the "
+        "joints' own optima give."
+    )
     return replace(plan, notes=(note, *plan.notes))
 
 
