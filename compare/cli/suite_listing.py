@@ -11,7 +11,14 @@ from pathlib import Path
 from rich.console import RenderableType
 
 from ...problem import CaseError, TrajgapError, replace_folder
-from ...problem.suite import LOADER, BenchmarkInstance, list_instances, load_instance, plain_text
+from ...problem.suite import (
+    LOADER,
+    BenchmarkInstance,
+    list_instances,
+    load_instance,
+    plain_text,
+    select_curve,
+)
 from ..documents import (
     SuiteDocument,
     SuiteShowDocument,
@@ -30,7 +37,7 @@ _MARK = "suite.json"
 
 def list_suite(curve: str | None, as_json: bool, out: Path | None) -> int:
     """List the instances."""
-    chosen = [one for one in list_instances() if curve is None or curve.lower() in _words(one)]
+    chosen = list_instances() if curve is None else select_curve(curve)
     if not chosen:
         known = ", ".join(sorted({one.curve for one in list_instances()}))
         raise CaseError("suite", "--curve", f"no curve is called {curve!r}; known: {known}")
@@ -39,10 +46,6 @@ def list_suite(curve: str | None, as_json: bool, out: Path | None) -> int:
         write(json_text(document))
     emit(document, _table, as_json)
     return 0
-
-
-def _words(one: BenchmarkInstance) -> str:
-    return f"{one.name} {one.curve}".lower()
 
 
 def _table(document: SuiteDocument) -> list[RenderableType]:

@@ -27,7 +27,12 @@ from .libraries import (
     minimise_by_pygmo,
     minimise_by_pymoo,
 )
-from .scipy_methods import check_scipy, check_scipy_settings, minimise_by_scipy
+from .scipy_methods import (
+    check_scipy,
+    check_scipy_settings,
+    minimise_by_scipy,
+    scipy_words,
+)
 
 Searching = Callable[[Mapping[str, Any], BorrowedTask], object]
 """A search with its settings."""
@@ -111,7 +116,7 @@ def find_optimizer(
     source, colon, rest = name.partition(":")
     if not colon:
         raise TrajgapError(
-            f"optimizer {name!r}: unknown; {nearest(name, [*KINDS, *_BASELINES, 'cma'])} "
+            f"optimizer {name!r}: unknown; {nearest(name, _by_word())} "
             "A function of yours is called module:function, such as mine:evolve for evolve in "
             "mine.py"
         )
@@ -123,6 +128,12 @@ def find_optimizer(
         return _borrowed(name, partial(minimise, rest), budget, settings)
     check_call(name, load_function(name), settings)
     return _borrowed(name, partial(call_function, name), budget, settings)
+
+
+def _by_word() -> dict[str, str]:
+    """Names of optimisers by the words that somebody may write: scipy's also without its prefix."""
+    own = {name: name for name in (*KINDS, *_BASELINES, "cma")}
+    return scipy_words() | own
 
 
 def _borrowed(

@@ -25,6 +25,13 @@ ENDED_BY_BUDGET: dict[str, Mapping[str, Any]] = {
 """Functions of scipy.optimize, with the settings that leave the end to the budget."""
 
 
+def scipy_words() -> dict[str, str]:
+    """Scipy's optimisers by the words that somebody may write: names, and initials such as "de"."""
+    initials = {"".join(word[0] for word in one.split("_")): one for one in ENDED_BY_BUDGET}
+    names = {one: one for one in ENDED_BY_BUDGET}
+    return {word: f"scipy:{one}" for word, one in (initials | names).items()}
+
+
 def check_scipy(name: str) -> None:
     """Find out whether scipy's function is known.
 
@@ -34,7 +41,8 @@ def check_scipy(name: str) -> None:
         If it is not; names the nearest.
     """
     if name not in ENDED_BY_BUDGET:
-        raise TrajgapError(f"scipy:{name}: unknown; {nearest(name, ENDED_BY_BUDGET)}")
+        said = nearest(name.lower(), scipy_words())
+        raise TrajgapError(f"scipy:{name}: unknown; {said}")
 
 
 def check_scipy_settings(name: str, settings: Mapping[str, object]) -> None:

@@ -192,7 +192,12 @@ def test_what_ends_in_time_is_left_alone() -> None:
     ("name", "said"),
     [
         ("psoo", "optimizer 'psoo': unknown; did you mean 'pso'"),
-        ("scipy:diferential_evolution", "did you mean 'differential_evolution'"),
+        ("scipy:diferential_evolution", "did you mean 'scipy:differential_evolution'"),
+        ("scipy:de", "scipy:de: unknown; did you mean 'scipy:differential_evolution'"),
+        ("de", "did you mean 'scipy:differential_evolution'"),
+        ("scipy:DA", "did you mean 'scipy:dual_annealing'"),
+        ("differential_evolution", "did you mean 'scipy:differential_evolution'"),
+        ("dual_anealing", "did you mean 'scipy:dual_annealing'"),
         ("nowhere_at_all:f", "module 'nowhere_at_all' cannot be imported"),
         ("mine.py:f", "mine.py:f: names a file; write mine:f, in the folder that holds mine.py"),
         ("evolve", "A function of yours is called module:function, such as mine:evolve"),
@@ -211,6 +216,7 @@ def test_unknown_names(name: str, said: str) -> None:
 )
 def test_unknown_names_of_libraries(name: str, said: str) -> None:
     pytest.importorskip(name.partition(":")[0])
+    said = f"{name.partition(':')[0]}:{said}"
     with pytest.raises(TrajgapError, match=rf"{name}: unknown; did you mean '{said}'"):
         find_optimizer(name)
 
