@@ -230,10 +230,10 @@ def closest(standings: tuple[Standing, ...]) -> str:
 
 
 def percent(gap: float) -> str:
-    """A relative gap in percent, with two digits that count."""
+    """A relative gap in percent, with two digits that count; a tiny one is not called none."""
     value = 100 * gap
-    if value == 0 or abs(value) < _UNSEEN:
-        return "0 %"
+    if 0 < abs(value) < _UNSEEN:
+        return "< 1e-7 %" if value > 0 else "> −1e-7 %"
     shown = f"{value:.0f}"
     if abs(value) < 10:
         shown = np.format_float_positional(value, precision=2, fractional=False, trim="-")

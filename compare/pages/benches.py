@@ -306,9 +306,10 @@ def optimum_said(optimum: Reference) -> str:
     if lower is None:
         return f"Optimum: {optimum.upper:.6f} s, {optimum.evidence}; true gaps may be larger."
     width = percent(1 - lower / optimum.upper)
+    far = width.replace("<", "less than") if width.startswith("<") else f"up to {width}"
     return (
-        f"Optimum: {lower:.7f} to {optimum.upper:.7f} s, {optimum.evidence}; it may lie up to "
-        f"{width} below the value that gaps are set against."
+        f"Optimum: {lower:.7f} to {optimum.upper:.7f} s, {optimum.evidence}; it may lie {far} "
+        "below the value that gaps are set against."
     )
 
 

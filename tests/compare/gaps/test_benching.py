@@ -16,7 +16,7 @@ import pytest
 from scipy.stats import mannwhitneyu
 from support import faulty
 from support.documents import assert_valid
-from trajgap.compare.documents import BenchDocument, Why, json_text, percent
+from trajgap.compare.documents import BenchDocument, Reference, Why, json_text, percent
 from trajgap.compare.gaps import (
     COLUMNS,
     Row,
@@ -39,7 +39,7 @@ from trajgap.compare.gaps import (
 )
 from trajgap.compare.gaps.pairs import compare_pair, corrected
 from trajgap.compare.gaps.targets import hit, running_time_interval, success_interval
-from trajgap.compare.pages import bench_picture, ends_picture, write_bench
+from trajgap.compare.pages import bench_picture, ends_picture, optimum_said, write_bench
 from trajgap.compare.pictures.drawing import SERIES
 from trajgap.heuristics import search_box
 from trajgap.nlp import solve
@@ -218,11 +218,19 @@ def test_a_median_without_one_of_its_two_runs_is_none() -> None:
 
 @pytest.mark.parametrize(
     ("gap", "shown"),
-    [(0.066, "6.6 %"), (9e-7, "0.00009 %"), (-0.002, "−0.2 %"), (1e-12, "0 %"), (0.5, "50 %"),
-     (12.0, "1200 %")],
+    [(0.066, "6.6 %"), (9e-7, "0.00009 %"), (-0.002, "−0.2 %"), (1e-12, "< 1e-7 %"), (0.5, "50 %"),
+     (12.0, "1200 %"), (0.0, "0 %"), (-1e-12, "> −1e-7 %"), (1.01e-9, "0.0000001 %")],
 )  # fmt: skip
 def test_percent(gap: float, shown: str) -> None:
     assert percent(gap) == shown
+
+
+@pytest.mark.parametrize(
+    ("lower", "said"),
+    [(1.8, "may lie up to 10 % below"), (2.0 - 1e-12, "may lie less than 1e-7 % below")],
+)
+def test_how_far_the_optimum_may_lie_below(lower: float, said: str) -> None:
+    assert said in optimum_said(Reference(upper=2.0, lower=lower))
 
 
 # --- on a problem with a closed-form optimum ------------------------------------------------------
