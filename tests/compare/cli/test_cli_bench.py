@@ -205,6 +205,14 @@ def test_the_optimiser_of_the_guide_has_ten_lines_and_is_measured(run: Run, fold
     assert re.search(verdict, out, re.MULTILINE)
 
 
+def test_the_help_says_what_is_replaced_and_when_it_fails(run: Run) -> None:
+    code, out, _ = run("bench", "--help")
+    assert code == 0
+    told = " ".join(out.split())
+    assert "or that of an earlier bench, which is replaced" in told
+    assert "bench and study, and every run of an optimiser on a problem failed" in told
+
+
 def test_the_docs_name_what_is_there() -> None:
     from trajgap.compare.documents import BENCH_COLUMNS
     from trajgap.heuristics import BASELINES, KINDS
