@@ -16,7 +16,7 @@ from ..audits import KEPT
 from ..documents import ClaimVerdict, Keeping, counted, more_errors, qualified, same_reason, worth
 from ..pictures import waterfall_picture
 from .claim_words import none_said, wanted_words
-from .parts import badge, paragraph, picture, table
+from .parts import badge, paragraph, picture, steps, table
 from .proofs import proved_again
 from .reasons import names as reading_names
 from .reasons import reasons
@@ -215,7 +215,7 @@ def _under(case: dict[str, Any], outcome: dict[str, Any], labels: Mapping[str, s
 
 
 class WaterfallShown(FromResults):
-    """``{trajgap-waterfall} CASE``: where the time goes, as a picture."""
+    """``{trajgap-waterfall} CASE``: where the time goes, as a picture; outside HTML as a table."""
 
     option_spec: ClassVar[dict[str, Any]] = {
         "problem": directives.unchanged,
@@ -229,9 +229,10 @@ class WaterfallShown(FromResults):
         asked = {key: self.options[key] for key in ("problem", "reading") if key in self.options}
         for entry in case["waterfalls"]:
             if all(entry[key] == value for key, value in asked.items()):
-                drawn = waterfall_picture(waterfall_of(entry), title=case["title"])
+                found = waterfall_of(entry)
+                drawn = waterfall_picture(found, title=case["title"])
                 place = file_name("waterfall", name, entry["problem"], entry["reading"])
-                return picture(drawn, place)
+                return picture(drawn, place, steps(found))
         raise TrajgapError(f"{name}: no waterfall of {asked or 'any problem'}; look into the JSON")
 
 
