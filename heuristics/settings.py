@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable
+from collections.abc import Hashable, Iterable, Mapping
 from difflib import get_close_matches
 from enum import StrEnum
 from functools import lru_cache
@@ -14,11 +14,14 @@ from pydantic import AfterValidator, Field, TypeAdapter, ValidationError
 from ..problem import TrajgapError
 
 
-def nearest(word: str, known: Iterable[str]) -> str:
-    """How to fix an unknown word: the known one that is spelt most like it."""
-    choices = list(known)
-    close = get_close_matches(word, choices, n=1, cutoff=0.0)
-    return f"did you mean {close[0]!r}?"
+def nearest(word: str, known: Iterable[str] | Mapping[str, str]) -> str:
+    """How to fix an unknown word: the known one that is spelt most like it.
+
+    A mapping names what is meant by each.
+    """
+    meant = known if isinstance(known, Mapping) else {one: one for one in known}
+    close = get_close_matches(word, meant, n=1, cutoff=0.0)
+    return f"did you mean {meant[close[0]]!r}?"
 
 
 # Each returns a pydantic Field; its description is what the message says was expected.

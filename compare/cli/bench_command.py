@@ -66,7 +66,8 @@ def bench(
         Path | None,
         typer.Option(
             metavar="FOLDER",
-            help="Where the page goes: a new or an empty folder, or that of an earlier bench.",
+            help="Where the page goes: a new or an empty folder, or that of an earlier bench, "
+            "which is replaced.",
             show_default="trajgap-bench",
         ),
     ] = None,

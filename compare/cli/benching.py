@@ -40,7 +40,7 @@ from ..gaps import (
 )
 from ..pages import bench_document, check_bench_folder, most_solved, optimum_said, write_bench
 from .input import Posed, naming, read_case, select
-from .output import emit, progress, say
+from .output import NEVER_RAN, emit, progress, say
 from .table import Columns, line
 
 _ONE_BY_ONE = 6
@@ -97,7 +97,8 @@ def bench_case(
     emit(bench_document(results), _tables, as_json)
     if folder is not None and not as_json:
         say(f"page: {folder / 'index.html'}\n")
-    return 0
+    every = [one for result, _ in results for one in result.standings]
+    return NEVER_RAN if any(one.failed == one.runs for one in every) else 0
 
 
 def _cases(source: str) -> list[Case]:
@@ -143,7 +144,11 @@ def _coupling_said(case: Case, one: Posed, plan: BenchPlan) -> BenchPlan:
     stated = case.problem(one.problem_id, one.reading_id).coupling
     if stated is Coupling.SHARED or len(one.problem.joints) == 1:
         return plan
-    note = "The case searches each joint by itself; here all joints share their durations."
+    note = (
+        "The case searches each joint by itself; here all joints share their durations. So this "
+        "optimum is not the one that the audit sets the paper's total beside, which is what the "
+        "joints' own optima give."
+    )
     return replace(plan, notes=(note, *plan.notes))
 
 
@@ -157,11 +162,13 @@ class _Asked:
 
     @property
     def words(self) -> str:
-        """What a reader calls it, with the ids that a command takes."""
+        """What a reader calls case, problem and reading, with the ids that a command takes."""
         case = self.case
-        if instance_of(case) is not None:
-            return noted(case.title, f"{SUITE_PREFIX}{case.id}")
-        return asked_as(case, self.posed.problem_id, self.posed.reading_id)
+        name = case.id if instance_of(case) is None else f"{SUITE_PREFIX}{case.id}"
+        head = noted(case.title, "" if name == case.title else name)
+        if len(case.problems) == len(case.readings) == 1:
+            return head
+        return f"{head}; {asked_as(case, self.posed.problem_id, self.posed.reading_id)}"
 
 
 def _run(

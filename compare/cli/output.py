@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 
 D = TypeVar("D", bound=Document)
 
+NEVER_RAN = 1
+"""Exit code where every run of an optimiser failed: as of other answers that a script must not take
+for a success. What the other optimisers came to is printed and written."""
 _PIPE_WIDTH = 120
 """Columns where nobody's window limits them."""
 
@@ -65,6 +68,8 @@ def rendered(parts: Sequence[RenderableType]) -> str:
     from rich.console import Console
     from rich.measure import Measurement
 
+    from .table import unbroken
+
     terminal, encoding = sys.stdout.isatty(), sys.stdout.encoding or "utf-8"
     page = io.TextIOWrapper(io.BytesIO(), encoding, errors="replace", newline="")
     console = Console(
@@ -78,10 +83,11 @@ def rendered(parts: Sequence[RenderableType]) -> str:
     )
     # In a narrow window a table is wider than it: cut digits would be other digits.
     unbounded = console.options.update(max_width=10_000)
-    needed = (Measurement.get(console, unbounded, part).minimum for part in parts)
+    bounded = [part for part in parts if not unbroken(part)]
+    needed = (Measurement.get(console, unbounded, part).minimum for part in bounded)
     console.width = max(console.width, *needed)
     for part in parts:
-        console.print(part)
+        console.print(part, soft_wrap=unbroken(part))
     page.seek(0)
     return "\n".join(line.rstrip() for line in page.read().split("\n"))
 

@@ -15,8 +15,8 @@ from datetime import timedelta
 from itertools import groupby
 from math import inf
 from pathlib import Path
-from statistics import median
 
+import numpy as np
 from rich.console import RenderableType
 
 from ...problem import CaseError
@@ -35,11 +35,12 @@ from ..gaps import (
     load_study,
     on_dask,
     on_this_machine,
+    quantiles,
     run_study,
     study_rows,
 )
 from .interrupt import INTERRUPTED
-from .output import progress, rendered, say
+from .output import NEVER_RAN, progress, rendered, say
 from .table import Columns, line
 
 _ENDING = ".sqlite"
@@ -73,7 +74,7 @@ def conduct(
         if exports.count(one) > 1:
             raise CaseError(str(one), "--export", "is named twice; name it once")
     plan = load_study(file)
-    again = ["trajgap", "study", str(file), *([] if store is None else ["--store", str(store)])]
+    again = ["trajgap", "study", str(file), *_options("--store", [] if store is None else [store])]
     with Store(path) as kept:
         session = StudySession(total=len(plan), resumed=0)
         try:
@@ -89,12 +90,18 @@ def conduct(
                 with _interruptible():
                     session = run_study(plan, kept, engine, retry=retry, told=told)
         except KeyboardInterrupt:
-            print(f"\ntrajgap: {_interrupted(session, again)}", file=sys.stderr)
+            rest = [*([] if dask is None else ["--dask", dask]), *_options("--export", exports)]
+            print(f"\ntrajgap: {_interrupted(session, [*again, *rest])}", file=sys.stderr)
             return INTERRUPTED
         for one in exports:
             export_rows(study_rows(plan, kept), one)
-        say(rendered(_summary(plan, kept, session, path, exports, again)))
-    return 0
+        parts, never_ran = _summary(plan, kept, session, path, exports, again)
+        say(rendered(parts))
+    return NEVER_RAN if never_ran else 0
+
+
+def _options(name: str, paths: Sequence[Path]) -> list[str]:
+    return [word for one in paths for word in (name, str(one))]
 
 
 def _engine(workers: int | None, dask: str | None) -> AbstractContextManager[Engine]:
@@ -143,9 +150,10 @@ def _summary(
     path: Path,
     exports: Sequence[Path],
     again: Sequence[str],
-) -> list[RenderableType]:
+) -> tuple[list[RenderableType], bool]:
+    """What the runs came to, and whether all of some optimiser on some problem failed."""
     found: dict[tuple[str, str], list[Cells]] = {}
-    messages, failed = dict[str, int](), 0
+    messages, failed, never_ran = dict[str, int](), 0, False
     for (problem, reading, optimizer, settings, handling), group in groupby(
         study_rows(plan, kept), _named
     ):
@@ -154,6 +162,7 @@ def _summary(
         for message in bad:
             messages[message] = messages.get(message, 0) + 1
         failed += len(bad)
+        never_ran |= len(bad) == len(runs)
         passed = sum(row.feasible for row in runs)
         found.setdefault((problem, reading), []).append(
             (optimizer, _readable(settings), handling, len(runs), len(bad), passed, *_gaps(runs))
@@ -175,7 +184,7 @@ def _summary(
     if not exports:
         name = f"{Path(plan.file).stem}.csv"
         parts.append(line(f"next: {shlex.join([*again, '--export', name])}"))
-    return parts
+    return parts, never_ran
 
 
 def _tables(
@@ -218,7 +227,8 @@ def _gaps(runs: Sequence[Row]) -> tuple[str, str]:
     if all(row.reference_upper is None for row in runs):
         return "no optimum", ""
     found = [inf if row.feasible_gap is None else row.feasible_gap[0] for row in runs]
-    return _percent(min(found)), _percent(median(found))
+    best, median = quantiles(np.array(found), [0.0, 0.5])
+    return _percent(best), _percent(median)
 
 
 def _percent(gap: float) -> str:

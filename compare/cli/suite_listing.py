@@ -11,7 +11,14 @@ from pathlib import Path
 from rich.console import RenderableType
 
 from ...problem import CaseError, TrajgapError, replace_folder
-from ...problem.suite import LOADER, BenchmarkInstance, list_instances, load_instance, plain_text
+from ...problem.suite import (
+    LOADER,
+    BenchmarkInstance,
+    list_instances,
+    load_instance,
+    plain_text,
+    select_curve,
+)
 from ..documents import (
     SuiteDocument,
     SuiteShowDocument,
@@ -22,7 +29,7 @@ from ..documents import (
 )
 from ..pages import suite_pages
 from .output import emit, new_output, progress, say
-from .table import Columns, line
+from .table import Columns, command, line
 
 _MARK = "suite.json"
 """The file by which a folder that was written so is known."""
@@ -30,7 +37,7 @@ _MARK = "suite.json"
 
 def list_suite(curve: str | None, as_json: bool, out: Path | None) -> int:
     """List the instances."""
-    chosen = [one for one in list_instances() if curve is None or curve.lower() in _words(one)]
+    chosen = list_instances() if curve is None else select_curve(curve)
     if not chosen:
         known = ", ".join(sorted({one.curve for one in list_instances()}))
         raise CaseError("suite", "--curve", f"no curve is called {curve!r}; known: {known}")
@@ -39,10 +46,6 @@ def list_suite(curve: str | None, as_json: bool, out: Path | None) -> int:
         write(json_text(document))
     emit(document, _table, as_json)
     return 0
-
-
-def _words(one: BenchmarkInstance) -> str:
-    return f"{one.name} {one.curve}".lower()
 
 
 def _table(document: SuiteDocument) -> list[RenderableType]:
@@ -93,9 +96,10 @@ def _shown(document: SuiteShowDocument) -> list[RenderableType]:
         ("best known", ", ".join(f"{h:.9g}" for h in one.segment_durations) + " s"),
         ("tight in", ", ".join(one.tight)),
         ("certificate", str(one.certificate)),
-        ("made by", one.command),
-        ("verify", str(document.verify)),
     ]
+    verify = given(document.verify)
+    if verify is None:
+        facts.append(("verify", str(document.verify)))
     if hard is not None:
         facts += [
             ("basins", f"{hard.basins} found by {hard.starts} random starts; "
@@ -115,6 +119,9 @@ def _shown(document: SuiteShowDocument) -> list[RenderableType]:
         line(one.name, "bold"),
         line(document.title),
         Columns(("what", "~of this instance"), facts),
+        line("made by:"),
+        command(one.command),
+        *([] if verify is None else [line("verify it:"), command(verify)]),
     ]
 
 

@@ -51,6 +51,16 @@ def line(text: object, style: str = "") -> Text:
     return Text(plain(text), style=style)
 
 
+def command(text: object) -> Text:
+    """A command on one line, however narrow the window: broken in two it could not be copied."""
+    return Text(plain(text), no_wrap=True)
+
+
+def unbroken(part: object) -> bool:
+    """Whether a part of a summary is a `command`."""
+    return isinstance(part, Text) and part.no_wrap is True
+
+
 class Columns:
     """Table in which columns of prose share what the window leaves.
 

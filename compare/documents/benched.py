@@ -48,7 +48,8 @@ class Standing(Entry):
     lower_quartile: OrWhy[float]
     median: OrWhy[float]
     upper_quartile: OrWhy[float]
-    """Gaps of a quarter, half and three quarters of all runs; none if as many have no answer."""
+    """Gaps of a quarter, half and three quarters of all runs. What falls between two runs is the
+    mean of both; none if either has no answer."""
     median_total: OrWhy[float]
     """s"""
     median_highest: OrWhy[float]
@@ -83,7 +84,8 @@ class BenchResult(Entry):
     """As rows call it: the case and its problem."""
     reading: str
     words: str = Field(default="", exclude=True)
-    """What a reader calls both, with the ids that a command takes; not in JSON."""
+    """What a reader calls case, problem and reading, with the ids that a command takes; not in
+    JSON."""
     budget: Count
     """Evaluations of each run."""
     seeds: Count
@@ -217,7 +219,7 @@ def closest(standings: tuple[Standing, ...]) -> str:
     """Which optimiser is closest to the optimum by its median gap, in a sentence."""
     known = [(s.median, s) for s in standings if isinstance(s.median, float)]
     if not known:
-        return "No optimiser found a feasible answer in half of its runs."
+        return "No optimiser found a feasible answer in more than half of its runs."
     median, first = known[0]
     runs = "1 run" if first.runs == 1 else f"{first.runs} runs"
     said = f"Closest: {first.optimizer} (median gap {percent(median)} over {runs})"
@@ -228,10 +230,10 @@ def closest(standings: tuple[Standing, ...]) -> str:
 
 
 def percent(gap: float) -> str:
-    """A relative gap in percent, with two digits that count."""
+    """A relative gap in percent, with two digits that count; a tiny one is not called none."""
     value = 100 * gap
-    if value == 0 or abs(value) < _UNSEEN:
-        return "0 %"
+    if 0 < abs(value) < _UNSEEN:
+        return "< 1e-7 %" if value > 0 else "> −1e-7 %"
     shown = f"{value:.0f}"
     if abs(value) < 10:
         shown = np.format_float_positional(value, precision=2, fractional=False, trim="-")

@@ -1,6 +1,6 @@
 from .benching import BenchPlan, Entrant, Runs, bench, measure_gaps, plan_bench, run_bench
 from .engines import Engine, on_dask, on_this_machine, outcomes
-from .exports import COLUMNS, check_export, export_rows
+from .exports import COLUMNS, check_export, export_rows, rows_text
 from .many_problems import overall, relative_rows
 from .optimality_gap import gap, reference_of
 from .pairs import compare_pairs, vargha_delaney
@@ -10,6 +10,7 @@ from .standings import bench_result, totals_of
 from .statistics import (
     SETTLED,
     Spread,
+    quantiles,
     settled_at,
     share_interval,
     share_of_luck,
@@ -18,12 +19,20 @@ from .statistics import (
 )
 from .store import Store
 from .studies import PosedProblem, StudyPlan, load_study, parse_study
-from .targets import TARGETS, band, expected_running_time, share_of_targets, share_within
+from .targets import (
+    CURVE_TARGETS,
+    TARGETS,
+    band,
+    expected_running_time,
+    share_of_targets,
+    share_within,
+)
 from .trial_process import TrialOutcome, run_apart
 from .trials import origin_of, run_trial
 
 __all__ = [
     "COLUMNS",
+    "CURVE_TARGETS",
     "SETTLED",
     "TARGETS",
     "BenchPlan",
@@ -61,8 +70,10 @@ __all__ = [
     "overall",
     "parse_study",
     "plan_bench",
+    "quantiles",
     "reference_of",
     "relative_rows",
+    "rows_text",
     "run_apart",
     "run_bench",
     "run_study",

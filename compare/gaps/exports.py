@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
 import os
 import re
@@ -13,7 +14,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from itertools import groupby, islice
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 from uuid import uuid4
 
 from ...problem import CaseError
@@ -131,18 +132,29 @@ def flat(row: Row) -> dict[str, Any]:
 
 
 def _write_csv(rows: Iterable[Row], path: Path) -> int:
+    with path.open("w", encoding="utf-8", newline="") as file:
+        return _into_csv(rows, file)
+
+
+def rows_text(rows: Iterable[Row]) -> str:
+    """The text of a CSV export of rows: one line a run, `COLUMNS`."""
+    table = io.StringIO()
+    _into_csv(rows, table)
+    return table.getvalue()
+
+
+def _into_csv(rows: Iterable[Row], file: TextIO) -> int:
     count = 0
     lists = [name for name, kind in COLUMNS.items() if kind.endswith("s")]
-    with path.open("w", encoding="utf-8", newline="") as file:
-        table = csv.writer(file, lineterminator="\n")
-        table.writerow(COLUMNS)
-        for row in rows:
-            values = flat(row)
-            for name in lists:
-                # A list is one cell of JSON.
-                values[name] = None if values[name] is None else canonical(list(values[name]))
-            table.writerow(values.values())
-            count += 1
+    table = csv.writer(file, lineterminator="\n")
+    table.writerow(COLUMNS)
+    for row in rows:
+        values = flat(row)
+        for name in lists:
+            # A list is one cell of JSON.
+            values[name] = None if values[name] is None else canonical(list(values[name]))
+        table.writerow(values.values())
+        count += 1
     return count
 
 

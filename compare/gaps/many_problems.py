@@ -10,6 +10,7 @@ import numpy as np
 from ..documents import BenchResult, OverallStanding, OverallTarget, Standing, Why, given
 from .benching import Runs
 from .rows import Row
+from .statistics import quantiles
 
 _ALIKE = 1e-9
 """Median gaps so near each other are a tie: the checker's tolerance."""
@@ -65,7 +66,7 @@ def _standing(name: str, own: Sequence[Standing], first: int) -> OverallStanding
         optimizer=name,
         problems=len(own),
         first=first,
-        median=_gap(float(np.quantile(medians, 0.5, method="inverted_cdf"))),
+        median=_gap(float(quantiles(medians, [0.5])[0])),
         worst=_gap(float(medians.max())),
         failed=sum(one.failed for one in own),
         targets=tuple(targets),

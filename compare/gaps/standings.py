@@ -21,6 +21,7 @@ from ..documents import (
 from .optimality_gap import gap
 from .pairs import compare_pairs
 from .rows import Row, RowStatus
+from .statistics import quantiles
 from .targets import (
     TARGETS,
     expected_running_time,
@@ -30,7 +31,7 @@ from .targets import (
 )
 
 _QUANTILES = (0.0, 0.25, 0.5, 0.75)
-"""Best, lower quartile, median, upper quartile; each is a run, since some may have no answer."""
+"""Best, lower quartile, median, upper quartile."""
 _NO_ANSWER = "as many runs found no feasible answer"
 """Why a quantile is missing."""
 _NEVER = "no run reached it"
@@ -97,7 +98,7 @@ def _order(standing: Standing) -> tuple[float, float]:
 
 def _standing(label: str, rows: Sequence[Row], reference: Reference) -> Standing:
     totals = totals_of(rows)
-    ends = np.quantile(totals, _QUANTILES, method="inverted_cdf")
+    ends = quantiles(totals, _QUANTILES)
     best, low, median, high = (_gap(total, reference.upper) for total in ends)
     base = given(reference.lower)
     failed = [row for row in rows if row.status is RowStatus.FAILED]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +13,31 @@ from ...problem import Array
 
 SETTLED = 1e-3
 """A run counts as converged when its best-so-far is within this share of its final total."""
+
+
+def quantiles(values: Array, levels: Sequence[float]) -> Array:
+    """Quantiles over runs, some of which may have no answer.
+
+    A level that falls between two runs, such as the median of an even number, is the mean of both
+    (definition 2 of Hyndman and Fan, "Sample quantiles in statistical packages", 1996). It is
+    infinite as soon as either is: numpy's own interpolation says nan there.
+
+    Parameters
+    ----------
+    values : ndarray, shape (runs, ...)
+        inf for a run without answer.
+    levels : sequence of float
+        In 0..1.
+
+    Returns
+    -------
+    ndarray, shape (levels, ...)
+    """
+    ordered = np.sort(values, axis=0)
+    at = np.asarray(levels) * len(ordered)
+    below = np.maximum(np.ceil(at).astype(int) - 1, 0)
+    above = np.minimum(np.floor(at).astype(int), len(ordered) - 1)
+    return np.asarray((ordered[below] + ordered[above]) / 2, dtype=np.float64)
 
 
 @dataclass(frozen=True)

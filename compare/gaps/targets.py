@@ -9,6 +9,7 @@ import numpy as np
 
 from ...problem import Array
 from .rows import Row
+from .statistics import quantiles
 
 TARGETS = (0.1, 0.01, 1e-3, 1e-4, 1e-6)
 """Relative gaps that are asked for: 10 % is a poor answer, 1 % and 0.1 % are what papers' printed
@@ -16,7 +17,7 @@ digits can tell apart, 0.01 % is below them, 1e-6 is a solver's answer."""
 
 _SAMPLES = 2000
 """Bootstrap samples of an interval: its ends move by about 1 % of its width with the seed."""
-_CURVE = tuple(float(g) for g in np.logspace(0, -6, 61))
+CURVE_TARGETS = tuple(float(g) for g in np.logspace(0, -6, 61))
 """Targets of the share of targets reached, ten for every tenfold: from twice the optimum to a
 millionth above it."""
 
@@ -93,7 +94,7 @@ def success_interval(successes: int, runs: int) -> tuple[float, float]:
 
 
 def share_of_targets(
-    rows: Sequence[Row], optimum: float, targets: Iterable[float] = _CURVE
+    rows: Sequence[Row], optimum: float, targets: Iterable[float] = CURVE_TARGETS
 ) -> tuple[Array, Array]:
     """Share of pairs of run and target that are reached after so many evaluations (ECDF).
 
@@ -139,7 +140,7 @@ def share_within(totals: Array, optimum: float) -> tuple[Array, Array]:
 
 
 def band(rows: Sequence[Row], optimum: float, levels: Sequence[float]) -> tuple[Array, Array]:
-    """Quantiles over the runs of the gap of the best so far, at log-spaced evaluations.
+    """`quantiles` over the runs of the gap of the best so far, at log-spaced evaluations.
 
     Parameters
     ----------
@@ -162,5 +163,4 @@ def band(rows: Sequence[Row], optimum: float, levels: Sequence[float]) -> tuple[
         at = np.searchsorted(points, [when for when, _ in row.trace]).tolist()
         for (start, end), (_, best) in zip(pairwise([*at, len(points)]), row.trace, strict=True):
             known[i, start:end] = best
-    gaps = np.quantile(known / optimum - 1, levels, axis=0, method="inverted_cdf")
-    return np.array(points, dtype=np.float64), gaps
+    return np.array(points, dtype=np.float64), quantiles(known / optimum - 1, levels)

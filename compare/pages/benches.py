@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import os
-from collections.abc import Iterable, Sequence
-from dataclasses import asdict
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
-from ...problem import CaseError, file_name, recover_folder, replace_folder
+from ...problem import Array, CaseError, file_name, recover_folder, replace_folder
 from ..audits import package_version
 from ..documents import (
     BENCH_COLUMNS,
@@ -30,12 +27,15 @@ from ..documents import (
     percent,
 )
 from ..gaps import (
+    CURVE_TARGETS,
+    Bracket,
     Row,
     Runs,
+    against,
     band,
-    canonical,
     overall,
     relative_rows,
+    rows_text,
     share_of_targets,
     share_within,
     totals_of,
@@ -51,7 +51,7 @@ _PAGE = "index.html"
 _MARK = "bench.json"
 """The document, by which the folder of an earlier bench is known."""
 _ROWS = "rows.csv"
-"""Every run."""
+"""Every run, as an export of a study has it."""
 _ONE_BY_ONE = 6
 """Problems up to which each has its own tables and pictures on the page; JSON and CSV have all."""
 _TOLD = 0.01
@@ -81,7 +81,7 @@ def write_bench(results: Sequence[tuple[BenchResult, Runs]], out: Path) -> None:
     files = {
         _PAGE: page_text(page),
         _MARK: json_text(bench_document(results)),
-        _ROWS: rows_text(row for _, runs in results for row in runs.rows),
+        _ROWS: rows_text(row for each in results for row in _rows(*each)),
     }
     for drawn in page.pictures:
         files[page.picture(drawn)] = themed(drawn.document)
@@ -126,19 +126,11 @@ def _unwritten(out: Path, error: OSError) -> CaseError:
     return CaseError(str(out), "--out", f"cannot be written ({reason}); name another place")
 
 
-def rows_text(rows: Iterable[Row]) -> str:
-    """Rows as CSV: one line a run; lists and pairs are JSON in one cell."""
-    table = io.StringIO()
-    writer = csv.writer(table, lineterminator="\n")
-    head: list[str] = []
-    for row in rows:
-        values = asdict(row)
-        if not head:
-            head = list(values)
-            writer.writerow(head)
-        cells = (values[name] for name in head)
-        writer.writerow(canonical(c) if isinstance(c, list | tuple) else c for c in cells)
-    return table.getvalue()
+def _rows(result: BenchResult, runs: Runs) -> Iterator[Row]:
+    """Every run with its gaps: a bench makes its runs before it sets them against the optimum."""
+    upper, lower = result.optimum.upper, given(result.optimum.lower)
+    bracket = Bracket(upper, min(lower, upper) if lower else None)
+    return (against(row, bracket) for row in runs.rows)
 
 
 def bench_picture(result: BenchResult, runs: Runs) -> Picture:
@@ -151,18 +143,34 @@ def bench_picture(result: BenchResult, runs: Runs) -> Picture:
     runs : Runs
     """
     upper, lower = result.optimum.upper, given(result.optimum.lower)
-    optimisers = []
-    for standing in result.standings:
-        rows = runs.by_label[standing.optimizer]
-        steps, shares = share_of_targets(rows, upper)
-        known = band(rows, upper, _QUARTILES)
-        optimisers.append(Anytime(standing.optimizer, *known, steps, shares, len(rows)))
     return gap_picture(
-        optimisers,
+        _anytime(runs.by_label, upper),
         title=f"Gap to the optimum over the evaluations: {result.title}",
         uncertainty=None if lower is None else 1 - lower / upper,
         budget=result.budget,
+        targets=len(CURVE_TARGETS),
     )
+
+
+def _anytime(rows: Mapping[str, Sequence[Row]], optimum: float) -> list[Anytime]:
+    """What a picture draws, in the order in which optimisers were named.
+
+    Colours so stay what they are in the next picture, whoever is closest there.
+    """
+    return [
+        Anytime(label, *band(own, optimum, _QUARTILES), *share_of_targets(own, optimum), len(own))
+        for label, own in rows.items()
+    ]
+
+
+def ends_picture(result: BenchResult, runs: Runs) -> Picture:
+    """Share of the runs of every optimiser that end within each gap; parameters as there."""
+    profiles = _profiles(runs.by_label, result.optimum.upper)
+    return profile_picture(profiles, title=f"Where runs end: {result.title}")
+
+
+def _profiles(rows: Mapping[str, Sequence[Row]], optimum: float) -> dict[str, tuple[Array, Array]]:
+    return {label: share_within(totals_of(own), optimum) for label, own in rows.items()}
 
 
 def _page(results: Sequence[tuple[BenchResult, Runs]]) -> Page:
@@ -179,9 +187,8 @@ def _page(results: Sequence[tuple[BenchResult, Runs]]) -> Page:
         title = f"Optimisers against the optimum: {len(results)} problems"
     if not many:
         sections += [
-            section
+            _section(i, "" if len(results) == 1 else result.title, result, runs)
             for i, (result, runs) in enumerate(results)
-            for section in _sections(i, result, runs)
         ]
     return Page("bench", title, (*sections, _reading()), trail=trail, links=links).filled
 
@@ -192,21 +199,16 @@ def _all_sections(results: Sequence[tuple[BenchResult, Runs]]) -> list[Section]:
     rows = relative_rows(results)
     first = results[0][0]
     head = f"All {len(results)} problems"
-    optimisers = [
-        Anytime(one.optimizer, *band(own, 1.0, _QUARTILES), *share_of_targets(own, 1.0), len(own))
-        for one in standings
-        for own in (rows[one.optimizer],)
-    ]
     gaps = gap_picture(
-        optimisers,
+        _anytime(rows, 1.0),
         title=f"Gap to the optimum over the evaluations: {len(results)} problems",
         uncertainty=max(_width(result) for result, _ in results),
         budget=first.budget,
+        targets=len(CURVE_TARGETS),
     )
-    profiles = {
-        one.optimizer: share_within(totals_of(rows[one.optimizer]), 1.0) for one in standings
-    }
-    profile = profile_picture(profiles, title=f"Where runs end: {len(results)} problems")
+    profile = profile_picture(
+        _profiles(rows, 1.0), title=f"Where runs end: {len(results)} problems"
+    )
     notes = dict.fromkeys(note for result, _ in results for note in result.notes)
     messages = tuple(
         Prose(f"{result.title}: {one.optimizer}: {message}", "note")
@@ -279,8 +281,8 @@ def _by_problem(
     return Grid(columns, tuple(rows), "Median gap of each optimiser")
 
 
-def _sections(at: int, result: BenchResult, runs: Runs) -> list[Section]:
-    head = result.title
+def _section(at: int, head: str, result: BenchResult, runs: Runs) -> Section:
+    """What the runs on one problem say; a problem that heads the page is not named again."""
     blocks: list[Block] = [Prose(result.verdict, "lead"), Prose(optimum_said(result.optimum))]
     blocks.append(_table(result.standings))
     blocks.append(_drawn(at, "gaps", bench_picture(result, runs)))
@@ -290,17 +292,12 @@ def _sections(at: int, result: BenchResult, runs: Runs) -> list[Section]:
         for one in result.standings
         for message in one.messages
     ]
-    profiles = {
-        one.optimizer: share_within(totals_of(runs.by_label[one.optimizer]), result.optimum.upper)
-        for one in result.standings
-    }
-    profile = profile_picture(profiles, title=f"Where runs end: {head}")
-    blocks.append(Folded("Where runs end", (_drawn(at, "profile", profile),)))
+    blocks.append(Folded("Where runs end", (_drawn(at, "profile", ends_picture(result, runs)),)))
     blocks.append(Folded("Every target", (_targets(result.standings),)))
     if result.pairs:
         blocks.append(Folded("Run against run", (_pairs(result.pairs),)))
     blocks.append(Folded("Settings", (_settings(result.standings),)))
-    return [Section(f"result-{at}", head, tuple(blocks))]
+    return Section(f"result-{at}", head or "Where each optimiser ends", tuple(blocks))
 
 
 def optimum_said(optimum: Reference) -> str:
@@ -309,9 +306,10 @@ def optimum_said(optimum: Reference) -> str:
     if lower is None:
         return f"Optimum: {optimum.upper:.6f} s, {optimum.evidence}; true gaps may be larger."
     width = percent(1 - lower / optimum.upper)
+    far = width.replace("<", "less than") if width.startswith("<") else f"up to {width}"
     return (
-        f"Optimum: {lower:.7f} to {optimum.upper:.7f} s, {optimum.evidence}; it may lie up to "
-        f"{width} below the value that gaps are set against."
+        f"Optimum: {lower:.7f} to {optimum.upper:.7f} s, {optimum.evidence}; it may lie {far} "
+        "below the value that gaps are set against."
     )
 
 
@@ -390,16 +388,18 @@ def _drawn(at: int | str, name: str, picture: Picture) -> Drawn:
 def _reading() -> Section:
     said = (
         ("median gap", "how far above the optimum the middle run ends: (T − U)/U, where U is the "
-         "upper end of the optimum's interval"),
+         "upper end of the optimum's interval. Of an even number it is the mean of the two middle "
+         "runs; none if either has no answer"),
         ("T", "the total that the checker finds for the answer, stretched if it broke a limit"),
         ("quartiles, best", "a quarter of the runs end below the first and a quarter above the "
-         "second; the closest run"),
+         "second, with the same rule where that falls between two runs; the closest run"),
         ("feasible", "answers that keep every limit at all times"),
         ("≤ 1 %", "share of runs that come within that gap"),
         ("evaluations to 1 %", "what restarts need on average until one reaches the gap, which may "
          "be more than one run's budget: all evaluations of all runs, up to the hit, over the "
          "number of hits; in brackets a 95 % interval"),
-        ("targets reached", "share of pairs of a run and one of 61 gaps from 100 % to 0.0001 %"),
+        ("(run, target) pairs reached", f"each run has {len(CURVE_TARGETS)} targets, gaps from "
+         "100 % to 0.0001 %; the share of those of all runs that are reached so far"),
         ("random, rescale, multistart", "baselines: uniform draws; one duration for all segments; "
          "local searches from random starts"),
         ("death-penalty, stretch, rescale", "under Settings: what happens to durations that break "

@@ -67,18 +67,22 @@ def gap_picture(
     title: str,
     uncertainty: float | None,
     budget: int,
+    targets: int,
 ) -> Picture:
     """Anytime gap of each optimiser with its quartiles, and the share of targets reached.
 
     Parameters
     ----------
     optimisers : sequence of Anytime
+        Their order determines colours and line styles.
     title : str
     uncertainty : float or None
         Relative width of the optimum's certified interval, drawn below zero; None where no lower
         bound is certified.
     budget : int
         Evaluations of a run.
+    targets : int
+        How many gaps from 100 % to 0.0001 % each run was asked for.
 
     Returns
     -------
@@ -105,8 +109,8 @@ def gap_picture(
             shares.plot(steps, 100 * reached, color=colour, linestyle=line, drawstyle="steps-post")
         _gap_axis(bands, optimisers, uncertainty, budget)
         shares.set_ylim(0, 103)
-        shares.set_ylabel("targets reached, %")
-        shares.set_title("targets from 100 % to 0.0001 %, all runs")
+        shares.set_ylabel("(run, target) pairs reached, %")
+        shares.set_title(f"{targets} targets from 100 % to 0.0001 % for each run")
         for axes in (bands, shares):
             axes.set_xscale("log")
             axes.set_xlim(1, max(budget, 2))
@@ -186,12 +190,13 @@ def _legend(
 def _words(one: Anytime) -> str:
     last = 100 * one.gaps[:, -1]
     if not np.isfinite(last[1]):
-        return f"{one.label}: half of its {one.runs} runs find no feasible answer"
+        return f"{one.label}: half of its {one.runs} runs or more find no feasible answer"
     upper = f"{last[2]:.3g}" if np.isfinite(last[2]) else "no answer"
     reached = f"{100 * one.shares[-1]:.0f}" if one.shares.size else "0"
     return (
-        f"{one.label}: {one.runs} runs end {last[1]:.3g} % above the optimum in the median, "
-        f"quartiles {last[0]:.3g} and {upper} %; {reached} % of the targets are reached"
+        f"{one.label}: {one.runs} run{'s end' if one.runs > 1 else ' ends'} {last[1]:.3g} % above "
+        f"the optimum in the median, quartiles {last[0]:.3g} and {upper} %; {reached} % of "
+        "its (run, target) pairs are reached"
     )
 
 
@@ -201,7 +206,7 @@ def profile_picture(profiles: Mapping[str, tuple[Array, Array]], *, title: str) 
     Parameters
     ----------
     profiles : mapping of str to (ratios, shares)
-        Of each optimiser, as `share_within` gives them.
+        Of each optimiser, as `share_within` gives them; colours and line styles in this order.
     title : str
 
     Returns

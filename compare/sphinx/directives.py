@@ -24,7 +24,8 @@ from ..documents import (
     worth,
 )
 from ..pictures import waterfall_picture
-from .parts import badge, paragraph, picture, table
+from .claim_words import none_said, wanted_words
+from .parts import badge, paragraph, picture, steps, table
 from .proofs import proved_again
 from .reasons import names as reading_names
 from .reasons import reasons
@@ -87,7 +88,7 @@ class Claims(FromResults):
     def made(self, results: Results) -> list[nodes.Node]:
         """The claims with one of the words asked for, in their order; all without the option."""
         case = results.case(self.arguments[0])
-        wanted = [w.strip() for w in self.options.get("verdict", "").split(",") if w.strip()]
+        wanted = wanted_words(self.options.get("verdict", ""))
         stated = {one["claim"]: one for one in case["claims"]}
         found: list[nodes.Node] = []
         chosen = [one for one in case["verdicts"] if not wanted or one["verdict"] in wanted]
@@ -125,7 +126,7 @@ class Claims(FromResults):
                 told.add(caveat)
                 box += paragraph(f"{short[:1].upper()}{short[1:]}", "trajgap-beside")
             found.append(box)
-        return found or [paragraph("None.")]
+        return found or [paragraph(none_said(wanted))]
 
 
 def _explained(case: dict[str, Any]) -> dict[str, list[str]]:
@@ -225,7 +226,7 @@ def _under(case: dict[str, Any], outcome: dict[str, Any], labels: Mapping[str, s
 
 
 class WaterfallShown(FromResults):
-    """``{trajgap-waterfall} CASE``: where the time goes, as a picture."""
+    """``{trajgap-waterfall} CASE``: where the time goes, as a picture; outside HTML as a table."""
 
     option_spec: ClassVar[dict[str, Any]] = {
         "problem": directives.unchanged,
@@ -239,9 +240,10 @@ class WaterfallShown(FromResults):
         asked = {key: self.options[key] for key in ("problem", "reading") if key in self.options}
         for entry in case["waterfalls"]:
             if all(entry[key] == value for key, value in asked.items()):
-                drawn = waterfall_picture(waterfall_of(entry), title=case["title"])
+                found = waterfall_of(entry)
+                drawn = waterfall_picture(found, title=case["title"])
                 place = file_name("waterfall", name, entry["problem"], entry["reading"])
-                return picture(drawn, place)
+                return picture(drawn, place, steps(found))
         raise TrajgapError(f"{name}: no waterfall of {asked or 'any problem'}; look into the JSON")
 
 

@@ -5,8 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from docutils import nodes
+from sphinx.addnodes import only
 
-from ..pictures import Picture, embedded, svg
+from ...nlp import Evidence
+from ..documents import Waterfall
+from ..pictures import Picture, embedded, seconds, svg
+
+_STEPS = (24, 20, 12, 40)
+"""Characters of the columns of a table of steps: no word of the first three is broken."""
 
 
 def paragraph(text: str, *classes: str) -> nodes.paragraph:
@@ -20,14 +26,17 @@ def badge(word: str) -> nodes.inline:
 
 
 def table(
-    columns: Sequence[str], rows: Iterable[Sequence[nodes.Node | str]], *classes: str
+    columns: Sequence[str],
+    rows: Iterable[Sequence[nodes.Node | str]],
+    *classes: str,
+    widths: Sequence[int] = (),
 ) -> nodes.table:
-    """A table of texts and inline nodes."""
+    """A table of texts and inline nodes; widths in characters, for builders that draw them."""
     found = nodes.table(classes=["trajgap-table", *classes])
     group = nodes.tgroup(cols=len(columns))
     found += group
-    for _ in columns:
-        group += nodes.colspec(colwidth=1)
+    for width in widths or [1] * len(columns):
+        group += nodes.colspec(colwidth=width)
 
     def row(cells: Sequence[nodes.Node | str]) -> nodes.row:
         made = nodes.row()
@@ -48,9 +57,21 @@ def table(
     return found
 
 
-def picture(drawn: Picture, name: str) -> list[nodes.Node]:
-    """A picture inside the page, so that it follows the theme; its words elsewhere."""
-    return [nodes.raw("", framed(embedded(svg(drawn), name)), format="html")]
+def picture(drawn: Picture, name: str, instead: nodes.Node) -> list[nodes.Node]:
+    """A picture inside the page, so that it follows the theme; without HTML what it says."""
+    inside, elsewhere = only(expr="format_html"), only(expr="not format_html")
+    inside += nodes.raw("", framed(embedded(svg(drawn), name)), format="html")
+    elsewhere += instead
+    return [inside, elsewhere]
+
+
+def steps(waterfall: Waterfall) -> nodes.table:
+    """The steps of a waterfall, each with its time, what stands behind it, and its note."""
+    rows = [
+        (one.name, seconds(one), "" if one.evidence == Evidence.NONE else one.evidence, one.note)
+        for one in waterfall.steps
+    ]
+    return table(("step", "total", "evidence", "note"), rows, "colwidths-given", widths=_STEPS)
 
 
 def framed(inside: str) -> str:

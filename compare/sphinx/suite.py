@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -11,7 +12,7 @@ from sphinx.addnodes import pending_xref
 from sphinx.util.docutils import SphinxDirective
 
 from ...problem import TrajgapError
-from ...problem.suite import BenchmarkInstance, list_instances, load_instance
+from ...problem.suite import BenchmarkInstance, list_instances, load_instance, select_curve
 from ..documents import worth
 from .parts import badge, paragraph, table
 from .proofs import proved_again
@@ -19,6 +20,24 @@ from .proofs import proved_again
 PROVED_WITHIN = 0.25
 """s: a certificate whose proof took at most so long, as the suite's table says, is proved again by
 each build; the others, less than a sixth, take half a minute together."""
+
+
+def instances_of(curve: str | None) -> Sequence[BenchmarkInstance]:
+    """Instances of a curve by its whole name, or by a word as `trajgap suite --curve` takes it.
+
+    Raises
+    ------
+    TrajgapError
+        If there is none.
+    """
+    every = list_instances()
+    if curve is None:
+        return every
+    chosen = [one for one in every if one.curve == curve] or select_curve(curve)
+    if not chosen:
+        known = ", ".join(sorted({one.curve for one in every}))
+        raise TrajgapError(f":curve: no curve is called {curve!r}; known: {known}")
+    return chosen
 
 
 class SuiteTable(SphinxDirective):
@@ -32,14 +51,14 @@ class SuiteTable(SphinxDirective):
     def run(self) -> list[nodes.Node]:
         """The table; ``:labels:`` is the prefix of the labels that instances have on the site."""
         curve = self.options.get("curve")
-        chosen = [one for one in list_instances() if curve in (None, one.curve)]
-        if not chosen:
-            known = ", ".join(sorted({one.curve for one in list_instances()}))
-            raise self.error(f"no instance has the curve {curve!r}; known: {known}")
+        try:
+            chosen = instances_of(curve)
+        except TrajgapError as error:
+            raise self.error(str(error)) from None
         columns = ["instance", "curve", "segments", "joints", "tight in", "lower, s", "upper, s",
                    "width", "evidence", "basins", "feasible"]  # fmt: skip
         rows = [self._row(one) for one in chosen]
-        if curve is not None:  # the page says it already
+        if curve in {one.curve for one in chosen}:  # the page says it already
             place = columns.index("curve")
             for cells in (columns, *rows):
                 del cells[place]

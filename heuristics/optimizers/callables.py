@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import importlib
+import inspect
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 from ...problem import TrajgapError
+from ..settings import nearest
 from .borrowed import BorrowedTask
+
+_GIVEN = ("fun", "bounds", "budget", "rng")
+"""What every function of somebody else's is called with, in this order."""
 
 
 def load_function(name: str) -> Callable[..., object]:
@@ -45,6 +50,53 @@ def load_function(name: str) -> Callable[..., object]:
         raise TrajgapError(f"{name}: is no function f(fun, bounds, budget, rng)")
     function: Callable[..., object] = found
     return function
+
+
+def check_call(name: str, function: Callable[..., object], settings: Mapping[str, object]) -> None:
+    """Find out whether ``f(fun, bounds, budget, rng, **settings)`` can be called.
+
+    What Python cannot tell the signature of, such as a builtin, is left to the call.
+
+    Raises
+    ------
+    TrajgapError
+        If it has no such setting, which names the nearest, or takes other arguments.
+    """
+    try:
+        signature = inspect.signature(function)
+    except (TypeError, ValueError):
+        return
+    kinds = inspect.Parameter
+    every = list(enumerate(signature.parameters.values()))
+    if all(one.kind != kinds.VAR_KEYWORD for _, one in every):
+        known = [
+            one.name
+            for at, one in every
+            if one.kind == kinds.KEYWORD_ONLY
+            or (at >= len(_GIVEN) and one.kind == kinds.POSITIONAL_OR_KEYWORD)
+        ]
+        check_settings(name, settings, known)
+    try:
+        signature.bind(*_GIVEN, **settings)
+    except TypeError as error:
+        raise TrajgapError(
+            f"{name}: is called with fun, bounds, budget and rng; it takes {signature} ({error})"
+        ) from None
+
+
+def check_settings(name: str, settings: Mapping[str, object], known: Iterable[str]) -> None:
+    """Find out whether a function has settings of these names.
+
+    Raises
+    ------
+    TrajgapError
+        If not; names the nearest.
+    """
+    there = list(known)
+    for key in settings:
+        if key not in there:
+            said = nearest(key, there) if there else "it has none"
+            raise TrajgapError(f"{name}: {key}: unknown setting; {said}")
 
 
 def call_function(name: str, options: Mapping[str, Any], task: BorrowedTask) -> object:

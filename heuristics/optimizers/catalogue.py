@@ -16,7 +16,7 @@ from ..objective import Bounds, Counted
 from ..settings import checked, nearest, whole
 from .baselines import rescale_equal, search_locally, search_randomly
 from .borrowed import Borrowed, BorrowedTask
-from .callables import call_function, call_given, load_function
+from .callables import call_function, call_given, check_call, load_function
 from .libraries import (
     check_cma,
     check_mealpy,
@@ -27,7 +27,12 @@ from .libraries import (
     minimise_by_pygmo,
     minimise_by_pymoo,
 )
-from .scipy_methods import check_scipy, minimise_by_scipy
+from .scipy_methods import (
+    check_scipy,
+    check_scipy_settings,
+    minimise_by_scipy,
+    scipy_words,
+)
 
 Searching = Callable[[Mapping[str, Any], BorrowedTask], object]
 """A search with its settings."""
@@ -98,6 +103,7 @@ def find_optimizer(
     budget = checked(_BUDGET, "budget", budget)
     if callable(name):
         said = f"{getattr(name, '__module__', '?')}:{getattr(name, '__qualname__', name)}"
+        check_call(said, name, settings)
         return _borrowed(said, partial(call_given, name), budget, settings)
     if name in KINDS:
         algorithm = from_settings(name, settings)
@@ -110,16 +116,24 @@ def find_optimizer(
     source, colon, rest = name.partition(":")
     if not colon:
         raise TrajgapError(
-            f"optimizer {name!r}: unknown; {nearest(name, [*KINDS, *_BASELINES, 'cma'])} "
+            f"optimizer {name!r}: unknown; {nearest(name, _by_word())} "
             "A function of yours is called module:function, such as mine:evolve for evolve in "
             "mine.py"
         )
     if source in _LIBRARIES:
         check, minimise = _LIBRARIES[source]
         check(rest)
+        if source == "scipy":
+            check_scipy_settings(rest, settings)
         return _borrowed(name, partial(minimise, rest), budget, settings)
-    load_function(name)
+    check_call(name, load_function(name), settings)
     return _borrowed(name, partial(call_function, name), budget, settings)
+
+
+def _by_word() -> dict[str, str]:
+    """Names of optimisers by the words that somebody may write: scipy's also without its prefix."""
+    own = {name: name for name in (*KINDS, *_BASELINES, "cma")}
+    return scipy_words() | own
 
 
 def _borrowed(

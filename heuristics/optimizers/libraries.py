@@ -62,7 +62,8 @@ def _mealpy_class(name: str) -> Any:
 
 def _named(found: Mapping[str, Any], package: str, name: str) -> Any:
     if name not in found:
-        raise TrajgapError(f"{package}:{name}: unknown; {nearest(name, found)}")
+        known = [f"{package}:{one}" for one in found]
+        raise TrajgapError(f"{package}:{name}: unknown; {nearest(f'{package}:{name}', known)}")
     return found[name]
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from ...problem import Array, TrajgapError
 from ..settings import nearest
 from .borrowed import BorrowedTask
+from .callables import check_settings
 
 _UNENDING = 10**6
 """Iterations that no budget reaches."""
@@ -24,6 +25,13 @@ ENDED_BY_BUDGET: dict[str, Mapping[str, Any]] = {
 """Functions of scipy.optimize, with the settings that leave the end to the budget."""
 
 
+def scipy_words() -> dict[str, str]:
+    """Scipy's optimisers by the words that somebody may write: names, and initials such as "de"."""
+    initials = {"".join(word[0] for word in one.split("_")): one for one in ENDED_BY_BUDGET}
+    names = {one: one for one in ENDED_BY_BUDGET}
+    return {word: f"scipy:{one}" for word, one in (initials | names).items()}
+
+
 def check_scipy(name: str) -> None:
     """Find out whether scipy's function is known.
 
@@ -33,7 +41,25 @@ def check_scipy(name: str) -> None:
         If it is not; names the nearest.
     """
     if name not in ENDED_BY_BUDGET:
-        raise TrajgapError(f"scipy:{name}: unknown; {nearest(name, ENDED_BY_BUDGET)}")
+        said = nearest(name.lower(), scipy_words())
+        raise TrajgapError(f"scipy:{name}: unknown; {said}")
+
+
+def check_scipy_settings(name: str, settings: Mapping[str, object]) -> None:
+    """Find out whether scipy's function has such settings.
+
+    Raises
+    ------
+    TrajgapError
+        If it has not; names the nearest.
+    """
+    if not settings:
+        return  # scipy need not be loaded
+    from scipy import optimize
+
+    known = inspect.signature(getattr(optimize, name)).parameters
+    # Versions from 1.15 on take both words for the generator; the signature names one.
+    check_settings(f"scipy:{name}", settings, {*known, "rng", "seed"})
 
 
 def minimise_by_scipy(name: str, options: Mapping[str, Any], task: BorrowedTask) -> object:

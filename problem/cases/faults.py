@@ -91,6 +91,8 @@ def all_faults(error: ValidationError) -> list[tuple[str, str]]:
         A path such as ``claims[3].durations[1]``, and what is wrong and how to fix it.
     """
     details = error.errors(include_url=False)
+    # A list is also called too short for the entries that have faults of their own.
+    details = [one for one in details if not (one["type"] == "too_short" and _faulty(one, details))]
     # A misspelt key is also a missing one; the spelling is what to fix.
     details.sort(key=lambda detail: detail["type"] != "unknown_key")
     found = Faults("")
@@ -105,6 +107,12 @@ _MISSING = {
     'optimum" and prints none, take quantity = "statement" with checks = "optimal"',
 }
 """How to fix a missing key that the paper may not print."""
+
+
+def _faulty(fault: Mapping[str, Any], details: Sequence[Mapping[str, Any]]) -> bool:
+    """Whether another fault lies inside the value that a fault is about."""
+    place = tuple(fault["loc"])
+    return any(one is not fault and tuple(one["loc"][: len(place)]) == place for one in details)
 
 
 def _read(detail: Mapping[str, Any]) -> list[tuple[str, str]]:

@@ -4,6 +4,7 @@ from .shelf import (
     instance_of,
     list_instances,
     load_instance,
+    select_curve,
     select_instances,
     suite_version,
 )
@@ -17,6 +18,7 @@ __all__ = [
     "list_instances",
     "load_instance",
     "plain_text",
+    "select_curve",
     "select_instances",
     "suite_version",
 ]

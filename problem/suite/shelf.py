@@ -106,6 +106,18 @@ def select_instances(wanted: str) -> tuple[BenchmarkInstance, ...]:
     return tuple(one for one in list_instances() if one.name in found)
 
 
+def select_curve(word: str) -> tuple[BenchmarkInstance, ...]:
+    """Instances whose name, or whose curve's, has a word; empty where none has.
+
+    Parameters
+    ----------
+    word : str
+        In capitals or not, such as "quintic".
+    """
+    wanted = word.lower()
+    return tuple(one for one in list_instances() if wanted in f"{one.name} {one.curve}".lower())
+
+
 def instance_of(case: Case) -> BenchmarkInstance | None:
     """The instance whose case file this is, byte for byte; None for any other case."""
     return next((one for one in list_instances() if one.case_sha256 == case.sha256), None)

@@ -53,6 +53,21 @@ def hides_faults(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
         fun(np.full(len(bounds), np.nan))
 
 
+def raises_at_times(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
+    """Fails in half of its runs, by their first draw."""
+    fun(bounds[:, 1])
+    if rng.random() < 0.5:
+        raise ZeroDivisionError("at times")
+
+
+def generator_of(rng: Any) -> None:
+    """Takes too little."""
+
+
+def anything(*given: Any, **settings: Any) -> None:
+    """Takes whatever it gets."""
+
+
 def raises(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
     fun(bounds[:, 1])
     raise ZeroDivisionError("of its own")

@@ -5,9 +5,14 @@ from __future__ import annotations
 import json
 import re
 import runpy
+import shlex
+import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
+from support.checkout import ROOT
 from support.command_line import Run, assert_refused, strict
 from support.documents import validator
 from trajgap.problem.suite import list_instances, load_instance, plain_text, suite_version
@@ -55,12 +60,22 @@ def test_json_of_the_table_and_of_one(run: Run, folder: Path) -> None:
     assert shown["verify"].startswith("python -m trajgap.verify ")
 
 
-def test_show_says_how_to_verify_and_the_command_does(run: Run) -> None:
+def test_show_says_how_to_verify_and_the_command_does(
+    run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
     code, out, _ = run("suite", "show", "353-irb460")
     assert code == 0
     one = load_instance("353-irb460")
     assert f"between {one.lower!r} and {one.upper!r} s" in out
     file = one.certificate_file()
+    # A command stands on one line, so that it can be copied from the narrowest window.
+    monkeypatch.setenv("COLUMNS", "60")
+    code, narrow, _ = run("suite", "show", "353-irb460")
+    for lines in (out.splitlines(), narrow.splitlines()):
+        assert one.command in lines
+        assert f"python -m trajgap.verify {shlex.quote(str(file))}" in lines
+    told = [line for line in narrow.splitlines() if "trajgap" not in line]
+    assert max(map(len, told)) <= 60
     code, out, _ = run("verify", str(file), "--case", "suite:353-irb460")
     assert code == 0
     assert out.startswith(str(file))
@@ -79,6 +94,46 @@ def test_an_export_is_whole_and_needs_no_trajgap(run: Run, folder: Path) -> None
     plain = loader["load"](folder / "all" / "instances" / "353-irb460.toml")
     assert loader["peaks"](plain, plain["durations"]).max() == pytest.approx(1, abs=1e-7)
     assert run("suite", "export", "all")[0] == 0, "an earlier export is replaced"
+
+
+def test_show_of_an_instance_whose_certificate_is_not_shipped(
+    run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("trajgap.compare.cli.suite_listing._certificate", lambda one: None)
+    one = load_instance("353-irb460")
+    code, out, _ = run("suite", "show", one.name)
+    assert code == 0
+    assert one.command in out.splitlines()
+    assert "no certificate is shipped" in out
+    assert "python -m trajgap.verify" not in out
+
+
+def test_the_documented_commands_verify_an_export(
+    run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """docs/suite/index.md: each command as it stands there, in the order in which it stands."""
+    page = (ROOT / "docs" / "suite" / "index.md").read_text(encoding="utf-8")
+    first, second, copied = re.findall(
+        r"^(trajgap suite export suite\ncd suite|python -m trajgap\.verify .*|python -I .*)$",
+        page, re.MULTILINE,
+    )  # fmt: skip
+    assert first.startswith("trajgap")
+    assert page.index(first) < page.index('load("instances/')
+    assert run("suite", "export", "suite")[0] == 0
+    monkeypatch.chdir(folder / "suite")
+    shutil.copytree(ROOT / "verify", "verify", ignore=shutil.ignore_patterns("__pycache__"))
+    for command in (second, copied):
+        words = shlex.split(command)
+        assert Path(words[-1]).is_file()
+        done = subprocess.run(
+            [sys.executable, *words[1:]], capture_output=True, text=True, check=False
+        )
+        assert done.returncode == 0, done.stderr
+        assert "proves: the least total" in done.stdout
+    program = re.search(r"^```python\n(one = load.*?)^```$", page, re.MULTILINE | re.DOTALL)
+    assert program
+    names = runpy.run_path("load_instance.py")
+    exec(compile(program[1], "index.md", "exec"), names)
 
 
 def test_pages_of_every_instance(run: Run, folder: Path) -> None:

@@ -9,14 +9,16 @@ import json
 import re
 from dataclasses import replace
 from pathlib import Path
+from statistics import median
 
 import numpy as np
 import pytest
 from scipy.stats import mannwhitneyu
 from support import faulty
 from support.documents import assert_valid
-from trajgap.compare.documents import BenchDocument, Why, json_text, percent
+from trajgap.compare.documents import BenchDocument, Reference, Why, json_text, percent
 from trajgap.compare.gaps import (
+    COLUMNS,
     Row,
     RowStatus,
     Runs,
@@ -30,13 +32,15 @@ from trajgap.compare.gaps import (
     measure_gaps,
     on_this_machine,
     plan_bench,
+    quantiles,
     share_of_targets,
     share_within,
     vargha_delaney,
 )
 from trajgap.compare.gaps.pairs import compare_pair, corrected
 from trajgap.compare.gaps.targets import hit, running_time_interval, success_interval
-from trajgap.compare.pages import bench_picture, write_bench
+from trajgap.compare.pages import bench_picture, ends_picture, optimum_said, write_bench
+from trajgap.compare.pictures.drawing import SERIES
 from trajgap.heuristics import search_box
 from trajgap.nlp import solve
 from trajgap.problem import (
@@ -170,6 +174,8 @@ def test_hits_targets_and_bands_of_known_traces() -> None:
     at, gaps = band(rows, 1.0, (0.0, 0.5, 1.0))
     assert at.tolist() == [1, 10, 100, 1000]
     assert gaps[0] == pytest.approx([1.0, 0.2, 0.0, 0.0])
+    even = band(rows[:2], 1.0, (0.5,))[1]
+    assert even[0] == pytest.approx([np.inf, (0.5 + 0.2) / 2, (0.0 + 0.2) / 2, (0.0 + 0.2) / 2])
     assert gaps[1] == pytest.approx([np.inf, 0.5, 0.2, 0.2])
     assert gaps[2].tolist() == [np.inf] * 4
     ratios, shares = share_within(np.array([1.5, 1.0, np.inf, 1.5]), 1.0)
@@ -177,12 +183,54 @@ def test_hits_targets_and_bands_of_known_traces() -> None:
 
 
 @pytest.mark.parametrize(
+    ("values", "expected"),
+    [
+        ([4.0, 1.0, 3.0], (1.0, 1.0, 3.0, 4.0)),
+        ([8.0, 1.0, 4.0, 2.0], (1.0, 1.5, 3.0, 6.0)),
+        ([np.inf, 1.0, 4.0, 2.0], (1.0, 1.5, 3.0, np.inf)),
+        ([np.inf, 1.0, np.inf, 2.0], (1.0, 1.5, np.inf, np.inf)),
+        ([7.0], (7.0, 7.0, 7.0, 7.0)),
+    ],
+)
+def test_quantiles_between_two_runs_are_their_mean(
+    values: list[float], expected: tuple[float, ...]
+) -> None:
+    assert quantiles(np.array(values), (0.0, 0.25, 0.5, 0.75)).tolist() == list(expected)
+
+
+def test_quantiles_of_finite_runs_are_those_of_numpy() -> None:
+    levels = (0.0, 0.25, 0.5, 0.75, 1.0)
+    for runs in range(1, 12):
+        values = np.random.default_rng(runs).normal(2.0, 1.0, (runs, 3))
+        expected = np.quantile(values, levels, axis=0, method="averaged_inverted_cdf")
+        assert quantiles(values, levels) == pytest.approx(expected)
+
+
+def test_a_median_without_one_of_its_two_runs_is_none() -> None:
+    rows = [row([(1, 1.5)], 5), row([], 5, None)]
+    found = bench_result({"half": rows}, 1.0, problem="", reading="", budget=5, seeds=2)
+    (standing,) = found.standings
+    assert isinstance(standing.median, Why)
+    assert isinstance(standing.median_total, Why)
+    assert standing.best == pytest.approx(0.5)
+    assert found.verdict == "No optimiser found a feasible answer in more than half of its runs."
+
+
+@pytest.mark.parametrize(
     ("gap", "shown"),
-    [(0.066, "6.6 %"), (9e-7, "0.00009 %"), (-0.002, "−0.2 %"), (1e-12, "0 %"), (0.5, "50 %"),
-     (12.0, "1200 %")],
+    [(0.066, "6.6 %"), (9e-7, "0.00009 %"), (-0.002, "−0.2 %"), (1e-12, "< 1e-7 %"), (0.5, "50 %"),
+     (12.0, "1200 %"), (0.0, "0 %"), (-1e-12, "> −1e-7 %"), (1.01e-9, "0.0000001 %")],
 )  # fmt: skip
 def test_percent(gap: float, shown: str) -> None:
     assert percent(gap) == shown
+
+
+@pytest.mark.parametrize(
+    ("lower", "said"),
+    [(1.8, "may lie up to 10 % below"), (2.0 - 1e-12, "may lie less than 1e-7 % below")],
+)
+def test_how_far_the_optimum_may_lie_below(lower: float, said: str) -> None:
+    assert said in optimum_said(Reference(upper=2.0, lower=lower))
 
 
 # --- on a problem with a closed-form optimum ------------------------------------------------------
@@ -206,7 +254,7 @@ def test_gaps_against_a_closed_form(runs: Runs) -> None:
         assert one.feasible == one.runs
         assert one.best >= -1e-8
         ends = np.sort([r.feasible_time for r in runs.by_label[one.optimizer]]) / EXACT.sum() - 1
-        assert one.median == pytest.approx(ends[(len(ends) - 1) // 2], abs=1e-12)
+        assert one.median == pytest.approx(median(ends), abs=1e-12)
         rates = [target.rate for target in one.targets]
         assert rates == sorted(rates, reverse=True)
     medians = [one.median for one in found.standings]
@@ -326,13 +374,35 @@ def test_failing_is_not_cheap() -> None:
 # --- what is written ------------------------------------------------------------------------------
 
 
+def test_pictures_follow_the_order_in_which_optimisers_were_named() -> None:
+    """Colours, so that two pictures can be compared: who is first by its gaps may differ."""
+    runs = bench(TOY, ["random", "pso"], seeds=2, budget=60, name="toy", baselines=False)
+    by_time = {one.optimizer: one for one in measure_gaps(runs, float(EXACT.sum())).standings}
+    for order in (["random", "pso"], ["pso", "random"]):
+        result = measure_gaps(runs, float(EXACT.sum())).model_copy(
+            update={"standings": tuple(by_time[name] for name in order)}
+        )
+        for drawn in (bench_picture(result, runs), ends_picture(result, runs)):
+            (legend,) = drawn.legends
+            words = [one.get_text().partition(",")[0] for one in legend.get_texts()]
+            assert words[:2] == ["random", "pso"]
+            colours = [line.get_color() for line in legend.get_lines()[:2]]
+            assert colours == [colour for colour, _ in SERIES[:2]]
+
+
 def test_the_page_the_picture_and_the_rows(runs: Runs, tmp_path: Path) -> None:
     result = measure_gaps(runs, float(EXACT.sum()))
     assert_valid(json.loads(json_text(BenchDocument(results=(result,)))), "bench")
     picture = bench_picture(result, runs)
     assert picture.title == "Gap to the optimum over the evaluations: toy"
     for one in result.standings:
-        assert f"{one.optimizer}: {one.runs} runs end " in picture.description
+        ends = f"{one.runs} runs end" if one.runs > 1 else "1 run ends"
+        assert f"{one.optimizer}: {ends} " in picture.description
+    assert [axes.get_title("left") for axes in picture.axes] == [
+        "median and quartiles over the runs",
+        "61 targets from 100 % to 0.0001 % for each run",
+    ]
+    assert picture.axes[1].get_ylabel() == "(run, target) pairs reached, %"
     out = tmp_path / "out"
     write_bench([(result, runs)], out)
     page = (out / "index.html").read_text("utf-8")
@@ -343,7 +413,20 @@ def test_the_page_the_picture_and_the_rows(runs: Runs, tmp_path: Path) -> None:
     table = list(csv.DictReader(io.StringIO((out / "rows.csv").read_text("utf-8"))))
     assert [one["key"] for one in table] == [one.key for one in runs.rows]
     assert float(table[0]["feasible_time"]) == runs.rows[0].feasible_time
-    assert json.loads(table[0]["trace"]) == [list(step) for step in runs.rows[0].trace]
+    # The columns of a study's export, each gap set against the optimum above the table.
+    assert list(table[0]) == list(COLUMNS)
+    assert json.loads(table[0]["trace_totals"]) == [total for _, total in runs.rows[0].trace]
+    assert runs.rows[0].feasible_time is not None
+    exact = runs.rows[0].feasible_time / EXACT.sum() - 1
+    assert float(table[0]["feasible_gap_lowest"]) == pytest.approx(exact, rel=1e-9)
+    assert {float(one["reference_upper"]) for one in table} == {float(EXACT.sum())}
+    wide = result.model_copy(
+        update={"optimum": result.optimum.model_copy(update={"lower": EXACT.sum() * 0.9})}
+    )
+    write_bench([(wide, runs)], tmp_path / "wide")
+    (first, *_) = csv.DictReader(io.StringIO((tmp_path / "wide" / "rows.csv").read_text("utf-8")))
+    assert float(first["feasible_gap_lowest"]) == pytest.approx(exact, rel=1e-9)
+    assert 1 + float(first["feasible_gap_highest"]) == pytest.approx((1 + exact) / 0.9)
     write_bench([(result, runs)], out)  # an earlier bench is replaced
     (out / "mine.txt").write_text("kept")
     with pytest.raises(CaseError, match=r"holds mine.txt, which is no bench"):

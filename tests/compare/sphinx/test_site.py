@@ -250,7 +250,7 @@ The audit was made on {trajgap}`irb460-pso-353:provenance.date`.
 """
 
 
-def foreign(folder, text=FOREIGN, alter=None):
+def foreign(folder, text=FOREIGN, alter=None, builder="html"):
     """A small project of somebody else's, built with warnings as errors."""
     pytest.importorskip("sphinx")
     pytest.importorskip("myst_parser")
@@ -264,10 +264,11 @@ def foreign(folder, text=FOREIGN, alter=None):
     )
     (folder / "index.md").write_text(text, encoding="utf-8")
     built = subprocess.run(
-        [sys.executable, "-m", "sphinx", "-W", "-q", "-b", "html", folder, folder / "out"],
+        [sys.executable, "-m", "sphinx", "-W", "-q", "-b", builder, folder, folder / "out"],
         capture_output=True, text=True, check=False,
     )  # fmt: skip
-    page = folder / "out" / "index.html"
+    name = {"html": "index.html", "latex": "projectnamenotset.tex", "text": "index.txt"}[builder]
+    page = folder / "out" / name
     return built, page.read_text(encoding="utf-8") if page.exists() else ""
 
 
@@ -298,6 +299,38 @@ def test_a_foreign_project_shows_an_audit(tmp_path):
     assert (tmp_path / "thesis" / "out" / "_static" / "trajgap.css").exists()
 
 
+WATERFALL = """
+# A thesis
+
+```{trajgap-waterfall} irb460-pso-353
+:problem: limit-80
+```
+"""
+
+
+@pytest.mark.parametrize("builder", ["latex", pytest.param("text", marks=pytest.mark.slow)])
+def test_a_waterfall_is_a_table_where_there_are_no_pictures(tmp_path, builder):
+    built, page = foreign(tmp_path / "thesis", WATERFALL, builder=builder)
+    assert built.returncode == 0, built.stderr
+    (first, *_) = (
+        entry
+        for entry in RESULTS.case("irb460-pso-353")["waterfalls"]
+        if entry["problem"] == "limit-80"
+    )
+    timed = [step for step in first["steps"] if step["time"] is not None]
+    assert len(timed) > 3
+    assert all(step["name"].split()[0] in page for step in first["steps"])
+    assert all(f"{step['time']:.4f}" in page for step in timed)
+    assert "certified" in page
+
+
+def test_a_waterfall_is_a_picture_alone_in_html(tmp_path):
+    built, page = foreign(tmp_path / "thesis", WATERFALL)
+    assert built.returncode == 0, built.stderr
+    assert "<svg" in page
+    assert "<table" not in page
+
+
 @pytest.mark.parametrize(
     ("text", "alter", "said"),
     [
@@ -317,6 +350,12 @@ def test_a_foreign_project_shows_an_audit(tmp_path):
             "# T\n\n```{trajgap-certificate} proof.json\n```\n",
             lambda text: re.sub(r'("lower":\s*")(\d+)', r"\g<1>9\2", text),
             "not proved",
+        ),
+        pytest.param(
+            "# T\n\n```{trajgap-claims} irb460-pso-353\n:verdict: refutedd\n```\n",
+            None,
+            ":verdict: 'refutedd' is no verdict on a claim",
+            marks=pytest.mark.slow,
         ),
     ],
 )

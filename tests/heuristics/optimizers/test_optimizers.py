@@ -4,6 +4,7 @@ import sys
 import threading
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -102,6 +103,31 @@ def test_one_shared_duration_is_uniform_rescaling() -> None:
         assert found.durations == pytest.approx(uniform_rescaling(PROBLEM), rel=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("name", "settings", "said"),
+    [
+        ("support.faulty:fair", {"membres": 9}, "membres: unknown setting; did you mean 'members'"),
+        ("support.faulty:raises", {"step": 1}, "step: unknown setting; it has none"),
+        (faulty.fair, {"membres": 9}, "support.faulty:fair: membres: unknown setting"),
+        ("time:sleep_not", {}, "has no 'sleep_not'"),
+        ("support.faulty:generator_of", {}, "is called with fun, bounds, budget and rng; it takes"),
+        ("scipy:direct", {"maxitr": 9}, "scipy:direct: maxitr: unknown setting; did you mean"),
+    ],
+)
+def test_what_cannot_be_called_is_told_before_it_runs(
+    name: Any, settings: dict[str, Any], said: str
+) -> None:
+    with pytest.raises(TrajgapError, match=said):
+        find_optimizer(name, 90, **settings)
+
+
+def test_what_has_no_signature_or_takes_anything_is_left_to_itself() -> None:
+    assert find_optimizer("support.faulty:anything", 90, whatever=3).iterations == 89
+    assert find_optimizer(dict, 90, whatever=3).iterations == 89
+    for word in ("seed", "rng"):  # scipy takes both, and its signature names one
+        assert find_optimizer("scipy:differential_evolution", 90, **{word: 1}).iterations == 89
+
+
 def test_a_function_by_itself_and_by_its_name() -> None:
     given = run_within(find_optimizer(faulty.fair, 90, members=9), PROBLEM, 2, 90)
     named = run_within(find_optimizer("support.faulty:fair", 90, members=9), PROBLEM, 2, 90)
@@ -166,7 +192,12 @@ def test_what_ends_in_time_is_left_alone() -> None:
     ("name", "said"),
     [
         ("psoo", "optimizer 'psoo': unknown; did you mean 'pso'"),
-        ("scipy:diferential_evolution", "did you mean 'differential_evolution'"),
+        ("scipy:diferential_evolution", "did you mean 'scipy:differential_evolution'"),
+        ("scipy:de", "scipy:de: unknown; did you mean 'scipy:differential_evolution'"),
+        ("de", "did you mean 'scipy:differential_evolution'"),
+        ("scipy:DA", "did you mean 'scipy:dual_annealing'"),
+        ("differential_evolution", "did you mean 'scipy:differential_evolution'"),
+        ("dual_anealing", "did you mean 'scipy:dual_annealing'"),
         ("nowhere_at_all:f", "module 'nowhere_at_all' cannot be imported"),
         ("mine.py:f", "mine.py:f: names a file; write mine:f, in the folder that holds mine.py"),
         ("evolve", "A function of yours is called module:function, such as mine:evolve"),
@@ -185,6 +216,7 @@ def test_unknown_names(name: str, said: str) -> None:
 )
 def test_unknown_names_of_libraries(name: str, said: str) -> None:
     pytest.importorskip(name.partition(":")[0])
+    said = f"{name.partition(':')[0]}:{said}"
     with pytest.raises(TrajgapError, match=rf"{name}: unknown; did you mean '{said}'"):
         find_optimizer(name)
 
