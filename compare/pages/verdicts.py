@@ -10,7 +10,7 @@ import numpy as np
 from ...problem import QUANTITIES, Case, Coupling, Problem, file_name
 from ...problem.cases import Statement
 from ..audits import RULES, CaseAudit, Study, place
-from ..documents import Finding, Severity, Why, facts
+from ..documents import ClaimVerdict, Finding, Gap, Severity, Why, facts
 from .blocks import Block, Cell, Folded, Grid, Prose, Section, Terms, text, word
 from .numbers import problem_cell
 from .units import both_units
@@ -108,6 +108,12 @@ def findings(one: CaseAudit) -> Section:
     return Section("findings", "Every finding, rule by rule", tuple(blocks), folded=True)
 
 
+def _word(finding: Finding) -> str:
+    """The verdict of a finding; a distance that was computed and decides nothing informs."""
+    informs = finding.verdict is ClaimVerdict.NOT_CHECKABLE and isinstance(finding.gap, Gap)
+    return "information" if informs else str(finding.verdict)
+
+
 def _finding_grid(case: Case, found: list[Finding], readings: int) -> Grid:
     groups: dict[tuple[object, ...], list[Finding]] = {}
     for f in found:
@@ -135,7 +141,7 @@ def _finding_grid(case: Case, found: list[Finding], readings: int) -> Grid:
                 text(f.printed),
                 text(f.computed),
                 text(_gap(f)),
-                replace(word(f.verdict), text=f"{f.verdict}\nbasis: {f.basis}"),
+                replace(word(f.verdict), text=f"{_word(f)}\nbasis: {f.basis}"),
                 text(f.message),
             )
         )

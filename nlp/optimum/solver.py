@@ -351,7 +351,7 @@ def _shortened(problem: Problem, solution: Solution, ask: Ask) -> Solution:
     if not short_ways(problem):
         return solution
     assert solution.durations is not None
-    floor = _floor(problem, DEEPER[0])
+    floor = _floor(problem, DEEPER[-1])
     points = shortened(problem, solution.durations, floor, ask.seed)
     if points.size == 0:
         return solution

@@ -56,6 +56,12 @@ ONE_JOINT = Problem(
     cubic_spline(4),
 )
 """Seed 6821 of the same benchmark."""
+TWICE = Problem(
+    np.array([[-0.128821], [-0.131591], [-0.13159096838418718], [1.15022]]),
+    Limits(5.36954, joints=1),
+    cubic_spline(3),
+)
+"""Two short ways, one a hundred thousandth of the other: an attack found what the search did not."""
 FOUND = {
     "three joints": (
         THREE_JOINTS,
@@ -66,6 +72,11 @@ FOUND = {
         ONE_JOINT,
         [10.169164080186285, 10.834980580078096, 12.577021294959078, 0.040084570343837576],
         33.8391,
+    ),
+    "twice": (
+        TWICE,
+        [0.00098523223563552038, 7.8247720745806148e-09, 0.3187312810277706],
+        0.3294088537,
     ),
 }
 """A problem, what differential evolution found, and the total of the other optimum, s."""
