@@ -61,7 +61,7 @@ TWICE = Problem(
     Limits(5.36954, joints=1),
     cubic_spline(3),
 )
-"""Two short ways, one a hundred thousandth of the other: an attack found what the search did not."""
+"""Two short ways, one a hundred thousandth of the other: found by an attack, not by the search."""
 FOUND = {
     "three joints": (
         THREE_JOINTS,
