@@ -90,8 +90,8 @@ def _plain(
         f"{computed.replace(' conditions', '', 1)}",
         "TG201": f"The durations in {where} break a limit",
         "TG202": f"The motion of {where} is not continuous",
-        "TG203": f"The peak in {where} is not that of the printed durations",
-        "TG208": f"The mean or integral in {where} is not that of the printed durations",
+        "TG203": f"A printed peak is not that of the printed durations ({where})",
+        "TG208": f"A printed mean or integral is not that of the printed durations ({where})",
         "TG205": f"Control vertices in {where} do not follow from the way-points",
         "TG301": "Under velocity limits alone, times scale inversely with them: the printed two "
         "cannot both be shortest",

@@ -228,7 +228,7 @@ def _beside(study: Study, waterfall: Waterfall) -> _Part | None:
     share = seconds / solution.best - 1
     minimised = other_objective(study.case, claim)
     if minimised is not None and share > 0:
-        motion = "shortest motion" if certified else "shortest known motion"
+        motion = f"shortest {'' if certified else 'known '}motion on the same curve"
         called = f" ({minimised})" if count_words(minimised) <= _OBJECTIVE_WORDS else ""
         return (
             f"{shown} was not minimised for time alone{called}; the {motion} takes "
