@@ -19,6 +19,7 @@ from ..documents import (
     CaveatKind,
     ClaimVerdict,
     Judgement,
+    Keeping,
     Severity,
     VerdictCard,
     Waterfall,
@@ -187,8 +188,11 @@ def _limits(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[str]
         )
     if not asked:
         return "No printed durations are said to keep limits.", set()
+    held = {c.id: _of_limits(study, c) for c in sets}
+    stated = {c.id: words[c.id].readings for c in about if c.id in words}
+    found = {**held, **stated}
     under = {
-        reading: {words[one].readings.get(reading, ClaimVerdict.NOT_CHECKABLE) for one in asked}
+        reading: {found[one].get(reading, ClaimVerdict.NOT_CHECKABLE) for one in asked}
         for reading in study.readings
     }
     broken = sum(ClaimVerdict.REFUTED in each for each in under.values())
@@ -200,10 +204,10 @@ def _limits(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[str]
     if kept == len(under):
         return f"The printed durations keep the limits{_within(study, sets)}{jump}.", spoken
     if broken == len(under):
-        return f"{_broken(sets, words)} for every value that rounds to the printed digits.", spoken
+        return f"{_broken(sets, held)} for every value that rounds to the printed digits.", spoken
     if not broken and not kept:
         return "Whether the limits are kept is not decided by the printed digits.", spoken
-    return f"{_differing(study, under, _in_doubt(sets, words))}{jump}.", spoken
+    return f"{_differing(study, under, _in_doubt(sets, held))}{jump}.", spoken
 
 
 def _differing(study: Study, found: Mapping[str, set[ClaimVerdict]], where: str) -> str:
@@ -231,9 +235,35 @@ def _differing(study: Study, found: Mapping[str, set[ClaimVerdict]], where: str)
     return f"Limits{where} are {', '.join(parts)}"
 
 
-def _in_doubt(sets: Sequence[AnyClaim], words: Mapping[str, Judgement]) -> str:
+_Held = Mapping[str, Mapping[str, ClaimVerdict]]
+"""What is known of the limits of printed durations, by claim and reading."""
+
+
+def _of_limits(study: Study, claim: AnyClaim) -> dict[str, ClaimVerdict]:
+    """Whether printed durations keep the limits, by reading, whatever else is said of the claim.
+
+    A sum that is wrong refutes the claim too, and breaks no limit.
+    """
+    each: dict[str, set[ClaimVerdict]] = {}
+    for pid, rid in study.claim_pairs(claim):
+        unknown = study.unmoved(claim, pid, rid) is not None
+        keeping = Keeping.UNDECIDED if unknown else study.claim_keeping(claim, pid, rid)
+        each.setdefault(rid, set()).add(_MEANS.get(keeping, ClaimVerdict.NOT_CHECKABLE))
+    worst = (ClaimVerdict.REFUTED, ClaimVerdict.NOT_CHECKABLE, ClaimVerdict.SUPPORTED)
+    return {rid: next(word for word in worst if word in found) for rid, found in each.items()}
+
+
+_MEANS = {
+    Keeping.KEEPS: ClaimVerdict.SUPPORTED,
+    Keeping.CONSISTENT: ClaimVerdict.SUPPORTED,
+    Keeping.BREAKS: ClaimVerdict.REFUTED,
+}
+"""What a word for the limits is as a verdict; anything else is not checkable."""
+
+
+def _in_doubt(sets: Sequence[AnyClaim], held: _Held) -> str:
     """Where the durations stand that may break a limit, unless that is everywhere."""
-    doubtful = [c for c in sets if words[c.id].verdict is not ClaimVerdict.SUPPORTED]
+    doubtful = [c for c in sets if set(held[c.id].values()) != {ClaimVerdict.SUPPORTED}]
     places = list(dict.fromkeys(place(c) for c in doubtful))
     if len(doubtful) == len(sets) or not 0 < len(places) <= _FEW:
         return ""
@@ -245,9 +275,9 @@ def _jumping(judgements: Iterable[Judgement]) -> str:
     return ", on curves whose velocity jumps" if said else ""
 
 
-def _broken(sets: Sequence[AnyClaim], words: Mapping[str, Judgement]) -> str:
+def _broken(sets: Sequence[AnyClaim], held: _Held) -> str:
     """Which of the printed sets of durations break a limit."""
-    wrong = [c for c in sets if words[c.id].verdict is ClaimVerdict.REFUTED]
+    wrong = [c for c in sets if set(held[c.id].values()) == {ClaimVerdict.REFUTED}]
     places = list(dict.fromkeys(place(c) for c in wrong))
     if not places or len(wrong) == len(sets):
         return "The printed durations break a limit"

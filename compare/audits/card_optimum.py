@@ -12,12 +12,12 @@ from ...problem import Coupling
 from ...problem.cases import (
     AnyClaim,
     DurationsClaim,
-    ImprovementClaim,
     MaximumClaim,
     TimeClaim,
     TotalTimeClaim,
 )
 from ..documents import CaveatKind, ClaimVerdict, Judgement, Keeping, Waterfall, count_words
+from .own_result import own_result
 from .stated import other_objective
 from .study import Study
 
@@ -325,7 +325,7 @@ def _unknown(solution: Solution) -> str:
 
 
 def _totalled(study: Study, waterfall: Waterfall) -> AnyClaim | None:
-    """The printed total beside an optimum: that of the waterfall, else the last bare one."""
+    """The printed total beside an optimum: that of the waterfall, else a bare one."""
     if waterfall.claim is not None:
         return study.case.claim(waterfall.claim)
     bare = [
@@ -335,6 +335,4 @@ def _totalled(study: Study, waterfall: Waterfall) -> AnyClaim | None:
         and (c.joint, c.other_curve) == (None, None)
         and c.problem in (None, waterfall.problem)
     ]
-    faster = {c.faster for c in study.case.claims if isinstance(c, ImprovementClaim)}
-    better = [c for c in bare if c.id in faster]
-    return next(iter([*better, *reversed(bare)]), None)
+    return own_result(study.case, bare)

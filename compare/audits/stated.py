@@ -68,7 +68,7 @@ def _answer(claim: AnyClaim) -> StatedAnswer | None:
     )
 
 
-def other_objective(case: Case, claim: AnyClaim) -> str | None:
+def other_objective(case: Case, claim: AnyClaim | TimeClaim) -> str | None:
     """What was minimised for a printed time; None if that is time alone, or nothing else is said.
 
     Parameters

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from decimal import ROUND_FLOOR, Context, Decimal, localcontext
 from fractions import Fraction
 
@@ -13,11 +13,8 @@ from ...problem import Coupling, down, fit, up
 from ...problem.cases import (
     AnyClaim,
     DurationsClaim,
-    ImprovementClaim,
     MaximumClaim,
-    StatementClaim,
     TimeClaim,
-    TotalTimeClaim,
 )
 from ..documents import (
     EXACT,
@@ -29,6 +26,7 @@ from ..documents import (
     Waterfall,
     Why,
 )
+from .own_result import own_result
 from .stated import other_objective
 from .study import Study
 
@@ -42,11 +40,7 @@ def waterfalls(study: Study) -> tuple[Waterfall, ...]:
 
 
 def _starting_claim(study: Study, pid: str) -> AnyClaim | None:
-    """The printed durations for all joints that the paper calls its result.
-
-    Those that are called optimal, else those that an improvement leads to, else those that it does
-    not start from, and the last of several; of the state before only where there are no others.
-    """
+    """The printed durations for all joints that the paper calls its result."""
     whole = [
         c
         for c in study.case.claims
@@ -54,29 +48,7 @@ def _starting_claim(study: Study, pid: str) -> AnyClaim | None:
         and study.fits(c, pid, study.main_reading)
         and (c.joint is None or len(study.problem(pid, study.main_reading).joints) == 1)
     ]
-    answers = [c for c in whole if c.state != "before"] or whole
-    claims = study.case.claims
-    improved = [c for c in claims if isinstance(c, ImprovementClaim)]
-    optimal = (c for c in claims if isinstance(c, StatementClaim) and c.checks == "optimal")
-    left = _meant(study, [c.slower for c in improved], answers)
-    for meant in (
-        [c for c in answers if c.id in {one for statement in optimal for one in statement.of}],
-        _meant(study, [c.faster for c in improved], answers),
-        [c for c in answers if c not in left],
-    ):
-        if meant:
-            return meant[-1]
-    return answers[-1] if answers else None
-
-
-def _meant(
-    study: Study, ids: Iterable[str], answers: Sequence[DurationsClaim | MaximumClaim]
-) -> list[DurationsClaim | MaximumClaim]:
-    """The durations behind some claims of a time: their own, or those of the same algorithm."""
-    found = [study.case.claim(one) for one in ids]
-    named = {c.id for c in found} | {c.of for c in found if isinstance(c, TotalTimeClaim)}
-    by = {c.algorithm for c in found} - {None}
-    return [c for c in answers if c.id in named or c.algorithm in by]
+    return own_result(study.case, whole)
 
 
 def _known(name: str, solution: Solution, note: str = "") -> Step:

@@ -147,12 +147,19 @@ def _given(durations: Sequence[str], total: str | None, where: str) -> list[str]
 
 def _rival(timed: str) -> list[str]:
     """Another method's row of the same table, and how much shorter the paper's own is."""
+    method = _commented(
+        ["Another method, which its rows name, so that they are not taken for the paper's own."],
+        'id = "other"',
+        'name = ""',
+        block="algorithms",
+    )
     rival = _commented(
         ["Another method's total, as tables print it beside this one: a claim for each row."],
         'id = "rival"',
         'quantity = "total_time"',
         'where = ""',
         'value = ""',
+        'algorithm = "other"',
         '# other_curve = ""  # its curve, where it is another one than under [interpolant]',
         '# objective = ""  # what it minimises, where that is not time alone',
     )
@@ -165,14 +172,14 @@ def _rival(timed: str) -> list[str]:
         f'faster = "{timed}"',
         'percent = ""',
     )
-    # One paragraph: the second claim names the first.
-    return [*rival[:-1], *gain]
+    # One paragraph: each block names the one before.
+    return [*method[:-1], *rival[:-1], *gain]
 
 
-def _commented(prose: Sequence[str], *keys: str | None) -> list[str]:
+def _commented(prose: Sequence[str], *keys: str | None, block: str = "claims") -> list[str]:
     """A block as comments; the prose keeps a mark when one is taken off every line."""
     told = [f"## {line}" for line in prose]
-    return [*told, "# [[claims]]", *(f"# {key}" for key in keys if key is not None), ""]
+    return [*told, f"# [[{block}]]", *(f"# {key}" for key in keys if key is not None), ""]
 
 
 def _derivative(units: Collection[str]) -> str:

@@ -204,10 +204,10 @@ def _stated_as(study: Study, claim: TotalTimeClaim) -> tuple[Sequence[AnyClaim],
         return longest, True
     if named:
         return [c for c in named if not isinstance(c, TotalTimeClaim)] or named, False
-    # Where no algorithm tells, one set of durations is meant if there is only one.
+    # Where no algorithm tells, one set of durations is meant if there is only one; a total of a
+    # named method is another one than that of durations that name none.
     tables = [c for c in alike if not isinstance(c, TotalTimeClaim)]
-    single = len(tables) == 1 and None in (tables[0].algorithm, claim.algorithm)
-    return (tables if single else []), False
+    return (tables if len(tables) == 1 and claim.algorithm is None else []), False
 
 
 def total_allowed(study: Study, claim: AnyClaim) -> Interval:

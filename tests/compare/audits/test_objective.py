@@ -95,7 +95,7 @@ def test_the_card_gives_the_shortest_time_as_information(weighted, plain):
     best = f"{weighted.study.optimum('one', 'as-printed').best:.4f} s"
     assert weighted.card.optimum.startswith(
         f"18.0 s was not minimised for time alone (time and jerk, weighted); the shortest "
-        f"known motion takes {best}"
+        f"known motion on the same curve takes {best}"
     )
     assert "above" not in " ".join(weighted.card.sentences)
     assert best in plain.card.optimum

@@ -5,7 +5,10 @@ from __future__ import annotations
 import pytest
 from support.findings import study_of
 from support.one_joint import QUESTION
+from trajgap.compare.audits import CaseAudit, audit
 from trajgap.compare.audits.waterfall import waterfalls
+from trajgap.compare.documents import ClaimVerdict
+from trajgap.problem import parse_case
 
 OWN = '[[claims]]\nid = "own"\nquantity = "durations"\nwhere = "own"\ndurations = ["1.90"]\n'
 RIVAL = OWN.replace("own", "rival").replace("1.90", "2.50")
@@ -58,3 +61,35 @@ def test_of_several_without_a_word_the_last_is_taken() -> None:
     before = RIVAL + 'state = "before"\n'
     study = study_of(QUESTION.format(points="0, 1", limit=1) + OWN + before)
     assert waterfalls(study)[0].claim == "own"
+
+
+def audited(text: str) -> CaseAudit:
+    (one,) = audit(parse_case(text, "case.toml")).cases
+    return one
+
+
+def test_a_wrong_sum_breaks_no_limit() -> None:
+    """1.00 and 1.00 s keep the limit of 2; that they do not sum to 3.00 is another fault."""
+    rows = OWN.replace('["1.90"]', '["1.00", "1.00"]\ntotal = "3.00"')
+    one = audited(QUESTION.format(points="0, 1, 2", limit=2) + rows)
+    assert one.judgements[0].verdict is ClaimVerdict.REFUTED
+    assert one.card.limits == "The printed durations keep the limits."
+    hasty = rows.replace("1.00", "0.50")
+    one = audited(QUESTION.format(points="0, 1, 2", limit=2) + hasty)
+    assert one.card.limits.startswith("The printed durations break a limit")
+
+
+def test_a_named_method_has_a_total_of_its_own() -> None:
+    """A rival's 2.50 s is no other print of the paper's 1.90 s, nor its answer on the card."""
+    rival = (
+        '[[algorithms]]\nid = "a"\nname = "method of 2000"\n[[claims]]\nid = "rival"\n'
+        'quantity = "total_time"\nwhere = "Table 4"\nvalue = "2.50"\nalgorithm = "a"\n'
+    )
+    one = audited(QUESTION.format(points="0, 1", limit=1) + OWN + rival)
+    assert {str(j.verdict) for j in one.judgements} == {"supported", "not checkable"}
+    assert one.card.optimum.startswith("1.90 s is ")
+    alone = OWN.replace('durations = ["1.90"]', 'value = "1.90"').replace("durations", "total_time")
+    energy = rival.replace('"2.50"', '"1.50"') + 'objective = "energy"\n'
+    for rows in (alone + rival, rival.replace('"2.50"', '"1.88"') + alone, alone + energy):
+        one = audited(QUESTION.format(points="0, 1", limit=1) + rows)
+        assert one.card.optimum.startswith("1.90 s is ")
