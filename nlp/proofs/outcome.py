@@ -191,4 +191,5 @@ class Certified:
                 f"optimum in [{float(self.lower):.9f}, {float(self.upper):.9f}] s, "
                 f"gap {self.gap:.1e}, {self.outcome}"
             )
-        return f"{self.problem.name}: {head}; {self.nodes} boxes, {self.seconds:.1f} s"
+        left = "" if self.left_out is None else f"; left out: {self.left_out}"
+        return f"{self.problem.name}: {head}; {self.nodes} boxes, {self.seconds:.1f} s{left}"
