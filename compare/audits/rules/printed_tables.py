@@ -189,13 +189,13 @@ def _stated_as(study: Study, claim: TotalTimeClaim) -> tuple[Sequence[AnyClaim],
     """Claims that print the same total, and whether the file says that they do."""
     if claim.of is not None:
         return [study.case.claim(claim.of)], True
-    about = claim.problem, claim.other_curve, claim.state
+    about = claim.problem, claim.other_curve, claim.state, claim.objective
     alike: list[AnyClaim] = [
         c
         for c in study.case.claims
         if isinstance(c, DurationsClaim | MaximumClaim | TotalTimeClaim)
         and c.id != claim.id
-        and (c.problem, c.other_curve, c.state) == about
+        and (c.problem, c.other_curve, c.state, c.objective) == about
         and _whose(study, c) == _whose(study, claim)
     ]
     named = [c for c in alike if claim.algorithm is not None and c.algorithm == claim.algorithm]
@@ -250,6 +250,18 @@ def _total_shown(study: Study, claim: AnyClaim) -> tuple[str, Interval]:
     return f"{sum(p.decimal for p in parts)} {study.time_unit} (sum of its durations)", allowed
 
 
+def _rival(claim: TotalTimeClaim) -> Finding:
+    """That a named method's total has nothing else in print to agree with."""
+    return Finding(
+        rule="TG105",
+        basis=Basis.DIGITS,
+        claim=claim.id,
+        printed=str(claim.value),
+        message="The total of a named method, which no other place prints: it stands beside the "
+        "others, and nothing decides it.",
+    )
+
+
 def _same_total(study: Study) -> Iterator[Finding]:
     for claim in study.claims:
         if not isinstance(claim, TotalTimeClaim):
@@ -258,6 +270,8 @@ def _same_total(study: Study) -> Iterator[Finding]:
         agreeing = [c for c in found if meet(hull(claim.value), _total_shown(study, c)[1])]
         others = agreeing or found
         if not others:
+            if claim.algorithm is not None:
+                yield _rival(claim)
             continue
         other = others[0]
         shown, _ = _total_shown(study, other)

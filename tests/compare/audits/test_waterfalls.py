@@ -93,3 +93,17 @@ def test_a_named_method_has_a_total_of_its_own() -> None:
     for rows in (alone + rival, rival.replace('"2.50"', '"1.88"') + alone, alone + energy):
         one = audited(QUESTION.format(points="0, 1", limit=1) + rows)
         assert one.card.optimum.startswith("1.90 s is ")
+
+
+def test_a_total_of_another_aim_is_another_total() -> None:
+    """Two rows of one method, the second for energy: neither is a print of the other."""
+    rows = "".join(
+        f'[[claims]]\nid = "{one}"\nquantity = "total_time"\nwhere = "Table 4"\n'
+        f'value = "{value}"\nalgorithm = "a"\n{aim}'
+        for one, value, aim in (("time", "2.50", ""), ("low", "2.90", 'objective = "energy"\n'))
+    )
+    named = '[[algorithms]]\nid = "a"\nname = "method of 2000"\n'
+    one = audited(QUESTION.format(points="0, 1", limit=1) + named + OWN + rows)
+    by = {j.claim: j for j in one.judgements}
+    assert "no other place prints" in by["time"].why
+    assert "no other place prints" in by["low"].why
