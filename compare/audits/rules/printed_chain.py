@@ -21,6 +21,9 @@ _NEGLIGIBLE = 1e-9
 _COARSE = 0.1
 """Share of what rounding explains to which a distance is bounded where signs are searched."""
 
+_CLEAR = 2.0
+"""Multiple of what rounding explains from which on a miss needs no clearer one."""
+
 Joints = dict[str, tuple[Measured, ...]]
 """Angles of the printed joints at every way-point."""
 
@@ -183,6 +186,7 @@ def _unsigned(
     Each sign may be lost by itself, so that one position that no signs lead to is enough: those
     that are missed most as printed are tried first.
     """
+    clearest: tuple[int, float] | None = None
     for at in sorted(range(len(places)), key=lambda at: -near[at].lower):
         k, place = places[at]
         assert k is not None
@@ -194,9 +198,11 @@ def _unsigned(
             for xyz in _signs(point)
             for angles in _signs(held)
         )
-        if least > slack[at]:
-            return at, least
-    return None
+        if least > slack[at] and (clearest is None or least > clearest[1]):
+            clearest = at, least
+        if least > _CLEAR * slack[at]:
+            break
+    return clearest
 
 
 def _signs(values: Array) -> list[Array]:
