@@ -112,8 +112,10 @@ _FALLEN = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT)
 
 def _falls(cause: Cause, words: Mapping[str, Judgement]) -> bool:
     """Whether a cause that is no error is what a claim falls by."""
-    own = words.get(cause.claim or "")
-    return cause.severity is Severity.WARNING and own is not None and own.verdict in _FALLEN
+    own, head = words.get(cause.claim or ""), cause.head
+    against = head is not None and head.verdict in _FALLEN
+    warns = cause.severity is Severity.WARNING
+    return warns and against and own is not None and own.verdict in _FALLEN
 
 
 def _tells(study: Study, cause: Cause, improved: set[str]) -> bool:
@@ -141,30 +143,42 @@ def _fitting(sentences: Sequence[str], room: int) -> tuple[tuple[str, ...], int]
 def _explanation(causes: Sequence[Cause], room: int) -> str | None:
     """The most charitable explanation of the gravest cause that has one, if there is room."""
     for cause in causes:
-        for explanation in cause.explanations[:1]:
+        for explanation in [e for e in cause.explanations if e.settles][:1]:
             plain = explanation.change
             called = f"An innocent explanation: {plain[:1].lower()}{plain[1:]}"
             # What it explains and what follows matter more than what it is called.
             effects = dict.fromkeys((explanation.effect, explanation.brief or explanation.effect))
             said = [f"{one} {effect}" for effect in effects for one in (called, plain)]
-            short = (called, plain) if explanation.settles else ()
-            return next((e for e in (*said, *short) if count_words(e) <= room), None)
+            return next((e for e in (*said, called, plain) if count_words(e) <= room), None)
     return None
 
 
 # --- limits ---------------------------------------------------------------------------------------
 
 
+_TELLING = 1.01
+"""Ratio to a limit at the printed digits from which on a card gives it: below, digits end there."""
+
+
 def _within(study: Study, sets: Sequence[DurationsClaim | MaximumClaim]) -> str:
-    """Whether it takes the rounding of the digits to keep the limits."""
+    """Whether it takes the rounding of the digits to keep the limits, and of how much."""
     checked = [
         study.motion_check(one, *pair)
         for one in sets
         if study.has_durations(one)
         for pair in study.claim_pairs(one)
     ]
-    printed = [found.limits is Verdict.PASS for found in checked if found is not None]
-    return "" if all(printed) else " within rounding"
+    found = [one for one in checked if one is not None]
+    if all(one.limits is Verdict.PASS for one in found):
+        return ""
+    worst = max((one.worst for one in found if one.worst), key=lambda peak: peak.ratio)
+    if worst.ratio < _TELLING or worst.joint is None:
+        return " within rounding"
+    share = 100 * (worst.ratio - 1)
+    return (
+        f" only within rounding: as printed, the {worst.quantity} of joint {worst.joint} exceeds "
+        f"its limit by {share:.1f} %"
+    )
 
 
 def _limits(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[str]]:
@@ -204,7 +218,8 @@ def _limits(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[str]
     if kept == len(under):
         return f"The printed durations keep the limits{_within(study, sets)}{jump}.", spoken
     if broken == len(under):
-        return f"{_broken(sets, held)} for every value that rounds to the printed digits.", spoken
+        wrong = _broken(study, sets, held)
+        return f"{wrong} for every value that rounds to the printed digits.", spoken
     if not broken and not kept:
         return "Whether the limits are kept is not decided by the printed digits.", spoken
     return f"{_differing(study, under, _in_doubt(sets, held))}{jump}.", spoken
@@ -275,11 +290,12 @@ def _jumping(judgements: Iterable[Judgement]) -> str:
     return ", on curves whose velocity jumps" if said else ""
 
 
-def _broken(sets: Sequence[AnyClaim], held: _Held) -> str:
-    """Which of the printed sets of durations break a limit."""
+def _broken(study: Study, sets: Sequence[AnyClaim], held: _Held) -> str:
+    """Which of the printed sets of durations break a limit; the only one needs no name."""
+    every = sum(isinstance(c, DurationsClaim | MaximumClaim) for c in study.case.claims)
     wrong = [c for c in sets if set(held[c.id].values()) == {ClaimVerdict.REFUTED}]
     places = list(dict.fromkeys(place(c) for c in wrong))
-    if not places or len(wrong) == len(sets):
+    if not places or (len(wrong) == len(sets) and (every == len(sets) or len(places) > _FEW)):
         return "The printed durations break a limit"
     if len(places) <= _FEW:
         return f"The durations in {' and '.join(places)} break a limit"

@@ -13,7 +13,7 @@ from ...problem.cases import (
     MaximumClaim,
     StatementClaim,
 )
-from ..documents import Cause, Finding, Gap, Severity, among, first_sentence, quoted
+from ..documents import Cause, ClaimVerdict, Finding, Gap, Severity, among, first_sentence, quoted
 from .explanations import TABLES
 from .stated import place, spoken
 
@@ -88,10 +88,12 @@ def _plain(
         "TG107": f"The conditions in {where} cannot all hold: "
         # They have been called conditions.
         f"{computed.replace(' conditions', '', 1)}",
-        "TG201": f"The durations in {where} break a limit",
+        "TG201": f"The durations in {where} break a limit"
+        + (", unless digits were cut off" if head.verdict is ClaimVerdict.SUPPORTED else ""),
         "TG202": f"The motion of {where} is not continuous",
         "TG203": f"A printed peak is not that of the printed durations ({where})",
         "TG208": f"A printed mean or integral is not that of the printed durations ({where})",
+        "TG209": f"A printed peak exceeds its printed limit, which {where} calls kept",
         "TG205": f"Control vertices in {where} do not follow from the way-points",
         "TG301": "Under velocity limits alone, times scale inversely with them: the printed two "
         "cannot both be shortest",

@@ -216,7 +216,8 @@ def _beside(study: Study, waterfall: Waterfall) -> _Part | None:
         return _Unknown(why)
     certified = solution.evidence is Evidence.CERTIFIED
     name = "proven optimum" if certified else "best known total"
-    shown_best = f"{solution.best:.4f} s{_together_where_apart(study, pid, rid)}"
+    span = _span(solution)
+    shown_best = f"{span}{_together_where_apart(study, pid, rid)}"
     best = f"{name} {shown_best}"
     claim = _totalled(study, waterfall)
     total = None if claim is None else study.claim_total(claim, rid)
@@ -232,7 +233,7 @@ def _beside(study: Study, waterfall: Waterfall) -> _Part | None:
         called = f" ({minimised})" if count_words(minimised) <= _OBJECTIVE_WORDS else ""
         return (
             f"{shown} was not minimised for time alone{called}; the {motion} takes "
-            f"{solution.best:.4f} s{', proven' if certified else ''}"
+            f"{span}{', proven' if certified else ''}"
         )
     remark = _kept_there(study, claim, pid, rid)
     said = _remarked(shown, remark)
@@ -244,8 +245,16 @@ def _beside(study: Study, waterfall: Waterfall) -> _Part | None:
     if share >= _MANY_TIMES:
         return f"{said} is {1 + share:.1f} times the {best}"
     if share > 0:
-        return _Above(shown, remark, _percent(share), name, shown_best)
+        # Above an interval it is above its upper end by that, and above the optimum by more.
+        least = "at least " if " to " in span else ""
+        return _Above(shown, remark, f"{least}{_percent(share)}", name, shown_best)
     return f"{said} is {_percent(-share)} below the {best}"
+
+
+def _span(solution: Solution) -> str:
+    """An optimum, or the interval that is proved to hold it where its ends print differently."""
+    low = solution.best if solution.lower_bound is None else solution.lower_bound
+    return f"{' to '.join(dict.fromkeys(f'{one:.4f}' for one in (low, solution.best)))} s"
 
 
 def _kept_there(study: Study, claim: AnyClaim, pid: str, rid: str) -> str:

@@ -40,7 +40,7 @@ def implausible(study: Study) -> dict[str, str]:
 
 
 def _stretch(study: Study, rid: str) -> float | None:
-    """By what all durations of one claim times this just reach the limits, the farthest from 1."""
+    """By what all printed durations times this keep the limits, and those of one claim just so."""
     checked = [
         study.motion_check(claim, pid, reading)
         for claim in study.case.claims
@@ -53,7 +53,7 @@ def _stretch(study: Study, rid: str) -> float | None:
     ]
     stretches = [found.stretch for found in checked if found is not None]
     real = [one for one in stretches if isfinite(one) and one > 0]
-    return max(real, key=lambda one: abs(log(one)), default=None)
+    return max(real, default=None)
 
 
 def _why(stretch: float, factor: float) -> str:

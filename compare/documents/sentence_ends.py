@@ -7,6 +7,7 @@ import re
 _SHORT = ("p", "pp", "Fig", "Figs", "Eq", "Eqs", "Sec", "Tab", "No", "no", "vol", "al", "cf", "vs")
 """Abbreviations that papers put before a number or a name, and places repeat."""
 _END = re.compile("".join(rf"(?<!\b{short})" for short in _SHORT) + r"\. ")
+"""The end of a sentence with others behind it."""
 
 
 def sentences_of(text: str) -> list[str]:

@@ -243,7 +243,7 @@ def _under(
         which = _and([quoted(one, labels) for one in readings])
         if len(readings) == 1 and readings[0] in far:
             return f"under the implausible {which}", [far[readings[0]]] if why else []
-        return f"under {which}", []
+        return f"under {which}", [implausibly(readings, far)]
     notes = [implausibly(readings, far)]
     if len(left) <= _FEW:
         notes.append(f"not under {_and([quoted(one, labels) for one in left])}")

@@ -89,7 +89,7 @@ def _distances(waterfall: Waterfall, caption: str) -> Grid:
         for s in waterfall.steps
         if not isinstance(s.time, Why)
     )
-    names = ("step", "total", "the first is longer by", "evidence")
+    names = ("step", "total", "the first against this", "evidence")
     return Grid(names, rows, caption).filled
 
 

@@ -25,7 +25,7 @@ from ..documents import (
 )
 from ..pictures import waterfall_picture
 from .claim_words import none_said, wanted_words
-from .parts import badge, paragraph, picture, steps, table
+from .parts import badge, folded, paragraph, picture, steps, table
 from .proofs import proved_again
 from .reasons import names as reading_names
 from .reasons import reasons
@@ -34,6 +34,10 @@ from .suite import InstanceShown, SuiteTable
 
 _WORDS = tuple(map(str, ClaimVerdict))
 """Verdicts on claims, in the order in which a table counts them."""
+
+
+_OPEN_ROWS = 8
+"""Rows of readings that stand in the open; of more, those of the default reading do."""
 
 
 class FromResults(SphinxDirective, ABC):
@@ -136,7 +140,7 @@ def _explained(case: dict[str, Any]) -> dict[str, list[str]]:
         hit = [cause["claim"], *(one["claim"] for one in cause["consequences"])]
         below = next(filter(None, hit), None)
         if below is not None:
-            said = [f"{e['change']} {e['effect']}" for e in cause["explanations"]]
+            said = [f"{e['change']} {e['effect']}" for e in cause["explanations"] if e["settles"]]
             found.setdefault(below, []).extend(f"An innocent explanation: {one}" for one in said)
     return found
 
@@ -186,7 +190,7 @@ def readings_of(case: dict[str, Any]) -> list[nodes.Node]:
     head += nodes.Text(f"“{labels.get(said['default'], said['default'])}”. ")
     head += nodes.Text(said["default_why"] or "")
     meant = [[labels.get(one, one), nodes.literal("", one)] for one in names]
-    known = table(("reading", "its id"), meant)
+    known = folded("Ids of the readings", table(("reading", "its id"), meant))
     far = said.get("implausible", {})
     marked = {
         one: f"{labels.get(one, one)}{' (implausible)' if one in far else ''}" for one in names
@@ -197,7 +201,7 @@ def readings_of(case: dict[str, Any]) -> list[nodes.Node]:
     ]
     rows = [_under(case, outcome, marked) for outcome in said["outcomes"]]
     if not rows:
-        return [head, *told, known]
+        return [head, *told, *known]
     alone = any(step["name"] == OWN_OPTIMA for w in case["waterfalls"] for step in w["steps"])
     shortest = "shortest if the joints share durations, s" if alone else "shortest, s"
     columns = ["reading", "durations of", "limits", "largest ratio", shortest, "evidence"]
@@ -207,7 +211,16 @@ def readings_of(case: dict[str, Any]) -> list[nodes.Node]:
         shown.append(paragraph(f"Durations judged: {next(iter(places))}."))
         for cells in (columns, *rows):
             del cells[1]
-    return [*shown, table(columns, rows, "trajgap-sortable", "trajgap-readings"), known]
+    classes = "trajgap-sortable", "trajgap-readings"
+    if len(rows) <= _OPEN_ROWS:
+        return [*shown, table(columns, rows, *classes), *known]
+    own = [
+        row
+        for row, o in zip(rows, said["outcomes"], strict=True)
+        if o["reading"] == said["default"]
+    ]
+    every = folded(f"All {len(rows)} rows", table(columns, rows, *classes))
+    return [*shown, table(columns, own, "trajgap-readings"), *every, *known]
 
 
 def _under(case: dict[str, Any], outcome: dict[str, Any], labels: Mapping[str, str]) -> list[Any]:
@@ -327,8 +340,9 @@ class SourceShown(FromResults):
             self.env.note_dependency(str(path))
             verdict = proved_again(path, one["sha256"])
             rows.append([nodes.literal("", one["file"]), badge(worth(verdict)), verdict.reason])
-        told = paragraph("Certificates, each proved again when this page was built:")
-        return [told, table(("file", "evidence", "what it proves"), rows)]
+        told = paragraph("Each certificate was proved again when this page was built.")
+        count = f"{len(rows)} certificate{'' if len(rows) == 1 else 's'}"
+        return folded(count, told, table(("file", "evidence", "what it proves"), rows))
 
 
 class CertificateShown(SphinxDirective):

@@ -20,6 +20,17 @@ def paragraph(text: str, *classes: str) -> nodes.paragraph:
     return nodes.paragraph("", text, classes=list(classes))
 
 
+def folded(opening: str, *inside: nodes.Node) -> list[nodes.Node]:
+    """Nodes a click away, under a line that says what they are; outside HTML they stand open."""
+    held = nodes.container(classes=["trajgap-folded"])
+    held += list(inside)
+    return [
+        nodes.raw("", f"<details><summary>{opening}</summary>", format="html"),
+        held,
+        nodes.raw("", "</details>", format="html"),
+    ]
+
+
 def badge(word: str) -> nodes.inline:
     """A word of the vocabulary, coloured as on the pages of an audit."""
     return nodes.inline("", word, classes=["trajgap-word", f"trajgap-{word.replace(' ', '-')}"])

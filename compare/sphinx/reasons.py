@@ -6,11 +6,14 @@ from typing import Any
 
 from docutils import nodes
 
-from ..documents import ClaimVerdict, Named, Said, grouped, in_full, told
-from .parts import paragraph
+from ..documents import ClaimVerdict, Named, Said, grouped, in_full, sentences_of, told
+from .parts import folded, paragraph
 
 _PLAIN = 2
 """Reasons that are told as they are; of more, all but one are folded."""
+_OPEN_WORDS = 60
+"""Words of a reason that stand in the open: a verdict and its numbers have room, conditions of a
+long one are a fold away."""
 
 
 def reasons(case: dict[str, Any], verdict: dict[str, Any]) -> list[nodes.Node]:
@@ -36,23 +39,32 @@ def reasons(case: dict[str, Any], verdict: dict[str, Any]) -> list[nodes.Node]:
     found = grouped(said, computed, named)
     summed = any(len(one.each) > 1 for one in found)
     if len(found) <= _PLAIN and not summed:
-        return [paragraph(verdict["why"])]
+        whole = verdict["why"]
+        cut = opened(whole)
+        more = folded("The whole reason", paragraph(whole)) if cut != whole else []
+        return [paragraph(cut), *more]
     depends = verdict["verdict"] == ClaimVerdict.DEPENDS
     first = told(found[0], computed, named, word=depends)
+    every = summed or opened(first) != first
     rest = [
         line
-        for one in (found if summed else found[1:])
+        for one in (found if every else found[1:])
         for line in in_full(one, computed, named, word=depends)
     ]
-    folded = nodes.container(classes=["trajgap-folded"])
-    folded += [paragraph(one) for one in rest]
-    opening = f"All {len(rest)} reasons" if summed else f"{len(rest)} more reasons"
-    return [
-        paragraph(first),
-        nodes.raw("", f"<details><summary>{opening}</summary>", format="html"),
-        folded,
-        nodes.raw("", "</details>", format="html"),
-    ]
+    opening = f"All {len(rest)} reasons" if every else f"{len(rest)} more reasons"
+    return [paragraph(opened(first)), *folded(opening, *map(paragraph, rest))]
+
+
+def opened(text: str) -> str:
+    """The sentences of a reason that stand in the open: as many as have room, at least one."""
+    first, *others = sentences_of(text)
+    shown, room = [first], _OPEN_WORDS - len(first.split())
+    for sentence in others:
+        room -= len(sentence.split())
+        if room < 0:
+            break
+        shown.append(sentence)
+    return " ".join(shown)
 
 
 def names(case: dict[str, Any]) -> Named:

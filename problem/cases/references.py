@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterable, Sequence
 
 from ..fields import nearest
@@ -312,7 +313,7 @@ def _check_motion_value(
         raise statement.fail(
             f"{at}.of",
             f"is missing, and the {claim.quantity} may be that of {names} or {meant[-1].id!r}; "
-            f'name the motion, such as of = "{meant[0].id}"',
+            f"name the motion: of = {' or of = '.join(json.dumps(c.id) for c in meant)}",
         )
 
 

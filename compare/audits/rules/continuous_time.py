@@ -248,8 +248,8 @@ def _limits_statement(study: Study, claim: StatementClaim) -> Iterator[Finding]:
                 else f"Every printed set of durations ({every}) keeps"
             )
             message = (
-                f"{which} the limits for all t, as printed or for some values that round to "
-                f"{'their' if len(judged) == 1 else 'its'} digits."
+                f"{which} the limits for all t, as printed or for some values that are rounded or "
+                f"cut off to {'their' if len(judged) == 1 else 'its'} digits."
             )
         else:
             verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO

@@ -143,7 +143,7 @@ def _unquantified(
     sides = [study.case.claim(i) for i in (claim.slower, claim.faster)]
     if slower.text == faster.text:
         message = (
-            f"Both algorithms print the same total, {faster} {unit}: an improvement, if there is "
+            f"Both tables print the same total, {faster} {unit}: an improvement, if there is "
             f"one, is below {shown(seconds.upper)} {unit}."
         )
         # An improvement below the last digit is one. Only tables alike that are said to differ

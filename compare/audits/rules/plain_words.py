@@ -165,6 +165,13 @@ EXPLAINED = {
         "Inconsistent if none of these explains it.",
         "The root mean square of jerk is 5.1920 rad/s³, and 1000 samples give the printed 5.1908.",
     ),
+    "TG209": Explained(
+        "Does a printed peak lie above the limit that its motion is said to keep?",
+        "Inconsistent if no value that the digits of peak and limit stand for, rounded, raised or "
+        "cut off, lies within. A number for several joints at once may be a norm and is left out.",
+        "A table prints 3.665 rad/s² for the acceleration of joint 2, another the limit 3.6, and "
+        "the abstract says that no limit is exceeded.",
+    ),
     "TG301": Explained(
         "One path is timed under two velocity limits, and nothing else is limited. Then "
         "shortest time times limit is a constant, with no solver needed. Do the two printed "

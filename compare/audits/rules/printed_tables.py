@@ -257,8 +257,8 @@ def _rival(claim: TotalTimeClaim) -> Finding:
         basis=Basis.DIGITS,
         claim=claim.id,
         printed=str(claim.value),
-        message="The total of a named method, which no other place prints: it stands beside the "
-        "others, and nothing decides it.",
+        message="The total of a named method, printed once: nothing in print can be set against "
+        "it.",
     )
 
 

@@ -17,6 +17,7 @@ from .on_instances import judge_instances
 from .open_points import list_open_points
 from .other_places import judge_places
 from .peaks import judge_peaks
+from .peaks_and_limits import judge_peak_limits
 from .printed_chain import judge_kinematics
 from .printed_digits import judge_digits
 from .printed_joints import judge_joints
@@ -95,6 +96,7 @@ GROUPS = (
         },
     ),
     RuleGroup(judge_peaks, {"TG203": "Printed peaks are those of the printed durations"}),
+    RuleGroup(judge_peak_limits, {"TG209": "Printed peaks lie within the limits that they keep"}),
     RuleGroup(
         judge_measures,
         {"TG208": "Printed means and integrals are those of the printed durations"},

@@ -246,11 +246,12 @@ def test_the_explanation_of_an_error_is_called_one():
     assert _explanation([short], 10) == "Two columns may be swapped. Then all is well, whatever."
     assert _explanation([short], 9) == "An innocent explanation: two columns may be swapped. So?"
     assert _explanation([short], 6) == "Two columns may be swapped. So?"
-    # What leaves a limit broken says so, or is not said: alone it would sound as if it settled it.
+    # What leaves a limit broken explains nothing.
     partly = explanation.model_copy(update={"settles": False})
     left = cause.model_copy(update={"explanations": (partly,)})
-    assert _explanation([left], 10) == "Two columns may be swapped. Then all is well."
-    assert _explanation([left], 8) is None
+    assert _explanation([left], 20) is None
+    both = cause.model_copy(update={"explanations": (partly, brief)})
+    assert _explanation([both], 6) == "Two columns may be swapped. So?"
 
 
 LONG = """

@@ -195,7 +195,9 @@ def test_an_algorithm_that_nothing_replays_is_named_with_the_nearest_kind() -> N
         "PSO: algorithm kind: 'psso' is unknown; did you mean 'pso'?",
     )
     unnamed = parse_case(BASE.replace('kind = "pso"\n', ""), "base.toml")
-    assert Study(unnamed).not_replayed == ("PSO: the case file names no kind.",)
+    assert Study(unnamed).not_replayed == (
+        "PSO: the case file names no algorithm that trajgap has.",
+    )
     assert Study(parse_case(BASE, "base.toml")).not_replayed == ()
 
 

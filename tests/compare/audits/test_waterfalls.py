@@ -105,5 +105,5 @@ def test_a_total_of_another_aim_is_another_total() -> None:
     named = '[[algorithms]]\nid = "a"\nname = "method of 2000"\n'
     one = audited(QUESTION.format(points="0, 1", limit=1) + named + OWN + rows)
     by = {j.claim: j for j in one.judgements}
-    assert "no other place prints" in by["time"].why
-    assert "no other place prints" in by["low"].why
+    assert "nothing in print can be set against it" in by["time"].why
+    assert "nothing in print can be set against it" in by["low"].why

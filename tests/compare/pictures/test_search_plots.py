@@ -50,7 +50,7 @@ def test_the_waterfall_writes_every_value_and_every_reason(pictures: dict[str, P
     assert "+0.4000 s" in text
     assert "+26.7 %" in text
     assert "158.3 ×" in text
-    assert text.count("the first is longer by") == 1
+    assert text.count("the first against this") == 1
 
 
 def test_evidence_is_told_by_hatching(pictures: dict[str, Picture]) -> None:

@@ -74,7 +74,12 @@ def test_what_differs_in_numbers_is_told_once_and_every_number_is_folded() -> No
 @pytest.mark.parametrize("name", ["irb1600-ga-cubic-bspline", "irb460-pso-353"])
 def test_a_place_that_every_row_shares_is_said_once(name):
     case = Results(ROOT / "docs" / "results").case(name)
-    *said, shown, _ = readings_of(case)
+    parts = readings_of(case)
+    tables = [table for part in parts for table in part.findall(nodes.table)]
+    said = [part for part in parts if isinstance(part, nodes.paragraph)]
+    # The default reading's rows stand in the open where there are many; ids come last.
+    *_, shown, _ = tables
+    assert len(tables) == (2 if len(case["readings"]["outcomes"]) <= 8 else 3)
     rows = list(shown.findall(nodes.row))
     outcomes = case["readings"]["outcomes"]
     claims = {one["claim"] for one in outcomes}
@@ -90,3 +95,18 @@ def test_a_place_that_every_row_shares_is_said_once(name):
         ]
     wide = {len(list(row.findall(nodes.entry))) for row in rows}
     assert wide == {5 if len(places) == 1 else 6}
+
+
+def test_a_long_reason_is_cut_at_a_sentence_and_told_in_full_a_fold_away() -> None:
+    long = "It breaks a limit. " + "Word after word. " * 30 + "The end."
+    case = {"readings": None, "findings": [finding("a", long)]}
+    lead, opening, folded, _ = reasons(case, {**VERDICT, "why": long})
+    assert lead.astext().startswith("It breaks a limit. Word")
+    assert len(lead.astext().split()) <= 60
+    assert lead.astext().endswith(".")
+    assert opening.astext() == "<details><summary>The whole reason</summary>"
+    assert folded.astext() == long
+    many = [finding(reading, f"{reading}: {long}") for reading in "abc"]
+    lead, opening, folded, _ = reasons({"readings": {"default": "a"}, "findings": many}, VERDICT)
+    assert opening.astext() == "<details><summary>All 3 reasons</summary>"
+    assert folded.astext().count("The end.") == 3

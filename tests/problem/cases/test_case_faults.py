@@ -108,7 +108,7 @@ FAULTS = [
     (('value = "94.8"', 'values = ["1", "2"]\njoint = "a"'), "claims[3].joint: does not go with values, one per joint; leave it out"),
     (('value = "94.8"', 'value = "94.8"\nof = "times-b"'), "claims[3].of: 'times-b' is about another problem; name a motion of this one (problem 'one', reading 'rad')"),
     (('value = "94.8"', 'value = "94.8"\nof = "smooth"'), "claims[3].of: 'smooth' is a claim of quantity 'statement'; name one that states durations"),
-    (('problem = "two"\njoint = "b"', 'problem = "one"'), "claims[3].of: is missing, and the peak may be that of 'times' or 'times-b'; name the motion, such as of = \"times\" (problem 'one', reading 'rad')"),
+    (('problem = "two"\njoint = "b"', 'problem = "one"'), "claims[3].of: is missing, and the peak may be that of 'times' or 'times-b'; name the motion: of = \"times\" or of = \"times-b\" (problem 'one', reading 'rad')"),
     (('percent = "10.9"', 'base = "slower"'), "claims[2].base: goes with percent; add it, or leave this out"),
     (('"1.258", "1.078"]', '"1.258", "-1"]'), "claims[0].durations[2]: -1 is negative; give 0 or more"),
     (('derivative = "velocity"', 'derivative = "jerk"'), "units.jerk: is missing; add one of rad/s^3, deg/s^3 (problem 'one', reading 'rad')"),

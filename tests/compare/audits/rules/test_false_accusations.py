@@ -333,8 +333,8 @@ value = "{value}"
         ("1.2500", "supported", "equal within the rounding"),
         ("1.2492", "supported", "as sampling the motion gives it"),  # 50 samples: 1.2490
         ("1.2489", "supported", "as sampling the motion gives it"),
-        ("1.2510", "inconsistent", "off by more than"),
-        ("1.200", "inconsistent", "off by more than"),
+        ("1.2510", "inconsistent", "which 1.2500 would agree with"),
+        ("1.200", "inconsistent", "which 1.250 would agree with"),
         ("0.625", "inconsistent", "off by more than"),
         ("71.6", "inconsistent", "ratio is near 57.2958"),
         ("1250", "inconsistent", "ratio is near 1000"),

@@ -12,6 +12,7 @@ from trajgap.compare.audits.rules.distances import judge_distances
 from trajgap.compare.audits.rules.improvements import judge_improvements
 from trajgap.compare.audits.rules.other_places import judge_places
 from trajgap.compare.audits.rules.peaks import judge_peaks
+from trajgap.compare.audits.rules.peaks_and_limits import judge_peak_limits
 from trajgap.compare.audits.rules.printed_digits import judge_digits
 from trajgap.compare.audits.rules.printed_tables import judge_tables
 from trajgap.compare.audits.rules.scaling_law import judge_scaling
@@ -358,3 +359,29 @@ def test_a_percentage_of_whole_numbers_beside_totals_of_digits_cut_off_follows(
     (found,) = said_of(study_of(text), judge_improvements, "gain", "TG103")
     assert (found.verdict is ClaimVerdict.SUPPORTED) == follows
     assert (found.severity is Severity.ERROR) != follows
+
+
+def test_a_printed_peak_above_a_printed_limit_contradicts_what_is_said_of_limits() -> None:
+    """3.665 beside 3.6, both as printed; 3.6 in quotes may be cut off from 3.69."""
+    peak = (
+        '[[claims]]\nid = "p"\nquantity = "peak"\nwhere = "Table 4"\nof = "d"\n'
+        'derivative = "velocity"\nvalue = "{}"\n'
+    )
+    for value, limit, wrong in (
+        ("3.665", "3.6", True),
+        ("3.601", "3.6", False),
+        ("3.665", '"3.6"', False),
+        ("3.75", '"3.6"', True),
+        ("3.599", "3.6", False),
+    ):
+        text = one_joint("0, 1", limit, "0.60", "within_limits", peak.format(value))
+        said = said_of(study_of(text), judge_peak_limits, "s", "TG209")
+        assert [f.verdict for f in said] == [ClaimVerdict.INCONSISTENT] * wrong, (value, limit)
+    assert "Table 4 prints 3.75 rad/s for the velocity of joint 1, whose limit is 3.7 rad/s" in (
+        said_of(
+            study_of(one_joint("0, 1", '"3.6"', "0.60", "within_limits", peak.format("3.75"))),
+            judge_peak_limits,
+            "s",
+            "TG209",
+        )[0].message
+    )

@@ -1,0 +1,76 @@
+"""TG209: printed peaks beside the printed limits that they are said to keep."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ....problem import QUANTITIES
+from ....problem.cases import AnyClaim, Digits, PeakClaim, StatementClaim, motions_of
+from ...documents import Basis, ClaimVerdict, Finding, Severity, capital
+from ..stated import place
+from ..study import Study
+from .peaks import peak_numbers
+from .wording import in_units, unit_shown
+
+_ROUNDING = 1.0 + 1e-9
+"""Factor by which a peak exceeds its limit at least: far above the rounding of units to floats."""
+
+
+def judge_peak_limits(study: Study) -> Iterator[Finding]:
+    """Findings of TG209."""
+    for claim in study.claims:
+        if isinstance(claim, StatementClaim) and claim.checks == "within_limits":
+            for peak in study.claims:
+                if isinstance(peak, PeakClaim):
+                    yield from _beyond(study, claim, peak)
+
+
+def _beyond(study: Study, claim: StatementClaim, peak: PeakClaim) -> Iterator[Finding]:
+    for motion in motions_of(study.case.claims, peak):
+        if claim.of and motion.id not in claim.of:
+            continue
+        for pid, rid in study.claim_pairs(motion):
+            said = _above(study, motion, peak, pid, rid)
+            if said:
+                yield Finding(
+                    rule="TG209",
+                    severity=Severity.ERROR,
+                    verdict=ClaimVerdict.INCONSISTENT,
+                    basis=Basis.DIGITS,
+                    claim=claim.id,
+                    problem=pid,
+                    reading=rid,
+                    printed=", ".join(map(str, peak.printed)),
+                    message=f"{capital(place(peak))} prints {'; '.join(said)}.",
+                    root=f"peaks beyond limits {claim.id}",
+                    between=(claim.id, peak.id),
+                )
+
+
+def _above(study: Study, motion: AnyClaim, peak: PeakClaim, pid: str, rid: str) -> list[str]:
+    """Printed peaks beyond their limits, whatever was rounded, raised or cut off in either.
+
+    A number for several joints at once may be the norm over them, which no limit bounds.
+    """
+    loosest = study.claim_problem(motion, pid, rid, Digits.LOOSEST_CUT)
+    order = QUANTITIES.index(peak.derivative)
+    unit = unit_shown(study, pid, rid, peak.derivative)
+    found = []
+    for joint, number in peak_numbers(study, peak):
+        if joint is None and len(loosest.joints) > 1:
+            continue
+        j = 0 if joint is None else loosest.joints.index(joint) if joint in loosest.joints else None
+        if j is None:
+            continue
+        limit = float(loosest.limits.sides[:, j, order].max())
+        measured = study.case.measured(number, peak.derivative, pid, rid)
+        least = measured.value - (measured.upper - measured.lower)
+        if np.isfinite(limit) and least > limit * _ROUNDING:
+            shown = in_units(study, pid, rid, peak.derivative, limit)
+            found.append(
+                f"{number} {unit} for the {peak.derivative} of joint {loosest.joints[j]}, whose "
+                f"limit is {shown:.6g} {unit}"
+            )
+    return found
