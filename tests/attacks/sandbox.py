@@ -135,6 +135,9 @@ def _begun(
     pipes = [os.pipe() for _ in range(3)]
     for stream in (sys.stdout, sys.stderr):
         stream.flush()
+    if plan.close_output:
+        # Before the child begins: a short answer would be written before a busy parent comes to it.
+        os.close(pipes[0][0])
     began = time.monotonic()
     with warnings.catch_warnings():
         # Other threads of the parent may be alive; none of them holds a lock that a child needs.
@@ -143,7 +146,7 @@ def _begun(
         before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         pid = os.fork()
     if pid == 0:
-        for own, _ in pipes:
+        for own, _ in pipes[plan.close_output :]:
             os.close(own)
         _child(function, plan, seconds, memory_mb, folder, [other for _, other in pipes])
     signal.pthread_sigmask(signal.SIG_SETMASK, before)
@@ -226,11 +229,8 @@ def _watched(pid: int, pipes: list[int], began: float, plan: Plan, wall: float) 
     due = [] if plan.signal is None else [began + plan.after]
     late = signalled = False
     with selectors.DefaultSelector() as ready:
-        for fd in pipes:
+        for fd in pipes[plan.close_output :]:
             ready.register(fd, selectors.EVENT_READ)
-        if plan.close_output:
-            ready.unregister(pipes[0])
-            os.close(pipes[0])
         while ready.get_map():
             now = time.monotonic()
             if due and now >= due[0]:
