@@ -62,7 +62,7 @@ def verdict(rng: Rng, folder: Path) -> str | None:
     if found.limits == "undecided":
         # Below, rounding of the way-points alone moves a derivative by a part of its limit.
         noise = 1e-13 * np.abs(asked.waypoints).max() / h.min() ** np.array([1, 2, 3])
-        # Where a curve's own clock nearly stands, rounding is larger, and the judge says by how much.
+        # Where a curve's clock nearly stands, rounding is larger; the judge says by how much.
         told = min(0.05, max((p.error / p.limit for p in found.peaks), default=0.0))
         room = max(1e-3, 2.0 * told)
         apart = (least > 1 + room or most < 1 - room) and (noise < 1e-4 * asked.sides).all()
