@@ -197,7 +197,8 @@ def test_a_reading_far_from_the_limits_is_named_as_implausible_and_stands_last()
     found = summary_of(pallet())
     assert list(found.implausible) == ["waypoints-deg"]
     (said,) = found.implausible.values()
-    stretch = next(o.stretch for o in found.outcomes if o.reading == "waypoints-rad")
+    # Divided by this, the durations of both columns keep their limits, one of them just so.
+    stretch = max(o.stretch for o in found.outcomes if o.reading == "waypoints-rad")
     assert not isinstance(stretch, Why)
     assert said == (
         f"printed durations divided by {180 / pi / stretch:.3g} would still keep every limit"
