@@ -171,8 +171,9 @@ def _within(study: Study, sets: Sequence[DurationsClaim | MaximumClaim]) -> str:
     found = [one for one in checked if one is not None]
     if all(one.limits is Verdict.PASS for one in found):
         return ""
-    worst = max((one.worst for one in found if one.worst), key=lambda peak: peak.ratio)
-    if worst.ratio < _TELLING or worst.joint is None:
+    peaks = [one.worst for one in found if one.worst is not None]
+    worst = max(peaks, key=lambda peak: peak.ratio, default=None)
+    if worst is None or worst.ratio < _TELLING or worst.joint is None:
         return " within rounding"
     share = 100 * (worst.ratio - 1)
     return (

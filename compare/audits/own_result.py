@@ -33,12 +33,13 @@ def own_result(case: Case, times: Sequence[_Time]) -> _Time | None:
     answers = [c for c in times if c.state != "before"] or list(times)
     answers = [c for c in answers if c.objective is None or not other_objective(case, c)] or answers
     improved = [c for c in case.claims if isinstance(c, ImprovementClaim)]
-    optimal = (c for c in case.claims if isinstance(c, StatementClaim) and c.checks == "optimal")
+    said = (c for c in case.claims if isinstance(c, StatementClaim) and c.checks == "optimal")
+    optimal = {one for statement in said for one in statement.of}
     left = _meant(case, [c.slower for c in improved], answers)
     answers = [c for c in answers if c not in left] or answers
     unnamed = [c for c in answers if c.algorithm is None] or answers
     for meant in (
-        [c for c in answers if c.id in {one for statement in optimal for one in statement.of}],
+        [c for c in answers if c.id in optimal],
         _meant(case, [c.faster for c in improved], answers),
         unnamed,
     ):

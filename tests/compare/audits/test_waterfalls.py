@@ -43,6 +43,13 @@ def test_a_rival_is_not_where_it_starts(rows: str, said: str) -> None:
     assert found.steps[0].time == 1.9
 
 
+def test_what_is_called_optimal_is_found_wherever_it_stands() -> None:
+    """Between two rivals, of which no improvement speaks."""
+    other = RIVAL.replace("rival", "other").replace("2.50", "2.20")
+    study = study_of(QUESTION.format(points="0, 1", limit=1) + RIVAL + OWN + other + OPTIMAL)
+    assert waterfalls(study)[0].claim == "own"
+
+
 def test_algorithms_tie_totals_to_durations() -> None:
     """A total of an algorithm stands for that algorithm's durations."""
     named = "".join(f'[[algorithms]]\nid = "{one}"\nname = "{one}"\n' for one in ("a", "b"))
