@@ -179,6 +179,7 @@ def audit(
     progress: Callable[[str], None] | None = None,
     certify_seconds: float = CERTIFY_SECONDS,
     certificates: Sequence[dict[str, Any]] = (),
+    certificates_folder: str | None = None,
     draft: bool = False,
     cache: bool | Path = False,
 ) -> AuditReport:
@@ -201,6 +202,8 @@ def audit(
         is certified in it depends on the machine, and what was left out is said.
     certificates : sequence of dict
         Certificates beside the shipped ones; each is proved again before it counts.
+    certificates_folder : str, optional
+        Where these lie, for the command that makes the audit again.
     draft : bool
         Whether to say, for each case, what its author can change before submitting.
     cache : bool or Path
@@ -230,6 +233,7 @@ def audit(
             progress=progress,
             certify_seconds=certify_seconds,
             certificates=certificates,
+            certificates_folder=certificates_folder,
             cache=cache,
         )
         for one in loaded

@@ -37,6 +37,8 @@ class ChosenCase:
         For certifying optima that no certificate proves; 0 turns it off.
     certificates : sequence of dict
         Certificates beside the shipped ones; each is proved again before it counts.
+    certificates_folder : str, optional
+        Where these lie, for the command that makes the audit again.
     cache : bool or Path
         Whether proofs are kept for later audits, as `trajgap.nlp.certify` says.
     """
@@ -51,6 +53,7 @@ class ChosenCase:
         progress: Callable[[str], None] | None = None,
         certify_seconds: float = CERTIFY_SECONDS,
         certificates: Sequence[dict[str, Any]] = (),
+        certificates_folder: str | None = None,
         cache: bool | Path = False,
     ) -> None:
         if seeds < 2:
@@ -65,8 +68,12 @@ class ChosenCase:
         self.pairs: tuple[Pair, ...] = tuple(p for p in selected if case.statement(*p).complete)
         default = case.default_reading.id
         self.main_reading = default if default in self.readings else self.readings[0]
-        self.chosen = {"problem": problem, "reading": reading}
-        """What the study was kept to; None where it was not."""
+        self.chosen = {
+            "problem": problem,
+            "reading": reading,
+            "certificates": certificates_folder,
+        }
+        """What the study was kept to, and given beside; None where it was not."""
         self._progress = progress or (lambda _: None)
         self._kept: dict[tuple[Any, ...], Any] = {}
         self.intervals = Intervals(certificates, certify_seconds, self._progress, cache)

@@ -87,6 +87,7 @@ def audit_cases(
             progress=step,
             certify_seconds=certify_seconds,
             certificates=given,
+            certificates_folder=None if certificates is None else str(certificates),
             draft=draft,
             cache=cache,
         )

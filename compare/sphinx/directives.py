@@ -140,7 +140,8 @@ def _explained(case: dict[str, Any]) -> dict[str, list[str]]:
         hit = [cause["claim"], *(one["claim"] for one in cause["consequences"])]
         below = next(filter(None, hit), None)
         if below is not None:
-            said = [f"{e['change']} {e['effect']}" for e in cause["explanations"] if e["settles"]]
+            fits = [e for e in cause["explanations"] if e["settles"]]
+            said = [f"{e['change'][:1].lower()}{e['change'][1:]} {e['effect']}" for e in fits]
             found.setdefault(below, []).extend(f"An innocent explanation: {one}" for one in said)
     return found
 
