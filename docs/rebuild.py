@@ -65,14 +65,15 @@ def rebuild(workers: int) -> None:
     """Audit every case again; nothing is certified that a certificate does not prove."""
     RESULTS.mkdir(exist_ok=True)
     examples = ROOT / "docs" / "examples"
-    beside = [
-        json.loads(one.read_text("utf-8")) for one in sorted(examples.glob("*.certificate.json"))
-    ]
+    beside = sorted(examples.glob("*.certificate.json"))
     asked = {"workers": workers, "certify_seconds": 0.0, "progress": _said}
     published = audit(published_ids(), **asked)
     # As seen from the folder of the examples, which is where their commands are run.
     others = audit(
-        sorted(examples.glob("*.toml")), certificates=beside, certificates_folder=".", **asked
+        sorted(examples.glob("*.toml")),
+        certificates=[json.loads(path.read_text("utf-8")) for path in beside],
+        certificates_folder=".",
+        **asked,
     )
     for one in (*published.cases, *others.cases):
         text = json_text(AuditDocument(cases=(one.document,)))

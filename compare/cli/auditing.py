@@ -87,7 +87,10 @@ def audit_cases(
             progress=step,
             certify_seconds=certify_seconds,
             certificates=given,
-            certificates_folder=None if certificates is None else str(certificates),
+            # Where an absolute folder lies is nobody's business.
+            certificates_folder=None
+            if certificates is None
+            else str(certificates.name if certificates.is_absolute() else certificates),
             draft=draft,
             cache=cache,
         )

@@ -35,6 +35,8 @@ def test_the_command_makes_the_same_selection_again(tmp_path):
     assert made.command == (
         f"trajgap audit {ID} --seeds 4 --problem limit-80 --reading waypoints-rad"
     )
+    beside = Study(load_case(ID), seeds=4, certificates_folder="proofs")
+    assert provenance(beside).command == f"trajgap audit {ID} --seeds 4 --certificates proofs"
     file = tmp_path / "a case.toml"
     file.write_bytes(b"\xef\xbb\xbf" + source(ID).replace("\n", "\r\n").encode())
     case = load_case(file)
