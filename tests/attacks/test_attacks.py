@@ -162,7 +162,8 @@ def test_the_table_of_the_docs_is_that_of_the_rows() -> None:
     text = PAGE.read_text("utf-8")
     for row in rows:
         # A failure stays in the table, and beside it stands how to run its trial again.
-        again = f"python tests/attacks --only {row.attack} --seed {row.seed} --trial "
+        name = f'"{row.attack}"' if " " in row.attack else row.attack
+        again = f"python tests/attacks --only {name} --seed {row.seed} --trial "
         assert text.count(again) == row.failures
     assert page_with(text, table(rows, ATTACKS)) == text
 
