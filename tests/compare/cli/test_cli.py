@@ -302,6 +302,7 @@ def test_audit_passes_its_options_on(run: Run, stand_in: dict[str, Any]) -> None
         "reading": "waypoints-rad",
         "seeds": 4,
         "workers": 2,
+        "certificates_folder": "examples",
         "draft": True,
         "cache": True,
     }
