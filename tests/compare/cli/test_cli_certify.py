@@ -178,7 +178,17 @@ def test_ctrl_c_leaves_the_interval_and_a_state(run: Run) -> None:
         "sys.exit(main())"
     )
     process = subprocess.Popen(
-        [sys.executable, "-c", started, "solve", *ONE, "--certify", "--out", "answer.json"],
+        [
+            sys.executable,
+            "-c",
+            started,
+            "solve",
+            *ONE,
+            "--certify",
+            "--no-cache",
+            "--out",
+            "answer.json",
+        ],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
