@@ -20,6 +20,7 @@ from ..documents import (
     ClaimVerdict,
     Judgement,
     Keeping,
+    Rounding,
     Severity,
     VerdictCard,
     Waterfall,
@@ -162,22 +163,26 @@ _TELLING = 1.01
 
 def _within(study: Study, sets: Sequence[DurationsClaim | MaximumClaim]) -> str:
     """Whether it takes the rounding of the digits to keep the limits, and of how much."""
-    checked = [
-        study.motion_check(one, *pair)
+    judged = [
+        (found, study.claim_rounding(one, *pair).verdict)
         for one in sets
         if study.has_durations(one)
         for pair in study.claim_pairs(one)
+        for found in (study.motion_check(one, *pair),)
+        if found is not None
     ]
-    found = [one for one in checked if one is not None]
+    found = [one for one, _ in judged]
     if all(one.limits is Verdict.PASS for one in found):
         return ""
+    cut = any(verdict is Rounding.BREAKS for _, verdict in judged)
+    how = "if digits were cut off" if cut else "within rounding"
     peaks = [one.worst for one in found if one.worst is not None]
     worst = max(peaks, key=lambda peak: peak.ratio, default=None)
     if worst is None or worst.ratio < _TELLING or worst.joint is None:
-        return " within rounding"
+        return f" {how}"
     share = 100 * (worst.ratio - 1)
     return (
-        f" only within rounding: as printed, the {worst.quantity} of joint {worst.joint} exceeds "
+        f" only {how}: as printed, the {worst.quantity} of joint {worst.joint} exceeds "
         f"its limit by {share:.1f} %"
     )
 

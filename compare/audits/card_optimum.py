@@ -240,6 +240,9 @@ def _beside(study: Study, waterfall: Waterfall) -> _Part | None:
     joints = _joint_by_joint(study, claim, pid, rid, seconds)
     if joints is not None:
         return f"{said} {joints}"
+    floor = solution.lower_bound
+    if floor is not None and " to " in span and low <= solution.best and floor <= high:
+        return f"{said} lies in the interval that is proven to hold the optimum, {shown_best}"
     if low <= solution.best <= high:
         return _Agrees(said, name, best)
     if share >= _MANY_TIMES:

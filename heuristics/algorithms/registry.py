@@ -69,11 +69,8 @@ def from_settings(kind: str, settings: Mapping[str, object]) -> Algorithm[Any]:
     known = [field.name for field in fields(_RECORDS[kind])]
     for key in settings:
         if key not in known:
-            every = f"known: {', '.join(known)}"
             said = nearest(str(key), known)
-            raise TrajgapError(
-                f"{kind}: {key}: unknown setting; {said if said == every else f'{said} {every}'}"
-            )
+            raise TrajgapError(f"{kind}: {key}: unknown setting; {said} known: {', '.join(known)}")
     made = record(**settings)
     for key in settings:
         value = getattr(made, key)

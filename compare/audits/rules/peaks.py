@@ -419,21 +419,14 @@ def described(
 
 def _slipped(study: Study, claim: PeakClaim, one: Beside, pid: str, rid: str) -> str:
     """With which digit changed a printed peak would agree; empty where it would not."""
-    other = meant_peak(study, claim, one, pid, rid)
-    if other is None:
-        return ""
-    return f"which {other.text} would agree with: one digit, or the order of two, may be misprinted"
-
-
-def meant_peak(study: Study, claim: PeakClaim, one: Beside, pid: str, rid: str) -> Printed | None:
-    """A number that is one slip of the keys away from a printed peak and agrees with the motion."""
     if sum(character.isdigit() for character in one.printed.text.lstrip("-0.")) < _TELLING:
-        return None
+        return ""
     for other in one.printed.one_digit_off():
         meant = study.case.measured(other, claim.derivative, pid, rid)
         if meant.lower <= one.exact + one.reach and one.exact - one.reach <= meant.upper:
-            return other
-    return None
+            which = "one digit, or the order of two, may be misprinted"
+            return f"which {other.text} would agree with: {which}"
+    return ""
 
 
 def _of_norm(study: Study, claim: PeakClaim, one: Beside, pid: str, rid: str) -> str:

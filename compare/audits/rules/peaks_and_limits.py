@@ -71,6 +71,6 @@ def _above(study: Study, motion: AnyClaim, peak: PeakClaim, pid: str, rid: str) 
             shown = in_units(study, pid, rid, peak.derivative, limit)
             found.append(
                 f"{number} {unit} for the {peak.derivative} of joint {loosest.joints[j]}, whose "
-                f"limit is {shown:.6g} {unit}"
+                f"limit is at most {shown:.6g} {unit}, however its digits are read"
             )
     return found

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations, product
 
 import numpy as np
@@ -39,9 +39,9 @@ class _Match:
     """The same for every other choice of signs."""
     radial: float
     """Largest miss of the distance from the base's origin beyond rounding, or 0, m."""
-    unsigned: tuple[int, float] | None
+    unsigned: tuple[int, float] | None = None
     """The position that is missed most with the best signs of twists, angles and coordinates, and
-    by how much at least, m; None where none is missed beyond rounding, or signs are certain."""
+    by how much at least, m; None where none is shown to be missed, or nothing was looked for."""
 
     @property
     def fits(self) -> bool:
@@ -170,8 +170,10 @@ def _match(
         away = min(proximity(chain, point, held, radial=True).lower for chain in variants)
         radial = max(radial, away if away > allowed else 0.0)
     first, *others = (tuple(found) for found in near)
-    unsigned = _unsigned(variants, joints, places, first, slack) if others else None
-    return _Match(convention, first, tuple(slack), tuple(others), radial, unsigned)
+    match = _Match(convention, first, tuple(slack), tuple(others), radial)
+    if not (others and match.misses):
+        return match
+    return replace(match, unsigned=_unsigned(variants, joints, places, first, slack))
 
 
 def _unsigned(
@@ -265,7 +267,7 @@ def _judged(
             f"{given} The end then comes no nearer to the printed positions than {listed}. "
             f"Rounding explains at most {rounding} m."
         )
-        lost = [m for m in matches if m.signed and m.misses and m.unsigned is None]
+        lost = any(m.signed and m.misses and m.unsigned is None for m in matches)
         if all(m.misses for m in matches) and not lost:
             verdict, severity = ClaimVerdict.INCONSISTENT, Severity.WARNING
             do = "does" if len(free) == 1 else "do"
@@ -281,7 +283,7 @@ def _judged(
             signed = any(_fits(near, m.slack) for m in matches for near in m.signed)
             message = (
                 "With other signs of the twists, the angles or the positions, which the text may "
-                "have lost, no printed position is out of reach."
+                "have lost, no printed position is shown to be out of reach."
                 if lost
                 else "With other signs of the twists, which the text may have lost, the end meets "
                 "every printed position."

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from support.findings import study_of
 from support.one_joint import QUESTION
 from trajgap.compare.audits import CaseAudit, audit
+from trajgap.compare.audits.card_optimum import optimum_line
 from trajgap.compare.audits.waterfall import waterfalls
 from trajgap.compare.documents import ClaimVerdict
 from trajgap.problem import parse_case
@@ -114,3 +117,21 @@ def test_a_total_of_another_aim_is_another_total() -> None:
     by = {j.claim: j for j in one.judgements}
     assert "nothing in print can be set against it" in by["time"].why
     assert "nothing in print can be set against it" in by["low"].why
+
+
+def test_what_only_cut_off_digits_keep_is_not_called_rounding() -> None:
+    """1.877 s just keep this limit: no value rounds to 1.87 and does, some that are cut off do."""
+    one = audited(QUESTION.format(points="0, 1", limit=1.875 / 1.877) + OWN.replace("1.90", "1.87"))
+    assert one.card.limits == "The printed durations keep the limits if digits were cut off."
+
+
+def test_a_total_within_a_proven_interval_neither_agrees_nor_differs() -> None:
+    """The optimum is 1.875 s; with a bound of 1.84 s nothing says where 1.86 s lies beside it."""
+    study = study_of(QUESTION.format(points="0, 1", limit=1) + OWN.replace("1.90", "1.86"))
+    found = waterfalls(study)
+    wide = replace(study.optimum(*study.pairs[0]), lower_bound=1.84)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(study, "optimum", lambda *_: wide)
+        said = optimum_line(study, found, {}, False)
+    assert said.startswith("1.86 s")
+    assert said.endswith("is proven to hold the optimum, 1.8400 to 1.8750 s.")

@@ -377,11 +377,9 @@ def test_a_printed_peak_above_a_printed_limit_contradicts_what_is_said_of_limits
         text = one_joint("0, 1", limit, "0.60", "within_limits", peak.format(value))
         said = said_of(study_of(text), judge_peak_limits, "s", "TG209")
         assert [f.verdict for f in said] == [ClaimVerdict.INCONSISTENT] * wrong, (value, limit)
-    assert "Table 4 prints 3.75 rad/s for the velocity of joint 1, whose limit is 3.7 rad/s" in (
-        said_of(
-            study_of(one_joint("0, 1", '"3.6"', "0.60", "within_limits", peak.format("3.75"))),
-            judge_peak_limits,
-            "s",
-            "TG209",
-        )[0].message
+    text = one_joint("0, 1", '"3.6"', "0.60", "within_limits", peak.format("3.75"))
+    (found,) = said_of(study_of(text), judge_peak_limits, "s", "TG209")
+    assert found.message == (
+        "Table 4 prints 3.75 rad/s for the velocity of joint 1, whose limit is at most 3.7 rad/s, "
+        "however its digits are read."
     )

@@ -150,7 +150,10 @@ def test_signs_that_may_be_lost_are_tried():
     assert lost != points
     unsigned = one(case_text(lost, TABLE + 'alpha_signs = "uncertain"\n', third))
     assert unsigned.verdict is ClaimVerdict.NOT_CHECKABLE
-    assert "which the text may have lost, no printed position is out of reach" in unsigned.message
+    assert (
+        "which the text may have lost, no printed position is shown to be out of reach"
+        in unsigned.message
+    )
     assert one(case_text(lost, TABLE, third)).verdict is ClaimVerdict.INCONSISTENT
 
 
