@@ -9,7 +9,7 @@ from typing import Annotated, Literal, Self
 from pydantic import AfterValidator, Discriminator, Field, StrictInt, model_validator
 
 from ..errors import TrajgapError
-from ..fields import Id, Length, Number, PrintedRows, Strict, Text, fault
+from ..fields import Id, Length, Number, OneOrEachLength, PrintedRows, Strict, Text, fault
 from ..printed import Printed
 from ..problem import Coupling
 
@@ -80,6 +80,32 @@ class DurationsClaim(TimeClaim):
     """Duration of each segment."""
     total: Length | None = None
     """Printed total."""
+    blends: OneOrEachLength | None = None
+    """Durations of the blends, where `other_curve` is linear segments with parabolic blends: one
+    for all way-points or one for each, in the unit of time."""
+    blend_acceleration: OneOrEachLength | None = None
+    """Acceleration within the blends, where that is printed instead: one for all joints or one for
+    each."""
+
+    @model_validator(mode="after")
+    def _blends_of_another_curve(self) -> Self:
+        for key in ("blends", "blend_acceleration"):
+            if getattr(self, key) is not None and self.other_curve is None:
+                raise fault(
+                    f".{key}", "goes with other_curve; name the curve there as the paper does"
+                )
+        if self.blends is not None and self.blend_acceleration is not None:
+            raise fault(
+                ".blend_acceleration",
+                "stands beside blends; keep one of the two, as the other follows from it",
+            )
+        if isinstance(self.blends, tuple) and len(self.blends) != len(self.durations) + 1:
+            raise fault(
+                ".blends",
+                f"{len(self.blends)} blends beside {len(self.durations)} durations; give one for "
+                "each way-point, or one for all",
+            )
+        return self
 
 
 class MaximumClaim(TimeClaim):

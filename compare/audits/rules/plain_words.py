@@ -172,6 +172,15 @@ EXPLAINED = {
         "A table prints 3.665 rad/s² for the acceleration of joint 2, another the limit 3.6, and "
         "the abstract says that no limit is exceeded.",
     ),
+    "TG210": Explained(
+        "Do linear segments with parabolic blends keep the limits with the printed durations and "
+        "blends?",
+        "Refuted if a speed or an acceleration exceeds its limit, or blends overlap, for every "
+        "value that rounds to the printed digits, wherever the end blends lie. No optimum stands "
+        "beside such a motion: it does not pass its via-points.",
+        "Durations of 2, 1 and 3 s and blends of 0.4 s turn joint 1 from 12.5 to -10 °/s at the "
+        "first via-point, which takes 56 °/s². The limit is 50 °/s².",
+    ),
     "TG301": Explained(
         "One path is timed under two velocity limits, and nothing else is limited. Then "
         "shortest time times limit is a constant, with no solver needed. Do the two printed "

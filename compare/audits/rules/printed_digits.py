@@ -137,19 +137,48 @@ def compared(
 
 def _sums(study: Study) -> Iterator[Finding]:
     for claim in study.claims:
-        if isinstance(claim, DurationsClaim | MaximumClaim) and claim.total is not None:
-            yield compared(
-                "TG101",
-                claim,
-                claim.total,
-                _sum([d.interval for d in claim.durations]),
-                _sum([d.truncated for d in claim.durations]),
-                "The sum of the printed durations",
-                study.time_unit,
-                f"{SUM} {claim.id}",
-                str(sum(d.decimal for d in claim.durations)),
-                coarser=claim.total.unit > max(d.unit for d in claim.durations),
-            )
+        if not isinstance(claim, DurationsClaim | MaximumClaim) or claim.total is None:
+            continue
+        found = _sum_beside(study, claim, claim.total, (), "The sum of the printed durations")
+        if found.verdict is ClaimVerdict.REFUTED and isinstance(claim, DurationsClaim):
+            # Blends at the ends may reach half beyond the durations, and be counted or not.
+            if claim.blend_acceleration is not None:
+                continue
+            if claim.blends is not None:
+                ends = claim.blends if isinstance(claim.blends, tuple) else (claim.blends,) * 2
+                what = "The sum of the printed durations and of half the first and the last blend"
+                wider = _sum_beside(study, claim, claim.total, (ends[0], ends[-1]), what)
+                found = found if wider.verdict is ClaimVerdict.REFUTED else wider
+        yield found
+
+
+def _sum_beside(
+    study: Study,
+    claim: DurationsClaim | MaximumClaim,
+    total: Printed,
+    halves: Sequence[Printed],
+    what: str,
+) -> Finding:
+    """A printed total beside the sum of its durations and of half of some further ones."""
+    parts = [*claim.durations, *halves]
+    share = [Fraction(1)] * len(claim.durations) + [Fraction(1, 2)] * len(halves)
+    plain = sum((d.fraction * s for d, s in zip(parts, share, strict=True)), Fraction(0))
+    return compared(
+        "TG101",
+        claim,
+        total,
+        _sum([_share(d.interval, s) for d, s in zip(parts, share, strict=True)]),
+        _sum([_share(d.truncated, s) for d, s in zip(parts, share, strict=True)]),
+        what,
+        study.time_unit,
+        f"{SUM} {claim.id}",
+        shown(plain) if halves else str(sum(d.decimal for d in claim.durations)),
+        coarser=total.unit > max(d.unit for d in parts),
+    )
+
+
+def _share(interval: Interval, share: Fraction) -> Interval:
+    return Interval(interval.lower * share, interval.upper * share)
 
 
 def _lengths(study: Study) -> Iterator[Finding]:

@@ -12,6 +12,7 @@ from .condition_count import judge_counts
 from .continuous_time import judge_motions
 from .distances import judge_distances
 from .improvements import judge_improvements
+from .linear_blends import judge_blends
 from .measures import judge_measures
 from .on_instances import judge_instances
 from .open_points import list_open_points
@@ -97,6 +98,10 @@ GROUPS = (
     ),
     RuleGroup(judge_peaks, {"TG203": "Printed peaks are those of the printed durations"}),
     RuleGroup(judge_peak_limits, {"TG209": "Printed peaks lie within the limits that they keep"}),
+    RuleGroup(
+        judge_blends,
+        {"TG210": "Linear segments with parabolic blends keep the limits"},
+    ),
     RuleGroup(
         judge_measures,
         {"TG208": "Printed means and integrals are those of the printed durations"},

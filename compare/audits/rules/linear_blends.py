@@ -1,0 +1,205 @@
+"""TG210: printed durations of linear segments with parabolic blends beside the limits."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from ....problem import Array, CaseError, Printed, Problem
+from ....problem.cases import Digits, DurationsClaim
+from ...documents import Basis, ClaimVerdict, Finding, Severity
+from ..explanations import LIMITS
+from ..parabolic_blends import Blended, EndBlends, by_blend_accelerations, by_blend_times
+from ..rounding import RoundingBox
+from ..study import Study
+from .continuous_time import durations_text, said_to_keep
+from .wording import in_units, unit_shown
+
+_SLACK = 1e-9
+"""Relative margin that a limit is exceeded by at least: far above the rounding of a few quotients
+to floats, far below what digits leave open."""
+
+
+@dataclass(frozen=True)
+class _Found:
+    """What one convention says: broken for all digits, kept for all, and what is worst at print."""
+
+    breaks: bool
+    keeps: bool
+    worst: str
+
+
+def judge_blends(study: Study) -> Iterator[Finding]:
+    """Findings of TG210."""
+    for claim in study.claims:
+        if isinstance(claim, DurationsClaim) and (claim.blends or claim.blend_acceleration):
+            for pid, rid in study.pairs:
+                if claim.problem in (None, pid):
+                    yield _beside(study, claim, pid, rid)
+
+
+def _beside(study: Study, claim: DurationsClaim, pid: str, rid: str) -> Finding:
+    problem = study.claim_problem(claim, pid, rid)
+    segments = len(problem.waypoints) - 1
+    verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
+    said, computed = said_to_keep(study, claim), ""
+    if len(claim.durations) != segments:
+        message = (
+            f"{len(claim.durations)} durations are printed, and {segments} straight segments join "
+            "the way-points, so no motion can be built from them."
+        )
+    else:
+        found = {ends: _judged(study, claim, problem, pid, rid, ends) for ends in EndBlends}
+        beyond, within = found[EndBlends.BEYOND], found[EndBlends.WITHIN]
+        same = beyond.worst == within.worst
+        computed = beyond.worst if same else f"{beyond.worst}; {within.worst}"
+        at_print = (
+            f"At the printed numbers {beyond.worst}."
+            if same
+            else f"At the printed numbers, with end blends that reach beyond the durations, "
+            f"{beyond.worst}; with end blends within them, {within.worst}."
+        )
+        if beyond.breaks and within.breaks:
+            verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
+            message = (
+                "Linear segments with parabolic blends break a limit with these durations, "
+                "wherever the end blends lie, for every value that rounds to the printed digits or "
+                f"is cut off to them. {at_print}"
+            )
+        elif beyond.keeps and within.keeps:
+            verdict = ClaimVerdict.SUPPORTED
+            message = (
+                "Linear segments with parabolic blends keep the limits on velocity and "
+                f"acceleration with these durations. {at_print}"
+            )
+        else:
+            message = (
+                "Whether linear segments with parabolic blends keep the limits with these "
+                "durations depends on where the end blends lie, or on digits that are not printed. "
+                f"{at_print}"
+            )
+        message += (
+            " Such a motion passes via-points at a distance, so that no optimum of a curve through "
+            "them is set beside it, and its acceleration steps, so that its jerk is not judged."
+        )
+    if not said and verdict is not ClaimVerdict.NOT_CHECKABLE:
+        verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
+        message += " Nothing printed says that these durations keep the limits."
+    return Finding(
+        rule="TG210",
+        severity=severity,
+        verdict=verdict,
+        basis=Basis.ENCLOSURE,
+        claim=claim.id,
+        problem=pid,
+        reading=rid,
+        printed=durations_text(study, claim),
+        computed=computed,
+        message=message,
+        decides=said,
+        root=f"{LIMITS} {claim.id}" if verdict is ClaimVerdict.REFUTED else "",
+    )
+
+
+def _judged(
+    study: Study, claim: DurationsClaim, problem: Problem, pid: str, rid: str, ends: EndBlends
+) -> _Found:
+    box = study.waypoint_box(problem, pid, rid)
+    claimed = study.case.claim_durations(claim, rid)
+    durations = RoundingBox(claimed.value, claimed.lower, claimed.upper)
+    wide = _blended(study, claim, problem, pid, rid, box.or_cut_off(), durations.or_cut_off(), ends)
+    plain = _blended(
+        study, claim, problem, pid, rid,
+        RoundingBox.exact(box.value), RoundingBox.exact(durations.value), ends,
+    )  # fmt: skip
+    loose = study.claim_problem(claim, pid, rid, Digits.LOOSEST_CUT).limits.sides.max(axis=0)
+    most = loose[:, :2] * (1.0 + _SLACK)
+    breaks = (
+        bool((wide.velocity.size.low > most[:, 0]).any())
+        or bool((wide.acceleration.low > most[:, 1]).any())
+        or bool((wide.room.high < -_SLACK * durations.value[:, None]).any())
+    )
+    try:
+        tight = study.claim_problem(claim, pid, rid, Digits.TIGHTEST).limits.sides.min(axis=0)
+        keeps = (
+            bool((wide.velocity.size.high <= tight[:, 0]).all())
+            and bool((wide.acceleration.high <= tight[:, 1]).all())
+            and bool((wide.room.low >= 0).all())
+        )
+    except CaseError:  # the tightest ranges are empty
+        keeps = False
+    return _Found(breaks, keeps, _worst(study, problem, plain, pid, rid))
+
+
+def _blended(
+    study: Study,
+    claim: DurationsClaim,
+    problem: Problem,
+    pid: str,
+    rid: str,
+    waypoints: RoundingBox,
+    durations: RoundingBox,
+    ends: EndBlends,
+) -> Blended:
+    """What the motion asks for; exact boxes take the rest of the numbers as printed, too."""
+    exact = bool((durations.lower == durations.upper).all() and (
+        waypoints.lower == waypoints.upper
+    ).all())  # fmt: skip
+    if claim.blends is not None:
+        count = len(durations.value) + 1
+        blends = _box(study, claim.blends, count, "time", claim.problem, rid, exact)
+        return by_blend_times(waypoints, durations, blends, ends)
+    assert claim.blend_acceleration is not None
+    given = claim.blend_acceleration
+    if isinstance(given, tuple):
+        labels = study.case.robot.joints
+        given = tuple(given[labels.index(label)] for label in problem.joints)
+    sizes = _box(study, given, len(problem.joints), "acceleration", pid, rid, exact)
+    return by_blend_accelerations(waypoints, durations, sizes, ends)
+
+
+def _box(
+    study: Study,
+    given: Printed | tuple[Printed, ...],
+    count: int,
+    quantity: Literal["time", "acceleration"],
+    pid: str | None,
+    rid: str,
+    exact: bool,
+) -> RoundingBox:
+    numbers = given if isinstance(given, tuple) else (given,) * count
+    measured = [study.case.measured(n, quantity, pid, rid) for n in numbers]
+    value: Array = np.array([m.value for m in measured])
+    if exact:
+        return RoundingBox.exact(value)
+    box = RoundingBox(
+        value, np.array([m.lower for m in measured]), np.array([m.upper for m in measured])
+    )
+    return box.or_cut_off()
+
+
+def _worst(study: Study, problem: Problem, plain: Blended, pid: str, rid: str) -> str:
+    """The largest ratio to a limit at the printed numbers, in words; or that blends overlap."""
+    k, j = np.unravel_index(int(np.argmin(plain.room.low)), plain.room.low.shape)
+    if plain.room.low[k, j] < 0:
+        return f"the blends need more time than segment {k + 1} has"
+    best: tuple[float, str] = (0.0, "no limit applies")
+    sizes = (("velocity", plain.velocity.size.high), ("acceleration", plain.acceleration.high))
+    limits = problem.limits.sides.min(axis=0)
+    for order, (quantity, size) in enumerate(sizes):
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratio = np.where(size > 0, size / limits[:, order], 0.0)
+        at = np.unravel_index(int(np.argmax(ratio)), ratio.shape)
+        if ratio[at] > best[0]:
+            unit = unit_shown(study, pid, rid, quantity)
+            value = in_units(study, pid, rid, quantity, float(size[at]))
+            limit = in_units(study, pid, rid, quantity, float(limits[at[1], order]))
+            best = (
+                float(ratio[at]),
+                f"the {quantity} of joint {problem.joints[at[1]]} reaches {value:.6g} {unit}, "
+                f"limit {limit:.6g} {unit}",
+            )
+    return best[1]

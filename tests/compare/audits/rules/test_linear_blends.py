@@ -1,0 +1,94 @@
+"""TG210 on a row of linear segments with parabolic blends, beside limits and digits."""
+
+from __future__ import annotations
+
+import pytest
+from support.findings import said_of, study_of
+from support.one_joint import QUESTION
+from trajgap.compare.audits.rules.linear_blends import judge_blends
+from trajgap.compare.audits.rules.printed_digits import judge_digits
+from trajgap.compare.documents import ClaimVerdict
+from trajgap.problem import CaseError, parse_case
+
+ROW = """
+[[claims]]
+id = "row"
+quantity = "durations"
+where = "Table 2, row 1"
+durations = {durations}
+other_curve = "linear segments with parabolic blends"
+{more}
+"""
+
+
+def made_up(more: str, durations: str = '["2.00", "1.00", "3.00"]', limit: str = "50") -> str:
+    """Craig's way-points, 10, 35, 25 and 10°, with a limit on the acceleration."""
+    text = QUESTION.format(points='"10.00", "35.00", "25.00", "10.00"', limit="100")
+    text = text.replace('position = "rad"', 'position = "deg"')
+    text = text.replace('"rad/s"', '"deg/s"\nacceleration = "deg/s^2"')
+    text = text.replace("velocity = 100", f"velocity = 100\nacceleration = {limit}")
+    return text + ROW.format(durations=durations, more=more)
+
+
+@pytest.mark.parametrize(
+    ("more", "limit", "verdict", "said"),
+    [
+        ('blends = "0.50"', "50", ClaimVerdict.SUPPORTED, "keep the limits"),
+        ('blends = "0.40"', "50", ClaimVerdict.REFUTED, "56.25 °/s²"),
+        ('blends = "0.40"', "57", ClaimVerdict.NOT_CHECKABLE, "end blends"),
+        ('blends = "1.40"', "50", ClaimVerdict.REFUTED, "more time than segment 2 has"),
+        ("blend_acceleration = 50", "50", ClaimVerdict.SUPPORTED, "keep the limits"),
+        ("blend_acceleration = [60]", "50", ClaimVerdict.REFUTED, "60 °/s²"),
+        ("blend_acceleration = 12", "50", ClaimVerdict.REFUTED, "more time than segment"),
+    ],
+)
+def test_a_row_is_judged_under_both_conventions(
+    more: str, limit: str, verdict: ClaimVerdict, said: str
+) -> None:
+    (found,) = said_of(study_of(made_up(more, limit=limit)), judge_blends, "row", "TG210")
+    assert found.verdict is verdict
+    assert said in found.message
+    assert "no optimum" in found.message
+
+
+def test_what_rounding_leaves_open_is_refuted_by_nobody() -> None:
+    """1 s and 0.4 s may be 1.05 s and 0.45 s, with which the change of speed takes 49.7 °/s²."""
+    text = made_up('blends = "0.4"', '["2", "1.0", "3"]', "50")
+    (found,) = said_of(study_of(text), judge_blends, "row", "TG210")
+    assert found.verdict is ClaimVerdict.NOT_CHECKABLE
+
+
+def test_a_total_may_count_half_the_end_blends() -> None:
+    for total, fits in (("6.00", True), ("6.40", True), ("6.80", False)):
+        text = made_up(f'blends = "0.40"\ntotal = "{total}"')
+        (found,) = said_of(study_of(text), judge_digits, "row", "TG101")
+        assert (found.verdict is ClaimVerdict.SUPPORTED) == fits
+    open_ = made_up('blend_acceleration = 50\ntotal = "6.40"')
+    assert not said_of(study_of(open_), judge_digits, "row", "TG101")
+
+
+def test_another_number_of_durations_builds_no_motion() -> None:
+    text = made_up("blends = 0.4", '["2.0", "1.0"]')
+    (found,) = said_of(study_of(text), judge_blends, "row", "TG210")
+    assert found.verdict is ClaimVerdict.NOT_CHECKABLE
+    assert "3 straight segments" in found.message
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        ("blends = [0.4, 0.4]", "2 blends beside 3 durations"),
+        ("blends = 0.4\nblend_acceleration = 50", "keep one of the two"),
+    ],
+)
+def test_what_does_not_fit_is_told_in_a_line(more: str, said: str) -> None:
+    with pytest.raises(CaseError, match=said):
+        parse_case(made_up(more), "made-up.toml")
+
+
+def test_blends_go_with_another_curve() -> None:
+    text = made_up("blends = 0.4").replace(
+        'other_curve = "linear segments with parabolic blends"\n', ""
+    )
+    with pytest.raises(CaseError, match=r"\.blends: goes with other_curve"):
+        parse_case(text, "made-up.toml")
