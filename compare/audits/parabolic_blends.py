@@ -38,25 +38,25 @@ class EndBlends(StrEnum):
 
 
 @dataclass(frozen=True, eq=False)
-class Range:
+class Between:
     """Bounds of numbers, in arrays of one shape; not rounded outwards."""
 
     low: Array
     high: Array
 
-    def __add__(self, other: Range) -> Range:
+    def __add__(self, other: Between) -> Between:
         """Bounds of all sums."""
-        return Range(self.low + other.low, self.high + other.high)
+        return Between(self.low + other.low, self.high + other.high)
 
-    def __sub__(self, other: Range) -> Range:
+    def __sub__(self, other: Between) -> Between:
         """Bounds of all differences, as if the numbers were independent."""
-        return Range(self.low - other.high, self.high - other.low)
+        return Between(self.low - other.high, self.high - other.low)
 
-    def times(self, factor: float) -> Range:
+    def times(self, factor: float) -> Between:
         """Bounds of a multiple, the factor not negative."""
-        return Range(factor * self.low, factor * self.high)
+        return Between(factor * self.low, factor * self.high)
 
-    def over(self, divisor: Range) -> Range:
+    def over(self, divisor: Between) -> Between:
         """Bounds of all quotients by numbers that are positive; none are known where some is not.
 
         A divisor that may be 0 or less leaves infinite bounds.
@@ -67,20 +67,20 @@ class Range:
                 self.high / divisor.low, self.high / divisor.high,
             ))  # fmt: skip
         sure = np.broadcast_to(divisor.low > 0, ends.shape[1:])
-        return Range(
+        return Between(
             np.where(sure, ends.min(axis=0), -np.inf), np.where(sure, ends.max(axis=0), np.inf)
         )
 
     @property
-    def size(self) -> Range:
+    def size(self) -> Between:
         """Bounds of the absolute values."""
         through = (self.low <= 0) & (self.high >= 0)
         ends = np.abs(np.stack([self.low, self.high]))
-        return Range(np.where(through, 0.0, ends.min(axis=0)), ends.max(axis=0))
+        return Between(np.where(through, 0.0, ends.min(axis=0)), ends.max(axis=0))
 
-    def __getitem__(self, key: int | slice) -> Range:
+    def __getitem__(self, key: int | slice) -> Between:
         """Bounds of some of the numbers."""
-        return Range(self.low[key], self.high[key])
+        return Between(self.low[key], self.high[key])
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,28 +89,28 @@ class Blended:
 
     Attributes
     ----------
-    velocity : Range, shape (segments, joints)
+    velocity : Between, shape (segments, joints)
         Speeds along the segments, rad/s.
-    acceleration : Range, shape (way-points, joints)
+    acceleration : Between, shape (way-points, joints)
         Sizes within the blends, rad/s².
-    room : Range, shape (segments, joints)
+    room : Between, shape (segments, joints)
         What the blends leave of each segment, s; no such motion exists where it is negative.
     """
 
-    velocity: Range
-    acceleration: Range
-    room: Range
+    velocity: Between
+    acceleration: Between
+    room: Between
 
 
-def _stacked(parts: Sequence[Range]) -> Range:
-    return Range(np.stack([p.low for p in parts]), np.stack([p.high for p in parts]))
+def _stacked(parts: Sequence[Between]) -> Between:
+    return Between(np.stack([p.low for p in parts]), np.stack([p.high for p in parts]))
 
 
-def _ranges(box: RoundingBox) -> Range:
-    return Range(box.lower, box.upper)
+def _ranges(box: RoundingBox) -> Between:
+    return Between(box.lower, box.upper)
 
 
-def _steps(waypoints: RoundingBox) -> Range:
+def _steps(waypoints: RoundingBox) -> Between:
     q = _ranges(waypoints)
     return q[1:] - q[:-1]
 
@@ -144,7 +144,7 @@ def by_blend_times(
         straight = h[k] - tau[k].times(0.5 * first) - tau[k + 1].times(0.5 * last)
         speeds.append(step[k].over(straight))
         left = h[k] - tau[k].times(0.5 + 0.5 * first) - tau[k + 1].times(0.5 + 0.5 * last)
-        rooms.append(Range(*np.broadcast_arrays(left.low, left.high, step[k].low)[:2]))
+        rooms.append(Between(*np.broadcast_arrays(left.low, left.high, step[k].low)[:2]))
     changes = _changes(speeds)
     sizes = [change.size.over(tau[k]) for k, change in enumerate(changes)]
     return Blended(_stacked(speeds), _stacked(sizes), _stacked(rooms))
@@ -183,17 +183,17 @@ def by_blend_accelerations(
         if ends is EndBlends.WITHIN:
             shares = [1.0 if k == 0 else 0.5, 1.0 if k == n - 1 else 0.5]
         rooms.append(h[k] - blends[k].times(shares[0]) - blends[k + 1].times(shares[1]))
-    sizes = [Range(*np.broadcast_arrays(a.low, a.high))] * (n + 1)
+    sizes = [Between(*np.broadcast_arrays(a.low, a.high))] * (n + 1)
     return Blended(_stacked(speeds), _stacked(sizes), _stacked(rooms))
 
 
-def _changes(speeds: Sequence[Range]) -> list[Range]:
+def _changes(speeds: Sequence[Between]) -> list[Between]:
     """Changes of speed at each way-point, from rest and to rest."""
     inner = [after - before for before, after in itertools.pairwise(speeds)]
     return [speeds[0], *inner, speeds[-1]]
 
 
-def _with_blend(step: Range, h: Range, a: Range, both: bool) -> Range:
+def _with_blend(step: Between, h: Between, a: Between, both: bool) -> Between:
     """Speed along an end segment whose blend, or both, lie within its duration.
 
     With r = √(h² − c|Δ|/a), c = 2 or 4, the blend takes h − r, or half of that, and the speed is a
@@ -213,8 +213,10 @@ def _with_blend(step: Range, h: Range, a: Range, both: bool) -> Range:
     least = speed(way.low, h.high, a.high)
     most = speed(way.high, h.low, a.low)
     # No root: no motion with these numbers, whatever its speed.
-    size = Range(
+    size = Between(
         np.where(np.isnan(least), _NO_SPEED, least), np.where(np.isnan(most), _NO_SPEED, most)
     )
     forward, backward = step.low > 0, step.high < 0
-    return Range(np.where(forward, size.low, -size.high), np.where(backward, -size.low, size.high))
+    return Between(
+        np.where(forward, size.low, -size.high), np.where(backward, -size.low, size.high)
+    )

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from trajgap.compare.audits.parabolic_blends import (
     Blended,
     EndBlends,
-    Range,
+    Between,
     by_blend_accelerations,
     by_blend_times,
 )
@@ -93,8 +93,8 @@ def test_bounds_hold_for_everything_in_the_boxes(data: st.DataObject, ends: EndB
 
 def held(one: Blended, wide: Blended) -> None:
     for name in ("velocity", "acceleration", "room"):
-        inner: Range = getattr(one, name)
-        outer: Range = getattr(wide, name)
+        inner: Between = getattr(one, name)
+        outer: Between = getattr(wide, name)
         known = inner.low == inner.high  # no bounds are known where a blend leaves no time
         slack = 1e-9 * (1.0 + np.abs(inner.low))
         assert (~known | (outer.low <= inner.low + slack)).all()
