@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from trajgap.compare.audits.parabolic_blends import (
+    Between,
     Blended,
     EndBlends,
-    Between,
     by_blend_accelerations,
     by_blend_times,
 )
