@@ -36,7 +36,7 @@ from ..documents import (
 from .card_errors import plainly
 from .card_optimum import limited, on_doubted_points, optimum_line
 from .plausibility import implausible
-from .rules import said_to_keep
+from .rules import blended, judge_row, said_to_keep
 from .stated import place
 from .study import Study
 
@@ -73,7 +73,8 @@ def verdict_card(
     optimum = optimum_line(study, waterfalls, words, before)
     improvement, improved = _improvement(study, words)
     # What the first lines have said is not said again.
-    said = {("TG201", one) for one in judged} | {("TG103", one) for one in improved}
+    said = {(rule, one) for one in judged for rule in ("TG201", "TG210")}
+    said |= {("TG103", one) for one in improved}
     grave = [c for c in causes if c.severity is Severity.ERROR and (c.rule, c.claim) not in said]
     far = implausible(study)
     alike: dict[tuple[str, str], list[Cause]] = {}
@@ -199,11 +200,18 @@ def _limits(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[str]
         for c in case.claims
         if isinstance(c, DurationsClaim | MaximumClaim) and said_to_keep(study, c)
     ]
+    elsewhere = [c for c in sets if c.other_curve is not None and not blended(c)]
+    sets = [c for c in sets if c not in elsewhere]
     asked = [c.id for c in about or sets if c.id in words]
     timed = [c for c in case.claims if isinstance(c, TimeClaim) and c.other_curve is None]
     if timed and all(isinstance(c, TotalTimeClaim) for c in timed) and not about:
         return (
             "Whether the limits are kept is not checkable: totals are printed, durations are not.",
+            set(),
+        )
+    if not asked and elsewhere:
+        return (
+            "Whether the limits are kept is not checkable: printed durations are of another curve.",
             set(),
         )
     if not asked:
@@ -266,6 +274,9 @@ def _of_limits(study: Study, claim: AnyClaim) -> dict[str, ClaimVerdict]:
     A sum that is wrong refutes the claim too, and breaks no limit.
     """
     each: dict[str, set[ClaimVerdict]] = {}
+    for row in judge_row(study, claim):
+        if row.reading is not None and row.verdict is not None:
+            each.setdefault(row.reading, set()).add(row.verdict)
     for pid, rid in study.claim_pairs(claim):
         unknown = study.unmoved(claim, pid, rid) is not None
         keeping = Keeping.UNDECIDED if unknown else study.claim_keeping(claim, pid, rid)

@@ -117,7 +117,8 @@ def _without_totals(study: Study, words: Mapping[str, Judgement]) -> str:
         return _beside_profiles([words[c.id].verdict for c in judged], " or ".join(profiles))
     curves = dict.fromkeys(c.other_curve for c in timed if c.other_curve is not None)
     if curves:
-        return f"Printed times are of another curve ({', '.join(curves)}) and are not judged."
+        named = ", ".join(curves)
+        return f"Printed times are of another curve ({named}): no optimum stands beside them."
     return "No printed total stands beside an optimum."
 
 

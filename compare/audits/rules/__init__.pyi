@@ -1,6 +1,7 @@
 from .clues import held_otherwise, reading_clues
 from .condition_count import count_conditions
 from .continuous_time import said_to_keep
+from .linear_blends import blended, judge_row
 from .on_instances import HANDLED, attributed, placed
 from .plain_words import EXPLAINED, Explained
 from .printed_vertices import Vertex, has_vertices, vertices
@@ -15,9 +16,11 @@ __all__ = [
     "Explained",
     "Vertex",
     "attributed",
+    "blended",
     "count_conditions",
     "has_vertices",
     "held_otherwise",
+    "judge_row",
     "placed",
     "reading_clues",
     "said_to_keep",

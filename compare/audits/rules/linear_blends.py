@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, TypeGuard
 
 import numpy as np
 
 from ....problem import Array, CaseError, Printed, Problem
-from ....problem.cases import Digits, DurationsClaim
+from ....problem.cases import AnyClaim, Digits, DurationsClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
-from ..explanations import LIMITS
 from ..parabolic_blends import Blended, EndBlends, by_blend_accelerations, by_blend_times
 from ..rounding import RoundingBox
 from ..study import Study
@@ -35,10 +34,22 @@ class _Found:
 def judge_blends(study: Study) -> Iterator[Finding]:
     """Findings of TG210."""
     for claim in study.claims:
-        if isinstance(claim, DurationsClaim) and (claim.blends or claim.blend_acceleration):
-            for pid, rid in study.pairs:
-                if claim.problem in (None, pid):
-                    yield _beside(study, claim, pid, rid)
+        yield from judge_row(study, claim)
+
+
+def judge_row(study: Study, claim: AnyClaim) -> Iterator[Finding]:
+    """Findings of TG210 on one claim: none unless it prints blends."""
+    if blended(claim):
+        for pid, rid in study.pairs:
+            if claim.problem in (None, pid):
+                yield _beside(study, claim, pid, rid)
+
+
+def blended(claim: AnyClaim) -> TypeGuard[DurationsClaim]:
+    """Whether a claim prints durations of linear segments with parabolic blends."""
+    if not isinstance(claim, DurationsClaim):
+        return False
+    return claim.blends is not None or claim.blend_acceleration is not None
 
 
 def _beside(study: Study, claim: DurationsClaim, pid: str, rid: str) -> Finding:
@@ -100,7 +111,7 @@ def _beside(study: Study, claim: DurationsClaim, pid: str, rid: str) -> Finding:
         computed=computed,
         message=message,
         decides=said,
-        root=f"{LIMITS} {claim.id}" if verdict is ClaimVerdict.REFUTED else "",
+        root=f"blends {claim.id}" if verdict is ClaimVerdict.REFUTED else "",
     )
 
 

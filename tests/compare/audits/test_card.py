@@ -122,7 +122,7 @@ durations = ["1.0", "1.0", "1.0"]
         ("", "below the"),
         (
             'other_curve = "straight lines"',
-            "Printed times are of another curve (straight lines) and are not judged.",
+            "Printed times are of another curve (straight lines): no optimum stands beside them.",
         ),
     ],
 )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from support.findings import said_of, study_of
 from support.one_joint import QUESTION
+from trajgap.compare.audits.case_audit import audit_case
 from trajgap.compare.audits.rules.linear_blends import judge_blends
 from trajgap.compare.audits.rules.printed_digits import judge_digits
 from trajgap.compare.documents import ClaimVerdict
@@ -92,3 +93,16 @@ def test_blends_go_with_another_curve() -> None:
     )
     with pytest.raises(CaseError, match=r"\.blends: goes with other_curve"):
         parse_case(text, "made-up.toml")
+
+
+def test_the_card_speaks_of_the_row_and_of_nothing_else() -> None:
+    """No explanation by the case's own curve, and no word that the limits are undecided."""
+    card = audit_case(study_of(made_up('blends = "0.40"'))).card
+    assert card.limits.startswith("The printed durations break a limit")
+    assert card.optimum.endswith("no optimum stands beside them.")
+    assert not card.errors
+    assert "misprinted" not in str(card.explanation)
+    kept = audit_case(study_of(made_up('blends = "0.50"'))).card
+    assert kept.limits == "The printed durations keep the limits."
+    unread = audit_case(study_of(made_up(""))).card
+    assert unread.limits.endswith("printed durations are of another curve.")
