@@ -9,6 +9,7 @@ on any path, 2.3e-13 of the same sum over absolute values: `ROUND` of that sum i
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import combinations, combinations_with_replacement
 from math import comb
 from typing import Any
 
@@ -94,6 +95,72 @@ class Task:
         self.shapes *= self.rows[:, 3:4]
 
 
+class _Part:
+    """Rπ or Rρ over each box: vectors of two orders with factors in [−1, 1], and a remainder.
+
+    Parameters
+    ----------
+    leading, following : ndarray, shape (leaf, vector, unknown)
+        Vectors of the lowest order, and of the next one.
+    later : ndarray, shape (leaf,)
+        Norm of the terms of higher order, and of what is 0 but for rounding, with all rounding.
+    """
+
+    def __init__(self, leading: Array, following: Array, later: Array) -> None:
+        self.leading, self.following, self.later = leading, following, later
+        # ‖Σ x_i v_i‖² ≤ Σ |v_iᵀv_j|.
+        self.first = np.sqrt(_products(leading, leading))
+        self.second = _norms(following)
+
+    @property
+    def most(self) -> Array:
+        """The largest norm."""
+        return self.first + self.second + self.later
+
+    def beyond(self, other: _Part) -> Array:
+        """The largest |xᵀy|, x of this part and y of the other, but for both lowest orders."""
+        found = _products(self.leading, other.following) + _products(self.following, other.leading)
+        found += self.second * other.second
+        return found + (self.first + self.second) * other.later + self.later * other.most
+
+
+def _norms(vectors: Array) -> Array:
+    """Sum of the norms of each leaf's vectors."""
+    return np.asarray(np.linalg.norm(vectors, axis=2).sum(axis=1))
+
+
+def _products(these: Array, those: Array) -> Array:
+    """Bound of |(Σ x_i v_i)ᵀ(Σ y_j w_j)| for all |x_i|, |y_j| ≤ 1."""
+    found = np.abs(these @ np.swapaxes(those, 1, 2)).sum(axis=(1, 2))
+    return np.asarray(found + ROUND * _norms(these) * _norms(those))
+
+
+class _Cubic:
+    """Products of three variables: one number for each, whatever the order of its factors.
+
+    Parameters
+    ----------
+    n : int
+        Variables.
+    """
+
+    def __init__(self, n: int) -> None:
+        every = list(combinations_with_replacement(range(n), 3))
+        place = {one: at for at, one in enumerate(every)}
+        pairs = [(k, k) for k in range(n)] + list(combinations(range(n), 2))
+        self.size = len(every)
+        self.cubes = np.array([place[k, k, k] for k in range(n)])
+        """Of x_k³."""
+        self.squares = np.array(
+            [[place[min(k, m), k, max(k, m)] for m in range(n)] for k in range(n)]
+        )
+        """Of x_k²·x_m."""
+        self.products = np.array(
+            [[place[tuple(sorted((a, *pair)))] for pair in pairs] for a in range(n)]  # type: ignore[index]
+        )
+        """Of x_a times the squares x_k², then the pairs x_k·x_m of k < m."""
+
+
 class Bound:
     """Weighted limits on a batch of boxes: arrays (leaf, ...) in the symbols of the docs page.
 
@@ -166,12 +233,13 @@ class Bound:
         rough = np.abs(self.root) @ np.abs(matrix) @ np.abs(back)
         return self.root @ matrix @ back, ROUND * rough.sum(axis=2).max(axis=1)
 
-    def _coercivity(self) -> Array:
-        """κ with M(r)⁻¹ ≼ RᵀR/κ all over each box.
+    def _spectrum(self) -> tuple[Array, Array]:
+        """Bounds (s, c) with s RᵀR ≼ M(r)⁻¹ ≼ c RᵀR all over each box.
 
         M_k(r) = t·T M_k(r⁰) T with t = r/r⁰, T = diag(t, t, 1, 1) on (v, v, a, a), hence
-        κ = (1 − max e/r⁰)(1 − √λ)²(1 − ‖R M⁰ Rᵀ − 1‖), λ the largest eigenvalue against M⁰ of its
-        velocity block weighted with (e_k/r⁰_k)²: at most the 16th root of ‖A¹⁶‖, A its frame.
+        1/c = (1 − max e/r⁰)(1 − √λ)²(1 − d) and 1/s = (1 + max e/r⁰)(1 + √λ)²(1 + d),
+        d = ‖R M⁰ Rᵀ − 1‖, λ the largest eigenvalue against M⁰ of its velocity block weighted with
+        (e_k/r⁰_k)²: at most the 16th root of ‖A¹⁶‖, A its frame.
         """
         frame, rounding = self._framed(self.m0)
         off = np.abs(frame - np.eye(frame.shape[1])).sum(axis=2).max(axis=1) + rounding
@@ -194,14 +262,19 @@ class Bound:
             power = power @ power
         largest = (largest * (1.0 + 1e-9) + rounding) / (1.0 - off)
         need(bool((largest < 1.0).all()), "a leaf that is too wide is not proved")
-        kappa = (1.0 - share.max(axis=1)) * (1.0 - np.sqrt(largest)) ** 2 * (1.0 - off)
-        return np.asarray(kappa * (1.0 - 1e-9))
+        wide, root = share.max(axis=1), np.sqrt(largest)
+        least = (1.0 - wide) * (1.0 - root) ** 2 * (1.0 - off) * (1.0 - 1e-9)
+        most = (1.0 + wide) * (1.0 + root) ** 2 * (1.0 + off) * (1.0 + 1e-9)
+        return 1.0 / most, 1.0 / least
+
+    def _rooted(self, vectors: Array) -> Array:
+        """R v of vectors (leaf, ..., unknowns)."""
+        flat = vectors.reshape(self.size, -1, vectors.shape[-1])
+        return np.asarray((flat @ np.swapaxes(self.root, 1, 2)).reshape(vectors.shape))
 
     def _energy(self, vectors: Array) -> Array:
         """‖R v‖ of vectors (leaf, ..., unknowns)."""
-        flat = vectors.reshape(self.size, -1, vectors.shape[-1])
-        norms = np.linalg.norm(flat @ np.swapaxes(self.root, 1, 2), axis=2)
-        return np.asarray(norms.reshape(vectors.shape[:-1]))
+        return np.asarray(np.linalg.norm(self._rooted(vectors), axis=-1))
 
     def _solve(self, right: Array) -> Array:
         half = right @ np.swapaxes(self.root, 1, 2)
@@ -223,17 +296,22 @@ class Bound:
         size = (moved * top**2 + against[0] + against[1] * top + against[2] / bottom).sum(axis=1)
         size += np.abs(self.tau) * (task.total + (1.0 / bottom).sum(axis=1))
         # Taylor coefficients of what depends on one duration; joints add to them below.
-        # 1/(r + δ) = 1/r − δ/r² + δ²/r³ − δ³/(r³(r + δ)).
+        # 1/(r + δ) = 1/r − δ/r² + δ²/r³ − δ³/r⁴ + δ⁴/(r⁴(r + δ)).
         alone = np.zeros((5, self.size, n))
         change = self.tau[:, None] - against[2]
         alone[0] = bent * r**2 - against[0] - against[1] * r + change / r
         alone[1] = 2.0 * bent * r - against[1] - change / r**2
         alone[2] = bent + change / r**3
-        cubic = (np.abs(change) * e**3 / (r**3 * bottom)).sum(axis=1)
+        alone[3] = -change / r**4
+        error = (np.abs(change) * e**4 / (r**4 * bottom)).sum(axis=1)
         second = np.zeros((self.size, n, n))
         first = np.zeros((self.size, n))
         value = -self.tau * task.total
-        error = np.zeros(self.size)
+        # πᵀM⁻¹ρ = ½(c + s)·(Rπ)ᵀ(Rρ) + what is at most ½(c − s)·‖Rπ‖‖Rρ‖.
+        small, large = self._spectrum()
+        middle, spread = 0.5 * (large + small), 0.5 * (large - small) + ROUND * large
+        thrice = _Cubic(n)
+        cubic = np.zeros((self.size, thrice.size))
         for joint in range(self.joints):
             mine = j == joint
             if not mine.any():
@@ -249,23 +327,34 @@ class Bound:
             alone += found["alone"]
             first += found["first"]
             second += found["second"]
-            cubic += found["cubic"]
             size += found["size"]
-            error += found["error"]
+            adjoint, residual = found["adjoint"], found["residual"]
+            both = adjoint.leading @ np.swapaxes(residual.leading, 1, 2)
+            for k_, where in enumerate(thrice.products):
+                cubic[:, where] += middle[:, None] * both[:, k_]
+            rounding = ROUND * _norms(adjoint.leading) * _norms(residual.leading)
+            error += middle * (rounding + adjoint.beyond(residual))
+            error += spread * adjoint.most * residual.most
+            for k_, where in enumerate(thrice.squares):
+                cubic[:, where] += found["squared"][:, k_] * e[:, k_, None] ** 2 * e
+            error += found["quartic"]
         value += alone[0].sum(axis=1)
         first += alone[1]
-        cubic += (np.abs(alone[3]) * e**3 + np.abs(alone[4]) * e**4).sum(axis=1)
+        cubic[:, thrice.cubes] += alone[3] * e**3
+        error += (np.abs(alone[4]) * e**4).sum(axis=1) + np.abs(cubic).sum(axis=1)
+        # In x = δ/e: x_k x_m ≥ −½(x_k² + x_m²), so that products of two take from the squares.
         each = np.arange(n)
-        bend = second[:, each, each] + 2.0 * alone[2]
+        second *= e[:, :, None] * e[:, None, :]
+        bend = second[:, each, each] + 2.0 * alone[2] * e**2
         second[:, each, each] = 0.0
-        inside = np.abs(first) < bend * e
-        turn = -0.5 * first * first / bend
-        value += np.where(inside, turn, 0.5 * bend * e * e - np.abs(first) * e).sum(axis=1)
-        value -= 0.5 * (np.abs(second) * e[:, :, None] * e[:, None, :]).sum(axis=(1, 2))
-        error = error / self._coercivity() + cubic
+        bend -= np.abs(second).sum(axis=2)
+        lean = np.abs(first) * e
+        inside = lean < bend
+        turn = -0.5 * lean * lean / np.where(inside, bend, 1.0)
+        value += np.where(inside, turn, 0.5 * bend - lean).sum(axis=1)
         return np.asarray(value - error * (1.0 + 1e-9) - 10.0 * ROUND * size)
 
-    def _joint(self, step: Array, phi: Array) -> dict[str, Array]:
+    def _joint(self, step: Array, phi: Array) -> dict[str, Any]:
         """One joint's part: F = φᵀx̃ + μᵀ(b − M x̃) + (φ − M μ)ᵀ(x − x̃), x̃ = x0 + Σ X_m δ_m."""
         n, r, e = self.n, self.r, self.e
         stiff, load = self.stiff, self.load * step[:, None]
@@ -284,30 +373,44 @@ class Bound:
         high = phi[3] + phi[2] * (r + e)[:, :, None]
         weak = high.sum(axis=1) + np.einsum("lij,lj->li", self.stiff_top, np.abs(mu))
         outer = np.abs(self.root)
-        adjoint = np.linalg.norm(
-            np.einsum("lij,lj->li", outer, np.abs(rest) + ROUND * weak), axis=1
+        loose = np.abs(rest) + ROUND * weak
+        later = (self._energy(gain[2]) * e**3).sum(axis=1)
+        adjoint = _Part(
+            self._rooted(gain[0]) * e[:, :, None],
+            self._rooted(gain[1]) * (e**2)[:, :, None],
+            later + np.linalg.norm(np.einsum("lij,lj->li", outer, loose), axis=1),
         )
-        for o in range(3):
-            adjoint += (self._energy(gain[o]) * e ** (o + 1)).sum(axis=1)
         # ρ = b − M x̃: constant and linear parts, which are 0 but for rounding; then, o ≥ 2,
         # (b_o − M_o x0 − M_(o−1) X_k) δ_kᵒ of each segment k, and −M_o X_m δ_kᵒ δ_m for m ≠ k.
         pulled = np.einsum("olkij,lmj->olkmi", stiff[1:], slope)
         zero = load[0].sum(axis=1) - np.einsum("lij,lj->li", self.m0, x0)
         linear = rise - np.einsum("lij,lmj->lmi", self.m0, slope)
         loose = np.abs(zero) + np.einsum("lm,lmi->li", e, np.abs(linear)) + ROUND * reach
-        residual = np.linalg.norm(np.einsum("lij,lj->li", outer, loose), axis=1)
-        each = np.arange(n)
-        for o in range(2, 5):
-            own = load[o] - pulled[o - 2][:, each, each]
-            if o < 4:
-                own = own - np.einsum("lkij,lj->lki", stiff[o], x0)
-            residual += (self._energy(own) * e**o).sum(axis=1)
-        both = pulled[0] + np.swapaxes(pulled[0], 1, 2)
-        pairs = self._energy(both) * e[:, :, None] * e[:, None, :]
-        residual += 0.5 * (pairs.sum(axis=(1, 2)) - pairs[:, each, each].sum(axis=1))
-        for o in (1, 2):
-            crossed = self._energy(pulled[o]) * e[:, :, None] ** (o + 1) * e[:, None, :]
-            residual += crossed.sum(axis=(1, 2)) - crossed[:, each, each].sum(axis=1)
+        each, (k, m) = np.arange(n), np.triu_indices(n, 1)
+        own = [load[o] - pulled[o - 2][:, each, each] for o in range(2, 5)]
+        own[0] = own[0] - np.einsum("lkij,lj->lki", stiff[2], x0)
+        own[1] = own[1] - np.einsum("lkij,lj->lki", stiff[3], x0)
+        pairs = -(pulled[0] + np.swapaxes(pulled[0], 1, 2))[:, k, m]
+        k_, m_ = np.nonzero(~np.eye(n, dtype=bool))
+        later = (self._energy(own[2]) * e**4).sum(axis=1)
+        later += (self._energy(pulled[2][:, k_, m_]) * e[:, k_] ** 3 * e[:, m_]).sum(axis=1)
+        residual = _Part(
+            np.concatenate(
+                [
+                    self._rooted(own[0]) * (e**2)[:, :, None],
+                    self._rooted(pairs) * (e[:, k] * e[:, m])[:, :, None],
+                ],
+                axis=1,
+            ),
+            np.concatenate(
+                [
+                    self._rooted(own[1]) * (e**3)[:, :, None],
+                    self._rooted(-pulled[1][:, k_, m_]) * (e[:, k_] ** 2 * e[:, m_])[:, :, None],
+                ],
+                axis=1,
+            ),
+            later + np.linalg.norm(np.einsum("lij,lj->li", outer, loose), axis=1),
+        )
         alone = np.zeros((5, self.size, n))
         for o in range(5):
             part = load[o] if o == 4 else load[o] - np.einsum("lkij,lj->lki", stiff[o], x0)
@@ -315,13 +418,13 @@ class Bound:
         alone[0] += np.einsum("lki,li->lk", full, x0)
         alone[1] += np.einsum("lki,li->lk", phi[0], x0)
         mixed = np.einsum("olki,lmi->olkm", gain, slope)
-        cubic = np.einsum("lkm,lk,lm->l", np.abs(mixed[1]), e**2, e)
-        cubic += np.einsum("lkm,lk,lm->l", np.abs(mixed[2]), e**3, e)
         return {
             "alone": alone,
             "first": np.einsum("li,lmi->lm", rest, slope),
             "second": mixed[0] + np.swapaxes(mixed[0], 1, 2),
-            "cubic": cubic,
+            "squared": mixed[1],
+            "quartic": np.einsum("lkm,lk,lm->l", np.abs(mixed[2]), e**3, e),
             "size": (high.sum(axis=1) * wide).sum(axis=1) + (np.abs(mu) * reach).sum(axis=1),
-            "error": adjoint * residual,
+            "adjoint": adjoint,
+            "residual": residual,
         }

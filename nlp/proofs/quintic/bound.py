@@ -7,14 +7,23 @@ from __future__ import annotations
 
 import numpy as np
 
-from .energy import ROUNDING, adjoint_part, coercivity, residual_part
+from .energy import (
+    ROUNDING,
+    add_cubic,
+    adjoint_part,
+    leading_norm,
+    norms,
+    products,
+    residual_part,
+    spectrum,
+)
 from .nodal import LOAD, LOAD_POWERS, POWERS, STIFFNESS, apply_inverse, compiled, place, taylor
 
 
 @compiled
 def bound(  # type: ignore[no-untyped-def]
     n, joints, r, e, step, total, matrix, inverse, x0, slope,
-    segment, joint, power, limit, shape, weight, tau,
+    segment, joint, power, limit, shape, weight, tau, blame,
 ):  # fmt: skip
     """Lower bound of Σ weight·(limit exceeded by) + tau·(Σ h − total) over the box.
 
@@ -27,12 +36,19 @@ def bound(  # type: ignore[no-untyped-def]
     where … is what depends on single durations. That and all before π is a polynomial of each r_k
     (``curve``) and a multiple of 1/r_k, so that
 
-        sum ≥ value + firstᵀδ + ½ δᵀ second δ − third − Σ_joints ‖π‖‖ρ‖/κ.
+        sum ≥ value + firstᵀδ + ½ δᵀ second δ − |cubic(δ)| − later orders − Σ_joints error,
+        πᵀM⁻¹ρ = ½(c + s)·(Rπ)ᵀ(Rρ) + what is at most ½(c − s)·‖Rπ‖‖Rρ‖,  s RᵀR ≼ M⁻¹ ≼ c RᵀR,
+
+    where the lowest order of (Rπ)ᵀ(Rρ) is cubic too: its terms join the others before their
+    absolute values are taken.
     """
     size = matrix.shape[0]
-    kappa = coercivity(n, r, e, inverse, matrix)
-    if not kappa > 0.0:
+    small, large = spectrum(n, r, e, inverse, matrix)
+    if not large > 0.0:
         return -np.inf
+    middle = 0.5 * (large + small)
+    spread = 0.5 * (large - small) + ROUNDING * large
+    cubic = np.zeros((n, n, n))
     phi, rough = np.zeros((joints, n, 4)), np.zeros((joints, n, 4))
     curve, against = np.zeros((n, 5)), np.zeros(n)
     absolute = abs(tau) * total
@@ -53,7 +69,11 @@ def bound(  # type: ignore[no-untyped-def]
             curve[k, power[i]] -= w * limit[i]
             absolute += abs(w) * limit[i] * (top if power[i] == 1 else 1.0)
     second, first = np.zeros((n, n)), np.zeros(n)
-    third, error = 0.0, 0.0
+    later_orders, error = 0.0, 0.0
+    pi1, rho2 = np.empty((n, size)), np.empty((n * (n + 1) // 2, size))
+    pi_share, rho_share = np.empty(n), np.empty(n * (n + 1) // 2)
+    blame[:] = 0.0
+    pi2, rho3 = np.empty((n, size)), np.empty((n * n, size))
     mu, right, reach = np.zeros(size), np.zeros(size), np.zeros(size)
     gain = np.zeros((n, 4, 4))
     for j in range(joints):
@@ -66,9 +86,27 @@ def bound(  # type: ignore[no-untyped-def]
                 if i >= 0:
                     right[i] += phi[j, k, a] * (r[k] if a < 2 else 1.0)
         apply_inverse(inverse, right, mu)
-        adjoint, rest = adjoint_part(n, r, e, inverse, matrix, phi[j], rough[j], mu, gain)
-        residual = residual_part(n, r, e, inverse, matrix, step[:, j], x0[j], slope[j], reach)
-        error += adjoint * residual
+        later, loose, rest = adjoint_part(
+            n, r, e, inverse, matrix, phi[j], rough[j], mu, gain, pi1, pi2
+        )
+        rho_later, rho_loose = residual_part(
+            n, r, e, inverse, matrix, step[:, j], x0[j], slope[j], reach, rho2, rho3
+        )
+        adjoint, residual = leading_norm(pi1, pi_share), leading_norm(rho2, rho_share)
+        later, rho_later = later + loose, rho_later + rho_loose
+        n2, n3 = norms(pi2), norms(rho3)
+        most, rho_most = adjoint + n2 + later, residual + n3 + rho_later
+        error += add_cubic(n, middle, pi1, rho2, cubic)
+        along = products(pi1, rho3) + products(pi2, rho2) + n2 * n3
+        along += (adjoint + n2) * rho_later + later * rho_most
+        error += middle * along + spread * most * rho_most
+        at = n
+        for k in range(n):
+            blame[k] += spread * (pi_share[k] * rho_most + 2.0 * rho_share[k] * most)
+            for m in range(k + 1, n):
+                blame[k] += spread * rho_share[at] * most
+                blame[m] += spread * rho_share[at] * most
+                at += 1
         wide = np.abs(x0[j])
         for m in range(n):
             wide += e[m] * np.abs(slope[j, m])
@@ -100,8 +138,11 @@ def bound(  # type: ignore[no-untyped-def]
                     if order == 1:
                         second[k, m] += v
                         second[m, k] += v
+                    elif order == 2:
+                        low, high = min(k, m), max(k, m)
+                        cubic[low, k, high] += v * e[k] * e[k] * e[m]
                     else:
-                        third += abs(v) * e[k] ** order * e[m]
+                        later_orders += abs(v) * e[k] ** order * e[m]
     value = -tau * total
     for k in range(n):
         p0, ek = r[k], e[k]
@@ -109,26 +150,31 @@ def bound(  # type: ignore[no-untyped-def]
             value += curve[k, p] * taylor(p, 0, p0)
             first[k] += curve[k, p] * taylor(p, 1, p0)
             second[k, k] += 2.0 * curve[k, p] * taylor(p, 2, p0)
-        for order in range(3, 5):
-            v = 0.0
-            for p in range(5):
-                v += curve[k, p] * taylor(p, order, p0)
-            third += abs(v) * ek**order
-        # 1/(p + δ) = 1/p − δ/p² + δ²/p³ − δ³/(p³(p + δ))
+            cubic[k, k, k] += curve[k, p] * taylor(p, 3, p0) * ek**3
+        later_orders += abs(curve[k, 4]) * ek**4
+        # 1/(p + δ) = 1/p − δ/p² + δ²/p³ − δ³/p⁴ + δ⁴/(p⁴(p + δ))
         c = tau - against[k]
         value += c / p0
         first[k] -= c / (p0 * p0)
         second[k, k] += 2.0 * c / (p0 * p0 * p0)
-        third += abs(c) * ek**3 / (p0**3 * (p0 - ek))
+        cubic[k, k, k] -= c * ek**3 / p0**4
+        later_orders += abs(c) * ek**4 / (p0**4 * (p0 - ek))
         absolute += abs(tau) / (p0 - ek)
     for k in range(n):
-        ek, slope_k, bend = e[k], first[k], second[k, k]
-        # The least of slope·δ + ½ bend·δ² is at an end, or at the vertex.
-        least = 0.5 * bend * ek * ek - abs(slope_k) * ek
-        if bend > 0.0 and abs(slope_k) < bend * ek:
-            least = -0.5 * slope_k * slope_k / bend
-        value += least
-        for m in range(k):
-            value -= abs(second[k, m]) * ek * e[m]
-    error = error / kappa * (1.0 + 1e-9)
-    return value - third * (1.0 + 1e-9) - error - 10.0 * ROUNDING * absolute
+        # x_k x_m ≥ −½(x_k² + x_m²), so that products of two take from the squares.
+        bend = second[k, k] * e[k] * e[k]
+        for m in range(n):
+            if m != k:
+                bend -= abs(second[k, m]) * e[k] * e[m]
+        # The least of slope·x + ½ bend·x², |x| ≤ 1, is at an end, or at the vertex.
+        lean = abs(first[k]) * e[k]
+        value += -0.5 * lean * lean / bend if lean < bend else 0.5 * bend - lean
+    third = np.abs(cubic).sum()
+    for i in range(n):
+        for k in range(i, n):
+            for m in range(k, n):
+                v = abs(cubic[i, k, m])
+                blame[i] += v
+                blame[k] += v
+                blame[m] += v
+    return value - (third + later_orders + error) * (1.0 + 1e-9) - 10.0 * ROUNDING * absolute

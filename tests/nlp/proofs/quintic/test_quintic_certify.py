@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import runpy
 from collections.abc import Callable
@@ -13,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy.interpolate import make_interp_spline
+from scipy.optimize import minimize
 from support.checkout import ROOT
 from support.unjudged import unjudged
 from support.unlucky import answering
@@ -32,6 +34,8 @@ from trajgap.problem import Limits, Problem, TrajgapError, evaluate, quintic_spl
 from trajgap.verify import seal
 from trajgap.verify import verify_certificate as verify
 from trajgap.verify.quintic import QuinticSpline
+from trajgap.verify.quintic_bound import Bound, Task
+from trajgap.verify.reading import Clock
 
 module = import_module("trajgap.nlp.proofs.quintic.certifier")
 ENDS = [(1, 0.0), (2, 0.0)]
@@ -72,11 +76,11 @@ def row_value(
     return (value - limit) * h[segment] ** (order - 2)
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(16))
 def test_the_bound_is_below_every_sampled_curve(seed: int) -> None:
     rng = np.random.default_rng(seed)
     n, joints, count = int(rng.integers(2, 6)), 3, 5
-    h0, width = np.exp(rng.uniform(-0.5, 0.5, n)), [0.01, 0.04, 0.08, 0.15][seed]
+    h0, width = np.exp(rng.uniform(-0.5, 0.5, n)), [0.01, 0.04, 0.08, 0.15][seed % 4]
     q = rng.uniform(-1.0, 1.0, (n + 1, joints))
     low, high = 1.0 / (h0 * np.exp(width)), 1.0 / (h0 * np.exp(-width))
     r, e = 0.5 * (low + high), 0.5 * (high - low)
@@ -87,16 +91,17 @@ def test_the_bound_is_below_every_sampled_curve(seed: int) -> None:
     assert centre(n, joints, r, step, matrix, inverse, x0, slope)
     segment, joint = rng.integers(0, n, count), rng.integers(0, joints, count)
     order, spot = np.array([1, 2, 3, 1, 2]), rng.integers(0, PLACES + 1, count)
-    sign, limit = rng.choice([-1, 1], count), rng.uniform(0.5, 3.0, count)
-    weight, shape = rng.uniform(0.1, 1.0, count), np.empty((count, 5))
+    limits = rng.uniform(0.5, 3.0, (joints, 3))
+    sign, limit = rng.choice([-1, 1], count), limits[joint, order - 1]
+    weight, shape = rng.integers(1, 10, count).astype(float), np.empty((count, 5))
     for i in range(count):
         row_shape(order[i], float(sign[i]), spot[i], shape[i])
-    tau, total = float(rng.normal()), float(h0.sum())
+    tau, total = float(rng.integers(-9, 10)), float(h0.sum())
 
     def least(e: np.ndarray) -> float:
         centred = (n, joints, r, e, step, total, matrix, inverse, x0, slope)
         rows = (segment, joint, 2 - order, limit, shape, weight)
-        return float(bound(*centred, *rows, tau))
+        return float(bound(*centred, *rows, tau, np.empty(n)))
 
     def value(point: np.ndarray) -> float:
         found = [
@@ -105,9 +110,20 @@ def test_the_bound_is_below_every_sampled_curve(seed: int) -> None:
         ]
         return float(weight @ found + tau * ((1 / point).sum() - total))
 
-    points = r + e * rng.uniform(-1, 1, (30, n)).round(rng.integers(0, 2))
-    values = [value(np.clip(p, r - e, r + e)) for p in points]
-    assert least(e) <= min(values) + 1e-9
+    corners = np.array(list(itertools.product((-1.0, 1.0), repeat=n)))
+    points = r + e * np.vstack([corners, rng.uniform(-1, 1, (30, n))])
+    values = [value(p) for p in points]
+    lowest = points[int(np.argmin(values))]
+    inside = list(zip(r - e, r + e, strict=True))
+    lowest_value = min(*values, minimize(value, lowest, bounds=inside).fun)
+    assert least(e) <= lowest_value + 1e-9
+    # The verifier bounds the same sum by its own program.
+    rows = np.stack([segment, joint, order, sign, spot], axis=1).tolist()
+    terms = itertools.chain.from_iterable(enumerate(weight.astype(int).tolist()))
+    task = Task(step, limits, total, rows, Clock(1e9))
+    proved = Bound(task, (1 / high)[None], (1 / low)[None], [[int(tau), *terms]]).least()[0]
+    assert proved <= lowest_value + 1e-9
+    assert proved == pytest.approx(least(e), rel=1e-6, abs=1e-6)
     # It is worth something: second order in the width, exact at the centre.
     assert least(1e-9 * e) == pytest.approx(value(r), abs=1e-6)
     halved = [least(0.1 * e / 2**k) for k in (0, 6)]
