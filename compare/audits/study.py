@@ -254,11 +254,18 @@ class Study(ReplayedCase):
     def unmoved(self, claim: Claim, pid: str, rid: str) -> str | None:
         """Why durations alone define no motion; None if they do."""
         curve = self.claim_problem(claim, pid, rid).curve
+        printed = self.case.printed_durations(claim)
+        if printed and len(printed) != curve.segments:
+            return (
+                f"the curve ({curve.name}) has {curve.segments} segments, but {len(printed)} "
+                "durations are printed"
+            )
         if not curve.free:
             return None
+        many = f"{curve.free} coefficient{'s' if curve.free > 1 else ''}"
         return (
-            f"the curve ({curve.name}) leaves {curve.free} coefficients per joint free, so that "
-            "durations alone define no motion"
+            f"the curve ({curve.name}) leaves {many} per joint free, so that durations alone "
+            "define no motion"
         )
 
     def _determined(self, claim: Claim, pid: str, rid: str) -> Problem:

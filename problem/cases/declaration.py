@@ -21,7 +21,9 @@ from ..curves import (
     jtraj,
     piecewise,
     quintic_spline,
+    quintic_spline_virtual,
     rest_to_rest,
+    septic_spline,
     three_five_three,
     uniform_cubic_b_spline,
 )
@@ -53,7 +55,18 @@ class Family:
 
 def _polynomials(block: InterpolantBlock, count: int, ends: Ends) -> Curve:
     continuity = 2 if block.continuity is None else block.continuity
-    return piecewise(block.degrees or (), continuity, ends[0], finish=ends[1])
+    virtual = block.virtual or ()
+    return piecewise(block.degrees or (), continuity, ends[0], finish=ends[1], virtual=virtual)
+
+
+def _spline(made: Callable[..., Curve]) -> Callable[[InterpolantBlock, int, Ends], Curve]:
+    """A spline of one degree: a segment between breaks, of which virtual ones are no way-points."""
+
+    def declared(block: InterpolantBlock, count: int, ends: Ends) -> Curve:
+        virtual = block.virtual or ()
+        return made(count - 1 + len(virtual), *ends, virtual=virtual)
+
+    return declared
 
 
 def _clamped(block: InterpolantBlock, count: int, ends: Ends) -> Curve:
@@ -62,18 +75,18 @@ def _clamped(block: InterpolantBlock, count: int, ends: Ends) -> Curve:
     return ClampedBSpline(count, block.degree or 0, knots, parameters, time, block.orders)
 
 
-_VALUES = ("end_derivatives", "finish_derivatives")
-"""Keys of the families whose ends may move."""
-_ENDS = ("end_orders", "finish_orders", *_VALUES, "free")
-"""Keys of the families whose ends can be chosen."""
+_ENDS = ("end_orders", "finish_orders", "end_derivatives", "finish_derivatives", "virtual", "free")
+"""Keys of the families whose ends and virtual breaks can be chosen."""
+_USUAL_ORDERS = {"cubic-spline": (1,), "septic-spline": (1, 2, 3)}
+"""Orders at the ends that determine a spline where its block has none, if they are not (1, 2)."""
 FAMILIES = {
     "3-5-3": Family(lambda block, count, ends: three_five_three()),
     "polynomials": Family(_polynomials, ("degrees",), ("continuity", *_ENDS)),
-    "cubic-spline": Family(lambda block, count, ends: cubic_spline(count - 1, *ends), (), _ENDS),
-    "quintic-spline": Family(
-        lambda block, count, ends: quintic_spline(count - 1, *ends), (), _VALUES
-    ),
+    "cubic-spline": Family(_spline(cubic_spline), (), _ENDS),
+    "quintic-spline": Family(_spline(quintic_spline), (), _ENDS),
+    "septic-spline": Family(_spline(septic_spline), (), _ENDS),
     "cubic-spline-virtual": Family(lambda block, count, ends: cubic_spline_virtual(count)),
+    "quintic-spline-virtual": Family(lambda block, count, ends: quintic_spline_virtual(count)),
     "rest-to-rest": Family(
         lambda block, count, ends: rest_to_rest(count - 1, block.degree or 0), ("degree",)
     ),
@@ -116,7 +129,8 @@ class InterpolantBlock(Strict):
     continuity: Annotated[StrictInt, Field(ge=0, le=8)] | None = None
     """Polynomials: highest continuous derivative at the via-points; 2 if absent."""
     end_orders: tuple[Annotated[StrictInt, Field(ge=1, le=8)], ...] | None = None
-    """Orders of the derivatives prescribed at both ends; [1, 2] if absent (cubic-spline: [1])."""
+    """Orders of the derivatives prescribed at both ends; [1, 2] if absent (cubic-spline: [1],
+    septic-spline: [1, 2, 3])."""
     finish_orders: tuple[Annotated[StrictInt, Field(ge=1, le=8)], ...] | None = None
     """Those at the last way-point, where they are others; end_orders are the start's then."""
     end_derivatives: tuple[OneOrEachNumber, ...] | None = None
@@ -134,8 +148,10 @@ class InterpolantBlock(Strict):
     """B-splines: whether each segment is stretched in time by itself, or time is smooth."""
     time_ends: Literal["equal-vertices", "natural"] | None = None
     """Uniform B-spline whose time is timed: how time ends, as the joints do if absent."""
+    virtual: tuple[Annotated[StrictInt, Field(ge=1)], ...] | None = None
+    """Breaks without a way-point, counted among all breaks with the first way-point as 0."""
     free: Annotated[StrictInt, Field(ge=0)] = 0
-    """Coefficients per joint that the conditions leave free."""
+    """Coefficients per joint that the conditions leave free: positions of virtual breaks first."""
 
     @model_validator(mode="after")
     def _keys_of_family(self) -> Self:
@@ -153,6 +169,9 @@ class InterpolantBlock(Strict):
                     ".degree",
                     f"{self.degree} is not allowed; use {words} or {allowed_degrees[-1]}",
                 )
+        virtual = self.virtual or ()
+        if len(set(virtual)) != len(virtual):
+            raise fault(".virtual", "names a break twice; leave one out")
         for end, orders in (("end", self.orders), ("finish", self.last_orders)):
             if len(set(orders)) != len(orders):
                 raise fault(f".{end}_orders", "names an order twice; leave one out")
@@ -164,7 +183,7 @@ class InterpolantBlock(Strict):
         """Orders prescribed at the start, and at the finish unless it has its own."""
         if self.end_orders is not None:
             return self.end_orders
-        return (1,) if self.family == "cubic-spline" else (1, 2)
+        return _USUAL_ORDERS.get(self.family, (1, 2))
 
     @property
     def last_orders(self) -> tuple[int, ...]:

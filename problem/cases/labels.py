@@ -32,7 +32,9 @@ _FAMILIES = {
     "3-5-3": "3-5-3 polynomials",
     "cubic-spline": "cubic spline",
     "quintic-spline": "quintic spline",
+    "septic-spline": "septic spline",
     "cubic-spline-virtual": "cubic spline with virtual points",
+    "quintic-spline-virtual": "quintic spline with virtual points",
     "rest-to-rest": "at rest at every way-point",
     "uniform-cubic-b-spline": "uniform cubic B-spline",
     "clamped-b-spline": "clamped B-spline",
@@ -165,8 +167,12 @@ def _declared(block: InterpolantBlock) -> Iterator[str]:
         yield from _end_words("start" if apart else "end", block.orders, block.end_derivatives)
     if apart:
         yield from _end_words("finish", block.last_orders, block.last_derivatives)
+    if block.virtual:
+        several = len(block.virtual) > 1
+        breaks = _and([str(b) for b in sorted(block.virtual)])
+        yield f"virtual point{'s' if several else ''} at break{'s' if several else ''} {breaks}"
     if block.free:
-        yield f"{block.free} free coefficients"
+        yield f"{block.free} free coefficient{'s' if block.free > 1 else ''}"
 
 
 def _end_words(end: str, orders: tuple[int, ...], values: Values | None) -> Iterator[str]:

@@ -10,7 +10,7 @@ from math import tau
 import numpy as np
 
 from ..arrays import Array
-from ..curves import Curve, Derivatives
+from ..curves import MOST_OPEN, Curve, Derivatives
 from ..errors import CaseError, TrajgapError
 from ..fields import LimitPair
 from ..limits import Limits
@@ -216,6 +216,12 @@ class Statement:
                 "change the family, the degrees or the way-points",
             )
         polynomials = curve.piecewise
+        if polynomials is not None and polynomials.free and polynomials.coefficients > MOST_OPEN:
+            raise self.fail(
+                "interpolant",
+                f"leaves {polynomials.free} of {polynomials.coefficients} coefficients free, and "
+                f"at most {MOST_OPEN} are computed with where some are; add conditions",
+            )
         if polynomials is not None and polynomials.free != block.free:
             raise self.fail(
                 "interpolant",

@@ -91,7 +91,7 @@ def test_what_is_not_known_is_said_and_nothing_is_suggested(declared, name):
         ("quintic", "quintic-b-spline or quintic-polynomials or quintic-spline"),
         ("clamped", "clamped-b-spline or clamped-cubic"),
         ("quintc-spline", "quintic-spline"),
-        ("virtual", "cubic-spline-virtual"),
+        ("virtual", "cubic-spline-virtual or quintic-spline-virtual"),
         (
             "cubic",
             "clamped-cubic or cubic-b-spline or cubic-polynomials or cubic-spline or natural-cubic",
