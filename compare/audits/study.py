@@ -235,14 +235,14 @@ class Study(ReplayedCase):
         """A total (s) that some stretch of ``durations`` keeps whatever the digits stand for.
 
         It holds for every way-point that rounds to the printed digits or is cut off to them, and
-        every limit that rounds to them; None if there is no such stretch, or if durations alone
-        define no motion.
+        every limit that rounds to them; None if there is no such stretch, if durations alone
+        define no motion, or if the curve itself is printed in rounded numbers.
         """
         try:
             problem = self.claim_problem(claim, pid, rid, Digits.TIGHTEST)
         except CaseError:  # the tightest ranges are empty
             return None
-        if problem.curve.free:
+        if problem.curve.free or self.case.statement(pid, rid).loose_ends:
             return None
         box = self.waypoint_box(problem, pid, rid).or_cut_off()
         return reachable_total(problem, durations, box.lower, box.upper)

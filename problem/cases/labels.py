@@ -44,12 +44,14 @@ _KNOTS = {
     "waypoints": "knots at the way-points",
     "averaged": "averaged knots",
     "averaged-continued": "averaged knots, continued at the ends",
+    "given": "printed knots",
 }
 """Where the inner knots of a clamped B-spline lie."""
 _PARAMETERS = {
     "times": "knots by the times",
     "chord": "knots by chord lengths",
     "joint-chord": "knots by the chord lengths of each joint",
+    "given": "printed parameters",
 }
 """What its knots are placed by."""
 _TIME = {"stretched": "each segment stretched in time by itself", "timed": "smooth time"}

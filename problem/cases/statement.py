@@ -234,9 +234,13 @@ class Statement:
 
     @property
     def loose_ends(self) -> bool:
-        """Whether some derivative at the ends is a printed number, which stands for an interval."""
+        """Whether a derivative at the ends, a knot or a parameter is a printed number.
+
+        It stands for an interval, which no proof covers.
+        """
         block = self.declaration
         every = (*(block.end_derivatives or ()), *(block.finish_derivatives or ()))
+        every += (*(block.knot_vector or ()), *(block.parameter_values or ()))
         each = (n for one in every for n in (one if isinstance(one, tuple) else (one,)))
         return any(not number.exact for number in each)
 
