@@ -86,7 +86,9 @@ _SAYING_NOTHING = {
     "trajectory", "via", "waypoint", "waypoints", "with",
 }  # fmt: skip
 """Words that tell no curve from another."""
-_PROFILES = ("lspb", "trapezoidal", "trapezoid", "parabolic", "blends", "scurve", "doubles")
+_PROFILES = (
+    "lspb", "trapezoidal", "trapezoid", "parabolic", "blends", "scurve", "doubles", "sinejerk",
+)  # fmt: skip
 """Words of profiles of velocity, which start and end each segment at rest."""
 _ANGELES = {"3-4-5": 5, "4-5-6-7": 7, "5-6-7-8-9": 9}
 """Names of one polynomial from rest to rest by the powers that it has (Angeles, Fundamentals of
@@ -193,6 +195,7 @@ def _words(name: str) -> set[str]:
     """The words of a name that tell it from others, each in one form."""
     text = re.sub(r"\bb[-\s]?(?=splines?\b)", "b", name.lower())
     text = re.sub(r"\b(s[-\s]curves?|double[-\s]s)\b", "scurve", text)
+    text = re.sub(r"\b(sine|sinusoidal|trigonometric)[-\s]jerk\b", "sinejerk", text)
     found = (_WORDS.get(word, word) for word in re.findall(r"[a-z0-9]+", text))
     return {word for word in found if word not in _SAYING_NOTHING}
 

@@ -106,7 +106,16 @@ def test_a_name_that_may_mean_several_is_answered_with_them(declared, name, mean
 
 
 @pytest.mark.parametrize(
-    "name", ["LSPB", "parabolic blends", "trapezoidal velocity profile", "S-curve", "double S"]
+    "name",
+    [
+        "LSPB",
+        "parabolic blends",
+        "trapezoidal velocity profile",
+        "S-curve",
+        "double S",
+        "sine-jerk",
+        "sinusoidal jerk profile",
+    ],
 )
 def test_profiles_are_told_where_they_belong(declared, name):
     with pytest.raises(CaseError, match="is a profile from rest to rest, not a curve through"):
