@@ -51,9 +51,11 @@ _PARAMETERS = {
     "times": "knots by the times",
     "chord": "knots by chord lengths",
     "joint-chord": "knots by the chord lengths of each joint",
-    "given": "printed parameters",
+    "given": "knots by printed parameters",
 }
 """What its knots are placed by."""
+_SITES = {"times": "way-points at the times", "given": "way-points at printed parameters"}
+"""Where the way-points lie among printed knots."""
 _TIME = {"stretched": "each segment stretched in time by itself", "timed": "smooth time"}
 """How time enters a B-spline."""
 _TIME_ENDS = {
@@ -158,7 +160,8 @@ def _declared(block: InterpolantBlock) -> Iterator[str]:
         yield f"degrees {'-'.join(map(str, block.degrees))}"
     if block.continuity is not None:
         yield f"continuous up to derivative {block.continuity}"
-    named = ((_KNOTS, block.knots), (_PARAMETERS, block.parameters))
+    sites = _SITES if block.knots == "given" else _PARAMETERS
+    named = ((_KNOTS, block.knots), (sites, block.parameters))
     yield from (words[key] for words, key in named if key is not None)
     if block.time is not None:
         yield _TIME[block.time]

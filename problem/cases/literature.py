@@ -23,6 +23,10 @@ LITERATURE: dict[str, tuple[str, dict[str, object]]] = {
 quintic B-spline through way-points is a C2 cubic or C4 quintic spline at rest at both ends."""
 _CHOSEN = "chosen: write a reading for each other meaning that the paper admits"
 """What is said beside keys that a name of a curve leaves open."""
+_NOTES = {
+    "quintic-spline-virtual": "no motion is the shortest unless [durations] has a lower bound",
+}
+"""What whoever names a family should know."""
 _NEEDED: dict[str, dict[str, object]] = {
     "uniform-cubic-b-spline": {"time": "timed"},
     "clamped-b-spline": {"knots": "averaged-continued", "parameters": "times"},
@@ -155,7 +159,7 @@ def meant_by(name: str, families: Iterable[str]) -> Meant | None:
 def _completed(family: str, keys: Mapping[str, object]) -> Meant:
     """A curve with what its family needs beside."""
     needed = _NEEDED.get(family, {})
-    return Meant(family, {**keys, **needed}, _CHOSEN if needed else "")
+    return Meant(family, {**keys, **needed}, _CHOSEN if needed else _NOTES.get(family, ""))
 
 
 def unknown(name: str, families: Iterable[str]) -> str:

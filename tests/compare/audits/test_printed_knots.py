@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from trajgap.compare import ClaimVerdict, audit
 from trajgap.compare.audits import CaseAudit
+from trajgap.compare.pages.readings import _determined
 from trajgap.problem import parse_case
 
 CASE = """
@@ -113,6 +114,17 @@ def test_a_broken_limit_is_not_refuted_for_rounded_knots() -> None:
     assert verdicts(hasty["printed"])["kept"] is ClaimVerdict.NOT_CHECKABLE
     (found,) = (f for f in hasty["printed"].findings if f.rule == "TG201" and f.claim == "d")
     assert found.message.endswith("no proof covers all that rounds to them.")
+
+
+def test_no_table_of_rules_stands_beside_a_printed_vector() -> None:
+    curves = {"printed": TIMED.format(inner=INNER["exact"])}
+    curves["by a rule"] = 'knots = "averaged-continued"\nparameters = "times"'
+    shown = {
+        name: _determined(parse_case(CASE.format(curve=block, durations="1, 1, 1"), "knots.toml"))
+        for name, block in curves.items()
+    }
+    assert shown["printed"] == []
+    assert len(shown["by a rule"]) == 1
 
 
 def test_stretched_segments_jump_unless_rounding_hides_their_proportions() -> None:

@@ -139,6 +139,6 @@ def test_readings_are_called_by_what_is_printed() -> None:
         )
     )
     assert case('family = "quintic-spline"', readings).labels == {
-        "timed": "knots by the times",
-        "stretched": "printed parameters, each segment stretched in time by itself",
+        "timed": "way-points at the times",
+        "stretched": "way-points at printed parameters, each segment stretched in time by itself",
     }
