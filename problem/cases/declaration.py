@@ -250,6 +250,22 @@ class InterpolantBlock(Strict):
         own = self.finish_derivatives is not None or self.finish_orders is not None
         return self.finish_derivatives if own else self.end_derivatives
 
+    @property
+    def loose(self) -> str:
+        """What of the curve is a printed number, as the subject of a sentence; empty if nothing."""
+        ends = (*(self.end_derivatives or ()), *(self.finish_derivatives or ()))
+        parts = (
+            ("derivatives at the ends", ends),
+            ("knots", self.knot_vector or ()),
+            ("parameters of way-points", self.parameter_values or ()),
+        )
+        found = []
+        for name, every in parts:
+            each = (n for one in every for n in (one if isinstance(one, tuple) else (one,)))
+            if any(not number.exact for number in each):
+                found.append(name)
+        return " and ".join(found).capitalize()
+
 
 def _check_rising(key: str, numbers: tuple[Printed, ...], repeats: bool) -> None:
     """Find out whether no number is smaller than the one before, or equal to it unless repeated."""

@@ -238,11 +238,7 @@ class Statement:
 
         It stands for an interval, which no proof covers.
         """
-        block = self.declaration
-        every = (*(block.end_derivatives or ()), *(block.finish_derivatives or ()))
-        every += (*(block.knot_vector or ()), *(block.parameter_values or ()))
-        each = (n for one in every for n in (one if isinstance(one, tuple) else (one,)))
-        return any(not number.exact for number in each)
+        return bool(self.declaration.loose)
 
     def _end(self, key: str, values: Values | None, orders: tuple[int, ...]) -> Derivatives:
         """Derivatives at one end in rad and s, of the joints that take part."""

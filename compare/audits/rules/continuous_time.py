@@ -103,11 +103,9 @@ def _judged(study: Study, claim: AnyClaim, pid: str, rid: str) -> _Judged:
             "acceleration"
         )
     message = f"{explained}. At the printed numbers {at_print}."
-    if rounding.verdict is Rounding.UNDECIDED and study.case.statement(pid, rid).loose_ends:
-        message += (
-            " Derivatives at the ends, knots or parameters are printed numbers, and no proof "
-            "covers all that rounds to them."
-        )
+    loose = study.case.statement(pid, rid).declaration.loose
+    if rounding.verdict is Rounding.UNDECIDED and loose:
+        message += f" {loose} are printed numbers, and no proof covers all that rounds to them."
     bound = rounding.lower_bound_of_worst
     if rounding.verdict is Rounding.BREAKS and bound is not None:
         message += (

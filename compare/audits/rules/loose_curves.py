@@ -27,7 +27,8 @@ def misfit(study: Study, pid: str, rid: str) -> tuple[ClaimVerdict, Severity, st
     note : str
         To be added to the message; may be empty.
     """
-    if not study.case.statement(pid, rid).loose_ends:
+    loose = study.case.statement(pid, rid).declaration.loose
+    if not loose:
         return ClaimVerdict.INCONSISTENT, Severity.WARNING, ""
-    note = "Derivatives at the ends, knots or parameters are rounded numbers, which may explain it."
-    return ClaimVerdict.NOT_CHECKABLE, Severity.INFO, f" {note}"
+    note = f" {loose} are rounded numbers, which may explain it."
+    return ClaimVerdict.NOT_CHECKABLE, Severity.INFO, note

@@ -104,7 +104,7 @@ def test_rounded_knots_are_not(slow: dict[str, CaseAudit]) -> None:
     assert found["kept"] is found["smooth"] is ClaimVerdict.SUPPORTED, "at some value it does"
     assert found["peak"] is found["mean"] is ClaimVerdict.NOT_CHECKABLE
     assert found["shortest"] is ClaimVerdict.NOT_CHECKABLE
-    note = "knots or parameters are rounded numbers, which may explain it."
+    note = " Knots are rounded numbers, which may explain it."
     assert sum(f.message.endswith(note) for f in slow["printed"].findings) == 2
 
 
@@ -113,7 +113,9 @@ def test_a_broken_limit_is_not_refuted_for_rounded_knots() -> None:
     assert verdicts(hasty["exact"])["kept"] is ClaimVerdict.REFUTED
     assert verdicts(hasty["printed"])["kept"] is ClaimVerdict.NOT_CHECKABLE
     (found,) = (f for f in hasty["printed"].findings if f.rule == "TG201" and f.claim == "d")
-    assert found.message.endswith("no proof covers all that rounds to them.")
+    assert found.message.endswith(
+        " Knots are printed numbers, and no proof covers all that rounds to them."
+    )
 
 
 def test_no_table_of_rules_stands_beside_a_printed_vector() -> None:

@@ -58,14 +58,19 @@ def test_printed_parameters_place_averaged_knots_too() -> None:
 @pytest.mark.parametrize(
     ("written", "loose"),
     [
-        (TIMED + WHOLE, False),
-        (TIMED + WHOLE.replace("2.5", '"2.5"'), True),
-        (STRETCHED + WHOLE + VALUES, False),
-        (STRETCHED + WHOLE + VALUES.replace("6.5", '"6.5"'), True),
+        (TIMED + WHOLE, ""),
+        (TIMED + WHOLE.replace("2.5", '"2.5"'), "Knots"),
+        (STRETCHED + WHOLE + VALUES, ""),
+        (STRETCHED + WHOLE + VALUES.replace("6.5", '"6.5"'), "Parameters of way-points"),
+        (
+            STRETCHED + WHOLE.replace(" 8,", ' "8.0",') + VALUES.replace("3,", '"3.0",'),
+            "Knots and parameters of way-points",
+        ),
     ],
 )
-def test_printed_digits_are_intervals(written: str, loose: bool) -> None:
-    assert case(written).statement("main", "as-printed").loose_ends is loose
+def test_printed_digits_are_intervals(written: str, loose: str) -> None:
+    statement = case(written).statement("main", "as-printed")
+    assert (statement.declaration.loose, statement.loose_ends) == (loose, bool(loose))
 
 
 @pytest.mark.parametrize(
