@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 from trajgap.compare import ClaimVerdict, audit, write_report
 from trajgap.compare.audits import CaseAudit
-from trajgap.problem import parse_case
+from trajgap.compare.audits.total_bound import excludes_total
+from trajgap.problem import Limits, Problem, parse_case, quintic_spline
 
 CASE = """
 format = 1
@@ -100,6 +102,16 @@ def test_durations_alone_say_nothing_of_limits_and_peaks(one: CaseAudit) -> None
     )
     told = {(f.claim, f.reading) for f in one.findings if f.message == why}
     assert told == {("four", "free"), ("kept", "free"), ("peak", "free")}
+
+
+def test_a_total_alone_is_excluded_by_speed_alone() -> None:
+    q = np.array([[0.3, -1.0], [0.9, -0.55], [0.2, 0.35], [-0.45, 0.1]])
+    limits = Limits([1.1, 1.7], [3.0, 2.2], [20.0, 15.0])
+    # Every duration has a lower bound, so that a search over them would start.
+    problem = Problem(q, limits, quintic_spline(4, virtual=(2,)), duration_lower=0.3)
+    assert excludes_total(problem, 2.0, seconds=1.0) is False
+    # 0.6 rad at 1.1 rad/s, 0.3 s twice, 0.65 rad at 1.1 rad/s: 1.736 s.
+    assert excludes_total(problem, 1.73) is True
 
 
 def test_totals_are_set_beside_the_optimum_over_durations_and_positions(one: CaseAudit) -> None:
