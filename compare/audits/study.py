@@ -235,14 +235,14 @@ class Study(ReplayedCase):
         """A total (s) that some stretch of ``durations`` keeps whatever the digits stand for.
 
         It holds for every way-point that rounds to the printed digits or is cut off to them, and
-        every limit that rounds to them; None if there is no such stretch, or if durations alone
-        define no motion.
+        every limit that rounds to them; None if there is no such stretch, if durations alone
+        define no motion, or if the curve itself is printed in rounded numbers.
         """
         try:
             problem = self.claim_problem(claim, pid, rid, Digits.TIGHTEST)
         except CaseError:  # the tightest ranges are empty
             return None
-        if problem.curve.free:
+        if problem.curve.free or self.case.statement(pid, rid).loose_ends:
             return None
         box = self.waypoint_box(problem, pid, rid).or_cut_off()
         return reachable_total(problem, durations, box.lower, box.upper)
@@ -254,11 +254,18 @@ class Study(ReplayedCase):
     def unmoved(self, claim: Claim, pid: str, rid: str) -> str | None:
         """Why durations alone define no motion; None if they do."""
         curve = self.claim_problem(claim, pid, rid).curve
+        printed = self.case.printed_durations(claim)
+        if printed and len(printed) != curve.segments:
+            return (
+                f"the curve ({curve.name}) has {curve.segments} segments, but {len(printed)} "
+                "durations are printed"
+            )
         if not curve.free:
             return None
+        many = f"{curve.free} coefficient{'s' if curve.free > 1 else ''}"
         return (
-            f"the curve ({curve.name}) leaves {curve.free} coefficients per joint free, so that "
-            "durations alone define no motion"
+            f"the curve ({curve.name}) leaves {many} per joint free, so that durations alone "
+            "define no motion"
         )
 
     def _determined(self, claim: Claim, pid: str, rid: str) -> Problem:

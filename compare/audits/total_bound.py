@@ -60,7 +60,8 @@ def excludes_total(
     total *= 1.0 + _FLOAT_SLACK
     if low.sum() > total:
         return True
-    if not (low > 0.0).all() or problem.segments > _MOST_SPLIT:
+    # Where coefficients are free, durations alone have no ratios to bound.
+    if problem.curve.free or not (low > 0.0).all() or problem.segments > _MOST_SPLIT:
         return False
     todo = [(low, np.minimum(total - (low.sum() - low), problem.duration_upper * target))]
     until = time.monotonic() + seconds

@@ -101,15 +101,18 @@ def _asked(document: ShowDocument, case: Case) -> list[RenderableType]:
     return [line(f"Curve, units and limits{under}:"), Columns(names, rows)]
 
 
+_SPLINES = ("quintic-spline", "septic-spline")
+"""Families whose name says what holds at the ends, unless the file chooses it."""
 _DERIVATIVES = {1: "velocity", 2: "acceleration", 3: "jerk"}
 """What papers call a derivative; higher ones are called by their order."""
 
 
 def _ends(one: Statement) -> str:
     """What is prescribed at the ends of a spline whose name does not say it."""
-    if one.declaration.family != "cubic-spline":
-        return ""
     block = one.declaration
+    chosen = block.end_orders is not None or block.finish_orders is not None
+    if block.family != "cubic-spline" and not (block.family in _SPLINES and chosen):
+        return ""
     if block.finish_orders is None and block.finish_derivatives is None:
         return _told(block.orders, block.end_derivatives, "at the ends")
     start = _told(block.orders, block.end_derivatives, "at the start")

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from ...problem import Case
-from ...problem.curves import ClampedBSpline, Parameters, clamped_readings
+from ...problem.curves import ClampedBSpline, Knots, Parameters, clamped_readings
 from ..audits import CaseAudit, place, segments, spoken
 from ..documents import ClaimVerdict, Keeping, ReadingOutcome, ReadingsSummary, Why
 from .blocks import (
@@ -194,7 +194,9 @@ def _listed(limits: Iterable[float]) -> str:
 def _determined(case: Case) -> list[Block]:
     """Which degrees and knots the end conditions of a clamped B-spline determine."""
     curves = [case.statement(pid, rid).curve() for pid, rid in case.selections()]
-    curve = next((c for c in curves if isinstance(c, ClampedBSpline)), None)
+    # A printed vector leaves no rule to choose.
+    ruled = (c for c in curves if isinstance(c, ClampedBSpline) and c.knots is not Knots.GIVEN)
+    curve = next(ruled, None)
     if curve is None:
         return []
     count = len(curve.waypoint_breaks)

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...problem import Array, Problem, check
+from ...problem import Array, Problem, TrajgapError, check
 from .clock import time_up
 from .decided import kept
 from .descent import Descent, LogBox, descend
@@ -97,10 +97,16 @@ def ordinary(problem: Problem, basin: Basin) -> bool:
     )
 
 
-def as_local(problem: Problem, found: Descent) -> Local:
-    """The end of a descent, judged by the checker."""
+def as_local(problem: Problem, found: Descent) -> Local | None:
+    """The end of a descent, judged by the checker; None where float64 has lost the curve.
+
+    It has where a segment at a virtual break shrinks towards 0: the system is singular to rounding.
+    """
     h = np.clip(found.durations, problem.duration_lower, problem.duration_upper)
-    verdict = check(problem, h)
+    try:
+        verdict = check(problem, h)
+    except TrajgapError:
+        return None
     if found.feasible and 1.0 < verdict.stretch < 1.0 + ROUND and problem.curve.homogeneous:
         h = np.clip(h * verdict.stretch, problem.duration_lower, problem.duration_upper)
         verdict = check(problem, h)
@@ -119,7 +125,9 @@ def exact_search(
     for start in points:
         if found and (time.monotonic() > until or time_up()):
             break
-        found.append(as_local(problem, descend(problem, start, box)))
+        local = as_local(problem, descend(problem, start, box))
+        if local is not None:
+            found.append(local)
     return _resumed(problem, found, box, until)
 
 
@@ -139,7 +147,7 @@ def _resumed(problem: Problem, found: list[Local], box: LogBox, until: float) ->
             break
         before = found[best]
         after = as_local(problem, descend(problem, before.durations, box))
-        if not (after.feasible and after.total <= before.total):
+        if after is None or not (after.feasible and after.total <= before.total):
             break
         found[best] = replace(after, iterations=before.iterations + after.iterations)
         if after.total > before.total * (1.0 - WORTHWHILE):

@@ -276,7 +276,11 @@ def _searched(
         if coarse is not None and solution.total_time > coarse.total_time * (1 + BETTER):
             return coarse  # rounding costs more than the lower floor gains
         if solution.status is not Status.NOT_ATTAINED:
-            return solution
+            h, stopped = solution.durations, solution.status is Status.FEASIBLE
+            if coarse is None or h is None or not stopped:
+                return solution
+            # Unconverged below the floor that an answer lay on, it shows no less that totals fall.
+            return coarse if (h < _floor(problem, shares[k - 1])).any() else solution
         if coarse is not None:
             solution = _approached(problem, coarse, solution, shares[k - 1], share)
             assert solution.durations is not None

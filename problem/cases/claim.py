@@ -128,14 +128,19 @@ class TotalTimeClaim(TimeClaim):
     """The claim of durations whose total it states, where that is printed elsewhere."""
     value: Length
     """Total time."""
-    profile: Literal["trapezoidal", "s-curve"] | None = None
+    profile: Literal["trapezoidal", "s-curve", "sine-jerk"] | None = None
     """The profile of `other_curve`, where it is one that starts and ends each segment at rest:
-    constant acceleration and speed, or constant jerk."""
+    constant acceleration and speed, constant jerk, or jerk in half sines."""
+    path: Literal["straight"] | None = None
+    """How the joints go together in a profile: on a straight line between way-points, all by one
+    time law. Each by itself if absent."""
 
     @model_validator(mode="after")
     def _on_another_curve(self) -> Self:
         if self.profile is not None and self.other_curve is None:
             raise fault(".profile", "goes with other_curve; name the curve there as the paper does")
+        if self.path is not None and self.profile is None:
+            raise fault(".path", "goes with profile; add it, or leave this out")
         return self
 
 

@@ -32,7 +32,9 @@ _FAMILIES = {
     "3-5-3": "3-5-3 polynomials",
     "cubic-spline": "cubic spline",
     "quintic-spline": "quintic spline",
+    "septic-spline": "septic spline",
     "cubic-spline-virtual": "cubic spline with virtual points",
+    "quintic-spline-virtual": "quintic spline with virtual points",
     "rest-to-rest": "at rest at every way-point",
     "uniform-cubic-b-spline": "uniform cubic B-spline",
     "clamped-b-spline": "clamped B-spline",
@@ -42,14 +44,18 @@ _KNOTS = {
     "waypoints": "knots at the way-points",
     "averaged": "averaged knots",
     "averaged-continued": "averaged knots, continued at the ends",
+    "given": "printed knots",
 }
 """Where the inner knots of a clamped B-spline lie."""
 _PARAMETERS = {
     "times": "knots by the times",
     "chord": "knots by chord lengths",
     "joint-chord": "knots by the chord lengths of each joint",
+    "given": "knots by printed parameters",
 }
 """What its knots are placed by."""
+_SITES = {"times": "way-points at the times", "given": "way-points at printed parameters"}
+"""Where the way-points lie among printed knots."""
 _TIME = {"stretched": "each segment stretched in time by itself", "timed": "smooth time"}
 """How time enters a B-spline."""
 _TIME_ENDS = {
@@ -154,7 +160,8 @@ def _declared(block: InterpolantBlock) -> Iterator[str]:
         yield f"degrees {'-'.join(map(str, block.degrees))}"
     if block.continuity is not None:
         yield f"continuous up to derivative {block.continuity}"
-    named = ((_KNOTS, block.knots), (_PARAMETERS, block.parameters))
+    sites = _SITES if block.knots == "given" else _PARAMETERS
+    named = ((_KNOTS, block.knots), (sites, block.parameters))
     yield from (words[key] for words, key in named if key is not None)
     if block.time is not None:
         yield _TIME[block.time]
@@ -165,8 +172,12 @@ def _declared(block: InterpolantBlock) -> Iterator[str]:
         yield from _end_words("start" if apart else "end", block.orders, block.end_derivatives)
     if apart:
         yield from _end_words("finish", block.last_orders, block.last_derivatives)
+    if block.virtual:
+        several = len(block.virtual) > 1
+        breaks = _and([str(b) for b in sorted(block.virtual)])
+        yield f"virtual point{'s' if several else ''} at break{'s' if several else ''} {breaks}"
     if block.free:
-        yield f"{block.free} free coefficients"
+        yield f"{block.free} free coefficient{'s' if block.free > 1 else ''}"
 
 
 def _end_words(end: str, orders: tuple[int, ...], values: Values | None) -> Iterator[str]:

@@ -23,6 +23,10 @@ LITERATURE: dict[str, tuple[str, dict[str, object]]] = {
 quintic B-spline through way-points is a C2 cubic or C4 quintic spline at rest at both ends."""
 _CHOSEN = "chosen: write a reading for each other meaning that the paper admits"
 """What is said beside keys that a name of a curve leaves open."""
+_NOTES = {
+    "quintic-spline-virtual": "no motion is the shortest unless [durations] has a lower bound",
+}
+"""What whoever names a family should know."""
 _NEEDED: dict[str, dict[str, object]] = {
     "uniform-cubic-b-spline": {"time": "timed"},
     "clamped-b-spline": {"knots": "averaged-continued", "parameters": "times"},
@@ -41,6 +45,9 @@ _ALIASES: dict[str, tuple[str, dict[str, object]]] = {
     "clamped cubic": LITERATURE["clamped-cubic"],
     "cubic spline two virtual": ("cubic-spline-virtual", {}),
     "cubic spline virtual": ("cubic-spline-virtual", {}),
+    "quintic spline two virtual": ("quintic-spline-virtual", {}),
+    "quintic spline virtual": ("quintic-spline-virtual", {}),
+    "septic spline": ("septic-spline", {}),
     "bspline cubic": LITERATURE["cubic-b-spline"],
     "bspline cubic uniform": ("uniform-cubic-b-spline", {}),
     "bspline clamped cubic": ("clamped-b-spline", {"degree": 3}),
@@ -83,7 +90,9 @@ _SAYING_NOTHING = {
     "trajectory", "via", "waypoint", "waypoints", "with",
 }  # fmt: skip
 """Words that tell no curve from another."""
-_PROFILES = ("lspb", "trapezoidal", "trapezoid", "parabolic", "blends", "scurve", "doubles")
+_PROFILES = (
+    "lspb", "trapezoidal", "trapezoid", "parabolic", "blends", "scurve", "doubles", "sinejerk",
+)  # fmt: skip
 """Words of profiles of velocity, which start and end each segment at rest."""
 _ANGELES = {"3-4-5": 5, "4-5-6-7": 7, "5-6-7-8-9": 9}
 """Names of one polynomial from rest to rest by the powers that it has (Angeles, Fundamentals of
@@ -150,7 +159,7 @@ def meant_by(name: str, families: Iterable[str]) -> Meant | None:
 def _completed(family: str, keys: Mapping[str, object]) -> Meant:
     """A curve with what its family needs beside."""
     needed = _NEEDED.get(family, {})
-    return Meant(family, {**keys, **needed}, _CHOSEN if needed else "")
+    return Meant(family, {**keys, **needed}, _CHOSEN if needed else _NOTES.get(family, ""))
 
 
 def unknown(name: str, families: Iterable[str]) -> str:
@@ -190,6 +199,7 @@ def _words(name: str) -> set[str]:
     """The words of a name that tell it from others, each in one form."""
     text = re.sub(r"\bb[-\s]?(?=splines?\b)", "b", name.lower())
     text = re.sub(r"\b(s[-\s]curves?|double[-\s]s)\b", "scurve", text)
+    text = re.sub(r"\b(sine|sinusoidal|trigonometric)[-\s]jerk\b", "sinejerk", text)
     found = (_WORDS.get(word, word) for word in re.findall(r"[a-z0-9]+", text))
     return {word for word in found if word not in _SAYING_NOTHING}
 

@@ -10,7 +10,7 @@ from math import tau
 import numpy as np
 
 from ..arrays import Array
-from ..curves import Curve, Derivatives
+from ..curves import MOST_OPEN, Curve, Derivatives
 from ..errors import CaseError, TrajgapError
 from ..fields import LimitPair
 from ..limits import Limits
@@ -216,6 +216,12 @@ class Statement:
                 "change the family, the degrees or the way-points",
             )
         polynomials = curve.piecewise
+        if polynomials is not None and polynomials.free and polynomials.coefficients > MOST_OPEN:
+            raise self.fail(
+                "interpolant",
+                f"leaves {polynomials.free} of {polynomials.coefficients} coefficients free, and "
+                f"at most {MOST_OPEN} are computed with where some are; add conditions",
+            )
         if polynomials is not None and polynomials.free != block.free:
             raise self.fail(
                 "interpolant",
@@ -228,11 +234,11 @@ class Statement:
 
     @property
     def loose_ends(self) -> bool:
-        """Whether some derivative at the ends is a printed number, which stands for an interval."""
-        block = self.declaration
-        every = (*(block.end_derivatives or ()), *(block.finish_derivatives or ()))
-        each = (n for one in every for n in (one if isinstance(one, tuple) else (one,)))
-        return any(not number.exact for number in each)
+        """Whether a derivative at the ends, a knot or a parameter is a printed number.
+
+        It stands for an interval, which no proof covers.
+        """
+        return bool(self.declaration.loose)
 
     def _end(self, key: str, values: Values | None, orders: tuple[int, ...]) -> Derivatives:
         """Derivatives at one end in rad and s, of the joints that take part."""

@@ -19,10 +19,12 @@ from .families import (
     jtraj,
     piecewise,
     quintic_spline,
+    quintic_spline_virtual,
     rest_to_rest,
+    septic_spline,
     three_five_three,
 )
-from .interpolant import Interpolant
+from .interpolant import MOST_OPEN, Interpolant
 from .kernel import MAX_COEFFICIENTS, roots_in_unit
 from .kind import Curve, Derivatives, PeakGradients, as_curve, fit
 from .peak import Extremum, critical_points, extrema, largest, unit_roots
@@ -46,6 +48,7 @@ from .uniform_matrices import clock_matrix, control_vertices, shape_matrix, vert
 __all__ = [
     "MANY_PIECES",
     "MAX_COEFFICIENTS",
+    "MOST_OPEN",
     "PERM",
     "Adjoint",
     "ClampedBSpline",
@@ -101,10 +104,12 @@ __all__ = [
     "piecewise",
     "places_of",
     "quintic_spline",
+    "quintic_spline_virtual",
     "rest_to_rest",
     "right_hand_sides",
     "roots_in_unit",
     "segment_peaks",
+    "septic_spline",
     "shape_matrix",
     "shape_of",
     "solve_in_closed_form",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +20,9 @@ from .clamped_knots import (
     average_matrix,
     count_inner_knots,
     fractions_of,
+    inner_fractions,
     nearest_reading,
+    outside_support,
 )
 from .compilation import Deferred
 from .families import piecewise, quintic_spline
@@ -57,8 +60,11 @@ class ClampedBSpline(StretchedCurve):
     end_orders : tuple of int
         Derivatives that are 0 at both ends.
     fractions : tuple, optional
-        Chord parameters to use instead of those of the way-points, one tuple for all joints or
-        one for each.
+        Parameters from 0 to 1 to use instead of the chords of the way-points, one tuple for all
+        joints or one for each; the printed ones where ``parameters`` is "given".
+    knot_vector : tuple of float
+        All knots as printed, on any scale, where ``knots`` is "given": degree + 1 equal ones at
+        each end, each inner one once.
 
     Raises
     ------
@@ -80,6 +86,7 @@ class ClampedBSpline(StretchedCurve):
     time: Timing = Timing.TIMED
     end_orders: tuple[int, ...] = (1, 2)
     fractions: Fractions | None = None
+    knot_vector: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         for field, words in (("knots", Knots), ("parameters", Parameters), ("time", Timing)):
@@ -89,6 +96,7 @@ class ClampedBSpline(StretchedCurve):
                     f"interpolant.{field}: {given!r} is unknown; use one of {', '.join(words)}"
                 )
             object.__setattr__(self, field, words(given))
+        object.__setattr__(self, "knot_vector", tuple(map(float, self.knot_vector)))
         if self.waypoints < 2:
             raise TrajgapError("interpolant: at least two way-points are needed")
         if not 3 <= self.degree <= 7:
@@ -104,6 +112,7 @@ class ClampedBSpline(StretchedCurve):
                 "interpolant.time: parameters from the times are times already; "
                 "leave stretched out, or take the parameters from chords"
             )
+        self._check_given()
         if self.inner_knots < 0:
             raise TrajgapError(
                 f"interpolant {self.name}: degree {self.degree} needs at least "
@@ -112,6 +121,11 @@ class ClampedBSpline(StretchedCurve):
         if self.free:
             word = "over" if self.free < 0 else "under"
             nearest = nearest_reading(self.knots, self.degree, self.end_orders)
+            if self.knots is Knots.GIVEN:
+                whole = self.conditions + self.degree + 1
+                nearest = (
+                    f"{whole} knots in all determine it, and {len(self.knot_vector)} are given"
+                )
             raise TrajgapError(
                 f"interpolant {self.name}: {word}-determined, {self.conditions} conditions on "
                 f"{self.control_points} control points; {nearest}"
@@ -121,6 +135,49 @@ class ClampedBSpline(StretchedCurve):
                 raise TrajgapError(
                     f"interpolant.fractions: expected {self.waypoints} numbers from 0 to 1"
                 )
+        if self.knots is Knots.GIVEN and self._stretched:
+            self._check_passing()
+
+    def _check_given(self) -> None:
+        """Find out whether what is printed of knots and parameters is there, and goes together."""
+        given = self.knots is Knots.GIVEN
+        if given != bool(self.knot_vector):
+            raise TrajgapError(
+                'interpolant.knot_vector: is missing where knots are "given"; name all of them'
+                if given
+                else 'interpolant.knot_vector: is for knots that are "given"; leave it out'
+            )
+        if self.parameters is Parameters.GIVEN and not self.fractions:
+            raise TrajgapError(
+                'interpolant.fractions: are missing where parameters are "given"; give one for '
+                "each way-point"
+            )
+        for row in self.fractions or ():
+            if any(not a < b for a, b in pairwise(row)):
+                raise TrajgapError("interpolant.fractions: each must be larger than the one before")
+        fitting = Parameters.GIVEN if self._stretched else Parameters.TIMES
+        if given and self.parameters is not fitting:
+            where = "printed parameters" if self._stretched else "the times"
+            raise TrajgapError(
+                f'interpolant.parameters: where knots are "given" and time is "{self.time}", '
+                f'way-points are passed at {where}; write "{fitting}"'
+            )
+
+    def _check_passing(self) -> None:
+        """Find out whether a spline with the printed knots passes the printed parameters."""
+        p, rest = self.degree, len(self.end_orders)
+        inner = inner_fractions(self.knot_vector, p)
+        knots = np.concatenate([np.zeros(p + 1), inner, np.ones(p + 1)])
+        for row in self.fractions or ():
+            sites = np.concatenate([np.zeros(rest), row, np.ones(rest)])
+            outside = outside_support(knots, sites, p)
+            if outside is not None:
+                low, high = knots[outside], knots[outside + p + 1]
+                raise TrajgapError(
+                    f"interpolant.knot_vector: no curve passes way-point {outside - rest}, whose "
+                    f"parameter {sites[outside]:g} (of 0 to 1) does not lie between the knots "
+                    f"{low:g} and {high:g} (Schoenberg and Whitney); correct knots or parameters"
+                )
 
     @property
     def name(self) -> str:
@@ -129,11 +186,13 @@ class ClampedBSpline(StretchedCurve):
             Knots.WAYPOINTS: "knots at the way-points",
             Knots.AVERAGED: "averaged knots",
             Knots.CONTINUED: "averaged knots, index continued",
+            Knots.GIVEN: "printed knots",
         }[self.knots]
         source = {
             Parameters.TIMES: "",
             Parameters.CHORD: " of chord parameters",
             Parameters.JOINT_CHORD: " of each joint's chord parameters",
+            Parameters.GIVEN: " of printed parameters",
         }[self.parameters]
         stretched = ", stretched in time" if self.time is Timing.STRETCHED else ""
         return f"clamped B-spline of degree {self.degree}, {where}{source}{stretched}"
@@ -152,9 +211,16 @@ class ClampedBSpline(StretchedCurve):
         """The spline's own, unless every segment is stretched by itself."""
         return 0 if self.time is Timing.STRETCHED else self.degree - 1
 
+    def smooth_shares(self, waypoints: Array) -> Array | None:
+        """Those of the parameters, where all joints have the same ones."""
+        rows = fractions_of(self, waypoints) if self._stretched else None
+        return None if rows is None or len(rows) > 1 else np.diff(rows[0])
+
     @property
     def inner_knots(self) -> int:
         """Number of inner knots; negative if there are too few way-points."""
+        if self.knots is Knots.GIVEN:
+            return len(inner_fractions(self.knot_vector, self.degree))
         return count_inner_knots(self.knots, self.waypoints, self.degree, self.end_orders)
 
     @property

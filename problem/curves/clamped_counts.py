@@ -8,7 +8,7 @@ from itertools import product
 
 from ..errors import TrajgapError
 from .clamped import ClampedBSpline
-from .clamped_knots import Knots, Parameters, count_inner_knots, nearest_reading
+from .clamped_knots import RULES, Knots, Parameters, count_inner_knots, nearest_reading
 from .stretched import Timing
 
 DEGREES = (3, 4, 5, 6, 7)
@@ -94,7 +94,8 @@ def clamped_readings(
     if waypoints < 2:
         raise TrajgapError("interpolant: at least two way-points are needed")
     found = []
-    for degree, knots, parameters, time in product(degrees, Knots, Parameters, Timing):
+    sources = [one for one in Parameters if one is not Parameters.GIVEN]
+    for degree, knots, parameters, time in product(degrees, RULES, sources, Timing):
         if time is Timing.STRETCHED and parameters is Parameters.TIMES:
             continue
         found.append(_read(waypoints, degree, knots, parameters, time, end_orders))

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from enum import StrEnum
+from itertools import pairwise
+from math import isfinite
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -25,6 +28,8 @@ class Knots(StrEnum):
     CONTINUED = "averaged-continued"
     """The same with the first and last parameter repeated for each end condition, so that every
     condition brings a knot (The NURBS Book, 9.2.2, does so for first derivatives)."""
+    GIVEN = "given"
+    """A printed knot vector, at fixed fractions of the whole."""
 
 
 class Parameters(StrEnum):
@@ -36,16 +41,90 @@ class Parameters(StrEnum):
     """Chord lengths of the joint vector, (4) and (5) of z1."""
     JOINT_CHORD = "joint-chord"
     """Chord lengths of each joint by itself."""
+    GIVEN = "given"
+    """Printed numbers."""
 
 
+RULES = (Knots.WAYPOINTS, Knots.AVERAGED, Knots.CONTINUED)
+"""Ways of placing knots: what a paper that prints none leaves to choose from."""
 Fractions = tuple[tuple[float, ...], ...]
-"""Chord parameters of the way-points from 0 to 1: one row for all joints, or one for each."""
+"""Parameters of the way-points from 0 to 1: one row for all joints, or one for each."""
+
+
+def inner_fractions(vector: Sequence[float], degree: int) -> tuple[float, ...]:
+    """Inner knots of a printed knot vector, as fractions of the whole.
+
+    Parameters
+    ----------
+    vector : sequence of float
+        All knots, those that are repeated at the ends included, on any scale.
+    degree : int
+
+    Returns
+    -------
+    tuple of float
+        Between 0 and 1, increasing.
+
+    Raises
+    ------
+    TrajgapError
+        If it is no clamped vector of that degree whose inner knots are all different.
+    """
+    ends, knots = degree + 1, [float(u) for u in vector]
+    if not all(map(isfinite, knots)):
+        raise TrajgapError("interpolant.knot_vector: knots must be finite")
+    if len(knots) < 2 * ends:
+        raise TrajgapError(
+            f"interpolant.knot_vector: has {len(knots)} knots, but degree {degree} needs "
+            f"{2 * ends} at least, {ends} equal ones at each end; give the whole vector"
+        )
+    for one, other in pairwise(knots):
+        if other < one:
+            raise TrajgapError(
+                f"interpolant.knot_vector: {one:g} is followed by {other:g}, but knots do not "
+                "decrease; correct one of them"
+            )
+    for end, name in ((knots[0], "first"), (knots[-1], "last")):
+        if knots.count(end) != ends:
+            raise TrajgapError(
+                f"interpolant.knot_vector: the {name} knot, {end:g}, stands {knots.count(end)} "
+                f"times; a clamped vector of degree {degree} has it {ends} times"
+            )
+    for one, other in pairwise(knots[degree + 1 : len(knots) - degree - 1]):
+        if one == other:
+            raise TrajgapError(
+                f"interpolant.knot_vector: the inner knot {one:g} stands {knots.count(one)} times; "
+                "each may stand once, so that the curve is smooth there"
+            )
+    return tuple((u - knots[0]) / (knots[-1] - knots[0]) for u in knots[ends : len(knots) - ends])
+
+
+def outside_support(
+    knots: NDArray[np.float64], sites: NDArray[np.float64], degree: int
+) -> int | None:
+    """First site that leaves the support of its basis function (Schoenberg and Whitney), or None.
+
+    Parameters
+    ----------
+    knots : ndarray, shape (sites + degree + 1,)
+    sites : ndarray, shape (sites,)
+        Those of end conditions included: an end as often as something is asked there.
+    degree : int
+
+    Returns
+    -------
+    int or None
+    """
+    low, high = knots[: sites.size], knots[degree + 1 : degree + 1 + sites.size]
+    inside = (low < sites) & (sites < high)
+    inside |= (sites == sites[0]) & (low == sites[0]) | (sites == sites[-1]) & (high == sites[-1])
+    return None if inside.all() else int(np.argmin(inside))
 
 
 def count_inner_knots(
     knots: Knots, waypoints: int, degree: int, end_orders: tuple[int, ...]
 ) -> int:
-    """Number of inner knots; negative if there are too few way-points."""
+    """Number of inner knots that a rule places; negative if there are too few way-points."""
     if knots is Knots.WAYPOINTS:
         return waypoints - 2
     repeated = 2 * len(end_orders) if knots is Knots.CONTINUED else 0
@@ -88,7 +167,7 @@ def chord_fractions(waypoints: NDArray[np.generic]) -> Fractions:
 
 
 def fractions_of(curve: ClampedBSpline, waypoints: Array) -> Fractions | None:
-    """Chord parameters that place the knots; None where the times do."""
+    """Parameters that are no times; None where they are."""
     if curve.fractions is not None or curve.parameters is Parameters.TIMES:
         return curve.fractions
     if curve.parameters is Parameters.CHORD:
@@ -99,6 +178,9 @@ def fractions_of(curve: ClampedBSpline, waypoints: Array) -> Fractions | None:
 def average_matrix(curve: ClampedBSpline) -> Array:
     """Inner knots as combinations of the way-points' parameters, shape (inner knots, W)."""
     w, p = curve.waypoints, curve.degree
+    if curve.knots is Knots.GIVEN:
+        # Parameters start at 0, so that a fraction of the last one is a fraction of the whole.
+        return np.outer(inner_fractions(curve.knot_vector, p), np.eye(w)[-1])
     if curve.knots is Knots.WAYPOINTS:
         return np.eye(w)[1:-1]
     repeats = len(curve.end_orders) if curve.knots is Knots.CONTINUED else 0

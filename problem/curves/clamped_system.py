@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..errors import CurveError
+from .clamped_knots import outside_support
 
 if TYPE_CHECKING:
     from .clamped import ClampedBSpline
@@ -176,10 +177,9 @@ def _schoenberg_whitney(curve: ClampedBSpline, knots: Numbers, sites: Numbers) -
     u = np.asarray(knots.real, dtype=np.float64)
     x = np.asarray(sites.real, dtype=np.float64)
     x = np.concatenate([np.repeat(x[:1], repeats), x, np.repeat(x[-1:], repeats)])
-    inside = (u[: x.size] < x) & (x < u[p + 1 : p + 1 + x.size])
-    inside |= (x == x[0]) & (u[: x.size] == x[0]) | (x == x[-1]) & (u[p + 1 :] == x[-1])
-    if not inside.all():
-        raise _not_passing(curve, sites, int(np.argmin(inside)) - repeats)
+    outside = outside_support(u, x, p)
+    if outside is not None:
+        raise _not_passing(curve, sites, outside - repeats)
 
 
 def _not_passing(curve: ClampedBSpline, sites: Numbers, waypoint: int) -> CurveError:

@@ -15,6 +15,7 @@ def piecewise(
     ends: Derivatives = ((1, 0.0), (2, 0.0)),
     name: str | None = None,
     finish: Derivatives | None = None,
+    virtual: tuple[int, ...] = (),
 ) -> Interpolant:
     """Polynomials of the given degrees, equally continuous at all via-points.
 
@@ -28,6 +29,8 @@ def piecewise(
         Derivatives prescribed at both ends, rad/sᵒʳᵈᵉʳ: one value for all joints, or one for each.
     finish : tuple of (order, value), optional
         What is prescribed at the last way-point, where it differs; ``ends`` is the start then.
+    virtual : tuple of int
+        Breaks without a way-point, counted among all breaks with the first way-point as 0.
 
     Returns
     -------
@@ -35,12 +38,20 @@ def piecewise(
     """
     n = len(degrees)
     inner: tuple[Derivatives, ...] = ((),) * max(n - 1, 0)
+    own = name or "-".join(map(str, degrees)) + f" polynomials, C{continuity}"
     return Interpolant(
         tuple(degrees),
         (continuity,) * max(n - 1, 0),
         (tuple(ends), *inner, tuple(ends if finish is None else finish)),
-        name=name or "-".join(map(str, degrees)) + f" polynomials, C{continuity}",
+        virtual=tuple(sorted(virtual)),
+        name=own + _virtual_words(virtual),
     )
+
+
+def _virtual_words(virtual: tuple[int, ...]) -> str:
+    if not virtual:
+        return ""
+    return f", {len(virtual)} virtual way-point{'s' if len(virtual) > 1 else ''}"
 
 
 def three_five_three() -> Interpolant:
@@ -49,17 +60,23 @@ def three_five_three() -> Interpolant:
 
 
 def cubic_spline(
-    segments: int, ends: Derivatives = ((1, 0.0),), finish: Derivatives | None = None
+    segments: int,
+    ends: Derivatives = ((1, 0.0),),
+    finish: Derivatives | None = None,
+    virtual: tuple[int, ...] = (),
 ) -> Interpolant:
     """C2 cubic spline; clamped (velocity 0 at the ends) unless ``ends`` says otherwise.
 
     Parameters
     ----------
     segments : int
+        Those at virtual breaks included.
     ends : tuple of (order, value)
         Derivatives prescribed at both ends, rad/sᵒʳᵈᵉʳ: one value for all joints, or one for each.
     finish : tuple of (order, value), optional
         What is prescribed at the last way-point, where it differs; ``ends`` is the start then.
+    virtual : tuple of int
+        As `piecewise` takes them.
 
     Examples
     --------
@@ -68,7 +85,7 @@ def cubic_spline(
     >>> cubic_spline(3, ((1, (0.5, -0.2)),), finish=((1, 0.0),)).prescribed
     (((1, (0.5, -0.2)),), (), (), ((1, 0.0),))
     """
-    return piecewise((3,) * segments, 2, ends, _spline_name(ends, finish), finish)
+    return piecewise((3,) * segments, 2, ends, _spline_name(ends, finish), finish, virtual)
 
 
 def _spline_name(ends: Derivatives, finish: Derivatives | None) -> str:
@@ -94,16 +111,40 @@ def quintic_spline(
     segments: int,
     ends: Derivatives = ((1, 0.0), (2, 0.0)),
     finish: Derivatives | None = None,
+    virtual: tuple[int, ...] = (),
 ) -> Interpolant:
     """C4 quintic spline; velocity and acceleration are 0 at both ends unless told otherwise.
 
     Parameters
     ----------
     segments : int
+        Those at virtual breaks included.
     ends, finish : tuple of (order, value)
         As `cubic_spline` takes them.
+    virtual : tuple of int
+        As `piecewise` takes them.
     """
-    return piecewise((5,) * segments, 4, ends, "C4 quintic spline", finish)
+    return piecewise((5,) * segments, 4, ends, "C4 quintic spline", finish, virtual)
+
+
+def septic_spline(
+    segments: int,
+    ends: Derivatives = ((1, 0.0), (2, 0.0), (3, 0.0)),
+    finish: Derivatives | None = None,
+    virtual: tuple[int, ...] = (),
+) -> Interpolant:
+    """C6 spline of degree 7; v = a = j = 0 at both ends unless told otherwise.
+
+    Parameters
+    ----------
+    segments : int
+        Those at virtual breaks included.
+    ends, finish : tuple of (order, value)
+        As `cubic_spline` takes them.
+    virtual : tuple of int
+        As `piecewise` takes them.
+    """
+    return piecewise((7,) * segments, 6, ends, "C6 septic spline", finish, virtual)
 
 
 def cubic_spline_virtual(waypoints: int) -> Interpolant:
@@ -111,18 +152,27 @@ def cubic_spline_virtual(waypoints: int) -> Interpolant:
 
     The virtual breaks follow the first and precede the last way-point.
     """
+    spline = cubic_spline(*_with_two_virtual(waypoints, 2))
+    return replace(spline, name="C2 cubic spline with two virtual way-points")
+
+
+def quintic_spline_virtual(waypoints: int) -> Interpolant:
+    """C4 quintic spline with two virtual way-points and v = a = j = 0 at both ends.
+
+    The virtual breaks follow the first and precede the last way-point.
+    """
+    spline = quintic_spline(*_with_two_virtual(waypoints, 3))
+    return replace(spline, name="C4 quintic spline with two virtual way-points")
+
+
+def _with_two_virtual(
+    waypoints: int, orders: int
+) -> tuple[int, Derivatives, Derivatives, tuple[int, ...]]:
+    """Segments, both ends and virtual breaks: each makes room for one more derivative that is 0."""
     if waypoints < 2:
         raise TrajgapError("interpolant: at least two way-points are needed")
-    n = waypoints + 1
-    ends = ((1, 0.0), (2, 0.0))
-    inner: tuple[Derivatives, ...] = ((),) * (n - 1)
-    return Interpolant(
-        (3,) * n,
-        (2,) * (n - 1),
-        (ends, *inner, ends),
-        virtual=(1, n - 1),
-        name="C2 cubic spline with two virtual way-points",
-    )
+    ends = tuple((order, 0.0) for order in range(1, orders + 1))
+    return waypoints + 1, ends, ends, (1, waypoints)
 
 
 def rest_to_rest(segments: int, degree: int) -> Interpolant:

@@ -28,6 +28,9 @@ from .kind import (
 from .peak import Extremum
 from .trajectory import Trajectory
 
+MOST_OPEN = 600
+"""Coefficients up to which a case file may leave some free: finding the derivatives that complete
+the declaration takes a dense decomposition for each, some seconds in all."""
 _DENSE = 300
 """Coefficients above which the rank is judged by a banded factorisation: a dense one is cubic."""
 
@@ -90,7 +93,10 @@ class Interpolant(Curve):
         if any(c < 0 for c in self.continuity):
             raise TrajgapError("interpolant.continuity: every order must be 0 or more")
         if any(not 0 < b < n for b in self.virtual):
-            raise TrajgapError("interpolant.virtual: only interior breaks can be virtual")
+            raise TrajgapError(
+                "interpolant.virtual: only interior breaks can be virtual, "
+                f"{f'1 to {n - 1}' if n > 1 else 'of which one segment has none'}"
+            )
         object.__setattr__(self, "prescribed", tuple(map(told_once, self.prescribed)))
         told = {len(v) for at in self.prescribed for _, v in at if isinstance(v, tuple)}
         if len(told) > 1:
@@ -110,13 +116,25 @@ class Interpolant(Curve):
         if self.conditions > self.coefficients:
             raise TrajgapError(
                 f"interpolant {self.name}: over-determined, {self.conditions} conditions on "
-                f"{self.coefficients} coefficients; raise a degree or drop a condition"
+                f"{self.coefficients} coefficients; {self._room()}"
             )
-        if self.rank < self.conditions:
+        checked = self.conditions == self.coefficients or self.coefficients <= MOST_OPEN
+        if checked and self.rank < self.conditions:
             raise TrajgapError(
                 f"interpolant {self.name}: {self.conditions} conditions on {self.coefficients} "
                 f"coefficients contradict each other (rank {self.rank}); spread the degrees"
+                f"{' or the virtual breaks' if self.virtual else ''}"
             )
+
+    def _room(self) -> str:
+        """What makes room for the conditions that are too many."""
+        spline = {*self.continuity} == {self.degrees[0] - 1} and len({*self.degrees}) == 1
+        if not spline:
+            return "raise a degree or drop a condition"
+        # A segment more of a spline brings one coefficient more than continuity takes.
+        needed = self.conditions - self.coefficients
+        breaks = f"{needed} virtual break{'s' if needed > 1 else ''}"
+        return f"raise a degree, drop conditions or add {breaks}"
 
     @property
     def segments(self) -> int:

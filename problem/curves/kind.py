@@ -135,6 +135,13 @@ class Curve(ABC):
         """The declaration as polynomials with breaks at the ends of segments, where it is one."""
         return None
 
+    def smooth_shares(self, waypoints: Array) -> Array | None:
+        """Proportions of durations with which a curve whose segments are stretched does not jump.
+
+        None where there are none, or the curve has no parameter of its own.
+        """
+        return None
+
     def smooth_order(self, break_index: int) -> int:
         """Order up to which derivatives in time agree at an inner break, whatever the durations."""
         return 0

@@ -144,7 +144,7 @@ class Peaks:
 
 def segments_of(block: dict[str, Any], points: int) -> int:
     """How many durations a family takes for a number of way-points."""
-    if block["family"] == "cubic-spline-virtual":
+    if block["family"] in ("cubic-spline-virtual", "quintic-spline-virtual"):
         return points + 1
     return points - 1
 
@@ -301,6 +301,16 @@ def _quintic(asked: Asked, j: int, q: Array, h: Array) -> list[Piece]:
     return _of_spline(make_interp_spline(t, q, k=5, bc_type=tuple(ends)), 5, t)
 
 
+def _still(asked: Asked, j: int, q: Array, h: Array) -> list[Piece]:
+    """Splines at rest to the third order at both ends; two breaks of the quintic are no sites."""
+    t, virtual = _times(h), asked.family == "quintic-spline-virtual"
+    degree, sites = (5, np.delete(t, [1, len(t) - 2])) if virtual else (7, t)
+    knots = np.concatenate([[0.0] * (degree + 1), t[1:-1], [t[-1]] * (degree + 1)])
+    rest = [(r, 0.0) for r in (1, 2, 3)]
+    curve = make_interp_spline(sites, q, k=degree, t=knots, bc_type=(rest, rest))
+    return _of_spline(curve, degree, t)
+
+
 def _virtual(asked: Asked, j: int, q: Array, h: Array) -> list[Piece]:
     t = _times(h)
 
@@ -425,7 +435,9 @@ _MAKERS: dict[str, Callable[[Asked, int, Array, Array], list[Piece]]] = {
     "stated": _joined,
     "cubic-spline": _cubic,
     "quintic-spline": _quintic,
+    "septic-spline": _still,
     "cubic-spline-virtual": _virtual,
+    "quintic-spline-virtual": _still,
     "rest-to-rest": _rest,
     "jtraj": _rest,
     "uniform-cubic-b-spline": _uniform,

@@ -69,8 +69,12 @@ def declared(
             return joined((3,) * n, 2, block.get("end_orders", (1,)))
         case "quintic-spline":
             return joined((5,) * n, 4, (1, 2))
+        case "septic-spline":
+            return joined((7,) * n, 6, (1, 2, 3))
         case "cubic-spline-virtual":
             return joined((3,) * n, 2, (1, 2), sorted({1, n - 1}))
+        case "quintic-spline-virtual":
+            return joined((5,) * n, 4, (1, 2, 3), sorted({1, n - 1}))
         case "rest-to-rest" | "jtraj":
             degree = block.get("degree", 5)
             rest = tuple((r, 0.0) for r in range(1, _REST[degree] + 1))

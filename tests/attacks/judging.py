@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from attacks.attack import Attack, demand, keep
-from attacks.cases import FAMILIES, Drawn, Rng, alone, draw_asked, near_limits, raw_of, with_ends
+from attacks.cases import Drawn, Rng, alone, draw_asked, draw_family, near_limits, raw_of, with_ends
 from attacks.curves import Array, Asked, NoCurve, excess, peaks
 from attacks.grammar import FACTORS, asked_of, draw_case, ends_said
 from attacks.searches import ROUNDING, judged_alike
@@ -31,7 +31,7 @@ def _problem(drawn: Drawn, pair: tuple[str, str] = ("main", "as-printed")) -> An
 
 def _draw(rng: Rng, bounds: float = 0.3) -> tuple[Asked, Array]:
     """A question and durations near its limits: just inside, just outside, or far off."""
-    asked = draw_asked(rng, str(rng.choice(FAMILIES)), bounds=bounds, scale=float(rng.integers(4)))
+    asked = draw_asked(rng, draw_family(rng), bounds=bounds, scale=float(rng.integers(4)))
     off = float(rng.choice([0.0, 1e-8, 1e-5, 1e-3, 0.1, 1.0])) * rng.choice([-0.5, 1.0])
     h = near_limits(rng, asked, SPREAD)
     # Which limit is active is not known: all durations by one factor moves every ratio.
@@ -224,7 +224,7 @@ def rounding(rng: Rng, folder: Path) -> str | None:
     from trajgap.problem import Printed
 
     try:
-        asked = draw_asked(rng, str(rng.choice(FAMILIES)), most_points=4, most_joints=2)
+        asked = draw_asked(rng, draw_family(rng), most_points=4, most_joints=2)
         h = near_limits(rng, asked, 1.0) * float(rng.choice([0.9, 0.995, 1.0, 1.005, 1.2]))
     except NoCurve:
         return None

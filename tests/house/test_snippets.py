@@ -66,6 +66,8 @@ def whole(snippet):
     kept = re.split(r"(?m)^(?=\[)", base)
     if "claims" in shown:  # what a document shows stands in place of the example's
         kept = [part for part in kept if not part.startswith("[[claims]]")]
+    elif "interpolant" in shown:
+        kept = [part for part in kept if not part.startswith("[interpolant]")]
     elif "clues" in shown:  # a clue is about durations, which the example does not print
         kept.append(AFTER)
     return "".join(kept) + snippet

@@ -103,11 +103,9 @@ def _judged(study: Study, claim: AnyClaim, pid: str, rid: str) -> _Judged:
             "acceleration"
         )
     message = f"{explained}. At the printed numbers {at_print}."
-    if rounding.verdict is Rounding.UNDECIDED and study.case.statement(pid, rid).loose_ends:
-        message += (
-            " Derivatives at the ends are printed numbers, and no proof covers all that rounds to "
-            "them."
-        )
+    loose = study.case.statement(pid, rid).declaration.loose
+    if rounding.verdict is Rounding.UNDECIDED and loose:
+        message += f" {loose} are printed numbers, and no proof covers all that rounds to them."
     bound = rounding.lower_bound_of_worst
     if rounding.verdict is Rounding.BREAKS and bound is not None:
         message += (
@@ -297,7 +295,18 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             "via-point."
         )
         verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
-        if jumps:
+        if jumps and all(
+            _may_be_smooth(study, study.case.claim(i), pid, rid)
+            for i in claim.of
+            for pid, reading in study.claim_pairs(study.case.claim(i))
+            if reading == rid
+        ):
+            verdict = ClaimVerdict.NOT_CHECKABLE
+            message = (
+                "The motion jumps at the printed durations; what rounds to them or is cut off to "
+                "them may have the proportions of the parameters, with which it is smooth."
+            )
+        elif jumps:
             where, top = max(jumps, key=lambda one: abs(one[1].size))
             name = ("position", "velocity", "acceleration")[top.order]
             size = in_units(study, where, rid, name, top.size)
@@ -317,6 +326,18 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             message=message,
             built=built and not jumps,
         )
+
+
+def _may_be_smooth(study: Study, claim: AnyClaim, pid: str, rid: str) -> bool:
+    """Whether durations that round to the digits have the proportions with which nothing jumps."""
+    problem = study.claim_problem(claim, pid, rid)
+    shares = problem.curve.smooth_shares(problem.waypoints)
+    if shares is None:
+        return not study.claim_check(claim, pid, rid).jumps
+    if study.case.statement(pid, rid).loose_ends:
+        return True
+    box = study.claim_boxes(claim, pid, rid)[0].or_cut_off()
+    return bool((box.lower / shares).max() <= (box.upper / shares).min())
 
 
 def _said_to_jump(study: Study, claim: StatementClaim) -> Iterator[Finding]:

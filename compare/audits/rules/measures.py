@@ -9,10 +9,11 @@ import numpy as np
 
 from ....problem import QUANTITIES, Array, Printed, Trajectory, TrajgapError, fit
 from ....problem.cases import AnyClaim, MeasureClaim
-from ...documents import Basis, ClaimVerdict, Finding, Severity
+from ...documents import Basis, ClaimVerdict, Finding
 from ..rounding import RoundingBox
 from ..study import Study
 from .corners import Look, largest_change
+from .loose_curves import FITTING, misfit
 from .peaks import each_motion, has_curve, peak_numbers
 from .printed_digits import hull
 from .wording import UNEXPLAINED, called, in_units, unit_shown
@@ -191,18 +192,19 @@ def _measures(study: Study, claim: MeasureClaim, motion: AnyClaim) -> Iterator[F
         wrong = [(joint, one) for joint, one in found if not one.fits]
         unit = _unit(study, claim, pid, rid)
         said = "; ".join(_said(claim, joint, one, unit) for joint, one in (wrong or found))
+        verdict, severity, note = misfit(study, pid, rid) if wrong else FITTING
         yield Finding(
             rule="TG208",
-            severity=Severity.WARNING if wrong else Severity.INFO,
-            verdict=ClaimVerdict.INCONSISTENT if wrong else ClaimVerdict.SUPPORTED,
+            severity=severity,
+            verdict=verdict,
             basis=Basis.CHECK if all(one.met for _, one in found) else Basis.COMPUTED,
             claim=claim.id,
             problem=pid,
             reading=rid,
             printed=", ".join(map(str, claim.printed)),
             computed="; ".join(f"{one.exact:.6g} ± {one.reach:.1g} {unit}" for _, one in found),
-            message=f"Of the printed durations ({called(motion)}): {said}.",
-            root=f"measures of {motion.id}" if wrong else "",
+            message=f"Of the printed durations ({called(motion)}): {said}.{note}",
+            root=f"measures of {motion.id}" if verdict is ClaimVerdict.INCONSISTENT else "",
             between=(claim.id, motion.id) if wrong else (),
         )
 

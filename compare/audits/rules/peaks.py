@@ -21,10 +21,11 @@ from ....problem import (
     peak_gradients,
 )
 from ....problem.cases import AnyClaim, MotionValueClaim, PeakClaim, motions_of
-from ...documents import Basis, ClaimVerdict, Finding, Severity
+from ...documents import Basis, ClaimVerdict, Finding
 from ..rounding import RoundingBox
 from ..study import Study
 from .corners import Look, largest_change
+from .loose_curves import FITTING, misfit
 from .norms import largest_norm
 from .wording import UNEXPLAINED, called, in_units, unit_shown
 
@@ -369,19 +370,20 @@ def _peaks(study: Study, claim: PeakClaim, motion: AnyClaim) -> Iterator[Finding
             continue
         wrong = [(joint, one) for joint, one in found if one.kind not in FITS]
         said = [described(study, claim, joint, one, pid, rid) for joint, one in (wrong or found)]
+        verdict, severity, note = misfit(study, pid, rid) if wrong else FITTING
         yield Finding(
             rule="TG203",
-            severity=Severity.WARNING if wrong else Severity.INFO,
-            verdict=ClaimVerdict.INCONSISTENT if wrong else ClaimVerdict.SUPPORTED,
+            severity=severity,
+            verdict=verdict,
             basis=Basis.CHECK if all(one.met for _, one in found) else Basis.COMPUTED,
             claim=claim.id,
             problem=pid,
             reading=rid,
             printed=", ".join(map(str, claim.printed)),
             computed="; ".join(_exact(study, claim, one, pid, rid) for _, one in found),
-            message=f"Of the printed durations ({called(motion)}): {'; '.join(said)}.",
+            message=f"Of the printed durations ({called(motion)}): {'; '.join(said)}.{note}",
             kind=", ".join(dict.fromkeys(one.kind for _, one in wrong)),
-            root=f"peaks of {motion.id}" if wrong else "",
+            root=f"peaks of {motion.id}" if verdict is ClaimVerdict.INCONSISTENT else "",
             between=(claim.id, motion.id) if wrong else (),
         )
 

@@ -206,8 +206,8 @@ EXPLAINED = {
         "durations: 3.53 s. Optimised together, the joints need 3.30 s.",
     ),
     "TG304": Explained(
-        "Is the printed total of a trapezoidal or S-curve profile the shortest that the limits "
-        "allow, from rest to rest in every segment?",
+        "Is the printed total of a trapezoidal, S-curve or sine-jerk profile the shortest that the "
+        "limits allow, from rest to rest in every segment?",
         "Supported within rounding, else inconsistent: the paper may have meant another profile.",
         "140° within 150 °/s, 70 °/s² and 70 °/s³ take 4 s with a jerk that is constant in phases.",
     ),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from math import cbrt, inf, sqrt
+from math import cbrt, inf, pi, sqrt
 
 import numpy as np
 
@@ -70,9 +70,38 @@ def s_curve(way: float, velocity: float, acceleration: float, jerk: float) -> fl
     return 4.0 * cbrt(way / (2.0 * jerk))
 
 
+def sine_jerk(way: float, velocity: float, acceleration: float, jerk: float) -> float:
+    """Shortest time from rest to rest in seven phases whose jerk is a half sine on each ramp.
+
+    Parameters
+    ----------
+    way : float
+        rad, not negative.
+    velocity, acceleration, jerk : float
+        Limits, rad/s, rad/s² and rad/s³; may be infinite.
+
+    Returns
+    -------
+    float
+        s.
+
+    Notes
+    -----
+    On a ramp of length τ the jerk is J sin(πt/τ), and the acceleration changes by ∫ = 2Jτ/π, as by
+    a constant jerk of 2J/π. It is (Jτ/π)(1 − cos(πt/τ)), which with its mirror image about the
+    middle of the ramp sums to the whole change, as a straight line does: velocity changes by the
+    same amount over the ramp. Both profiles are mirror images about the middle of each half and of
+    the whole, so that the ways are half of velocity times time in both. With phases of equal length
+    they have the same peaks of velocity and acceleration and the same way. The shortest total is
+    that of the S-curve within 2/π of the jerk limit.
+    """
+    return s_curve(way, velocity, acceleration, 2.0 / pi * jerk)
+
+
 PROFILES: dict[str, Callable[[float, float, float, float], float]] = {
     "trapezoidal": trapezoidal,
     "s-curve": s_curve,
+    "sine-jerk": sine_jerk,
 }
 """The shortest time of each profile: longer for a longer way, shorter for larger limits."""
 
@@ -94,10 +123,46 @@ def shortest(profile: str, ways: Array, limits: Array) -> float:
     float
         s.
     """
-    time = PROFILES[profile]
-    each = [[time(float(w), *map(float, own)) for w, own in zip(row, limits, strict=True)]
-            for row in ways]  # fmt: skip
+    each = [
+        [_time(profile, float(w), own) for w, own in zip(row, limits, strict=True)] for row in ways
+    ]
     return float(np.max(each, axis=1).sum())
+
+
+def shortest_straight(profile: str, ways: Array, limits: Array) -> float:
+    """Shortest total where all joints follow one time law, on a straight line in each segment.
+
+    Joint j moves by way_j·s(t) while s goes from 0 to 1 by the profile, so that the derivatives of
+    s keep the smallest limit_j/way_j over the joints that move.
+
+    Parameters
+    ----------
+    profile : str
+        A key of `PROFILES`.
+    ways : ndarray, shape (segments, joints)
+        rad, not negative.
+    limits : ndarray, shape (joints, 3)
+        Of velocity, acceleration and jerk.
+
+    Returns
+    -------
+    float
+        s.
+    """
+    total = 0.0
+    for row in ways:
+        moving = row > 0.0
+        if moving.any():
+            total += _time(profile, 1.0, (limits[moving] / row[moving, None]).min(axis=0))
+    return total
+
+
+def _time(profile: str, way: float, limits: Array) -> float:
+    """Time of one segment, infinite where a joint moves that must not."""
+    velocity, acceleration, jerk = map(float, limits)
+    if way > 0.0 and not (velocity > 0.0 and acceleration > 0.0 and jerk > 0.0):
+        return inf
+    return PROFILES[profile](way, velocity, acceleration, jerk)
 
 
 def judge_profiles(study: Study) -> Iterator[Finding]:
@@ -132,24 +197,18 @@ def _beside(study: Study, claim: TotalTimeClaim, profile: str, pid: str, rid: st
             message=f"The lower and upper limits differ; the {profile} profile is computed within "
             "limits of equal size only.",
         )
-    plain = shortest(
-        profile, np.abs(np.diff(problem.waypoints, axis=0)), problem.limits.derivatives
-    )
-    least, most = _ways(problem, study, pid, rid)
-    loose = study.claim_problem(claim, pid, rid, Digits.LOOSEST_CUT).limits.derivatives
-    low = shortest(profile, least, loose) * (1.0 - _SLACK)
-    try:
-        tight = study.claim_problem(claim, pid, rid, Digits.TIGHTEST).limits.derivatives
-        high = shortest(profile, most, tight) * (1.0 + _SLACK)
-    except (CaseError, ZeroDivisionError):
-        high = inf
+    straight = claim.path == "straight"
+    plain, fits = _fitted(study, claim, profile, pid, rid, straight)
     number = study.case.measured(claim.value, "time", claim.problem, rid)
-    cut = number.cut_off()
-    fits = min(number.lower, cut.lower) <= high and low <= max(number.upper, cut.upper)
     verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
     said = "which fits"
     if plain == 0.0:
         verdict, said = ClaimVerdict.NOT_CHECKABLE, "and no limit that the profile uses is stated"
+    elif plain == inf:
+        verdict, said = ClaimVerdict.NOT_CHECKABLE, "and a joint moves whose limit is 0"
+    elif not fits and not straight and _fitted(study, claim, profile, pid, rid, True)[1]:
+        verdict = ClaimVerdict.NOT_CHECKABLE
+        said = 'which fits where the joints stay on a straight line: path = "straight" if they do'
     elif not fits:
         verdict, severity = ClaimVerdict.INCONSISTENT, Severity.WARNING
         said = f"which is {abs(number.value / plain - 1):.2%} "
@@ -164,7 +223,34 @@ def _beside(study: Study, claim: TotalTimeClaim, profile: str, pid: str, rid: st
         reading=rid,
         printed=f"{claim.value} {study.time_unit}",
         computed=f"{plain:.6g} s",
-        message=f"The shortest {profile} profile from rest to rest, each segment as long as its "
-        f"slowest joint needs, takes {plain:.6g} s; printed is {claim.value} {study.time_unit}, "
-        f"{said}.",
+        message=f"The shortest {profile} profile from rest to rest, {_PATHS[straight]}, takes "
+        f"{plain:.6g} s; printed is {claim.value} {study.time_unit}, {said}.",
     )
+
+
+_PATHS = {
+    False: "each segment as long as its slowest joint needs",
+    True: "all joints on a straight line in each segment",
+}
+"""How the joints go together, by whether they stay on a straight line."""
+
+
+def _fitted(
+    study: Study, claim: TotalTimeClaim, profile: str, pid: str, rid: str, straight: bool
+) -> tuple[float, bool]:
+    """The shortest total at the printed numbers, and whether the printed one fits its interval."""
+    total = shortest_straight if straight else shortest
+    problem = study.claim_problem(claim, pid, rid)
+    ways = np.abs(np.diff(problem.waypoints, axis=0))
+    plain = total(profile, ways, problem.limits.derivatives)
+    least, most = _ways(problem, study, pid, rid)
+    loose = study.claim_problem(claim, pid, rid, Digits.LOOSEST_CUT).limits.derivatives
+    low = total(profile, least, loose) * (1.0 - _SLACK)
+    try:
+        tight = study.claim_problem(claim, pid, rid, Digits.TIGHTEST).limits.derivatives
+        high = total(profile, most, tight) * (1.0 + _SLACK)
+    except CaseError:
+        high = inf
+    number = study.case.measured(claim.value, "time", claim.problem, rid)
+    cut = number.cut_off()
+    return plain, min(number.lower, cut.lower) <= high and low <= max(number.upper, cut.upper)

@@ -91,7 +91,7 @@ def test_what_is_not_known_is_said_and_nothing_is_suggested(declared, name):
         ("quintic", "quintic-b-spline or quintic-polynomials or quintic-spline"),
         ("clamped", "clamped-b-spline or clamped-cubic"),
         ("quintc-spline", "quintic-spline"),
-        ("virtual", "cubic-spline-virtual"),
+        ("virtual", "cubic-spline-virtual or quintic-spline-virtual"),
         (
             "cubic",
             "clamped-cubic or cubic-b-spline or cubic-polynomials or cubic-spline or natural-cubic",
@@ -106,7 +106,16 @@ def test_a_name_that_may_mean_several_is_answered_with_them(declared, name, mean
 
 
 @pytest.mark.parametrize(
-    "name", ["LSPB", "parabolic blends", "trapezoidal velocity profile", "S-curve", "double S"]
+    "name",
+    [
+        "LSPB",
+        "parabolic blends",
+        "trapezoidal velocity profile",
+        "S-curve",
+        "double S",
+        "sine-jerk",
+        "sinusoidal jerk profile",
+    ],
 )
 def test_profiles_are_told_where_they_belong(declared, name):
     with pytest.raises(CaseError, match="is a profile from rest to rest, not a curve through"):

@@ -193,6 +193,12 @@ def test_a_default_without_a_shortest_motion_is_not_one(table):
     assert 'family = "cubic-spline"  # cubic-spline-virtual has no shortest motion' in text
 
 
+def test_a_curve_without_a_shortest_motion_is_written_with_what_it_takes(table):
+    text = scaffold(table(points(5)), RAD, family="quintic-spline-virtual")
+    assert "# no motion is the shortest unless [durations] has a lower bound" in text
+    assert parse_case(text, "x").problem().segments == 6
+
+
 def test_a_unit_without_a_limit_is_written_for_printed_peaks(table):
     text = scaffold(table(points(4)), RAD)
     assert (parse_case(text, "x").document.units.velocity, "# jerk" in text) == ("rad/s", True)

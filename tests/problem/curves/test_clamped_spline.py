@@ -36,7 +36,7 @@ KINDS = [
     (degree, knots, parameters, time)
     for degree in range(3, 8)
     for knots in ("waypoints", "averaged-continued")
-    for parameters in Parameters
+    for parameters in (Parameters.TIMES, Parameters.CHORD, Parameters.JOINT_CHORD)
     for time in Timing
     if (degree == 5 or knots != "waypoints") and (parameters, time) != ("times", "stretched")
 ]

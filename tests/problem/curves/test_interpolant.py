@@ -10,11 +10,15 @@ from trajgap.problem import (
     fit,
     piecewise,
     quintic_spline,
+    quintic_spline_virtual,
     rest_to_rest,
+    septic_spline,
     three_five_three,
 )
 
 REST = ((1, 0.0), (2, 0.0))
+JERK = (*REST, (3, 0.0))
+SNAP = (*JERK, (4, 0.0))
 
 
 @pytest.mark.parametrize(
@@ -29,6 +33,16 @@ REST = ((1, 0.0), (2, 0.0))
         # as the cubic, 2 end conditions more, and one position less for each of 2 virtual breaks
         (cubic_spline_virtual(4), 20, 20, 4),
         (cubic_spline_virtual(2), 12, 12, 2),
+        # as the quintic, with jerk 0 at both ends in place of two positions
+        (quintic_spline_virtual(4), 30, 30, 4),
+        (quintic_spline_virtual(2), 18, 18, 2),
+        # 2n positions, 6(n − 1) from C6, 6 at the ends
+        (septic_spline(5), 40, 40, 6),
+        # a virtual break for each order more: of 2(n − 2) + 4 positions, 6(n − 1), 8 at the ends
+        (septic_spline(5, SNAP, virtual=(1, 4)), 40, 40, 4),
+        # one position less, and nothing in its place
+        (quintic_spline(5, virtual=(2,)), 29, 30, 5),
+        (cubic_spline(6, virtual=(4, 2)), 22, 24, 5),
         (rest_to_rest(3, 3), 12, 12, 4),
         (rest_to_rest(3, 5), 18, 18, 4),
         (rest_to_rest(3, 7), 24, 24, 4),
@@ -63,8 +77,14 @@ def test_rest_at_every_waypoint_is_over_determined() -> None:
         (((10,), (), ((), ())), r"degrees: every degree must lie in 1..9"),
         (((3, 0), (0,), ((),) * 3), r"degrees: every degree must lie in 1..9"),
         (((3, 3), (-1,), ((),) * 3), r"continuity: every order must be 0 or more"),
-        (((3, 3), (2,), ((),) * 3, (2,)), r"virtual: only interior breaks can be virtual"),
-        (((3, 3), (2,), ((),) * 3, (0,)), r"virtual: only interior breaks can be virtual"),
+        (((3, 3, 3), (2, 2), ((),) * 4, (3,)), r"virtual: only interior breaks .*, 1 to 2$"),
+        (((3, 3, 3), (2, 2), ((),) * 4, (0,)), r"virtual: only interior breaks .*, 1 to 2$"),
+        (((3,), (), ((),) * 2, (1,)), r"virtual: .* of which one segment has none"),
+        # four conditions at the start settle the first segment, whose end is a way-point
+        (
+            ((3,) * 6, (2,) * 5, (JERK, *((),) * 5, JERK), (2, 3, 4, 5)),
+            r"contradict each other \(rank 23\); spread the degrees or the virtual breaks",
+        ),
         (((3,), (), (((1, 0.0), (1, 1.0)), ())), r"prescribed\[0\]: orders must be distinct"),
         (((3,), (), ((), ((0, 1.0),))), r"prescribed\[1\]: orders must be distinct and at least 1"),
         (((3,), (), ((), ((1, np.inf),))), r"prescribed\[1\]: values must be finite"),

@@ -19,7 +19,9 @@ from trajgap.problem import (
     evaluate,
     fit,
     quintic_spline,
+    quintic_spline_virtual,
     rest_to_rest,
+    septic_spline,
     three_five_three,
 )
 from trajgap.problem.curves.refined import refined_coefficients
@@ -111,6 +113,32 @@ def test_virtual_waypoints_are_knots_without_data(count: int) -> None:
     reference = make_interp_spline(data, q, k=3, t=knots, bc_type=(rest, rest))
     mine = fit(cubic_spline_virtual(count), q, np.diff(breaks))
     same_curve(mine, reference, range(4), inside(breaks))
+
+
+def test_septic_spline_is_scipys() -> None:
+    q = waypoints(6)
+    rest = [(order, np.zeros(3)) for order in (1, 2, 3)]
+    reference = make_interp_spline(BREAKS[:6], q, k=7, bc_type=(rest, rest))
+    mine = fit(septic_spline(5), q, np.diff(BREAKS[:6]))
+    same_curve(mine, reference, range(6), inside(BREAKS[:6]))
+
+
+@pytest.mark.parametrize(
+    ("curve", "orders"),
+    [
+        (quintic_spline_virtual(6), 3),
+        (quintic_spline(7, virtual=(4, 2), ends=((1, 0.0), (2, 0.0), (3, 0.0))), 3),
+        (septic_spline(7, virtual=(3, 5), ends=tuple((r, 0.0) for r in range(1, 5))), 4),
+    ],
+)
+def test_virtual_breaks_anywhere_are_knots_without_data(curve: Interpolant, orders: int) -> None:
+    q, k = waypoints(6), curve.degrees[0]
+    rest = [(order, np.zeros(3)) for order in range(1, orders + 1)]
+    data = [BREAKS[b] for b in range(8) if b not in curve.virtual]
+    knots = [BREAKS[0]] * (k + 1) + list(BREAKS[1:-1]) + [BREAKS[-1]] * (k + 1)
+    reference = make_interp_spline(data, q, k=k, t=knots, bc_type=(rest, rest))
+    mine = fit(curve, q, np.diff(BREAKS))
+    same_curve(mine, reference, range(5), inside(BREAKS))
 
 
 @pytest.mark.parametrize("degree", [3, 5, 7, 9])

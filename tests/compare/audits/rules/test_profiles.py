@@ -4,11 +4,20 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.integrate import quad
 from scipy.optimize import linprog
 from support.findings import said_of, study_of
 from support.one_joint import one_joint
-from trajgap.compare.audits.rules.profiles import judge_profiles, s_curve, shortest, trapezoidal
+from trajgap.compare.audits.rules.profiles import (
+    judge_profiles,
+    s_curve,
+    shortest,
+    shortest_straight,
+    sine_jerk,
+    trapezoidal,
+)
 from trajgap.compare.documents import ClaimVerdict
+from trajgap.problem import CaseError, parse_case
 
 STEPS = 120
 CLAIM = """
@@ -57,9 +66,71 @@ def test_a_trapezoid_reaches_its_speed_or_does_not() -> None:
     assert shortest("trapezoidal", ways, limits) == 2.5
 
 
+def of_half_sines(ramp: float, held: float, cruise: float, jerk: float) -> np.ndarray:
+    """Way and peaks of velocity and acceleration, from the jerk alone, by numerical integration."""
+    lengths = np.array([ramp, held, ramp, cruise, ramp, held, ramp])
+    signs = (1, 0, -1, 0, -1, 0, 1)
+    ends = np.concatenate([[0.0], np.cumsum(lengths)])
+
+    def moment(power: int, until: float) -> float:
+        """∫ (until − t)^power j(t) dt: acceleration, velocity and twice the way."""
+        total = 0.0
+        for start, length, sign in zip(ends[:-1], lengths, signs, strict=True):
+            end = min(start + length, until)
+            if sign and end > start:
+                total += sign * quad(
+                    lambda t, a=start, n=length: (until - t) ** power
+                    * jerk * np.sin(np.pi * (t - a) / n), start, end,
+                )[0]  # fmt: skip
+        return total
+
+    assert moment(0, ends[-1]) == pytest.approx(0, abs=1e-9)
+    assert moment(1, ends[-1]) == pytest.approx(0, abs=1e-9)
+    return np.array([moment(2, ends[-1]) / 2, moment(1, ends[3]), moment(0, ends[1])])
+
+
+@pytest.mark.parametrize(
+    ("ramp", "held", "cruise"),
+    [(0.31, 0.52, 0.77), (0.31, 0.52, 0.0), (0.31, 0.0, 0.77), (0.31, 0.0, 0.0)],
+)
+def test_half_sines_of_jerk_take_the_time_of_a_jerk_smaller_by_half_pi(
+    ramp: float, held: float, cruise: float
+) -> None:
+    way, velocity, acceleration = of_half_sines(ramp, held, cruise, 9.0)
+    total = 4 * ramp + 2 * held + cruise
+    assert sine_jerk(way, velocity, acceleration, 9.0) == pytest.approx(total, rel=1e-9)
+    # One limit larger lets it be no longer; all larger, shorter.
+    assert sine_jerk(way, velocity, acceleration, 9.9) < total
+    assert sine_jerk(way, velocity, acceleration, 9.0) > s_curve(way, velocity, acceleration, 9.0)
+    assert sine_jerk(way, velocity, acceleration, np.inf) == trapezoidal(
+        way, velocity, acceleration, np.inf
+    )
+
+
+def test_joints_on_a_straight_line_share_one_time_law() -> None:
+    # s from 0 to 1 within 2/3 (joint 2) and 1 (joint 1): 3/2 + 2/3 s; alone both take 2 s.
+    ways, limits = np.array([[1.0, 3.0]]), np.array([[2.0, 1.0, np.inf], [2.0, 4.0, np.inf]])
+    assert shortest_straight("trapezoidal", ways, limits) == pytest.approx(13 / 6)
+    assert shortest("trapezoidal", ways, limits) == pytest.approx(2.0)
+    assert farthest(13 / 6, 2 / 3, 1.0, np.inf) == pytest.approx(1.0, rel=2e-2)
+    # A joint that rests asks for nothing, even where it must not move.
+    still = np.vstack([limits, np.zeros(3)])
+    assert shortest_straight("trapezoidal", np.array([[1.0, 3.0, 0.0]]), still) == pytest.approx(
+        13 / 6
+    )
+    assert shortest_straight("s-curve", np.zeros((2, 3)), still) == 0.0
+    assert shortest_straight("sine-jerk", ways, limits) == pytest.approx(13 / 6)
+    one = np.array([[2.0, 1.0, 5.0]])
+    for profile in ("trapezoidal", "s-curve", "sine-jerk"):
+        alone = shortest(profile, np.array([[0.7]]), one)
+        assert shortest_straight(profile, np.array([[0.7]]), one) == pytest.approx(alone)
+
+
 @pytest.mark.parametrize(
     ("profile", "value", "verdict"),
     [
+        ("sine-jerk", "1.362", ClaimVerdict.SUPPORTED),
+        ("sine-jerk", "1.220", ClaimVerdict.INCONSISTENT),
         ("trapezoidal", "1.000", ClaimVerdict.SUPPORTED),
         ("trapezoidal", "1.018", ClaimVerdict.INCONSISTENT),
         ("s-curve", "1.220", ClaimVerdict.SUPPORTED),
@@ -69,7 +140,10 @@ def test_a_trapezoid_reaches_its_speed_or_does_not() -> None:
 def test_a_printed_total_of_a_profile_is_judged(
     profile: str, value: str, verdict: ClaimVerdict
 ) -> None:
-    """1 rad: half a second of 4 rad/s² each way; with jerk 0.2 + sqrt(0.04 + 1) s."""
+    """1 rad: half a second of 4 rad/s² each way; with jerk 0.2 + sqrt(0.04 + 1) s.
+
+    With half sines a ramp of π/2 · 0.2 s.
+    """
     text = one_joint(
         "0, 1", "2", "2.0", "within_limits", CLAIM.format(profile=profile, value=value)
     )
@@ -78,4 +152,75 @@ def test_a_printed_total_of_a_profile_is_judged(
     assert found.verdict is verdict
     rounded = text.replace("[[0, 1]]", '[["0.00", "1.00"]]').replace('"1.018"', '"1.009"')
     (found,) = said_of(study_of(rounded), judge_profiles, "t", "TG304")
-    assert (found.verdict is ClaimVerdict.SUPPORTED) == (value != "1.00" or profile != "s-curve")
+    wrong = (profile, value) in (("s-curve", "1.00"), ("sine-jerk", "1.220"))
+    assert (found.verdict is ClaimVerdict.SUPPORTED) == (not wrong)
+
+
+TWO = """
+format = 1
+id = "two"
+title = "Two joints"
+[source]
+title = "none"
+[robot]
+name = "arm"
+joints = ["a", "b"]
+[units]
+position = "rad"
+velocity = "rad/s"
+acceleration = "rad/s^2"
+time = "s"
+[waypoints]
+waypoint_rows = [[0, 0], [1, -3]]
+[limits]
+velocity = 2
+acceleration = [{acceleration}, 4]
+[interpolant]
+family = "rest-to-rest"
+degree = 3
+"""
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "verdict", "words"),
+    [
+        ("", "2.00", ClaimVerdict.SUPPORTED, "as long as its slowest joint needs, takes 2 s"),
+        ('path = "straight"', "2.17", ClaimVerdict.SUPPORTED, "straight line in each segment, tak"),
+        ('path = "straight"', "2.00", ClaimVerdict.INCONSISTENT, "which is 7.69% shorter"),
+        ("", "2.17", ClaimVerdict.NOT_CHECKABLE, "which fits where the joints stay on a straight"),
+        ("", "2.30", ClaimVerdict.INCONSISTENT, "which is 15.00% longer"),
+    ],
+)
+def test_how_the_joints_go_together_is_said(
+    path: str, value: str, verdict: ClaimVerdict, words: str
+) -> None:
+    claim = CLAIM.format(profile="trapezoidal", value=value)
+    text = f"{TWO.format(acceleration=1)}{claim}{path}\n"
+    (found,) = said_of(study_of(text), judge_profiles, "t", "TG304")
+    assert found.verdict is verdict
+    assert words in found.message
+
+
+@pytest.mark.parametrize(
+    ("left_out", "message"),
+    [
+        (
+            'profile = "trapezoidal"\n',
+            r"claims\[0\].path: goes with profile; add it, or leave this",
+        ),
+        ('other_curve = "blends"\n', r"claims\[0\].profile: goes with other_curve; name the curve"),
+    ],
+)
+def test_what_a_profile_goes_with(left_out: str, message: str) -> None:
+    claim = CLAIM.format(profile="trapezoidal", value="2.00").replace(left_out, "")
+    with pytest.raises(CaseError, match=message):
+        parse_case(f'{TWO.format(acceleration=1)}{claim}path = "straight"\n', "two.toml")
+
+
+def test_a_joint_that_must_not_move_and_does_is_no_fault_of_the_total() -> None:
+    claim = CLAIM.format(profile="trapezoidal", value="2.00")
+    (found,) = said_of(
+        study_of(f"{TWO.format(acceleration=0)}{claim}"), judge_profiles, "t", "TG304"
+    )
+    assert found.verdict is ClaimVerdict.NOT_CHECKABLE
+    assert "a joint moves whose limit is 0" in found.message
