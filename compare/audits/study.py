@@ -156,6 +156,24 @@ class Study(ReplayedCase):
                 halves.append(round((box.upper - box.lower) / 2, 12))
         return (max(halves),) if halves else ()
 
+    def freed(self, pid: str, rid: str) -> Solution:
+        """The optimum with each duration chosen; where no ratios are fixed, that is `optimum`."""
+        problem = self.problem(pid, rid)
+        if problem.ratios is None:
+            return self.optimum(pid, rid)
+
+        def compute() -> Solution:
+            known = self.known_motions(pid, rid)
+            own = self.optimum(pid, rid).durations
+            known = known if own is None or problem.curve.free else np.vstack([known, own])
+            one = replace(problem, ratios=None)
+            try:
+                return solve(one, known=known, seconds=OPTIMUM_SECONDS)
+            except TrajgapError as error:
+                return Solution(one, Status.FAILED, str(error))
+
+        return self.once(("freed", pid, rid), compute)
+
     def relaxed(self, pid: str, rid: str) -> Solution:
         """Optimum of the relaxed family: at least quintic everywhere, C2, the rest left free."""
 
@@ -174,7 +192,7 @@ class Study(ReplayedCase):
                 virtual=given.virtual,
                 name="relaxed family",
             )
-            relaxed = replace(problem, curve=family, coupling=Coupling.SHARED)
+            relaxed = replace(problem, curve=family, coupling=Coupling.SHARED, ratios=None)
             settled = len(family.free_derivatives)
             if settled < family.free:
                 why = (
@@ -182,7 +200,7 @@ class Study(ReplayedCase):
                     f"derivatives at the way-points settle {settled} of them"
                 )
                 return Solution(relaxed, Status.FAILED, why)
-            member = self.optimum(pid, rid)
+            member = self.freed(pid, rid)
             if member.durations is None or given.free:
                 return solve(relaxed, start_seconds=RELAXED_SECONDS)
             curve = fit(given, problem.waypoints, member.durations)
@@ -236,12 +254,16 @@ class Study(ReplayedCase):
 
         It holds for every way-point that rounds to the printed digits or is cut off to them, and
         every limit that rounds to them; None if there is no such stretch, or if durations alone
-        define no motion.
+        define no motion. Where exact ratios are fixed, the durations take them first.
         """
         try:
             problem = self.claim_problem(claim, pid, rid, Digits.TIGHTEST)
         except CaseError:  # the tightest ranges are empty
             return None
+        if problem.shares is not None:
+            if self.case.statement(pid, rid).loose_ratios:
+                return None  # other ratios, which the digits stand for too, may take longer
+            durations = problem.shares * float(np.sum(durations))
         if problem.curve.free:
             return None
         box = self.waypoint_box(problem, pid, rid).or_cut_off()

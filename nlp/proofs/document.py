@@ -63,6 +63,7 @@ def problem_document(problem: ExactProblem) -> dict[str, Any]:
         "position_upper": [_real(x) for x in problem.position_upper],
         "duration_lower": [decimal(x) for x in problem.duration_lower],
         "duration_upper": [None if x is None else decimal(x) for x in problem.duration_upper],
+        **({} if problem.shares is None else {"ratios": [decimal(x) for x in problem.shares]}),
     }
 
 
@@ -331,7 +332,8 @@ def question(problem: dict[str, Any], subject: Subject = Subject.DECLARED) -> di
     else:
         ends = same.pop("ends", [None, None])
         own = ["curve"]
-    for key in own:
+    # Any curve passes the way-points when it likes.
+    for key in (*own, "ratios"):
         same.pop(key, None)
     return {"virtual": [], **same, "ends": ends}
 

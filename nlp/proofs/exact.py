@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -114,6 +115,8 @@ class ExactProblem:
         an answer has to keep beside ``limits``.
     prescribed : tuple or None
         What the curve prescribes at its breaks, exact, where its own floats are only near to it.
+    shares : tuple of Fraction or None
+        Share of each segment in the total, where ratios fix it.
     """
 
     name: str
@@ -128,6 +131,7 @@ class ExactProblem:
     unit: str = "rad"
     pairs: tuple[tuple[tuple[int, int], Pair], ...] = ()
     prescribed: Prescribed | None = None
+    shares: tuple[Fraction, ...] | None = None
 
     def end_velocities(self, side: int) -> tuple[Fraction | None, ...]:
         """Velocities prescribed at the start (0) or the finish (1), joint by joint."""
@@ -189,6 +193,7 @@ class ExactProblem:
             self.unit,
             tuple(((0, r), pair) for (j, r), pair in self.pairs if j == index),
             own,
+            self.shares,
         )
 
     def in_units(self, powers: Sequence[int], second: int) -> ExactProblem:
@@ -278,7 +283,17 @@ def exact_problem(problem: Problem) -> ExactProblem:
         tuple(Fraction(float(x)) for x in problem.duration_lower),
         tuple(Fraction(float(x)) if np.isfinite(x) else None for x in problem.duration_upper),
         pairs=tuple(pairs),
+        shares=_shares(problem.ratios),
     )
+
+
+def _shares(ratios: Iterable[Any] | None) -> tuple[Fraction, ...] | None:
+    """Ratios of any scale as exact shares of their sum."""
+    if ratios is None:
+        return None
+    exact = [Fraction(x) for x in ratios]
+    total = sum(exact, Fraction(0))
+    return tuple(x / total for x in exact)
 
 
 def printed_problem(statement: Statement) -> ExactProblem:
@@ -297,8 +312,9 @@ def printed_problem(statement: Statement) -> ExactProblem:
     Raises
     ------
     TrajgapError
-        If turns are added to angles, or a derivative that is prescribed at an end is an interval
-        or in another unit of angle than the way-points.
+        If turns are added to angles, ratios of durations are those of chord lengths, or a
+        derivative that is prescribed at an end is an interval or in another unit of angle than the
+        way-points.
     CaseError
         If a unit is missing.
     """
@@ -365,7 +381,25 @@ def printed_problem(statement: Statement) -> ExactProblem:
         str(units.position),
         tuple(pairs.items()),
         prescribed,
+        _printed_shares(statement, problem),
     )
+
+
+def _printed_shares(statement: Statement, problem: Problem) -> tuple[Fraction, ...] | None:
+    """Exact shares of the segments from the printed ratios."""
+    given = statement.durations.ratios
+    if given == "chord" and len(statement.joints) > 1:
+        raise TrajgapError(
+            "certify: chord lengths of several joints are no rational numbers; write the ratios as "
+            "numbers"
+        )
+    if given == "chord":
+        (j,) = statement.joints
+        own = [row[j].fraction for row in statement.waypoints.points]
+        return _shares(abs(b - a) for a, b in pairwise(own))
+    if isinstance(given, tuple):
+        return _shares(number.fraction for number in given)
+    return _shares(problem.ratios)
 
 
 def _in_motion(statement: Statement, curve: Curve, base: Scale) -> tuple[Interpolant, Prescribed]:

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..curves import Curve, Derivatives
+from ..duration_ratios import RATIO_WORDS
 from ..errors import CaseError, TrajgapError
 from ..fields import LimitPair
 from ..limits import Limits
@@ -234,6 +235,15 @@ class Statement:
         each = (n for one in every for n in (one if isinstance(one, tuple) else (one,)))
         return any(not number.exact for number in each)
 
+    @property
+    def loose_ratios(self) -> bool:
+        """Whether fixed ratios stand for intervals: printed digits, or lengths between them."""
+        ratios = self.durations.ratios
+        if isinstance(ratios, tuple):
+            return any(not number.exact for number in ratios)
+        taken = (row[j] for row in self.waypoints.points for j in self.joints)
+        return ratios == "chord" and any(not number.exact for number in taken)
+
     def _end(self, key: str, values: Values | None, orders: tuple[int, ...]) -> Derivatives:
         """Derivatives at one end in rad and s, of the joints that take part."""
         if values is None:
@@ -297,6 +307,12 @@ class Statement:
 
     def _at(self, data: Data, waypoints: Array) -> Problem:
         curve, limits, lower, upper = data
+        fixed = self.durations.ratios
+        ratios = (
+            np.array([number.value for number in fixed])
+            if isinstance(fixed, tuple)
+            else next((word for word in RATIO_WORDS if word == fixed), None)
+        )
         try:
             return Problem(
                 waypoints=waypoints,
@@ -307,8 +323,12 @@ class Statement:
                 coupling=self.coupling,
                 joints=tuple(self.labels[j] for j in self.joints),
                 name=self.name,
+                ratios=ratios,
             )
         except TrajgapError as error:
+            field, of, why = str(error).partition("ratios: ")
+            if of and not field:
+                raise self.fail("durations.ratios", why) from None
             raise self.fail("", str(error)) from None
 
     def data(self, digits: Digits = Digits.PRINTED) -> Data:
@@ -337,6 +357,11 @@ class Statement:
             raise self.fail(
                 "durations.lower",
                 f"lies above durations.upper in segment {at + 1}; exchange or change them",
+            )
+        ratios = self.durations.ratios
+        if isinstance(ratios, tuple) and len(ratios) != segments:
+            raise self.fail(
+                "durations.ratios", f"{len(ratios)} ratios for {segments} segments; give one each"
             )
         position_lower = self._limit("position_lower", "position", digits)
         position_upper = self._limit("position_upper", "position", digits)
