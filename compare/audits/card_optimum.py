@@ -17,7 +17,7 @@ from ...problem.cases import (
     TotalTimeClaim,
 )
 from ..documents import CaveatKind, ClaimVerdict, Judgement, Keeping, Waterfall, count_words
-from .fixed_ratios import at_ratios, off_ratios
+from .fixed_ratios import at_ratios, off_ratios, planned_apart
 from .own_result import own_result
 from .stated import other_objective
 from .study import Study
@@ -277,8 +277,7 @@ def _kept_there(study: Study, claim: AnyClaim, pid: str, rid: str) -> str:
 
 def _apart(study: Study, pid: str, rid: str) -> bool:
     """Whether the paper plans each of several joints by itself."""
-    problem = study.problem(pid, rid)
-    return problem.coupling is Coupling.PER_JOINT and len(problem.joints) > 1
+    return planned_apart(study.problem(pid, rid))
 
 
 def _together_where_apart(study: Study, pid: str, rid: str) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...nlp import Evidence
-from ...problem import Array, Problem
+from ...problem import Array, Coupling, Problem
 from ...problem.cases import Claim
 from ..documents import Basis, Finding
 from .rounding import RoundingBox
@@ -29,6 +29,15 @@ def optimum_called(problem: Problem, evidence: Evidence) -> str:
 def at_ratios(problem: Problem) -> str:
     """What follows the name of an optimum whose durations have fixed ratios; else nothing."""
     return "" if problem.ratios is None else " at these ratios"
+
+
+def planned_apart(problem: Problem) -> bool:
+    """Whether a paper plans each joint by itself, with another outcome than for all together.
+
+    At fixed ratios the longest of the joints' totals is the shortest total of all.
+    """
+    apart = problem.coupling is Coupling.PER_JOINT and len(problem.joints) > 1
+    return apart and problem.ratios is None
 
 
 def off_ratios(study: Study, claim: Claim, pid: str, rid: str) -> str | None:

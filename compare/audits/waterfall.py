@@ -9,7 +9,7 @@ from fractions import Fraction
 from ...nlp import Evidence, Solution, Status, stated_exactly
 from ...nlp.proofs.any_curve import estimate_any_curve
 from ...nlp.retiming import retime
-from ...problem import Coupling, down, fit, up
+from ...problem import down, fit, up
 from ...problem.cases import (
     AnyClaim,
     DurationsClaim,
@@ -28,7 +28,7 @@ from ..documents import (
     Waterfall,
     Why,
 )
-from .fixed_ratios import off_ratios
+from .fixed_ratios import off_ratios, planned_apart
 from .own_result import own_result
 from .stated import other_objective
 from .study import Study
@@ -84,7 +84,7 @@ def _waterfall(study: Study, pid: str, rid: str) -> Waterfall:
     steps: list[Step] = []
     if claim is not None:
         steps += _published(study, claim, pid, rid)
-    if len(problem.joints) > 1 and problem.coupling is Coupling.PER_JOINT:
+    if planned_apart(problem):
         steps.append(_procedure(study, pid, rid))
     shared = study.optimum(pid, rid)
     own = SHARED_OPTIMUM if problem.ratios is None else RATIOS_OPTIMUM

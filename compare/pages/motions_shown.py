@@ -10,7 +10,7 @@ from ...heuristics import JointRuns
 from ...nlp import Solution, weakest
 from ...problem import Array, Problem, TrajgapError, file_name
 from ...problem.cases import AnyClaim, DurationsClaim, MaximumClaim, TotalTimeClaim
-from ..audits import CaseAudit, Study, at_ratios, place
+from ..audits import CaseAudit, Study, at_ratios, place, planned_apart
 from ..documents import OWN_OPTIMA
 from ..pictures import Picture, Runs, convergence, endings, landscape, motion_picture, svg
 from .blocks import Block, Drawn, Folded, Grid, Prose, Section
@@ -237,7 +237,7 @@ def _totals(study: Study, pid: str, rid: str) -> tuple[dict[str, float], dict[st
         at = at_ratios(shared.problem)
         references[f"{shared.evidence} optimum, shared durations{at}"] = _time(shared)
     problem = study.problem(pid, rid)
-    if len(problem.joints) > 1 and problem.coupling == "per-joint":
+    if planned_apart(problem):
         answer = study.per_joint(pid, rid)
         if answer.durations is not None:
             references[OWN_OPTIMA] = answer.total_time

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ....nlp import Evidence, Solution, Status, weakest
-from ....problem import Coupling
 from ....problem.cases import (
     AnyClaim,
     Digits,
@@ -31,7 +30,14 @@ from ...documents import (
 )
 from ...gaps import gap, reference_of
 from ..explanations import LIMITS, OPTIMAL
-from ..fixed_ratios import BELOW_AT_RATIOS, at_ratios, of_other_ratios, off_ratios, optimum_called
+from ..fixed_ratios import (
+    BELOW_AT_RATIOS,
+    at_ratios,
+    of_other_ratios,
+    off_ratios,
+    optimum_called,
+    planned_apart,
+)
 from ..rounding import same_limits
 from ..stated import other_objective
 from ..study import Study
@@ -71,7 +77,7 @@ def _beside_optimum(study: Study, claim: AnyClaim, pid: str, rid: str) -> Iterat
     if total is None:
         return
     problem = study.claim_problem(claim, pid, rid)
-    procedure = len(problem.joints) > 1 and study.problem(pid, rid).coupling is Coupling.PER_JOINT
+    procedure = len(problem.joints) > 1 and planned_apart(study.problem(pid, rid))
     solution = study.claim_optimum(claim, pid, rid)
     reference = reference_of(solution)
     other = off_ratios(study, claim, pid, rid)
@@ -97,10 +103,11 @@ def _distance(
     shown, interval = total
     kept = _kept(study, claim, pid, rid)
     distance = gap(interval, reference, feasible=kept)
-    which = "with shared durations" if shared or claim.joint is None else f"of joint {claim.joint}"
+    whole = " with shared durations" if solution.problem.ratios is None else ""
+    which = whole if shared or claim.joint is None else f" of joint {claim.joint}"
     message = (
         f"Printed {shown} {set_beside(distance)} the "
-        f"{optimum_called(solution.problem, reference.evidence)} {which}, "
+        f"{optimum_called(solution.problem, reference.evidence)}{which}, "
         f"{reference.upper:.6f} s{_bounded(reference)}."
     )
     minimised = other_objective(study.case, claim)
@@ -108,7 +115,7 @@ def _distance(
     if informs:
         message = (
             f"Printed {shown} was not minimised for time alone ({minimised}): as information, the "
-            f"shortest motion {which}{at_ratios(solution.problem)} takes {reference.upper:.6f} s, "
+            f"shortest motion{which}{at_ratios(solution.problem)} takes {reference.upper:.6f} s, "
             f"{reference.evidence}{_bounded(reference)}."
         )
     timed = not isinstance(claim, TotalTimeClaim) and study.unmoved(claim, pid, rid) is None
