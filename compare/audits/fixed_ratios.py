@@ -2,20 +2,28 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
 import numpy as np
 
-from ...nlp import Evidence
-from ...problem import Array, Coupling, Problem
+from ...nlp import Evidence, Solution, Status
+from ...nlp.optimum import solve
+from ...problem import Array, Coupling, Problem, TrajgapError
 from ...problem.cases import Claim
 from ..documents import Basis, Finding
 from .rounding import RoundingBox
-from .study import Study
+
+if TYPE_CHECKING:
+    from .study import Study
 
 BELOW_AT_RATIOS = (
     " The whole printed interval lies below it: other ratios of the durations, other limits, "
     "another reading or other digits explain that."
 )
 """What is said of a printed total below the shortest one at fixed ratios: it accuses nobody."""
+FREED_SECONDS = 60.0
+"""After which no start of the search with each duration chosen is begun, as for other optima."""
 _SLACK = 1e-9
 """Relative difference of two totals that rounding of float64 explains, with room to spare."""
 
@@ -76,6 +84,26 @@ def off_ratios(study: Study, claim: Claim, pid: str, rid: str) -> str | None:
         f"durations in the ratios {_shown(own)}, and this reading fixes {_shown(problem.shares)} "
         "(shares of the total)"
     )
+
+
+def freed(study: Study, pid: str, rid: str) -> Solution:
+    """The optimum with each duration chosen; where no ratios are fixed, that of the study."""
+    problem = study.problem(pid, rid)
+    own = study.optimum(pid, rid)
+    if problem.ratios is None:
+        return own
+
+    def compute() -> Solution:
+        known = study.known_motions(pid, rid)
+        if own.durations is not None:
+            known = np.vstack([known, own.durations])
+        one = replace(problem, ratios=None)
+        try:
+            return solve(one, known=known, seconds=FREED_SECONDS)
+        except TrajgapError as error:
+            return Solution(one, Status.FAILED, str(error))
+
+    return study.once(("freed", pid, rid), compute)
 
 
 def of_other_ratios(claim: Claim, pid: str, rid: str, shown: str, other: str) -> Finding:

@@ -48,6 +48,7 @@ from ...problem.cases import (
 )
 from ..documents import Keeping, Rounding, noted
 from .chosen_case import Pair
+from .fixed_ratios import freed
 from .instances import InstancesResult, examined, readings_of
 from .replayed_case import ReplayedCase, Replays
 from .rounding import RoundingBox, RoundingVerdict, judge_rounding
@@ -156,24 +157,6 @@ class Study(ReplayedCase):
                 halves.append(round((box.upper - box.lower) / 2, 12))
         return (max(halves),) if halves else ()
 
-    def freed(self, pid: str, rid: str) -> Solution:
-        """The optimum with each duration chosen; where no ratios are fixed, that is `optimum`."""
-        problem = self.problem(pid, rid)
-        if problem.ratios is None:
-            return self.optimum(pid, rid)
-
-        def compute() -> Solution:
-            known = self.known_motions(pid, rid)
-            own = self.optimum(pid, rid).durations
-            known = known if own is None or problem.curve.free else np.vstack([known, own])
-            one = replace(problem, ratios=None)
-            try:
-                return solve(one, known=known, seconds=OPTIMUM_SECONDS)
-            except TrajgapError as error:
-                return Solution(one, Status.FAILED, str(error))
-
-        return self.once(("freed", pid, rid), compute)
-
     def relaxed(self, pid: str, rid: str) -> Solution:
         """Optimum of the relaxed family: at least quintic everywhere, C2, the rest left free."""
 
@@ -200,7 +183,7 @@ class Study(ReplayedCase):
                     f"derivatives at the way-points settle {settled} of them"
                 )
                 return Solution(relaxed, Status.FAILED, why)
-            member = self.freed(pid, rid)
+            member = freed(self, pid, rid)
             if member.durations is None or given.free:
                 return solve(relaxed, start_seconds=RELAXED_SECONDS)
             curve = fit(given, problem.waypoints, member.durations)

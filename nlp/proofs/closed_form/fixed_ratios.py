@@ -28,7 +28,7 @@ of three joints take half a second."""
 
 
 @dataclass(frozen=True)
-class Place:
+class BoundingPlace:
     """Where every total below ``total`` breaks a limit.
 
     ``joint`` is −1 for the lower bound of the segment's duration; ``place`` counts in 1/PLACES.
@@ -58,13 +58,13 @@ def _missing(problem: ExactProblem) -> str | None:
     return None
 
 
-def _bounds(session: Session) -> Iterator[Place]:
+def _bounds(session: Session) -> Iterator[BoundingPlace]:
     """Totals that are proved: by a bound on a duration, and by the limit that asks for most."""
     exact, shares = session.exact, session.exact.shares
     assert shares is not None
     least = [low / share for low, share in zip(exact.duration_lower, shares, strict=True)]
     k = max(range(len(least)), key=least.__getitem__)
-    yield Place(least[k], k)
+    yield BoundingPlace(least[k], k)
     found = _asking_most(session)
     if found is None:
         return
@@ -72,7 +72,9 @@ def _bounds(session: Session) -> Iterator[Place]:
     value = _value(exact, joint, order, segment, place)
     limit = exact.sides(joint, order)[1 if value > 0 else 0]
     if value and limit is not None and limit.high > 0:
-        yield Place(root_below(abs(value) / limit.high, order), segment, joint, order, place)
+        yield BoundingPlace(
+            root_below(abs(value) / limit.high, order), segment, joint, order, place
+        )
 
 
 def _asking_most(session: Session) -> tuple[int, int, int, int] | None:
