@@ -263,6 +263,6 @@ def test_a_themed_file_keeps_its_own_colours(pictures: dict[str, Picture]) -> No
 
 
 def test_a_landscape_needs_ratios_that_are_chosen() -> None:
-    fixed = Problem(np.eye(4)[:, :1], Limits(1.0), three_five_three(), ratios="equal")
+    fixed = Problem(np.eye(4)[:, :1], Limits(1.0), cubic_spline(3), ratios="equal")
     with pytest.raises(TrajgapError, match="landscape: the ratios of the durations are fixed"):
         landscape(fixed, solve(fixed), [], {}, title="x")
