@@ -40,6 +40,7 @@ def check_answer(problem: StatedProblem, h: Sequence[Fraction], clock: Clock) ->
         With the joint, the segment and the derivative.
     """
     check_durations(h, problem.shortest, problem.longest)
+    need(not problem.chord, "answer: no durations are exactly in the ratios of chord lengths")
     if problem.shares is not None:
         total = sum(clock.each(h), Fraction(0))
         alike = all(x == share * total for x, share in zip(h, problem.shares, strict=True))

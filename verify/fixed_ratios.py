@@ -22,7 +22,9 @@ class FixedRatios(ProofKind[None]):
         self, problem: StatedProblem, proof: dict[str, Any], total: Fraction, clock: Clock
     ) -> None:
         super().__init__(problem, proof, total, clock)
-        self._shares = required(problem.shares, "the problem fixes no ratios of the durations")
+        self._shares = required(
+            problem.shares, "the problem fixes no ratios that are rational numbers"
+        )
         # A velocity prescribed at an end does not fall with the total.
         declared = problem.declaration
         known = problem.curve == UNIFORM if declared is None else declared.at_rest

@@ -14,6 +14,9 @@ _DIGITS = 314159265358979323846264338327950288419716939937510
 PI = (Fraction(_DIGITS, 10**50), Fraction(_DIGITS + 1, 10**50))
 """Rational bounds of π."""
 
+CHORD = "chord"
+"""Stands for ratios of durations that no rational numbers state: those of chord lengths."""
+
 Bounds = tuple[Fraction, Fraction] | None
 """Rational bounds of a number that may carry π; None where there is no limit."""
 
@@ -80,6 +83,8 @@ class StatedProblem:
         Velocity prescribed there; None where it is free.
     shares : list, one per segment, or None
         Shares of the segments in the total, where ratios fix them.
+    chord : bool
+        Whether they are fixed by chord lengths, which are no rational numbers; without shares.
     """
 
     waypoints: list[list[Fraction]]
@@ -92,6 +97,7 @@ class StatedProblem:
     curve: str | None
     ends: list[list[Fraction | None]]
     shares: list[Fraction] | None = None
+    chord: bool = False
 
     @property
     def joints(self) -> int:
@@ -157,9 +163,10 @@ def read_problem(data: Any) -> StatedProblem:
         need(len(q) == n + 1 - len(declaration.virtual), "malformed: waypoints: one for each break")
         ends = [list(declaration.prescribed[k].get(1, [None] * joints)) for k in (0, -1)]
         curve = None
-    shares = _shares(data["ratios"], n) if "ratios" in data else None
+    chord = data.get("ratios") == CHORD
+    shares = _shares(data["ratios"], n) if "ratios" in data and not chord else None
     return StatedProblem(
-        q, limits, sides, position, shortest, longest, declaration, curve, ends, shares
+        q, limits, sides, position, shortest, longest, declaration, curve, ends, shares, chord
     )
 
 

@@ -309,7 +309,7 @@ def _read_proof(
     known = type(name) is str and name in KINDS
     need(known, f"unknown kind of proof {shown(repr(name))}")
     make = _proof_kind(name)
-    own = (name == _OF_RATIOS) == (problem.shares is not None)
+    own = (name == _OF_RATIOS) == (problem.chord or problem.shares is not None)
     need(
         own or make.subject is Subject.ANY,
         f"at fixed ratios of the durations the kind of proof is {_OF_RATIOS}, and only there",

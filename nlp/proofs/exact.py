@@ -117,6 +117,8 @@ class ExactProblem:
         What the curve prescribes at its breaks, exact, where its own floats are only near to it.
     shares : tuple of Fraction or None
         Share of each segment in the total, where ratios fix it.
+    chord : bool
+        Whether they are those of chord lengths that are no rational numbers; without ``shares``.
     """
 
     name: str
@@ -132,6 +134,7 @@ class ExactProblem:
     pairs: tuple[tuple[tuple[int, int], Pair], ...] = ()
     prescribed: Prescribed | None = None
     shares: tuple[Fraction, ...] | None = None
+    chord: bool = False
 
     def end_velocities(self, side: int) -> tuple[Fraction | None, ...]:
         """Velocities prescribed at the start (0) or the finish (1), joint by joint."""
@@ -194,6 +197,7 @@ class ExactProblem:
             tuple(((0, r), pair) for (j, r), pair in self.pairs if j == index),
             own,
             self.shares,
+            self.chord,
         )
 
     def in_units(self, powers: Sequence[int], second: int) -> ExactProblem:
@@ -312,9 +316,8 @@ def printed_problem(statement: Statement) -> ExactProblem:
     Raises
     ------
     TrajgapError
-        If turns are added to angles, ratios of durations are those of chord lengths, or a
-        derivative that is prescribed at an end is an interval or in another unit of angle than the
-        way-points.
+        If turns are added to angles, or a derivative that is prescribed at an end is an interval
+        or in another unit of angle than the way-points.
     CaseError
         If a unit is missing.
     """
@@ -382,24 +385,21 @@ def printed_problem(statement: Statement) -> ExactProblem:
         tuple(pairs.items()),
         prescribed,
         _printed_shares(statement, problem),
+        statement.durations.ratios == "chord" and len(statement.joints) > 1,
     )
 
 
 def _printed_shares(statement: Statement, problem: Problem) -> tuple[Fraction, ...] | None:
-    """Exact shares of the segments from the printed ratios."""
+    """Exact shares of the segments from the printed ratios; None where there are none."""
     given = statement.durations.ratios
-    if given == "chord" and len(statement.joints) > 1:
-        raise TrajgapError(
-            "certify: chord lengths of several joints are no rational numbers; write the ratios as "
-            "numbers"
-        )
-    if given == "chord":
-        (j,) = statement.joints
-        own = [row[j].fraction for row in statement.waypoints.points]
-        return _shares(abs(b - a) for a, b in pairwise(own))
     if isinstance(given, tuple):
         return _shares(number.fraction for number in given)
-    return _shares(problem.ratios)
+    if given != "chord":
+        return _shares(problem.ratios)
+    if len(statement.joints) > 1:
+        return None
+    own = [row[statement.joints[0]].fraction for row in statement.waypoints.points]
+    return _shares(abs(b - a) for a, b in pairwise(own))
 
 
 def _in_motion(statement: Statement, curve: Curve, base: Scale) -> tuple[Interpolant, Prescribed]:

@@ -48,6 +48,11 @@ class BoundingPlace:
 
 def _missing(problem: ExactProblem) -> str | None:
     curve = problem.curve
+    if problem.chord:
+        return (
+            "chord lengths of several joints are no rational numbers, so that no certificate "
+            "states them exactly; write the ratios as numbers"
+        )
     formula = "at fixed ratios the optimum is a formula, and `solve` gives it"
     if isinstance(curve, Interpolant) and curve.free:
         return f"{curve.name} leaves {curve.free} coefficients free: not covered at fixed ratios"
@@ -123,7 +128,7 @@ def _prove(session: Session) -> bool:
 
 FIXED_RATIOS = Certifier(
     "curves at fixed ratios of the durations",
-    lambda problem: problem.shares is not None,
+    lambda problem: problem.chord or problem.shares is not None,
     _missing,
     _prove,
     instant=True,

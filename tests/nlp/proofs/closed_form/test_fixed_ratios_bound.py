@@ -25,7 +25,7 @@ from trajgap.problem import (
     three_five_three,
     uniform_cubic_b_spline,
 )
-from trajgap.verify import Subject, verify_certificate
+from trajgap.verify import STATE_FORMAT, Subject, verify_certificate
 
 Q = np.array([[0.25, -0.5], [1.0, 0.125], [-0.375, 0.75], [0.5, 0.25]])
 LIMITS = Limits([1.0, 0.9], [2.0, 1.5], [12.0, 9.0])
@@ -197,4 +197,25 @@ def test_printed_ratios_are_exact(ratios: str, joints: str | None, shares) -> No
 
 def test_chord_lengths_of_several_joints_are_not_rational() -> None:
     case = parse_case(CASE.replace("RATIOS", '"chord"'), "made-up.toml")
-    assert stated_exactly(case.statement()) is None
+    exact = stated_exactly(case.statement())
+    assert exact is not None
+    assert exact.shares is None
+    assert "chord lengths of several joints are no rational numbers" in str(covered(exact))
+    # A bound over any curve holds all the same, and says which question it was asked for.
+    found = certify(exact, subject=Subject.ANY, gap=0.5, seconds=20)
+    document = certificate(found)
+    assert document["problem"]["ratios"] == "chord"
+    assert fits(document, replace(exact, chord=False), Subject.ANY)
+    assert not fits(document, replace(exact, chord=False), Subject.DECLARED)
+    own = certificate(certify(replace(exact, shares=(Fraction(1, 4), Fraction(3, 4)), chord=False)))
+    stated = {**own["problem"], "ratios": "chord"}
+    assert not fits({**own, "problem": stated}, replace(exact, chord=False), Subject.DECLARED)
+    for claim in (own["claim"], {**own["claim"], "durations": None, "upper": None}):
+        found = verify_certificate({**own, "problem": stated, "claim": claim})
+        assert found.reason == "the problem fixes no ratios that are rational numbers"
+    free = certificate(certify(replace(exact, chord=False), gap=0.1))
+    mixed = verify_certificate({**free, "problem": stated})
+    assert "the kind of proof is fixed-ratios" in mixed.reason
+    state = {**free, "format": STATE_FORMAT, "problem": stated, "proof": None, "proposals": None}
+    claim = {**free["claim"], "lower": "0"}
+    assert "no durations are exactly" in verify_certificate({**state, "claim": claim}).reason
