@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from decimal import ROUND_CEILING, Decimal
 from itertools import pairwise
 
@@ -12,9 +13,10 @@ from trajgap.compare import ClaimVerdict, audit
 from trajgap.compare.audits import CaseAudit, Study, waterfalls
 from trajgap.compare.audits.card_optimum import optimum_line
 from trajgap.compare.audits.fixed_ratios import off_ratios
+from trajgap.compare.audits.rules.scaling_law import velocity_factor
 from trajgap.compare.documents import FREED_OPTIMUM, PUBLISHED, RATIOS_OPTIMUM, Severity
 from trajgap.nlp import Evidence
-from trajgap.problem import parse_case
+from trajgap.problem import Limits, Problem, cubic_spline, parse_case
 
 CASE = """
 format = 1
@@ -248,3 +250,14 @@ def test_moving_ends_leave_no_total_to_compare_with() -> None:
     )
     own = next(step for step in falls[0].steps if step.name == RATIOS_OPTIMUM)
     assert "prescribes derivatives other than 0" in own.note
+
+
+def test_the_law_of_velocity_limits_is_for_the_same_ratios() -> None:
+    """T·V is a constant of one question: of two with other ratios it says nothing."""
+    one = Problem(POINTS, Limits(1.0), cubic_spline(3), ratios="chord")
+    quick = replace(one, limits=Limits(2.0, joints=2))
+    assert velocity_factor(one, quick) == 0.5
+    assert velocity_factor(one, replace(quick, ratios=10 * one.ratios)) == 0.5
+    assert velocity_factor(one, replace(quick, ratios="equal")) is None
+    assert velocity_factor(one, replace(quick, ratios=None)) is None
+    assert velocity_factor(replace(one, ratios=None), replace(quick, ratios=None)) == 0.5

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
-from trajgap.nlp import Evidence, Status, solve, solve_per_joint
+from trajgap.nlp import Evidence, Status, solve, solve_per_joint, structure_of
 from trajgap.problem import (
     Coupling,
     Limits,
@@ -223,6 +223,11 @@ def test_no_formula_is_one_line(curve, said: str) -> None:
     with pytest.raises(TrajgapError, match=said) as error:
         solve(Problem(Q, LIMITS, curve, ratios="equal"))
     assert "leave the ratios out" in str(error.value)
+
+
+def test_the_nlp_knows_free_durations_alone() -> None:
+    with pytest.raises(TrajgapError, match="ratios: the NLP frees each duration"):
+        structure_of(Problem(Q, LIMITS, cubic_spline(3), ratios="equal"))
 
 
 def test_a_short_segment_beside_a_long_one_passes_the_check() -> None:
