@@ -26,9 +26,14 @@ def uniform_rescaling(problem: Problem) -> Array:
     Raises
     ------
     TrajgapError
-        If no equal durations are shortest (nothing is limited, a joint with limit 0 moves, a
-        prescribed derivative is not 0), or they leave the bounds and set to them fail the checker.
+        If ratios are fixed, no equal durations are shortest (nothing is limited, a joint with
+        limit 0 moves, a prescribed derivative is not 0), or they leave the bounds and set to them
+        fail the checker.
     """
+    if problem.ratios is not None:
+        raise TrajgapError(
+            "uniform rescaling: the durations have fixed ratios; `solve` scales their total"
+        )
     if not problem.curve.homogeneous:
         raise TrajgapError(
             "uniform rescaling: a prescribed derivative is not 0, stretching would change it"

@@ -81,6 +81,11 @@ class DeathPenalty:
                 f"interpolant {problem.curve.name}: leaves {problem.curve.free} "
                 "derivatives per joint free, heuristics search durations only; prescribe them"
             )
+        if problem.ratios is not None:
+            raise TrajgapError(
+                "ratios: the durations have fixed ratios, so that the total is the one unknown and "
+                "there is nothing to search; `solve` gives it, or leave the ratios out"
+            )
 
     def decode(self, durations: Array) -> Array:
         """Durations that positions stand for: themselves."""

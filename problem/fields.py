@@ -22,6 +22,7 @@ from pydantic import (
 from pydantic_core import PydanticCustomError
 
 from .described import Described
+from .duration_ratios import RATIO_WORDS
 from .errors import TrajgapError
 from .printed import Printed
 from .units import CHOICES, Quantity, check_unit
@@ -34,6 +35,8 @@ MOST_JOINTS = 100
 """Joints of one robot: no arm and no humanoid has as many."""
 MOST_ENTRIES = 1_000
 """Entries of one list of a case file, such as its claims: no paper prints as many."""
+RATIO_CHOICES = (*RATIO_WORDS, "free")
+"""Words for ratios of durations in case files; "free" takes back what the file fixes."""
 LARGEST_SEED = 2**63 - 1
 """Largest seed: what TOML promises to keep."""
 
@@ -125,6 +128,21 @@ def _not_negative(number: Printed) -> Printed:
 
 def _positive_length(raw: object) -> Printed:
     return _not_negative(read_number(raw))
+
+
+def _ratio(raw: object) -> Printed:
+    number = read_number(raw)
+    if number.interval.lower <= 0:
+        raise TrajgapError(f"{number.text} may be 0 or less; give a positive ratio")
+    return number
+
+
+def _ratio_word(raw: object) -> str:
+    if raw not in RATIO_CHOICES:
+        shown = repr(raw) if isinstance(raw, str) else describe(raw)
+        words = ", ".join(f'"{word}"' for word in RATIO_CHOICES)
+        raise TrajgapError(f"{shown} is no ratio; give one number per segment, or one of {words}")
+    return str(raw)
 
 
 def _upper_limit(raw: object) -> Printed | None:
@@ -229,6 +247,14 @@ Length = Annotated[
 ]
 """A `Number` of 0 or more."""
 
+Ratio = Annotated[
+    Printed,
+    PlainValidator(_ratio),
+    PlainSerializer(_plain),
+    WithJsonSchema(_NUMBER_SCHEMA),
+]
+"""A `Number` above 0."""
+
 UpperLimit = Annotated[
     Printed | None,
     PlainValidator(_upper_limit),
@@ -307,6 +333,18 @@ OneOrEachUpperPosition = Annotated[
     | Annotated[tuple[UpperPosition, ...], BeforeValidator(_nonempty), Tag("list")],
     Discriminator(_form),
 ]
+
+Ratios = Annotated[
+    Annotated[
+        str,
+        PlainValidator(_ratio_word),
+        WithJsonSchema({"type": "string", "enum": list(RATIO_CHOICES)}),
+        Tag("scalar"),
+    ]
+    | Annotated[tuple[Ratio, ...], BeforeValidator(_nonempty), Tag("list")],
+    Discriminator(_form),
+]
+"""One `Ratio` per segment, or a word."""
 
 OneOrEachNumber = Annotated[
     Annotated[Number, Tag("scalar")]

@@ -9,6 +9,7 @@ import numpy as np
 
 from .arrays import Array
 from .curves import Curve, Interpolant, as_curve
+from .duration_ratios import RatioWord, as_ratios, no_formula
 from .errors import TrajgapError
 from .limits import Limits
 
@@ -40,11 +41,26 @@ class Problem:
     joints : tuple of str
         Joint labels; "1", "2", ... by default.
     name : str
+    ratios : array_like, shape (segments,), or {"equal", "chord"}, optional
+        Ratios of the durations, of any scale: then the total is the one unknown. "chord" takes the
+        lengths between the way-points, all joints together, and turns into these numbers here, so
+        that the question of one joint keeps them. Without ratios each duration is chosen.
 
     Raises
     ------
     TrajgapError
         If shapes disagree, a value is not finite, or a bound is negative or crosses its partner.
+
+    Examples
+    --------
+    >>> from trajgap.problem import Limits, Problem, cubic_spline
+    >>> from trajgap.nlp import solve
+    >>> waypoints = [[0.0], [0.4], [1.6]]
+    >>> problem = Problem(waypoints, Limits(velocity=1.0), cubic_spline(2), ratios="chord")
+    >>> problem.shares.tolist()
+    [0.25, 0.75]
+    >>> [round(h, 6) for h in solve(problem).durations.tolist()]
+    [0.6, 1.8]
     """
 
     waypoints: Array
@@ -55,6 +71,7 @@ class Problem:
     coupling: Coupling = Coupling.SHARED
     joints: tuple[str, ...] = ()
     name: str = "problem"
+    ratios: Array | RatioWord | None = None
 
     def __post_init__(self) -> None:
         try:
@@ -116,6 +133,22 @@ class Problem:
         if len(set(labels)) < len(labels):
             raise TrajgapError(f"joints: a label occurs twice in {', '.join(labels)}")
         object.__setattr__(self, "joints", tuple(labels))
+        if self.ratios is not None:
+            object.__setattr__(self, "ratios", as_ratios(self.ratios, q, n))
+
+    @property
+    def shares(self) -> Array | None:
+        """Share of each segment in the total, where ratios fix it; None where they do not."""
+        if self.ratios is None:
+            return None
+        largest = np.max(np.asarray(self.ratios, dtype=np.float64))
+        scaled = np.asarray(self.ratios, dtype=np.float64) / largest
+        return np.asarray(scaled / scaled.sum())
+
+    @property
+    def unscaled(self) -> str | None:
+        """Why the shortest total at the ratios is no formula; None if it is, or without ratios."""
+        return None if self.ratios is None else no_formula(self.curve)
 
     @property
     def segments(self) -> int:

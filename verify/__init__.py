@@ -5,7 +5,7 @@ does the same as ``python -I FOLDER FILE...``, with the standard library only; p
 quintic splines need numpy. Format and mathematics are in docs/explanation/certificates.md.
 """
 
-from .problem import read_problem
+from .problem import CHORD, read_problem
 from .ranges import (
     MIX_DIGITS,
     MOST_CUBIC_SEGMENTS,
@@ -33,6 +33,7 @@ from .verdict import (
 
 __all__ = [
     "CERTIFICATE_FORMAT",
+    "CHORD",
     "CUT",
     "LEAF",
     "MIX_DIGITS",

@@ -22,7 +22,7 @@ def check_durations(
 
 
 def check_answer(problem: StatedProblem, h: Sequence[Fraction], clock: Clock) -> None:
-    """Refuse durations whose trajectory does not keep every limit at all times.
+    """Refuse durations of other ratios, or whose trajectory does not keep every limit at all times.
 
     A limit on a derivative asks for a continuous derivative one order below, but where each
     segment is stretched in time by itself: there the limits are those inside the segments.
@@ -40,6 +40,11 @@ def check_answer(problem: StatedProblem, h: Sequence[Fraction], clock: Clock) ->
         With the joint, the segment and the derivative.
     """
     check_durations(h, problem.shortest, problem.longest)
+    need(not problem.chord, "answer: no durations are exactly in the ratios of chord lengths")
+    if problem.shares is not None:
+        total = sum(clock.each(h), Fraction(0))
+        alike = all(x == share * total for x, share in zip(h, problem.shares, strict=True))
+        need(alike, "answer: the durations have other ratios")
     if problem.curve == UNIFORM:
         # Each piece takes 1; the derivatives of order r are divided by hʳ.
         for j, curve in enumerate(uniform_pieces(problem, clock)):

@@ -14,6 +14,9 @@ _DIGITS = 314159265358979323846264338327950288419716939937510
 PI = (Fraction(_DIGITS, 10**50), Fraction(_DIGITS + 1, 10**50))
 """Rational bounds of π."""
 
+CHORD = "chord"
+"""Stands for ratios of durations that no rational numbers state: those of chord lengths."""
+
 Bounds = tuple[Fraction, Fraction] | None
 """Rational bounds of a number that may carry π; None where there is no limit."""
 
@@ -78,6 +81,10 @@ class StatedProblem:
         Name of such a curve.
     ends : list, [0 start, 1 end][joint]
         Velocity prescribed there; None where it is free.
+    shares : list, one per segment, or None
+        Shares of the segments in the total, where ratios fix them.
+    chord : bool
+        Whether they are fixed by chord lengths, which are no rational numbers; without shares.
     """
 
     waypoints: list[list[Fraction]]
@@ -89,6 +96,8 @@ class StatedProblem:
     declaration: Declaration | None
     curve: str | None
     ends: list[list[Fraction | None]]
+    shares: list[Fraction] | None = None
+    chord: bool = False
 
     @property
     def joints(self) -> int:
@@ -120,7 +129,7 @@ def read_problem(data: Any) -> StatedProblem:
     """
     polynomial = type(data) is dict and "degrees" in data
     own, optional = (_POLYNOMIALS, ()) if polynomial else (("curve",), ("ends",))
-    data = fields(data, "problem", (*_KEYS, *own), optional)
+    data = fields(data, "problem", (*_KEYS, *own), (*optional, "ratios"))
     text(data["unit"], "unit")
     labels = [text(x, "joints") for x in listed(data["joints"], "joints", MOST_JOINTS, 1)]
     need(len(set(labels)) == len(labels), "malformed: joints: a name occurs twice")
@@ -154,7 +163,19 @@ def read_problem(data: Any) -> StatedProblem:
         need(len(q) == n + 1 - len(declaration.virtual), "malformed: waypoints: one for each break")
         ends = [list(declaration.prescribed[k].get(1, [None] * joints)) for k in (0, -1)]
         curve = None
-    return StatedProblem(q, limits, sides, position, shortest, longest, declaration, curve, ends)
+    chord = data.get("ratios") == CHORD
+    shares = _shares(data["ratios"], n) if "ratios" in data and not chord else None
+    return StatedProblem(
+        q, limits, sides, position, shortest, longest, declaration, curve, ends, shares, chord
+    )
+
+
+def _shares(entry: Any, segments: int) -> list[Fraction]:
+    """Shares of the segments in the total, from ratios of any scale."""
+    ratios = [number(x) for x in listed(entry, "ratios", segments, segments)]
+    need(min(ratios) > 0, "a ratio of durations is not positive")
+    total = sum(ratios, Fraction(0))
+    return [x / total for x in ratios]
 
 
 def _pair(entry: Any) -> tuple[Bounds, Bounds]:

@@ -53,6 +53,7 @@ _PROOF = ("kind", "total", "tree")
 KINDS = {
     "rest-to-rest": "closed_form.RestToRest",
     "stretched": "closed_form.Stretched",
+    "fixed-ratios": "fixed_ratios.FixedRatios",
     "three-piece": "three_piece.ThreeFiveThree",
     "four-three-four": "three_piece.FourThreeFour",
     "any-curve": "any_curve.AnyCurve",
@@ -60,6 +61,8 @@ KINDS = {
     "quintic-spline": "quintic.QuinticSpline",
 }
 """Module and class by ``proof.kind``; imported on first use, since one needs numpy."""
+_OF_RATIOS = "fixed-ratios"
+"""The one kind that speaks about declared curves at fixed ratios of the durations."""
 
 
 def _proof_kind(name: str) -> type[ProofKind[Any]]:
@@ -306,6 +309,11 @@ def _read_proof(
     known = type(name) is str and name in KINDS
     need(known, f"unknown kind of proof {shown(repr(name))}")
     make = _proof_kind(name)
+    own = (name == _OF_RATIOS) == (problem.chord or problem.shares is not None)
+    need(
+        own or make.subject is Subject.ANY,
+        f"at fixed ratios of the durations the kind of proof is {_OF_RATIOS}, and only there",
+    )
     proof = fields(proof, "proof", (*_PROOF, *make.keys))
     total = number(proof["total"])
     need(total >= 0, "the total is negative")

@@ -1,5 +1,6 @@
 from .card_errors import plainly
 from .case_audit import AuditReport, CaseAudit, audit
+from .fixed_ratios import at_ratios, planned_apart
 from .provenance import certificate_files, package_version
 from .reading_words import KEPT, segments
 from .rounding import Point, RoundingBox, RoundingVerdict, judge_rounding
@@ -19,6 +20,7 @@ __all__ = [
     "RoundingVerdict",
     "Study",
     "asked_as",
+    "at_ratios",
     "audit",
     "certificate_files",
     "claim_text",
@@ -27,6 +29,7 @@ __all__ = [
     "package_version",
     "place",
     "plainly",
+    "planned_apart",
     "posed_as",
     "segments",
     "spoken",

@@ -17,6 +17,7 @@ from ...problem.cases import (
     TotalTimeClaim,
 )
 from ..documents import CaveatKind, ClaimVerdict, Judgement, Keeping, Waterfall, count_words
+from .fixed_ratios import at_ratios, off_ratios, planned_apart
 from .own_result import own_result
 from .stated import other_objective
 from .study import Study
@@ -219,6 +220,7 @@ def _beside(study: Study, waterfall: Waterfall) -> _Part | None:
     name = "proven optimum" if certified else "best known total"
     span = _span(solution)
     shown_best = f"{span}{_together_where_apart(study, pid, rid)}"
+    shown_best += at_ratios(solution.problem)
     best = f"{name} {shown_best}"
     claim = _totalled(study, waterfall)
     total = None if claim is None else study.claim_total(claim, rid)
@@ -226,11 +228,14 @@ def _beside(study: Study, waterfall: Waterfall) -> _Part | None:
         return None
     shown, (low, high) = total
     shown = shown.split(" (")[0]
+    if off_ratios(study, claim, pid, rid) is not None:
+        return f"{shown} is of durations in other ratios than the reading fixes"
     seconds = _seconds(study, claim, rid)
     share = seconds / solution.best - 1
     minimised = other_objective(study.case, claim)
     if minimised is not None and share > 0:
         motion = f"shortest {'' if certified else 'known '}motion on the same curve"
+        motion += at_ratios(solution.problem)
         called = f" ({minimised})" if count_words(minimised) <= _OBJECTIVE_WORDS else ""
         return (
             f"{shown} was not minimised for time alone{called}; the {motion} takes "
@@ -273,8 +278,7 @@ def _kept_there(study: Study, claim: AnyClaim, pid: str, rid: str) -> str:
 
 def _apart(study: Study, pid: str, rid: str) -> bool:
     """Whether the paper plans each of several joints by itself."""
-    problem = study.problem(pid, rid)
-    return problem.coupling is Coupling.PER_JOINT and len(problem.joints) > 1
+    return planned_apart(study.problem(pid, rid))
 
 
 def _together_where_apart(study: Study, pid: str, rid: str) -> str:
@@ -329,7 +333,10 @@ def _unknown(solution: Solution) -> str:
     if solution.infimum is not None or solution.status is Status.NOT_ATTAINED:
         return "no shortest motion exists: the total only approaches its infimum"
     if solution.status is Status.INFEASIBLE:
-        return "no motion through the printed way-points keeps the limits: proved"
+        where = "through the printed way-points" + at_ratios(solution.problem)
+        return f"no motion {where} keeps the limits: proved"
+    if solution.problem.unscaled is not None:
+        return "the shortest total at these ratios is not checkable: it is no formula of this curve"
     if solution.durations is None:
         return "the optimum is not checkable: the solver found no motion within the limits"
     if solution.status is not Status.OPTIMAL and solution.evidence is not Evidence.CERTIFIED:

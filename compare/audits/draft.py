@@ -16,6 +16,7 @@ from ...problem.cases import (
 from ..documents import Advice, Cause, ClaimVerdict, Finding, Judgement, Severity, Urgency
 from .card_errors import plainly
 from .chosen_case import Pair
+from .fixed_ratios import optimum_called
 from .stated import spoken
 from .study import Study
 
@@ -173,7 +174,8 @@ def _shorter(study: Study, claim: AnyClaim, pid: str, rid: str) -> str:
     shown = _printable(study, claim, problem, found.durations, pid, rid)
     shorter = f": {shown} keep every limit as printed" if shown else ""
     return (
-        f"Say how far it is from the {found.evidence} optimum, {found.best:.6g} s, instead of "
+        f"Say how far it is from the {optimum_called(found.problem, found.evidence)}, "
+        f"{found.best:.6g} s, instead of "
         f"calling it optimal; or print the shorter motion{shorter}."
     )
 

@@ -26,6 +26,7 @@ from ..documents import (
     known,
 )
 from ..gaps import gap, reference_of
+from .fixed_ratios import off_ratios
 from .plausibility import implausible
 from .reading_words import answers, holding
 from .rules import held_otherwise, reading_clues
@@ -117,7 +118,9 @@ def _outcome(study: Study, waterfall: Waterfall) -> ReadingOutcome:
         if keeping is Keeping.BREAKS:
             excesses = _excesses(study, claim, pid, rid)
         total = study.claim_total(claim, rid)
-        if total is not None and reference is not None:
+        if off_ratios(study, claim, pid, rid) is not None:
+            distance = Why("the printed durations have other ratios than this reading fixes")
+        elif total is not None and reference is not None:
             kept = keeping in (Keeping.KEEPS, Keeping.CONSISTENT)
             distance = gap(total[1], reference, feasible=kept)
     return ReadingOutcome(

@@ -48,6 +48,7 @@ from ...problem.cases import (
 )
 from ..documents import Keeping, Rounding, noted
 from .chosen_case import Pair
+from .fixed_ratios import freed
 from .instances import InstancesResult, examined, readings_of
 from .replayed_case import ReplayedCase, Replays
 from .rounding import RoundingBox, RoundingVerdict, judge_rounding
@@ -174,7 +175,7 @@ class Study(ReplayedCase):
                 virtual=given.virtual,
                 name="relaxed family",
             )
-            relaxed = replace(problem, curve=family, coupling=Coupling.SHARED)
+            relaxed = replace(problem, curve=family, coupling=Coupling.SHARED, ratios=None)
             settled = len(family.free_derivatives)
             if settled < family.free:
                 why = (
@@ -182,7 +183,7 @@ class Study(ReplayedCase):
                     f"derivatives at the way-points settle {settled} of them"
                 )
                 return Solution(relaxed, Status.FAILED, why)
-            member = self.optimum(pid, rid)
+            member = freed(self, pid, rid)
             if member.durations is None or given.free:
                 return solve(relaxed, start_seconds=RELAXED_SECONDS)
             curve = fit(given, problem.waypoints, member.durations)
@@ -236,13 +237,19 @@ class Study(ReplayedCase):
 
         It holds for every way-point that rounds to the printed digits or is cut off to them, and
         every limit that rounds to them; None if there is no such stretch, if durations alone
-        define no motion, or if the curve itself is printed in rounded numbers.
+        define no motion, or if the curve itself is printed in rounded numbers. Where exact ratios
+        are fixed, the durations take them first.
         """
         try:
             problem = self.claim_problem(claim, pid, rid, Digits.TIGHTEST)
         except CaseError:  # the tightest ranges are empty
             return None
-        if problem.curve.free or self.case.statement(pid, rid).loose_ends:
+        statement = self.case.statement(pid, rid)
+        if problem.shares is not None:
+            if statement.loose_ratios:
+                return None  # other ratios, which the digits stand for too, may take longer
+            durations = problem.shares * float(np.sum(durations))
+        if problem.curve.free or statement.loose_ends:
             return None
         box = self.waypoint_box(problem, pid, rid).or_cut_off()
         return reachable_total(problem, durations, box.lower, box.upper)

@@ -9,7 +9,7 @@ from fractions import Fraction
 from ...nlp import Evidence, Solution, Status, stated_exactly
 from ...nlp.proofs.any_curve import estimate_any_curve
 from ...nlp.retiming import retime
-from ...problem import Coupling, down, fit, up
+from ...problem import down, fit, up
 from ...problem.cases import (
     AnyClaim,
     DurationsClaim,
@@ -18,14 +18,17 @@ from ...problem.cases import (
 )
 from ..documents import (
     EXACT,
+    FREED_OPTIMUM,
     OWN_OPTIMA,
     PUBLISHED,
+    RATIOS_OPTIMUM,
     SHARED_OPTIMUM,
     STAND_IN_OPTIMUM,
     Step,
     Waterfall,
     Why,
 )
+from .fixed_ratios import freed, off_ratios, planned_apart
 from .own_result import own_result
 from .stated import other_objective
 from .study import Study
@@ -81,10 +84,13 @@ def _waterfall(study: Study, pid: str, rid: str) -> Waterfall:
     steps: list[Step] = []
     if claim is not None:
         steps += _published(study, claim, pid, rid)
-    if len(problem.joints) > 1 and problem.coupling is Coupling.PER_JOINT:
+    if planned_apart(problem):
         steps.append(_procedure(study, pid, rid))
     shared = study.optimum(pid, rid)
-    steps.append(_known(STAND_IN_OPTIMUM if _stands_in(study) else SHARED_OPTIMUM, shared))
+    own = SHARED_OPTIMUM if problem.ratios is None else RATIOS_OPTIMUM
+    steps.append(_known(STAND_IN_OPTIMUM if _stands_in(study) else own, shared))
+    if problem.ratios is not None:
+        steps.append(_known(FREED_OPTIMUM, _converged(freed(study, pid, rid))))
     relaxed = _converged(study.relaxed(pid, rid))
     steps.append(
         _known("relaxed family", relaxed, "degree 5 or more in every segment, C2, freedom used")
@@ -124,7 +130,7 @@ def _published(study: Study, claim: AnyClaim, pid: str, rid: str) -> list[Step]:
     why = study.unmoved(claim, pid, rid)
     if why is not None:
         time = study.case.claim_durations(claim, rid).value.sum() if value is None else value
-        note = f"printed {shown}{_minimised(study, claim)}"
+        note = f"printed {shown}{_beside(study, claim, pid, rid)}"
         alone = Step(name=PUBLISHED, time=time, low=low, high=high, note=note)
         return [alone, Step.missing("feasible after repair", why)]
     verdict = study.claim_check(claim, pid, rid)
@@ -134,8 +140,8 @@ def _published(study: Study, claim: AnyClaim, pid: str, rid: str) -> list[Step]:
         time=verdict.total_time if value is None else value,
         low=low,
         high=high,
-        note=f"printed {shown}{_minimised(study, claim)}; limits, for all that rounds to the "
-        f"digits: {rounding.verdict}",
+        note=f"printed {shown}{_beside(study, claim, pid, rid)}; limits, for all that "
+        f"rounds to the digits: {rounding.verdict}",
         keeping=study.claim_keeping(claim, pid, rid),
     )
     if verdict.feasible_time is None:
@@ -154,10 +160,12 @@ def _published(study: Study, claim: AnyClaim, pid: str, rid: str) -> list[Step]:
     return [printed, summed]
 
 
-def _minimised(study: Study, claim: AnyClaim) -> str:
-    """What was minimised for a printed total, where that is not time alone."""
+def _beside(study: Study, claim: AnyClaim, pid: str, rid: str) -> str:
+    """Why a printed total is not one of the steps below it, where it is not."""
     objective = other_objective(study.case, claim)
-    return "" if objective is None else f", not minimised for time alone: {objective}"
+    said = "" if objective is None else f", not minimised for time alone: {objective}"
+    other = off_ratios(study, claim, pid, rid)
+    return said if other is None else f"{said}; {other}"
 
 
 def _procedure(study: Study, pid: str, rid: str) -> Step:

@@ -19,6 +19,7 @@ from ...problem.cases import (
     Reading,
     Statement,
     TotalTimeClaim,
+    ratio_words,
 )
 from ..audits import claim_text
 from ..documents import ShowDocument, capital, json_text, quoted, show_document
@@ -91,6 +92,8 @@ def _asked(document: ShowDocument, case: Case) -> list[RenderableType]:
         one = case.statement(problem.id, reading)
         size = f"{one.waypoints.number} × {len(one.labels)}"
         curve = one.curve().name + _ends(one)
+        if one.durations.ratios not in (None, "free"):
+            curve += f", {ratio_words(one.durations.ratios)}"
         said = (_limit(one, name) for name in ("velocity", "acceleration", "jerk"))
         limits = "; ".join(each for each in said if each) or "none"
         words = (problem.title or problem.id,) if len(document.problems) > 1 else ()

@@ -313,6 +313,8 @@ TERMS = {
     "reading that the text admits.",
     "shared durations": "All joints pass each way-point together, so that they share the segment "
     "durations.",
+    "at these ratios": "The question fixes the ratios of the segment durations, so that their "
+    "total alone is chosen. Durations in other ratios answer another question.",
     "relaxed family": "Curves of degree 5 or more in every segment, C2, through the same "
     "way-points, within the same limits and end conditions; the optimiser uses the freedom left.",
     "TOPPRA": "The fastest motion along the path of a given curve, under velocity and acceleration "

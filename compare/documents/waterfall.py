@@ -18,8 +18,12 @@ SHARED_OPTIMUM = "optimum of the same curve, shared durations"
 """Name of the step that distances are counted from."""
 STAND_IN_OPTIMUM = "optimum of the case file's curve, of which no time is printed"
 """Name of that step where every printed time is of a curve that a case file cannot name."""
+RATIOS_OPTIMUM = "shortest total of the same curve at these ratios of the durations"
+"""Name of that step where the question fixes the ratios, so that the total alone is chosen."""
+FREED_OPTIMUM = "the same curve, each duration chosen"
+"""Name of the step below it: what fixing the ratios costs."""
 
-OPTIMA_STEPS = (SHARED_OPTIMUM, STAND_IN_OPTIMUM)
+OPTIMA_STEPS = (SHARED_OPTIMUM, STAND_IN_OPTIMUM, RATIOS_OPTIMUM)
 """Names that the optimum of the declared curve may have."""
 
 

@@ -10,7 +10,7 @@ from ...heuristics import JointRuns
 from ...nlp import Solution, weakest
 from ...problem import Array, Problem, TrajgapError, file_name
 from ...problem.cases import AnyClaim, DurationsClaim, MaximumClaim, TotalTimeClaim
-from ..audits import CaseAudit, Study, place
+from ..audits import CaseAudit, Study, at_ratios, place, planned_apart
 from ..documents import OWN_OPTIMA
 from ..pictures import Picture, Runs, convergence, endings, landscape, motion_picture, svg
 from .blocks import Block, Drawn, Folded, Grid, Prose, Section
@@ -41,7 +41,7 @@ def motions(one: CaseAudit) -> Section:
 
 def _optimum_of(one: CaseAudit, pid: str, solution: Solution) -> str:
     """What the optimum of a problem is called, and the problem where there are several."""
-    known = f"{solution.evidence.capitalize()} optimum"
+    known = f"{solution.evidence.capitalize()} optimum{at_ratios(solution.problem)}"
     return known + (f", {problem_name(one, pid)}" if len(one.case.problems) > 1 else "")
 
 
@@ -234,9 +234,10 @@ def _totals(study: Study, pid: str, rid: str) -> tuple[dict[str, float], dict[st
     shared = study.optimum(pid, rid)
     references = {}
     if shared.durations is not None and shared.boundless is None:
-        references[f"{shared.evidence} optimum, shared durations"] = _time(shared)
+        at = at_ratios(shared.problem)
+        references[f"{shared.evidence} optimum, shared durations{at}"] = _time(shared)
     problem = study.problem(pid, rid)
-    if len(problem.joints) > 1 and problem.coupling == "per-joint":
+    if planned_apart(problem):
         answer = study.per_joint(pid, rid)
         if answer.durations is not None:
             references[OWN_OPTIMA] = answer.total_time
@@ -263,6 +264,8 @@ def landscapes(one: CaseAudit) -> Section:
     blocks: list[Block] = []
     for pid in study.problems:
         problem = study.problem(pid, rid)
+        if problem.ratios is not None:
+            continue  # its ratios are one point of the map
         if problem.segments != 3:
             blocks.append(
                 Prose(

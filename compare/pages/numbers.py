@@ -11,7 +11,7 @@ import numpy as np
 from ...nlp import Evidence, PerJointSolution, Solution
 from ...problem import Case, Coupling, file_name
 from ...problem.cases import DurationsClaim
-from ..audits import CaseAudit, Study, place
+from ..audits import CaseAudit, Study, at_ratios, place
 from ..documents import Gap, Step, Waterfall, Why
 from ..gaps import gap, reference_of, spread
 from ..pictures import seconds as interval
@@ -230,7 +230,7 @@ def optima(one: CaseAudit) -> Section:
             (
                 text(problem_cell(study.case, pid)),
                 text(study.case.labels[rid]),
-                text("printed curve, shared durations"),
+                text(f"printed curve, shared durations{at_ratios(own.problem)}"),
                 *_answer(own),
             )
         )

@@ -86,7 +86,10 @@ def _bounds(problem: Problem) -> str:
     low = list(dict.fromkeys(f"{v:g}" for v in problem.duration_lower))
     high = list(dict.fromkeys(f"{v:g}" for v in problem.duration_upper))
     text = f"at least {', '.join(low)} s" if low != ["0"] else "positive"
-    return text + (f", at most {', '.join(high)} s" if high != ["inf"] else "")
+    text += f", at most {', '.join(high)} s" if high != ["inf"] else ""
+    if problem.shares is not None:
+        text += f"; shares of the total fixed: {', '.join(f'{s:.4g}' for s in problem.shares)}"
+    return text
 
 
 # --- findings -------------------------------------------------------------------------------------

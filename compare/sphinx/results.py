@@ -11,7 +11,16 @@ from pathlib import Path
 from typing import Any
 
 from ...problem import TrajgapError
-from ..documents import OWN_OPTIMA, PUBLISHED, SHARED_OPTIMUM, Keeping, Step, Waterfall, Why
+from ..documents import (
+    OWN_OPTIMA,
+    PUBLISHED,
+    RATIOS_OPTIMUM,
+    SHARED_OPTIMUM,
+    Keeping,
+    Step,
+    Waterfall,
+    Why,
+)
 
 LOCK = "lock.json"
 """File beside the results with the hash of each, and of what they were made from."""
@@ -147,8 +156,9 @@ def distance_of(case: dict[str, Any]) -> tuple[str, str, str, str]:
     otherwise = {c["claim"] for c in case["claims"] if c.get("objective")}
     for entry in case["waterfalls"]:
         steps = {step["name"]: step for step in entry["steps"] if step["time"] is not None}
-        if PUBLISHED in steps and SHARED_OPTIMUM in steps:
-            printed, best = steps[PUBLISHED]["time"], steps.get(OWN_OPTIMA, steps[SHARED_OPTIMUM])
+        own = next((n for n in (SHARED_OPTIMUM, RATIOS_OPTIMUM) if n in steps), None)
+        if PUBLISHED in steps and own is not None:
+            printed, best = steps[PUBLISHED]["time"], steps.get(OWN_OPTIMA, steps[own])
             ends = [best["time"] if OWN_OPTIMA not in steps else best.get(end) or best["time"]
                     for end in ("low", "high")]  # fmt: skip
             known = " to ".join(dict.fromkeys(f"{one:.4f}" for one in ends))

@@ -47,7 +47,8 @@ def decided(problem: Problem, h: Array, nodal: Array | None = None) -> Local | N
         With what was given as ``tight``.
     """
     found = _stretched(problem, h, nodal)
-    if found is None and not problem.curve.free:
+    # A descent changes each duration by itself, which fixed ratios do not allow.
+    if found is None and not problem.curve.free and problem.ratios is None:
         found = _narrowed(problem, h)
     if found is None:
         return None

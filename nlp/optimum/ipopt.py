@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ...problem import Interpolant, Problem
+from ...problem import Interpolant, Problem, TrajgapError
 from ...problem.curves import layout
 from .clock import call_cap
 from .formulation import Form, Formulation, Structure, build
@@ -110,7 +110,17 @@ def best_form(interpolant: Interpolant, joints: int) -> Form:
 
 
 def structure_of(problem: Problem, form: Form | None = None) -> Structure:
-    """The shape of a problem's NLP: curve, joints, and which derivatives are limited."""
+    """The shape of a problem's NLP: curve, joints, and which derivatives are limited.
+
+    Raises
+    ------
+    TrajgapError
+        If ratios of the durations are fixed: in the NLP each duration is free.
+    """
+    if problem.ratios is not None:
+        raise TrajgapError(
+            "ratios: the NLP frees each duration; `solve` gives the shortest total at fixed ratios"
+        )
     limits = problem.limits.sides
     usable = np.array(np.isfinite(limits) & (limits > 0)).max(axis=0)
     orders = tuple(r for r in (1, 2, 3) if usable[:, r - 1].any())

@@ -31,6 +31,11 @@ def unmet(residual: float) -> str:
     return f"KKT residual {residual:.1e}, above {KKT_TOLERANCE:g}"
 
 
+def longer_than_tight(beyond: float) -> str:
+    """Why an answer is longer than a tight motion, by that share."""
+    return f"longer by {beyond:.1e} (relative) than a tight motion, which rounding errors blur"
+
+
 def judged(problem: Problem, found: list[Local], floor: Array, starts: int) -> Solution:
     """The best answer that the checker passes, with its optimality conditions.
 
@@ -74,7 +79,7 @@ def judged(problem: Problem, found: list[Local], floor: Array, starts: int) -> S
     if beyond > BLURRED:
         status = Status.FEASIBLE
     if beyond > KKT_TOLERANCE:
-        note = f"longer by {beyond:.1e} (relative) than a tight motion, which rounding errors blur"
+        note = longer_than_tight(beyond)
         why = note if why is None else f"{why}; {note}"
     verdict = check(problem, durations, nodal)
     if verdict.verdict is Verdict.DISCONTINUOUS:

@@ -128,7 +128,8 @@ def kkt(
 
     A peak's gradient is that of the derivative at its fixed place (envelope theorem), and
     ∂/∂z_k = h_k ∂/∂h_k. A bound of a duration is g = ±(z_k − log bound). Since d(log T) = dT/T, the
-    multiplier of T itself is w_i T; easing limit i by a share ε changes T by −ε w_i T.
+    multiplier of T itself is w_i T; easing limit i by a share ε changes T by −ε w_i T. Where ratios
+    are fixed, log T is the one unknown: all z_k change alike, and their equations are added up.
     """
     n, total = problem.segments, float(durations.sum())
     joints = problem.waypoints.shape[1]
@@ -160,6 +161,8 @@ def kkt(
         walls[k, i] = sign
     objective = np.concatenate([durations / total, np.zeros(free * joints)])
     matrix = np.hstack([columns, walls])
+    if problem.ratios is not None:
+        objective, matrix = objective.sum(keepdims=True), matrix.sum(axis=0, keepdims=True)
     if matrix.shape[1]:
         from scipy.optimize import nnls  # a quarter of a second; a check does without
 

@@ -116,6 +116,9 @@ def solve_per_joint(
 ) -> PerJointSolution:
     """Optimise each joint by itself and take the longest duration of each segment.
 
+    Where the problem fixes the ratios of its durations, that is the longest of the joints' totals,
+    and the optimum with shared durations too.
+
     Parameters
     ----------
     problem : Problem
@@ -158,7 +161,13 @@ def solve_per_joint(
         verdict = check(problem, durations)
         why = None
         settled = all(s.status is Status.OPTIMAL for s in solutions)
-        if problem.curve.piecewise is None:
+        shares = problem.shares
+        if shares is not None and settled:
+            # The longest of totals at the same ratios is the total: each may be as much longer.
+            total = float(durations.sum())
+            most = float((problem.duration_upper / shares).min())
+            ranges = [Range(slack, total, min(total + slack, most)) for slack in slacks]
+        elif problem.curve.piecewise is None:
             why = "ranges are computed for declared piecewise polynomials only"
         elif problem.segments > _MOST_SEGMENTS:
             why = f"ranges are computed for at most {_MOST_SEGMENTS} segments"

@@ -25,6 +25,7 @@ from .exact_multistart import (
     searchable,
 )
 from .feasibility import apart
+from .fixed_ratios import at_ratios
 from .formulation import Form
 from .idle import idle_segments, with_least_idle
 from .ipopt import compiled, structure_of
@@ -71,6 +72,9 @@ def solve(
 ) -> Solution:
     """Best known total time of a problem with shared durations, from an exact NLP.
 
+    Where the problem fixes the ratios of its durations, the answer is a formula: no start and no
+    known motion is looked at.
+
     Parameters
     ----------
     problem : Problem
@@ -105,7 +109,8 @@ def solve(
     Raises
     ------
     TrajgapError
-        If ``initial`` or ``known`` has the wrong shape.
+        If ``initial`` or ``known`` has the wrong shape, or ratios are fixed and the curve has free
+        coefficients or moving ends.
     """
     ask = Ask(
         starts,
@@ -119,6 +124,8 @@ def solve(
     wanted = (len(ask.known), problem.curve.free, len(problem.joints))
     if ask.known_nodal is not None and ask.known_nodal.shape != wanted:
         raise TrajgapError(f"known_nodal: expected shape {wanted}, got {ask.known_nodal.shape}")
+    if problem.ratios is not None:
+        return at_ratios(problem)
     with stopping_after(seconds):
         answer = unsearched(problem)
         if answer is not None:

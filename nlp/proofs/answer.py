@@ -40,6 +40,7 @@ def float_problem(exact: ExactProblem) -> Problem:
         np.array([np.inf if x is None else float(x) for x in exact.duration_upper]),
         joints=exact.joints,
         name=exact.name,
+        ratios=None if exact.shares is None else np.array([float(x) for x in exact.shares]),
     )
 
 
@@ -245,18 +246,37 @@ def prove_feasible(
     """Rational durations near the given ones, proved feasible; None if none was found.
 
     The durations are stretched uniformly by a tiny factor, rounded up to 15 digits, and never
-    beyond their upper bounds. ``clock`` is called between the steps, and ends it by raising.
+    beyond their upper bounds; where ratios are fixed, their total is, and they have these ratios
+    exactly. ``clock`` is called between the steps, and ends it by raising.
     """
     for stretch in (Fraction(0), *_STRETCHES):
+        if problem.shares is not None:
+            found = _at_shares(problem, problem.shares, Fraction(sum(durations)) * (1 + stretch))
+            if keeps_limits(problem, found, clock):
+                return tuple(found)
+            continue
         found = []
         for h, low, high in zip(
             durations, problem.duration_lower, problem.duration_upper, strict=True
         ):
-            value = Fraction(float(h)) * (1 + stretch)
-            digits = 15 - math.ceil(math.log10(max(float(value), 1e-12)))
-            value = Fraction(math.ceil(value * 10**digits), 10**digits)
-            value = max(value, low)
+            value = max(_rounded_up(Fraction(float(h)) * (1 + stretch)), low)
             found.append(value if high is None else min(value, high))
         if keeps_limits(problem, found, clock):
             return tuple(found)
     return None
+
+
+def _rounded_up(value: Fraction) -> Fraction:
+    """The least decimal of 15 digits that is not below a positive number."""
+    digits = 15 - math.ceil(math.log10(max(float(value), 1e-12)))
+    return Fraction(math.ceil(value * 10**digits), 10**digits)
+
+
+def _at_shares(
+    problem: ExactProblem, shares: Sequence[Fraction], total: Fraction
+) -> list[Fraction]:
+    """Durations of exactly these shares in a total, rounded up and within the bounds on them."""
+    both = list(zip(shares, problem.duration_lower, problem.duration_upper, strict=True))
+    total = max(_rounded_up(total), *(low / share for share, low, _ in both))
+    total = min([total, *(high / share for share, _, high in both if high is not None)])
+    return [share * total for share in shares]

@@ -22,6 +22,7 @@ from .session import Session
 from .state import resumed
 
 CERTIFIERS: tuple[str, ...] = (
+    "closed_form.FIXED_RATIOS",
     "closed_form.REST_TO_REST",
     "three_piece.THREE_PIECE",
     "closed_form.STRETCHED",
@@ -31,7 +32,8 @@ CERTIFIERS: tuple[str, ...] = (
 )
 """Every kind of proof, by module and name; of those that declare a curve the first is taken.
 
-A rest-to-rest cubic is a C2 cubic spline too: closed forms stand in front."""
+A rest-to-rest cubic is a C2 cubic spline too: closed forms stand in front. Fixed ratios are another
+question of any curve, which the kinds behind know nothing of: they stand before all."""
 
 
 @functools.cache

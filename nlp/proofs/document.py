@@ -14,7 +14,7 @@ from typing import Any
 from ...problem import Curve, Interpolant, Problem, TrajgapError, replace_file
 from ...problem.curves import StretchedUniformBSpline, TimedUniformBSpline
 from ...problem.suite import list_instances
-from ...verify import CERTIFICATE_FORMAT, CertifiedQuestion, Refused, Subject, number, seal
+from ...verify import CERTIFICATE_FORMAT, CHORD, CertifiedQuestion, Refused, Subject, number, seal
 from .exact import ExactProblem, Real, decimal, exact_problem, one_velocity
 from .outcome import Certified, Outcome
 
@@ -63,7 +63,15 @@ def problem_document(problem: ExactProblem) -> dict[str, Any]:
         "position_upper": [_real(x) for x in problem.position_upper],
         "duration_lower": [decimal(x) for x in problem.duration_lower],
         "duration_upper": [None if x is None else decimal(x) for x in problem.duration_upper],
+        **_ratios(problem),
     }
+
+
+def _ratios(problem: ExactProblem) -> dict[str, Any]:
+    """Ratios of the durations, where they are fixed: a word where they are no rational numbers."""
+    if problem.chord:
+        return {"ratios": CHORD}
+    return {} if problem.shares is None else {"ratios": [decimal(x) for x in problem.shares]}
 
 
 def problem_seal(problem: Problem) -> str:
@@ -319,7 +327,10 @@ def question(problem: dict[str, Any], subject: Subject = Subject.DECLARED) -> di
     dict
         With rational numbers, so that 0.5 and 0.50 are the same.
     """
-    same = {key: x if key in _WORDS else _numbers(x) for key, x in problem.items()}
+    same = {
+        key: x if key in _WORDS or (key == "ratios" and x == CHORD) else _numbers(x)
+        for key, x in problem.items()
+    }
     if subject is Subject.DECLARED:
         return same
     # Of the curve itself only the velocities prescribed at its ends count, read where the verifier
@@ -331,7 +342,8 @@ def question(problem: dict[str, Any], subject: Subject = Subject.DECLARED) -> di
     else:
         ends = same.pop("ends", [None, None])
         own = ["curve"]
-    for key in own:
+    # Any curve passes the way-points when it likes.
+    for key in (*own, "ratios"):
         same.pop(key, None)
     return {"virtual": [], **same, "ends": ends}
 

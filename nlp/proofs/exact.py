@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -114,6 +115,10 @@ class ExactProblem:
         an answer has to keep beside ``limits``.
     prescribed : tuple or None
         What the curve prescribes at its breaks, exact, where its own floats are only near to it.
+    shares : tuple of Fraction or None
+        Share of each segment in the total, where ratios fix it.
+    chord : bool
+        Whether they are those of chord lengths that are no rational numbers; without ``shares``.
     """
 
     name: str
@@ -128,6 +133,8 @@ class ExactProblem:
     unit: str = "rad"
     pairs: tuple[tuple[tuple[int, int], Pair], ...] = ()
     prescribed: Prescribed | None = None
+    shares: tuple[Fraction, ...] | None = None
+    chord: bool = False
 
     def end_velocities(self, side: int) -> tuple[Fraction | None, ...]:
         """Velocities prescribed at the start (0) or the finish (1), joint by joint."""
@@ -189,6 +196,8 @@ class ExactProblem:
             self.unit,
             tuple(((0, r), pair) for (j, r), pair in self.pairs if j == index),
             own,
+            self.shares,
+            self.chord,
         )
 
     def in_units(self, powers: Sequence[int], second: int) -> ExactProblem:
@@ -278,7 +287,17 @@ def exact_problem(problem: Problem) -> ExactProblem:
         tuple(Fraction(float(x)) for x in problem.duration_lower),
         tuple(Fraction(float(x)) if np.isfinite(x) else None for x in problem.duration_upper),
         pairs=tuple(pairs),
+        shares=_shares(problem.ratios),
     )
+
+
+def _shares(ratios: Iterable[Any] | None) -> tuple[Fraction, ...] | None:
+    """Ratios of any scale as exact shares of their sum."""
+    if ratios is None:
+        return None
+    exact = [Fraction(x) for x in ratios]
+    total = sum(exact, Fraction(0))
+    return tuple(x / total for x in exact)
 
 
 def printed_problem(statement: Statement) -> ExactProblem:
@@ -365,7 +384,22 @@ def printed_problem(statement: Statement) -> ExactProblem:
         str(units.position),
         tuple(pairs.items()),
         prescribed,
+        _printed_shares(statement, problem),
+        statement.durations.ratios == "chord" and len(statement.joints) > 1,
     )
+
+
+def _printed_shares(statement: Statement, problem: Problem) -> tuple[Fraction, ...] | None:
+    """Exact shares of the segments from the printed ratios; None where there are none."""
+    given = statement.durations.ratios
+    if isinstance(given, tuple):
+        return _shares(number.fraction for number in given)
+    if given != "chord":
+        return _shares(problem.ratios)
+    if len(statement.joints) > 1:
+        return None
+    own = [row[statement.joints[0]].fraction for row in statement.waypoints.points]
+    return _shares(abs(b - a) for a, b in pairwise(own))
 
 
 def _in_motion(statement: Statement, curve: Curve, base: Scale) -> tuple[Interpolant, Prescribed]:

@@ -22,8 +22,8 @@ _ROUNDED = 8 * np.finfo(np.float64).eps
 rounds three times, by half a unit of the last place each."""
 _ANGLES = ("waypoints", "limits", "position_lower", "position_upper")
 """Parts of a problem in its unit of angle, some per power of a second."""
-_TIMES = ("duration_lower", "duration_upper")
-"""Parts of a problem in seconds."""
+_TIMES = ("duration_lower", "duration_upper", "ratios")
+"""Parts of a problem in seconds, or without a unit."""
 
 
 def solve(

@@ -21,6 +21,7 @@ from .clue import AnyClue, AxisClue, DataSheetClue, HalfTurnsClue, SmoothClue
 from .data_files import PUBLISHED, SUITE_PREFIX, case_files
 from .faults import all_faults, refusal
 from .instances import InstancesBlock, instance_waypoints
+from .labels import ratio_words
 from .load import load_case, parse_case, published_ids
 from .references import motions_of
 from .robot_file import load_robot, robot_ids
@@ -94,6 +95,7 @@ __all__ = [
     "motions_of",
     "parse_case",
     "published_ids",
+    "ratio_words",
     "refusal",
     "robot_ids",
     "scaffold",

@@ -63,6 +63,8 @@ _TIME_ENDS = {
     "natural": "natural ends of time",
 }
 """How a smooth time ends."""
+_FEW_RATIOS = 6
+"""Ratios that are told one by one: more are no label."""
 _DERIVATIVES = {1: "velocity", 2: "acceleration", 3: "jerk"}
 """Derivatives at the ends, by their order."""
 
@@ -199,6 +201,22 @@ def _durations(document: CaseFile, reading: Reading) -> Iterator[str]:
             yield f"durations {least} {value} {unit}"
 
 
+def _ratios(document: CaseFile, reading: Reading) -> Iterator[str]:
+    value = _stated(document, reading, "durations", "ratios")
+    if value is None and any(p.durations.ratios is not None for p in document.problems):
+        return
+    yield ratio_words(value)
+
+
+def ratio_words(value: object) -> str:
+    """What ratios of durations in a case file say, in words."""
+    if isinstance(value, tuple):
+        shown = " : ".join(map(str, value)) if len(value) <= _FEW_RATIOS else "as listed"
+        return f"durations in the ratios {shown}"
+    words = {"equal": "durations all alike", "chord": "durations in the ratios of the distances"}
+    return words.get(str(value), "each duration chosen")
+
+
 def _coupling(document: CaseFile, reading: Reading) -> Iterator[str]:
     if reading.coupling is not None:
         shared = reading.coupling is Coupling.SHARED
@@ -216,6 +234,7 @@ _ASPECTS: tuple[Callable[[CaseFile, Reading], Iterator[str]], ...] = (
     _limits,
     _curve,
     _durations,
+    _ratios,
     _coupling,
 )
 """What a reading may change, in the order in which a label tells it."""

@@ -321,6 +321,7 @@ def _text(
         "",
         "[durations]",
         "lower = 0  # 0 means positive",
+        '# ratios = "equal"  # or "chord", or one per segment: only the total is chosen',
         "",
         *claims,
         "## What the paper leaves open, and what was chosen.",

@@ -24,6 +24,7 @@ from ..fields import (
     OneOrEachUpperPosition,
     PositionUnit,
     PrintedRows,
+    Ratios,
     Strict,
     Text,
     TimeUnit,
@@ -214,13 +215,17 @@ class LimitsBlock(Strict):
 
 
 class Durations(Strict):
-    """Bounds on the segment durations, one for all segments or one per segment."""
+    """Bounds on the segment durations, one for all segments or one per segment; their ratios."""
 
     where: str = ""
     lower: OneOrEachLength | None = None
     """Shortest duration; 0 (the default) means positive."""
     upper: OneOrEachUpper = None
     """Longest duration; none by default."""
+    ratios: Ratios | None = None
+    """Ratios of the durations, of any scale, where only the total is chosen: one number per
+    segment, "equal", or "chord" for the lengths between the way-points. "free" (the default)
+    chooses each duration."""
 
 
 class ProblemData(Strict):

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..curves import MOST_OPEN, Curve, Derivatives
+from ..duration_ratios import RATIO_WORDS
 from ..errors import CaseError, TrajgapError
 from ..fields import LimitPair
 from ..limits import Limits
@@ -240,6 +241,15 @@ class Statement:
         """
         return bool(self.declaration.loose)
 
+    @property
+    def loose_ratios(self) -> bool:
+        """Whether fixed ratios stand for intervals: printed digits, or lengths between them."""
+        ratios = self.durations.ratios
+        if isinstance(ratios, tuple):
+            return any(not number.exact for number in ratios)
+        taken = (row[j] for row in self.waypoints.points for j in self.joints)
+        return ratios == "chord" and any(not number.exact for number in taken)
+
     def _end(self, key: str, values: Values | None, orders: tuple[int, ...]) -> Derivatives:
         """Derivatives at one end in rad and s, of the joints that take part."""
         if values is None:
@@ -303,6 +313,12 @@ class Statement:
 
     def _at(self, data: Data, waypoints: Array) -> Problem:
         curve, limits, lower, upper = data
+        fixed = self.durations.ratios
+        ratios = (
+            np.array([number.value for number in fixed])
+            if isinstance(fixed, tuple)
+            else next((word for word in RATIO_WORDS if word == fixed), None)
+        )
         try:
             return Problem(
                 waypoints=waypoints,
@@ -313,8 +329,12 @@ class Statement:
                 coupling=self.coupling,
                 joints=tuple(self.labels[j] for j in self.joints),
                 name=self.name,
+                ratios=ratios,
             )
         except TrajgapError as error:
+            field, of, why = str(error).partition("ratios: ")
+            if of and not field:
+                raise self.fail("durations.ratios", why) from None
             raise self.fail("", str(error)) from None
 
     def data(self, digits: Digits = Digits.PRINTED) -> Data:
@@ -343,6 +363,11 @@ class Statement:
             raise self.fail(
                 "durations.lower",
                 f"lies above durations.upper in segment {at + 1}; exchange or change them",
+            )
+        ratios = self.durations.ratios
+        if isinstance(ratios, tuple) and len(ratios) != segments:
+            raise self.fail(
+                "durations.ratios", f"{len(ratios)} ratios for {segments} segments; give one each"
             )
         position_lower = self._limit("position_lower", "position", digits)
         position_upper = self._limit("position_upper", "position", digits)

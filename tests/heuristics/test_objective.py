@@ -2,7 +2,16 @@
 
 import numpy as np
 import pytest
-from trajgap.heuristics import Bounds, Counted, DeathPenalty
+from trajgap.heuristics import (
+    PSO,
+    Bounds,
+    Counted,
+    DeathPenalty,
+    Stretch,
+    run,
+    run_per_joint,
+    uniform_rescaling,
+)
 from trajgap.problem import (
     Limits,
     Problem,
@@ -164,3 +173,18 @@ def test_objective_must_not_return_nan() -> None:
     counted = Counted(lambda _: np.array([1.0, np.nan]))
     with pytest.raises(TrajgapError, match="returned NaN; return inf for what is infeasible"):
         counted(np.ones((2, 3)))
+
+
+def test_fixed_ratios_leave_nothing_to_search() -> None:
+    problem = Problem([[0.0], [0.5], [1.5]], Limits(1.0), cubic_spline(2), ratios="equal")
+    said = "ratios: the durations have fixed ratios, so that the total is the one unknown"
+    for refused in (
+        lambda: DeathPenalty(problem),
+        lambda: Stretch(problem),
+        lambda: run(PSO(), problem, seed=1),
+        lambda: run_per_joint(PSO(), problem, seed=1),
+    ):
+        with pytest.raises(TrajgapError, match=said):
+            refused()
+    with pytest.raises(TrajgapError, match="uniform rescaling: the durations have fixed ratios"):
+        uniform_rescaling(problem)

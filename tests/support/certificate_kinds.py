@@ -105,12 +105,33 @@ def stretched_optimum(problem: Problem) -> float:
     return _alone(solve_in_closed_form(problem.curve, problem.waypoints, limits), problem)
 
 
+def at_ratios() -> Problem:
+    """Tight in the second joint, and in no segment at its end."""
+    q = np.array([[0.25, -0.5], [1.0, 0.125], [-0.375, 0.75], [0.5, 0.25]])
+    limits = Limits([1.0, 0.9], [2.0, 1.5], [np.inf, 9.0], [-1.5, -np.inf], [np.inf, 1.75])
+    return Problem(
+        q, limits, quintic_spline(3), (0.5, 0.1, 0.1), (9.0, 9.0, 9.0), ratios=[1.0, 1.75, 1.25]
+    )
+
+
+def ratios_optimum(problem: Problem) -> float:
+    """The stretch of any durations of these ratios; positions are left out."""
+    shares = problem.shares
+    if shares is None:
+        return float("inf")
+    total = float(evaluate(problem, shares[None]).stretch[0])
+    total = max(total, float((problem.duration_lower / shares).max()))
+    beyond = (total * shares > problem.duration_upper * (1 + 1e-12)).any()
+    return float("inf") if beyond else total
+
+
 KINDS = {
     "three-piece": Kind(three_piece, 0.03, lambda problem: dense_best(problem, 81)),
     "four-three-four": Kind(four_three_four, 1e-5, lambda problem: dense_best(problem, 81)),
     "rest-to-rest": Kind(rest, 1e-6, rest_optimum),
     "quintic-spline": Kind(quintic, 0.1, lambda problem: dense_best(problem, 81)),
     "stretched": Kind(stretched, 1e-6, stretched_optimum),
+    "fixed-ratios": Kind(at_ratios, 1e-6, ratios_optimum),
 }
 
 
@@ -137,4 +158,5 @@ def stated(document: Document) -> Problem:
         KINDS[document["proof"]["kind"]].make().curve,
         numbers(p["duration_lower"], 0.0),
         numbers(p["duration_upper"], np.inf),
+        ratios=numbers(p["ratios"], 0.0) if "ratios" in p else None,
     )

@@ -126,7 +126,7 @@ def test_the_docs_say_how_long_it_is() -> None:
         if not path.name.startswith("__")
     }
     parts = {
-        "closed_form": ["closed_form"],
+        "closed_form, fixed_ratios": ["closed_form", "fixed_ratios"],
         "three_piece": ["three_piece"],
         "any_curve": ["any_curve"],
         "cubic/": [name for name in length if name.startswith("cubic/")],

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ....nlp import Evidence, Solution, Status, weakest
-from ....problem import Coupling
 from ....problem.cases import (
     AnyClaim,
     Digits,
@@ -31,6 +30,14 @@ from ...documents import (
 )
 from ...gaps import gap, reference_of
 from ..explanations import LIMITS, OPTIMAL
+from ..fixed_ratios import (
+    BELOW_AT_RATIOS,
+    at_ratios,
+    of_other_ratios,
+    off_ratios,
+    optimum_called,
+    planned_apart,
+)
 from ..rounding import same_limits
 from ..stated import other_objective
 from ..study import Study
@@ -70,9 +77,13 @@ def _beside_optimum(study: Study, claim: AnyClaim, pid: str, rid: str) -> Iterat
     if total is None:
         return
     problem = study.claim_problem(claim, pid, rid)
-    procedure = len(problem.joints) > 1 and study.problem(pid, rid).coupling is Coupling.PER_JOINT
+    procedure = len(problem.joints) > 1 and planned_apart(study.problem(pid, rid))
     solution = study.claim_optimum(claim, pid, rid)
     reference = reference_of(solution)
+    other = off_ratios(study, claim, pid, rid)
+    if other is not None:
+        yield of_other_ratios(claim, pid, rid, total[0], other)
+        return
     if reference is not None:
         yield _distance(study, claim, pid, rid, total, solution, reference, procedure)
     if procedure:
@@ -92,9 +103,11 @@ def _distance(
     shown, interval = total
     kept = _kept(study, claim, pid, rid)
     distance = gap(interval, reference, feasible=kept)
-    which = "with shared durations" if shared or claim.joint is None else f"of joint {claim.joint}"
+    whole = " with shared durations" if solution.problem.ratios is None else ""
+    which = whole if shared or claim.joint is None else f" of joint {claim.joint}"
     message = (
-        f"Printed {shown} {set_beside(distance)} the {reference.evidence} optimum {which}, "
+        f"Printed {shown} {set_beside(distance)} the "
+        f"{optimum_called(solution.problem, reference.evidence)}{which}, "
         f"{reference.upper:.6f} s{_bounded(reference)}."
     )
     minimised = other_objective(study.case, claim)
@@ -102,7 +115,7 @@ def _distance(
     if informs:
         message = (
             f"Printed {shown} was not minimised for time alone ({minimised}): as information, the "
-            f"shortest motion {which} takes {reference.upper:.6f} s, "
+            f"shortest motion{which}{at_ratios(solution.problem)} takes {reference.upper:.6f} s, "
             f"{reference.evidence}{_bounded(reference)}."
         )
     timed = not isinstance(claim, TotalTimeClaim) and study.unmoved(claim, pid, rid) is None
@@ -160,6 +173,8 @@ def _below(
         return (
             f" Below the {solution.evidence} total, which keeps the limits; these durations do not."
         )
+    if solution.problem.ratios is not None:
+        return BELOW_AT_RATIOS
     share = _spread(study, claim, pid, rid, solution)
     if share is not None and interval[1] >= solution.best * (1.0 - share):
         return (
@@ -244,7 +259,7 @@ class _Sides:
     agreeing: list[str] = field(default_factory=list)
     rounded_up: bool = False
     open: list[str] = field(default_factory=list)
-    evidence: list[Evidence] = field(default_factory=list)
+    solutions: list[Solution] = field(default_factory=list)
 
 
 def _weigh(study: Study, claim: AnyClaim, pid: str, rid: str, sides: _Sides) -> None:
@@ -254,6 +269,10 @@ def _weigh(study: Study, claim: AnyClaim, pid: str, rid: str, sides: _Sides) -> 
         return
     shown, interval = total
     name = called_under(claim, pid)
+    other = off_ratios(study, claim, pid, rid)
+    if other is not None:
+        sides.open.append(f"{name}: printed are {other}, so that it is not of this question")
+        return
     solution = study.claim_optimum(claim, pid, rid)
     shorter = _shorter(study, claim, pid, rid, solution, total)
     if shorter is not None:
@@ -274,15 +293,16 @@ def _weigh(study: Study, claim: AnyClaim, pid: str, rid: str, sides: _Sides) -> 
     if not found:
         sides.open.append(f"{name}: {_no_optimum(solution)}")
         return
-    sides.evidence.append(solution.evidence)
+    sides.solutions.append(solution)
     if _rounded_up(study, claim, rid, interval) <= solution.best <= interval[1]:
         sides.agreeing.append(name)
         sides.rounded_up |= not interval[0] <= solution.best
         return
     distance = gap(interval, _reference(solution), feasible=False)
     sides.open.append(
-        f"{name}: printed {shown} {set_beside(distance)} the {solution.evidence} optimum "
-        f"{solution.best:.6f} s, and no proof for all values that round to the printed digits "
+        f"{name}: printed {shown} {set_beside(distance)} the "
+        f"{optimum_called(solution.problem, solution.evidence)} {solution.best:.6f} s, "
+        "and no proof for all values that round to the printed digits "
         "decides whether that is more than rounding explains"
     )
 
@@ -316,7 +336,8 @@ def _no_optimum(solution: Solution) -> str:
         reason = "no limit is printed, and " if free else ""
         return f"{reason}no motion is the shortest, the total only approaches an infimum{why}"
     if solution.status is Status.INFEASIBLE:
-        return f"at the printed way-points no durations keep the limits{why}"
+        of = at_ratios(solution.problem)
+        return f"at the printed way-points no durations{of} keep the limits{why}"
     return f"no optimum was found ({solution.status}{why})"
 
 
@@ -333,6 +354,8 @@ def _below_certified(
         return None
     problem = study.claim_problem(claim, pid, rid)
     box = study.waypoint_box(problem, pid, rid)
+    if study.case.statement(pid, rid).loose_ratios:
+        return None
     exact = same_limits(problem, study.claim_problem(claim, pid, rid, Digits.LOOSEST))
     if not (exact and np.array_equal(box.lower, box.upper)):
         return None
@@ -361,7 +384,7 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
                     _weigh(study, claim, pid, rid, sides)
         if not (sides.longer or sides.breaking or sides.agreeing or sides.open):
             continue
-        evidence = weakest(sides.evidence)
+        evidence = weakest(one.evidence for one in sides.solutions)
         longer, breaking = sides.longer, sides.breaking
         if longer or breaking:
             # What refutes is a motion or a broken limit: no optimum, known or certified, is needed.
@@ -376,7 +399,8 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
             message = f"Not decided: {'; '.join(sides.open)}."
         else:
             verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
-            message = f"Every printed total agrees with the {evidence} optimum"
+            called_so = {optimum_called(one.problem, evidence) for one in sides.solutions}
+            message = f"Every printed total agrees with the {' or the '.join(sorted(called_so))}"
             message += (
                 ", digits rounded up so that the limits are kept." if sides.rounded_up else "."
             )
@@ -420,7 +444,7 @@ def _shorter(
     jumps = solution.check is not None and any(j.order == 1 for j in solution.check.jumps)
     kind = "a checked motion whose velocity may jump at the via-points under this reading"
     said = (
-        f"{called(claim)} prints {shown}, and {kind if jumps else 'a checked motion'} takes "
-        f"{reached:.6f} s"
+        f"{called(claim)} prints {shown}, and {kind if jumps else 'a checked motion'}"
+        f"{at_ratios(solution.problem)} takes {reached:.6f} s"
     )
     return said, distance

@@ -11,6 +11,7 @@ from ....problem import CaseError, Problem
 from ....problem.cases import AnyClaim, Digits, DurationsClaim, MaximumClaim, StatementClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..explanations import OPTIMAL
+from ..fixed_ratios import off_ratios
 from ..stated import other_objective
 from ..study import Study
 from .wording import called_under
@@ -42,6 +43,7 @@ def velocity_factor(one: Problem, other: Problem) -> float | None:
         return None
     same = (
         one.curve == other.curve
+        and _same_ratios(one, other)
         and one.curve.homogeneous
         and np.array_equal(one.waypoints, other.waypoints)
         and not (one.duration_lower > 0).any()
@@ -66,6 +68,13 @@ def velocity_factor(one: Problem, other: Problem) -> float | None:
     return float(factors[0]) if np.ptp(factors) <= 1e-12 * factors[0] else None
 
 
+def _same_ratios(one: Problem, other: Problem) -> bool:
+    """Whether neither question fixes the ratios of its durations, or both fix the same."""
+    if one.shares is None or other.shares is None:
+        return one.shares is other.shares
+    return np.array_equal(one.shares, other.shares)
+
+
 def _stretched(
     study: Study,
     source: AnyClaim,
@@ -78,6 +87,10 @@ def _stretched(
     ]
     if not pairs[0] or not pairs[1]:
         return
+    if any(
+        off_ratios(study, c, own[0], rid) for c, own in zip((source, target), pairs, strict=True)
+    ):
+        return  # they are not durations of these questions
     try:
         # Where the digits of the limits allow least, so that it holds for all that round to them.
         one = study.claim_problem(source, pairs[0][0], rid, Digits.TIGHTEST)

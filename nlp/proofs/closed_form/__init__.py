@@ -1,4 +1,4 @@
-"""Optima in closed form, where every segment stands alone."""
+"""Optima in closed form, of each segment by itself, or of the total alone."""
 
 import lazy_loader
 

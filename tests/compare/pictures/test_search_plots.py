@@ -260,3 +260,9 @@ def test_a_themed_file_keeps_its_own_colours(pictures: dict[str, Picture]) -> No
     (style,) = re.findall(r"<style>@media[^<]*</style>", text)
     assert text.replace(f"\n {style}", "") == plain
     assert f'[style*="fill: {THEME["ink"]}"]{{fill:{DARK["ink"]} !important}}' in style
+
+
+def test_a_landscape_needs_ratios_that_are_chosen() -> None:
+    fixed = Problem(np.eye(4)[:, :1], Limits(1.0), cubic_spline(3), ratios="equal")
+    with pytest.raises(TrajgapError, match="landscape: the ratios of the durations are fixed"):
+        landscape(fixed, solve(fixed), [], {}, title="x")

@@ -1,0 +1,160 @@
+"""Questions that fix the ratios of the durations: which printed durations are theirs, in words."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...nlp import Evidence, Solution, Status
+from ...nlp.optimum import solve
+from ...problem import Array, Coupling, Problem, TrajgapError
+from ...problem.cases import Claim
+from ..documents import Basis, Finding
+from .rounding import RoundingBox
+
+if TYPE_CHECKING:
+    from .study import Study
+
+BELOW_AT_RATIOS = (
+    " The whole printed interval lies below it: other ratios of the durations, other limits, "
+    "another reading or other digits explain that."
+)
+"""What is said of a printed total below the shortest one at fixed ratios: it accuses nobody."""
+FREED_SECONDS = 60.0
+"""After which no start of the search with each duration chosen is begun, as for other optima."""
+_SLACK = 1e-9
+"""Relative difference of two totals that rounding of float64 explains, with room to spare."""
+
+
+def optimum_called(problem: Problem, evidence: Evidence) -> str:
+    """What the optimum of a problem is called in a sentence, with its evidence."""
+    fixed = problem.ratios is not None
+    return f"{evidence} shortest total at these ratios" if fixed else f"{evidence} optimum"
+
+
+def at_ratios(problem: Problem) -> str:
+    """What follows the name of an optimum whose durations have fixed ratios; else nothing."""
+    return "" if problem.ratios is None else " at these ratios"
+
+
+def planned_apart(problem: Problem) -> bool:
+    """Whether a paper plans each joint by itself, with another outcome than for all together.
+
+    At fixed ratios the longest of the joints' totals is the shortest total of all.
+    """
+    apart = problem.coupling is Coupling.PER_JOINT and len(problem.joints) > 1
+    return apart and problem.ratios is None
+
+
+def off_ratios(study: Study, claim: Claim, pid: str, rid: str) -> str | None:
+    """In which ratios printed durations are, where a reading fixes others; None if it does not.
+
+    They are in the ratios that it fixes if some durations and ratios agree, of all whose digits
+    were rounded or cut off to those printed.
+
+    Parameters
+    ----------
+    study : Study
+    claim : Claim
+        Without durations it has no ratios of its own.
+    pid, rid : str
+        Of the problem and the reading.
+
+    Returns
+    -------
+    str or None
+    """
+    problem = study.problem(pid, rid)
+    if problem.shares is None or not study.case.printed_durations(claim):
+        return None
+    printed = study.case.claim_durations(claim, rid)
+    # Half a digit more to each side: durations are cut off, or rounded up to keep a limit.
+    down, up = printed.lower - printed.value, printed.upper - printed.value
+    least_h, most_h = printed.lower + down, printed.upper + up
+    low, high = _ratio_box(study, pid, rid)
+    # A total c serves a segment if c·[low, high] meets its box; one c has to serve all.
+    with np.errstate(divide="ignore"):
+        least, most = float((least_h / high).max()), float((most_h / low).min())
+    if least <= most * (1.0 + _SLACK):
+        return None
+    own = printed.value / printed.value.sum()
+    return (
+        f"durations in the ratios {_shown(own)}, and this reading fixes {_shown(problem.shares)} "
+        "(shares of the total)"
+    )
+
+
+def freed(study: Study, pid: str, rid: str) -> Solution:
+    """The optimum with each duration chosen; where no ratios are fixed, that of the study."""
+    problem = study.problem(pid, rid)
+    own = study.optimum(pid, rid)
+    if problem.ratios is None:
+        return own
+
+    def compute() -> Solution:
+        known = study.known_motions(pid, rid)
+        if own.durations is not None:
+            known = np.vstack([known, own.durations])
+        one = replace(problem, ratios=None)
+        try:
+            return solve(one, known=known, seconds=FREED_SECONDS)
+        except TrajgapError as error:
+            return Solution(one, Status.FAILED, str(error))
+
+    return study.once(("freed", pid, rid), compute)
+
+
+def of_other_ratios(claim: Claim, pid: str, rid: str, shown: str, other: str) -> Finding:
+    """That printed durations are not those of a question that fixes other ratios.
+
+    Parameters
+    ----------
+    claim : Claim
+    pid, rid : str
+        Of the problem and the reading.
+    shown : str
+        The printed total.
+    other : str
+        From `off_ratios`.
+
+    Returns
+    -------
+    Finding
+    """
+    return Finding(
+        rule="TG302",
+        basis=Basis.DIGITS,
+        claim=claim.id,
+        problem=pid,
+        reading=rid,
+        printed=shown,
+        message=(
+            f"Printed are {other}. They answer another question than the shortest total at these "
+            "ratios, and are not set beside it."
+        ),
+        decides=False,
+    )
+
+
+def _ratio_box(study: Study, pid: str, rid: str) -> tuple[Array, Array]:
+    """Ratios of any scale: the least and the largest that the digits may stand for."""
+    problem, given = study.problem(pid, rid), study.case.statement(pid, rid).durations.ratios
+    if isinstance(given, tuple):
+        ends = (np.array([getattr(n, end) for n in given]) for end in ("value", "lower", "upper"))
+        box = RoundingBox(*ends).or_cut_off()
+        return np.maximum(box.lower, 0.0), box.upper
+    if given == "equal":
+        assert problem.shares is not None
+        return problem.shares, problem.shares
+    points = study.waypoint_box(problem, pid, rid).or_cut_off()
+    step_low = points.lower[1:] - points.upper[:-1]
+    step_high = points.upper[1:] - points.lower[:-1]
+    near = np.maximum(np.maximum(step_low, -step_high), 0.0)
+    far = np.maximum(np.abs(step_low), np.abs(step_high))
+    return np.hypot.reduce(near, axis=1), np.hypot.reduce(far, axis=1)
+
+
+def _shown(shares: Array) -> str:
+    return " : ".join(f"{share:.4g}" for share in shares)

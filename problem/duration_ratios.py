@@ -1,0 +1,129 @@
+"""Ratios of the segment durations that a question fixes, so that the total alone is chosen."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .arrays import Array
+from .curves import Curve
+from .errors import TrajgapError
+
+RatioWord = Literal["equal", "chord"]
+"""Words for ratios that need no numbers."""
+RATIO_WORDS: tuple[RatioWord, ...] = ("equal", "chord")
+"""All of them: all durations alike, and in proportion to the distances of the way-points."""
+_MOST_APART = 1e12
+"""Largest quotient of two ratios: beyond it float64 loses the curve of the shorter segment."""
+
+
+def chord_lengths(waypoints: Array) -> Array:
+    """Euclidean lengths of the steps between way-points, all joints together.
+
+    Parameters
+    ----------
+    waypoints : ndarray, shape (way-points, joints)
+        rad.
+
+    Returns
+    -------
+    ndarray, shape (way-points − 1,)
+        rad.
+
+    Raises
+    ------
+    TrajgapError
+        If two neighbours coincide: the segment between them would take no time.
+    """
+    lengths = np.hypot.reduce(np.diff(waypoints, axis=0), axis=1)
+    if (lengths == 0).any():
+        k = int(np.argmax(lengths == 0))
+        raise TrajgapError(
+            f'ratios: "chord" gives the segment between way-points {k + 1} and {k + 2}, which '
+            "coincide, no time; give numbers, or leave one of the two out"
+        )
+    return np.asarray(lengths)
+
+
+def as_ratios(given: ArrayLike | RatioWord, waypoints: Array, segments: int) -> Array:
+    """Ratios as numbers, one per segment, or a clear refusal.
+
+    Parameters
+    ----------
+    given : array_like or {"equal", "chord"}
+    waypoints : ndarray, shape (way-points, joints)
+        rad.
+    segments : int
+
+    Returns
+    -------
+    ndarray, shape (segments,)
+        Positive; read-only.
+
+    Raises
+    ------
+    TrajgapError
+        If they are not positive numbers, one per segment.
+    """
+    if isinstance(given, str):
+        found = _by_word(given, waypoints, segments)
+    else:
+        try:
+            found = np.array(given, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise TrajgapError(
+                'ratios: not numbers; give one per segment, "equal" or "chord"'
+            ) from None
+        if found.shape != (segments,):
+            raise TrajgapError(f"ratios: expected {segments}, one per segment, got {found.size}")
+    if not (np.isfinite(found) & (found > 0)).all():
+        raise TrajgapError("ratios: every one must be positive and finite")
+    if found.max() / found.min() > _MOST_APART:
+        raise TrajgapError(
+            f"ratios: the largest is more than {_MOST_APART:g} times the smallest; correct them"
+        )
+    found.setflags(write=False)
+    return found
+
+
+def _by_word(word: str, waypoints: Array, segments: int) -> Array:
+    if word == "equal":
+        return np.ones(segments)
+    if word != "chord":
+        raise TrajgapError(
+            f'ratios: {word!r} is unknown; give one number per segment, "equal" or "chord"'
+        )
+    if len(waypoints) != segments + 1:
+        raise TrajgapError(
+            f'ratios: "chord" needs a way-point at every end of the {segments} segments, '
+            f"{len(waypoints)} are given; give numbers"
+        )
+    return chord_lengths(waypoints)
+
+
+def no_formula(curve: Curve) -> str | None:
+    """Why the shortest total at fixed ratios is no formula for a curve; None if it is one.
+
+    Parameters
+    ----------
+    curve : Curve
+
+    Returns
+    -------
+    str or None
+        With what to do about it.
+    """
+    fix = "leave the ratios out, so that each duration is chosen"
+    if curve.free:
+        return (
+            f"ratios: {curve.name} leaves {curve.free} coefficients per joint free, so that the "
+            f"total is not the one unknown; add conditions, or {fix}"
+        )
+    if not curve.homogeneous:
+        return (
+            f"ratios: {curve.name} prescribes derivatives other than 0, which another total at "
+            f"the same ratios does not keep; prescribe 0, or {fix}"
+        )
+    return None

@@ -1,0 +1,238 @@
+"""The shortest total at fixed ratios: against other routes, and what no total repairs."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.interpolate import CubicSpline
+from scipy.optimize import brentq
+from trajgap.nlp import Evidence, Status, solve, solve_per_joint, structure_of
+from trajgap.problem import (
+    Coupling,
+    Limits,
+    Problem,
+    TrajgapError,
+    Verdict,
+    check,
+    cubic_spline,
+    evaluate,
+    piecewise,
+    quintic_spline,
+    rest_to_rest,
+    three_five_three,
+    uniform_cubic_b_spline,
+)
+
+Q = np.array([[0.2, -1.0], [0.9, 0.3], [0.4, 1.1], [1.3, 0.6]])
+LIMITS = Limits([1.5, 2.0], [4.0, 3.0], [30.0, 12.0])
+RATIOS = np.array([1.0, 1.7, 0.6])
+CURVES = [
+    three_five_three(),
+    cubic_spline(3),
+    quintic_spline(3),
+    rest_to_rest(3, 5),
+    uniform_cubic_b_spline(4, "stretched"),
+    uniform_cubic_b_spline(4, "timed"),
+]
+BLURRED = 2e-8
+"""The bound on rounding errors of the curve with a clock of its own, which its answer keeps."""
+EVERY = pytest.mark.parametrize("curve", CURVES, ids=lambda curve: curve.name)
+
+
+def shortest(problem: Problem) -> float:
+    answer = solve(problem)
+    assert answer.status is Status.OPTIMAL
+    assert answer.evidence is Evidence.BEST_KNOWN
+    assert "closed form" in str(answer.why)
+    assert check(problem, answer.durations).limits is Verdict.PASS
+    np.testing.assert_allclose(answer.durations / answer.total_time, problem.shares, rtol=1e-12)
+    return answer.total_time
+
+
+def excess(problem: Problem, total: float) -> float:
+    """The largest ratio of a peak to its limit less 1, by the batch evaluator."""
+    assert problem.shares is not None
+    return float(evaluate(problem, total * problem.shares[None]).ratios.max()) - 1.0
+
+
+@EVERY
+def test_it_is_the_root_of_the_largest_ratio(curve) -> None:
+    problem = Problem(Q, LIMITS, curve, ratios=RATIOS)
+    root = brentq(lambda total: excess(problem, total), 0.1, 100.0, xtol=1e-12, rtol=1e-13)
+    assert shortest(problem) == pytest.approx(root, rel=BLURRED)
+
+
+def test_dense_samples_of_another_library_agree() -> None:
+    problem = Problem(Q, LIMITS, cubic_spline(3), ratios=RATIOS)
+    breaks = np.concatenate([[0.0], np.cumsum(RATIOS / RATIOS.sum())])
+    spline = CubicSpline(breaks, Q, bc_type="clamped")
+    dense = np.linspace(0.0, 1.0, 200_001)
+    needs = [
+        (np.abs(spline(dense, order)) / limit).max() ** (1 / order)
+        for order, limit in enumerate(LIMITS.derivatives.T, start=1)
+    ]
+    assert shortest(problem) == pytest.approx(max(needs), rel=1e-8)
+
+
+@EVERY
+def test_limits_of_other_units_of_time_scale_it(curve) -> None:
+    """T(cV, c²A, c³J) = T/c, and a bound on durations is in force where it asks for more."""
+    problem = Problem(Q, LIMITS, curve, ratios=RATIOS)
+    own = shortest(problem)
+    quick = LIMITS.with_derivatives(LIMITS.derivatives * 1.3 ** np.array([1, 2, 3]))
+    assert shortest(replace(problem, limits=quick)) == pytest.approx(own / 1.3, rel=1e-9)
+    held = replace(problem, duration_lower=[0.0, own, 0.0])
+    assert shortest(held) == pytest.approx(own * RATIOS.sum() / 1.7, rel=1e-9)
+
+
+@EVERY
+def test_the_free_optimum_is_at_most_as_long_and_is_met_at_its_own_ratios(curve) -> None:
+    problem = Problem(Q, LIMITS, curve)
+    free = solve(problem)
+    assert shortest(replace(problem, ratios=RATIOS)) >= free.total_time * (1 - 1e-9)
+    at_its_own = shortest(replace(problem, ratios=free.durations))
+    assert at_its_own == pytest.approx(free.total_time, rel=1e-8)
+
+
+def test_one_segment_has_one_ratio() -> None:
+    problem = Problem(Q[:2], LIMITS, rest_to_rest(1, 5))
+    fixed = shortest(replace(problem, ratios="equal"))
+    assert fixed == pytest.approx(solve(problem).total_time, rel=1e-9)
+    assert fixed == pytest.approx(shortest(replace(problem, ratios=[7.3])), rel=1e-12)
+
+
+@EVERY
+def test_joints_exchanged_and_time_reversed_change_nothing(curve) -> None:
+    uneven = LIMITS.with_sides([LIMITS.derivatives, 0.8 * LIMITS.derivatives])
+    problem = Problem(Q, uneven, curve, ratios=RATIOS)
+    own = shortest(problem)
+    exchanged = replace(
+        problem,
+        waypoints=Q[:, ::-1],
+        limits=uneven.with_sides(uneven.sides[:, ::-1]),
+    )
+    assert shortest(exchanged) == pytest.approx(own, rel=1e-12)
+    # Backwards in time velocities and jerks change their sides.
+    back = uneven.sides.copy()
+    back[:, :, [0, 2]] = back[::-1][:, :, [0, 2]]
+    reversed_ = replace(
+        problem, waypoints=Q[::-1], limits=uneven.with_sides(back), ratios=RATIOS[::-1]
+    )
+    assert shortest(reversed_) == pytest.approx(own, rel=BLURRED)
+
+
+def test_the_limit_that_asks_for_most_is_the_active_one() -> None:
+    problem = Problem(Q, LIMITS, cubic_spline(3), ratios=RATIOS)
+    answer = solve(problem)
+    assert answer.kkt_residual is not None
+    assert answer.kkt_residual <= 1e-10
+    (only,) = answer.active
+    order = ("velocity", "acceleration", "jerk").index(only.quantity) + 1
+    # T = (p/limit)^(1/r), so that dT/T = −1/r of a share more of the limit.
+    assert only.multiplier == pytest.approx(answer.total_time / order, rel=1e-9)
+    j = problem.joints.index(str(only.joint))
+    eased = LIMITS.derivatives.copy()
+    eased[j, order - 1] *= 1.0001
+    other = replace(problem, limits=LIMITS.with_derivatives(eased))
+    change = (shortest(other) - answer.total_time) / 0.0001 * 0.1
+    assert change == pytest.approx(only.sensitivity, rel=1e-3)
+
+
+@pytest.mark.parametrize("ratios", ["equal", "chord", RATIOS])
+def test_joints_by_themselves_give_the_same_total(ratios) -> None:
+    problem = Problem(Q, LIMITS, cubic_spline(3), coupling=Coupling.PER_JOINT, ratios=ratios)
+    answer = solve_per_joint(problem, slacks=(0.01,))
+    own = shortest(problem)
+    assert answer.total_time == pytest.approx(own, rel=1e-12)
+    assert max(one.total_time for one in answer.joints) == pytest.approx(own, rel=1e-12)
+    (span,) = answer.ranges
+    assert (span.lowest, span.highest) == pytest.approx((own, own + 0.01), rel=1e-12)
+
+
+def test_the_ratios_of_all_joints_hold_for_each() -> None:
+    problem = Problem(Q, LIMITS, cubic_spline(3), ratios="chord")
+    lengths = np.linalg.norm(np.diff(Q, axis=0), axis=1)
+    for one in (problem, problem.joint(0), problem.joint(1), problem.hull):
+        np.testing.assert_allclose(one.shares, lengths / lengths.sum(), rtol=1e-14)
+    alone = np.abs(np.diff(Q[:, 0]))
+    assert not np.allclose(alone / alone.sum(), problem.shares)
+
+
+def test_a_path_that_leaves_its_range_is_not_mended_by_time() -> None:
+    limits = replace(LIMITS, position_upper=[1.31, 1.1])
+    problem = Problem(Q, limits, cubic_spline(3), ratios=RATIOS)
+    answer = solve(problem)
+    assert answer.status is Status.INFEASIBLE
+    assert "at these ratios joint 2 reaches" in str(answer.why)
+    wider = replace(problem, limits=replace(limits, position_upper=[1.31, 1.4]))
+    assert shortest(wider) == pytest.approx(shortest(replace(problem, limits=LIMITS)), rel=1e-12)
+
+
+def test_bounds_on_durations_may_leave_no_total() -> None:
+    problem = Problem(Q, LIMITS, cubic_spline(3), ratios=RATIOS)
+    own = shortest(problem)
+    short = replace(problem, duration_upper=0.99 * own * problem.shares)
+    assert solve(short).status is Status.INFEASIBLE
+    assert "the upper bounds on durations end" in str(solve(short).why)
+    bounds = own * problem.shares
+    exact = replace(problem, duration_upper=bounds, duration_lower=bounds)
+    assert shortest(exact) == pytest.approx(own, rel=1e-12)
+
+
+def test_a_joint_that_may_not_move() -> None:
+    answer = solve(Problem(Q, Limits([1.0, 0.0]), cubic_spline(3), ratios="equal"))
+    assert answer.status is Status.INFEASIBLE
+    assert answer.why == "joint 2 moves, though its velocity limit is 0"
+    still = Q.copy()
+    still[:, 1] = 0.5
+    assert shortest(Problem(still, Limits([1.0, 0.0]), cubic_spline(3), ratios="equal")) > 0
+
+
+@pytest.mark.parametrize(
+    "problem",
+    [
+        Problem(Q, Limits(joints=2), cubic_spline(3), ratios="equal"),
+        Problem(np.zeros((3, 1)), Limits(1.0), cubic_spline(2), ratios="equal"),
+    ],
+)
+def test_nothing_keeps_the_total_from_zero(problem: Problem) -> None:
+    answer = solve(problem)
+    assert answer.status is Status.NOT_ATTAINED
+    assert answer.boundless is not None
+    assert answer.best == 0.0
+
+
+def test_a_jump_at_the_ratios_is_told() -> None:
+    bent = Problem([[0.0], [0.5], [1.5]], Limits(1.0, 1.0), piecewise((1, 1), 0, ()))
+    answer = solve(replace(bent, ratios="equal"))
+    assert answer.status is Status.NONE_FOUND
+    assert answer.why == "at these ratios the velocity of joint 1 jumps, whatever the total"
+    assert shortest(replace(bent, ratios="chord")) == pytest.approx(1.5, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("curve", "said"),
+    [
+        (piecewise((5, 5, 5)), "coefficients per joint free"),
+        (piecewise((3, 3, 3), 2, ((1, 0.1),)), "prescribes derivatives other than 0"),
+    ],
+)
+def test_no_formula_is_one_line(curve, said: str) -> None:
+    with pytest.raises(TrajgapError, match=said) as error:
+        solve(Problem(Q, LIMITS, curve, ratios="equal"))
+    assert "leave the ratios out" in str(error.value)
+
+
+def test_the_nlp_knows_free_durations_alone() -> None:
+    with pytest.raises(TrajgapError, match="ratios: the NLP frees each duration"):
+        structure_of(Problem(Q, LIMITS, cubic_spline(3), ratios="equal"))
+
+
+def test_a_short_segment_beside_a_long_one_passes_the_check() -> None:
+    close = Q.copy()
+    close[1] = close[0] + 1e-7
+    answer = solve(Problem(close, LIMITS, quintic_spline(3), ratios="chord"))
+    assert answer.check is not None
+    assert answer.check.verdict is Verdict.PASS

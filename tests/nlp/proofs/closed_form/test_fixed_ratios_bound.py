@@ -1,0 +1,221 @@
+"""Certificates of the shortest total at fixed ratios: what they prove, and what they do not."""
+
+from __future__ import annotations
+
+import copy
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from trajgap.nlp import Outcome, certificate, certify, exact_problem, solve
+from trajgap.nlp.proofs.certifiers import covered
+from trajgap.nlp.proofs.closed_form.fixed_ratios import MOST_REBUILT
+from trajgap.nlp.proofs.document import fits
+from trajgap.nlp.proofs.evidence import interval_of, stated_exactly
+from trajgap.problem import (
+    Limits,
+    Problem,
+    TrajgapError,
+    cubic_spline,
+    parse_case,
+    piecewise,
+    quintic_spline,
+    rest_to_rest,
+    three_five_three,
+    uniform_cubic_b_spline,
+)
+from trajgap.verify import STATE_FORMAT, Subject, verify_certificate
+
+Q = np.array([[0.25, -0.5], [1.0, 0.125], [-0.375, 0.75], [0.5, 0.25]])
+LIMITS = Limits([1.0, 0.9], [2.0, 1.5], [12.0, 9.0])
+RATIOS = [1.0, 1.75, 1.25]
+CURVES = [
+    three_five_three(),
+    cubic_spline(3),
+    quintic_spline(3),
+    rest_to_rest(3, 5),
+    uniform_cubic_b_spline(4, "stretched"),
+]
+
+
+@pytest.mark.parametrize("curve", CURVES, ids=lambda curve: curve.name)
+@pytest.mark.parametrize("uneven", [False, True])
+def test_it_is_proved_to_the_last_digits(curve, uneven: bool) -> None:
+    limits = LIMITS.with_sides([LIMITS.derivatives, 0.7 * LIMITS.derivatives]) if uneven else LIMITS
+    problem = Problem(Q, limits, curve, ratios=RATIOS)
+    found = certify(problem, gap=1e-12)
+    assert found.outcome is Outcome.CERTIFIED
+    assert float(found.lower) == pytest.approx(solve(problem).total_time, rel=1e-9)
+    assert found.durations is not None
+    total = sum(found.durations, Fraction(0))
+    assert [h / total for h in found.durations] == [Fraction(r) / 4 for r in RATIOS]
+
+
+def test_a_bound_on_a_duration_may_ask_for_most() -> None:
+    problem = Problem(Q, LIMITS, cubic_spline(3), [0.0, 8.75, 0.0], ratios=RATIOS)
+    found = certify(problem)
+    assert found.lower == found.upper == 20
+
+
+def test_too_short_upper_bounds_are_proved_infeasible() -> None:
+    problem = Problem(Q, LIMITS, cubic_spline(3), ratios=RATIOS)
+    total = solve(problem).total_time
+    short = replace(problem, duration_upper=[9.0, 9.0, 0.999 * total * 1.25 / 4.0])
+    found = certify(short)
+    assert found.outcome is Outcome.INFEASIBLE
+    assert verify_certificate(certificate(found)).infeasible
+
+
+def test_a_proof_of_one_question_is_none_of_the_other() -> None:
+    fixed = Problem(Q, LIMITS, rest_to_rest(3, 5), ratios=RATIOS)
+    free = replace(fixed, ratios=None)
+    own, other = (certificate(certify(one)) for one in (fixed, free))
+    assert fits(own, exact_problem(fixed), Subject.DECLARED)
+    assert interval_of(own, exact_problem(fixed)) is not None
+    for document, asked in ((own, free), (other, fixed)):
+        assert interval_of(document, exact_problem(asked)) is None
+    # The verifier refuses either proof beside the problem of the other.
+    for proof, problem in ((own, other), (other, own)):
+        mixed = {**proof, "problem": problem["problem"]}
+        found = verify_certificate(mixed)
+        assert not found.proves
+        assert "at fixed ratios of the durations the kind of proof is fixed-ratios" in found.reason
+    # Nor are other ratios the same question; their scale is.
+    assert interval_of(own, exact_problem(replace(fixed, ratios=[1, 2, 1]))) is None
+    assert interval_of(own, exact_problem(replace(fixed, ratios=[4, 7, 5]))) is not None
+
+
+def test_durations_of_other_ratios_are_no_answer() -> None:
+    document = certificate(certify(Problem(Q, LIMITS, cubic_spline(3), ratios=RATIOS)))
+    claim = copy.deepcopy(document["claim"])
+    claim["durations"] = ["9", "9", "9"]
+    claim["upper"] = "27"
+    found = verify_certificate({**document, "claim": claim})
+    assert found.reason == "answer: the durations have other ratios"
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "said"),
+    [
+        ("total", "99", "the total is not proved"),
+        ("tree", [[".", 2, 1, 0, 5]], "no integer in -1..1"),
+        ("tree", [[".", 0, 4, 0, 5]], "no integer in 1..3"),
+        ("tree", [[".", -1, 0, 0, 0]], "above its lower bound"),
+        ("tree", [["/", 0, "1"]], "a proof in closed form has one leaf"),
+    ],
+)
+def test_a_place_that_proves_nothing_is_refused(key: str, value: object, said: str) -> None:
+    document = certificate(certify(Problem(Q, LIMITS, cubic_spline(3), ratios=RATIOS)))
+    proof = {**document["proof"], key: value}
+    claim = {**document["claim"], "durations": None, "upper": None}
+    found = verify_certificate({**document, "proof": proof, "claim": claim})
+    assert not found.proves
+    assert said in found.reason
+
+
+def test_ratios_of_a_certificate_are_positive() -> None:
+    document = certificate(certify(Problem(Q, LIMITS, cubic_spline(3), ratios=RATIOS)))
+    problem = {**document["problem"], "ratios": ["1", "0", "1"]}
+    found = verify_certificate({**document, "problem": problem})
+    assert found.reason == "a ratio of durations is not positive"
+
+
+def test_a_curve_with_moving_ends_is_no_curve_of_this_proof() -> None:
+    document = certificate(certify(Problem(Q, LIMITS, cubic_spline(3), ratios=RATIOS)))
+    problem = copy.deepcopy(document["problem"])
+    problem["prescribed"][0] = [[1, "0.1"]]
+    found = verify_certificate({**document, "problem": problem})
+    assert "no curve that may be stretched in time" in found.reason
+
+
+def test_any_curve_is_bounded_whatever_the_ratios() -> None:
+    fixed = Problem(Q[:3], Limits([1.0, 0.9], [2.0, 1.5]), cubic_spline(2), ratios=[1, 3])
+    found = certify(fixed, subject=Subject.ANY, gap=0.5, seconds=20)
+    free = replace(fixed, ratios=None)
+    assert fits(certificate(found), exact_problem(free), Subject.ANY)
+    assert 0 < float(found.lower) <= solve(free).total_time <= solve(fixed).total_time
+
+
+@pytest.mark.parametrize(
+    ("curve", "said"),
+    [
+        (uniform_cubic_b_spline(4, "timed"), "not rebuilt in rational numbers; at fixed ratios"),
+        (piecewise((5, 5, 5)), "coefficients free: not covered at fixed ratios"),
+    ],
+)
+def test_what_is_not_covered_says_so(curve, said: str) -> None:
+    problem = Problem(Q, LIMITS, curve, ratios=RATIOS)
+    assert said in str(covered(exact_problem(problem)))
+    with pytest.raises(TrajgapError, match="certify: "):
+        certify(problem)
+
+
+def test_long_splines_are_left_to_the_formula() -> None:
+    n = MOST_REBUILT + 1
+    q = np.cumsum(np.arange(1.0, n + 2.0))[:, None] % 1.7
+    problem = Problem(q, Limits(1.0), cubic_spline(n), ratios="equal")
+    assert f"more than {MOST_REBUILT} segments" in str(covered(exact_problem(problem)))
+
+
+CASE = """
+format = 1
+id = "made-up"
+title = "Made up"
+robot = { name = "arm", joints = ["a", "b"] }
+units = { position = "deg", velocity = "rad/s", time = "s" }
+interpolant = { family = "cubic-spline" }
+source = { kind = "teaching" }
+
+[waypoints]
+waypoint_rows = [[0, 10], ["30.0", 25], [-5, 40]]
+
+[limits]
+velocity = 1
+
+[durations]
+ratios = RATIOS
+"""
+
+
+@pytest.mark.parametrize(
+    ("ratios", "joints", "shares"),
+    [
+        ('[1, "2.50"]', None, (Fraction(2, 7), Fraction(5, 7))),
+        ('"equal"', None, (Fraction(1, 2), Fraction(1, 2))),
+        ('"chord"', '["a"]', (Fraction(30, 65), Fraction(35, 65))),
+        ('"free"', None, None),
+    ],
+)
+def test_printed_ratios_are_exact(ratios: str, joints: str | None, shares) -> None:
+    own = "" if joints is None else f'\n[[readings]]\nid = "r"\nwhy = "one"\njoints = {joints}\n'
+    case = parse_case(CASE.replace("RATIOS", ratios) + own, "made-up.toml")
+    exact = stated_exactly(case.statement())
+    assert exact is not None
+    assert exact.shares == shares
+
+
+def test_chord_lengths_of_several_joints_are_not_rational() -> None:
+    case = parse_case(CASE.replace("RATIOS", '"chord"'), "made-up.toml")
+    exact = stated_exactly(case.statement())
+    assert exact is not None
+    assert exact.shares is None
+    assert "chord lengths of several joints are no rational numbers" in str(covered(exact))
+    # A bound over any curve holds all the same, and says which question it was asked for.
+    found = certify(exact, subject=Subject.ANY, gap=0.5, seconds=20)
+    document = certificate(found)
+    assert document["problem"]["ratios"] == "chord"
+    assert fits(document, replace(exact, chord=False), Subject.ANY)
+    assert not fits(document, replace(exact, chord=False), Subject.DECLARED)
+    own = certificate(certify(replace(exact, shares=(Fraction(1, 4), Fraction(3, 4)), chord=False)))
+    stated = {**own["problem"], "ratios": "chord"}
+    assert not fits({**own, "problem": stated}, replace(exact, chord=False), Subject.DECLARED)
+    for claim in (own["claim"], {**own["claim"], "durations": None, "upper": None}):
+        found = verify_certificate({**own, "problem": stated, "claim": claim})
+        assert found.reason == "the problem fixes no ratios that are rational numbers"
+    free = certificate(certify(replace(exact, chord=False), gap=0.1))
+    mixed = verify_certificate({**free, "problem": stated})
+    assert "the kind of proof is fixed-ratios" in mixed.reason
+    state = {**free, "format": STATE_FORMAT, "problem": stated, "proof": None, "proposals": None}
+    claim = {**free["claim"], "lower": "0"}
+    assert "no durations are exactly" in verify_certificate({**state, "claim": claim}).reason
