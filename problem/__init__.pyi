@@ -83,7 +83,7 @@ from .robots import (
     waypoint_sequences,
 )
 from .textfile import parse_toml, read_text
-from .units import CHOICES, Measured, Scale, from_si, scale, to_si
+from .units import CHOICES, Measured, Quantity, Scale, from_si, is_linear, scale, shown_unit, to_si
 
 __all__ = [
     "CHOICES",
@@ -126,6 +126,7 @@ __all__ = [
     "Problem",
     "ProcessError",
     "Proximity",
+    "Quantity",
     "Scale",
     "StepKind",
     "Strict",
@@ -155,6 +156,7 @@ __all__ = [
     "from_si",
     "geometric_jacobian",
     "inverse_kinematics",
+    "is_linear",
     "jtraj",
     "keeps_limits",
     "link_frames",
@@ -180,6 +182,7 @@ __all__ = [
     "sample_workspace",
     "scaffold",
     "scale",
+    "shown_unit",
     "solve_in_closed_form",
     "three_five_three",
     "to_si",

@@ -29,7 +29,7 @@ class Problem:
     Parameters
     ----------
     waypoints : array_like, shape (way-points, joints)
-        Joint angles, rad.
+        Joint angles, rad; lengths of joints that slide, m.
     limits : Limits
         Limits of every joint.
     curve : Curve
@@ -40,6 +40,9 @@ class Problem:
     joints : tuple of str
         Joint labels; "1", "2", ... by default.
     name : str
+    linear : tuple of bool
+        Whether each joint slides instead of turning, so that its numbers are in m instead of rad;
+        none does by default.
 
     Raises
     ------
@@ -55,6 +58,7 @@ class Problem:
     coupling: Coupling = Coupling.SHARED
     joints: tuple[str, ...] = ()
     name: str = "problem"
+    linear: tuple[bool, ...] = ()
 
     def __post_init__(self) -> None:
         try:
@@ -116,6 +120,10 @@ class Problem:
         if len(set(labels)) < len(labels):
             raise TrajgapError(f"joints: a label occurs twice in {', '.join(labels)}")
         object.__setattr__(self, "joints", tuple(labels))
+        linear = tuple(map(bool, self.linear)) or (False,) * q.shape[1]
+        if len(linear) != q.shape[1]:
+            raise TrajgapError(f"linear: {len(linear)} entries for {q.shape[1]} joints")
+        object.__setattr__(self, "linear", linear)
 
     @property
     def segments(self) -> int:
@@ -155,6 +163,7 @@ class Problem:
             waypoints=self.waypoints[:, index : index + 1],
             limits=self.limits.joint(index),
             joints=(self.joints[index],),
+            linear=(self.linear[index],),
             coupling=Coupling.SHARED,
             name=f"{self.name}, joint {self.joints[index]}",
         )

@@ -21,6 +21,7 @@ from .clue import AnyClue, AxisClue, DataSheetClue, HalfTurnsClue, SmoothClue
 from .data_files import PUBLISHED, SUITE_PREFIX, case_files
 from .faults import all_faults, refusal
 from .instances import InstancesBlock, instance_waypoints
+from .joint_units import unit_of, with_unit
 from .load import load_case, parse_case, published_ids
 from .references import motions_of
 from .robot_file import load_robot, robot_ids
@@ -97,4 +98,6 @@ __all__ = [
     "refusal",
     "robot_ids",
     "scaffold",
+    "unit_of",
+    "with_unit",
 ]

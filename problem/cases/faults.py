@@ -26,6 +26,7 @@ _ONE_OR_EACH = (
     "position_upper",
     "lower",
     "upper",
+    "unit",
 )
 """Fields that take one number or a list: pydantic puts the union's tag into their path."""
 _EXPECTED = {

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
+from functools import cached_property
 from math import tau
 
 import numpy as np
@@ -16,9 +17,10 @@ from ..fields import LimitPair
 from ..limits import Limits
 from ..printed import Printed
 from ..problem import Coupling, Problem
-from ..units import CHOICES, Measured, Quantity, to_si
+from ..units import CHOICES, Measured, Quantity, is_linear, to_si
 from .declaration import InterpolantBlock, Values, declare
 from .faults import Faults
+from .joint_units import linear_joints, unit_of
 from .schema import Durations, LimitsBlock, Units, Waypoints
 
 Data = tuple[Curve, Limits, Array, Array]
@@ -77,7 +79,29 @@ class Statement:
         """Make an error at a field, naming the problem and reading under which it shows."""
         return CaseError(self.file, field, reason + self.selected)
 
-    def si(self, number: Printed, quantity: Quantity, field: str = "") -> Measured:
+    @cached_property
+    def linear(self) -> tuple[bool, ...]:
+        """Whether each of the robot's joints slides instead of turning, by its units."""
+        return linear_joints(self.units, len(self.labels))
+
+    def unit(self, quantity: Quantity, joint: int | None = None) -> str | None:
+        """The unit of a quantity, None where none is stated.
+
+        Parameters
+        ----------
+        quantity : str
+        joint : int, optional
+            Position in the robot's list; without it that of all joints that take part, None also
+            where they differ.
+        """
+        if joint is not None:
+            return unit_of(getattr(self.units, quantity), joint)
+        found = {unit_of(getattr(self.units, quantity), j) for j in self.joints}
+        return found.pop() if len(found) == 1 else None
+
+    def si(
+        self, number: Printed, quantity: Quantity, field: str = "", joint: int | None = None
+    ) -> Measured:
         """Convert printed digits with this reading's unit of ``quantity``.
 
         Parameters
@@ -86,14 +110,22 @@ class Statement:
         quantity : str
         field : str
             Where the number stands in the file, for messages.
+        joint : int, optional
+            Which of the robot's joints it belongs to; all that take part by default.
 
         Raises
         ------
         CaseError
-            If the unit is not stated, or the number is so large or small that no motion can be
-            computed with it.
+            If the unit is not stated or differs among the joints, or the number is so large or
+            small that no motion can be computed with it.
         """
-        unit = getattr(self.units, quantity)
+        unit = self.unit(quantity, joint)
+        if unit is None and getattr(self.units, quantity) is not None:
+            units = ", ".join(dict.fromkeys(getattr(self.units, quantity)))
+            raise self.fail(
+                field or quantity,
+                f"is one number for joints in different units ({units}); give one for each joint",
+            )
         if unit is None:
             raise self.fail(
                 f"units.{quantity}", f"is missing; add one of {', '.join(CHOICES[quantity])}"
@@ -109,12 +141,13 @@ class Statement:
             raise self.fail(
                 field or quantity,
                 f"{number} {unit} lies outside the magnitudes from {1 / _LARGEST:g} to "
-                f"{_LARGEST:g} rad and s that are computed with; correct digits or unit",
+                f"{_LARGEST:g} {'m' if is_linear(unit) else 'rad'} and s that are computed with; "
+                "correct digits or unit",
             )
         return measured
 
     def points(self) -> list[list[Measured]]:
-        """Way-points in radians, one row per way-point, one entry per joint that takes part."""
+        """Way-points in rad or m, one row per way-point, one entry per joint that takes part."""
         rows = self.waypoints.points
         if not rows:
             raise self.fail(
@@ -140,6 +173,7 @@ class Statement:
                         f"waypoints.joint_rows[{j}][{k}]"
                         if by_joint
                         else f"waypoints.waypoint_rows[{k}][{j}]",
+                        j,
                     ),
                     self.turns[self.labels[j]][k] if self.labels[j] in self.turns else 0,
                 )
@@ -153,6 +187,9 @@ class Statement:
             if label not in self.labels:
                 listed = ", ".join(self.labels)
                 raise self.fail("turns", f"joint {label!r} is unknown; robot.joints lists {listed}")
+            if self.linear[self.labels.index(label)]:
+                why = f"joint {label!r} slides, and turns are of angles; leave it out"
+                raise self.fail(f"turns.{label}", why)
             if len(given) != count:
                 raise self.fail(
                     f"turns.{label}", f"{len(given)} numbers for {count} way-points; give one each"
@@ -202,6 +239,12 @@ class Statement:
             If the conditions don't determine the curve, or it needs another number of way-points.
         """
         block, count = self.declaration, self.waypoints.number
+        if block.parameters == "chord" and len({self.linear[j] for j in self.joints}) > 1:
+            raise self.fail(
+                "interpolant.parameters",
+                '"chord" adds angles and lengths, so that its knots depend on their units; take '
+                '"joint-chord" or "times"',
+            )
         start = self._end("end_derivatives", block.end_derivatives, block.orders)
         finish = self._end("finish_derivatives", block.last_derivatives, block.last_orders)
         try:
@@ -253,15 +296,15 @@ class Statement:
                     f"{len(given)} values for {len(self.labels)} joints; give one for all, "
                     "or one each",
                 )
-            return tuple(self._in_si(field, order, given[j]) for j in self.joints)
+            return tuple(self._in_si(field, order, given[j], j) for j in self.joints)
         return self._in_si(field, order, given)
 
-    def _in_si(self, field: str, order: int, number: Printed) -> float:
+    def _in_si(self, field: str, order: int, number: Printed, joint: int | None = None) -> float:
         zero = number.fraction == 0 or order > len(_DERIVATIVES)
-        return 0.0 if zero else self.si(number, _DERIVATIVES[order - 1], field).value
+        return 0.0 if zero else self.si(number, _DERIVATIVES[order - 1], field, joint).value
 
     def problem(self, digits: Digits = Digits.PRINTED) -> Problem:
-        """Problem in radians and seconds.
+        """Problem in radians, metres and seconds.
 
         Parameters
         ----------
@@ -306,6 +349,7 @@ class Statement:
                 duration_upper=upper,
                 coupling=self.coupling,
                 joints=tuple(self.labels[j] for j in self.joints),
+                linear=tuple(self.linear[j] for j in self.joints),
                 name=self.name,
             )
         except TrajgapError as error:
@@ -363,8 +407,8 @@ class Statement:
         low = [
             Measured(-np.inf, -np.inf, -np.inf)
             if x is None
-            else self.si(x, quantity, f"limits.{quantity}")
-            for x in least
+            else self.si(x, quantity, f"limits.{quantity}", j)
+            for j, x in enumerate(least)
         ]
         # A size stands for both sides.
         low = [n if n.value <= 0 else Measured(-n.value, -n.upper, -n.lower) for n in low]
@@ -393,7 +437,13 @@ class Statement:
                 f"{len(given)} values for {count} {item}s; give one for all, or one each",
             )
         upper = [one.upper if isinstance(one, LimitPair) else one for one in given]
-        return [none if one is None else self.si(one, quantity, f"{block}.{name}") for one in upper]
+        of_joints = quantity != "time"
+        return [
+            none
+            if one is None
+            else self.si(one, quantity, f"{block}.{name}", place if of_joints else None)
+            for place, one in enumerate(upper)
+        ]
 
 
 def _turned(angle: Measured, turns: int) -> Measured:
