@@ -344,7 +344,7 @@ def _unit(quantity: Quantity) -> tuple[PlainValidator, WithJsonSchema]:
     return PlainValidator(read), WithJsonSchema(_unit_schema(quantity))
 
 
-def _units(quantity: Quantity) -> tuple[PlainValidator, WithJsonSchema]:
+def _units(quantity: Quantity) -> tuple[PlainValidator, PlainSerializer, WithJsonSchema]:
     def read(raw: object) -> str | tuple[str, ...]:
         if not isinstance(raw, list | tuple):
             return check_unit(raw, quantity)
@@ -359,7 +359,12 @@ def _units(quantity: Quantity) -> tuple[PlainValidator, WithJsonSchema]:
 
     one = _unit_schema(quantity)
     several = {"type": "array", "minItems": 1, "items": one}
-    return PlainValidator(read), WithJsonSchema({"anyOf": [one, several]})
+    # What is given may also be the list that a first serializer made of it.
+    return PlainValidator(read), PlainSerializer(_listed), WithJsonSchema({"anyOf": [one, several]})
+
+
+def _listed(units: UnitOrEach | list[str]) -> str | list[str] | None:
+    return list(units) if isinstance(units, list | tuple) else units
 
 
 def _unit_schema(quantity: Quantity) -> dict[str, Any]:

@@ -79,7 +79,7 @@ def new_case(
                 given[name] = answer
             else:
                 said = f"{answer!r} is no unit of {name}" if answer else "is missing"
-                faults.append((f"--{name}-unit", f"{said}; give {' or '.join(CHOICES[name])}"))
+                faults.append((f"--{name}-unit", f"{said}; give one of {', '.join(CHOICES[name])}"))
         if faults:
             raise CaseError(file, *faults[0], faults[1:])
         write(written(given))

@@ -216,7 +216,7 @@ class Limited(StrEnum):
     JERK = "jerk"
     """Of a joint."""
     POSITION = "position"
-    """Angle of a joint."""
+    """Angle of a joint, or its place where it slides."""
     DURATION = "duration"
     """Of a segment."""
     CURVE = "curve"

@@ -76,8 +76,8 @@ def _limits(problem: Problem, statement: Statement) -> str:
             continue
         values = getattr(problem.limits, name)
         alike = len({f"{v:.6g}" for v in values}) == 1
-        alike &= one_unit(statement, name, statement.joints)
         if not (alike and np.isinf(values[0])):
+            alike &= one_unit(statement, name, statement.joints)
             every = values[:1] if alike else values
             parts.append(f"{name} {both_units(statement, name, every, '.6g')}")
     if problem.limits.limits_position:

@@ -118,7 +118,7 @@ def _units(document: CaseFile, reading: Reading) -> Iterator[str]:
         unit = _stated(document, reading, "units", quantity)
         if isinstance(unit, tuple | str):
             each = unit if isinstance(unit, tuple) else (unit,)
-            shown = " and ".join(_SHOWN.get(one, shown_unit(one)) for one in dict.fromkeys(each))
+            shown = _and([_SHOWN.get(one, shown_unit(one)) for one in dict.fromkeys(each)])
             linear = quantity == "position" and any(map(is_linear, each))
             yield f"{'positions' if linear else _UNITS[quantity]} in {shown}"
 

@@ -372,6 +372,12 @@ def check_kinematics(document: CaseFile, faults: Faults, chain: Chain | None) ->
                 f"robot.joints[{index}]",
                 f"joint {label!r} is not in the robot's table; it has {', '.join(labels)}",
             )
+    for index, block in enumerate(document.families):
+        if block.kind == "joint" and chain is not None and not chain.revolute.all():
+            faults.add(
+                f"families[{index}].kind",
+                '"joint" measures a step as an angle, and a joint of the robot slides; take "end"',
+            )
     waypoints = document.waypoints
     printed = list(document.robot.joints)
     for index, column in enumerate(document.columns):

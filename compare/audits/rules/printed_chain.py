@@ -260,7 +260,7 @@ def _judged(
     assert chain is not None
     free = [label for label in chain.labels if label not in printed]
     names = [place.label or place.id for _, place in places]
-    numbers = "positions" if any(posing.linear) else "angles"
+    numbers = "values" if any(posing.linear) else "angles"
     given = f"The {numbers} of {_named(printed)} are read in {_units(posing)}"
     given += f"; {_named(free)} may have any value." if free else "."
     fitting = next((m for m in matches if m.fits), None)

@@ -88,9 +88,9 @@ def _in_other_units(
         basis=Basis.DIGITS,
         claim=claim.id,
         computed=f"{_middle(*own):.2f} in the printed unit",
-        message=f"The printed positions of joint {claim.joint} span {_middle(*own):.2f} (printed "
-        f"unit). Joints are printed in different units ({listed}), so that none of them varies "
-        "more than another.",
+        message=f"Joints are printed in different units ({listed}), so that nothing says which of "
+        f"them varies more. The printed positions of joint {claim.joint} span "
+        f"{_middle(*own):.2f} (printed unit).",
     )
 
 

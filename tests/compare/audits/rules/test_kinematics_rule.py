@@ -211,14 +211,14 @@ def test_without_a_table_it_is_not_checkable():
     assert found.message == "Positions of the end are printed, but no table of the robot."
 
 
-def test_a_sliding_joint_has_no_angle():
+def test_a_sliding_joint_that_is_not_printed_leaves_nothing_to_check():
     table = (
         TABLE
-        + 'kinds = ["revolute", "revolute", "prismatic"]\nlower = [0, 0, 0]\nupper = [1, 1, 1]\n'
+        + 'kinds = ["revolute", "prismatic", "revolute"]\nlower = [0, 0, 0]\nupper = [1, 1, 1]\n'
     )
     found = one(case_text(positions(), table))
     assert found.verdict is ClaimVerdict.NOT_CHECKABLE
-    assert "joint b slides, and way-points are printed as angles" in found.message
+    assert "joint c slides, and its positions are not printed" in found.message
 
 
 def test_a_reading_with_other_way_points_is_not_checkable():
