@@ -19,6 +19,7 @@ from .claim import (
 )
 from .clue import AnyClue, AxisClue, DataSheetClue, HalfTurnsClue, SmoothClue
 from .data_files import PUBLISHED, SUITE_PREFIX, case_files
+from .digits import Digits
 from .faults import all_faults, refusal
 from .instances import InstancesBlock, instance_waypoints
 from .joint_units import unit_of, with_unit
@@ -40,7 +41,7 @@ from .schema import (
     Transcription,
     case_schema,
 )
-from .statement import Digits, Statement
+from .statement import Statement
 from .transcripts import Difference, compare_transcriptions
 
 __all__ = [

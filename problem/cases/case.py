@@ -16,6 +16,7 @@ from ..robots import Chain, Convention, DhTable
 from ..units import CHOICES, Measured, Quantity
 from .claim import AnyClaim, Claim, DurationsClaim, MaximumClaim
 from .clue import AnyClue
+from .digits import Digits
 from .instances import InstancesBlock
 from .labels import reading_labels
 from .line import on_line
@@ -35,7 +36,7 @@ from .schema import (
     Table,
     Waypoints,
 )
-from .statement import Digits, Statement
+from .statement import Statement
 
 _ONLY_PROBLEM = ProblemBlock(id="main")
 """Stands for the one problem of a file that lists none; its id is what `--problem` then takes."""
@@ -396,7 +397,7 @@ class Case:
         problem_id, reading_id : str, optional
             As in `problem`.
         joint : str, optional
-            Label of the robot's joint that it belongs to; needed where units differ.
+            Label of its joint, needed where units differ.
 
         Returns
         -------

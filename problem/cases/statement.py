@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from enum import StrEnum
 from functools import cached_property
-from math import tau
 
 import numpy as np
 
@@ -19,6 +17,7 @@ from ..printed import Printed
 from ..problem import Coupling, Problem
 from ..units import CHOICES, Measured, Quantity, is_linear, to_si
 from .declaration import InterpolantBlock, Values, declare
+from .digits import Digits, end, turned
 from .faults import Faults
 from .joint_units import linear_joints, unit_of
 from .schema import Durations, LimitsBlock, Units, Waypoints
@@ -39,19 +38,6 @@ _LARGEST = 1e12
 """Largest number of a case file, rad and s: squares and quotients stay far from overflow."""
 _LOWER = "durations.lower"
 """The field whose value may be as near 0 as it likes: a lower bound of 0 says "positive"."""
-
-
-class Digits(StrEnum):
-    """Which of the values that their printed digits stand for the limits and bounds take."""
-
-    PRINTED = "printed"
-    """The digits themselves."""
-    TIGHTEST = "tightest"
-    """Of all values that round to the digits those that allow least."""
-    LOOSEST = "loosest"
-    """Of all values that round to the digits those that allow most."""
-    LOOSEST_CUT = "loosest, cut off"
-    """The same, of all values whose digits were rounded or cut off."""
 
 
 @dataclass(frozen=True)
@@ -166,7 +152,7 @@ class Statement:
         self._check_turns(len(rows))
         return [
             [
-                _turned(
+                turned(
                     self.si(
                         row[j],
                         "position",
@@ -371,9 +357,9 @@ class Statement:
         curve = self.curve()
         segments = curve.segments
         durations = self._each("durations", "lower", "time", segments, "segment", 0.0)
-        lower = np.maximum(_end(durations, digits, upper=False), 0.0)
+        lower = np.maximum(end(durations, digits, upper=False), 0.0)
         durations = self._each("durations", "upper", "time", segments, "segment", np.inf)
-        upper = _end(durations, digits, upper=True)
+        upper = end(durations, digits, upper=True)
         if (upper == 0).any():
             raise self.fail("durations.upper", "is 0; a duration is positive, give more")
         if (lower > upper).any():
@@ -412,13 +398,13 @@ class Statement:
         ]
         # A size stands for both sides.
         low = [n if n.value <= 0 else Measured(-n.value, -n.upper, -n.lower) for n in low]
-        lower = np.minimum(_end([low[j] for j in self.joints], digits, upper=False), 0.0)
+        lower = np.minimum(end([low[j] for j in self.joints], digits, upper=False), 0.0)
         return np.column_stack([lower, sizes])
 
     def _limit(self, name: str, quantity: Quantity, digits: Digits) -> Array:
         default = -np.inf if name == "position_lower" else np.inf
         every = self._each("limits", name, quantity, len(self.labels), "joint", default)
-        return _end([every[j] for j in self.joints], digits, upper=name != "position_lower")
+        return end([every[j] for j in self.joints], digits, upper=name != "position_lower")
 
     def _each(
         self, block: str, name: str, quantity: Quantity, count: int, item: str, default: float
@@ -437,35 +423,10 @@ class Statement:
                 f"{len(given)} values for {count} {item}s; give one for all, or one each",
             )
         upper = [one.upper if isinstance(one, LimitPair) else one for one in given]
-        of_joints = quantity != "time"
         return [
-            none
-            if one is None
-            else self.si(one, quantity, f"{block}.{name}", place if of_joints else None)
+            none if one is None else self.si(one, quantity, f"{block}.{name}", place)
             for place, one in enumerate(upper)
         ]
-
-
-def _turned(angle: Measured, turns: int) -> Measured:
-    """An angle with whole turns added, in an interval that cutting off digits does not leave."""
-    if not turns:
-        return angle
-    value = angle.value + turns * tau
-    # On the far side of 0 cut-off digits would widen the wrong end, so both ends are widened here.
-    half = 2.0 * max(angle.upper - angle.value, angle.value - angle.lower)
-    slack = 4.0 * float(np.spacing(max(abs(value), abs(angle.value))))
-    return Measured(value, value - half - slack, value + half + slack)
-
-
-def _end(numbers: Sequence[Measured], digits: Digits, upper: bool) -> Array:
-    """The end of each number's interval that allows most, or least."""
-    if digits is Digits.PRINTED:
-        return np.array([n.value for n in numbers])
-    if digits is Digits.LOOSEST_CUT:
-        numbers = [n.cut_off() if np.isfinite(n.value) else n for n in numbers]
-    if upper is (digits is Digits.TIGHTEST):
-        return np.array([n.lower for n in numbers])
-    return np.array([n.upper for n in numbers])
 
 
 def _unprefixed(error: TrajgapError) -> str:

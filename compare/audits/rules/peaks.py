@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import cached_property
-from math import pi
 from typing import TypeVar
 
 import numpy as np
@@ -26,6 +25,7 @@ from ..rounding import RoundingBox
 from ..study import Study
 from .corners import Look, largest_change
 from .norms import largest_norm
+from .unit_factors import meant_by_ratio
 from .wording import UNEXPLAINED, called, in_units, unit_shown
 
 _Value = TypeVar("_Value", bound=MotionValueClaim)
@@ -33,32 +33,12 @@ _SAMPLES = 50
 """Samples of a motion at the coarsest: fewer would show corners in a printed figure."""
 _PHASES = 8
 """Offsets at which those samples are tried: the worst of so many comes near the worst of all."""
-_FACTORS = {
-    180 / pi: "as between degrees and radians",
-    1000.0: "as a thousandth of the unit",
-    100.0: "as a hundredth of the unit",
-    60.0: "as per minute instead of per second",
-    2 * pi: "as turns instead of radians",
-    30 / pi: "as turns per minute instead of radians per second",
-}
-"""Ratios between units that are mixed up, and what that would mean; their inverses count too."""
-_LENGTH_FACTORS = {
-    1000.0: "as a thousandth of the unit",
-    100.0: "as a hundredth of the unit",
-    10.0: "as between millimetres and centimetres",
-    60.0: "as per minute instead of per second",
-}
-"""The same of joints that slide, whose numbers are no angles."""
 _ROOTS = (2, 3, 5)
 """Numbers whose square roots closed forms of peaks hold, such as 10/√3 of degree 5 and 84√5/25 of
 degree 7: one that is lost in print is named as an explanation."""
 _TELLING = 3
 """Digits that a printed peak has at least if one that is changed explains anything: of two, one in
 five numbers is a slip away."""
-_NEAR_FACTOR = 0.01
-"""Relative distance from such a ratio below which the unit is named as an explanation."""
-
-
 _WIDE = 0.05
 """Share of a peak above which the room that digits leave is said: what then fits tells little."""
 _NO_MOTION = "No durations are printed whose motion could have this peak."
@@ -161,12 +141,7 @@ class Beside:
         """What a ratio near that of two units would mean, if it is near one."""
         if not (self.exact > 0 and self.value > 0):
             return None
-        ratio = self.value / self.exact
-        for factor, meaning in (_LENGTH_FACTORS if self.linear else _FACTORS).items():
-            for one in (factor, 1 / factor):
-                if abs(ratio / one - 1) <= _NEAR_FACTOR:
-                    return f"{one:.6g}, {meaning}"
-        return None
+        return meant_by_ratio(self.value / self.exact, self.linear)
 
 
 def box_reach(study: Study, claim: AnyClaim, pid: str, rid: str, point: Extremum) -> float:
