@@ -255,8 +255,7 @@ class Case:
         CaseError
             If the problem or reading is unknown.
         """
-        first = self.default_reading
-        ordered = [first, *(r for r in self.readings if r.id != first.id)]
+        ordered = sorted(self.readings, key=lambda one: one.id != self.default_reading.id)
         problems = self.problems if problem is None else (self._problem(problem),)
         readings = ordered if reading is None else [self._reading(reading)]
         return [(p.id, r.id) for p in problems for r in readings]
