@@ -9,7 +9,7 @@ from ...problem import Case
 from ...problem.cases import Statement
 from ...problem.curves import ClampedBSpline, Parameters, clamped_readings
 from ..audits import CaseAudit, place, segments, spoken
-from ..documents import ClaimVerdict, Keeping, ReadingOutcome, ReadingsSummary, Why, si_unit
+from ..documents import ClaimVerdict, Keeping, ReadingOutcome, ReadingsSummary, Why
 from .blocks import (
     Block,
     Cell,
@@ -23,6 +23,7 @@ from .blocks import (
     word,
 )
 from .numbers import problem_cell
+from .units import both_units
 
 _FEW = 4
 """Rows of a table that stand in the open; a longer one is folded."""
@@ -192,11 +193,10 @@ def _unposed(one: CaseAudit) -> Grid:
 
 
 def _listed(statement: Statement, quantity: str, limits: Iterable[float]) -> str:
-    """Limits in SI, all of them once where they are equal; with units where a joint slides."""
+    """Limits in SI, all of them once where they are equal; with all units where a joint slides."""
     every = [f"{v:.6g}" for v in limits]
     if any(statement.linear):
-        each = (si_unit(quantity, statement.linear[j]) for j in statement.joints)
-        every = [f"{v} {unit}" for v, unit in zip(every, each, strict=True)]
+        return both_units(statement, quantity, list(limits), ".6g")
     return every[0] if len(set(every)) == 1 else ", ".join(every)
 
 

@@ -2,12 +2,13 @@
 
 import json
 import re
+from dataclasses import replace
 from decimal import Decimal
 from functools import cache
 
 import numpy as np
 import pytest
-from support.scara import scara
+from support.scara import SCARA, scara
 from trajgap.compare.audits import claim_text, digits_of
 from trajgap.compare.audits.case_audit import CaseAudit, audit_case
 from trajgap.compare.audits.causes import find_causes
@@ -28,7 +29,14 @@ from trajgap.compare.pictures import jump_picture, motion_picture
 from trajgap.nlp import solve
 from trajgap.nlp.proofs.document import problem_document
 from trajgap.nlp.proofs.exact import exact_problem, printed_problem
-from trajgap.problem import check, control_vertices
+from trajgap.problem import (
+    Limits,
+    Problem,
+    TrajgapError,
+    check,
+    control_vertices,
+    cubic_spline,
+)
 from trajgap.problem.motions import MotionForm, motion_text, read_motion
 
 RULES = (
@@ -347,6 +355,29 @@ def test_sentences_and_digits_have_the_unit_of_each_joint():
     assert digits_of(case, case.claim("slide-velocity")) == "0.2332 mm/s"
 
 
+def test_limits_have_their_units_where_no_way_points_are_printed():
+    text = SCARA[SCARA.index("waypoint_rows = [") : SCARA.index("[limits]")]
+    absent = 'not_printed = "in a figure alone"\ncount = 4\n\n'
+    page = page_text(case_page(audit_case(Study(scara((text, absent)), seeds=2))))
+    plain = re.sub(r"<[^>]+>", " ", page)
+    assert "30 rpm (3.14159 rad/s), 150 °/s (2.61799 rad/s), 120 mm/s (0.12 m/s)" in plain
+    assert "velocity limits, rad/s" not in plain
+
+
+def test_a_slide_needs_metres_per_second_squared():
+    """Out and back within 1 s: 2·(2 + 2)/(1 + 1) m/s² at least."""
+    problem = Problem(
+        np.array([[0.0], [1.0], [0.0]]),
+        Limits(acceleration=0.1),
+        cubic_spline(2, ends=((2, 0.0),)),
+        duration_upper=0.5,
+        linear=(True,),
+    )
+    assert "needs an acceleration of 8 m/s² near way-point 2" in str(solve(problem).why)
+    with pytest.raises(TrajgapError, match="linear: 2 entries for 1 joints"):
+        replace(problem, linear=(True, False))
+
+
 @pytest.mark.slow
 def test_a_whole_page_names_no_radian_at_the_slide():
     page = page_text(case_page(audited()))
@@ -361,6 +392,7 @@ def test_the_whole_audit_is_the_same_in_metres():
     one, two = audited().document, audit_case(study(*metres())).document
     verdicts = [{c.claim: str(c.verdict) for c in doc.verdicts} for doc in (one, two)]
     assert verdicts[0] == verdicts[1]
+    assert not [f.rule for f in one.findings if f.rule == "TG502"]
     totals = [[s.time for w in doc.waterfalls for s in w.steps] for doc in (one, two)]
     for mine, its in zip(*totals, strict=True):
         if isinstance(mine, float):
