@@ -271,6 +271,13 @@ def test_certificates_state_each_joint_in_its_unit():
     assert exact_problem(scara().problem().joint(2)).unit == "m"
 
 
+def test_limits_whose_sides_differ_are_in_the_unit_of_their_joint():
+    case = scara(("velocity = [30, 150, 120]", "velocity = [30, 150, [-60, 120]]"))
+    assert case.problem().limits.sides[:, 2, 0] == pytest.approx([0.06, 0.12])
+    stated = problem_document(printed_problem(case.statement()))
+    assert stated["limits"][2][0] == ["-60", "120"]
+
+
 def test_each_limit_is_shown_in_both_units():
     statement = scara().statement()
     shown = both_units(statement, "velocity", [np.pi, np.radians(150), 0.12], ".6g")
@@ -373,7 +380,7 @@ def test_a_slide_needs_metres_per_second_squared():
         duration_upper=0.5,
         linear=(True,),
     )
-    assert "needs an acceleration of 8 m/s² near way-point 2" in str(solve(problem).why)
+    assert "needs an acceleration of 8 m/s² near way-point 1" in str(solve(problem).why)
     with pytest.raises(TrajgapError, match="linear: 2 entries for 1 joints"):
         replace(problem, linear=(True, False))
 
