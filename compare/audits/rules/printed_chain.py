@@ -9,8 +9,8 @@ from itertools import combinations, product
 
 import numpy as np
 
-from ....problem import Array, Measured, to_si
-from ....problem.cases import Cartesian, Statement, StatementClaim
+from ....problem import Array, Measured, is_linear, to_si
+from ....problem.cases import Cartesian, Column, Statement, StatementClaim
 from ....problem.robots import Chain, Convention, DhTable, JointKind, Proximity, proximity
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..study import Study
@@ -97,11 +97,21 @@ def _compared(study: Study, dh: DhTable, posing: Statement, rid: str, pid: str |
     kinds = dict(zip(printed.labels, printed.kinds, strict=True))
     free = [label for label in printed.labels if label not in joints]
     sliding = [label for label in free if kinds[label] is JointKind.PRISMATIC]
+    # Those of the problem agree with the table since the file was read.
+    apart = [
+        column.joint
+        for column in study.case.columns
+        if column.joint in joints
+        and is_linear(_column_unit(column, posing))
+        != (kinds.get(column.joint) is JointKind.PRISMATIC)
+    ]
     places = _places(study, posing)
-    if sliding or any(k is None for k, _ in places):
+    if sliding or apart or any(k is None for k, _ in places):
         why = (
             f"joint {sliding[0]} slides, and its positions are not printed"
             if sliding
+            else f"the unit of joint {apart[0]} is not that of its kind in the robot's table"
+            if apart
             else "the numbers of positions and way-points differ"
         )
         return _not_checkable(rid, f"Positions cannot be set against joint angles: {why}.")
@@ -125,11 +135,15 @@ def _joints(study: Study, posing: Statement) -> Joints:
     }
     for column in study.case.columns:
         if column.joint is not None and len(column.values) == len(rows):
-            listed = isinstance(posing.units.position, tuple)
-            found[column.joint] = tuple(
-                to_si(v, column.unit) if listed else posing.si(v, "position") for v in column.values
-            )
+            unit = _column_unit(column, posing)
+            found[column.joint] = tuple(to_si(v, unit) for v in column.values)
     return found
+
+
+def _column_unit(column: Column, posing: Statement) -> str:
+    """The unit of a printed joint beside those of the problems."""
+    unit = posing.units.position
+    return unit if isinstance(unit, str) else column.unit
 
 
 def _bounded(chain: Chain, joints: Joints) -> Chain:
