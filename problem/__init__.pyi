@@ -85,7 +85,7 @@ from .robots import (
     waypoint_sequences,
 )
 from .textfile import parse_toml, read_text
-from .units import CHOICES, Measured, Scale, from_si, scale, to_si
+from .units import CHOICES, Measured, Quantity, Scale, from_si, is_linear, scale, shown_unit, to_si
 
 __all__ = [
     "CHOICES",
@@ -128,6 +128,7 @@ __all__ = [
     "Problem",
     "ProcessError",
     "Proximity",
+    "Quantity",
     "Scale",
     "StepKind",
     "Strict",
@@ -157,6 +158,7 @@ __all__ = [
     "from_si",
     "geometric_jacobian",
     "inverse_kinematics",
+    "is_linear",
     "jtraj",
     "keeps_limits",
     "link_frames",
@@ -184,6 +186,7 @@ __all__ = [
     "scaffold",
     "scale",
     "septic_spline",
+    "shown_unit",
     "solve_in_closed_form",
     "three_five_three",
     "to_si",

@@ -280,6 +280,7 @@ def reachable_total(
         waypoints=np.eye(points),
         limits=unlimited.with_derivatives(np.ones((points, 3))),
         joints=(),
+        linear=(),
     )
     unit = evaluate(cardinal, h[None]).ratios[0]
     own = evaluate(problem, h[None]).ratios[0]

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from difflib import get_close_matches
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeAlias
 
 from pydantic import (
     BeforeValidator,
@@ -363,6 +363,12 @@ Id = Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9.-]*$")]
 
 Text = Annotated[str, Field(min_length=1)]
 
+TextOrEach = Annotated[
+    Annotated[Text, Tag("scalar")]
+    | Annotated[tuple[Text, ...], BeforeValidator(_nonempty), Tag("list")],
+    Discriminator(_form),
+]
+
 Label = Annotated[str, Field(min_length=1, max_length=80, pattern=r"^\S(.*\S)?$")]
 """A few words on one line, which stand for what they name within a sentence or a cell."""
 
@@ -373,12 +379,40 @@ def _unit(quantity: Quantity) -> tuple[PlainValidator, WithJsonSchema]:
     def read(raw: object) -> str:
         return check_unit(raw, quantity)
 
-    schema = {"type": "string", "enum": list(CHOICES[quantity])}
-    return PlainValidator(read), WithJsonSchema(schema)
+    return PlainValidator(read), WithJsonSchema(_unit_schema(quantity))
 
 
-PositionUnit = Annotated[str | None, *_unit("position")]
-VelocityUnit = Annotated[str | None, *_unit("velocity")]
-AccelerationUnit = Annotated[str | None, *_unit("acceleration")]
-JerkUnit = Annotated[str | None, *_unit("jerk")]
+def _units(quantity: Quantity) -> tuple[PlainValidator, PlainSerializer, WithJsonSchema]:
+    def read(raw: object) -> str | tuple[str, ...]:
+        if not isinstance(raw, list | tuple):
+            return check_unit(raw, quantity)
+        _nonempty(raw)
+        found = []
+        for index, one in enumerate(raw):
+            try:
+                found.append(check_unit(one, quantity))
+            except TrajgapError as error:
+                raise fault(f"[{index}]", str(error)) from None
+        return tuple(found)
+
+    one = _unit_schema(quantity)
+    several = {"type": "array", "minItems": 1, "items": one}
+    # What is given may also be the list that a first serializer made of it.
+    return PlainValidator(read), PlainSerializer(_listed), WithJsonSchema({"anyOf": [one, several]})
+
+
+def _listed(units: UnitOrEach | list[str]) -> str | list[str] | None:
+    return list(units) if isinstance(units, list | tuple) else units
+
+
+def _unit_schema(quantity: Quantity) -> dict[str, Any]:
+    return {"type": "string", "enum": list(CHOICES[quantity])}
+
+
+UnitOrEach: TypeAlias = str | tuple[str, ...] | None
+"""A unit, or one for each of the robot's joints."""
+PositionUnits = Annotated[UnitOrEach, *_units("position")]
+VelocityUnits = Annotated[UnitOrEach, *_units("velocity")]
+AccelerationUnits = Annotated[UnitOrEach, *_units("acceleration")]
+JerkUnits = Annotated[UnitOrEach, *_units("jerk")]
 TimeUnit = Annotated[str | None, *_unit("time")]

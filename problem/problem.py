@@ -30,7 +30,7 @@ class Problem:
     Parameters
     ----------
     waypoints : array_like, shape (way-points, joints)
-        Joint angles, rad.
+        Joint angles, rad; lengths of joints that slide, m.
     limits : Limits
         Limits of every joint.
     curve : Curve
@@ -45,6 +45,9 @@ class Problem:
         Ratios of the durations, of any scale: then the total is the one unknown. "chord" takes the
         lengths between the way-points, all joints together, and turns into these numbers here, so
         that the question of one joint keeps them. Without ratios each duration is chosen.
+    linear : tuple of bool
+        Whether each joint slides instead of turning, so that its numbers are in m instead of rad;
+        none does by default.
 
     Raises
     ------
@@ -72,6 +75,7 @@ class Problem:
     joints: tuple[str, ...] = ()
     name: str = "problem"
     ratios: Array | RatioWord | None = None
+    linear: tuple[bool, ...] = ()
 
     def __post_init__(self) -> None:
         try:
@@ -133,6 +137,15 @@ class Problem:
         if len(set(labels)) < len(labels):
             raise TrajgapError(f"joints: a label occurs twice in {', '.join(labels)}")
         object.__setattr__(self, "joints", tuple(labels))
+        linear = tuple(map(bool, self.linear)) or (False,) * q.shape[1]
+        if len(linear) != q.shape[1]:
+            raise TrajgapError(f"linear: {len(linear)} entries for {q.shape[1]} joints")
+        object.__setattr__(self, "linear", linear)
+        if isinstance(self.ratios, str) and self.ratios == "chord" and len(set(linear)) > 1:
+            raise TrajgapError(
+                'ratios: "chord" adds angles and lengths, so that they depend on units; give '
+                'numbers, or "equal"'
+            )
         if self.ratios is not None:
             object.__setattr__(self, "ratios", as_ratios(self.ratios, q, n))
 
@@ -188,6 +201,7 @@ class Problem:
             waypoints=self.waypoints[:, index : index + 1],
             limits=self.limits.joint(index),
             joints=(self.joints[index],),
+            linear=(self.linear[index],),
             coupling=Coupling.SHARED,
             name=f"{self.name}, joint {self.joints[index]}",
         )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
@@ -13,13 +14,26 @@ from .errors import TrajgapError
 from .printed import Printed, down, up
 
 Quantity = Literal["position", "velocity", "acceleration", "jerk", "time"]
-PositionUnit = Literal["rad", "deg"]
-VelocityUnit = Literal["rad/s", "deg/s"]
-AccelerationUnit = Literal["rad/s^2", "deg/s^2"]
-JerkUnit = Literal["rad/s^3", "deg/s^3"]
-TimeUnit = Literal["s", "ms"]
+AngleUnit = Literal["rad", "deg"]
 LengthUnit = Literal["m", "cm", "mm"]
-"""Of links and positions of the end; everything else of a case is an angle or a time."""
+"""Of links, of positions of the end, and of joints that slide."""
+PositionUnit = Literal["rad", "deg", "m", "cm", "mm"]
+VelocityUnit = Literal[
+    "rad/s",
+    "deg/s",
+    "rpm",
+    "deg/min",
+    "rad/min",
+    "m/s",
+    "cm/s",
+    "mm/s",
+    "m/min",
+    "cm/min",
+    "mm/min",
+]
+AccelerationUnit = Literal["rad/s^2", "deg/s^2", "m/s^2", "cm/s^2", "mm/s^2"]
+JerkUnit = Literal["rad/s^3", "deg/s^3", "m/s^3", "cm/s^3", "mm/s^3"]
+TimeUnit = Literal["s", "ms", "min"]
 
 CHOICES = MappingProxyType(
     {
@@ -53,35 +67,78 @@ class Scale:
         return (self.rational * _PI[0], self.rational * _PI[1])
 
 
-_ONE, _DEGREE = Scale(Fraction(1)), Scale(Fraction(1, 180), 1)
-"""Factors of what is in radians already, and of degrees."""
-_SCALES = MappingProxyType(
+_ANGLES = MappingProxyType({"rad": Scale(Fraction(1)), "deg": Scale(Fraction(1, 180), 1)})
+"""Factor of every unit of angle to radians."""
+_LENGTHS = MappingProxyType(
     {
-        "rad": _ONE,
-        "deg": _DEGREE,
-        "rad/s": _ONE,
-        "deg/s": _DEGREE,
-        "rad/s^2": _ONE,
-        "deg/s^2": _DEGREE,
-        "rad/s^3": _ONE,
-        "deg/s^3": _DEGREE,
-        "s": _ONE,
-        "ms": Scale(Fraction(1, 1000)),
-        "m": _ONE,
+        "m": Scale(Fraction(1)),
         "cm": Scale(Fraction(1, 100)),
         "mm": Scale(Fraction(1, 1000)),
     }
 )
-"""Factor of every unit to radians, seconds and metres."""
+"""Factor of every unit of length to metres."""
+_MINUTE = 60
+"""Seconds in a minute."""
+_SCALES = MappingProxyType(
+    {
+        **{
+            unit + per: factor
+            for unit, factor in (*_ANGLES.items(), *_LENGTHS.items())
+            for per in ("", "/s", "/s^2", "/s^3")
+        },
+        **{
+            f"{unit}/min": Scale(factor.rational / _MINUTE, factor.pi)
+            for unit, factor in (*_ANGLES.items(), *_LENGTHS.items())
+        },
+        "rpm": Scale(Fraction(2, _MINUTE), 1),
+        "s": Scale(Fraction(1)),
+        "ms": Scale(Fraction(1, 1000)),
+        "min": Scale(Fraction(_MINUTE)),
+    }
+)
+"""Factor of every unit to radians, seconds and metres; a turn is 2π rad."""
+_WRITTEN = (
+    (r"[·⋅*.\s]+", ""),
+    (r"revolutionsperminute|rev(?:olution)?s?(?:/|per)min(?:ute)?|r/min|1/min", "rpm"),
+    ("°|degrees?", "deg"),
+    ("radians?", "rad"),
+    ("millimet(?:er|re)s?", "mm"),
+    ("centimet(?:er|re)s?", "cm"),
+    ("met(?:er|re)s?", "m"),
+    ("milliseconds?|msecs?", "ms"),
+    ("seconds?|secs?", "s"),
+    ("minutes?|mins", "min"),
+    ("per", "/"),
+    ("s(?:\\^?[-−]|⁻)(1|2|3|¹|²|³)", r"/s\1"),
+    ("min(?:\\^?[-−]1|⁻¹)", "/min"),
+    ("¹", "1"),
+    ("²", "2"),
+    ("³", "3"),
+    (r"\^", ""),
+    ("(?<=/s)1", ""),
+    ("(?<=/s)([23])", r"^\1"),
+)
+"""What papers write for the units of case files, as patterns in the order in which each is
+replaced."""
+
+
+def is_linear(unit: str) -> bool:
+    """Whether a unit of a joint's position or of a derivative is one of length."""
+    return unit.split("/")[0] in _LENGTHS
+
+
+def shown_unit(unit: str) -> str:
+    """A unit of case files as a sentence or a page writes it, such as ``°/s²``."""
+    return unit.replace("deg", "°").replace("^2", "²").replace("^3", "³")
 
 
 def scale(unit: str) -> Scale:
-    """Exact factor from ``unit`` to radians and seconds.
+    """Exact factor from ``unit`` to radians, metres and seconds.
 
     Parameters
     ----------
     unit : str
-        One of the units in `CHOICES`, or a `LengthUnit`.
+        One of the units in `CHOICES`.
 
     Returns
     -------
@@ -100,7 +157,8 @@ def scale(unit: str) -> Scale:
     try:
         return _SCALES[unit]
     except KeyError:
-        raise TrajgapError(f"unknown unit {unit!r}; use one of {', '.join(_SCALES)}") from None
+        known = ", ".join(one for choices in CHOICES.values() for one in choices)
+        raise TrajgapError(f"unknown unit {unit!r}; use one of {known}") from None
 
 
 def check_unit(unit: object, quantity: Quantity) -> str:
@@ -125,11 +183,22 @@ def check_unit(unit: object, quantity: Quantity) -> str:
     choices = CHOICES[quantity]
     if unit in choices:
         return str(unit)
+    meant = _meant(unit)
+    if meant in choices:
+        raise TrajgapError(f"unknown unit {unit!r} for {quantity}; write it as {meant!r}")
     fix = f"use one of {', '.join(choices)}"
     for other, units in CHOICES.items():
         if unit in units:
             raise TrajgapError(f"{unit!r} measures {other}, not {quantity}; {fix}")
     raise TrajgapError(f"unknown unit {unit!r} for {quantity}; {fix}")
+
+
+def _meant(unit: object) -> str:
+    """A unit as case files write it, where a paper's way of writing it is known."""
+    written = str(unit).lower()
+    for pattern, plain in _WRITTEN:
+        written = re.sub(pattern, plain, written)
+    return written
 
 
 _CUT_SLACK = 1.0 + 1e-9
@@ -138,7 +207,7 @@ _CUT_SLACK = 1.0 + 1e-9
 
 @dataclass(frozen=True)
 class Measured:
-    """A printed number in radians and seconds: its value and the interval it stands for.
+    """A printed number in radians or metres and seconds: its value and the interval it stands for.
 
     ``lower`` and ``upper`` are rounded outwards, so that the interval contains every value that
     has these digits. All three agree for an exact number.
@@ -162,7 +231,7 @@ class Measured:
 
 @lru_cache(maxsize=4096)
 def to_si(number: Printed, unit: str) -> Measured:
-    """Convert a printed number to radians and seconds.
+    """Convert a printed number to radians or metres and seconds.
 
     Parameters
     ----------
@@ -202,12 +271,12 @@ def _float(number: Fraction) -> float:
 
 
 def from_si(value: float, unit: str) -> float:
-    """Express a number given in radians and seconds in another unit, for display.
+    """Express a number given in radians or metres and seconds in another unit, for display.
 
     Parameters
     ----------
     value : float
-        Number in radians and seconds; infinities stay.
+        Number in radians or metres and seconds; infinities stay.
     unit : str
         The unit to show it in.
 

@@ -157,7 +157,7 @@ def _kept_if(
         exchanged.append((change, problem, printed.value[order], widths[order]))
     turned = []
     joint = None if found.worst.joint is None else problem.joints.index(found.worst.joint)
-    if joint is not None:
+    if joint is not None and not problem.linear[joint]:
         for w in range(problem.waypoints.shape[0]):
             for turn in (-tau, tau):
                 q = problem.waypoints.copy()

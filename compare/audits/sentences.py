@@ -16,6 +16,7 @@ from ...problem.cases import (
     MeasureClaim,
     MotionValueClaim,
     TotalTimeClaim,
+    with_unit,
 )
 
 _MOST = 8
@@ -113,11 +114,8 @@ def _timed(claim: DurationsClaim | MaximumClaim | TotalTimeClaim, unit: str, who
 def _measured(case: Case, claim: MotionValueClaim, whose: str) -> str:
     """A largest value, a mean or an integral of a derivative."""
     called = "largest {one}"
-    unit = getattr(case.document.units, claim.derivative) or ""
     if isinstance(claim, MeasureClaim):
         called = _MEASURES[claim.measure]
-        # The unit of an integral is none that a case file names.
-        unit = "" if claim.measure.startswith("integral") else unit
     each = claim.values is not None
     plain = called.startswith(("largest", "mean"))
     one = _PLURALS[claim.derivative] if each and plain else claim.derivative
@@ -128,7 +126,20 @@ def _measured(case: Case, claim: MotionValueClaim, whose: str) -> str:
     if len(claim.printed) > _MOST:
         return f"the {name}{whose}"
     verb = "are" if each else "is"
-    return f"the {name}{whose} {verb} {_and(list(map(str, claim.printed)))} {unit}".rstrip()
+    return f"the {name}{whose} {verb} {_and(with_units(case, claim))}"
+
+
+def with_units(case: Case, claim: MotionValueClaim) -> list[str]:
+    """The numbers of a claim of a derivative with their unit, which no integral has in a file."""
+    numbers = list(map(str, claim.printed))
+    if isinstance(claim, MeasureClaim) and claim.measure.startswith("integral"):
+        return numbers
+    units = getattr(case.document.units, claim.derivative)
+    if claim.values is None and isinstance(units, tuple):
+        # The joint's own, or the one that all joints of the claim's problem have.
+        joint = None if claim.joint is None else case.robot.joints.index(claim.joint)
+        units = case.statement(claim.problem).unit(claim.derivative, joint)
+    return with_unit(numbers, units)
 
 
 def _and(parts: Sequence[str]) -> str:

@@ -13,13 +13,12 @@ from ...problem.cases import (
     DurationsClaim,
     ImprovementClaim,
     MaximumClaim,
-    MeasureClaim,
     MotionValueClaim,
     TimeClaim,
     TotalTimeClaim,
 )
 from ..documents import StatedAnswer, StatedClaim, StatedSource, known, noted
-from .sentences import sentence_of
+from .sentences import sentence_of, with_units
 
 _TIME = "time"
 """The objective of a claim that was minimised for time alone, in a file that says another one."""
@@ -104,10 +103,7 @@ def digits_of(case: Case, claim: AnyClaim) -> str:
         parts = [f"{claim.percent} %"] if claim.percent is not None else []
         return "; ".join(parts + ([f"{claim.seconds}{time}"] if claim.seconds is not None else []))
     if isinstance(claim, MotionValueClaim):
-        digits = ", ".join(map(str, claim.printed))
-        if isinstance(claim, MeasureClaim) and claim.measure.startswith("integral"):
-            return digits
-        return f"{digits} {getattr(units, claim.derivative) or ''}".strip()
+        return ", ".join(with_units(case, claim))
     if isinstance(claim, ConvergenceClaim):
         return f"{claim.iterations} iterations"
     if isinstance(claim, ConditionsClaim) and claim.count is not None:

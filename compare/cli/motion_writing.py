@@ -81,7 +81,7 @@ def write_motion(one: Posed, answer: Solution, asked: AskedSamples) -> tuple[str
         motion: Evaluated = answer.trajectory
         if asked.retimed:
             motion = retimed_motion(answer.trajectory, one.problem.limits, joints)
-        text = motion_text(motion, asked.form, 1.0 / asked.rate, joints)
+        text = motion_text(motion, asked.form, 1.0 / asked.rate, joints, one.problem.linear)
         limits = JointLimits.of(one.problem.limits, one.problem.joints)
         found = check_motion(read_back(text, asked.form, name), limits)
     except CaseError:

@@ -9,6 +9,9 @@ import typer
 
 from .options import LIMIT
 
+_UNITS = "One for all joints, or one for each with commas between: deg,deg,mm."
+"""Said of each option that takes a unit of joints."""
+
 
 def new(
     out: Annotated[Path, typer.Argument(metavar="OUT.toml", help="New case file.")],
@@ -18,14 +21,22 @@ def new(
             "--from", metavar="TABLE.csv", help="One way-point a row, one joint a column."
         ),
     ],
-    position_unit: Annotated[str | None, typer.Option(metavar="rad|deg")] = None,
+    position_unit: Annotated[
+        str | None, typer.Option(metavar="rad|deg|m|cm|mm", help=_UNITS)
+    ] = None,
     velocity: Annotated[str | None, typer.Option(help=LIMIT)] = None,
-    velocity_unit: Annotated[str | None, typer.Option(metavar="rad/s|deg/s")] = None,
+    velocity_unit: Annotated[
+        str | None, typer.Option(metavar="rad/s|deg/s|rpm|mm/s|...", help=_UNITS)
+    ] = None,
     acceleration: Annotated[str | None, typer.Option(help=LIMIT)] = None,
-    acceleration_unit: Annotated[str | None, typer.Option(metavar="rad/s^2|deg/s^2")] = None,
+    acceleration_unit: Annotated[
+        str | None, typer.Option(metavar="rad/s^2|deg/s^2|mm/s^2|...", help=_UNITS)
+    ] = None,
     jerk: Annotated[str | None, typer.Option(help=LIMIT)] = None,
-    jerk_unit: Annotated[str | None, typer.Option(metavar="rad/s^3|deg/s^3")] = None,
-    time_unit: Annotated[str | None, typer.Option(metavar="s|ms")] = None,
+    jerk_unit: Annotated[
+        str | None, typer.Option(metavar="rad/s^3|deg/s^3|mm/s^3|...", help=_UNITS)
+    ] = None,
+    time_unit: Annotated[str | None, typer.Option(metavar="s|ms|min")] = None,
     case_id: Annotated[
         str | None, typer.Option("--id", help="Id of the case.", show_default="the name of OUT")
     ] = None,

@@ -75,11 +75,11 @@ def new_case(
             asked = [] if _interactive() else [name for name in asked if name != "time"]
         for name in asked:
             answer = _ask(name, str(table))
-            if answer in CHOICES[name]:
+            if _known(answer, name):
                 given[name] = answer
             else:
                 said = f"{answer!r} is no unit of {name}" if answer else "is missing"
-                faults.append((f"--{name}-unit", f"{said}; give {' or '.join(CHOICES[name])}"))
+                faults.append((f"--{name}-unit", f"{said}; give one of {', '.join(CHOICES[name])}"))
         if faults:
             raise CaseError(file, *faults[0], faults[1:])
         write(written(given))
@@ -113,8 +113,15 @@ def _ask(quantity: str, table: str) -> str:
             sys.stderr.flush()
         line = _line()
         answer = line.strip() or default or ""
-        if answer in choices or not line or not interactive:
+        if _known(answer, quantity) or not line or not interactive:
             return answer
+
+
+def _known(answer: str, quantity: str) -> bool:
+    """Whether an answer is a unit, or one for each joint with commas between."""
+    choices = CHOICES[quantity]
+    several = quantity != "time" and "," in answer
+    return all(one.strip() in choices for one in (answer.split(",") if several else [answer]))
 
 
 def _interactive() -> bool:

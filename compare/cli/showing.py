@@ -20,6 +20,7 @@ from ...problem.cases import (
     Statement,
     TotalTimeClaim,
     ratio_words,
+    with_unit,
 )
 from ..audits import claim_text
 from ..documents import ShowDocument, capital, json_text, quoted, show_document
@@ -87,7 +88,7 @@ def _meaning(reading: Reading, labels: Mapping[str, str]) -> str:
 def _asked(document: ShowDocument, case: Case) -> list[RenderableType]:
     """Curve, angles and limits of each problem, in the digits and units that are read."""
     reading = next((r.id for r in document.readings if r.default), document.readings[0].id)
-    rows = []
+    rows, slides = [], False
     for problem in document.problems:
         one = case.statement(problem.id, reading)
         size = f"{one.waypoints.number} × {len(one.labels)}"
@@ -97,9 +98,13 @@ def _asked(document: ShowDocument, case: Case) -> list[RenderableType]:
         said = (_limit(one, name) for name in ("velocity", "acceleration", "jerk"))
         limits = "; ".join(each for each in said if each) or "none"
         words = (problem.title or problem.id,) if len(document.problems) > 1 else ()
-        rows.append((*words, curve, size, one.units.position or "", limits))
+        slides |= any(one.linear)
+        units = one.units.position or ""
+        shown = units if isinstance(units, str) else ", ".join(units)
+        rows.append((*words, curve, size, shown, limits))
     first = ("~problem",) if len(rows) > 1 else ()
-    names = (*first, "curve", "way-points × joints", "angles in", "~limits")
+    given = "positions in" if slides else "angles in"
+    names = (*first, "curve", "way-points × joints", given, "~limits")
     under = f" under {quoted(reading, case.labels)}" if len(document.readings) > 1 else ""
     return [line(f"Curve, units and limits{under}:"), Columns(names, rows)]
 
@@ -133,8 +138,11 @@ def _limit(one: Statement, quantity: Literal["velocity", "acceleration", "jerk"]
     printed = getattr(one.limits, quantity)
     if printed is None:
         return ""
-    numbers = " ".join(map(str, printed)) if isinstance(printed, Sequence) else str(printed)
-    return f"{quantity} {numbers} {getattr(one.units, quantity)}"
+    numbers = list(map(str, printed)) if isinstance(printed, Sequence) else [str(printed)]
+    units = getattr(one.units, quantity)
+    if len(numbers) == 1 and isinstance(units, tuple):
+        units = one.unit(quantity)
+    return f"{quantity} {' '.join(with_unit(numbers, units))}"
 
 
 def _stated(claim: AnyClaim) -> str:

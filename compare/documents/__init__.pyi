@@ -130,6 +130,7 @@ from .vocabulary import (
     Worth,
     meaning,
     meanings,
+    si_unit,
 )
 from .waterfall import (
     EXACT,
@@ -326,6 +327,7 @@ __all__ = [
     "schema_text",
     "sentences_of",
     "show_document",
+    "si_unit",
     "solve_result",
     "suite_document",
     "tally",

@@ -17,7 +17,9 @@ class WorstPeak(Entry):
     time: OrWhy[float]
     """s"""
     value: Real
+    """SI: rad and s, m of joints that slide."""
     limit: Real
+    """In the same unit."""
     ratio: Real
 
 
@@ -27,7 +29,7 @@ class PassingPoint(Entry):
     segment_durations: tuple[float, ...]
     """s"""
     waypoints: tuple[tuple[float, ...], ...]
-    """One row per way-point, rad."""
+    """One row per way-point, rad; m of joints that slide."""
 
 
 class BrokenPlace(Entry):

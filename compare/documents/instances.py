@@ -74,7 +74,7 @@ class Instance(Entry):
     step: float
     instance: Count
     waypoints: tuple[tuple[float, ...], ...]
-    """One row per way-point, rad."""
+    """One row per way-point, rad; m of joints that slide."""
     readings: tuple[InstanceUnderReading, ...]
 
 

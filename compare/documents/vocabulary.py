@@ -216,7 +216,7 @@ class Limited(StrEnum):
     JERK = "jerk"
     """Of a joint."""
     POSITION = "position"
-    """Angle of a joint."""
+    """Angle of a joint, or its place where it slides."""
     DURATION = "duration"
     """Of a segment."""
     CURVE = "curve"
@@ -224,7 +224,12 @@ class Limited(StrEnum):
 
 
 UNITS = {"position": "rad", "velocity": "rad/s", "acceleration": "rad/s²", "jerk": "rad/s³"}
-"""Units of what is limited, as everything is computed."""
+"""Units of what is limited, as everything is computed of joints that turn."""
+
+
+def si_unit(quantity: str, linear: bool) -> str:
+    """The unit in which a quantity of a joint is computed, by whether the joint slides."""
+    return UNITS[quantity].replace("rad", "m") if linear else UNITS[quantity]
 
 
 def meanings(*enums: type[StrEnum]) -> dict[str, str]:

@@ -15,7 +15,10 @@ DECIDING = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT, ClaimVerdict.SUPPOR
 """What decides, the strongest first: a proof outweighs what only agrees."""
 _FEW = 2
 """Readings that a sentence names; of more it gives the number."""
-_NUMBERS = re.compile(r"[-−+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?|(?:\brad\b|\bdeg\b|°)(?:/s[²³]?)?")
+_NUMBERS = re.compile(
+    r"[-−+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
+    r"|(?:\brad\b|\bdeg\b|°)(?:/s[²³]?|/min\b)?|\brpm\b|\b[cm]?m/(?:s[²³]?|min\b)|\b[cm]m\b"
+)
 """Numbers and the units behind them: what reasons that are alike may differ in."""
 
 

@@ -113,7 +113,15 @@ def _jumps_of(
             text(jump.joint),
             number(jump.break_index),
             number(f"{jump.time:.3f} s"),
-            number(both_units(statement, "velocity", [jump.size], "+.6g")),
+            number(
+                both_units(
+                    statement,
+                    "velocity",
+                    [jump.size],
+                    "+.6g",
+                    [statement.labels.index(jump.joint)],
+                )
+            ),
         )
         for jump in velocity_jumps(problem, durations)
     )
@@ -137,12 +145,13 @@ def _polygons(study: Study) -> Iterator[Block]:
             waypoints,
             vertices(claim, statement),
             title=f"Control polygon of every joint: {claim.where}",
+            quantity="position" if any(statement.linear) else "angle",
         )
+        both = "both are" if statement.unit("position") else "both of each joint are"
         caption = (
             f"{claim.where} beside the vertices computed from the printed way-points "
             f"({statement.waypoints.where}). A grey bar holds every difference that rounding of "
-            "both explains. No reading enters: both are printed in one unit, and time plays no "
-            "part."
+            f"both explains. No reading enters: {both} printed in one unit, and time plays no part."
         )
         yield _drawn(file_name("polygon", claim.id), picture, caption)
 

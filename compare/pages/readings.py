@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from ...problem import Case
+from ...problem.cases import Statement
 from ...problem.curves import ClampedBSpline, Knots, Parameters, clamped_readings
 from ..audits import CaseAudit, place, segments, spoken
 from ..documents import ClaimVerdict, Keeping, ReadingOutcome, ReadingsSummary, Why
@@ -22,6 +23,7 @@ from .blocks import (
     word,
 )
 from .numbers import problem_cell
+from .units import both_units
 
 _FEW = 4
 """Rows of a table that stand in the open; a longer one is folded."""
@@ -168,26 +170,33 @@ def _row(outcome: ReadingOutcome, default: str, summary: ReadingsSummary) -> tup
 
 def _unposed(one: CaseAudit) -> Grid:
     """Curve and limits of each reading, where nothing can be computed for want of way-points."""
-    rows = []
+    rows, slides = [], False
     for pid, rid in one.case.selections():
         if rid not in one.study.readings:
             continue
-        curve, limits, _, _ = one.case.statement(pid, rid).data()
+        statement = one.case.statement(pid, rid)
+        curve, limits, _, _ = statement.data()
+        slides |= any(statement.linear)
         rows.append(
             (
                 text(one.case.labels[rid]),
                 text(problem_cell(one.case, pid)),
                 text(curve.name),
-                text(_listed(limits.velocity)),
-                text(_listed(limits.acceleration)),
+                text(_listed(statement, "velocity", limits.velocity)),
+                text(_listed(statement, "acceleration", limits.acceleration)),
             )
         )
-    names = ("reading", "problem", "curve", "velocity limits, rad/s", "acceleration limits, rad/s²")
+    units = ("", "") if slides else (", rad/s", ", rad/s²")
+    limited = (f"velocity limits{units[0]}", f"acceleration limits{units[1]}")
+    names = ("reading", "problem", "curve", *limited)
     return Grid(names, tuple(rows), "What each reading poses, way-points apart").filled
 
 
-def _listed(limits: Iterable[float]) -> str:
+def _listed(statement: Statement, quantity: str, limits: Iterable[float]) -> str:
+    """Limits in SI, all of them once where they are equal; with all units where a joint slides."""
     every = [f"{v:.6g}" for v in limits]
+    if any(statement.linear):
+        return both_units(statement, quantity, list(limits), ".6g")
     return every[0] if len(set(every)) == 1 else ", ".join(every)
 
 

@@ -13,7 +13,7 @@ from ..audits import RULES, CaseAudit, Study, place
 from ..documents import ClaimVerdict, Finding, Gap, Severity, Why, facts
 from .blocks import Block, Cell, Folded, Grid, Prose, Section, Terms, text, word
 from .numbers import problem_cell
-from .units import both_units
+from .units import both_units, one_unit
 
 _TITLES = {rule.id: rule.title for rule in RULES}
 """What each rule looks at, by its id."""
@@ -35,9 +35,10 @@ def posed(one: CaseAudit) -> Section:
 
 
 def _problems(study: Study) -> Grid:
-    rows = []
+    rows, slides = [], False
     for pid, rid in study.pairs:
         p = study.problem(pid, rid)
+        slides |= any(p.linear)
         how = "shared durations" if p.coupling is Coupling.SHARED else "each joint by itself"
         rows.append(
             (
@@ -59,7 +60,8 @@ def _problems(study: Study) -> Grid:
         "durations",
         "coupling",
     )
-    caption = "Problems posed; in brackets rad and s where the paper has other units"
+    base = "rad, m and s" if slides else "rad and s"
+    caption = f"Problems posed; in brackets {base} where the paper has other units"
     return Grid(names, tuple(rows), caption).filled
 
 
@@ -75,6 +77,7 @@ def _limits(problem: Problem, statement: Statement) -> str:
         values = getattr(problem.limits, name)
         alike = len({f"{v:.6g}" for v in values}) == 1
         if not (alike and np.isinf(values[0])):
+            alike &= one_unit(statement, name, statement.joints)
             every = values[:1] if alike else values
             parts.append(f"{name} {both_units(statement, name, every, '.6g')}")
     if problem.limits.limits_position:

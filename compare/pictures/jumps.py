@@ -71,7 +71,7 @@ def jump_picture(
         raise TrajgapError(
             f"jump_picture: expected durations of shape ({problem.segments},), got {h.shape}"
         )
-    written, one = unit = shown_in(units, "velocity")
+    own_units = [shown_in(units, problem, j, "velocity") for j in range(len(problem.joints))]
     motion = fit(problem.curve, problem.waypoints, h)
     jumps = velocity_jumps(problem, h)
     joints = problem.joints
@@ -79,7 +79,8 @@ def jump_picture(
     rows = -(-len(joints) // columns)
     own = [[j for j in jumps if j.joint == label] for label in joints]
     description = "; ".join(
-        f"joint {label}: {_named(found, unit)}" for label, found in zip(joints, own, strict=True)
+        f"joint {label}: {_named(found, unit)}"
+        for label, found, unit in zip(joints, own, own_units, strict=True)
     )
     with drawing():
         figure = Picture(title, description, 9.9, 0.9 + 3.0 * rows)
@@ -92,15 +93,18 @@ def jump_picture(
                 upper.remove()
                 lower.remove()
                 continue
-            _velocity(upper, motion, j, own[j], one)
-            _sizes(lower, motion, own[j], one)
+            _velocity(upper, motion, j, own[j], own_units[j][1])
+            _sizes(lower, motion, own[j], own_units[j][1])
             upper.set_title(f"joint {shown(joints[j], 12)}", weight="bold")
-            lower.set_title(shown(_named(own[j], unit), 60), fontsize=8)
+            lower.set_title(shown(_named(own[j], own_units[j]), 60), fontsize=8)
         for axes in grid[-1]:
             axes.set_xlabel("time, s")
-        for row in range(rows):
-            grid[2 * row, 0].set_ylabel(f"velocity, {written}")
-            grid[2 * row + 1, 0].set_ylabel(f"jump, {written}")
+        alike = len(set(own_units)) == 1
+        for j, (written, _) in enumerate(own_units):
+            row, column = 2 * (j // columns), j % columns
+            if column == 0 or not alike:
+                grid[row, column].set_ylabel(f"velocity, {written}")
+                grid[row + 1, column].set_ylabel(f"jump, {written}")
         figure.align_ylabels(grid[:, 0])
         key = "○ before a jump   ● after it   vertical lines: way-points   bars: after less before"
         finish(figure, key)

@@ -22,7 +22,7 @@ from ...problem import (
     extrema,
     fit,
 )
-from ..documents import UNITS
+from ..documents import si_unit
 from .drawing import BLUE, GRID, INK, PAPER, RED, Picture, drawing, finish, shown
 
 _SAMPLES = 48
@@ -31,8 +31,9 @@ _POINTS = 480
 """Points of a curve of many segments, extrema apart: more than a panel has pixels."""
 _FEWEST = 8
 """Points of a segment at least, however many there are."""
-Units: TypeAlias = Mapping[str, tuple[str, float]]
-"""How quantities are shown: the unit as it is written, and how much of SI one of it is."""
+Units: TypeAlias = Mapping[tuple[str, str], tuple[str, float]]
+"""How a quantity of a joint is shown, by the joint's label and the quantity: the unit as it is
+written, and how much of SI one of it is."""
 _OFF_SCALE = 0.12
 """Share of a limit below which drawing the limit would flatten the curve."""
 
@@ -62,7 +63,8 @@ def motion_picture(
     nodal : array_like, shape (free, joints), optional
         Free derivatives of an under-determined interpolant.
     units : mapping, optional
-        Those of the paper, by "position", "velocity" and so on; SI where one is missing.
+        Those of the paper, by joint and "position", "velocity" and so on; SI where one is
+        missing.
 
     Returns
     -------
@@ -92,7 +94,7 @@ def motion_picture(
         ]
     orders = [0, 1, 2] + ([3] if np.isfinite(problem.limits.sides[:, :, 2]).any() else [])
     description = "; ".join(
-        _words(problem, *rows[j], j, r, shown_in(units, _name(r)))
+        _words(problem, *rows[j], j, r, shown_in(units, problem, j, _name(r)))
         for j in range(joints)
         for r in orders
         if r
@@ -102,7 +104,8 @@ def motion_picture(
         grid = figure.subplots(joints, len(orders), squeeze=False, sharex="all")
         for j, (trajectory, column) in enumerate(rows):
             for axes, r in zip(grid[j], orders, strict=True):
-                _panel(axes, problem, trajectory, column, j, r, shown_in(units, _name(r)))
+                unit = shown_in(units, problem, j, _name(r))
+                _panel(axes, problem, trajectory, column, j, r, unit)
         for axes in grid[-1]:
             axes.set_xlabel("time, s")
         key = "○ way-point   ● largest value   - - limit   red: beyond a limit"
@@ -112,9 +115,10 @@ def motion_picture(
     return figure
 
 
-def shown_in(units: Units | None, quantity: str) -> tuple[str, float]:
-    """The unit that a quantity is drawn in, and how much of SI one of it is."""
-    return (units or {}).get(quantity, (UNITS[quantity], 1.0))
+def shown_in(units: Units | None, problem: Problem, joint: int, quantity: str) -> tuple[str, float]:
+    """The unit that a quantity of a joint is drawn in, and how much of SI one of it is."""
+    own = (units or {}).get((problem.joints[joint], quantity))
+    return own or (si_unit(quantity, problem.linear[joint]), 1.0)
 
 
 def _array(values: ArrayLike | None) -> Array | None:
@@ -196,7 +200,8 @@ def _panel(
             markeredgecolor=INK,
             zorder=4,
         )
-        axes.set_title(f"joint {shown(problem.joints[joint], 12)}, angle", weight="bold")
+        what = "position" if problem.linear[joint] else "angle"
+        axes.set_title(f"joint {shown(problem.joints[joint], 12)}, {what}", weight="bold")
     else:
         axes.set_title(quantity)
         _mark_peak(axes, _largest(trajectory, column, order), high, one)
@@ -234,7 +239,7 @@ def sampled(trajectory: Trajectory, column: int, order: int) -> tuple[Array, Arr
     Returns
     -------
     times, values : ndarray, shape (samples,)
-        s and rad/sᵒʳᵈᵉʳ; a value is NaN at a jump.
+        s and rad/sᵒʳᵈᵉʳ (m/sᵒʳᵈᵉʳ of a joint that slides); a value is NaN at a jump.
     """
     times: list[Array] = []
     values: list[Array] = []
@@ -263,7 +268,8 @@ def beyond(
     column, order : int
         Joint and derivative.
     low, high : float
-        Limits in rad/sᵒʳᵈᵉʳ; an excess within the checker's relative tolerance does not count.
+        Limits in rad/sᵒʳᵈᵉʳ or m/sᵒʳᵈᵉʳ; an excess within the checker's relative tolerance does
+        not count.
 
     Returns
     -------

@@ -31,7 +31,9 @@ _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 """Digits as exponents, for type without formulas."""
 
 
-def polygon_picture(waypoints: ArrayLike, vertices: Sequence[Vertex], *, title: str) -> Picture:
+def polygon_picture(
+    waypoints: ArrayLike, vertices: Sequence[Vertex], *, title: str, quantity: str = "angle"
+) -> Picture:
     """Uniform cubic B-spline of every joint over its parameter, with its control polygon.
 
     Vertex V_k stands over the parameter k − 1, where its basis function is largest.
@@ -43,6 +45,8 @@ def polygon_picture(waypoints: ArrayLike, vertices: Sequence[Vertex], *, title: 
     vertices : sequence of Vertex
         Printed vertices with the intervals that the way-points allow, joint after joint.
     title : str
+    quantity : str
+        What the way-points are: "position" where some joint slides.
 
     Returns
     -------
@@ -92,7 +96,7 @@ def polygon_picture(waypoints: ArrayLike, vertices: Sequence[Vertex], *, title: 
             axes.set_xlabel("parameter: way-point number + e")
         for row in range(rows):
             raised = str(exponent).translate(_RAISED)
-            grid[2 * row, 0].set_ylabel("angle, as printed")
+            grid[2 * row, 0].set_ylabel(f"{quantity}, as printed")
             grid[2 * row + 1, 0].set_ylabel(f"printed − comp.\n10{raised}")
         figure.align_ylabels(grid[:, 0])
         key = (

@@ -160,7 +160,8 @@ def _too_sharp_a_turn(problem: Problem) -> str | None:
         return None
     w, j = (int(x) for x in sharp[0])
     return (
-        f"joint {problem.joints[j]} needs an acceleration of {needed[w, j]:.6g} rad/s² near "
+        f"joint {problem.joints[j]} needs an acceleration of {needed[w, j]:.6g} "
+        f"{'m' if problem.linear[j] else 'rad'}/s² near "
         f"way-point {w + 1} within the duration bounds; its limit is "
         f"{problem.limits.acceleration[j]:.6g}"
     )

@@ -11,7 +11,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...problem import Curve, Interpolant, LimitPair, Printed, Problem, Scale, TrajgapError, scale
+from ...problem import (
+    Curve,
+    Interpolant,
+    LimitPair,
+    Printed,
+    Problem,
+    Quantity,
+    Scale,
+    TrajgapError,
+    scale,
+)
 from ...problem.cases import Statement
 from ...problem.curves import Derivatives
 
@@ -109,7 +119,8 @@ class ExactProblem:
     duration_upper : tuple of Fraction or None
         s.
     unit : str
-        Unit of angle, "rad" or "deg".
+        That of the way-points, "rad" or "deg"; "m", "cm" or "mm" of joints that slide. Of joints
+        that differ all of them, with commas between.
     pairs : tuple of ((joint, order), pair)
         Sizes of the lower and the upper limit, where they differ: all that
         an answer has to keep beside ``limits``.
@@ -135,6 +146,12 @@ class ExactProblem:
     prescribed: Prescribed | None = None
     shares: tuple[Fraction, ...] | None = None
     chord: bool = False
+
+    @property
+    def units(self) -> tuple[str, ...]:
+        """The unit of each joint's way-points."""
+        each = tuple(self.unit.split(","))
+        return each * len(self.joints) if len(each) == 1 else each
 
     def end_velocities(self, side: int) -> tuple[Fraction | None, ...]:
         """Velocities prescribed at the start (0) or the finish (1), joint by joint."""
@@ -193,7 +210,7 @@ class ExactProblem:
             self.position_upper[one],
             self.duration_lower,
             self.duration_upper,
-            self.unit,
+            self.units[index],
             tuple(((0, r), pair) for (j, r), pair in self.pairs if j == index),
             own,
             self.shares,
@@ -286,6 +303,7 @@ def exact_problem(problem: Problem) -> ExactProblem:
         tuple(point(float(x)) for x in limits.position_upper),
         tuple(Fraction(float(x)) for x in problem.duration_lower),
         tuple(Fraction(float(x)) if np.isfinite(x) else None for x in problem.duration_upper),
+        unit=_joined_units(["m" if slides else "rad" for slides in problem.linear]),
         pairs=tuple(pairs),
         shares=_shares(problem.ratios),
     )
@@ -311,7 +329,7 @@ def printed_problem(statement: Statement) -> ExactProblem:
     Returns
     -------
     ExactProblem
-        In the unit of angle of the way-points; a limit in the other unit carries π.
+        Each joint in the unit of its way-points; a limit in another unit of angle carries π.
 
     Raises
     ------
@@ -325,31 +343,32 @@ def printed_problem(statement: Statement) -> ExactProblem:
     if statement.turns:
         raise TrajgapError("certify: angles with whole turns added are not covered")
     problem = statement.problem()
-    base = scale(str(statement.units.position))
     curve, prescribed = problem.curve, None
     if not curve.homogeneous:
-        curve, prescribed = _in_motion(statement, curve, base)
+        curve, prescribed = _in_motion(statement, curve)
 
-    def angle(number: Printed | None, unit: str | None) -> Real | None:
+    def own(number: Printed | None, quantity: Quantity, joint: int) -> Real | None:
+        unit = statement.unit(quantity, joint)
         if number is None or unit is None:
             return None
-        other = scale(unit)
+        base, other = scale(str(statement.unit("position", joint))), scale(unit)
         value = number.fraction * other.rational / base.rational
         return Real(value, other.pi - base.pi)
 
     def each(given: Any, count: int) -> list[Any]:
         return list(given) if isinstance(given, tuple | list) else [given] * count
 
-    units, limits, total = statement.units, statement.limits, len(statement.labels)
+    limits, total = statement.limits, len(statement.labels)
+    derivatives: tuple[Quantity, ...] = ("velocity", "acceleration", "jerk")
     columns: list[list[Real | None]] = []
     pairs: dict[tuple[int, int], Pair] = {}
-    for order, name in enumerate(("velocity", "acceleration", "jerk"), 1):
+    for order, name in enumerate(derivatives, 1):
         column = each(getattr(limits, name), total)
         for place, j in enumerate(statement.joints):
             if not isinstance(column[j], LimitPair):
                 continue
             ends = (column[j].lower, column[j].upper)
-            least, most = (angle(x, getattr(units, name)) for x in ends)
+            least, most = (own(x, name, j) for x in ends)
             below = None if least is None else Real(-least.rational, least.pi)
             if below != most:
                 pairs[place, order] = below, most
@@ -357,17 +376,16 @@ def printed_problem(statement: Statement) -> ExactProblem:
         joined = _joined(pairs)
         columns.append(
             [
-                joined[place, order]
-                if (place, order) in joined
-                else angle(column[j], getattr(units, name))
+                joined[place, order] if (place, order) in joined else own(column[j], name, j)
                 for place, j in enumerate(statement.joints)
             ]
         )
     low, high = (
-        [angle(each(getattr(limits, name), total)[j], units.position) for j in statement.joints]
+        [own(each(getattr(limits, name), total)[j], "position", j) for j in statement.joints]
         for name in ("position_lower", "position_upper")
     )
-    second = scale(str(units.time)).rational if units.time is not None else Fraction(1)
+    time = statement.units.time
+    second = scale(time).rational if time is not None else Fraction(1)
     n = problem.segments
     rows = statement.waypoints.points
     shortest, longest = each(statement.durations.lower, n), each(statement.durations.upper, n)
@@ -381,7 +399,7 @@ def printed_problem(statement: Statement) -> ExactProblem:
         tuple(high),
         tuple(Fraction(0) if x is None else x.fraction * second for x in shortest),
         tuple(None if x is None else x.fraction * second for x in longest),
-        str(units.position),
+        _joined_units([str(statement.unit("position", j)) for j in statement.joints]),
         tuple(pairs.items()),
         prescribed,
         _printed_shares(statement, problem),
@@ -402,7 +420,12 @@ def _printed_shares(statement: Statement, problem: Problem) -> tuple[Fraction, .
     return _shares(abs(b - a) for a, b in pairwise(own))
 
 
-def _in_motion(statement: Statement, curve: Curve, base: Scale) -> tuple[Interpolant, Prescribed]:
+def _joined_units(each: Sequence[str]) -> str:
+    """The unit of all joints, or those of each where they differ."""
+    return each[0] if len(set(each)) == 1 else ",".join(each)
+
+
+def _in_motion(statement: Statement, curve: Curve) -> tuple[Interpolant, Prescribed]:
     """A curve whose ends move, in the unit of the way-points, and its exact derivatives."""
     polynomials = curve.piecewise
     if polynomials is None or any(polynomials.prescribed[1:-1]):
@@ -423,7 +446,7 @@ def _in_motion(statement: Statement, curve: Curve, base: Scale) -> tuple[Interpo
             given = Printed("0", exact=True) if values is None else values[place]
             each = given if isinstance(given, tuple) else (given,) * len(statement.labels)
             found.append(
-                (order, tuple(_angular(each[j], order, statement, base) for j in statement.joints))
+                (order, tuple(_derivative(each[j], order, statement, j) for j in statement.joints))
             )
         ends.append(tuple(found))
     exact = (ends[0], *((),) * (polynomials.segments - 1), ends[1])
@@ -431,12 +454,13 @@ def _in_motion(statement: Statement, curve: Curve, base: Scale) -> tuple[Interpo
     return replace(polynomials, prescribed=own), exact
 
 
-def _angular(number: Printed, order: int, statement: Statement, base: Scale) -> Fraction:
-    """A derivative at an end in the unit of angle of the way-points, and s."""
+def _derivative(number: Printed, order: int, statement: Statement, joint: int) -> Fraction:
+    """A derivative at an end in the unit of its joint's way-points, and s."""
     if number.fraction == 0:
         return Fraction(0)
-    unit = getattr(statement.units, ("velocity", "acceleration", "jerk")[order - 1])
-    other = scale(str(unit))
+    quantities: tuple[Quantity, ...] = ("velocity", "acceleration", "jerk")
+    base = scale(str(statement.unit("position", joint)))
+    other = scale(str(statement.unit(quantities[order - 1], joint)))
     if other.pi != base.pi:
         raise TrajgapError(
             "certify: a derivative at an end is in another unit of angle than the way-points, "

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...problem import Array, Problem
+from ...problem import Array, Problem, scale
 from ...verify import Refused, Subject, verify_certificate
 from .. import optimum
 from ..optimum import STARTS, Form, Solution
@@ -96,8 +96,8 @@ def _place(problem: Problem, waypoints: int, joints: int) -> int | None:
 
 def _near(problem: Problem, stated: dict[str, Any]) -> bool:
     """Whether the way-points agree in floats, which says *no* of nearly every problem at once."""
-    turn = math.pi / 180 if stated["unit"] == "deg" else 1.0
-    angles = _floats(stated["waypoints"]).reshape(problem.waypoints.shape) * turn
+    angles = _floats(stated["waypoints"]).reshape(problem.waypoints.shape)
+    angles *= _factors(stated["unit"], len(problem.joints))
     return bool(np.isclose(angles, problem.waypoints, 2.0 * _ROUNDED, 0.0).all())
 
 
@@ -125,17 +125,28 @@ def _same(stated: dict[str, Any], wanted: dict[str, Any]) -> bool:
     """Whether a certificate's problem is one in radians and seconds; names do not matter."""
     if stated.keys() != wanted.keys():
         return False
-    turn = math.pi / 180 if stated["unit"] == "deg" else 1.0
+    factors = _factors(stated["unit"], len(stated["joints"]))
     for key in stated.keys() - {"unit", "joints"}:
         if key in _ANGLES or key in _TIMES:
-            one = _floats(stated[key]) * (turn if key in _ANGLES else 1.0)
-            other = _floats(wanted[key])
+            one, other = _floats(stated[key]), _floats(wanted[key])
+            if key == "waypoints":
+                one = one * np.tile(factors, len(stated[key]))
+            elif key in _ANGLES:
+                each = zip(stated[key], factors, strict=True)
+                one = np.concatenate([_floats(own) * factor for own, factor in each])
             alike = one.shape == other.shape
             if not alike or not np.isclose(one, other, _ROUNDED, 0.0, equal_nan=True).all():
                 return False
         elif stated[key] != wanted[key]:
             return False
     return True
+
+
+def _factors(units: str, joints: int) -> Array:
+    """How much of SI the unit of each joint is."""
+    each = units.split(",")
+    found = np.array([float(scale(one).bounds[0]) for one in each])
+    return found if len(each) == joints else np.full(joints, found[0])
 
 
 def _floats(part: Any) -> Array:

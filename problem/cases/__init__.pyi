@@ -19,8 +19,10 @@ from .claim import (
 )
 from .clue import AnyClue, AxisClue, DataSheetClue, HalfTurnsClue, SmoothClue
 from .data_files import PUBLISHED, SUITE_PREFIX, case_files
+from .digits import Digits
 from .faults import all_faults, refusal
 from .instances import InstancesBlock, instance_waypoints
+from .joint_units import unit_of, with_unit
 from .labels import ratio_words
 from .load import load_case, parse_case, published_ids
 from .references import motions_of
@@ -31,6 +33,7 @@ from .schema import (
     Assumption,
     Cartesian,
     CaseFile,
+    Column,
     NotCheckable,
     ProblemBlock,
     Reading,
@@ -40,7 +43,7 @@ from .schema import (
     Transcription,
     case_schema,
 )
-from .statement import Digits, Statement
+from .statement import Statement
 from .transcripts import Difference, compare_transcriptions
 
 __all__ = [
@@ -56,6 +59,7 @@ __all__ = [
     "Case",
     "CaseFile",
     "Claim",
+    "Column",
     "ConditionsClaim",
     "ControlVerticesClaim",
     "ConvergenceClaim",
@@ -99,4 +103,6 @@ __all__ = [
     "refusal",
     "robot_ids",
     "scaffold",
+    "unit_of",
+    "with_unit",
 ]

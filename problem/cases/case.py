@@ -9,13 +9,14 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import CaseError
-from ..fields import nearest
+from ..fields import UnitOrEach, nearest
 from ..printed import Printed
 from ..problem import Coupling, Problem
 from ..robots import Chain, Convention, DhTable
 from ..units import CHOICES, Measured, Quantity
 from .claim import AnyClaim, Claim, DurationsClaim, MaximumClaim
 from .clue import AnyClue
+from .digits import Digits
 from .instances import InstancesBlock
 from .labels import reading_labels
 from .line import on_line
@@ -35,7 +36,7 @@ from .schema import (
     Table,
     Waypoints,
 )
-from .statement import Digits, Statement
+from .statement import Statement
 
 _ONLY_PROBLEM = ProblemBlock(id="main")
 """Stands for the one problem of a file that lists none; its id is what `--problem` then takes."""
@@ -254,8 +255,7 @@ class Case:
         CaseError
             If the problem or reading is unknown.
         """
-        first = self.default_reading
-        ordered = [first, *(r for r in self.readings if r.id != first.id)]
+        ordered = sorted(self.readings, key=lambda one: one.id != self.default_reading.id)
         problems = self.problems if problem is None else (self._problem(problem),)
         readings = ordered if reading is None else [self._reading(reading)]
         return [(p.id, r.id) for p in problems for r in readings]
@@ -383,8 +383,9 @@ class Case:
         quantity: Quantity,
         problem_id: str | None = None,
         reading_id: str | None = None,
+        joint: str | None = None,
     ) -> Measured:
-        """Convert a printed number of this case to radians and seconds.
+        """Convert a printed number of this case to radians or metres and seconds.
 
         Parameters
         ----------
@@ -394,6 +395,8 @@ class Case:
             What it measures, which decides the unit.
         problem_id, reading_id : str, optional
             As in `problem`.
+        joint : str, optional
+            Label of its joint, needed where units differ.
 
         Returns
         -------
@@ -402,9 +405,10 @@ class Case:
         Raises
         ------
         CaseError
-            If the file states no unit for the quantity.
+            If the file states no unit for the quantity, or several and no joint is named.
         """
-        return self.statement(problem_id, reading_id).si(number, quantity)
+        place = None if joint is None else self.robot.joints.index(joint)
+        return self.statement(problem_id, reading_id).si(number, quantity, joint=place)
 
     def statement(self, problem_id: str | None = None, reading_id: str | None = None) -> Statement:
         """One problem under one reading, still in printed digits."""
@@ -412,7 +416,7 @@ class Case:
         reading = self.default_reading if reading_id is None else self._reading(reading_id)
         return overlaid(self.document, self.file, problem, reading, self._drawn)
 
-    def _drawn(self, waypoints: Waypoints, unit: str | None, selected: str) -> Waypoints:
+    def _drawn(self, waypoints: Waypoints, unit: UnitOrEach, selected: str) -> Waypoints:
         """Rows of way-points that lie on a line, computed once for each unit."""
         known = self._lines.get((waypoints, unit))
         if known is None:
@@ -428,7 +432,7 @@ class Case:
         return known
 
     @cached_property
-    def _lines(self) -> dict[tuple[Waypoints, str | None], Waypoints]:
+    def _lines(self) -> dict[tuple[Waypoints, UnitOrEach], Waypoints]:
         return {}
 
     def _problem(self, problem_id: str) -> ProblemBlock:

@@ -6,7 +6,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Discriminator, Field, model_validator
 
-from ..fields import MOST_ENTRIES, Id, Number, Strict, Text, fault
+from ..fields import MOST_ENTRIES, Id, Number, Strict, Text, TextOrEach, fault
 from ..units import CHOICES
 
 Known = Literal["velocity", "acceleration", "jerk"]
@@ -49,16 +49,23 @@ class DataSheetClue(Clue):
 
     kind: Literal["data-sheet"]
     quantity: Known
-    unit: Text
+    unit: TextOrEach
+    """The unit of all values, or of each."""
     values: Annotated[tuple[Number, ...], Field(min_length=1, max_length=MOST_ENTRIES)]
     """One for each of the robot's joints."""
 
     @model_validator(mode="after")
     def _unit_fits(self) -> Self:
-        _check_unit(self.quantity, self.unit)
+        for index, unit in enumerate(self.units(1)):
+            at = f"[{index}]" if isinstance(self.unit, tuple) else ""
+            _check_unit(self.quantity, unit, at)
         if any(value.fraction <= 0 for value in self.values):
             raise fault(".values", "hold a number that is not positive; a limit is")
         return self
+
+    def units(self, count: int) -> tuple[str, ...]:
+        """The unit of each value, where there are ``count``."""
+        return self.unit if isinstance(self.unit, tuple) else (self.unit,) * count
 
 
 class SmoothClue(Clue):
@@ -87,7 +94,7 @@ CLUE_KINDS = ("axis", "data-sheet", "smooth", "half-turns")
 """The values of ``kind``."""
 
 
-def _check_unit(quantity: Known, unit: str) -> None:
+def _check_unit(quantity: Known, unit: str, at: str = "") -> None:
     if unit not in CHOICES[quantity]:
         known = ", ".join(CHOICES[quantity])
-        raise fault(".unit", f"{unit!r} is no unit of {quantity}; use one of {known}")
+        raise fault(f".unit{at}", f"{unit!r} is no unit of {quantity}; use one of {known}")

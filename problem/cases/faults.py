@@ -27,6 +27,7 @@ _ONE_OR_EACH = (
     "lower",
     "upper",
     "ratios",
+    "unit",
 )
 """Fields that take one number or a list: pydantic puts the union's tag into their path."""
 _EXPECTED = {

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 
 from ..problem import Coupling
-from ..units import CHOICES
+from ..units import CHOICES, is_linear, shown_unit
 from .declaration import InterpolantBlock, Values
 from .schema import CaseFile, Reading
 
@@ -18,7 +18,16 @@ _UNITS = {
     "time": "times",
 }
 """What a unit is of, as a reader calls it."""
-_SHOWN = {"rad": "radians", "deg": "degrees", "s": "seconds", "ms": "milliseconds"}
+_SHOWN = {
+    "rad": "radians",
+    "deg": "degrees",
+    "m": "metres",
+    "cm": "centimetres",
+    "mm": "millimetres",
+    "s": "seconds",
+    "ms": "milliseconds",
+    "min": "minutes",
+}
 """Units that read better in full; of the others the signs are changed alone."""
 _LIMITS = {
     "velocity": "velocity limits",
@@ -115,9 +124,11 @@ def _stated(document: CaseFile, reading: Reading, block: str, key: str) -> objec
 def _units(document: CaseFile, reading: Reading) -> Iterator[str]:
     for quantity in CHOICES:
         unit = _stated(document, reading, "units", quantity)
-        if isinstance(unit, str):
-            shown = unit.replace("deg", "°").replace("^2", "²").replace("^3", "³")
-            yield f"{_UNITS[quantity]} in {_SHOWN.get(unit, shown)}"
+        if isinstance(unit, tuple | str):
+            each = unit if isinstance(unit, tuple) else (unit,)
+            shown = _and([_SHOWN.get(one, shown_unit(one)) for one in dict.fromkeys(each)])
+            linear = quantity == "position" and any(map(is_linear, each))
+            yield f"{'positions' if linear else _UNITS[quantity]} in {shown}"
 
 
 def _waypoints(document: CaseFile, reading: Reading) -> Iterator[str]:

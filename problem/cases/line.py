@@ -15,7 +15,9 @@ _SAME = 1e-6
 branch than the one that is stated: its own residual is a thousand times less."""
 
 
-def on_line(waypoints: Waypoints, unit: str, chain: Chain, file: str, selected: str) -> Waypoints:
+def on_line(
+    waypoints: Waypoints, unit: str | tuple[str, ...], chain: Chain, file: str, selected: str
+) -> Waypoints:
     """The same block with one row per pose of its line, instead of the line.
 
     Parameters
@@ -46,6 +48,7 @@ def on_line(waypoints: Waypoints, unit: str, chain: Chain, file: str, selected: 
 
     if any(kind is JointKind.PRISMATIC for kind in chain.kinds):
         raise fail("line", "the robot has a sliding joint; give rows of way-points instead")
+    units = unit if isinstance(unit, tuple) else (unit,) * chain.joints
     ends = []
     for name in ("first", "last"):
         given = getattr(line, name)
@@ -55,7 +58,9 @@ def on_line(waypoints: Waypoints, unit: str, chain: Chain, file: str, selected: 
         if not all(number.exact for number in given):
             reason = "angles between the ends follow from exact numbers only"
             raise fail(f"line.{name}", f"{reason}; leave out the quotes, or give rows")
-        ends.append(np.array([to_si(number, unit).value for number in given]))
+        ends.append(
+            np.array([to_si(number, one).value for number, one in zip(given, units, strict=True)])
+        )
     first, last = ends
     poses = forward_kinematics(chain, np.array(ends))
     try:
@@ -66,6 +71,9 @@ def on_line(waypoints: Waypoints, unit: str, chain: Chain, file: str, selected: 
     if away.max() > _SAME or np.abs(found[0] - first).max() > _SAME:
         reason = "the robot cannot go straight from the first angles to the last on one branch"
         raise fail("line", f"{reason} of its inverse kinematics; give other angles, or rows")
-    inner = [[read_number(from_si(float(q), unit)) for q in row] for row in found[1:-1]]
+    inner = [
+        [read_number(from_si(float(q), one)) for q, one in zip(row, units, strict=True)]
+        for row in found[1:-1]
+    ]
     rows = (line.first, *(tuple(row) for row in inner), line.last)
     return waypoints.model_copy(update={"line": None, "waypoint_rows": rows})

@@ -10,6 +10,7 @@ from ..textfile import parse_toml
 from .case import Case
 from .data_files import PUBLISHED, case_files, check_format, validated
 from .faults import Faults
+from .joint_units import check_clues, check_kinds
 from .references import check_claims, check_kinematics, check_references
 from .schema import CaseFile
 from .sizes import check_sizes, check_values
@@ -90,11 +91,22 @@ def check_case(raw: dict[str, Any], file: str) -> Case:
     faults = Faults(file)
     check_references(document, faults)
     case = Case(document, file)
+    chain = None
     with faults.noted():
-        check_kinematics(document, faults, case.chain())
+        chain = case.chain()
+        check_kinematics(document, faults, chain)
+    posed = []
     for problem_id, reading_id in case.selections():
         with faults.noted():
-            case.statement(problem_id, reading_id).check()
-    check_claims(document, faults, lambda claim: case.statement(claim.problem))
+            statement = case.statement(problem_id, reading_id)
+            posed.append(statement)
+            check_kinds(statement, chain)
+            statement.check()
+    check_clues(document, faults, posed)
+    check_claims(
+        document,
+        faults,
+        lambda claim: [case.statement(*pair) for pair in case.selections(claim.problem)],
+    )
     faults.refuse()
     return case

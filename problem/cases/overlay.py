@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TypeVar
 
-from ..fields import Strict
+from ..fields import Strict, UnitOrEach
 from ..problem import Coupling
 from .faults import Faults
+from .joint_units import check_units
 from .schema import CaseFile, Override, ProblemBlock, Reading, Waypoints
 from .statement import Statement
 
@@ -19,7 +20,7 @@ def overlaid(
     file: str,
     problem: ProblemBlock,
     reading: Reading,
-    drawn: Callable[[Waypoints, str | None, str], Waypoints],
+    drawn: Callable[[Waypoints, UnitOrEach, str], Waypoints],
 ) -> Statement:
     """Lay a problem over the file's own statements, and a reading over both.
 
@@ -31,7 +32,7 @@ def overlaid(
     problem : ProblemBlock
     reading : Reading
     drawn : callable
-        From way-points that are a line, their unit, and words for messages to rows.
+        From way-points that are a line, their unit or units, and words for messages to rows.
 
     Returns
     -------
@@ -40,7 +41,8 @@ def overlaid(
     Raises
     ------
     CaseError
-        If way-points or interpolant are missing, or an unknown joint is selected.
+        If way-points or interpolant are missing, an unknown joint is selected, or units do not fit
+        the joints.
     """
     selected = f" (problem {problem.id!r}, reading {reading.id!r})"
     if not document.problems and not document.readings:
@@ -66,11 +68,12 @@ def overlaid(
         if label not in labels:
             why = f"joint {label!r} is unknown; robot.joints lists {', '.join(labels)}"
             faults.add("joints", why + selected)
+    units = _merged(document.units, *(layer.units for layer in layers))
+    check_units(units, labels, faults, selected)
     faults.refuse()
     assert waypoints is not None
     assert interpolant is not None
     taken = labels if chosen is None else chosen
-    units = _merged(document.units, *(layer.units for layer in layers))
     if waypoints.line is not None:
         waypoints = drawn(waypoints, units.position, selected)
     return Statement(

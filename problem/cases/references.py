@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Sequence
 from ..fields import nearest
 from ..printed import Printed
 from ..robots import Chain
-from ..units import Quantity
+from ..units import CHOICES, Quantity
 from .claim import (
     AnyClaim,
     Claim,
@@ -218,7 +218,7 @@ def _check_instances(document: CaseFile, faults: Faults, block: InstancesBlock, 
 
 
 def check_claims(
-    document: CaseFile, faults: Faults, statement_of: Callable[[AnyClaim], Statement]
+    document: CaseFile, faults: Faults, statements_of: Callable[[AnyClaim], Sequence[Statement]]
 ) -> None:
     """Check that each claim fits the problem that it speaks about.
 
@@ -227,23 +227,26 @@ def check_claims(
     document : CaseFile
     faults : Faults
         Takes what is wrong.
-    statement_of : callable
-        The problem of a claim under the default reading.
+    statements_of : callable
+        The problems of a claim under every reading, that under the default one first.
     """
     problems = [problem.id for problem in document.problems]
     for index, claim in enumerate(document.claims):
         if claim.problem is not None and claim.problem not in problems:
             continue  # told already
         with faults.noted():
-            _check_claim(document, faults, claim, statement_of(claim), f"claims[{index}]")
+            every = statements_of(claim)
+            _check_claim(document, faults, claim, every, f"claims[{index}]")
 
 
 def _check_claim(
-    document: CaseFile, faults: Faults, claim: AnyClaim, statement: Statement, at: str
+    document: CaseFile, faults: Faults, claim: AnyClaim, every: Sequence[Statement], at: str
 ) -> None:
-    def number(printed: Printed, quantity: Quantity, field: str) -> None:
+    statement = every[0]
+
+    def number(printed: Printed, quantity: Quantity, field: str, joint: int | None = None) -> None:
         with faults.noted():
-            statement.si(printed, quantity, f"{at}.{field}")
+            statement.si(printed, quantity, f"{at}.{field}", joint)
 
     labels = [statement.labels[j] for j in statement.joints]
     if claim.joint in statement.labels and claim.joint not in labels:
@@ -261,8 +264,13 @@ def _check_claim(
         number(claim.value, "time", "value")
     if isinstance(claim, PeakClaim | MeasureClaim):
         for position, printed in enumerate(claim.printed):
-            field = "value" if claim.values is None else f"values[{position}]"
-            number(printed, claim.derivative, field)
+            if claim.values is not None:
+                number(printed, claim.derivative, f"values[{position}]", position)
+            elif claim.joint in statement.labels:
+                number(printed, claim.derivative, "value", statement.labels.index(claim.joint))
+            else:
+                _check_one_unit(faults, claim, every, f"{at}.value")
+                number(printed, claim.derivative, "value")
         _check_motion_value(document, claim, statement, at)
     if isinstance(claim, ControlVerticesClaim):
         _check_vertices(claim, statement, f"{at}.joint_rows")
@@ -292,6 +300,21 @@ def motions_of(claims: Iterable[AnyClaim], value: MotionValueClaim) -> list[AnyC
         and c.joint in (None, value.joint)
         and c.other_curve is None
     ]
+
+
+def _check_one_unit(
+    faults: Faults, claim: PeakClaim | MeasureClaim, every: Sequence[Statement], field: str
+) -> None:
+    """Refuse one number for joints whose units differ under some reading."""
+    for statement in every:
+        units = getattr(statement.units, claim.derivative)
+        if units is not None and statement.unit(claim.derivative) is None:
+            apart = ", ".join(dict.fromkeys(units[j] for j in statement.joints))
+            faults.add(
+                field,
+                f"is one number for joints in different units ({apart}); give values, one for each "
+                "joint, or name its joint" + statement.selected,
+            )
 
 
 def _check_motion_value(
@@ -349,6 +372,12 @@ def check_kinematics(document: CaseFile, faults: Faults, chain: Chain | None) ->
                 f"robot.joints[{index}]",
                 f"joint {label!r} is not in the robot's table; it has {', '.join(labels)}",
             )
+    for index, block in enumerate(document.families):
+        if block.kind == "joint" and chain is not None and not chain.revolute.all():
+            faults.add(
+                f"families[{index}].kind",
+                '"joint" measures a step as an angle, and a joint of the robot slides; take "end"',
+            )
     waypoints = document.waypoints
     printed = list(document.robot.joints)
     for index, column in enumerate(document.columns):
@@ -361,6 +390,13 @@ def check_kinematics(document: CaseFile, faults: Faults, chain: Chain | None) ->
             faults.add(
                 f"{field}.joint",
                 f"joint {column.joint!r} is unknown; the robot has {', '.join(labels)}",
+            )
+        listed = isinstance(document.units.position, tuple)
+        if listed and column.unit not in CHOICES["position"]:
+            faults.add(
+                f"{field}.unit",
+                f"is needed where units.position lists one per joint of the robot's; use one of "
+                f"{', '.join(CHOICES['position'])}",
             )
         printed.append(column.joint)
         if waypoints is not None and len(column.values) != waypoints.number:

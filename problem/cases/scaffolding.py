@@ -53,7 +53,7 @@ def scaffold(
         row is a way-point; a first column headed "waypoint", "point" or "label" names them.
     units : mapping
         Unit of "position", and of "velocity", "acceleration" and "jerk" where a limit is given or
-        a peak is printed; "time" is "s" if left out.
+        a peak is printed, or one for each joint, with commas between; "time" is "s" if left out.
     case_id : str, optional
         Id of the case; the file's name by default.
     family : str, optional
@@ -138,7 +138,7 @@ def _argument(field: str) -> str | None:
     if field.startswith("interpolant"):
         return "degree" if field.endswith("degree") else "family"
     if field.startswith("units."):
-        return field
+        return field.split("[")[0]
     if field.startswith("limits."):
         return field.removeprefix("limits.").split("[")[0]
     if field.startswith("claims[0]."):
@@ -177,11 +177,13 @@ def _curve(
     return lines + [f"{key} = {json.dumps(value)}" for key, value in keys.items()]
 
 
-def _units(faults: Faults, units: Mapping[str, str], limits: Iterable[str]) -> dict[str, str]:
+def _units(
+    faults: Faults, units: Mapping[str, str], limits: Iterable[str]
+) -> dict[str, str | tuple[str, ...]]:
     for key in units:
         if key not in CHOICES:
             faults.add(f"units.{key}", f"no such quantity; known: {', '.join(CHOICES)}")
-    checked: dict[str, str] = {}
+    checked: dict[str, str | tuple[str, ...]] = {}
     needed = {"position", *limits, "time"}
     # A unit without a limit serves a printed peak.
     for key in (one for one in CHOICES if one in needed or one in units):
@@ -191,7 +193,10 @@ def _units(faults: Faults, units: Mapping[str, str], limits: Iterable[str]) -> d
             faults.add(f"units.{key}", f"is missing; give one of {', '.join(CHOICES[key])}")
             continue
         try:
-            checked[key] = check_unit(unit, quantity)
+            each = tuple(check_unit(one, quantity) for one in _listed(unit) or [unit])
+            if key == "time" and len(each) > 1:
+                raise TrajgapError(f"{unit!r} are several units of time; give one")
+            checked[key] = each if len(each) > 1 else each[0]
         except TrajgapError as error:
             faults.add(f"units.{key}", str(error))
     return checked
@@ -266,14 +271,14 @@ def _text(
     joints: Sequence[str],
     labels: Sequence[str],
     angles: Sequence[Sequence[str]],
-    units: Mapping[str, str],
+    units: Mapping[str, str | tuple[str, ...]],
     limits: Mapping[str, Sequence[str]],
     curve: Sequence[str],
     claims: Sequence[str],
 ) -> str:
     rows = [f"  [{', '.join(row)}],  # {_comment(labels[k])}" for k, row in enumerate(angles)]
     unit_lines = [
-        f"{key} = {_quoted(units[key])}" if key in units else f'# {key} = "{choices[0]}"'
+        f"{key} = {_unit_text(units[key])}" if key in units else f'# {key} = "{choices[0]}"'
         for key, choices in CHOICES.items()
     ]
     limit_lines = [
@@ -302,7 +307,7 @@ def _text(
         'name = "robot"',
         f"joints = [{', '.join(map(_quoted, joints))}]",
         "",
-        "[units]",
+        "[units]  # one for all joints, or a list with one per joint",
         *unit_lines,
         "",
         "[waypoints]",
@@ -334,7 +339,11 @@ def _text(
     return "\n".join(parts)
 
 
-def _angles(rows: Sequence[Sequence[str]], unit: str) -> list[list[str]]:
+def _unit_text(unit: str | tuple[str, ...]) -> str:
+    return _quoted(unit) if isinstance(unit, str) else f"[{', '.join(map(_quoted, unit))}]"
+
+
+def _angles(rows: Sequence[Sequence[str]], unit: str | tuple[str, ...]) -> list[list[str]]:
     """Angles as a case file writes them: settings bare, what may be rounded in quotes."""
     whole = {cell: int(cell.translate(MINUS_SIGNS)) for row in rows for cell in row if _whole(cell)}
     exact = unit == "rad" or all(number % _ROUND == 0 for number in whole.values())
@@ -344,18 +353,20 @@ def _angles(rows: Sequence[Sequence[str]], unit: str) -> list[list[str]]:
     ]
 
 
-def _rounding(angles: Sequence[Sequence[str]], unit: str) -> list[str]:
+def _rounding(angles: Sequence[Sequence[str]], unit: str | tuple[str, ...]) -> list[str]:
     """A remark on whole numbers of a table: how they are taken, and how to say otherwise."""
     cells = [cell for row in angles for cell in row]
     if any(_whole(cell) for cell in cells):
         return [
             "# Whole numbers are settings and meant exactly; quote those that the paper rounds."
         ]
-    rounded = next((c for c in cells if _whole(json.loads(c))), None)
-    if rounded is None:
+    at = next((i for i, c in enumerate(cells) if _whole(json.loads(c))), None)
+    if at is None:
         return []
+    rounded = cells[at]
+    own = unit if isinstance(unit, str) else unit[at % len(angles[0])]
     number = int(json.loads(rounded).translate(MINUS_SIGNS))
-    return [f"# {rounded} may be {number - 0.5:g} to {number + 0.5:g} {unit}; no quotes: exact"]
+    return [f"# {rounded} may be {number - 0.5:g} to {number + 0.5:g} {own}; no quotes: exact"]
 
 
 def _whole(text: str) -> bool:

@@ -11,9 +11,9 @@ from ..errors import TrajgapError
 from ..fields import (
     MOST_POSES,
     MOST_WAYPOINTS,
-    AccelerationUnit,
+    AccelerationUnits,
     Id,
-    JerkUnit,
+    JerkUnits,
     JointLabels,
     Label,
     Number,
@@ -22,13 +22,13 @@ from ..fields import (
     OneOrEachSized,
     OneOrEachUpper,
     OneOrEachUpperPosition,
-    PositionUnit,
+    PositionUnits,
     PrintedRows,
     Ratios,
     Strict,
     Text,
     TimeUnit,
-    VelocityUnit,
+    VelocityUnits,
     describe,
     fault,
 )
@@ -101,12 +101,12 @@ class RobotFile(Strict):
 
 
 class Units(Strict):
-    """The units that the numbers of the file are printed in."""
+    """The units that the numbers of the file are printed in: one, or one for each robot joint."""
 
-    position: PositionUnit = None
-    velocity: VelocityUnit = None
-    acceleration: AccelerationUnit = None
-    jerk: JerkUnit = None
+    position: PositionUnits = None
+    velocity: VelocityUnits = None
+    acceleration: AccelerationUnits = None
+    jerk: JerkUnits = None
     time: TimeUnit = None
 
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from enum import StrEnum
-from math import tau
+from functools import cached_property
 
 import numpy as np
 
@@ -17,9 +16,11 @@ from ..fields import LimitPair
 from ..limits import Limits
 from ..printed import Printed
 from ..problem import Coupling, Problem
-from ..units import CHOICES, Measured, Quantity, to_si
+from ..units import CHOICES, Measured, Quantity, is_linear, to_si
 from .declaration import InterpolantBlock, Values, declare
+from .digits import Digits, end, turned
 from .faults import Faults
+from .joint_units import linear_joints, unit_of
 from .schema import Durations, LimitsBlock, Units, Waypoints
 
 Data = tuple[Curve, Limits, Array, Array]
@@ -38,19 +39,6 @@ _LARGEST = 1e12
 """Largest number of a case file, rad and s: squares and quotients stay far from overflow."""
 _LOWER = "durations.lower"
 """The field whose value may be as near 0 as it likes: a lower bound of 0 says "positive"."""
-
-
-class Digits(StrEnum):
-    """Which of the values that their printed digits stand for the limits and bounds take."""
-
-    PRINTED = "printed"
-    """The digits themselves."""
-    TIGHTEST = "tightest"
-    """Of all values that round to the digits those that allow least."""
-    LOOSEST = "loosest"
-    """Of all values that round to the digits those that allow most."""
-    LOOSEST_CUT = "loosest, cut off"
-    """The same, of all values whose digits were rounded or cut off."""
 
 
 @dataclass(frozen=True)
@@ -78,7 +66,29 @@ class Statement:
         """Make an error at a field, naming the problem and reading under which it shows."""
         return CaseError(self.file, field, reason + self.selected)
 
-    def si(self, number: Printed, quantity: Quantity, field: str = "") -> Measured:
+    @cached_property
+    def linear(self) -> tuple[bool, ...]:
+        """Whether each of the robot's joints slides instead of turning, by its units."""
+        return linear_joints(self.units, len(self.labels))
+
+    def unit(self, quantity: Quantity, joint: int | None = None) -> str | None:
+        """The unit of a quantity, None where none is stated.
+
+        Parameters
+        ----------
+        quantity : str
+        joint : int, optional
+            Position in the robot's list; without it that of all joints that take part, None also
+            where they differ.
+        """
+        if joint is not None:
+            return unit_of(getattr(self.units, quantity), joint)
+        found = {unit_of(getattr(self.units, quantity), j) for j in self.joints}
+        return found.pop() if len(found) == 1 else None
+
+    def si(
+        self, number: Printed, quantity: Quantity, field: str = "", joint: int | None = None
+    ) -> Measured:
         """Convert printed digits with this reading's unit of ``quantity``.
 
         Parameters
@@ -87,14 +97,22 @@ class Statement:
         quantity : str
         field : str
             Where the number stands in the file, for messages.
+        joint : int, optional
+            Which of the robot's joints it belongs to; all that take part by default.
 
         Raises
         ------
         CaseError
-            If the unit is not stated, or the number is so large or small that no motion can be
-            computed with it.
+            If the unit is not stated or differs among the joints, or the number is so large or
+            small that no motion can be computed with it.
         """
-        unit = getattr(self.units, quantity)
+        unit = self.unit(quantity, joint)
+        if unit is None and getattr(self.units, quantity) is not None:
+            units = ", ".join(dict.fromkeys(getattr(self.units, quantity)))
+            raise self.fail(
+                field or quantity,
+                f"is one number for joints in different units ({units}); give one for each joint",
+            )
         if unit is None:
             raise self.fail(
                 f"units.{quantity}", f"is missing; add one of {', '.join(CHOICES[quantity])}"
@@ -110,12 +128,13 @@ class Statement:
             raise self.fail(
                 field or quantity,
                 f"{number} {unit} lies outside the magnitudes from {1 / _LARGEST:g} to "
-                f"{_LARGEST:g} rad and s that are computed with; correct digits or unit",
+                f"{_LARGEST:g} {'m' if is_linear(unit) else 'rad'} and s that are computed with; "
+                "correct digits or unit",
             )
         return measured
 
     def points(self) -> list[list[Measured]]:
-        """Way-points in radians, one row per way-point, one entry per joint that takes part."""
+        """Way-points in rad or m, one row per way-point, one entry per joint that takes part."""
         rows = self.waypoints.points
         if not rows:
             raise self.fail(
@@ -134,13 +153,14 @@ class Statement:
         self._check_turns(len(rows))
         return [
             [
-                _turned(
+                turned(
                     self.si(
                         row[j],
                         "position",
                         f"waypoints.joint_rows[{j}][{k}]"
                         if by_joint
                         else f"waypoints.waypoint_rows[{k}][{j}]",
+                        j,
                     ),
                     self.turns[self.labels[j]][k] if self.labels[j] in self.turns else 0,
                 )
@@ -154,6 +174,9 @@ class Statement:
             if label not in self.labels:
                 listed = ", ".join(self.labels)
                 raise self.fail("turns", f"joint {label!r} is unknown; robot.joints lists {listed}")
+            if self.linear[self.labels.index(label)]:
+                why = f"joint {label!r} slides, and turns are of angles; leave it out"
+                raise self.fail(f"turns.{label}", why)
             if len(given) != count:
                 raise self.fail(
                     f"turns.{label}", f"{len(given)} numbers for {count} way-points; give one each"
@@ -203,6 +226,12 @@ class Statement:
             If the conditions don't determine the curve, or it needs another number of way-points.
         """
         block, count = self.declaration, self.waypoints.number
+        if block.parameters == "chord" and len({self.linear[j] for j in self.joints}) > 1:
+            raise self.fail(
+                "interpolant.parameters",
+                '"chord" adds angles and lengths, so that its knots depend on their units; take '
+                '"joint-chord" or "times"',
+            )
         start = self._end("end_derivatives", block.end_derivatives, block.orders)
         finish = self._end("finish_derivatives", block.last_derivatives, block.last_orders)
         try:
@@ -269,15 +298,15 @@ class Statement:
                     f"{len(given)} values for {len(self.labels)} joints; give one for all, "
                     "or one each",
                 )
-            return tuple(self._in_si(field, order, given[j]) for j in self.joints)
+            return tuple(self._in_si(field, order, given[j], j) for j in self.joints)
         return self._in_si(field, order, given)
 
-    def _in_si(self, field: str, order: int, number: Printed) -> float:
+    def _in_si(self, field: str, order: int, number: Printed, joint: int | None = None) -> float:
         zero = number.fraction == 0 or order > len(_DERIVATIVES)
-        return 0.0 if zero else self.si(number, _DERIVATIVES[order - 1], field).value
+        return 0.0 if zero else self.si(number, _DERIVATIVES[order - 1], field, joint).value
 
     def problem(self, digits: Digits = Digits.PRINTED) -> Problem:
-        """Problem in radians and seconds.
+        """Problem in radians, metres and seconds.
 
         Parameters
         ----------
@@ -328,6 +357,7 @@ class Statement:
                 duration_upper=upper,
                 coupling=self.coupling,
                 joints=tuple(self.labels[j] for j in self.joints),
+                linear=tuple(self.linear[j] for j in self.joints),
                 name=self.name,
                 ratios=ratios,
             )
@@ -353,9 +383,9 @@ class Statement:
         curve = self.curve()
         segments = curve.segments
         durations = self._each("durations", "lower", "time", segments, "segment", 0.0)
-        lower = np.maximum(_end(durations, digits, upper=False), 0.0)
+        lower = np.maximum(end(durations, digits, upper=False), 0.0)
         durations = self._each("durations", "upper", "time", segments, "segment", np.inf)
-        upper = _end(durations, digits, upper=True)
+        upper = end(durations, digits, upper=True)
         if (upper == 0).any():
             raise self.fail("durations.upper", "is 0; a duration is positive, give more")
         if (lower > upper).any():
@@ -394,18 +424,18 @@ class Statement:
         low = [
             Measured(-np.inf, -np.inf, -np.inf)
             if x is None
-            else self.si(x, quantity, f"limits.{quantity}")
-            for x in least
+            else self.si(x, quantity, f"limits.{quantity}", j)
+            for j, x in enumerate(least)
         ]
         # A size stands for both sides.
         low = [n if n.value <= 0 else Measured(-n.value, -n.upper, -n.lower) for n in low]
-        lower = np.minimum(_end([low[j] for j in self.joints], digits, upper=False), 0.0)
+        lower = np.minimum(end([low[j] for j in self.joints], digits, upper=False), 0.0)
         return np.column_stack([lower, sizes])
 
     def _limit(self, name: str, quantity: Quantity, digits: Digits) -> Array:
         default = -np.inf if name == "position_lower" else np.inf
         every = self._each("limits", name, quantity, len(self.labels), "joint", default)
-        return _end([every[j] for j in self.joints], digits, upper=name != "position_lower")
+        return end([every[j] for j in self.joints], digits, upper=name != "position_lower")
 
     def _each(
         self, block: str, name: str, quantity: Quantity, count: int, item: str, default: float
@@ -424,29 +454,10 @@ class Statement:
                 f"{len(given)} values for {count} {item}s; give one for all, or one each",
             )
         upper = [one.upper if isinstance(one, LimitPair) else one for one in given]
-        return [none if one is None else self.si(one, quantity, f"{block}.{name}") for one in upper]
-
-
-def _turned(angle: Measured, turns: int) -> Measured:
-    """An angle with whole turns added, in an interval that cutting off digits does not leave."""
-    if not turns:
-        return angle
-    value = angle.value + turns * tau
-    # On the far side of 0 cut-off digits would widen the wrong end, so both ends are widened here.
-    half = 2.0 * max(angle.upper - angle.value, angle.value - angle.lower)
-    slack = 4.0 * float(np.spacing(max(abs(value), abs(angle.value))))
-    return Measured(value, value - half - slack, value + half + slack)
-
-
-def _end(numbers: Sequence[Measured], digits: Digits, upper: bool) -> Array:
-    """The end of each number's interval that allows most, or least."""
-    if digits is Digits.PRINTED:
-        return np.array([n.value for n in numbers])
-    if digits is Digits.LOOSEST_CUT:
-        numbers = [n.cut_off() if np.isfinite(n.value) else n for n in numbers]
-    if upper is (digits is Digits.TIGHTEST):
-        return np.array([n.lower for n in numbers])
-    return np.array([n.upper for n in numbers])
+        return [
+            none if one is None else self.si(one, quantity, f"{block}.{name}", place)
+            for place, one in enumerate(upper)
+        ]
 
 
 def _unprefixed(error: TrajgapError) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -81,13 +82,14 @@ def _array(name: str, key: str, found: Any, axes: int) -> Array:
     return array
 
 
-def polynomial_json(motion: Motion) -> dict[str, Any]:
-    """A motion in the form that `motion_of_json` reads, rad and s."""
+def polynomial_json(motion: Motion, linear: Sequence[bool] = ()) -> dict[str, Any]:
+    """A motion in the form that `motion_of_json` reads, rad and s; m of joints that slide."""
+    position = ["m" if slides else "rad" for slides in linear] if any(linear) else "rad"
     plain = np.asarray(motion.polynomial.c).transpose(1, 0, 2)
     return {
         "format": POLYNOMIAL_FORMAT,
         "joints": list(motion.joints),
-        "units": {"time": "s", "position": "rad"},
+        "units": {"time": "s", "position": position},
         "breaks": motion.breaks.tolist(),
         "coefficients": plain.tolist(),
     }

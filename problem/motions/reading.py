@@ -155,8 +155,10 @@ def _polynomials(
     if any(noise):
         raise CaseError(name, "--noise", "is of samples; polynomials are the motion itself")
     stated = found.get("units", {})
-    if isinstance(stated, Mapping) and stated.get("position") in UNITS:
-        units = (stated["position"],)
+    position = stated.get("position") if isinstance(stated, Mapping) else None
+    each: list[Any] = position if isinstance(position, list) else [position]
+    if each and all(one in UNITS for one in each):
+        units = tuple(each)
     motion = motion_of_json(found, name)
     factors = factors_of(units, len(motion.joints), name)
     return ForeignFile(

@@ -112,7 +112,7 @@ def _rows(breaks: Array, step: float, all_breaks: bool) -> Array:
 
 
 def csv_text(samples: Samples) -> str:
-    """Samples as CSV, rad and s, every digit of float64."""
+    """Samples as CSV, rad or m and s, every digit of float64."""
     given = [("", samples.position), (" velocity", samples.velocity)]
     given.append((" acceleration", samples.acceleration))
     there = [(word, values) for word, values in given if values is not None]
@@ -128,7 +128,11 @@ def csv_text(samples: Samples) -> str:
 
 
 def motion_text(
-    motion: Evaluated, form: MotionForm, step: float, joints: tuple[str, ...] = ()
+    motion: Evaluated,
+    form: MotionForm,
+    step: float,
+    joints: tuple[str, ...] = (),
+    linear: tuple[bool, ...] = (),
 ) -> str:
     """A motion as the text of a file.
 
@@ -140,6 +144,8 @@ def motion_text(
     step : float
         s.
     joints : tuple of str, optional
+    linear : tuple of bool, optional
+        Whether each joint slides, so that polynomials state its positions in m; none by default.
 
     Returns
     -------
@@ -157,7 +163,7 @@ def motion_text(
         return json.dumps(message_of_samples(samples), indent=1) + "\n"
     from .foreign_objects import as_motion
 
-    return json.dumps(polynomial_json(as_motion(motion, joints))) + "\n"
+    return json.dumps(polynomial_json(as_motion(motion, joints), linear)) + "\n"
 
 
 def read_back(text: str, form: MotionForm, name: str) -> Motion:

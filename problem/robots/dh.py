@@ -23,7 +23,7 @@ from ..fields import (
     read_number,
 )
 from ..printed import Printed
-from ..units import LengthUnit, Measured, PositionUnit, to_si
+from ..units import AngleUnit, LengthUnit, Measured, to_si
 from .chain import Chain, Convention, JointKind
 
 _PI_MULTIPLE = re.compile(r"([+-]?)\s*([0-9]*)\s*(?:π|pi)\s*(?:/\s*([1-9][0-9]*))?")
@@ -96,7 +96,7 @@ class DhTable(Strict):
     why: str = ""
     """Why others are admitted, or why signs are uncertain."""
     length_unit: LengthUnit
-    angle_unit: PositionUnit
+    angle_unit: AngleUnit
     joints: JointLabels | None = None
     """Joint labels; those of the robot if absent."""
     kinds: tuple[JointKind, ...] | None = None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from fractions import Fraction
 
 import numpy as np
@@ -11,7 +12,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 from trajgap.problem.errors import TrajgapError
 from trajgap.problem.printed import Printed
-from trajgap.problem.units import CHOICES, check_unit, from_si, scale, to_si
+from trajgap.problem.units import (
+    CHOICES,
+    Scale,
+    check_unit,
+    from_si,
+    is_linear,
+    scale,
+    to_si,
+)
 
 digits = st.decimals(min_value=-400, max_value=400, places=4).map(str)
 every_unit = st.sampled_from([unit for choices in CHOICES.values() for unit in choices])
@@ -65,11 +74,53 @@ def test_every_choice_has_a_scale():
             assert scale(unit).rational > 0
 
 
+def test_rates_per_minute_are_exact():
+    for unit, rational, pi in (
+        ("rpm", Fraction(1, 30), 1),
+        ("deg/min", Fraction(1, 10800), 1),
+        ("rad/min", Fraction(1, 60), 0),
+        ("m/min", Fraction(1, 60), 0),
+        ("mm/min", Fraction(1, 60000), 0),
+        ("cm/s^2", Fraction(1, 100), 0),
+        ("mm/s^3", Fraction(1, 1000), 0),
+        ("min", Fraction(60), 0),
+    ):
+        assert scale(unit) == Scale(rational, pi), unit
+    assert to_si(Printed("60", exact=True), "rpm").value == 2 * math.pi
+    assert [u for u in CHOICES["velocity"] if is_linear(u)] == [
+        "m/s", "cm/s", "mm/s", "m/min", "cm/min", "mm/min",
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("quantity", "written", "meant"),
+    [
+        ("velocity", "rev/min", "rpm"),
+        ("velocity", "r.p.m.", "rpm"),
+        ("velocity", "°/s", "deg/s"),
+        ("velocity", "degrees per second", "deg/s"),
+        ("velocity", "mm·s⁻¹", "mm/s"),
+        ("velocity", "metres/minute", "m/min"),
+        ("acceleration", "rad/s²", "rad/s^2"),
+        ("acceleration", "m/s2", "m/s^2"),
+        ("jerk", "deg s^-3", "deg/s^3"),
+        ("position", "degree", "deg"),
+        ("position", "millimeters", "mm"),
+        ("time", "minutes", "min"),
+        ("time", "sec", "s"),
+    ],
+)
+def test_what_papers_write_is_answered(quantity, written, meant):
+    told = re.escape(f"{written!r} for {quantity}; write it as {meant!r}")
+    with pytest.raises(TrajgapError, match=told):
+        check_unit(written, quantity)
+
+
 def test_unknown_units_are_refused():
     with pytest.raises(TrajgapError, match="unknown unit 'grad'; use one of rad, deg"):
         scale("grad")
-    with pytest.raises(TrajgapError, match="unknown unit 'rpm' for velocity; use one of rad/s"):
-        check_unit("rpm", "velocity")
+    with pytest.raises(TrajgapError, match="unknown unit 'rps' for velocity; use one of rad/s"):
+        check_unit("rps", "velocity")
     with pytest.raises(TrajgapError, match="'deg' measures position, not velocity; use one of"):
         check_unit("deg", "velocity")
     with pytest.raises(TrajgapError, match="the number is too large"):

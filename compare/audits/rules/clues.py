@@ -8,7 +8,17 @@ from math import pi
 
 import numpy as np
 
-from ....problem import Array, LimitPair, Measured, control_vertices, fit, from_si, to_si
+from ....problem import (
+    Array,
+    LimitPair,
+    Measured,
+    control_vertices,
+    fit,
+    from_si,
+    is_linear,
+    shown_unit,
+    to_si,
+)
 from ....problem.cases import (
     AnyClaim,
     AnyClue,
@@ -21,7 +31,7 @@ from ....problem.cases import (
 from ...documents import HeldOtherwise, ReadingClue, Speaks, Why
 from ..study import Study
 from .peaks import has_curve, largest
-from .wording import in_units, unit_shown
+from .wording import jump_size, jump_unit, largest_of_each_kind
 
 _FILLED = 0.1
 """Share of an axis that a curve fills at least, and of a data sheet's limits that printed ones use:
@@ -93,12 +103,15 @@ def _motions(study: Study, names: Sequence[str], rid: str) -> list[tuple[AnyClai
 
 def _on_axis(study: Study, clue: AxisClue, rid: str) -> _Said:
     """The largest value of the curves that a figure shows beside the last label of its axis."""
-    tops = [
-        abs(top.value)
-        for claim, pid in _motions(study, clue.of, rid)
-        for top in largest(study, claim, pid, rid, _ORDERS[clue.quantity])
-        if clue.joint in (None, study.claim_problem(claim, pid, rid).joints[top.joint])
-    ]
+    tops = []
+    for claim, pid in _motions(study, clue.of, rid):
+        problem = study.claim_problem(claim, pid, rid)
+        tops += [
+            abs(top.value)
+            for top in largest(study, claim, pid, rid, _ORDERS[clue.quantity])
+            if clue.joint in (None, problem.joints[top.joint])
+            and problem.linear[top.joint] == is_linear(clue.unit)
+        ]
     if not tops:
         return None
     reach = from_si(max(tops), clue.unit)
@@ -106,7 +119,7 @@ def _on_axis(study: Study, clue: AxisClue, rid: str) -> _Said:
     last = labels[-1]
     # An axis may go on for less than one step beyond its last label.
     step = max((b - a for a, b in pairwise(labels)), default=0.0)
-    beside = f"{clue.quantity} up to {reach:.3g} {_shown(clue.unit)}, last label {last:g}"
+    beside = f"{clue.quantity} up to {reach:.3g} {shown_unit(clue.unit)}, last label {last:g}"
     if reach < _FILLED * last:
         return Speaks.AGAINST, f"{beside}: the curve would be a flat line"
     if reach > last + step:
@@ -114,20 +127,17 @@ def _on_axis(study: Study, clue: AxisClue, rid: str) -> _Said:
     return Speaks.FOR, beside + (" of an axis that may go on for one step" if reach > last else "")
 
 
-def _shown(unit: str) -> str:
-    return unit.replace("deg", "°").replace("^2", "²").replace("^3", "³")
-
-
 def _data_sheet(study: Study, clue: DataSheetClue, rid: str) -> _Said:
     """The printed limits of a reading over those of a data sheet, joint by joint."""
     statement = _statement(study, rid)
-    known = [to_si(value, clue.unit) for value in clue.values]
+    units = clue.units(len(clue.values))
+    known = [to_si(value, unit) for value, unit in zip(clue.values, units, strict=True)]
     given = getattr(statement.limits, clue.quantity)
     each = list(given) if isinstance(given, tuple) else [given] * len(known)
     if any(isinstance(one, LimitPair) for one in each):
         return None  # a data sheet prints sizes
     pairs = [
-        (statement.si(one, clue.quantity), known[j])
+        (statement.si(one, clue.quantity, joint=j), known[j])
         for j, one in enumerate(each)
         if one is not None and j in statement.joints
     ]
@@ -156,20 +166,21 @@ def _smooth(study: Study, clue: SmoothClue, rid: str) -> _Said:
         return None
     order = _ORDERS[clue.quantity]
     jumps = [
-        (abs(jump.size), pid)
+        (pid, jump)
         for claim, pid in motions
         for jump in study.claim_check(claim, pid, rid).jumps
         if jump.order == order
     ]
     if not jumps:
         return Speaks.FOR, f"{clue.quantity} does not jump"
-    size, pid = max(jumps)
-    shown = in_units(study, pid, rid, clue.quantity, size)
-    unit = unit_shown(study, pid, rid, clue.quantity)
+    shown = " and ".join(
+        f"{abs(jump_size(study, pid, rid, jump)):.3g} {jump_unit(study, pid, rid, jump)}"
+        for pid, jump in largest_of_each_kind(study, rid, jumps)
+    )
     plural = "s" if len(jumps) > 1 else ""
     return (
         Speaks.AGAINST,
-        f"{clue.quantity} jumps {len(jumps)} time{plural}, by up to {shown:.3g} {unit}",
+        f"{clue.quantity} jumps {len(jumps)} time{plural}, by up to {shown}",
     )
 
 
@@ -178,7 +189,7 @@ def _half_turns(study: Study, clue: HalfTurnsClue, rid: str) -> _Said:
     statement = _statement(study, rid)
     column = statement.labels.index(clue.joint)
     printed = [row[column] for row in statement.waypoints.points]
-    angles = [statement.si(one, "position") for one in printed if one.fraction != 0]
+    angles = [statement.si(one, "position", joint=column) for one in printed if one.fraction != 0]
     if not angles:
         return None
     found = sum(

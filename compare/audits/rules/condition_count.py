@@ -219,10 +219,16 @@ def _moving(
         over = np.where(ends > _REST * np.array(tops), ends, 0.0)
         if not over.any():
             continue
-        end, joint = np.unravel_index(int(np.argmax(over)), over.shape)
-        value = in_units(study, pid, rid, quantity, float(over[end, joint]))
-        where = "starts" if end == 0 else "ends"
-        yield (
-            f"joint {problem.joints[int(joint)]} {where} with a {quantity} of {value:.4g} "
-            f"{unit_shown(study, pid, rid, quantity)}"
-        )
+        # Angles and lengths are no larger or smaller than each other.
+        for kind in dict.fromkeys(problem.linear):
+            own = np.where(np.array(problem.linear) == kind, over, 0.0)
+            if not own.any():
+                continue
+            end, joint = np.unravel_index(int(np.argmax(own)), own.shape)
+            label = problem.joints[int(joint)]
+            value = in_units(study, pid, rid, quantity, float(own[end, joint]), label)
+            where = "starts" if end == 0 else "ends"
+            yield (
+                f"joint {label} {where} with a {quantity} of {value:.4g} "
+                f"{unit_shown(study, pid, rid, quantity, label)}"
+            )

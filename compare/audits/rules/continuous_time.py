@@ -21,7 +21,16 @@ from ...documents import Basis, ClaimVerdict, Finding, Rounding, Severity
 from ..explanations import LIMITS
 from ..study import Study
 from .peaks import box_reach, has_curve, largest
-from .wording import all_called, called_under, in_units, unit_shown
+from .wording import (
+    JUMPING,
+    all_called,
+    called_under,
+    in_units,
+    jump_size,
+    jump_unit,
+    largest_of_each_kind,
+    unit_shown,
+)
 
 
 @dataclass(frozen=True)
@@ -73,9 +82,9 @@ def _ratio(study: Study, claim: AnyClaim, pid: str, rid: str) -> str:
     if worst.quantity == "curve":
         return "the printed durations define no curve"
     whose = f"joint {worst.joint}" if worst.joint is not None else f"segment {worst.segment + 1}"
-    unit = unit_shown(study, pid, rid, worst.quantity)
-    value = in_units(study, pid, rid, worst.quantity, abs(worst.value))
-    limit = in_units(study, pid, rid, worst.quantity, worst.limit)
+    unit = unit_shown(study, pid, rid, worst.quantity, worst.joint)
+    value = in_units(study, pid, rid, worst.quantity, abs(worst.value), worst.joint)
+    limit = in_units(study, pid, rid, worst.quantity, worst.limit, worst.joint)
     return f"the {worst.quantity} of {whose} reaches {value:.6g} {unit}, limit {limit:.6g} {unit}"
 
 
@@ -202,9 +211,15 @@ def _jumps(study: Study, claim: AnyClaim) -> Iterator[Finding]:
         velocity = [jump for jump in found if jump.order == 1]
         if not velocity:
             continue
-        top = max(velocity, key=lambda jump: abs(jump.size))
-        unit = unit_shown(study, pid, rid, "velocity")
-        size = f"{abs(in_units(study, pid, rid, 'velocity', top.size)):.6g} {unit}"
+        tops = largest_of_each_kind(study, rid, [(pid, jump) for jump in velocity])
+        sizes = [
+            f"{abs(jump_size(study, pid, rid, top)):.6g} {jump_unit(study, pid, rid, top)}"
+            for _, top in tops
+        ]
+        most = " and ".join(
+            f"in joint {top.joint} at t = {top.time:.6g} s by {size}"
+            for (_, top), size in zip(tops, sizes, strict=True)
+        )
         yield Finding(
             rule="TG202",
             basis=Basis.CHECK,
@@ -212,11 +227,10 @@ def _jumps(study: Study, claim: AnyClaim) -> Iterator[Finding]:
             problem=pid,
             reading=rid,
             printed=durations_text(study, claim),
-            computed=f"{len(velocity)} jumps of velocity, up to {size}",
+            computed=f"{len(velocity)} jumps of velocity, up to {' and '.join(sizes)}",
             message=(
                 f"The motion is discontinuous under this reading: velocity jumps {len(velocity)} "
-                f"times at the via-points, most in joint {top.joint} at t = {top.time:.6g} s by "
-                f"{size}. Limits are judged apart from jumps."
+                f"times at the via-points, most {most}. Limits are judged apart from jumps."
             ),
             decides=False,
         )
@@ -307,14 +321,14 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
                 "them may have the proportions of the parameters, with which it is smooth."
             )
         elif jumps:
-            where, top = max(jumps, key=lambda one: abs(one[1].size))
-            name = ("position", "velocity", "acceleration")[top.order]
-            size = in_units(study, where, rid, name, top.size)
+            largest_ones = " and ".join(
+                f"in {JUMPING[top.order]} of joint {top.joint} at t = {top.time:.6g} s by "
+                f"{jump_size(study, where, rid, top):.6g} {jump_unit(study, where, rid, top)}"
+                for where, top in largest_of_each_kind(study, rid, jumps)
+            )
             verdict, severity = ClaimVerdict.INCONSISTENT, Severity.WARNING
             message = (
-                f"The motion is discontinuous: {len(jumps)} jumps, the largest in {name} of joint "
-                f"{top.joint} at t = {top.time:.6g} s by {size:.6g} "
-                f"{unit_shown(study, where, rid, name)}."
+                f"The motion is discontinuous: {len(jumps)} jumps, the largest {largest_ones}."
             )
         yield Finding(
             rule="TG202",
@@ -355,13 +369,15 @@ def _said_to_jump(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             continue
         whose = "" if claim.joint is None else f" of joint {claim.joint}"
         if jumps:
-            where, top = max(jumps, key=lambda one: abs(one[1].size))
-            size = in_units(study, where, rid, "acceleration", top.size)
+            most = " and ".join(
+                f"at t = {top.time:.6g} s by {jump_size(study, where, rid, top):.6g} "
+                f"{jump_unit(study, where, rid, top)}"
+                for where, top in largest_of_each_kind(study, rid, jumps)
+            )
             verdict = ClaimVerdict.SUPPORTED
             message = (
-                f"Under this reading the acceleration{whose} jumps at {len(jumps)} breaks, most at "
-                f"t = {top.time:.6g} s by {size:.6g} "
-                f"{unit_shown(study, where, rid, 'acceleration')}."
+                f"Under this reading the acceleration{whose} jumps at {len(jumps)} breaks, most "
+                f"{most}."
             )
         else:
             verdict = ClaimVerdict.NOT_CHECKABLE
@@ -393,13 +409,14 @@ def _used_up(study: Study, claim: AnyClaim) -> Iterator[Finding]:
                     continue
                 reach = box_reach(study, claim, pid, rid, top)
                 if abs(abs(top.value) - limit) <= reach <= _NARROW * limit:
+                    label = problem.joints[top.joint]
                     value, around, bound = (
-                        in_units(study, pid, rid, quantity, x)
+                        in_units(study, pid, rid, quantity, x, label)
                         for x in (abs(top.value), reach, limit)
                     )
                     tight.append(
-                        f"joint {problem.joints[top.joint]} {quantity} {value:.6g} ± {around:.1g} "
-                        f"at its limit {bound:.6g} {unit_shown(study, pid, rid, quantity)}"
+                        f"joint {label} {quantity} {value:.6g} ± {around:.1g} "
+                        f"at its limit {bound:.6g} {unit_shown(study, pid, rid, quantity, label)}"
                     )
         if tight:
             yield Finding(

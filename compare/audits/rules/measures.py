@@ -75,7 +75,7 @@ def measured(trajectory: Trajectory, order: int, measure: str) -> MotionMeasure:
     Returns
     -------
     MotionMeasure
-        rad and s.
+        rad or m, and s.
     """
     first, square, norm = np.zeros(trajectory.joints), np.zeros(trajectory.joints), 0.0
     for piece in range(len(trajectory.durations)):
@@ -190,8 +190,8 @@ def _measures(study: Study, claim: MeasureClaim, motion: AnyClaim) -> Iterator[F
             for joint, number in pairs
         ]
         wrong = [(joint, one) for joint, one in found if not one.fits]
-        unit = _unit(study, claim, pid, rid)
-        said = "; ".join(_said(claim, joint, one, unit) for joint, one in (wrong or found))
+        units = {joint: _unit(study, claim, joint, pid, rid) for joint, _ in found}
+        said = "; ".join(_said(claim, joint, one, units[joint]) for joint, one in (wrong or found))
         verdict, severity, note = misfit(study, pid, rid) if wrong else FITTING
         yield Finding(
             rule="TG208",
@@ -202,7 +202,9 @@ def _measures(study: Study, claim: MeasureClaim, motion: AnyClaim) -> Iterator[F
             problem=pid,
             reading=rid,
             printed=", ".join(map(str, claim.printed)),
-            computed="; ".join(f"{one.exact:.6g} ± {one.reach:.1g} {unit}" for _, one in found),
+            computed="; ".join(
+                f"{one.exact:.6g} ± {one.reach:.1g} {units[joint]}" for joint, one in found
+            ),
             message=f"Of the printed durations ({called(motion)}): {said}.{note}",
             root=f"measures of {motion.id}" if verdict is ClaimVerdict.INCONSISTENT else "",
             between=(claim.id, motion.id) if wrong else (),
@@ -216,9 +218,9 @@ def _said(claim: MeasureClaim, joint: str | None, one: _Beside, unit: str) -> st
     return f"{exact}, printed is {one.printed}, {how}"
 
 
-def _unit(study: Study, claim: MeasureClaim, pid: str, rid: str) -> str:
+def _unit(study: Study, claim: MeasureClaim, joint: str | None, pid: str, rid: str) -> str:
     own, by_time = _POWERS[claim.measure]
-    unit = unit_shown(study, pid, rid, claim.derivative)
+    unit = unit_shown(study, pid, rid, claim.derivative, joint)
     shown = unit if own == 1 else f"({unit})²"
     return f"{shown}·{study.time_unit}" if by_time else shown
 
@@ -238,7 +240,7 @@ def _beside(
     order = QUANTITIES.index(claim.derivative) + 1
     index = None if joint is None else problem.joints.index(joint)
     own, by_time = _POWERS[claim.measure]
-    unit = in_units(study, pid, rid, claim.derivative, 1.0) ** own
+    unit = in_units(study, pid, rid, claim.derivative, 1.0, joint) ** own
     unit *= in_units(study, pid, rid, "time", 1.0) ** by_time
 
     def meant(waypoints: Array, durations: Array) -> dict[str, float]:

@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import cached_property
-from math import pi
 from typing import TypeVar
 
 import numpy as np
@@ -27,6 +26,7 @@ from ..study import Study
 from .corners import Look, largest_change
 from .loose_curves import FITTING, misfit
 from .norms import largest_norm
+from .unit_factors import meant_by_ratio
 from .wording import UNEXPLAINED, called, in_units, unit_shown
 
 _Value = TypeVar("_Value", bound=MotionValueClaim)
@@ -34,25 +34,12 @@ _SAMPLES = 50
 """Samples of a motion at the coarsest: fewer would show corners in a printed figure."""
 _PHASES = 8
 """Offsets at which those samples are tried: the worst of so many comes near the worst of all."""
-_FACTORS = {
-    180 / pi: "as between degrees and radians",
-    1000.0: "as a thousandth of the unit",
-    100.0: "as a hundredth of the unit",
-    60.0: "as per minute instead of per second",
-    2 * pi: "as turns instead of radians",
-    30 / pi: "as turns per minute instead of radians per second",
-}
-"""Ratios between units that are mixed up, and what that would mean; their inverses count too."""
 _ROOTS = (2, 3, 5)
 """Numbers whose square roots closed forms of peaks hold, such as 10/√3 of degree 5 and 84√5/25 of
 degree 7: one that is lost in print is named as an explanation."""
 _TELLING = 3
 """Digits that a printed peak has at least if one that is changed explains anything: of two, one in
 five numbers is a slip away."""
-_NEAR_FACTOR = 0.01
-"""Relative distance from such a ratio below which the unit is named as an explanation."""
-
-
 _WIDE = 0.05
 """Share of a peak above which the room that digits leave is said: what then fits tells little."""
 _NO_MOTION = "No durations are printed whose motion could have this peak."
@@ -96,6 +83,8 @@ class Beside:
         The least peak that coarse sampling of that motion finds.
     norm : Beside, optional
         The same beside the largest norm over the joints, where one number speaks of several.
+    linear : bool
+        Whether it is that of a joint that slides.
     """
 
     printed: Printed
@@ -109,6 +98,7 @@ class Beside:
     far: float
     sampled: float
     norm: Beside | None = None
+    linear: bool = False
 
     @property
     def met(self) -> bool:
@@ -152,12 +142,7 @@ class Beside:
         """What a ratio near that of two units would mean, if it is near one."""
         if not (self.exact > 0 and self.value > 0):
             return None
-        ratio = self.value / self.exact
-        for factor, meaning in _FACTORS.items():
-            for one in (factor, 1 / factor):
-                if abs(ratio / one - 1) <= _NEAR_FACTOR:
-                    return f"{one:.6g}, {meaning}"
-        return None
+        return meant_by_ratio(self.value / self.exact, self.linear)
 
 
 def box_reach(study: Study, claim: AnyClaim, pid: str, rid: str, point: Extremum) -> float:
@@ -275,7 +260,7 @@ def beside(
     if joint is not None:
         tops = [tops[problem.joints.index(joint)]]
     top = max(tops, key=lambda e: abs(e.value))
-    measured = study.case.measured(printed, claim.derivative, pid, rid)
+    measured = study.case.measured(printed, claim.derivative, pid, rid, joint)
     cut = measured.cut_off()
     samples = _samples(study, motion, pid, rid, order)
     reach = box_reach(study, motion, pid, rid, top)
@@ -290,6 +275,7 @@ def beside(
         reach,
         2 * reach,
         min(float((v if joint is None else v[:, top.joint]).max()) for v in samples),
+        linear=problem.linear[top.joint],
     )
     if found.kind not in FITS:
         near, far = (
@@ -380,7 +366,7 @@ def _peaks(study: Study, claim: PeakClaim, motion: AnyClaim) -> Iterator[Finding
             problem=pid,
             reading=rid,
             printed=", ".join(map(str, claim.printed)),
-            computed="; ".join(_exact(study, claim, one, pid, rid) for _, one in found),
+            computed="; ".join(_exact(study, claim, joint, one, pid, rid) for joint, one in found),
             message=f"Of the printed durations ({called(motion)}): {'; '.join(said)}.{note}",
             kind=", ".join(dict.fromkeys(one.kind for _, one in wrong)),
             root=f"peaks of {motion.id}" if verdict is ClaimVerdict.INCONSISTENT else "",
@@ -388,9 +374,12 @@ def _peaks(study: Study, claim: PeakClaim, motion: AnyClaim) -> Iterator[Finding
         )
 
 
-def _exact(study: Study, claim: PeakClaim, one: Beside, pid: str, rid: str) -> str:
-    value, reach = (in_units(study, pid, rid, claim.derivative, x) for x in (one.exact, one.reach))
-    return f"{value:.6g} ± {reach:.1g} {unit_shown(study, pid, rid, claim.derivative)}"
+def _exact(
+    study: Study, claim: PeakClaim, joint: str | None, one: Beside, pid: str, rid: str
+) -> str:
+    quantity = claim.derivative
+    value, reach = (in_units(study, pid, rid, quantity, x, joint) for x in (one.exact, one.reach))
+    return f"{value:.6g} ± {reach:.1g} {unit_shown(study, pid, rid, quantity, joint)}"
 
 
 def described(
@@ -398,7 +387,7 @@ def described(
 ) -> str:
     """One printed peak beside the exact one, with the class of their distance."""
     whose = "" if joint is None else f"joint {joint}: "
-    exact = _exact(study, claim, one, pid, rid)
+    exact = _exact(study, claim, joint, one, pid, rid)
     said = f"{whose}the exact peak of {claim.derivative} is {exact}, printed is {one.printed}"
     room = ""
     if one.exact and one.reach > _WIDE * one.exact:
@@ -414,17 +403,19 @@ def described(
             Class.NORM: f" ({away}), {norm}",
             Class.UNIT: f" ({away}); their ratio is near {one.factor}",
             Class.ROOT: f" ({away}); a factor √{one.root} may have been lost in print",
-            Class.OFF: f" ({away}), {_slipped(study, claim, one, pid, rid) or UNEXPLAINED}",
+            Class.OFF: f" ({away}), {_slipped(study, claim, joint, one, pid, rid) or UNEXPLAINED}",
         }[one.kind]
     )
 
 
-def _slipped(study: Study, claim: PeakClaim, one: Beside, pid: str, rid: str) -> str:
+def _slipped(
+    study: Study, claim: PeakClaim, joint: str | None, one: Beside, pid: str, rid: str
+) -> str:
     """With which digit changed a printed peak would agree; empty where it would not."""
     if sum(character.isdigit() for character in one.printed.text.lstrip("-0.")) < _TELLING:
         return ""
     for other in one.printed.one_digit_off():
-        meant = study.case.measured(other, claim.derivative, pid, rid)
+        meant = study.case.measured(other, claim.derivative, pid, rid, joint)
         if meant.lower <= one.exact + one.reach and one.exact - one.reach <= meant.upper:
             which = "one digit, or the order of two, may be misprinted"
             return f"which {other.text} would agree with: {which}"
@@ -433,7 +424,7 @@ def _slipped(study: Study, claim: PeakClaim, one: Beside, pid: str, rid: str) ->
 
 def _of_norm(study: Study, claim: PeakClaim, one: Beside, pid: str, rid: str) -> str:
     """How a printed peak that is not that of a joint is the norm over the joints."""
-    norm = f"the largest norm over the joints, {_exact(study, claim, one, pid, rid)}"
+    norm = f"the largest norm over the joints, {_exact(study, claim, None, one, pid, rid)}"
     return {
         Class.CUT_OFF: f"as {norm}, cut off instead of rounded gives it",
         Class.SAMPLING: f"slightly below {norm}, as sampling the motion gives it",

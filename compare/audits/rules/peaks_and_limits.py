@@ -56,7 +56,6 @@ def _above(study: Study, motion: AnyClaim, peak: PeakClaim, pid: str, rid: str) 
     """
     loosest = study.claim_problem(motion, pid, rid, Digits.LOOSEST_CUT)
     order = QUANTITIES.index(peak.derivative)
-    unit = unit_shown(study, pid, rid, peak.derivative)
     found = []
     for joint, number in peak_numbers(study, peak):
         if joint is None and len(loosest.joints) > 1:
@@ -65,12 +64,14 @@ def _above(study: Study, motion: AnyClaim, peak: PeakClaim, pid: str, rid: str) 
         if j is None:
             continue
         limit = float(loosest.limits.sides[:, j, order].max())
-        measured = study.case.measured(number, peak.derivative, pid, rid)
+        label = loosest.joints[j]
+        measured = study.case.measured(number, peak.derivative, pid, rid, label)
         least = measured.value - (measured.upper - measured.lower)
         if np.isfinite(limit) and least > limit * _ROUNDING:
-            shown = in_units(study, pid, rid, peak.derivative, limit)
+            shown = in_units(study, pid, rid, peak.derivative, limit, label)
+            unit = unit_shown(study, pid, rid, peak.derivative, label)
             found.append(
-                f"{number} {unit} for the {peak.derivative} of joint {loosest.joints[j]}, whose "
+                f"{number} {unit} for the {peak.derivative} of joint {label}, whose "
                 f"limit is at most {shown:.6g} {unit}, however its digits are read"
             )
     return found

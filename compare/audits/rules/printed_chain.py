@@ -9,8 +9,8 @@ from itertools import combinations, product
 
 import numpy as np
 
-from ....problem import Array, Measured, to_si
-from ....problem.cases import Cartesian, Statement, StatementClaim
+from ....problem import Array, Measured, is_linear, to_si
+from ....problem.cases import Cartesian, Column, Statement, StatementClaim
 from ....problem.robots import Chain, Convention, DhTable, JointKind, Proximity, proximity
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..study import Study
@@ -94,12 +94,24 @@ def _compared(study: Study, dh: DhTable, posing: Statement, rid: str, pid: str |
     assert printed is not None
     joints = _joints(study, posing)
     named = [(i, label) for i, label in enumerate(printed.labels) if label in joints]
-    sliding = [label for i, label in named if printed.kinds[i] is JointKind.PRISMATIC]
+    kinds = dict(zip(printed.labels, printed.kinds, strict=True))
+    free = [label for label in printed.labels if label not in joints]
+    sliding = [label for label in free if kinds[label] is JointKind.PRISMATIC]
+    # Those of the problem agree with the table since the file was read.
+    apart = [
+        column.joint
+        for column in study.case.columns
+        if column.joint in joints
+        and is_linear(_column_unit(column, posing))
+        != (kinds.get(column.joint) is JointKind.PRISMATIC)
+    ]
     places = _places(study, posing)
-    if sliding or any(k is None for k, _ in places):
+    if sliding or apart or any(k is None for k, _ in places):
         why = (
-            f"joint {sliding[0]} slides, and way-points are printed as angles"
+            f"joint {sliding[0]} slides, and its positions are not printed"
             if sliding
+            else f"the unit of joint {apart[0]} is not that of its kind in the robot's table"
+            if apart
             else "the numbers of positions and way-points differ"
         )
         return _not_checkable(rid, f"Positions cannot be set against joint angles: {why}.")
@@ -118,13 +130,30 @@ def _joints(study: Study, posing: Statement) -> Joints:
     """Angles of every printed joint: those of the problems, and those in columns of their own."""
     rows = posing.waypoints.points
     found = {
-        label: tuple(posing.si(row[j], "position") for row in rows)
+        label: tuple(posing.si(row[j], "position", joint=j) for row in rows)
         for j, label in enumerate(posing.labels)
     }
     for column in study.case.columns:
         if column.joint is not None and len(column.values) == len(rows):
-            found[column.joint] = tuple(posing.si(v, "position") for v in column.values)
+            unit = _column_unit(column, posing)
+            found[column.joint] = tuple(to_si(v, unit) for v in column.values)
     return found
+
+
+def _column_unit(column: Column, posing: Statement) -> str:
+    """The unit of a printed joint beside those of the problems."""
+    unit = posing.units.position
+    return unit if isinstance(unit, str) else column.unit
+
+
+def _bounded(chain: Chain, joints: Joints) -> Chain:
+    """The chain with printed joints that slide bounded by their positions: its arms are finite."""
+    lower, upper = chain.lower.copy(), chain.upper.copy()
+    for i, label in enumerate(chain.labels):
+        if chain.kinds[i] is JointKind.PRISMATIC:
+            lower[i] = min(one.lower for one in joints[label])
+            upper[i] = max(one.upper for one in joints[label])
+    return replace(chain, lower=lower, upper=upper)
 
 
 def _places(study: Study, posing: Statement) -> list[tuple[int | None, Cartesian]]:
@@ -154,7 +183,7 @@ def _match(
     for flipped in flips:
         chain = study.case.chain(convention, flipped)
         assert chain is not None
-        variants.append(chain)
+        variants.append(_bounded(chain, joints))
     near: list[list[Proximity]] = [[] for _ in variants]
     slack, radial = [], 0.0
     for k, place in places:
@@ -245,7 +274,8 @@ def _judged(
     assert chain is not None
     free = [label for label in chain.labels if label not in printed]
     names = [place.label or place.id for _, place in places]
-    given = f"The angles of {_named(printed)} are read in {posing.units.position}"
+    numbers = "values" if any(posing.linear) else "angles"
+    given = f"The {numbers} of {_named(printed)} are read in {_units(posing)}"
     given += f"; {_named(free)} may have any value." if free else "."
     fitting = next((m for m in matches if m.fits), None)
     if fitting is not None:
@@ -273,7 +303,7 @@ def _judged(
             do = "does" if len(free) == 1 else "do"
             whatever = f", whatever {_named(free)} {do}" if free else ""
             message = (
-                "On the robot as printed, the printed angles do not lead to the printed "
+                f"On the robot as printed, the printed {numbers} do not lead to the printed "
                 f"positions{whatever}. {nearest}{_whatever(matches, names)} The base frame, the "
                 "zeros of the angles and the origin of the last frame as the end are those of the "
                 "table."
@@ -304,6 +334,12 @@ def _judged(
         message=message,
         doubts=tuple(printed) if verdict is ClaimVerdict.INCONSISTENT else (),
     )
+
+
+def _units(posing: Statement) -> str:
+    """The units of the robot's joints, each once where one after the other has the same."""
+    units = posing.units.position
+    return ", ".join(units) if isinstance(units, tuple) else str(units)
 
 
 def _named(labels: list[str]) -> str:

@@ -8,7 +8,7 @@ from itertools import product
 from math import sqrt
 
 from ....problem import Printed
-from ....problem.cases import Cartesian, StatementClaim
+from ....problem.cases import Cartesian, Statement, StatementClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..study import Study
 
@@ -36,6 +36,8 @@ def _varies(study: Study, claim: StatementClaim) -> Finding:
     if own is None:
         message = f"No angles of joint {claim.joint} are printed."
         return Finding(rule="TG110", basis=Basis.DIGITS, claim=claim.id, message=message)
+    if claim.joint is not None and statement.unit("position") is None:
+        return _in_other_units(claim, statement, own)
     shown = " and ".join(
         f"{_middle(least, most):.2f} of joint {label}" for label, (least, most) in ranges.items()
     )
@@ -71,6 +73,24 @@ def _varies(study: Study, claim: StatementClaim) -> Finding:
         claim=claim.id,
         computed=f"{_middle(*own):.2f} in the printed unit",
         message=message + aside,
+    )
+
+
+def _in_other_units(
+    claim: StatementClaim, statement: Statement, own: tuple[Fraction, Fraction]
+) -> Finding:
+    """Nothing decided: joints in different units have no common measure of how much they vary."""
+    units = statement.units.position
+    listed = ", ".join(dict.fromkeys(units)) if isinstance(units, tuple) else str(units)
+    return Finding(
+        rule="TG110",
+        verdict=ClaimVerdict.NOT_CHECKABLE,
+        basis=Basis.DIGITS,
+        claim=claim.id,
+        computed=f"{_middle(*own):.2f} in the printed unit",
+        message=f"Joints are printed in different units ({listed}), so that nothing says which of "
+        f"them varies more. The printed positions of joint {claim.joint} span "
+        f"{_middle(*own):.2f} (printed unit).",
     )
 
 

@@ -80,7 +80,7 @@ def has_vertices(statement: Statement) -> bool:
 
 def _found(claim: ControlVerticesClaim, statement: Statement) -> Finding:
     if has_vertices(statement):
-        return _judged(claim, vertices(claim, statement))
+        return _judged(claim, vertices(claim, statement), statement.unit("position") is None)
     return Finding(
         rule="TG205",
         basis=Basis.DIGITS,
@@ -115,10 +115,12 @@ def _combined(weights: Sequence[Fraction], intervals: Sequence[Interval]) -> Int
     return Interval(sum((min(e) for e in ends), zero), sum((max(e) for e in ends), zero))
 
 
-def _judged(claim: ControlVerticesClaim, found: tuple[Vertex, ...]) -> Finding:
+def _judged(claim: ControlVerticesClaim, found: tuple[Vertex, ...], apart: bool) -> Finding:
+    """The finding; joints whose units lie ``apart`` have no widest interval in common."""
     outside = [v for v in found if not v.inside]
     beyond = [v for v in outside if not v.inside_cut]
-    widest = float(max(v.width for v in found))
+    widest = f", at most {float(max(v.width for v in found)):.2g} either side of the value"
+    widest = "" if apart else widest + " computed from the digits"
     if beyond:
         verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
         shown = "; ".join(
@@ -141,8 +143,7 @@ def _judged(claim: ControlVerticesClaim, found: tuple[Vertex, ...]) -> Finding:
         verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
         message = (
             f"All {len(found)} printed control vertices lie inside the interval that the rounding "
-            f"of the printed way-points allows on the uniform cubic B-spline, at most {widest:.2g} "
-            "either side of the value computed from the digits."
+            f"of the printed way-points allows on the uniform cubic B-spline{widest}."
         )
     return Finding(
         rule="TG205",

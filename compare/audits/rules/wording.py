@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
-from ....problem import from_si
+from ....problem import Jump, from_si, shown_unit
 from ....problem.cases import AnyClaim
-from ...documents import UNITS
+from ...documents import UNITS, si_unit
 from ..study import Study
 
-_SIGNS = (("deg", "°"), ("^2", "²"), ("^3", "³"))
-"""How units of case files are written in a sentence."""
+JUMPING = ("position", "velocity", "acceleration")
+"""What jumps, by its order."""
 UNEXPLAINED = "off by more than rounding, cut-off or sampling was found to explain"
 """Said of a printed value of a motion that is not that of the printed durations."""
 
 
-def unit_shown(study: Study, pid: str, rid: str, quantity: str) -> str:
+def unit_shown(study: Study, pid: str, rid: str, quantity: str, joint: str | None = None) -> str:
     """The unit that a quantity is printed in, as a sentence writes it; SI where none is stated.
 
     Parameters
@@ -25,19 +25,19 @@ def unit_shown(study: Study, pid: str, rid: str, quantity: str) -> str:
         Problem and reading.
     quantity : str
         "position", "velocity", "acceleration", "jerk" or "time".
+    joint : str, optional
+        Label of the joint whose unit it is; needed where units differ.
     """
-    if quantity == "duration":
-        quantity = "time"
-    unit = getattr(study.case.statement(pid, rid).units, quantity, None)
-    if unit is None:
-        return UNITS.get(quantity, "s")
-    for plain, sign in _SIGNS:
-        unit = unit.replace(plain, sign)
-    return str(unit)
+    unit, linear = _unit(study, pid, rid, quantity, joint)
+    if unit is not None:
+        return shown_unit(unit)
+    return si_unit(quantity, linear) if quantity in UNITS else "s"
 
 
-def in_units(study: Study, pid: str, rid: str, quantity: str, value: float) -> float:
-    """A number in rad and s, in the unit that its quantity is printed in.
+def in_units(
+    study: Study, pid: str, rid: str, quantity: str, value: float, joint: str | None = None
+) -> float:
+    """A number in rad or m and s, in the unit that its quantity is printed in.
 
     Parameters
     ----------
@@ -47,11 +47,55 @@ def in_units(study: Study, pid: str, rid: str, quantity: str, value: float) -> f
     quantity : str
         "position", "velocity", "acceleration", "jerk" or "time".
     value : float
+    joint : str, optional
+        As for `unit_shown`.
     """
-    if quantity == "duration":
-        quantity = "time"
-    unit = getattr(study.case.statement(pid, rid).units, quantity, None)
+    unit, _ = _unit(study, pid, rid, quantity, joint)
     return value if unit is None else from_si(value, unit)
+
+
+def _unit(
+    study: Study, pid: str, rid: str, quantity: str, joint: str | None
+) -> tuple[str | None, bool]:
+    """The unit that a quantity is printed in, if one is stated, and whether the joint slides."""
+    statement = study.case.statement(pid, rid)
+    if quantity not in UNITS:
+        return (statement.units.time if quantity in ("duration", "time") else None), False
+    place = None if joint is None else statement.labels.index(joint)
+    linear = statement.linear[statement.joints[0] if place is None else place]
+    return statement.unit(quantity, place), linear  # type: ignore[arg-type]
+
+
+def largest_of_each_kind(
+    study: Study, rid: str, jumps: Sequence[tuple[str, Jump]]
+) -> list[tuple[str, Jump]]:
+    """The largest jump of joints that turn and that of joints that slide, where there are any.
+
+    Parameters
+    ----------
+    study : Study
+    rid : str
+        Reading.
+    jumps : sequence of (str, Jump)
+        With the problem of each; the kind of the first one is told first.
+    """
+    found: dict[bool, tuple[str, Jump]] = {}
+    for pid, jump in jumps:
+        statement = study.case.statement(pid, rid)
+        linear = statement.linear[statement.labels.index(jump.joint)]
+        if linear not in found or abs(jump.size) > abs(found[linear][1].size):
+            found[linear] = pid, jump
+    return list(found.values())
+
+
+def jump_size(study: Study, pid: str, rid: str, jump: Jump) -> float:
+    """Size of a jump in the unit of its joint."""
+    return in_units(study, pid, rid, JUMPING[jump.order], jump.size, jump.joint)
+
+
+def jump_unit(study: Study, pid: str, rid: str, jump: Jump) -> str:
+    """The unit of a jump, as a sentence writes it."""
+    return unit_shown(study, pid, rid, JUMPING[jump.order], jump.joint)
 
 
 def called(claim: AnyClaim) -> str:

@@ -14,7 +14,7 @@ EMPTY, WINDOW, LIMITS = 0, 1, 2
 DONE, PAUSED, FULL, SHORTER, DEEP = 0, 1, 2, 3, 4
 """Why the search returned."""
 SHARES = 2.0**13
-"""Largest weight of a row: with 2²⁰ there are as many boxes, and a certificate is a sixth longer."""
+"""Largest weight of a row: with 2²⁰ there are as many boxes, in a certificate a sixth longer."""
 MOST_TAU = 2.0**52
 """Largest multiplier of the total, as in `trajgap.verify`: floats hold it exactly."""
 SPARE = 1e-9

@@ -77,7 +77,7 @@ def test_new_asks_again_on_a_terminal(table: str) -> None:
         ],
     )
     assert code == 0
-    assert "(rad, deg)" in seen
+    assert "(rad, deg, m, cm, mm)" in seen
     assert load_case("out.toml").document.units.position == "rad"
 
 
@@ -86,7 +86,11 @@ def test_new_takes_no_wrong_unit_from_a_pipe(
     run: Run, table: str, monkeypatch: pytest.MonkeyPatch, answers: str
 ) -> None:
     monkeypatch.setattr(sys, "stdin", io.StringIO(answers))
-    assert_refused(run("new", "out.toml", "--from", table), "--position-unit", "give rad or deg")
+    assert_refused(
+        run("new", "out.toml", "--from", table),
+        "--position-unit",
+        "give one of rad, deg, m, cm, mm",
+    )
     assert not Path("out.toml").exists()
 
 

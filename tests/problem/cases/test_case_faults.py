@@ -59,10 +59,10 @@ FAULTS = [
     (("acceleration = 60", "position_lower = inf"), "limits.position_lower: +inf leaves no position; write -inf for no limit"),
     (("acceleration = 60", "position_lower = 3\nposition_upper = 2"), "limits.position_lower: lies above limits.position_upper; exchange them (problem 'one', reading 'rad')"),
     (('[100, "95.0"]', "[1, 2, 3]"), "limits.velocity: 3 values for 2 joints; give one for all, or one each (problem 'one', reading 'rad')"),
-    (('position = "deg"', 'position = "grad"'), "units.position: unknown unit 'grad' for position; use one of rad, deg"),
-    (('velocity = "deg/s"', 'velocity = "deg"'), "units.velocity: 'deg' measures position, not velocity; use one of rad/s, deg/s"),
-    (('velocity = "deg/s"\n', ""), "units.velocity: is missing; add one of rad/s, deg/s (problem 'one', reading 'rad')"),
-    (('position = "deg"', "position = 3"), "units.position: unknown unit 3 for position; use one of rad, deg"),
+    (('position = "deg"', 'position = "grad"'), "units.position: unknown unit 'grad' for position; use one of rad, deg, m, cm, mm"),
+    (('velocity = "deg/s"', 'velocity = "deg"'), "units.velocity: 'deg' measures position, not velocity; use one of rad/s, deg/s, rpm, deg/min, rad/min, m/s, cm/s, mm/s, m/min, cm/min, mm/min"),
+    (('velocity = "deg/s"\n', ""), "units.velocity: is missing; add one of rad/s, deg/s, rpm, deg/min, rad/min, m/s, cm/s, mm/s, m/min, cm/min, mm/min (problem 'one', reading 'rad')"),
+    (('position = "deg"', "position = 3"), "units.position: unknown unit 3 for position; use one of rad, deg, m, cm, mm"),
     (('family = "3-5-3"', 'family = "bezier"'), "interpolant.family: 'bezier' is not allowed; use '3-5-3', 'polynomials', 'cubic-spline', 'quintic-spline', 'septic-spline', 'cubic-spline-virtual', 'quintic-spline-virtual', 'rest-to-rest', 'jtraj', 'uniform-cubic-b-spline' or 'clamped-b-spline'"),
     (('family = "3-5-3"', 'family = {x = 1}'), "interpolant.family: {'x': 1} is not allowed; use '3-5-3', 'polynomials', 'cubic-spline', 'quintic-spline', 'septic-spline', 'cubic-spline-virtual', 'quintic-spline-virtual', 'rest-to-rest', 'jtraj', 'uniform-cubic-b-spline' or 'clamped-b-spline'"),
     (('family = "3-5-3"', 'family = "polynomials"'), "interpolant.degrees: is missing; family 'polynomials' needs it"),
@@ -111,7 +111,7 @@ FAULTS = [
     (('problem = "two"\njoint = "b"', 'problem = "one"'), "claims[3].of: is missing, and the peak may be that of 'times' or 'times-b'; name the motion: of = \"times\" or of = \"times-b\" (problem 'one', reading 'rad')"),
     (('percent = "10.9"', 'base = "slower"'), "claims[2].base: goes with percent; add it, or leave this out"),
     (('"1.258", "1.078"]', '"1.258", "-1"]'), "claims[0].durations[2]: -1 is negative; give 0 or more"),
-    (('derivative = "velocity"', 'derivative = "jerk"'), "units.jerk: is missing; add one of rad/s^3, deg/s^3 (problem 'one', reading 'rad')"),
+    (('derivative = "velocity"', 'derivative = "jerk"'), "units.jerk: is missing; add one of rad/s^3, deg/s^3, m/s^3, cm/s^3, mm/s^3 (problem 'one', reading 'rad')"),
     (('affects = ["durations", "times"]', 'affects = ["nothing"]'), "assumptions[0].affects[0]: 'nothing' is neither an id in this file nor one of units, waypoints, limits, interpolant, durations, coupling, robot; name what it affects"),
     (("inertia = 0.9", "inertia = nan"), "algorithms[0].settings.inertia: NaN is not a finite number; give a finite one"),
     (("inertia = 0.9", "inertia = {a = 1}"), "algorithms[0].settings.inertia: a table is no setting; give a number, a string or a list"),
@@ -315,7 +315,7 @@ def test_all_missing_units_are_told_in_one_refusal():
     for name in ("position", "velocity", "acceleration", "time"):
         assert f"units.{name}" in fields
     assert len(fields) == len(set(fields))
-    assert "also units.velocity: is missing; add one of rad/s, deg/s" in str(caught.value)
+    assert "also units.velocity: is missing; add one of rad/s, deg/s, rpm" in str(caught.value)
 
 
 def test_faults_of_every_stage_are_told_together():

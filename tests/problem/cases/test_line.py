@@ -68,7 +68,7 @@ def test_its_angles_are_in_the_unit_of_the_file() -> None:
         ("points = 4", "points = 1", "waypoints.line.points: 1 is out of range; give at least 2"),
         ('"5", "6"]', '"6", "5"]', "waypoints.line: needs the robot's table, and all its joints"),
         ('model = "puma560"', "", "waypoints.line: needs the robot's table, and all its joints in"),
-        ('position = "rad"', "", "units.position: is missing; add one of rad, deg"),
+        ('position = "rad"', "", "units.position: is missing; add one of rad, deg, m, cm, mm"),
         (
             "line =",
             "joint_rows = [[1]]\nline =",

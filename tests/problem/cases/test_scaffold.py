@@ -114,16 +114,17 @@ def test_tables_that_are_refused(table, text, reason):
 @pytest.mark.parametrize(
     ("units", "options", "reason"),
     [
-        ({}, {}, "units.position: is missing; give one of rad, deg"),
+        ({}, {}, "units.position: is missing; give one of rad, deg, m, cm, mm"),
         (
             {"position": "rad"},
             {"jerk": "9"},
-            "units.jerk: is missing; give one of rad/s^3, deg/s^3",
+            "units.jerk: is missing; give one of rad/s^3, deg/s^3, m/s^3, cm/s^3, mm/s^3",
         ),
         (
             {"position": "rad/s"},
             {},
-            "units.position: 'rad/s' measures velocity, not position; use one of rad, deg",
+            "units.position: 'rad/s' measures velocity, not position; "
+            "use one of rad, deg, m, cm, mm",
         ),
         (
             {"angle": "rad", "position": "rad"},

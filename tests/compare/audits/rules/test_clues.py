@@ -196,7 +196,8 @@ def test_a_curve_without_control_vertices_says_so() -> None:
         (AXIS.format(ticks="0"), "clues[0].ticks: are all 0; give the labels of the axis"),
         (
             AXIS.format(ticks="1").replace('"rad/s^2"', '"rad/s"'),
-            "clues[0].unit: 'rad/s' is no unit of acceleration; use one of rad/s^2, deg/s^2",
+            "clues[0].unit: 'rad/s' is no unit of acceleration; use one of rad/s^2, "
+            "deg/s^2, m/s^2, cm/s^2, mm/s^2",
         ),
         (
             AXIS.format(ticks="1").replace('"d"', '"e"'),

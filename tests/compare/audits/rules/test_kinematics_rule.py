@@ -11,6 +11,7 @@ from trajgap.compare.audits.rules import GROUPS, RULES
 from trajgap.compare.audits.rules.printed_chain import judge_kinematics
 from trajgap.compare.audits.study import Study
 from trajgap.compare.documents import Basis, ClaimVerdict, Finding, Severity
+from trajgap.problem import CaseError
 from trajgap.problem.cases.load import load_case, parse_case
 from trajgap.problem.printed import Printed
 
@@ -211,14 +212,55 @@ def test_without_a_table_it_is_not_checkable():
     assert found.message == "Positions of the end are printed, but no table of the robot."
 
 
-def test_a_sliding_joint_has_no_angle():
+def test_a_sliding_joint_that_is_not_printed_leaves_nothing_to_check():
     table = (
         TABLE
-        + 'kinds = ["revolute", "revolute", "prismatic"]\nlower = [0, 0, 0]\nupper = [1, 1, 1]\n'
+        + 'kinds = ["revolute", "prismatic", "revolute"]\nlower = [0, 0, 0]\nupper = [1, 1, 1]\n'
     )
     found = one(case_text(positions(), table))
     assert found.verdict is ClaimVerdict.NOT_CHECKABLE
-    assert "joint b slides, and way-points are printed as angles" in found.message
+    assert "joint c slides, and its positions are not printed" in found.message
+
+
+def test_angles_of_a_joint_that_slides_are_not_taken_for_metres():
+    table = (
+        TABLE
+        + 'kinds = ["revolute", "prismatic", "revolute"]\nlower = [0, 0, 0]\nupper = [1, 1, 1]\n'
+    )
+    found = one(case_text(positions(), table, column([1.0, 2.0, 3.0, 4.0])))
+    assert found.verdict is ClaimVerdict.NOT_CHECKABLE
+    assert "the unit of joint c is not that of its kind in the robot's table" in found.message
+
+
+def test_a_column_has_a_unit_of_its_own_where_joints_have():
+    """The slide at the end of a SCARA arm, printed in a column."""
+    table = """
+[robot.dh]
+convention = "standard"
+length_unit = "m"
+angle_unit = "deg"
+joints = ["a", "b", "c"]
+kinds = ["revolute", "revolute", "prismatic"]
+d = [0.3, 0, 0]
+a = [0.5, "0.400", 0]
+alpha = [0, 0, 0]
+"""
+    drop = np.array([5.0, 10.0, 15.0, 20.0])
+    first, second = np.deg2rad(ANGLES["a"]), np.deg2rad(ANGLES["b"])
+    x = 0.5 * np.cos(first) + 0.4 * np.cos(first + second)
+    y = 0.5 * np.sin(first) + 0.4 * np.sin(first + second)
+    points = np.stack([1000 * x, 1000 * y, 300 + drop], axis=1)
+    text = case_text(
+        [[f"{v:.1f}" for v in point] for point in points], table, column(drop.tolist())
+    )
+    text = text.replace('position = "deg"', 'position = ["deg", "deg"]')
+    with pytest.raises(CaseError, match=r"columns\[0\].unit: is needed where units.position lists"):
+        one(text)
+    fits = one(text.replace('joint = "c"', 'joint = "c"\nunit = "mm"'))
+    assert fits.verdict is ClaimVerdict.SUPPORTED
+    assert one(text.replace('joint = "c"', 'joint = "c"\nunit = "cm"')).verdict is (
+        ClaimVerdict.INCONSISTENT
+    )
 
 
 def test_a_reading_with_other_way_points_is_not_checkable():

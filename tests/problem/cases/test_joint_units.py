@@ -1,0 +1,238 @@
+"""Units of each joint in case files: what is read, and each refusal in its line."""
+
+import csv
+import io
+import tomllib
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from support.scara import scara
+from trajgap.problem import CaseError, scaffold
+from trajgap.problem.cases import compare_transcriptions, parse_case
+
+POSITION = 'position = ["deg", "deg", "mm"]'
+VELOCITY = 'velocity = ["rpm", "deg/s", "mm/s"]'
+ACCELERATION = 'acceleration = ["deg/s^2", "deg/s^2", "m/s^2"]'
+
+
+SMALL = """
+format = 1
+id = "small"
+title = "small"
+[source]
+[robot]
+name = "two"
+joints = ["a", "b"]
+[units]
+UNITS
+[waypoints]
+waypoint_rows = [[5, 10], [30, -20]]
+[limits]
+velocity = 30
+[interpolant]
+family = "rest-to-rest"
+degree = 5
+"""
+"""A case whose units are filled in."""
+
+
+def test_each_joint_is_read_in_its_unit():
+    problem = scara().problem()
+    assert problem.linear == (False, False, True)
+    assert problem.waypoints[1] == pytest.approx([np.radians(60.1), np.radians(15.2), 0.085])
+    assert problem.limits.velocity == pytest.approx([np.pi, np.radians(150), 0.12], rel=1e-15)
+    assert problem.limits.acceleration[2] == 0.5
+    assert problem.limits.position_upper == pytest.approx([np.radians(150), np.radians(140), 0.150])
+
+
+def test_a_reading_gives_its_whole_list():
+    problem = scara().problem(None, "deg-s")
+    assert problem.limits.velocity == pytest.approx([np.radians(30), np.radians(150), 0.12])
+    assert scara().labels["deg-s"] == "velocities in °/s and mm/s"
+
+
+def test_a_problem_of_some_joints_keeps_listing_all():
+    header = '[[problems]]\nid = "slide"\njoints = ["d3"]\n\n[[readings]]\nid = "rpm"\n'
+    problem = scara(('[[readings]]\nid = "rpm"\n', header)).problem()
+    assert (problem.joints, problem.linear) == (("d3",), (True,))
+    assert problem.limits.velocity == pytest.approx([0.12])
+
+
+def test_one_number_serves_joints_of_one_unit():
+    """The slide alone: its one value needs no list."""
+    header = '[[problems]]\nid = "slide"\njoints = ["d3"]\n\n[[readings]]\nid = "rpm"\n'
+    claim = 'derivative = "velocity"\njoint = "d3"\nvalue = "0.2332"'
+    case = scara(
+        ('[[readings]]\nid = "rpm"\n', header),
+        (claim, 'derivative = "velocity"\nvalue = "233.2"'),
+    )
+    assert case.measured(case.claim("slide-velocity").printed[0], "velocity").value == (
+        pytest.approx(0.2332)
+    )
+
+
+def test_prescribed_ends_are_in_the_unit_of_their_joint():
+    case = scara(
+        ('family = "cubic-spline"', 'family = "cubic-spline"\nend_derivatives = [[3, 10, 20]]'),
+        ('[[claims]]\nid = "rest"', '[[claims]]\nid = "rest"\ntext = "at rest"'),
+    )
+    ((order, start),) = case.statement().curve().prescribed_at(0)
+    assert order == 1
+    assert start == pytest.approx((np.pi / 10, np.radians(10), 0.02))
+
+
+REFUSED = [
+    (
+        (POSITION, 'position = ["deg", "mm"]'),
+        "units.position: 2 units for 3 joints; give one for all, or one each",
+    ),
+    ((POSITION, "position = []"), "units.position: is an empty list; give one value for all"),
+    (
+        (POSITION, 'position = ["deg", "deg", "mm/s"]'),
+        "units.position[2]: 'mm/s' measures velocity, not position; use one of rad",
+    ),
+    (
+        (VELOCITY, 'velocity = ["r/min", "deg/s", "mm/s"]'),
+        "units.velocity[0]: unknown unit 'r/min' for velocity; write it as 'rpm'",
+    ),
+    (
+        (VELOCITY, 'velocity = "deg/s"'),
+        "units.velocity: joint 'd3' has 'deg/s' here and 'mm' in units.position; list one unit per "
+        "joint in units.velocity",
+    ),
+    (
+        (ACCELERATION, 'acceleration = ["deg/s^2", "mm/s^2", "m/s^2"]'),
+        "units.acceleration[1]: joint '2' has 'mm/s^2' here and 'deg' in units.position; give both "
+        "as an angle or both as a length",
+    ),
+    (
+        ('"revolute", "prismatic"]', '"prismatic", "prismatic"]'),
+        "units.position: joint '2' is in deg, but the robot's table calls it prismatic; give its "
+        "unit as a length such as mm, or correct robot.dh.kinds",
+    ),
+    (
+        ("velocity = [30, 150, 120]", "velocity = 30"),
+        "limits.velocity: is one number for joints in different units (rpm, deg/s, mm/s); give one "
+        "for each joint",
+    ),
+    (
+        ('of = "durations"\nderivative = "velocity"\nvalues = ["11.4", "48.5", "107.6"]',
+         'of = "durations"\nderivative = "velocity"\nvalue = "107.6"'),
+        "claims[2].value: is one number for joints in different units (rpm, deg/s, mm/s); give "
+        "values, one for each joint, or name its joint",
+    ),
+    (
+        ('derivative = "velocity"\nvalues = ["6.42", "36.7", "78.3"]',
+         'derivative = "velocity"\nvalue = "78.3"'),
+        "claims[5].value: is one number for joints in different units",
+    ),
+    (
+        ('[units]\n', '[[problems]]\nid = "turned"\nturns = { d3 = [0, 1, 0, 0] }\n\n[units]\n'),
+        "turns.d3: joint 'd3' slides, and turns are of angles; leave it out",
+    ),
+    (
+        ('joint = "d3"\n\n[[clues]]', 'joint = "1"\n\n[[clues]]'),
+        "clues[0].unit: 'mm/s' does not fit joint '1'; give a unit of angle",
+    ),
+    (
+        ('unit = ["deg/s", "rpm", "m/min"]', 'unit = ["deg/s", "m/min", "m/min"]'),
+        "clues[1].unit[1]: 'm/min' does not fit joint '2'; list one unit per joint",
+    ),
+    (
+        ('unit = ["deg/s", "rpm", "m/min"]', 'unit = ["deg/s", "m/min"]'),
+        "clues[1].unit: 2 units for 3 joints; give one for all, or one each",
+    ),
+    (
+        ('unit = ["deg/s", "rpm", "m/min"]', 'unit = ["deg/s", "knots", "m/min"]'),
+        "clues[1].unit[1]: 'knots' is no unit of velocity",
+    ),
+    (
+        ('[[cartesian]]\nid = "a"',
+         '[[clues]]\nid = "half"\nkind = "half-turns"\nwhere = "Table 1"\ntext = "mm"\n'
+         'joint = "d3"\n\n[[cartesian]]\nid = "a"'),
+        "clues[2].joint: joint 'd3' slides, and half turns are of angles; name another",
+    ),
+    (
+        ('family = "cubic-spline"', 'family = "clamped-b-spline"\ndegree = 5\n'
+         'knots = "averaged-continued"\nparameters = "chord"'),
+        'interpolant.parameters: "chord" adds angles and lengths, so that its knots depend on '
+        'their units; take "joint-chord" or "times"',
+    ),
+    (
+        ('family = "cubic-spline"', 'family = "cubic-spline"\nend_derivatives = [5]'),
+        "interpolant.end_derivatives[0]: is one number for joints in different units",
+    ),
+    (
+        ('"12.0"]', '"12e18"]'),
+        "lies outside the magnitudes from 1e-12 to 1e+12 m and s that are computed with",
+    ),
+    (
+        ('[[claims]]\nid = "durations"',
+         '[[columns]]\nid = "extra"\nwhere = "Table 1"\njoint = "4"\nvalues = [1, 2, 3, 4]\n\n'
+         '[[claims]]\nid = "durations"'),
+        "columns[0].unit: is needed where units.position lists one per joint of the robot's",
+    ),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("change", "line"), REFUSED, ids=[line[:60] for _, line in REFUSED])
+def test_each_refusal_has_its_line(change: tuple[str, str], line: str) -> None:
+    with pytest.raises(CaseError) as caught:
+        scara(change)
+    told = str(caught.value)
+    assert told.startswith("scara.toml: ")
+    assert "\n" not in told
+    assert line in told
+
+
+def test_instances_need_steps_that_a_sliding_joint_has():
+    block = (
+        '[[families]]\nid = "f"\nclaim = "durations"\nwhy = "w"\nkind = "joint"\nsteps = [1]\n'
+        "instances = 1\n\n"
+    )
+    with pytest.raises(CaseError, match=r'families\[0\].kind: "joint" measures a step as an angle'):
+        scara(('[[cartesian]]\nid = "a"', block + '[[cartesian]]\nid = "a"'))
+
+
+def test_chords_of_each_joint_and_chords_of_one_kind_are_taken():
+    curve = (
+        'family = "clamped-b-spline"\ndegree = 5\nknots = "averaged-continued"\nparameters = "{}"'
+    )
+    statement = scara(('family = "cubic-spline"', curve.format("joint-chord"))).statement()
+    chord = statement.declaration.model_copy(update={"parameters": "chord"})
+    turning = replace(statement, joints=(0, 1), declaration=chord)
+    assert turning.curve().parameters == "chord"
+    with pytest.raises(CaseError, match='"chord" adds angles and lengths'):
+        replace(statement, joints=(1, 2), declaration=chord).curve()
+
+
+def test_transcriptions_differ_where_a_unit_does():
+    other = scara((POSITION, 'position = ["deg", "rad", "mm"]'))
+    (found,) = compare_transcriptions(scara(), other)
+    assert (found.field, found.first, found.second) == ("units.position[1]", '"deg"', '"rad"')
+
+
+def test_new_takes_a_unit_for_each_joint(tmp_path):
+    table = tmp_path / "t.csv"
+    stream = io.StringIO()
+    csv.writer(stream).writerows([["1", "2", "d3"], ["10.5", "-20", "12"], ["60.1", "15", "85"]])
+    table.write_text(stream.getvalue())
+    units = {"position": "deg,rad,mm", "velocity": "rpm, rad/s, m/min"}
+    text = scaffold(table, units, velocity="30,2,7.2", family="cubic-spline")
+    assert tomllib.loads(text)["units"]["velocity"] == ["rpm", "rad/s", "m/min"]
+    limits = parse_case(text, "new.toml").problem().limits
+    assert limits.velocity == pytest.approx([np.pi, 2.0, 0.12])
+    with pytest.raises(CaseError, match=r"^units.position: 2 units for 3 joints"):
+        scaffold(table, units | {"position": "deg,mm"}, velocity="30,2,7.2")
+    with pytest.raises(CaseError, match=r"^units.time: 's,ms' are several units of time; give one"):
+        scaffold(table, units | {"time": "s,ms"}, velocity="30,2,7.2")
+
+
+def test_a_list_of_one_unit_is_that_unit():
+    """One limit then serves all joints, as it does without the list."""
+    text = SMALL.replace("UNITS", 'position = ["deg", "deg"]\nvelocity = ["rpm", "rpm"]')
+    listed = parse_case(text, "listed.toml").problem()
+    text = SMALL.replace("UNITS", 'position = "deg"\nvelocity = "rpm"')
+    assert np.array_equal(listed.waypoints, parse_case(text, "one.toml").problem().waypoints)
+    assert listed.limits.velocity == pytest.approx([np.pi, np.pi], rel=1e-15)
