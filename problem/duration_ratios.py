@@ -19,6 +19,11 @@ _MOST_APART = 1e12
 """Largest quotient of two ratios: beyond it float64 loses the curve of the shorter segment."""
 
 
+def ratio_word(given: object) -> RatioWord | None:
+    """The word that something is, if it is one of them."""
+    return next((word for word in RATIO_WORDS if word == given), None)
+
+
 def chord_lengths(waypoints: Array) -> Array:
     """Euclidean lengths of the steps between way-points, all joints together.
 

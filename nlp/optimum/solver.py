@@ -72,8 +72,7 @@ def solve(
 ) -> Solution:
     """Best known total time of a problem with shared durations, from an exact NLP.
 
-    Where the problem fixes the ratios of its durations, the answer is a formula: no start and no
-    known motion is looked at.
+    Where the problem fixes the ratios of its durations, it is a formula, without any start.
 
     Parameters
     ----------
@@ -109,8 +108,7 @@ def solve(
     Raises
     ------
     TrajgapError
-        If ``initial`` or ``known`` has the wrong shape, or ratios are fixed and the curve has free
-        coefficients or moving ends.
+        If ``initial`` or ``known`` has the wrong shape, or there is no formula for fixed ratios.
     """
     ask = Ask(
         starts,

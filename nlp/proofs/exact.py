@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -24,6 +23,7 @@ from ...problem import (
 )
 from ...problem.cases import Statement
 from ...problem.curves import Derivatives
+from .shares import exact_shares, printed_shares
 
 MOVING = (
     "prescribes derivatives other than 0, and no proof covers such a curve yet; what --any-curve "
@@ -305,17 +305,8 @@ def exact_problem(problem: Problem) -> ExactProblem:
         tuple(Fraction(float(x)) if np.isfinite(x) else None for x in problem.duration_upper),
         unit=_joined_units(["m" if slides else "rad" for slides in problem.linear]),
         pairs=tuple(pairs),
-        shares=_shares(problem.ratios),
+        shares=exact_shares(problem.ratios),
     )
-
-
-def _shares(ratios: Iterable[Any] | None) -> tuple[Fraction, ...] | None:
-    """Ratios of any scale as exact shares of their sum."""
-    if ratios is None:
-        return None
-    exact = [Fraction(x) for x in ratios]
-    total = sum(exact, Fraction(0))
-    return tuple(x / total for x in exact)
 
 
 def printed_problem(statement: Statement) -> ExactProblem:
@@ -402,22 +393,9 @@ def printed_problem(statement: Statement) -> ExactProblem:
         _joined_units([str(statement.unit("position", j)) for j in statement.joints]),
         tuple(pairs.items()),
         prescribed,
-        _printed_shares(statement, problem),
+        printed_shares(statement, problem),
         statement.durations.ratios == "chord" and len(statement.joints) > 1,
     )
-
-
-def _printed_shares(statement: Statement, problem: Problem) -> tuple[Fraction, ...] | None:
-    """Exact shares of the segments from the printed ratios; None where there are none."""
-    given = statement.durations.ratios
-    if isinstance(given, tuple):
-        return _shares(number.fraction for number in given)
-    if given != "chord":
-        return _shares(problem.ratios)
-    if len(statement.joints) > 1:
-        return None
-    own = [row[statement.joints[0]].fraction for row in statement.waypoints.points]
-    return _shares(abs(b - a) for a, b in pairwise(own))
 
 
 def _joined_units(each: Sequence[str]) -> str:

@@ -17,6 +17,7 @@ from .claim import (
     TimeClaim,
     TotalTimeClaim,
 )
+from .claim_fit import motions_of
 from .clue import AnyClue, AxisClue, DataSheetClue, HalfTurnsClue, SmoothClue
 from .data_files import PUBLISHED, SUITE_PREFIX, case_files
 from .digits import Digits
@@ -25,7 +26,6 @@ from .instances import InstancesBlock, instance_waypoints
 from .joint_units import unit_of, with_unit
 from .labels import ratio_words
 from .load import load_case, parse_case, published_ids
-from .references import motions_of
 from .robot_file import load_robot, robot_ids
 from .scaffolding import identity_of, scaffold
 from .schema import (

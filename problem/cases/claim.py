@@ -99,12 +99,6 @@ class DurationsClaim(TimeClaim):
                 ".blend_acceleration",
                 "stands beside blends; keep one of the two, as the other follows from it",
             )
-        if isinstance(self.blends, tuple) and len(self.blends) != len(self.durations) + 1:
-            raise fault(
-                ".blends",
-                f"{len(self.blends)} blends beside {len(self.durations)} durations; give one for "
-                "each way-point, or one for all",
-            )
         return self
 
 

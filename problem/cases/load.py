@@ -8,10 +8,11 @@ from typing import Any
 
 from ..textfile import parse_toml
 from .case import Case
+from .claim_fit import check_claims
 from .data_files import PUBLISHED, case_files, check_format, validated
 from .faults import Faults
 from .joint_units import check_clues, check_kinds
-from .references import check_claims, check_kinematics, check_references
+from .references import check_kinematics, check_references
 from .schema import CaseFile
 from .sizes import check_sizes, check_values
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..curves import MOST_OPEN, Curve, Derivatives
-from ..duration_ratios import RATIO_WORDS
+from ..duration_ratios import ratio_word
 from ..errors import CaseError, TrajgapError
 from ..fields import LimitPair
 from ..limits import Limits
@@ -237,7 +237,8 @@ class Statement:
         try:
             curve = declare(block, count, (start, finish))
         except TrajgapError as error:
-            raise self.fail("interpolant", _unprefixed(error)) from None
+            why = str(error).removeprefix("interpolant").lstrip(".: ")
+            raise self.fail("interpolant", why) from None
         if len(curve.waypoint_breaks) != count:
             raise self.fail(
                 "interpolant",
@@ -274,10 +275,9 @@ class Statement:
     def loose_ratios(self) -> bool:
         """Whether fixed ratios stand for intervals: printed digits, or lengths between them."""
         ratios = self.durations.ratios
-        if isinstance(ratios, tuple):
-            return any(not number.exact for number in ratios)
-        taken = (row[j] for row in self.waypoints.points for j in self.joints)
-        return ratios == "chord" and any(not number.exact for number in taken)
+        points = [row[j] for row in self.waypoints.points for j in self.joints]
+        taken = ratios if isinstance(ratios, tuple) else points if ratios == "chord" else ()
+        return any(not number.exact for number in taken)
 
     def _end(self, key: str, values: Values | None, orders: tuple[int, ...]) -> Derivatives:
         """Derivatives at one end in rad and s, of the joints that take part."""
@@ -293,11 +293,8 @@ class Statement:
     ) -> float | tuple[float, ...]:
         if isinstance(given, tuple):
             if len(given) != len(self.labels):
-                raise self.fail(
-                    field,
-                    f"{len(given)} values for {len(self.labels)} joints; give one for all, "
-                    "or one each",
-                )
+                why = f"{len(given)} values for {len(self.labels)} joints"
+                raise self.fail(field, f"{why}; give one for all, or one each")
             return tuple(self._in_si(field, order, given[j], j) for j in self.joints)
         return self._in_si(field, order, given)
 
@@ -318,8 +315,8 @@ class Statement:
         CaseError
             If the numbers don't fit together, or the way-points are not printed.
         """
-        data = self.data(digits)
-        return self._at(data, np.array([[angle.value for angle in row] for row in self.points()]))
+        points = [[angle.value for angle in row] for row in self.points()]
+        return self._at(self.data(digits), np.array(points))
 
     def problem_at(self, waypoints: Array) -> Problem:
         """The same question through other way-points.
@@ -328,10 +325,6 @@ class Statement:
         ----------
         waypoints : ndarray, shape (way-points, joints of the robot)
             rad; as many way-points as the file states.
-
-        Returns
-        -------
-        Problem
 
         Raises
         ------
@@ -343,11 +336,7 @@ class Statement:
     def _at(self, data: Data, waypoints: Array) -> Problem:
         curve, limits, lower, upper = data
         fixed = self.durations.ratios
-        ratios = (
-            np.array([number.value for number in fixed])
-            if isinstance(fixed, tuple)
-            else next((word for word in RATIO_WORDS if word == fixed), None)
-        )
+        numbers = [number.value for number in fixed] if isinstance(fixed, tuple) else None
         try:
             return Problem(
                 waypoints=waypoints,
@@ -359,7 +348,7 @@ class Statement:
                 joints=tuple(self.labels[j] for j in self.joints),
                 linear=tuple(self.linear[j] for j in self.joints),
                 name=self.name,
-                ratios=ratios,
+                ratios=ratio_word(fixed) if numbers is None else np.array(numbers),
             )
         except TrajgapError as error:
             field, of, why = str(error).partition("ratios: ")
@@ -458,7 +447,3 @@ class Statement:
             none if one is None else self.si(one, quantity, f"{block}.{name}", place)
             for place, one in enumerate(upper)
         ]
-
-
-def _unprefixed(error: TrajgapError) -> str:
-    return str(error).removeprefix("interpolant").lstrip(".: ")

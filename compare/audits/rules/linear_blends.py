@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Literal, TypeGuard
+from typing import TypeGuard
 
 import numpy as np
 
-from ....problem import Array, CaseError, Printed, Problem
+from ....problem import Array, CaseError, Measured, Printed, Problem
 from ....problem.cases import AnyClaim, Digits, DurationsClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..parabolic_blends import Blended, EndBlends, by_blend_accelerations, by_blend_times
@@ -160,29 +160,24 @@ def _blended(
         waypoints.lower == waypoints.upper
     ).all())  # fmt: skip
     if claim.blends is not None:
-        count = len(durations.value) + 1
-        blends = _box(study, claim.blends, count, "time", claim.problem, rid, exact)
-        return by_blend_times(waypoints, durations, blends, ends)
+        numbers = _each(claim.blends, len(durations.value) + 1)
+        times = [study.case.measured(n, "time", claim.problem, rid) for n in numbers]
+        return by_blend_times(waypoints, durations, _box(times, exact), ends)
     assert claim.blend_acceleration is not None
-    given = claim.blend_acceleration
-    if isinstance(given, tuple):
-        labels = study.case.robot.joints
-        given = tuple(given[labels.index(label)] for label in problem.joints)
-    sizes = _box(study, given, len(problem.joints), "acceleration", pid, rid, exact)
-    return by_blend_accelerations(waypoints, durations, sizes, ends)
+    labels = study.case.robot.joints
+    given = dict(zip(labels, _each(claim.blend_acceleration, len(labels)), strict=True))
+    sizes = [
+        study.case.measured(given[label], "acceleration", pid, rid, label)
+        for label in problem.joints
+    ]
+    return by_blend_accelerations(waypoints, durations, _box(sizes, exact), ends)
 
 
-def _box(
-    study: Study,
-    given: Printed | tuple[Printed, ...],
-    count: int,
-    quantity: Literal["time", "acceleration"],
-    pid: str | None,
-    rid: str,
-    exact: bool,
-) -> RoundingBox:
-    numbers = given if isinstance(given, tuple) else (given,) * count
-    measured = [study.case.measured(n, quantity, pid, rid) for n in numbers]
+def _each(given: Printed | tuple[Printed, ...], count: int) -> tuple[Printed, ...]:
+    return given if isinstance(given, tuple) else (given,) * count
+
+
+def _box(measured: Sequence[Measured], exact: bool) -> RoundingBox:
     value: Array = np.array([m.value for m in measured])
     if exact:
         return RoundingBox.exact(value)
@@ -205,12 +200,13 @@ def _worst(study: Study, problem: Problem, plain: Blended, pid: str, rid: str) -
             ratio = np.where(size > 0, size / limits[:, order], 0.0)
         at = np.unravel_index(int(np.argmax(ratio)), ratio.shape)
         if ratio[at] > best[0]:
-            unit = unit_shown(study, pid, rid, quantity)
-            value = in_units(study, pid, rid, quantity, float(size[at]))
-            limit = in_units(study, pid, rid, quantity, float(limits[at[1], order]))
+            joint = problem.joints[at[1]]
+            unit = unit_shown(study, pid, rid, quantity, joint)
+            value = in_units(study, pid, rid, quantity, float(size[at]), joint)
+            limit = in_units(study, pid, rid, quantity, float(limits[at[1], order]), joint)
             best = (
                 float(ratio[at]),
-                f"the {quantity} of joint {problem.joints[at[1]]} reaches {value:.6g} {unit}, "
+                f"the {quantity} of joint {joint} reaches {value:.6g} {unit}, "
                 f"limit {limit:.6g} {unit}",
             )
     return best[1]

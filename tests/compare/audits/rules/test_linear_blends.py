@@ -78,7 +78,8 @@ def test_another_number_of_durations_builds_no_motion() -> None:
 @pytest.mark.parametrize(
     ("more", "said"),
     [
-        ("blends = [0.4, 0.4]", "2 blends beside 3 durations"),
+        ("blends = [0.4, 0.4]", "2 blends for 4 way-points"),
+        ("blend_acceleration = [50, 50]", "2 values for 1 joints"),
         ("blends = 0.4\nblend_acceleration = 50", "keep one of the two"),
     ],
 )

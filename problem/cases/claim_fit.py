@@ -1,0 +1,194 @@
+"""Whether the numbers of each claim fit the problem that it speaks about."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable, Sequence
+
+from ..printed import Printed
+from ..units import Quantity
+from .claim import (
+    AnyClaim,
+    ControlVerticesClaim,
+    DurationsClaim,
+    MaximumClaim,
+    MeasureClaim,
+    MotionValueClaim,
+    PeakClaim,
+    TotalTimeClaim,
+)
+from .faults import Faults
+from .schema import CaseFile
+from .statement import Statement
+
+
+def check_claims(
+    document: CaseFile, faults: Faults, statements_of: Callable[[AnyClaim], Sequence[Statement]]
+) -> None:
+    """Check that each claim fits the problem that it speaks about.
+
+    Parameters
+    ----------
+    document : CaseFile
+    faults : Faults
+        Takes what is wrong.
+    statements_of : callable
+        The problems of a claim under every reading, that under the default one first.
+    """
+    problems = [problem.id for problem in document.problems]
+    for index, claim in enumerate(document.claims):
+        if claim.problem is not None and claim.problem not in problems:
+            continue  # told already
+        with faults.noted():
+            every = statements_of(claim)
+            _check_claim(document, faults, claim, every, f"claims[{index}]")
+
+
+def _check_claim(
+    document: CaseFile, faults: Faults, claim: AnyClaim, every: Sequence[Statement], at: str
+) -> None:
+    statement = every[0]
+
+    def number(printed: Printed, quantity: Quantity, field: str, joint: int | None = None) -> None:
+        with faults.noted():
+            statement.si(printed, quantity, f"{at}.{field}", joint)
+
+    labels = [statement.labels[j] for j in statement.joints]
+    if claim.joint in statement.labels and claim.joint not in labels:
+        why = f"joint {claim.joint!r} takes no part; the problem has {', '.join(labels)}"
+        faults.add(f"{at}.joint", why + statement.selected)
+    if isinstance(claim, DurationsClaim | MaximumClaim):
+        for segment, duration in enumerate(claim.durations):
+            if duration.fraction == 0:
+                why = "is 0; a duration is positive, give its digits"
+                faults.add(f"{at}.durations[{segment}]", why + statement.selected)
+            number(duration, "time", f"durations[{segment}]")
+        if claim.total is not None:
+            number(claim.total, "time", "total")
+    if isinstance(claim, DurationsClaim):
+        _check_blends(faults, claim, every, at)
+    if isinstance(claim, TotalTimeClaim):
+        number(claim.value, "time", "value")
+    if isinstance(claim, PeakClaim | MeasureClaim):
+        for position, printed in enumerate(claim.printed):
+            if claim.values is not None:
+                number(printed, claim.derivative, f"values[{position}]", position)
+            elif claim.joint in statement.labels:
+                number(printed, claim.derivative, "value", statement.labels.index(claim.joint))
+            else:
+                _check_one_unit(faults, claim.derivative, every, f"{at}.value")
+                number(printed, claim.derivative, "value")
+        _check_motion_value(document, claim, statement, at)
+    if isinstance(claim, ControlVerticesClaim):
+        _check_vertices(claim, statement, f"{at}.joint_rows")
+
+
+def motions_of(claims: Iterable[AnyClaim], value: MotionValueClaim) -> list[AnyClaim]:
+    """The claims of durations whose motion a number may describe: the one named, or all that fit.
+
+    Parameters
+    ----------
+    claims : iterable of AnyClaim
+        Of the file.
+    value : MotionValueClaim
+
+    Returns
+    -------
+    list of AnyClaim
+    """
+    motions = [c for c in claims if isinstance(c, DurationsClaim | MaximumClaim)]
+    if value.of is not None:
+        return [c for c in motions if c.id == value.of]
+    return [
+        c
+        for c in motions
+        if (value.algorithm is None or c.algorithm == value.algorithm)
+        and c.problem == value.problem
+        and c.joint in (None, value.joint)
+        and c.other_curve is None
+    ]
+
+
+def _check_blends(
+    faults: Faults, claim: DurationsClaim, every: Sequence[Statement], at: str
+) -> None:
+    """Check that blends fit the way-points or the joints, and that they have a unit."""
+    statement = every[0]
+    points, joints = statement.waypoints.number, len(statement.labels)
+    blends, size = claim.blends, claim.blend_acceleration
+    if blends is not None:
+        each = blends if isinstance(blends, tuple) else (blends,)
+        for number in each:
+            with faults.noted():
+                statement.si(number, "time", f"{at}.blends")
+        if isinstance(blends, tuple) and len(blends) != points:
+            faults.add(
+                f"{at}.blends",
+                f"{len(blends)} blends for {points} way-points; give one for each, or one for all",
+            )
+    if isinstance(size, tuple):
+        if len(size) != joints:
+            faults.add(
+                f"{at}.blend_acceleration",
+                f"{len(size)} values for {joints} joints; give one each, or one for all",
+            )
+            return
+        for joint, number in enumerate(size):
+            with faults.noted():
+                statement.si(number, "acceleration", f"{at}.blend_acceleration[{joint}]", joint)
+    elif size is not None:
+        _check_one_unit(faults, "acceleration", every, f"{at}.blend_acceleration")
+        with faults.noted():
+            statement.si(size, "acceleration", f"{at}.blend_acceleration")
+
+
+def _check_one_unit(
+    faults: Faults, quantity: Quantity, every: Sequence[Statement], field: str
+) -> None:
+    """Refuse one number for joints whose units differ under some reading."""
+    for statement in every:
+        units = getattr(statement.units, quantity)
+        if units is not None and statement.unit(quantity) is None:
+            apart = ", ".join(dict.fromkeys(units[j] for j in statement.joints))
+            faults.add(
+                field,
+                f"is one number for joints in different units ({apart}); give values, one for each "
+                "joint, or name its joint" + statement.selected,
+            )
+
+
+def _check_motion_value(
+    document: CaseFile, claim: PeakClaim | MeasureClaim, statement: Statement, at: str
+) -> None:
+    joints = len(statement.labels)
+    if claim.values is not None and len(claim.values) != joints:
+        raise statement.fail(
+            f"{at}.values", f"{len(claim.values)} values for {joints} joints; give one each"
+        )
+    meant = motions_of(document.claims, claim)
+    for motion in meant:
+        if motion.problem != claim.problem:
+            raise statement.fail(
+                f"{at}.of", f"{motion.id!r} is about another problem; name a motion of this one"
+            )
+    if len(meant) > 1:
+        names = ", ".join(repr(c.id) for c in meant[:-1])
+        raise statement.fail(
+            f"{at}.of",
+            f"is missing, and the {claim.quantity} may be that of {names} or {meant[-1].id!r}; "
+            f"name the motion: of = {' or of = '.join(json.dumps(c.id) for c in meant)}",
+        )
+
+
+def _check_vertices(claim: ControlVerticesClaim, statement: Statement, field: str) -> None:
+    joints, count = len(statement.labels), statement.waypoints.number
+    if len(claim.joint_rows) != joints:
+        raise statement.fail(
+            field, f"gives {len(claim.joint_rows)} joints, but robot.joints lists {joints}"
+        )
+    for position, row in enumerate(claim.joint_rows):
+        if len(row) != count + 2:
+            raise statement.fail(
+                f"{field}[{position}]",
+                f"{len(row)} control vertices for {count} way-points; give {count + 2}",
+            )
