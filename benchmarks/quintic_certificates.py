@@ -1,52 +1,43 @@
-"""Gap of the certified interval against boxes and seconds on the twenty C4 quintic problems.
+"""Certified intervals of the twenty C4 quintic problems: boxes, seconds, bytes.
 
 ``python benchmarks/quintic_certificates.py [--gap G] [--seconds S] [--every N] [--first F]
-[--verify] [--workers N]``: one line per problem and complete stage. Boxes are
-cumulative; seconds are of the processor, with the time on the clock behind them.
+[--workers N] [--write FILE.csv]`` prints a line per problem, and writes the table of
+docs/explanation/certificates-quintic.md. Seconds of the clock hold everything that `certify` does:
+the search for the answer, the proof, and proving the result again.
 """
 
 from __future__ import annotations
 
 import argparse
+import csv
 import json
 import time
+from pathlib import Path
 
 from quintic_instances import instances
 from trajgap.nlp.proofs.certifiers import certify
 from trajgap.nlp.proofs.document import certificate
-from trajgap.nlp.proofs.outcome import Progress
 from trajgap.problem import Problem
 from trajgap.verify import verify_certificate
 
+COLUMNS = ("problem", "interval (s)", "boxes", "processor s", "clock s", "bytes", "proved again, s")
 
-def line(problem: Problem, gap: float, seconds: float, check: bool, workers: int) -> None:
-    """Certify one problem and print what each stage reached."""
+
+def measured(problem: Problem, gap: float, seconds: float, workers: int) -> tuple[str, ...]:
+    """Certify one problem: a row of the table."""
     began, clock = time.process_time(), time.perf_counter()
-    stages: list[tuple[float, int, float, float]] = []
-    last, spent = Progress(0.0, 0.0, 1.0, 0, 0, 0.0), (0.0, 0.0)
-
-    def report(progress: Progress) -> None:
-        nonlocal last, spent
-        spent = time.process_time() - began, time.perf_counter() - clock
-        if progress.lower > last.lower:
-            stages.append((progress.gap, progress.nodes, *spent))
-        last = progress
-
-    found = certify(problem, gap=gap, seconds=seconds, report=report, workers=workers)
-    # Without the check of the proof, which ends `certify`.
-    stages.append((found.gap, found.nodes, *spent))
-    for reached, nodes, processor, wall in stages:
-        print(f"| {problem.name} | {reached:.4f} | {nodes} | {processor:.1f} | {wall:.0f} |")
+    found = certify(problem, gap=gap, seconds=seconds, workers=workers)
+    spent, passed = time.process_time() - began, time.perf_counter() - clock
     assert found.upper is not None
-    proved = ""
-    if check and found.proof is not None:
-        text = json.dumps(certificate(found))
-        began = time.process_time()
-        verdict = verify_certificate(json.loads(text), seconds=600.0)
-        assert verdict.proves, verdict
-        proved = f" {len(text)} bytes, proved again in {time.process_time() - began:.1f} s"
+    assert found.gap <= gap, (problem.name, found.gap)
+    text = json.dumps(certificate(found))
+    began = time.process_time()
+    verdict = verify_certificate(json.loads(text), seconds=600.0)
+    assert verdict.proves, verdict
+    again = time.process_time() - began
     interval = f"[{float(found.lower):.6f}, {float(found.upper):.6f}]"
-    print(f"  {problem.name}: {interval} s, {found.outcome};{proved}", flush=True)
+    boxes, size = str(found.nodes), str(len(text))
+    return problem.name, interval, boxes, f"{spent:.1f}", f"{passed:.1f}", size, f"{again:.1f}"
 
 
 def main() -> None:
@@ -55,13 +46,20 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=600.0)
     parser.add_argument("--every", type=int, default=1)
     parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--verify", action="store_true")
     parser.add_argument("--workers", type=int, default=1)
+    parser.add_argument("--write", type=Path)
     given = parser.parse_args()
     certify(instances()[0], gap=0.3)  # compile
-    print("| problem | gap | boxes | processor s | clock s |\n|---|---|---|---|---|")
+    print(*COLUMNS, sep=" | ")
+    rows = []
     for problem in instances()[given.first :: given.every]:
-        line(problem, given.gap, given.seconds, given.verify, given.workers)
+        rows.append(measured(problem, given.gap, given.seconds, given.workers))
+        print(*rows[-1], sep=" | ", flush=True)
+    if given.write is not None:
+        with given.write.open("w", encoding="utf-8", newline="") as file:
+            command = f"--gap {given.gap:g} --workers {given.workers}"
+            file.write(f"# python benchmarks/quintic_certificates.py {command}\n")
+            csv.writer(file, lineterminator="\n").writerows([COLUMNS, *rows])
 
 
 if __name__ == "__main__":

@@ -200,7 +200,8 @@ class Bound:
         """Taylor coefficients of M and b, segment by segment, and R with RᵀR ≈ M0⁻¹."""
         n, size, unknowns = self.n, self.size, 2 * (self.n - 1)
         top = self.r + self.e
-        self.stiff = np.zeros((4, size, n, unknowns, unknowns))
+        self.blocks = np.zeros((4, size, n, 4, 4))
+        self.m0 = np.zeros((size, unknowns, unknowns))
         self.load = np.zeros((5, size, n, unknowns))
         self.stiff_top = np.zeros((size, unknowns, unknowns))
         self.load_top = np.zeros((size, n, unknowns))
@@ -219,13 +220,26 @@ class Bound:
                     power = int(_POWER[a, b])
                     for o in range(power + 1):
                         term = comb(power, o) * _STIFF[a, b] * self.r[:, k] ** (power - o)
-                        self.stiff[o, :, k, i, j] = term
+                        self.blocks[o, :, k, a, b] = term
+                    self.m0[:, i, j] += self.blocks[0, :, k, a, b]
                     self.stiff_top[:, i, j] += abs(_STIFF[a, b]) * top[:, k] ** power
-        self.m0 = self.stiff[0].sum(axis=1)
         try:
             self.root = np.linalg.inv(np.linalg.cholesky(self.m0))
         except np.linalg.LinAlgError:
             raise Refused("the matrix of a leaf is not positive definite") from None
+
+    def _acting(self, vectors: Array) -> Array:
+        """M_k,o v of vectors (leaf, vector, unknown): (o, leaf, segment, vector, unknown)."""
+        own = np.zeros((self.size, self.n, vectors.shape[1], 4))
+        for k, places in enumerate(self.places):
+            for a, i in places:
+                own[:, k, :, a] = vectors[:, :, i]
+        moved = own @ np.swapaxes(self.blocks, 3, 4)
+        found = np.zeros((4, self.size, self.n, *vectors.shape[1:]))
+        for k, places in enumerate(self.places):
+            for a, i in places:
+                found[:, :, k, :, i] = moved[:, :, k, :, a]
+        return found
 
     def _framed(self, matrix: Array) -> tuple[Array, Array]:
         """R A Rᵀ, and the largest row sum of its rounding."""
@@ -357,18 +371,19 @@ class Bound:
     def _joint(self, step: Array, phi: Array) -> dict[str, Any]:
         """One joint's part: F = φᵀx̃ + μᵀ(b − M x̃) + (φ − M μ)ᵀ(x − x̃), x̃ = x0 + Σ X_m δ_m."""
         n, r, e = self.n, self.r, self.e
-        stiff, load = self.stiff, self.load * step[:, None]
+        load = self.load * step[:, None]
         full = phi[1] + phi[0] * r[:, :, None]
         x0 = self._solve(load[0].sum(axis=1)[:, None])[:, 0]
-        rise = load[1] - np.einsum("lkij,lj->lki", stiff[1], x0)
-        slope = self._solve(rise)
         mu = self._solve(full.sum(axis=1)[:, None])[:, 0]
+        on_x0, on_mu = np.moveaxis(self._acting(np.stack([x0, mu], axis=1)), 3, 0)
+        rise = load[1] - on_x0[1]
+        slope = self._solve(rise)
         wide = np.abs(x0) + np.einsum("lm,lmi->li", e, np.abs(slope))
         reach = (self.load_top * np.abs(step)[:, None]).sum(axis=1)
         reach += np.einsum("lij,lj->li", self.stiff_top, wide)
         # π = φ − M μ: constant, then Taylor parts of each segment.
         rest = full.sum(axis=1) - np.einsum("lij,lj->li", self.m0, mu)
-        gain = -np.einsum("olkij,lj->olki", stiff[1:], mu)
+        gain = -on_mu[1:]
         gain[0] += phi[0]
         high = phi[3] + phi[2] * (r + e)[:, :, None]
         weak = high.sum(axis=1) + np.einsum("lij,lj->li", self.stiff_top, np.abs(mu))
@@ -382,14 +397,14 @@ class Bound:
         )
         # ρ = b − M x̃: constant and linear parts, which are 0 but for rounding; then, o ≥ 2,
         # (b_o − M_o x0 − M_(o−1) X_k) δ_kᵒ of each segment k, and −M_o X_m δ_kᵒ δ_m for m ≠ k.
-        pulled = np.einsum("olkij,lmj->olkmi", stiff[1:], slope)
+        pulled = self._acting(slope)[1:]
         zero = load[0].sum(axis=1) - np.einsum("lij,lj->li", self.m0, x0)
         linear = rise - np.einsum("lij,lmj->lmi", self.m0, slope)
         loose = np.abs(zero) + np.einsum("lm,lmi->li", e, np.abs(linear)) + ROUND * reach
         each, (k, m) = np.arange(n), np.triu_indices(n, 1)
         own = [load[o] - pulled[o - 2][:, each, each] for o in range(2, 5)]
-        own[0] = own[0] - np.einsum("lkij,lj->lki", stiff[2], x0)
-        own[1] = own[1] - np.einsum("lkij,lj->lki", stiff[3], x0)
+        own[0] = own[0] - on_x0[2]
+        own[1] = own[1] - on_x0[3]
         pairs = -(pulled[0] + np.swapaxes(pulled[0], 1, 2))[:, k, m]
         k_, m_ = np.nonzero(~np.eye(n, dtype=bool))
         later = (self._energy(own[2]) * e**4).sum(axis=1)
@@ -413,7 +428,7 @@ class Bound:
         )
         alone = np.zeros((5, self.size, n))
         for o in range(5):
-            part = load[o] if o == 4 else load[o] - np.einsum("lkij,lj->lki", stiff[o], x0)
+            part = load[o] if o == 4 else load[o] - on_x0[o]
             alone[o] = np.einsum("li,lki->lk", mu, part)
         alone[0] += np.einsum("lki,li->lk", full, x0)
         alone[1] += np.einsum("lki,li->lk", phi[0], x0)

@@ -86,7 +86,7 @@ def small_parts(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.usefixtures("small_parts")
 def test_parts_join_to_the_tree_of_one_search(monkeypatch: pytest.MonkeyPatch) -> None:
     question, here = stage(0.9995, Here(), 1)
-    assert int(here.sizes[0]) > 20 * 8, "too few boxes for many parts"
+    assert int(here.sizes[0]) > 10 * 8, "too few boxes for many parts"
     assert same(here, whole(question))
     with ThreadPoolExecutor(3) as threads:
         assert same(here, stage(0.9995, threads, 3)[1])

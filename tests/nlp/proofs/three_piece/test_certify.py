@@ -257,7 +257,7 @@ def test_positions_that_no_direction_keeps_are_proved_infeasible() -> None:
 
 def test_what_is_not_covered_is_said() -> None:
     q = np.array([[0.2], [1.1], [-0.4], [0.7]])
-    with pytest.raises(TrajgapError, match="covered are rest-to-rest"):
+    with pytest.raises(TrajgapError, match="covered are curves at fixed ratios"):
         certify(Problem(q, Limits(1.0), uniform_cubic_b_spline(4, "timed")))
     with pytest.raises(TrajgapError, match="nothing limits"):
         certify(Problem(q, Limits(), three_five_three()))
