@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 
 from .problem import StatedProblem
-from .quintic_bound import ROUND, SLACK, Array, Bound, Task
+from .quintic_bound import SLACK, Array, Bound, Task
+from .quintic_parts import ROUND
 from .ranges import (
     LEAST_TAU,
     MOST_POWER,

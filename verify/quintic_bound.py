@@ -9,20 +9,19 @@ on any path, 2.3e-13 of the same sum over absolute values: `ROUND` of that sum i
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import combinations, combinations_with_replacement
+from copy import copy
 from math import comb
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .quintic_parts import ROUND, Cubic, Part, norms
 from .ranges import MOST_LIMITS, MOST_WEIGHT, QUINTIC_PLACES
 from .reading import Clock, Refused, listed, need, whole
 
 Array = NDArray[np.float64]
 
-ROUND = 1e-12
-"""Of a sum over absolute values: four times what its roundings can amount to."""
 SLACK = 1e-12
 """Of the sides of a box: far more than the rounding of the sums that shrink it."""
 BRIEFEST = 1e-40
@@ -95,72 +94,6 @@ class Task:
         self.shapes *= self.rows[:, 3:4]
 
 
-class _Part:
-    """Rπ or Rρ over each box: vectors of two orders with factors in [−1, 1], and a remainder.
-
-    Parameters
-    ----------
-    leading, following : ndarray, shape (leaf, vector, unknown)
-        Vectors of the lowest order, and of the next one.
-    later : ndarray, shape (leaf,)
-        Norm of the terms of higher order, and of what is 0 but for rounding, with all rounding.
-    """
-
-    def __init__(self, leading: Array, following: Array, later: Array) -> None:
-        self.leading, self.following, self.later = leading, following, later
-        # ‖Σ x_i v_i‖² ≤ Σ |v_iᵀv_j|.
-        self.first = np.sqrt(_products(leading, leading))
-        self.second = _norms(following)
-
-    @property
-    def most(self) -> Array:
-        """The largest norm."""
-        return self.first + self.second + self.later
-
-    def beyond(self, other: _Part) -> Array:
-        """The largest |xᵀy|, x of this part and y of the other, but for both lowest orders."""
-        found = _products(self.leading, other.following) + _products(self.following, other.leading)
-        found += self.second * other.second
-        return found + (self.first + self.second) * other.later + self.later * other.most
-
-
-def _norms(vectors: Array) -> Array:
-    """Sum of the norms of each leaf's vectors."""
-    return np.asarray(np.linalg.norm(vectors, axis=2).sum(axis=1))
-
-
-def _products(these: Array, those: Array) -> Array:
-    """Bound of |(Σ x_i v_i)ᵀ(Σ y_j w_j)| for all |x_i|, |y_j| ≤ 1."""
-    found = np.abs(these @ np.swapaxes(those, 1, 2)).sum(axis=(1, 2))
-    return np.asarray(found + ROUND * _norms(these) * _norms(those))
-
-
-class _Cubic:
-    """Products of three variables: one number for each, whatever the order of its factors.
-
-    Parameters
-    ----------
-    n : int
-        Variables.
-    """
-
-    def __init__(self, n: int) -> None:
-        every = list(combinations_with_replacement(range(n), 3))
-        place = {one: at for at, one in enumerate(every)}
-        pairs = [(k, k) for k in range(n)] + list(combinations(range(n), 2))
-        self.size = len(every)
-        self.cubes = np.array([place[k, k, k] for k in range(n)])
-        """Of x_k³."""
-        self.squares = np.array(
-            [[place[min(k, m), k, max(k, m)] for m in range(n)] for k in range(n)]
-        )
-        """Of x_k²·x_m."""
-        self.products = np.array(
-            [[place[tuple(sorted((a, *pair)))] for pair in pairs] for a in range(n)]  # type: ignore[index]
-        )
-        """Of x_a times the squares x_k², then the pairs x_k·x_m of k < m."""
-
-
 class Bound:
     """Weighted limits on a batch of boxes: arrays (leaf, ...) in the symbols of the docs page.
 
@@ -227,6 +160,15 @@ class Bound:
             self.root = np.linalg.inv(np.linalg.cholesky(self.m0))
         except np.linalg.LinAlgError:
             raise Refused("the matrix of a leaf is not positive definite") from None
+
+    def _of(self, leaf: NDArray[np.int64]) -> Bound:
+        """The boxes of some leaves."""
+        own = copy(self)
+        own.size, own.r, own.e = len(leaf), self.r[leaf], self.e[leaf]
+        own.blocks, own.load = self.blocks[:, leaf], self.load[:, leaf]
+        own.load_top, own.stiff_top = self.load_top[leaf], self.stiff_top[leaf]
+        own.m0, own.root = self.m0[leaf], self.root[leaf]
+        return own
 
     def _acting(self, vectors: Array) -> Array:
         """M_k,o v of vectors (leaf, vector, unknown): (o, leaf, segment, vector, unknown)."""
@@ -324,34 +266,38 @@ class Bound:
         # πᵀM⁻¹ρ = ½(c + s)·(Rπ)ᵀ(Rρ) + what is at most ½(c − s)·‖Rπ‖‖Rρ‖.
         small, large = self._spectrum()
         middle, spread = 0.5 * (large + small), 0.5 * (large - small) + ROUND * large
-        thrice = _Cubic(n)
+        thrice = Cubic(n)
         cubic = np.zeros((self.size, thrice.size))
         for joint in range(self.joints):
             mine = j == joint
             if not mine.any():
                 continue
+            leaf, at = np.unique(self.at[mine], return_inverse=True)
+            own = self._of(leaf)
             # Of velocities times r and of accelerations, then both in absolute values.
-            phi = np.zeros((4, self.size, n, 2 * n - 2))
+            phi = np.zeros((4, own.size, n, 2 * n - 2))
             for segment in range(n):
                 for a, i in self.places[segment]:
-                    on = mine & (k == segment)
-                    np.add.at(phi[a // 2, :, segment, i], self.at[on], shape[on, a + 1])
-                    np.add.at(phi[2 + a // 2, :, segment, i], self.at[on], np.abs(shape[on, a + 1]))
-            found = self._joint(task.steps[:, joint], phi)
-            alone += found["alone"]
-            first += found["first"]
-            second += found["second"]
-            size += found["size"]
+                    on = k[mine] == segment
+                    each = shape[mine][on, a + 1]
+                    np.add.at(phi[a // 2, :, segment, i], at[on], each)
+                    np.add.at(phi[2 + a // 2, :, segment, i], at[on], np.abs(each))
+            found = own._joint(task.steps[:, joint], phi)
+            alone[:, leaf] += found["alone"]
+            first[leaf] += found["first"]
+            second[leaf] += found["second"]
+            size[leaf] += found["size"]
             adjoint, residual = found["adjoint"], found["residual"]
-            both = adjoint.leading @ np.swapaxes(residual.leading, 1, 2)
-            for k_, where in enumerate(thrice.products):
-                cubic[:, where] += middle[:, None] * both[:, k_]
-            rounding = ROUND * _norms(adjoint.leading) * _norms(residual.leading)
-            error += middle * (rounding + adjoint.beyond(residual))
-            error += spread * adjoint.most * residual.most
-            for k_, where in enumerate(thrice.squares):
-                cubic[:, where] += found["squared"][:, k_] * e[:, k_, None] ** 2 * e
-            error += found["quartic"]
+            both = adjoint.leading @ np.swapaxes(residual.leading, 1, 2) * middle[leaf, None, None]
+            part = np.zeros((own.size, thrice.size))
+            for one, where in enumerate(thrice.products):
+                part[:, where] += both[:, one]
+            for one, where in enumerate(thrice.squares):
+                part[:, where] += found["squared"][:, one] * own.e[:, one, None] ** 2 * own.e
+            cubic[leaf] += part
+            rounding = ROUND * norms(adjoint.leading) * norms(residual.leading)
+            error[leaf] += middle[leaf] * (rounding + adjoint.beyond(residual))
+            error[leaf] += spread[leaf] * adjoint.most * residual.most + found["quartic"]
         value += alone[0].sum(axis=1)
         first += alone[1]
         cubic[:, thrice.cubes] += alone[3] * e**3
@@ -390,7 +336,7 @@ class Bound:
         outer = np.abs(self.root)
         loose = np.abs(rest) + ROUND * weak
         later = (self._energy(gain[2]) * e**3).sum(axis=1)
-        adjoint = _Part(
+        adjoint = Part(
             self._rooted(gain[0]) * e[:, :, None],
             self._rooted(gain[1]) * (e**2)[:, :, None],
             later + np.linalg.norm(np.einsum("lij,lj->li", outer, loose), axis=1),
@@ -409,7 +355,7 @@ class Bound:
         k_, m_ = np.nonzero(~np.eye(n, dtype=bool))
         later = (self._energy(own[2]) * e**4).sum(axis=1)
         later += (self._energy(pulled[2][:, k_, m_]) * e[:, k_] ** 3 * e[:, m_]).sum(axis=1)
-        residual = _Part(
+        residual = Part(
             np.concatenate(
                 [
                     self._rooted(own[0]) * (e**2)[:, :, None],

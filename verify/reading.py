@@ -103,17 +103,18 @@ def text(value: Any, what: str) -> str:
 
 def number(value: Any) -> Fraction:
     """A rational from its exact text: an integer, a decimal or a quotient."""
-    right = type(value) is str and _NUMBER.fullmatch(value) is not None
-    need(right, f"malformed: no number of at most {MOST_DIGITS} digits: {shown(repr(value))}")
+    if type(value) is not str or _NUMBER.fullmatch(value) is None:
+        shape = f"no number of at most {MOST_DIGITS} digits"
+        raise Refused(f"malformed: {shape}: {shown(repr(value))}")
     mantissa, _, exponent = value.partition("e")
     return Fraction(mantissa) * Fraction(10) ** int(exponent or 0)
 
 
 def whole(value: Any, low: int, high: int) -> int:
     """An integer within bounds; true and false are none."""
-    right = type(value) is int and low <= value <= high
-    need(right, f"malformed: no integer in {low}..{high}: {shown(repr(value))}")
-    return int(value)
+    if type(value) is not int or not low <= value <= high:
+        raise Refused(f"malformed: no integer in {low}..{high}: {shown(repr(value))}")
+    return value
 
 
 def sign_of(value: Any) -> int:

@@ -30,8 +30,8 @@ OFTEN = 0.2
 
 
 JUDGING = 0.25
-"""Seconds that judging takes for one of search, before it is measured: more than any kind of proof
-needs but that for cubic splines, which is measured."""
+"""Seconds that judging takes for one of search, before it is measured: more than most kinds of
+proof need. Those for cubic and quintic splines are measured."""
 EARLY = 0.25
 """Share of the time after which judging is measured: earlier, most runs that end in time are over,
 and judging twice would cost them more than it gives."""
@@ -118,6 +118,8 @@ class Session:
     proposals : Argument or None
         What a stopped run had not finished; a kind of proof sets it before it is interrupted. Until
         then it is what the run goes on from.
+    judging : float
+        Seconds that judging takes for one of search, before it is measured.
     infeasible : bool
         A kind of proof showed that nothing is feasible.
     one_sided : bool
@@ -139,6 +141,7 @@ class Session:
         self.left_out: str | None = None
         self.nodes = self.open_boxes = self.judged_boxes = 0
         self._at_once: Argument | None = None
+        self.judging = JUDGING
         self._judging: float | None = None
         self._answering = 0.0
         self._began = time.perf_counter()
@@ -203,7 +206,9 @@ class Session:
             Seconds that a stage without steps is estimated to take, which is not begun then.
         """
         seconds = self.seconds
-        judging = JUDGING * seconds if self._judging is None else self._judging * self.judged_boxes
+        judging = (
+            self.judging * seconds if self._judging is None else self._judging * self.judged_boxes
+        )
         if seconds + judging + self._answering + ahead > self.request.seconds:
             if self.proof is self._at_once and self.left_out is None:
                 self.left_out = UNBOUNDED if self.proof is None else BARE
@@ -214,10 +219,10 @@ class Session:
         """Seconds that a search may still take, before `check_clock` ends it."""
         end = self.request.seconds - self._answering
         if self._judging is None:
-            return end / (1.0 + JUDGING) - self.seconds
+            return end / (1.0 + self.judging) - self.seconds
         return end - self._judging * self.judged_boxes - self.seconds
 
-    def weigh(self, boxes: int, proof: Callable[[], Argument]) -> None:
+    def weigh(self, boxes: int, proof: Callable[[], Argument], after: float = EARLY) -> None:
         """Say how large the proof is by now, for kinds whose judging takes as long as the search.
 
         Once in a run the proof is judged on the way, which tells how long a box takes.
@@ -228,11 +233,13 @@ class Session:
             That judging would have to go through.
         proof : callable
             The proof so far.
+        after : float
+            Share of the time that is to be over before.
         """
         self.judged_boxes = max(self.judged_boxes, boxes)
         if self._judging is not None or boxes < 1:
             return
-        if self.seconds < EARLY * self.request.seconds:
+        if self.seconds < after * self.request.seconds:
             return
         part = replace(self.result(False, Subject.DECLARED), lower=Fraction(0), proof=proof())
         began = time.perf_counter()

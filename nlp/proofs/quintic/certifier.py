@@ -33,12 +33,11 @@ _LADDER = Ladder(
     (0.3, 0.2, 0.1, 0.05, *(x * 10.0**-k for k in range(2, 7) for x in (2.0, 1.0, 0.5))),
     share=0.9,
     apart=1.5,
-    near=0.1,
-    growth=12.0,
+    near=0.2,
+    growth=70.0,
 )
-"""Boxes grow with a power of 1/gap: small steps keep a stopped run near its goal. From 0.1 on they
-grow little, to five times as many at 0.01 and eight at 0.001 (docs/explanation/
-certificates-quintic.md), and judging takes half as long again as the search."""
+"""Boxes grow with a power of 1/gap: small steps keep a stopped run near its goal. From 0.2 on they
+grow to 15 to 20 times as many, and judging takes on one core as long again as the search."""
 COMPILING = 25.0
 """Seconds that compiling the search takes, once after an installation: 22 were measured."""
 UNCOMPILED = f"compiling the search takes about {COMPILING:.0f} s, once after an installation"
@@ -46,6 +45,13 @@ UNCOMPILED = f"compiling the search takes about {COMPILING:.0f} s, once after an
 _SPARE = Fraction(1, 10**9)
 """Share by which a total stays below the sum of the least durations, so that the first box is empty
 by far more than the verifier's slack."""
+_JUDGING = 1.2
+"""Seconds that judging takes, on one core, for one of search on one core, until it is measured:
+0.9 to 1.1 were (docs/explanation/certificates-quintic.md)."""
+_TELLING = 1000
+"""Boxes of a stage whose judging tells how long a box takes: half a second."""
+_EARLY = 0.05
+"""Share of the time after which it is measured: the stages that follow need it."""
 _SLIGHT = 1e-7
 """Share by which durations must be shorter to be worth a new start of the ladder."""
 _NEAR = 8
@@ -159,6 +165,8 @@ class _Search:
         assert session.durations is not None
         near = np.array([float(h / self.units.time) for h in session.durations])
         self.library = windows(self.steps, self.limits, near, clock=session.check_clock)
+        self._visited = 0
+        self._proved: tuple[int, Tree] | None = None
 
     def rounded(self, total: Fraction) -> Fraction:
         """A total that is exact in floating point in the units of the proof, s."""
@@ -177,15 +185,31 @@ class _Search:
         stage = Stage(self.steps, self.limits, float(own), self.library.terms, look)
         root = Root(np.array([float(x) for x in self.low]), np.full(len(self.low), stage.total))
 
+        self._visited = 0
+
         def watch(waiting: int, boxes: int) -> float:
             session.report(waiting, session.nodes + boxes)
+            self._weigh(boxes)
             session.check_clock()
             return session.searching
 
         leaves = search_all(
             stage, root, lambda h: self._look(h, look), watch, self.executor, self.workers
         )
-        return Tree(self.units, own, self.low, self.library, leaves)
+        tree = Tree(self.units, own, self.low, self.library, leaves)
+        boxes = int(leaves.sizes[0])
+        if boxes >= _TELLING:
+            self._proved = boxes, tree
+        return tree
+
+    def _weigh(self, boxes: int) -> None:
+        """Keep the time free that judging this stage takes, as measured on the one before."""
+        self._visited += boxes
+        session = self.session
+        if self._proved is not None:
+            visited, tree = self._proved
+            session.weigh(visited, lambda: tree, _EARLY)
+            session.judged_boxes = max(session.judged_boxes, self._visited)
 
     def _look(self, durations: Array, below_it: float) -> bool:
         """Raise `Shorter` if the direction of ``durations`` holds a total below the one given.
@@ -242,6 +266,7 @@ def _prove(session: Session) -> bool:
     session.seek()
     if session.upper is None:
         return False
+    session.judging = _JUDGING * session.request.workers
     with executor_for(session.request.executor, session.request.workers) as executor:
         stages = _Search(session, executor)
         session.climb(_LADDER, stages.rounded, stages.stage)

@@ -246,7 +246,7 @@ def stopped(after: int) -> Certified:
 
 
 def test_a_stopped_run_keeps_what_it_proved_and_goes_on() -> None:
-    found = stopped(4)
+    found = stopped(3)
     assert found.outcome is Outcome.INTERVAL
     assert found.upper is not None
     assert 0 < found.lower < found.upper
@@ -272,7 +272,7 @@ def test_a_stopped_run_keeps_what_it_proved_and_goes_on() -> None:
     ],
 )
 def test_an_altered_state_is_refused(alter: Callable[[Any], Any], match: str) -> None:
-    state = json.loads(json.dumps(state_document(stopped(4))))
+    state = json.loads(json.dumps(state_document(stopped(3))))
     alter(state)
     with pytest.raises(TrajgapError, match=match):
         certify(small(), resume=state)
