@@ -16,7 +16,7 @@ from pathlib import Path
 
 from quintic_instances import instances
 from trajgap.nlp.proofs.certifiers import certify
-from trajgap.nlp.proofs.document import certificate
+from trajgap.nlp.proofs.document import certificate_text
 from trajgap.problem import Problem
 from trajgap.verify import verify_certificate
 
@@ -30,7 +30,7 @@ def measured(problem: Problem, gap: float, seconds: float, workers: int) -> tupl
     spent, passed = time.process_time() - began, time.perf_counter() - clock
     assert found.upper is not None
     assert found.gap <= gap, (problem.name, found.gap)
-    text = json.dumps(certificate(found))
+    text = certificate_text(found)
     began = time.process_time()
     verdict = verify_certificate(json.loads(text), seconds=600.0)
     assert verdict.proves, verdict

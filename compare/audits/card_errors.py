@@ -95,6 +95,7 @@ def _plain(
         "TG208": f"A printed mean or integral is not that of the printed durations ({where})",
         "TG209": f"A printed peak exceeds its printed limit, which {where} calls kept",
         "TG210": f"The durations in {where} break a limit",
+        "TG211": f"A printed value is not that of the printed durations ({where})",
         "TG205": f"Control vertices in {where} do not follow from the way-points",
         "TG301": "Under velocity limits alone, times scale inversely with them: the printed two "
         "cannot both be shortest",

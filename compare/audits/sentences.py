@@ -16,6 +16,7 @@ from ...problem.cases import (
     MeasureClaim,
     MotionValueClaim,
     TotalTimeClaim,
+    ValueClaim,
     with_unit,
 )
 
@@ -28,7 +29,12 @@ _MEASURES = {
     "integral-square": "integral of the squared {one}",
 }
 """How a measure of a derivative is called."""
-_PLURALS = {"velocity": "velocities", "acceleration": "accelerations", "jerk": "jerks"}
+_PLURALS = {
+    "position": "positions",
+    "velocity": "velocities",
+    "acceleration": "accelerations",
+    "jerk": "jerks",
+}
 """Derivatives of several joints."""
 _ORDERS = {1: "velocity", 2: "acceleration", 3: "jerk"}
 """Derivatives by their order."""
@@ -116,8 +122,10 @@ def _measured(case: Case, claim: MotionValueClaim, whose: str) -> str:
     called = "largest {one}"
     if isinstance(claim, MeasureClaim):
         called = _MEASURES[claim.measure]
+    if isinstance(claim, ValueClaim):
+        called = f"{claim.place} {{one}}" if claim.place in ("largest", "smallest") else "{one}"
     each = claim.values is not None
-    plain = called.startswith(("largest", "mean"))
+    plain = called.startswith(("largest", "smallest", "mean", "{one}"))
     one = _PLURALS[claim.derivative] if each and plain else claim.derivative
     name = called.format(one=one)
     if each:
@@ -125,8 +133,22 @@ def _measured(case: Case, claim: MotionValueClaim, whose: str) -> str:
         name = name.replace("integral", "integrals").replace("mean square", "mean squares")
     if len(claim.printed) > _MOST:
         return f"the {name}{whose}"
+    if isinstance(claim, ValueClaim):
+        whose += _place(case, claim)
     verb = "are" if each else "is"
     return f"the {name}{whose} {verb} {_and(with_units(case, claim))}"
+
+
+def _place(case: Case, claim: ValueClaim) -> str:
+    """Where a value is taken; empty for the largest and the smallest."""
+    if claim.time is not None:
+        return f" at {claim.time} {case.document.units.time or 's'}"
+    if claim.place in ("largest", "smallest"):
+        return ""
+    named = case.statement(claim.problem).waypoints.labels
+    if claim.place in ("start", "finish"):
+        return f" at the {claim.place}"
+    return f" at {claim.place}" if named else f" at way-point {claim.place}"
 
 
 def with_units(case: Case, claim: MotionValueClaim) -> list[str]:

@@ -16,8 +16,9 @@ from .claim import (
     StatementClaim,
     TimeClaim,
     TotalTimeClaim,
+    ValueClaim,
 )
-from .claim_fit import motions_of
+from .claim_fit import motions_of, named_places
 from .clue import AnyClue, AxisClue, DataSheetClue, HalfTurnsClue, SmoothClue
 from .data_files import PUBLISHED, SUITE_PREFIX, case_files
 from .digits import Digits
@@ -88,6 +89,7 @@ __all__ = [
     "TimeClaim",
     "TotalTimeClaim",
     "Transcription",
+    "ValueClaim",
     "all_faults",
     "case_files",
     "case_schema",
@@ -97,6 +99,7 @@ __all__ = [
     "load_case",
     "load_robot",
     "motions_of",
+    "named_places",
     "parse_case",
     "published_ids",
     "ratio_words",

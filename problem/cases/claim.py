@@ -207,6 +207,27 @@ class MeasureClaim(MotionValueClaim):
     value in that times the unit of time; "integral-square" in its square times the unit of time."""
 
 
+class ValueClaim(MotionValueClaim):
+    """A position or a derivative at one place of the motion, with its sign."""
+
+    quantity: Literal["value"]
+    derivative: Literal["position", "velocity", "acceleration", "jerk"]  # type: ignore[assignment]
+    """What it is a value of; "position" for the joint's own angle or length."""
+    value: Number | None = None
+    values: Annotated[tuple[Number, ...], Field(min_length=1)] | None = None
+    place: Text | None = None
+    """"start", "finish", "largest" or "smallest" over the motion, or a way-point: its label, or its
+    number from 1 where way-points have none."""
+    time: Length | None = None
+    """Instead of a place: the instant, from the start on."""
+
+    @model_validator(mode="after")
+    def _one_place(self) -> Self:
+        if (self.place is None) == (self.time is None):
+            raise fault(".place", "or time is needed, and not both; give one of them")
+        return self
+
+
 class ConvergenceClaim(Claim):
     """An algorithm converges within a number of iterations."""
 
@@ -315,6 +336,7 @@ AnyClaim = Annotated[
     | ImprovementClaim
     | PeakClaim
     | MeasureClaim
+    | ValueClaim
     | ConvergenceClaim
     | ConditionsClaim
     | ControlVerticesClaim

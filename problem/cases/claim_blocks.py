@@ -114,6 +114,16 @@ def claim_blocks(
             'value = ""  # or values = [...], one for each joint',
             motion,
         ),
+        _commented(
+            ["A position or a derivative at one place of the motion.", *_unit(units)],
+            'id = "at-finish"',
+            'quantity = "value"',
+            'where = ""',
+            f'derivative = "{_derivative(units)}"  # or position',
+            'place = "finish"  # or start, largest, smallest, a way-point; or time = "..."',
+            'value = ""  # or values = [...], one for each joint',
+            motion,
+        ),
     ):
         lines += block
     return lines

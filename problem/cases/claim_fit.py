@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterable, Sequence
 
+from ..fields import nearest
 from ..printed import Printed
 from ..units import Quantity
 from .claim import (
@@ -16,6 +17,7 @@ from .claim import (
     MotionValueClaim,
     PeakClaim,
     TotalTimeClaim,
+    ValueClaim,
 )
 from .faults import Faults
 from .schema import CaseFile
@@ -69,7 +71,7 @@ def _check_claim(
         _check_blends(faults, claim, every, at)
     if isinstance(claim, TotalTimeClaim):
         number(claim.value, "time", "value")
-    if isinstance(claim, PeakClaim | MeasureClaim):
+    if isinstance(claim, PeakClaim | MeasureClaim | ValueClaim):
         for position, printed in enumerate(claim.printed):
             if claim.values is not None:
                 number(printed, claim.derivative, f"values[{position}]", position)
@@ -79,8 +81,37 @@ def _check_claim(
                 _check_one_unit(faults, claim.derivative, every, f"{at}.value")
                 number(printed, claim.derivative, "value")
         _check_motion_value(document, claim, statement, at)
+    if isinstance(claim, ValueClaim):
+        if claim.time is not None:
+            number(claim.time, "time", "time")
+        elif claim.place not in (known := named_places(statement)):
+            fix = nearest(claim.place or "", known)
+            faults.add(f"{at}.place", f"{claim.place!r} is no place of the motion; {fix}")
     if isinstance(claim, ControlVerticesClaim):
         _check_vertices(claim, statement, f"{at}.joint_rows")
+
+
+def named_places(statement: Statement) -> dict[str, int | None]:
+    """What a place of a motion may be called, with the number of its way-point, from 0.
+
+    Parameters
+    ----------
+    statement : Statement
+
+    Returns
+    -------
+    dict of str to int or None
+        None for the largest and the smallest value of the motion.
+    """
+    points = statement.waypoints
+    names = points.labels or tuple(str(k + 1) for k in range(points.number))
+    named: dict[str, int | None] = {"largest": None, "smallest": None}
+    return {
+        **named,
+        "start": 0,
+        "finish": points.number - 1,
+        **dict(zip(names, range(points.number), strict=True)),
+    }
 
 
 def motions_of(claims: Iterable[AnyClaim], value: MotionValueClaim) -> list[AnyClaim]:
@@ -158,7 +189,7 @@ def _check_one_unit(
 
 
 def _check_motion_value(
-    document: CaseFile, claim: PeakClaim | MeasureClaim, statement: Statement, at: str
+    document: CaseFile, claim: PeakClaim | MeasureClaim | ValueClaim, statement: Statement, at: str
 ) -> None:
     joints = len(statement.labels)
     if claim.values is not None and len(claim.values) != joints:

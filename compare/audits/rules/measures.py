@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
-from ....problem import QUANTITIES, Array, Printed, Trajectory, TrajgapError, fit
+from ....problem import QUANTITIES, Array, Printed, Trajectory, fit
 from ....problem.cases import AnyClaim, MeasureClaim
 from ...documents import Basis, ClaimVerdict, Finding
-from ..rounding import RoundingBox
 from ..study import Study
-from .corners import Look, largest_change
 from .loose_curves import FITTING, misfit
+from .motion_numbers import SAMPLES, NumberBeside, nearest_number
 from .peaks import each_motion, has_curve, peak_numbers
-from .printed_digits import hull
 from .wording import UNEXPLAINED, called, in_units, unit_shown
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(10)
@@ -23,8 +21,6 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(10)
 _PARTS = 8
 """Parts of each piece beside its zeros: norms, and curves that are no polynomial in time, are
 smooth enough there."""
-_SAMPLES = (50, 100, 200, 500, 1000)
-"""Numbers of samples of which a paper may have taken a mean, with or without the last instant."""
 _POWERS = {"mean": (1, 0), "rms": (1, 0), "integral": (1, 1), "integral-square": (2, 1)}
 """Powers of the derivative's unit and of time in each measure."""
 NAMES = {
@@ -123,7 +119,7 @@ def sampled(trajectory: Trajectory, order: int, measure: str) -> list[MotionMeas
     """The same from samples, as programs take it: one for each number of samples."""
     start, end = trajectory.breaks[0], trajectory.breaks[-1]
     found = []
-    for count in _SAMPLES:
+    for count in SAMPLES:
         for whole in (True, False):
             times = np.linspace(start, end, count, endpoint=whole)
             values = trajectory(times, order)
@@ -132,44 +128,6 @@ def sampled(trajectory: Trajectory, order: int, measure: str) -> list[MotionMeas
             norm = float(np.linalg.norm(values, axis=1).mean()) * total
             found.append(_finished(first, square, norm, total, measure))
     return found
-
-
-@dataclass(frozen=True)
-class _Beside:
-    """A printed number beside a measure, all in the unit of the paper.
-
-    ``reach`` is the change of the measure over what rounds to the printed digits: of first order,
-    and where that does not reach the number the largest that is found, if it is larger. ``far`` is
-    the same over what is cut off to them; ``low`` and ``high`` are what samples give.
-    """
-
-    printed: Printed
-    meaning: str
-    exact: float
-    reach: float
-    far: float
-    low: float
-    high: float
-
-    @property
-    def met(self) -> bool:
-        """Whether the measure rounds to the printed digits, the other numbers as printed."""
-        own = self.printed.interval
-        return bool(own.lower <= self.exact <= own.upper)
-
-    @property
-    def fits(self) -> str:
-        """How the two agree; empty if they do not."""
-        own = self.printed.interval
-        if float(own.lower) <= self.exact + self.reach and self.exact - self.reach <= own.upper:
-            return "equal within the rounding of the printed digits"
-        wide = hull(self.printed)
-        far = self.far
-        if float(wide.lower) <= self.exact + far and self.exact - far <= wide.upper:
-            return "as digits that are cut off instead of rounded give it"
-        if float(wide.lower) <= self.high + far and self.low - far <= wide.upper:
-            return f"as {_SAMPLES[0]} or more samples of the motion give it"
-        return ""
 
 
 def judge_measures(study: Study) -> Iterator[Finding]:
@@ -211,7 +169,7 @@ def _measures(study: Study, claim: MeasureClaim, motion: AnyClaim) -> Iterator[F
         )
 
 
-def _said(claim: MeasureClaim, joint: str | None, one: _Beside, unit: str) -> str:
+def _said(claim: MeasureClaim, joint: str | None, one: NumberBeside, unit: str) -> str:
     whose = one.meaning if joint is None else f" of joint {joint}"
     exact = f"the {NAMES[claim.measure]} of {claim.derivative}{whose} is {one.exact:.6g} {unit}"
     how = one.fits or UNEXPLAINED
@@ -233,7 +191,7 @@ def _beside(
     joint: str | None,
     pid: str,
     rid: str,
-) -> _Beside:
+) -> NumberBeside:
     """A printed number beside the measure that it is nearest to, of those that it may be."""
     problem = study.claim_problem(motion, pid, rid)
     box, points = study.claim_boxes(motion, pid, rid)
@@ -248,61 +206,6 @@ def _beside(
         found = measured(trajectory, order, claim.measure).meant(index)
         return {words: unit * value for words, value in found.items()}
 
-    at_print = meant(points.value, box.value)
-    reach = dict.fromkeys(at_print, 0.0)
-    for moved in _each_moved(box, points, "upper"):
-        for words, value in meant(*moved).items():
-            reach[words] += abs(value - at_print[words])
     coarse = sampled(fit(problem.curve, points.value, box.value), order, claim.measure)
-    tried = []
-    for words, value in at_print.items():
-        samples = [unit * one.meant(index)[words] for one in coarse]
-        near, far = reach[words], 2 * reach[words]
-        tried.append(_Beside(printed, words, value, near, far, min(samples), max(samples)))
-    fitting = [one for one in tried if one.fits]
-    if not fitting:
-        for i, one in enumerate(tried):
-            near, far = (_farthest(meant, one.meaning, box, points, share) for share in (1.0, 2.0))
-            tried[i] = replace(one, reach=max(one.reach, near), far=max(one.far, far))
-        fitting = [one for one in tried if one.fits]
-    return min(fitting or tried, key=lambda one: abs(one.exact - float(printed.fraction)))
-
-
-def _farthest(
-    meant: Callable[[Array, Array], dict[str, float]],
-    words: str,
-    durations: RoundingBox,
-    waypoints: RoundingBox,
-    share: float,
-) -> float:
-    """Largest change of a measure that is found in the rounding box, ``share`` as wide."""
-
-    def look(h: RoundingBox, q: RoundingBox) -> Look:
-        here = meant(q.value, h.value)[words]
-
-        def changes(end: str) -> Array:
-            found = []
-            for moved in _each_moved(h, q, end):
-                try:
-                    found.append(meant(*moved)[words] - here)
-                except TrajgapError:  # a duration that is not positive, or no curve
-                    found.append(np.nan)
-            return np.array(found)
-
-        return Look(here, changes("lower"), changes("upper"))
-
-    return largest_change(durations, waypoints, share, look)
-
-
-def _each_moved(h: RoundingBox, q: RoundingBox, end: str) -> Iterator[tuple[Array, Array]]:
-    """Way-points and durations with one number at an end: the durations first, row by row."""
-    for k in np.ndindex(h.value.shape):
-        yield q.value, _with(h.value, k, getattr(h, end))
-    for k in np.ndindex(q.value.shape):
-        yield _with(q.value, k, getattr(q, end)), h.value
-
-
-def _with(values: Array, k: tuple[int, ...], others: Array) -> Array:
-    found = values.copy()
-    found[k] = others[k]
-    return found
+    samples = [{words: unit * x for words, x in one.meant(index).items()} for one in coarse]
+    return nearest_number(printed, meant, samples, box, points)

@@ -181,6 +181,14 @@ EXPLAINED = {
         "Durations of 2, 1 and 3 s and blends of 0.4 s turn joint 1 from 12.5 to -10 °/s at the "
         "first via-point, which takes 56 °/s². The limit is 50 °/s².",
     ),
+    "TG211": Explained(
+        "Is a printed position or derivative at a way-point, at an instant or at its largest that "
+        "of the printed durations?",
+        "Inconsistent if it differs by more than the printed digits allow. Where a derivative "
+        "jumps, either side may be meant; of a largest or smallest value, samples too.",
+        "At the second way-point a table prints -175.7 °/s. The spline through the way-points in "
+        "the printed times passes it at -175.71 °/s.",
+    ),
     "TG301": Explained(
         "One path is timed under two velocity limits, and nothing else is limited. Then "
         "shortest time times limit is a constant, with no solver needed. Do the two printed "

@@ -27,6 +27,7 @@ from .printed_vertices import judge_vertices
 from .profiles import judge_profiles
 from .replays import judge_replays
 from .scaling_law import judge_scaling
+from .values import judge_values
 
 
 @dataclass(frozen=True)
@@ -105,6 +106,9 @@ GROUPS = (
     RuleGroup(
         judge_measures,
         {"TG208": "Printed means and integrals are those of the printed durations"},
+    ),
+    RuleGroup(
+        judge_values, {"TG211": "Printed values at one place are those of the printed durations"}
     ),
     RuleGroup(judge_places, {"TG108": "Printed numbers fit their own row, column or table best"}),
     RuleGroup(

@@ -1,0 +1,161 @@
+"""TG211: printed values of a position or a derivative at one place of the printed motion."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ....problem import QUANTITIES, Array, Curve, Printed, Trajectory, extrema, fit
+from ....problem.cases import AnyClaim, ValueClaim, named_places
+from ...documents import Basis, ClaimVerdict, Finding
+from ..study import Study
+from .loose_curves import FITTING, misfit
+from .motion_numbers import SAMPLES, NumberBeside, nearest_number
+from .peaks import each_motion, has_curve, peak_numbers
+from .wording import UNEXPLAINED, called, in_units, unit_shown
+
+_NO_MOTION = "No durations are printed of whose motion this could be a value."
+"""Said of a value where nothing defines a motion."""
+_ORDERS = {"position": 0, **{name: order for order, name in enumerate(QUANTITIES, 1)}}
+"""Order of each derivative."""
+_SAME = 1e-9
+"""Share of a value by which its two sides differ where it jumps: far above rounding."""
+
+
+def judge_values(study: Study) -> Iterator[Finding]:
+    """Findings of TG211."""
+    return each_motion(study, ValueClaim, _values, "TG211", _NO_MOTION)
+
+
+def place_words(claim: ValueClaim, labelled: bool) -> str:
+    """Where a value is taken, as a sentence says it; empty for the largest and the smallest."""
+    if claim.time is not None:
+        return " at the printed instant"
+    if claim.place in ("largest", "smallest"):
+        return ""
+    if claim.place in ("start", "finish"):
+        return f" at the {claim.place}"
+    return f" at {claim.place}" if labelled else f" at way-point {claim.place}"
+
+
+def _values(study: Study, claim: ValueClaim, motion: AnyClaim) -> Iterator[Finding]:
+    for pid, rid in study.claim_pairs(motion):
+        if claim.problem not in (None, pid) or not has_curve(study, motion, pid, rid):
+            continue
+        if study.unmoved(motion, pid, rid) is not None:
+            continue
+        joints = study.claim_problem(motion, pid, rid).joints
+        sole = joints[0] if len(joints) == 1 else None
+        pairs = [(sole if j is None else j, n) for j, n in peak_numbers(study, claim)]
+        found = [
+            (joint, _beside(study, claim, number, motion, joint, pid, rid))
+            for joint, number in pairs
+            if joint in joints
+        ]
+        if not found:
+            continue
+        wrong = [(joint, one) for joint, one in found if not one.fits]
+        labelled = bool(study.case.statement(pid, rid).waypoints.labels)
+        where = place_words(claim, labelled)
+        size = f"{claim.place} " if claim.place in ("largest", "smallest") else ""
+        said = []
+        for joint, one in wrong or found:
+            unit = unit_shown(study, pid, rid, claim.derivative, joint)
+            said.append(
+                f"the {size}{claim.derivative} of joint {joint}{where}{one.meaning} is "
+                f"{one.exact:.6g} {unit}, printed is {one.printed}, {one.fits or UNEXPLAINED}"
+            )
+        verdict, severity, note = misfit(study, pid, rid) if wrong else FITTING
+        yield Finding(
+            rule="TG211",
+            severity=severity,
+            verdict=verdict,
+            basis=Basis.CHECK if all(one.met for _, one in found) else Basis.COMPUTED,
+            claim=claim.id,
+            problem=pid,
+            reading=rid,
+            printed=", ".join(map(str, claim.printed)),
+            computed="; ".join(
+                f"{one.exact:.6g} ± {one.reach:.1g} "
+                f"{unit_shown(study, pid, rid, claim.derivative, joint)}"
+                for joint, one in found
+            ),
+            message=f"Of the printed durations ({called(motion)}): {'; '.join(said)}.{note}",
+            root=f"values of {motion.id}" if verdict is ClaimVerdict.INCONSISTENT else "",
+            between=(claim.id, motion.id) if wrong else (),
+        )
+
+
+def _beside(
+    study: Study,
+    claim: ValueClaim,
+    printed: Printed,
+    motion: AnyClaim,
+    joint: str | None,
+    pid: str,
+    rid: str,
+) -> NumberBeside:
+    """A printed number beside the value of one joint; where it jumps, on its nearer side."""
+    problem = study.claim_problem(motion, pid, rid)
+    box, points = study.claim_boxes(motion, pid, rid)
+    j, order = problem.joints.index(str(joint)), _ORDERS[claim.derivative]
+    unit = in_units(study, pid, rid, claim.derivative, 1.0, joint)
+    statement = study.case.statement(pid, rid)
+    at = None if claim.place is None else named_places(statement)[claim.place]
+    spread, instant = 0.0, None
+    drawn = fit(problem.curve, points.value, box.value)
+    if claim.time is not None:
+        measured = study.case.measured(claim.time, "time", claim.problem, rid)
+        instant = measured.value
+        ends = [_near(drawn, t, j, order) for t in (measured.lower, measured.upper, instant)]
+        spread = unit * max(abs(x - y) for x in ends[2] for end in ends[:2] for y in end)
+
+    def sides(trajectory: Trajectory, durations: Array) -> tuple[float, float] | None:
+        if instant is None and at is None:
+            return None
+        time = _time_of(problem.curve, durations, at) if instant is None else instant  # type: ignore[arg-type]
+        return _near(trajectory, time, j, order)
+
+    pair = sides(drawn, box.value)
+    jumps = pair is not None and abs(pair[0] - pair[1]) > _SAME * max(map(abs, pair))
+
+    def meant(waypoints: Array, durations: Array) -> dict[str, float]:
+        trajectory = fit(problem.curve, waypoints, durations)
+        near = sides(trajectory, durations)
+        if near is None:
+            found = [one.value for one in extrema(trajectory, j, order)]
+            return {"": unit * (max(found) if claim.place == "largest" else min(found))}
+        if not jumps:
+            return {"": unit * near[1]}
+        return {" just before it": unit * near[0], " just after it": unit * near[1]}
+
+    samples = []
+    if pair is None:
+        for count in SAMPLES:
+            values = drawn(np.linspace(drawn.breaks[0], drawn.breaks[-1], count), order)[:, j]
+            top = values.max() if claim.place == "largest" else values.min()
+            samples.append({"": unit * float(top)})
+    return nearest_number(printed, meant, samples, box, points, spread)
+
+
+def _time_of(curve: Curve, durations: Array, waypoint: int) -> float:
+    """When a way-point is passed, s."""
+    return float(durations[: curve.waypoint_breaks[waypoint]].sum())
+
+
+def _near(motion: Trajectory, time: float, joint: int, order: int) -> tuple[float, float]:
+    """Values just before and just after an instant, alike where nothing jumps there."""
+    breaks = motion.breaks
+    time = min(max(time, float(breaks[0])), float(breaks[-1]))
+    close = 1e-9 * float(breaks[-1] - breaks[0])
+    at = int(np.argmin(np.abs(breaks - time)))
+    if abs(breaks[at] - time) > close:
+        value = float(motion(np.array([time]), order)[0, joint])
+        return value, value
+    pieces = len(breaks) - 1
+    before = motion.values(max(at - 1, 0), joint, order, np.array([1.0 if at > 0 else 0.0]))[0]
+    after = motion.values(
+        min(at, pieces - 1), joint, order, np.array([0.0 if at < pieces else 1.0])
+    )[0]
+    return float(before), float(after)
