@@ -83,6 +83,9 @@ class DurationsClaim(TimeClaim):
     blends: OneOrEachLength | None = None
     """Durations of the blends, where `other_curve` is linear segments with parabolic blends: one
     for all way-points or one for each, in the unit of time."""
+    end_blends: Literal["within", "beyond"] | None = None
+    """Whether the first and the last blend lie within the first and the last duration, or reach
+    half beyond them; either if absent."""
     blend_acceleration: OneOrEachLength | None = None
     """Acceleration within the blends, where that is printed instead: one for all joints or one for
     each."""
@@ -94,6 +97,8 @@ class DurationsClaim(TimeClaim):
                 raise fault(
                     f".{key}", "goes with other_curve; name the curve there as the paper does"
                 )
+        if self.end_blends is not None and self.blends is None and self.blend_acceleration is None:
+            raise fault(".end_blends", "goes with blends or blend_acceleration; add one of them")
         if self.blends is not None and self.blend_acceleration is not None:
             raise fault(
                 ".blend_acceleration",

@@ -1,6 +1,6 @@
 from .clues import held_otherwise, reading_clues
 from .condition_count import count_conditions
-from .continuous_time import said_to_keep
+from .kept_limits import said_to_keep
 from .linear_blends import blended, judge_row
 from .on_instances import HANDLED, attributed, placed
 from .plain_words import EXPLAINED, Explained

@@ -13,7 +13,7 @@ from ....problem.cases import AnyClaim, ConditionsClaim, StatementClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..study import Study
 from .peaks import has_curve, largest
-from .wording import called_under, in_units, unit_shown
+from .wording import all_called, called_under, in_units, left_out, unit_shown
 
 _REST = 0.01
 """Share of a derivative's peak up to which its value at an end counts as 0: rounding of the printed
@@ -182,18 +182,21 @@ def _at_rest(
             continue
         derivatives = [QUANTITIES[r - 1] for r in orders if r <= len(QUANTITIES)]
         names = f"{' and '.join(derivatives)} {'is' if len(derivatives) == 1 else 'are'}"
+        others = left_out(study, named, rid)
+        unknown = f" No motion is built from {all_called(others)}." if others else ""
+        verdict = ClaimVerdict.NOT_CHECKABLE if others else ClaimVerdict.SUPPORTED
         yield Finding(
             rule="TG207",
             severity=Severity.WARNING if moving else Severity.INFO,
-            verdict=ClaimVerdict.INCONSISTENT if moving else ClaimVerdict.SUPPORTED,
+            verdict=ClaimVerdict.INCONSISTENT if moving else verdict,
             basis=Basis.CHECK,
             claim=claim.id,
             reading=rid,
             message="The motion is said to be at rest at both ends, but not on the stated curve: "
             f"{'; '.join(moving)}."
             if moving
-            else f"On the stated curve {names} 0 at both ends of every printed motion.",
-            built=built and not moving,
+            else f"On the stated curve {names} 0 at both ends of every printed motion.{unknown}",
+            built=built and not moving and not others,
         )
 
 

@@ -11,7 +11,6 @@ from ....problem import QUANTITIES, Verdict
 from ....problem.cases import (
     AnyClaim,
     DurationsClaim,
-    ImprovementClaim,
     MaximumClaim,
     StatementClaim,
     TimeClaim,
@@ -20,15 +19,19 @@ from ....problem.cases import (
 from ...documents import Basis, ClaimVerdict, Finding, Rounding, Severity
 from ..explanations import LIMITS
 from ..study import Study
+from .kept_limits import said_to_keep
+from .linear_blends import judge_row
 from .peaks import box_reach, has_curve, largest
 from .wording import (
     JUMPING,
     all_called,
     called_under,
+    durations_text,
     in_units,
     jump_size,
     jump_unit,
     largest_of_each_kind,
+    left_out,
     unit_shown,
 )
 
@@ -50,6 +53,8 @@ _VERDICTS = {
     Rounding.UNDECIDED: (ClaimVerdict.NOT_CHECKABLE, Severity.INFO),
 }
 """What a rounding verdict says of the claim, and how much that weighs."""
+_ELSEWHERE = "elsewhere"
+"""Kind of what is said of durations that are not of the problem's curve."""
 _NARROW = 0.01
 """Share of a limit above which rounding blurs a peak too much to call the limit reached."""
 
@@ -67,12 +72,6 @@ def judge_motions(study: Study) -> Iterator[Finding]:
             yield from _continuity(study, claim)
         elif isinstance(claim, StatementClaim) and claim.checks == "jumps":
             yield from _said_to_jump(study, claim)
-
-
-def durations_text(study: Study, claim: AnyClaim) -> str:
-    """The printed durations with their unit."""
-    durations = ", ".join(map(str, study.case.printed_durations(claim)))
-    return f"{durations} {study.time_unit}"
 
 
 def _ratio(study: Study, claim: AnyClaim, pid: str, rid: str) -> str:
@@ -160,28 +159,6 @@ def broken(study: Study, claim: AnyClaim, pid: str, rid: str) -> str | None:
     return judged.message if judged.verdict is ClaimVerdict.REFUTED else None
 
 
-def said_to_keep(study: Study, claim: AnyClaim) -> bool:
-    """Whether durations are meant as an answer within the limits.
-
-    They are if a statement about limits or optimality names them, or an algorithm found them and
-    they are not the state before an optimisation. Where no statement names any durations, they are
-    too, unless they are what an improvement starts from.
-    """
-    about = [
-        c.of
-        for c in study.case.claims
-        if isinstance(c, StatementClaim) and c.checks in ("within_limits", "optimal")
-    ]
-    if any(claim.id in named for named in about):
-        return True
-    if isinstance(claim, TimeClaim) and claim.state == "before":
-        return False
-    improved = any(
-        isinstance(c, ImprovementClaim) and c.slower == claim.id for c in study.case.claims
-    )
-    return claim.algorithm is not None or not (about or improved)
-
-
 def _limits(study: Study, claim: AnyClaim) -> Iterator[Finding]:
     said = said_to_keep(study, claim)
     for pid, rid in study.claim_pairs(claim):
@@ -245,6 +222,7 @@ def _limits_statement(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             for pid, reading in study.claim_pairs(c)
             if reading == rid
         ]
+        judged += [one for c in left_out(study, about, rid) for one in _elsewhere(study, c, rid)]
         if not judged:
             continue
         breaking = [one for one in judged if one[2].verdict is ClaimVerdict.REFUTED]
@@ -271,7 +249,7 @@ def _limits_statement(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             why = [
                 f"{called_under(c, pid)}: {one.message}"
                 for c, pid, one in undecided
-                if one.kind in (str(Verdict.DISCONTINUOUS), "total open")
+                if one.kind in (str(Verdict.DISCONTINUOUS), "total open", _ELSEWHERE)
             ]
             message = " ".join(why) or message
         yield Finding(
@@ -285,6 +263,19 @@ def _limits_statement(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             kind=str(verdict),
             follows=tuple(f"{LIMITS} {c.id}" for c, _, _ in breaking),
         )
+
+
+def _elsewhere(study: Study, claim: AnyClaim, rid: str) -> Iterator[tuple[AnyClaim, str, _Judged]]:
+    """What is known of the limits where no motion is built: rows with blends have a rule."""
+    rows = [row for row in judge_row(study, claim) if row.reading == rid]
+    for row in rows:
+        if row.verdict is not None:
+            judged = _Judged(row.verdict, row.severity, row.message, _ELSEWHERE)
+            yield claim, str(row.problem), judged
+    if not rows:
+        said = "No motion is built from these durations here, so that they are not judged."
+        judged = _Judged(ClaimVerdict.NOT_CHECKABLE, Severity.INFO, said, _ELSEWHERE)
+        yield claim, str(claim.problem), judged
 
 
 def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
@@ -309,6 +300,9 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             "via-point."
         )
         verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
+        if others := left_out(study, map(study.case.claim, claim.of), rid):
+            verdict = ClaimVerdict.NOT_CHECKABLE
+            message += f" No motion is built from {all_called(others)}, which it names too."
         if jumps and all(
             _may_be_smooth(study, study.case.claim(i), pid, rid)
             for i in claim.of
@@ -338,7 +332,7 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             claim=claim.id,
             reading=rid,
             message=message,
-            built=built and not jumps,
+            built=built and verdict is ClaimVerdict.SUPPORTED,
         )
 
 

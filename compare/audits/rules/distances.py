@@ -42,7 +42,7 @@ from ..rounding import same_limits
 from ..stated import other_objective
 from ..study import Study
 from .continuous_time import broken
-from .wording import called, called_under
+from .wording import called, called_under, left_out
 
 _BELOW = (
     " The whole printed interval lies below the best known total. That value is not a proven "
@@ -372,7 +372,8 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
     """
     for rid in study.readings:
         sides = _Sides()
-        for claim in (study.case.claim(i) for i in statement.of):
+        named = [study.case.claim(i) for i in statement.of]
+        for claim in named:
             minimised = other_objective(study.case, claim)
             for pid, reading in study.claim_pairs(claim):
                 if reading == rid and minimised is not None:
@@ -384,12 +385,13 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
                     _weigh(study, claim, pid, rid, sides)
         if not (sides.longer or sides.breaking or sides.agreeing or sides.open):
             continue
+        for one in left_out(study, named, rid):
+            sides.open.append(f"{called(one)}: of another curve, beside which no optimum stands")
         evidence = weakest(one.evidence for one in sides.solutions)
         longer, breaking = sides.longer, sides.breaking
         if longer or breaking:
             # What refutes is a motion or a broken limit: no optimum, known or certified, is needed.
-            evidence = Evidence.NONE
-            verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
+            evidence, verdict, severity = Evidence.NONE, ClaimVerdict.REFUTED, Severity.ERROR
             every = "for every value that rounds to the printed digits"
             said = [f"Not the shortest, {every}: {'; '.join(longer)}."] if longer else []
             said += [f"Not an answer within the limits. {' '.join(breaking)}"] if breaking else []
@@ -401,9 +403,8 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
             verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
             called_so = {optimum_called(one.problem, evidence) for one in sides.solutions}
             message = f"Every printed total agrees with the {' or the '.join(sorted(called_so))}"
-            message += (
-                ", digits rounded up so that the limits are kept." if sides.rounded_up else "."
-            )
+            rounded = ", digits rounded up so that the limits are kept" if sides.rounded_up else ""
+            message += f"{rounded}."
         yield Finding(
             rule="TG302",
             severity=severity,

@@ -14,8 +14,8 @@ from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..parabolic_blends import Blended, EndBlends, by_blend_accelerations, by_blend_times
 from ..rounding import RoundingBox
 from ..study import Study
-from .continuous_time import durations_text, said_to_keep
-from .wording import in_units, unit_shown
+from .kept_limits import said_to_keep
+from .wording import durations_text, in_units, unit_shown
 
 _SLACK = 1e-9
 """Relative margin that a limit is exceeded by at least: far above the rounding of a few quotients
@@ -63,34 +63,39 @@ def _beside(study: Study, claim: DurationsClaim, pid: str, rid: str) -> Finding:
             "the way-points, so no motion can be built from them."
         )
     else:
-        found = {ends: _judged(study, claim, problem, pid, rid, ends) for ends in EndBlends}
-        beyond, within = found[EndBlends.BEYOND], found[EndBlends.WITHIN]
-        same = beyond.worst == within.worst
-        computed = beyond.worst if same else f"{beyond.worst}; {within.worst}"
-        at_print = (
-            f"At the printed numbers {beyond.worst}."
-            if same
-            else f"At the printed numbers, with end blends that reach beyond the durations, "
-            f"{beyond.worst}; with end blends within them, {within.worst}."
-        )
-        if beyond.breaks and within.breaks:
+        asked = [EndBlends(claim.end_blends)] if claim.end_blends else [*EndBlends]
+        found = [_judged(study, claim, problem, pid, rid, ends) for ends in asked]
+        worst = list(dict.fromkeys(one.worst for one in found))
+        computed = "; ".join(worst)
+        at_print = f"At the printed numbers {worst[0]}."
+        if len(worst) > 1:
+            at_print = (
+                f"At the printed numbers, with end blends that reach beyond the durations, "
+                f"{worst[0]}; with end blends within them, {worst[1]}."
+            )
+        wherever = "" if claim.end_blends else ", wherever the end blends lie"
+        if all(one.breaks for one in found):
             verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
             message = (
-                "Linear segments with parabolic blends break a limit with these durations, "
-                "wherever the end blends lie, for every value that rounds to the printed digits or "
-                f"is cut off to them. {at_print}"
+                "Linear segments with parabolic blends break a limit with these durations"
+                f"{wherever}, for every value that rounds to the printed digits or is cut off to "
+                f"them. {at_print}"
             )
-        elif beyond.keeps and within.keeps:
+        elif all(one.keeps for one in found):
             verdict = ClaimVerdict.SUPPORTED
             message = (
                 "Linear segments with parabolic blends keep the limits on velocity and "
-                f"acceleration with these durations. {at_print}"
+                f"acceleration with these durations{wherever}. {at_print}"
+            )
+        elif any(one.breaks for one in found):
+            message = (
+                "Whether linear segments with parabolic blends keep the limits with these "
+                f"durations depends on where the end blends lie. {at_print}"
             )
         else:
             message = (
-                "Whether linear segments with parabolic blends keep the limits with these "
-                "durations depends on where the end blends lie, or on digits that are not printed. "
-                f"{at_print}"
+                "The printed digits do not decide whether linear segments with parabolic blends "
+                f"keep the limits with these durations. {at_print}"
             )
         message += (
             " Such a motion passes via-points at a distance, so that no optimum of a curve through "

@@ -111,3 +111,23 @@ def called_under(claim: AnyClaim, pid: str) -> str:
 def all_called(claims: Iterable[AnyClaim]) -> str:
     """Several claims, each once."""
     return "; ".join(dict.fromkeys(called(claim) for claim in claims))
+
+
+def durations_text(study: Study, claim: AnyClaim) -> str:
+    """The printed durations with their unit."""
+    durations = ", ".join(map(str, study.case.printed_durations(claim)))
+    return f"{durations} {study.time_unit}"
+
+
+def left_out(study: Study, named: Iterable[AnyClaim], rid: str) -> list[AnyClaim]:
+    """Claims that a statement names and from which no motion is built under a reading.
+
+    They are of another curve, or have another number of durations than the curve has segments.
+    """
+    chosen = {pid for pid, _ in study.pairs}
+    return [
+        claim
+        for claim in named
+        if claim.problem in (None, *chosen)
+        and not any(reading == rid for _, reading in study.claim_pairs(claim))
+    ]

@@ -36,7 +36,10 @@ def made_up(more: str, durations: str = '["2.00", "1.00", "3.00"]', limit: str =
     [
         ('blends = "0.50"', "50", ClaimVerdict.SUPPORTED, "keep the limits"),
         ('blends = "0.40"', "50", ClaimVerdict.REFUTED, "56.25 °/s²"),
-        ('blends = "0.40"', "57", ClaimVerdict.NOT_CHECKABLE, "end blends"),
+        ('blends = "0.40"', "57", ClaimVerdict.NOT_CHECKABLE, "where the end blends lie"),
+        ('blends = "0.40"\nend_blends = "beyond"', "58", ClaimVerdict.SUPPORTED, "keep the limits"),
+        ('blends = "0.40"\nend_blends = "within"', "57", ClaimVerdict.REFUTED, "59.72"),
+        ('blends = "0.40"\nend_blends = "beyond"', "56", ClaimVerdict.NOT_CHECKABLE, "digits"),
         ('blends = "1.40"', "50", ClaimVerdict.REFUTED, "more time than segment 2 has"),
         ("blend_acceleration = 50", "50", ClaimVerdict.SUPPORTED, "keep the limits"),
         ("blend_acceleration = [60]", "50", ClaimVerdict.REFUTED, "60 °/s²"),
@@ -80,6 +83,7 @@ def test_another_number_of_durations_builds_no_motion() -> None:
     [
         ("blends = [0.4, 0.4]", "2 blends for 4 way-points"),
         ("blend_acceleration = [50, 50]", "2 values for 1 joints"),
+        ('end_blends = "within"', "goes with blends or blend_acceleration"),
         ("blends = 0.4\nblend_acceleration = 50", "keep one of the two"),
     ],
 )
@@ -107,3 +111,49 @@ def test_the_card_speaks_of_the_row_and_of_nothing_else() -> None:
     assert kept.limits == "The printed durations keep the limits."
     unread = audit_case(study_of(made_up(""))).card
     assert unread.limits.endswith("printed durations are of another curve.")
+
+
+@pytest.mark.parametrize(
+    ("more", "limit", "verdict"),
+    [
+        ('blends = "0.40"', "50", ClaimVerdict.REFUTED),
+        ('blends = "0.40"', "57", ClaimVerdict.NOT_CHECKABLE),
+        ('blends = "0.50"', "50", ClaimVerdict.SUPPORTED),
+        ("", "50", ClaimVerdict.NOT_CHECKABLE),
+    ],
+)
+def test_a_sentence_on_several_rows_speaks_of_this_one_too(
+    more: str, limit: str, verdict: ClaimVerdict
+) -> None:
+    """The own row is slow enough; what is said of all rows hangs on the blended one."""
+    text = (
+        made_up(more, limit=limit)
+        + """
+[[claims]]
+id = "own"
+quantity = "durations"
+where = "Table 2, row 2"
+durations = ["9.00", "9.00", "9.00"]
+[[claims]]
+id = "all"
+quantity = "statement"
+where = "section 4"
+checks = "within_limits"
+of = ["own", "row"]
+[[claims]]
+id = "rest"
+quantity = "statement"
+where = "section 4"
+checks = "at_rest"
+of = ["own", "row"]
+[[claims]]
+id = "smooth"
+quantity = "statement"
+where = "section 4"
+checks = "continuous"
+of = ["own", "row"]
+"""
+    )
+    words = {j.claim: j.verdict for j in audit_case(study_of(text)).judgements}
+    assert words["all"] is verdict
+    assert words["rest"] is words["smooth"] is ClaimVerdict.NOT_CHECKABLE
