@@ -367,8 +367,7 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
 
     Shorter means: for every way-point and limit that rounds to the printed digits, the same checked
     durations, stretched as far as those may need, take less than the low end of the printed total.
-    The shortest answer within the limits is within the limits, so that durations which break them
-    are not it.
+    Durations that break the limits are no answer within them.
     """
     for rid in study.readings:
         sides = _Sides()
@@ -402,9 +401,9 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
         else:
             verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
             called_so = {optimum_called(one.problem, evidence) for one in sides.solutions}
-            message = f"Every printed total agrees with the {' or the '.join(sorted(called_so))}"
             rounded = ", digits rounded up so that the limits are kept" if sides.rounded_up else ""
-            message += f"{rounded}."
+            which = " or the ".join(sorted(called_so))
+            message = f"Every printed total agrees with the {which}{rounded}."
         yield Finding(
             rule="TG302",
             severity=severity,
