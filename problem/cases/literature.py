@@ -47,6 +47,11 @@ _ALIASES: dict[str, tuple[str, dict[str, object]]] = {
     "cubic spline virtual": ("cubic-spline-virtual", {}),
     "quintic spline two virtual": ("quintic-spline-virtual", {}),
     "quintic spline virtual": ("quintic-spline-virtual", {}),
+    "c2 cubic spline two virtual": ("cubic-spline-virtual", {}),
+    "c2 cubic spline virtual": ("cubic-spline-virtual", {}),
+    "c4 quintic spline two virtual": ("quintic-spline-virtual", {}),
+    "c4 quintic spline virtual": ("quintic-spline-virtual", {}),
+    "c6 septic spline": ("septic-spline", {}),
     "septic spline": ("septic-spline", {}),
     "bspline cubic": LITERATURE["cubic-b-spline"],
     "bspline cubic uniform": ("uniform-cubic-b-spline", {}),
@@ -87,7 +92,7 @@ _SAYING_NOTHING = {
     "a", "and", "at", "by", "curve", "curves", "degree", "function", "functions",
     "interpolated", "interpolating", "interpolation", "joint", "knot", "knots", "method", "of",
     "order", "piecewise", "point", "points", "segments", "the", "through", "trajectories",
-    "trajectory", "via", "waypoint", "waypoints", "with",
+    "trajectory", "via", "way", "waypoint", "waypoints", "with",
 }  # fmt: skip
 """Words that tell no curve from another."""
 _PROFILES = (

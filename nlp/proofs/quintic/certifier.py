@@ -273,5 +273,10 @@ def _prove(session: Session) -> bool:
     return True
 
 
-QUINTIC = Certifier("C4 quintic splines at rest at the ends", _declares, _missing, _prove)
+QUINTIC = Certifier(
+    "C4 quintic splines without virtual way-points, at rest at the ends",
+    _declares,
+    _missing,
+    _prove,
+)
 """At rest alone: the windows and the nodal equations are derived for it."""
