@@ -85,7 +85,7 @@ def as_ratios(given: ArrayLike | RatioWord, waypoints: Array, segments: int) -> 
             raise TrajgapError(f"ratios: expected {segments}, one per segment, got {found.size}")
     if not (np.isfinite(found) & (found > 0)).all():
         raise TrajgapError("ratios: every one must be positive and finite")
-    if found.max() / found.min() > _MOST_APART:
+    if found.max() > found.min() * _MOST_APART:
         raise TrajgapError(
             f"ratios: the largest is more than {_MOST_APART:g} times the smallest; correct them"
         )

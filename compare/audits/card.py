@@ -204,7 +204,8 @@ def _limits(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[str]
     sets = [c for c in sets if c not in elsewhere]
     asked = [c.id for c in about or sets if c.id in words]
     timed = [c for c in case.claims if isinstance(c, TimeClaim) and c.other_curve is None]
-    if timed and all(isinstance(c, TotalTimeClaim) for c in timed) and not about:
+    bare = timed and all(isinstance(c, TotalTimeClaim) for c in timed)
+    if bare and not about and not any(study.has_durations(c) for c in case.claims):
         return (
             "Whether the limits are kept is not checkable: totals are printed, durations are not.",
             set(),

@@ -249,8 +249,10 @@ def _beside(study: Study, waterfall: Waterfall) -> _Part | None:
     floor = solution.lower_bound
     if floor is not None and " to " in span and low <= solution.best and floor <= high:
         return f"{said} lies in the interval that is proven to hold the optimum, {shown_best}"
-    if low <= solution.best <= high:
+    if low <= solution.best <= high or _rounds_to(study, claim, rid, solution.best):
         return _Agrees(said, name, best)
+    if loose := study.case.statement(pid, rid).declaration.loose:
+        return f"{said} is not compared: {loose[0].lower()}{loose[1:]} are rounded numbers"
     if share >= _MANY_TIMES:
         return f"{said} is {1 + share:.1f} times the {best}"
     if share > 0:
@@ -258,6 +260,16 @@ def _beside(study: Study, waterfall: Waterfall) -> _Part | None:
         least = "at least " if " to " in span else ""
         return _Above(shown, remark, f"{least}{_percent(share)}", name, shown_best)
     return f"{said} is {_percent(-share)} below the {best}"
+
+
+def _rounds_to(study: Study, claim: TimeClaim, rid: str, seconds: float) -> bool:
+    """Whether a time is rounded or cut off to the digits of a printed total."""
+    printed = claim.value if isinstance(claim, TotalTimeClaim) else getattr(claim, "total", None)
+    if printed is None:
+        return False
+    own = study.case.measured(printed, "time", claim.problem, rid)
+    cut = own.cut_off()
+    return min(own.lower, cut.lower) <= seconds <= max(own.upper, cut.upper)
 
 
 def _span(solution: Solution) -> str:

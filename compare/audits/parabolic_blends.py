@@ -59,7 +59,7 @@ class Between:
     def over(self, divisor: Between) -> Between:
         """Bounds of all quotients by numbers that are positive; none are known where some is not.
 
-        A divisor that may be 0 or less leaves infinite bounds.
+        A divisor that may be 0 or less leaves infinite bounds; what is 0 stays 0.
         """
         with np.errstate(divide="ignore", invalid="ignore"):
             ends = np.stack(np.broadcast_arrays(
@@ -67,9 +67,10 @@ class Between:
                 self.high / divisor.low, self.high / divisor.high,
             ))  # fmt: skip
         sure = np.broadcast_to(divisor.low > 0, ends.shape[1:])
-        return Between(
-            np.where(sure, ends.min(axis=0), -np.inf), np.where(sure, ends.max(axis=0), np.inf)
-        )
+        low = np.where(sure, ends.min(axis=0), -np.inf)
+        high = np.where(sure, ends.max(axis=0), np.inf)
+        nothing = np.broadcast_to((self.low == 0) & (self.high == 0), ends.shape[1:])
+        return Between(np.where(nothing, 0.0, low), np.where(nothing, 0.0, high))
 
     @property
     def size(self) -> Between:

@@ -16,6 +16,7 @@ from .claim import (
     MeasureClaim,
     MotionValueClaim,
     PeakClaim,
+    TimeClaim,
     TotalTimeClaim,
     ValueClaim,
 )
@@ -67,6 +68,8 @@ def _check_claim(
             number(duration, "time", f"durations[{segment}]")
         if claim.total is not None:
             number(claim.total, "time", "total")
+    if isinstance(claim, MaximumClaim):
+        _check_curves(document, faults, claim, at)
     if isinstance(claim, DurationsClaim):
         _check_blends(faults, claim, every, at)
     if isinstance(claim, TotalTimeClaim):
@@ -138,6 +141,20 @@ def motions_of(claims: Iterable[AnyClaim], value: MotionValueClaim) -> list[AnyC
         and c.joint in (None, value.joint)
         and c.other_curve is None
     ]
+
+
+def _check_curves(document: CaseFile, faults: Faults, claim: MaximumClaim, at: str) -> None:
+    """Check that a maximum is of the curve that its rows are of: no motion is built otherwise."""
+    rows = [one for one in document.claims if one.id in claim.of and isinstance(one, TimeClaim)]
+    for row in rows:
+        if row.other_curve != claim.other_curve:
+            named = json.dumps(row.other_curve or claim.other_curve, ensure_ascii=False)
+            faults.add(
+                f"{at}.other_curve",
+                f"is not that of {row.id!r}, whose durations it takes; give other_curve = {named} "
+                "in both, or in neither",
+            )
+            return
 
 
 def _check_blends(

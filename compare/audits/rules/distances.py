@@ -173,6 +173,8 @@ def _below(
         return (
             f" Below the {solution.evidence} total, which keeps the limits; these durations do not."
         )
+    if loose := study.case.statement(pid, rid).declaration.loose:
+        return f" {loose} are rounded numbers, which may explain it."
     if solution.problem.ratios is not None:
         return BELOW_AT_RATIOS
     share = _spread(study, claim, pid, rid, solution)
@@ -187,8 +189,7 @@ def _below(
 def _spread(study: Study, claim: AnyClaim, pid: str, rid: str, solution: Solution) -> float | None:
     """Share by which the rounding of way-points and limits moves the optimum, to first order.
 
-    That the optimum is at most so much longer for any of them is proved; that it is at most so
-    much shorter is its mirror image.
+    That it is at most so much longer for any of them is proved; so much shorter is its mirror.
     """
     if solution.durations is None or not solution.best > 0:
         return None
@@ -371,8 +372,7 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
     """
     for rid in study.readings:
         sides = _Sides()
-        named = [study.case.claim(i) for i in statement.of]
-        for claim in named:
+        for claim in (named := [study.case.claim(i) for i in statement.of]):
             minimised = other_objective(study.case, claim)
             for pid, reading in study.claim_pairs(claim):
                 if reading == rid and minimised is not None:

@@ -206,6 +206,8 @@ def _worst(study: Study, problem: Problem, plain: Blended, pid: str, rid: str) -
         at = np.unravel_index(int(np.argmax(ratio)), ratio.shape)
         if ratio[at] > best[0]:
             joint = problem.joints[at[1]]
+            if np.isinf(size[at]):
+                return f"the speed of joint {joint} jumps, for a blend printed as 0"
             unit = unit_shown(study, pid, rid, quantity, joint)
             value = in_units(study, pid, rid, quantity, float(size[at]), joint)
             limit = in_units(study, pid, rid, quantity, float(limits[at[1], order]), joint)

@@ -165,7 +165,7 @@ def _measures(study: Study, claim: MeasureClaim, motion: AnyClaim) -> Iterator[F
             ),
             message=f"Of the printed durations ({called(motion)}): {said}.{note}",
             root=f"measures of {motion.id}" if verdict is ClaimVerdict.INCONSISTENT else "",
-            between=(claim.id, motion.id) if wrong else (),
+            between=(claim.id, motion.id) if verdict is ClaimVerdict.INCONSISTENT else (),
         )
 
 

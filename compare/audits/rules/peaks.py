@@ -370,7 +370,7 @@ def _peaks(study: Study, claim: PeakClaim, motion: AnyClaim) -> Iterator[Finding
             message=f"Of the printed durations ({called(motion)}): {'; '.join(said)}.{note}",
             kind=", ".join(dict.fromkeys(one.kind for _, one in wrong)),
             root=f"peaks of {motion.id}" if verdict is ClaimVerdict.INCONSISTENT else "",
-            between=(claim.id, motion.id) if wrong else (),
+            between=(claim.id, motion.id) if verdict is ClaimVerdict.INCONSISTENT else (),
         )
 
 

@@ -83,12 +83,14 @@ def compared(
     plain: str = "",
     mixed: Interval | None = None,
     coarser: bool = False,
+    raised: Interval | None = None,
 ) -> Finding:
     """A printed number against the interval that its printed ingredients allow.
 
     ``plain`` is what the digits as printed give, shown where the printed number is another;
     ``mixed`` is what the ingredients allow, each rounded or cut off, if that is more than both;
-    ``coarser`` says that the number has fewer digits than they, and may have been rounded up.
+    ``coarser`` says that the number has fewer digits than they, and may have been rounded up;
+    ``raised`` is what they allow if each of them was rounded up, where that is usual.
     """
     digits, computed = f"{printed} {unit}", f"{span(rounded)} {unit}"
     verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
@@ -111,6 +113,12 @@ def compared(
         message = (
             f"{what} allows {computed} with rounded digits; printed is {digits}, which fits only "
             f"if some digits are rounded and others cut off ({span(whole)} {unit})."
+        )
+    elif raised is not None and any(meet(own, raised) for own in (hull(printed), _raised(printed))):
+        severity, kind = Severity.WARNING, "fits raised parts"
+        message = (
+            f"{what} allows {computed} with rounded digits; printed is {digits}, which fits only "
+            f"if parts were rounded up ({span(raised)} {unit})."
         )
     elif coarser and meet(_raised(printed), whole):
         severity, kind = Severity.WARNING, "fits rounded up"
@@ -140,16 +148,33 @@ def _sums(study: Study) -> Iterator[Finding]:
         if not isinstance(claim, DurationsClaim | MaximumClaim) or claim.total is None:
             continue
         found = _sum_beside(study, claim, claim.total, (), "The sum of the printed durations")
-        if found.verdict is ClaimVerdict.REFUTED and isinstance(claim, DurationsClaim):
+        if found.verdict is ClaimVerdict.REFUTED:
             # Blends at the ends may reach half beyond the durations, and be counted or not.
-            if claim.blend_acceleration is not None:
+            ends = end_blends(study, claim)
+            if ends is None:
                 continue
-            if claim.blends is not None:
-                ends = claim.blends if isinstance(claim.blends, tuple) else (claim.blends,) * 2
+            if ends:
                 what = "The sum of the printed durations and of half the first and the last blend"
-                wider = _sum_beside(study, claim, claim.total, (ends[0], ends[-1]), what)
+                wider = _sum_beside(study, claim, claim.total, ends, what)
                 found = found if wider.verdict is ClaimVerdict.REFUTED else wider
         yield found
+
+
+def end_blends(study: Study, claim: AnyClaim) -> tuple[Printed, ...] | None:
+    """The first and the last blend of a row, which its total may count by half.
+
+    Empty where there are none; None where they are not printed as durations, or where a claim takes
+    the longest of several rows with blends.
+    """
+    if isinstance(claim, MaximumClaim):
+        rows = [study.case.claim(one) for one in claim.of]
+        return None if any(end_blends(study, row) != () for row in rows) else ()
+    if not isinstance(claim, DurationsClaim):
+        return ()
+    if claim.blends is not None:
+        each = claim.blends if isinstance(claim.blends, tuple) else (claim.blends,)
+        return each[0], each[-1]
+    return () if claim.blend_acceleration is None else None
 
 
 def _sum_beside(
@@ -174,6 +199,7 @@ def _sum_beside(
         f"{SUM} {claim.id}",
         shown(plain) if halves else str(sum(d.decimal for d in claim.durations)),
         coarser=total.unit > max(d.unit for d in parts),
+        raised=_sum([_share(_raised(d), s) for d, s in zip(parts, share, strict=True)]),
     )
 
 

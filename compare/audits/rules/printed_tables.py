@@ -18,7 +18,7 @@ from ....problem.cases import (
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..explanations import TABLES
 from ..study import Study
-from .printed_digits import hull, meet
+from .printed_digits import end_blends, hull, meet
 
 _FEWEST = 4
 """Numbers that a table needs before two tables alike are worth a word."""
@@ -229,8 +229,10 @@ def total_allowed(study: Study, claim: AnyClaim) -> Interval:
     printed = printed_total(claim)
     parts = study.case.printed_durations(claim)
     zero = Fraction(0)
+    halves = sum((hull(p).upper for p in end_blends(study, claim) or ()), zero) / 2
     summed = Interval(
-        sum((hull(p).lower for p in parts), zero), sum((hull(p).upper for p in parts), zero)
+        sum((hull(p).lower for p in parts), zero),
+        sum((hull(p).upper for p in parts), zero) + halves,
     )
     if printed is None:
         return summed
@@ -268,7 +270,9 @@ def _same_total(study: Study) -> Iterator[Finding]:
             continue
         found, said = _stated_as(study, claim)
         agreeing = [c for c in found if meet(hull(claim.value), _total_shown(study, c)[1])]
-        others = agreeing or found
+        # A total may count end blends by half, and how long they take is not always printed.
+        found = agreeing or [c for c in found if end_blends(study, c) is not None]
+        others = found
         if not others:
             if claim.algorithm is not None:
                 yield _rival(claim)

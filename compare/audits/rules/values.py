@@ -83,7 +83,7 @@ def _values(study: Study, claim: ValueClaim, motion: AnyClaim) -> Iterator[Findi
             ),
             message=f"Of the printed durations ({called(motion)}): {'; '.join(said)}.{note}",
             root=f"values of {motion.id}" if verdict is ClaimVerdict.INCONSISTENT else "",
-            between=(claim.id, motion.id) if wrong else (),
+            between=(claim.id, motion.id) if verdict is ClaimVerdict.INCONSISTENT else (),
         )
 
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from support.findings import said_of, study_of
-from support.one_joint import one_joint
+from support.one_joint import QUESTION, one_joint
 from trajgap.compare.audits.rules.continuous_time import judge_motions
 from trajgap.compare.audits.rules.distances import judge_distances
 from trajgap.compare.audits.rules.improvements import judge_improvements
 from trajgap.compare.audits.rules.peaks import judge_peaks
+from trajgap.compare.audits.rules.printed_digits import judge_digits
 from trajgap.compare.audits.rules.printed_tables import judge_tables
 from trajgap.compare.documents import ClaimVerdict, Severity
 from trajgap.nlp import Status
@@ -379,3 +380,24 @@ def test_no_warning_where_the_rounding_of_way_points_explains_it(
     (found,) = said_of(study_of(text), judge_distances, "t", "TG302")
     assert found.severity is severity
     assert found.verdict is ClaimVerdict.NOT_CHECKABLE
+
+
+@pytest.mark.parametrize(
+    ("total", "verdict"),
+    [("3.884", ClaimVerdict.SUPPORTED), ("3.880", ClaimVerdict.REFUTED)],
+)
+def test_durations_may_all_have_been_rounded_up(total: str, verdict: ClaimVerdict) -> None:
+    """0.7767 s five times is 3.8835 s: printed as 0.777 s, so that each keeps its limit."""
+    text = (
+        QUESTION.format(points="0, 1, 2, 3, 4, 5", limit="2")
+        + f"""
+[[claims]]
+id = "d"
+quantity = "durations"
+where = "Table 2"
+durations = ["0.777", "0.777", "0.777", "0.778", "0.778"]
+total = "{total}"
+"""
+    )
+    (found,) = said_of(study_of(text), judge_digits, "d", "TG101")
+    assert found.verdict is verdict

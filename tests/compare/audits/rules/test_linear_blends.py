@@ -8,6 +8,7 @@ from support.one_joint import QUESTION
 from trajgap.compare.audits.case_audit import audit_case
 from trajgap.compare.audits.rules.linear_blends import judge_blends
 from trajgap.compare.audits.rules.printed_digits import judge_digits
+from trajgap.compare.audits.rules.printed_tables import judge_tables
 from trajgap.compare.documents import ClaimVerdict
 from trajgap.problem import CaseError, parse_case
 
@@ -157,3 +158,51 @@ of = ["own", "row"]
     words = {j.claim: j.verdict for j in audit_case(study_of(text)).judgements}
     assert words["all"] is verdict
     assert words["rest"] is words["smooth"] is ClaimVerdict.NOT_CHECKABLE
+
+
+@pytest.mark.parametrize("total", ["6.00", "6.40"])
+def test_a_total_elsewhere_may_count_half_the_end_blends_too(total: str) -> None:
+    """The row prints 6.00 s; the abstract the time that the arm moves, 6.40 s."""
+    elsewhere = f"""
+[[claims]]
+id = "abstract"
+quantity = "total_time"
+where = "abstract"
+of = "row"
+value = "{total}"
+other_curve = "linear segments with parabolic blends"
+"""
+    for more in ('blends = "0.40"', "blend_acceleration = 50"):
+        text = made_up(f'{more}\ntotal = "6.00"') + elsewhere
+        found = said_of(study_of(text), judge_tables, "abstract", "TG105")
+        assert all(one.verdict is not ClaimVerdict.INCONSISTENT for one in found)
+    wrong = made_up('blends = "0.40"\ntotal = "6.00"') + elsewhere.replace(total, "6.90")
+    (found_,) = said_of(study_of(wrong), judge_tables, "abstract", "TG105")
+    assert found_.verdict is ClaimVerdict.INCONSISTENT
+
+
+def test_a_maximum_is_of_the_curve_of_its_rows() -> None:
+    """Otherwise the case's own curve would be built from durations of blends."""
+    text = (
+        made_up("blends = 0.4")
+        + """
+[[claims]]
+id = "longest"
+quantity = "maximum"
+where = "Table 2, last row"
+of = ["row"]
+durations = ["2.00", "1.00", "3.00"]
+"""
+    )
+    with pytest.raises(CaseError, match="is not that of 'row', whose durations it takes"):
+        parse_case(text, "made-up.toml")
+    named = 'other_curve = "linear segments with parabolic blends"'
+    parse_case(text + named, "made-up.toml")
+
+
+def test_a_blend_of_nothing_is_no_acceleration_of_a_joint_that_rests() -> None:
+    (found,) = said_of(study_of(made_up("blends = 0.0")), judge_blends, "row", "TG210")
+    assert "for a blend printed as 0" in found.message
+    still = made_up("blends = 0.0").replace('"10.00", "35.00", "25.00", "10.00"', "10, 10, 10, 10")
+    (found,) = said_of(study_of(still), judge_blends, "row", "TG210")
+    assert found.verdict is ClaimVerdict.SUPPORTED
