@@ -357,6 +357,7 @@ QUANTITY_KINDS = (
     "improvement",
     "peak",
     "measure",
+    "value",
     "convergence",
     "conditions",
     "control_vertices",

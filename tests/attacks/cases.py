@@ -36,6 +36,7 @@ CLAIMS = (
     "improvement",
     "peak",
     "measure",
+    "value",
     "convergence",
     "conditions",
     "control_vertices",
@@ -44,6 +45,8 @@ CLAIMS = (
 """Every quantity that a claim may state; a test compares with the schema."""
 MEASURES = ("mean", "rms", "integral", "integral-square")
 """Every measure of a motion."""
+PLACES = ("start", "finish", "largest", "smallest")
+"""Places of a motion that every case has."""
 DERIVATIVES = ("velocity", "acceleration", "jerk")
 """Quantities by order of derivative, from 1."""
 UNITS = {

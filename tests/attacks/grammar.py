@@ -11,6 +11,7 @@ from attacks.cases import (
     CLAIMS,
     DERIVATIVES,
     MEASURES,
+    PLACES,
     UNITS,
     Drawn,
     Rng,
@@ -248,6 +249,9 @@ def _claim(
         case "measure":
             key, kind = str(rng.choice(DERIVATIVES)), str(rng.choice(MEASURES))
             return {"of": "d-1", "derivative": key, "measure": kind, "value": "1.3"}
+        case "value":
+            key, place = str(rng.choice(("position", *DERIVATIVES))), str(rng.choice(PLACES))
+            return {"of": "d-1", "derivative": key, "place": place, "values": ["-1.3"] * joints}
         case "convergence":
             return {"iterations": Bare("30")}
         case "control_vertices":

@@ -114,17 +114,19 @@ def compared(
             f"{what} allows {computed} with rounded digits; printed is {digits}, which fits only "
             f"if some digits are rounded and others cut off ({span(whole)} {unit})."
         )
-    elif raised is not None and any(meet(own, raised) for own in (hull(printed), _raised(printed))):
-        severity, kind = Severity.WARNING, "fits raised parts"
-        message = (
-            f"{what} allows {computed} with rounded digits; printed is {digits}, which fits only "
-            f"if parts were rounded up ({span(raised)} {unit})."
-        )
     elif coarser and meet(_raised(printed), whole):
         severity, kind = Severity.WARNING, "fits rounded up"
         message = (
             f"{what} allows {computed} with rounded digits; printed is {digits}, which fits only "
             f"if it was rounded up ({span(whole)} {unit})."
+        )
+    elif raised is not None and any(
+        meet(own, raised) for own in (printed.interval, _raised(printed))
+    ):
+        severity, kind = Severity.WARNING, "fits raised parts"
+        message = (
+            f"{what} allows {computed} with rounded digits; printed is {digits}, which fits only "
+            f"if parts were rounded up ({span(raised)} {unit})."
         )
     else:
         verdict, severity, kind = ClaimVerdict.REFUTED, Severity.ERROR, "does not fit"
