@@ -165,8 +165,9 @@ def _sum(rng: np.random.Generator, draft: Draft) -> Planted:
     parts = [Decimal(t) for t in claim["durations"]]
     far = float(Decimal(claim["total"]) - sum(parts))
     unit, last = last_place(claim["durations"][0]), last_place(claim["total"])
-    # Each number rounded or cut off by itself.
-    below, above = len(parts) * unit / 2 + last, len(parts) * unit + last / 2
+    # Each number rounded or cut off by itself, or all parts rounded up.
+    below = max(len(parts) * unit / 2 + last, len(parts) * unit + last / 2)
+    above = len(parts) * unit + last / 2
     total = float(sum(parts))
     return Planted(draft, abs(far) / total, (above if far > 0 else below) / total)
 
