@@ -173,6 +173,8 @@ class _Agrees:
         return f"{self.said} agrees with the {self.best}"
 
 
+_EMPTY = (np.inf, -np.inf)
+"""Stands for the times of a total that is not printed."""
 _Part = str | _Above | _Agrees | _Unknown
 """What is said of one problem; plain words where a total differs otherwise."""
 
@@ -249,8 +251,11 @@ def _beside(study: Study, waterfall: Waterfall) -> _Part | None:
     floor = solution.lower_bound
     if floor is not None and " to " in span and low <= solution.best and floor <= high:
         return f"{said} lies in the interval that is proven to hold the optimum, {shown_best}"
-    if low <= solution.best <= high or _rounds_to(study, claim, rid, solution.best):
+    own, cut = _printed_range(study, claim, rid)
+    if low <= solution.best <= high or own[0] <= solution.best <= own[1]:
         return _Agrees(said, name, best)
+    if cut[0] <= solution.best <= cut[1]:
+        return f"{said} agrees with the {best} if digits were cut off"
     if loose := study.case.statement(pid, rid).declaration.loose:
         return f"{said} is not compared: {loose[0].lower()}{loose[1:]} are rounded numbers"
     if share >= _MANY_TIMES:
@@ -262,14 +267,16 @@ def _beside(study: Study, waterfall: Waterfall) -> _Part | None:
     return f"{said} is {_percent(-share)} below the {best}"
 
 
-def _rounds_to(study: Study, claim: TimeClaim, rid: str, seconds: float) -> bool:
-    """Whether a time is rounded or cut off to the digits of a printed total."""
+def _printed_range(
+    study: Study, claim: TimeClaim, rid: str
+) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Times that are rounded to the digits of a printed total, and those cut off to them, s."""
     printed = claim.value if isinstance(claim, TotalTimeClaim) else getattr(claim, "total", None)
     if printed is None:
-        return False
+        return _EMPTY, _EMPTY
     own = study.case.measured(printed, "time", claim.problem, rid)
     cut = own.cut_off()
-    return min(own.lower, cut.lower) <= seconds <= max(own.upper, cut.upper)
+    return (own.lower, own.upper), (cut.lower, cut.upper)
 
 
 def _span(solution: Solution) -> str:

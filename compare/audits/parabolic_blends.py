@@ -177,14 +177,19 @@ def by_blend_accelerations(
     if ends is EndBlends.WITHIN:
         for k in {0, n - 1}:
             speeds[k] = _with_blend(step[k], h[k], a, both=n == 1)
-    blends = [change.size.over(a) for change in _changes(speeds)]
+    changes = [change.size for change in _changes(speeds)]
+    blends = [change.over(a) for change in changes]
     rooms = []
     for k in range(n):
         shares = [0.5, 0.5]
         if ends is EndBlends.WITHIN:
             shares = [1.0 if k == 0 else 0.5, 1.0 if k == n - 1 else 0.5]
         rooms.append(h[k] - blends[k].times(shares[0]) - blends[k + 1].times(shares[1]))
-    sizes = [Between(*np.broadcast_arrays(a.low, a.high))] * (n + 1)
+    # Where the speed of a joint does not change, there is no acceleration.
+    sizes = [
+        Between(np.where(change.low > 0, a.low, 0.0), np.where(change.high > 0, a.high, 0.0))
+        for change in changes
+    ]
     return Blended(_stacked(speeds), _stacked(sizes), _stacked(rooms))
 
 

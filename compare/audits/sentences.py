@@ -134,21 +134,21 @@ def _measured(case: Case, claim: MotionValueClaim, whose: str) -> str:
     if len(claim.printed) > _MOST:
         return f"the {name}{whose}"
     if isinstance(claim, ValueClaim):
-        whose += _place(case, claim)
+        whose += place_of_value(case, claim)
     verb = "are" if each else "is"
     return f"the {name}{whose} {verb} {_and(with_units(case, claim))}"
 
 
-def _place(case: Case, claim: ValueClaim) -> str:
-    """Where a value is taken; empty for the largest and the smallest."""
+def place_of_value(case: Case, claim: ValueClaim) -> str:
+    """Where a value is taken, as a sentence says it; empty for the largest and the smallest."""
     if claim.time is not None:
         return f" at {claim.time} {case.document.units.time or 's'}"
     if claim.place in ("largest", "smallest"):
         return ""
-    named = case.statement(claim.problem).waypoints.labels
     if claim.place in ("start", "finish"):
         return f" at the {claim.place}"
-    return f" at {claim.place}" if named else f" at way-point {claim.place}"
+    labelled = case.statement(claim.problem).waypoints.labels
+    return f" at {claim.place}" if labelled else f" at way-point {claim.place}"
 
 
 def with_units(case: Case, claim: MotionValueClaim) -> list[str]:

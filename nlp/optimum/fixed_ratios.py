@@ -106,7 +106,7 @@ def _judged(problem: Problem, h: Array) -> Solution:
         inside = decided(problem, h)
         passing = None if inside is None else inside.durations
     if passing is None:
-        return Solution(problem, *_refused(verdict))
+        return Solution(problem, *_refused(problem, verdict))
     report = kkt(problem, h)
     beyond = max(0.0, float(passing.sum() / h.sum()) - 1.0)
     optimal = report.residual <= KKT_TOLERANCE and beyond <= BLURRED
@@ -127,14 +127,15 @@ def _judged(problem: Problem, h: Array) -> Solution:
     )
 
 
-def _refused(verdict: Check) -> tuple[Status, str]:
+def _refused(problem: Problem, verdict: Check) -> tuple[Status, str]:
     """Why no total makes a motion pass that is as tight as its limits allow."""
     outside = [p for p in verdict.peaks if p.quantity == "position" and p.ratio > 1.0 + TOLERANCE]
     if verdict.limits is Verdict.VIOLATED and outside:
         worst = max(outside, key=lambda p: p.ratio)
+        unit = "m" if problem.linear[problem.joints.index(str(worst.joint))] else "rad"
         return Status.INFEASIBLE, (
-            f"at these ratios joint {worst.joint} reaches {worst.value:.6g} rad, beyond its "
-            f"position limit of {worst.limit:.6g} rad, whatever the total"
+            f"at these ratios joint {worst.joint} reaches {worst.value:.6g} {unit}, beyond its "
+            f"position limit of {worst.limit:.6g} {unit}, whatever the total"
         )
     if verdict.jumps:
         jump = max(verdict.jumps, key=lambda one: (-one.order, abs(one.size)))

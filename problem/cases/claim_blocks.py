@@ -16,6 +16,7 @@ def claim_blocks(
     where: str,
     segments: int,
     units: Collection[str],
+    joint: str,
 ) -> list[str]:
     """Lines of the claims that are given, and of every other kind as comments.
 
@@ -35,6 +36,8 @@ def claim_blocks(
         How many durations there are to print.
     units : collection of str
         Quantities that have a unit.
+    joint : str
+        Label of the first joint.
 
     Returns
     -------
@@ -121,7 +124,8 @@ def claim_blocks(
             'where = ""',
             f'derivative = "{_derivative(units)}"  # or position',
             'place = "finish"  # or start, largest, smallest, a way-point; or time = "..."',
-            'value = ""  # or values = [...], one for each joint',
+            f"joint = {json.dumps(joint, ensure_ascii=False)}",
+            'value = ""  # or values = [...], one for each joint, and no joint above',
             motion,
         ),
     ):

@@ -85,6 +85,9 @@ def _check_claim(
                 number(printed, claim.derivative, "value")
         _check_motion_value(document, claim, statement, at)
     if isinstance(claim, ValueClaim):
+        if claim.value is not None and claim.joint is None and len(labels) > 1:
+            why = f"is one number for {len(labels)} joints; give values, one for each joint"
+            faults.add(f"{at}.value", f"{why}, or name its joint{statement.selected}")
         if claim.time is not None:
             number(claim.time, "time", "time")
         elif claim.place not in (known := named_places(statement)):
@@ -109,12 +112,8 @@ def named_places(statement: Statement) -> dict[str, int | None]:
     points = statement.waypoints
     names = points.labels or tuple(str(k + 1) for k in range(points.number))
     named: dict[str, int | None] = {"largest": None, "smallest": None}
-    return {
-        **named,
-        "start": 0,
-        "finish": points.number - 1,
-        **dict(zip(names, range(points.number), strict=True)),
-    }
+    named |= {"start": 0, "finish": points.number - 1}
+    return named | {name: k for k, name in enumerate(names)}
 
 
 def motions_of(claims: Iterable[AnyClaim], value: MotionValueClaim) -> list[AnyClaim]:

@@ -111,7 +111,7 @@ def scaffold(
 
     def text(place: str, segments: int) -> str:
         total = next(iter(claimed["total"]), None)
-        claims = claim_blocks(claimed["durations"], total, place, segments, checked)
+        claims = claim_blocks(claimed["durations"], total, place, segments, checked, joints[0])
         angles = _angles(numbers, checked["position"])
         return _text(identity, path.name, joints, labels, angles, checked, given, curve, claims)
 

@@ -20,7 +20,7 @@ from ...documents import Basis, ClaimVerdict, Finding, Rounding, Severity
 from ..explanations import LIMITS
 from ..study import Study
 from .kept_limits import said_to_keep
-from .linear_blends import judge_row
+from .linear_blends import BLENDS, blended, judge_row
 from .peaks import box_reach, has_curve, largest
 from .wording import (
     JUMPING,
@@ -261,7 +261,7 @@ def _limits_statement(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             reading=rid,
             message=message,
             kind=str(verdict),
-            follows=tuple(f"{LIMITS} {c.id}" for c, _, _ in breaking),
+            follows=tuple(f"{BLENDS if blended(c) else LIMITS} {c.id}" for c, _, _ in breaking),
         )
 
 

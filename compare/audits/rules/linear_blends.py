@@ -17,6 +17,8 @@ from ..study import Study
 from .kept_limits import said_to_keep
 from .wording import durations_text, in_units, unit_shown
 
+BLENDS = "blends"
+"""Root of what follows from a row that breaks a limit."""
 _SLACK = 1e-9
 """Relative margin that a limit is exceeded by at least: far above the rounding of a few quotients
 to floats, far below what digits leave open."""
@@ -116,7 +118,7 @@ def _beside(study: Study, claim: DurationsClaim, pid: str, rid: str) -> Finding:
         computed=computed,
         message=message,
         decides=said,
-        root=f"blends {claim.id}" if verdict is ClaimVerdict.REFUTED else "",
+        root=f"{BLENDS} {claim.id}" if verdict is ClaimVerdict.REFUTED else "",
     )
 
 
@@ -126,11 +128,8 @@ def _judged(
     box = study.waypoint_box(problem, pid, rid)
     claimed = study.case.claim_durations(claim, rid)
     durations = RoundingBox(claimed.value, claimed.lower, claimed.upper)
-    wide = _blended(study, claim, problem, pid, rid, box.or_cut_off(), durations.or_cut_off(), ends)
-    plain = _blended(
-        study, claim, problem, pid, rid,
-        RoundingBox.exact(box.value), RoundingBox.exact(durations.value), ends,
-    )  # fmt: skip
+    wide = _blended(study, claim, problem, pid, rid, box, durations, ends, as_printed=False)
+    plain = _blended(study, claim, problem, pid, rid, box, durations, ends, as_printed=True)
     loose = study.claim_problem(claim, pid, rid, Digits.LOOSEST_CUT).limits.sides.max(axis=0)
     most = loose[:, :2] * (1.0 + _SLACK)
     breaks = (
@@ -159,15 +158,14 @@ def _blended(
     waypoints: RoundingBox,
     durations: RoundingBox,
     ends: EndBlends,
+    as_printed: bool,
 ) -> Blended:
-    """What the motion asks for; exact boxes take the rest of the numbers as printed, too."""
-    exact = bool((durations.lower == durations.upper).all() and (
-        waypoints.lower == waypoints.upper
-    ).all())  # fmt: skip
+    """What the motion asks for at the printed numbers, or for all rounded or cut off to them."""
+    waypoints, durations = (_taken(box, as_printed) for box in (waypoints, durations))
     if claim.blends is not None:
         numbers = _each(claim.blends, len(durations.value) + 1)
         times = [study.case.measured(n, "time", claim.problem, rid) for n in numbers]
-        return by_blend_times(waypoints, durations, _box(times, exact), ends)
+        return by_blend_times(waypoints, durations, _taken(_box(times), as_printed), ends)
     assert claim.blend_acceleration is not None
     labels = study.case.robot.joints
     given = dict(zip(labels, _each(claim.blend_acceleration, len(labels)), strict=True))
@@ -175,21 +173,22 @@ def _blended(
         study.case.measured(given[label], "acceleration", pid, rid, label)
         for label in problem.joints
     ]
-    return by_blend_accelerations(waypoints, durations, _box(sizes, exact), ends)
+    return by_blend_accelerations(waypoints, durations, _taken(_box(sizes), as_printed), ends)
 
 
 def _each(given: Printed | tuple[Printed, ...], count: int) -> tuple[Printed, ...]:
     return given if isinstance(given, tuple) else (given,) * count
 
 
-def _box(measured: Sequence[Measured], exact: bool) -> RoundingBox:
-    value: Array = np.array([m.value for m in measured])
-    if exact:
-        return RoundingBox.exact(value)
-    box = RoundingBox(
-        value, np.array([m.lower for m in measured]), np.array([m.upper for m in measured])
-    )
-    return box.or_cut_off()
+def _box(measured: Sequence[Measured]) -> RoundingBox:
+    ends: list[Array] = [
+        np.array([getattr(m, end) for m in measured]) for end in ("value", "lower", "upper")
+    ]
+    return RoundingBox(*ends)
+
+
+def _taken(box: RoundingBox, as_printed: bool) -> RoundingBox:
+    return RoundingBox.exact(box.value) if as_printed else box.or_cut_off()
 
 
 def _worst(study: Study, problem: Problem, plain: Blended, pid: str, rid: str) -> str:

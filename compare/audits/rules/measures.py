@@ -9,12 +9,11 @@ import numpy as np
 
 from ....problem import QUANTITIES, Array, Printed, Trajectory, fit
 from ....problem.cases import AnyClaim, MeasureClaim
-from ...documents import Basis, ClaimVerdict, Finding
+from ...documents import Finding
 from ..study import Study
-from .loose_curves import FITTING, misfit
-from .motion_numbers import SAMPLES, NumberBeside, nearest_number
+from .motion_numbers import SAMPLES, NumberBeside, nearest_number, told_beside
 from .peaks import each_motion, has_curve, peak_numbers
-from .wording import UNEXPLAINED, called, in_units, unit_shown
+from .wording import in_units, unit_shown
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(10)
 """Gauss-Legendre on -1..1: exact up to degree 19, and squares of declared polynomials have 18."""
@@ -147,33 +146,15 @@ def _measures(study: Study, claim: MeasureClaim, motion: AnyClaim) -> Iterator[F
             (joint, _beside(study, claim, number, motion, joint, pid, rid))
             for joint, number in pairs
         ]
-        wrong = [(joint, one) for joint, one in found if not one.fits]
-        units = {joint: _unit(study, claim, joint, pid, rid) for joint, _ in found}
-        said = "; ".join(_said(claim, joint, one, units[joint]) for joint, one in (wrong or found))
-        verdict, severity, note = misfit(study, pid, rid) if wrong else FITTING
-        yield Finding(
-            rule="TG208",
-            severity=severity,
-            verdict=verdict,
-            basis=Basis.CHECK if all(one.met for _, one in found) else Basis.COMPUTED,
-            claim=claim.id,
-            problem=pid,
-            reading=rid,
-            printed=", ".join(map(str, claim.printed)),
-            computed="; ".join(
-                f"{one.exact:.6g} ± {one.reach:.1g} {units[joint]}" for joint, one in found
-            ),
-            message=f"Of the printed durations ({called(motion)}): {said}.{note}",
-            root=f"measures of {motion.id}" if verdict is ClaimVerdict.INCONSISTENT else "",
-            between=(claim.id, motion.id) if verdict is ClaimVerdict.INCONSISTENT else (),
-        )
 
+        def unit(joint: str | None, pair: tuple[str, str] = (pid, rid)) -> str:
+            return _unit(study, claim, joint, *pair)
 
-def _said(claim: MeasureClaim, joint: str | None, one: NumberBeside, unit: str) -> str:
-    whose = one.meaning if joint is None else f" of joint {joint}"
-    exact = f"the {NAMES[claim.measure]} of {claim.derivative}{whose} is {one.exact:.6g} {unit}"
-    how = one.fits or UNEXPLAINED
-    return f"{exact}, printed is {one.printed}, {how}"
+        def name(joint: str | None, one: NumberBeside) -> str:
+            whose = one.meaning if joint is None else f" of joint {joint}"
+            return f"the {NAMES[claim.measure]} of {claim.derivative}{whose}"
+
+        yield told_beside(study, "TG208", claim, motion, (pid, rid), found, unit, name)
 
 
 def _unit(study: Study, claim: MeasureClaim, joint: str | None, pid: str, rid: str) -> str:

@@ -8,9 +8,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ....problem import Array, Printed, TrajgapError
+from ....problem.cases import AnyClaim, MeasureClaim, ValueClaim
+from ...documents import Basis, ClaimVerdict, Finding
 from ..rounding import RoundingBox
+from ..study import Study
 from .corners import Look, largest_change
+from .loose_curves import FITTING, misfit
 from .printed_digits import hull
+from .wording import UNEXPLAINED, called
 
 Meant = Callable[[Array, Array], dict[str, float]]
 """From way-points and durations to what a number may be, each in words."""
@@ -143,3 +148,62 @@ def _with(values: Array, k: tuple[int, ...], others: Array) -> Array:
     found = values.copy()
     found[k] = others[k]
     return found
+
+
+def told_beside(
+    study: Study,
+    rule: str,
+    claim: MeasureClaim | ValueClaim,
+    motion: AnyClaim,
+    pair: tuple[str, str],
+    found: Sequence[tuple[str | None, NumberBeside]],
+    unit: Callable[[str | None], str],
+    name: Callable[[str | None, NumberBeside], str],
+) -> Finding:
+    """The finding on the printed numbers of a claim beside those of one motion.
+
+    Parameters
+    ----------
+    study : Study
+    rule : str
+    claim : MeasureClaim or ValueClaim
+    motion : AnyClaim
+        The durations whose motion it is.
+    pair : tuple of str
+        Problem and reading.
+    found : sequence of (str or None, NumberBeside)
+        With the joint of each; not empty.
+    unit : callable
+        Of a joint's number.
+    name : callable
+        What a joint's number is called.
+
+    Returns
+    -------
+    Finding
+        It tells what does not fit, or everything where all of it does.
+    """
+    wrong = [(joint, one) for joint, one in found if not one.fits]
+    said = [
+        f"{name(joint, one)} is {one.exact:.6g} {unit(joint)}, printed is {one.printed}, "
+        f"{one.fits or UNEXPLAINED}"
+        for joint, one in (wrong or found)
+    ]
+    verdict, severity, note = misfit(study, *pair) if wrong else FITTING
+    clash = verdict is ClaimVerdict.INCONSISTENT
+    return Finding(
+        rule=rule,
+        severity=severity,
+        verdict=verdict,
+        basis=Basis.CHECK if all(one.met for _, one in found) else Basis.COMPUTED,
+        claim=claim.id,
+        problem=pair[0],
+        reading=pair[1],
+        printed=", ".join(map(str, claim.printed)),
+        computed="; ".join(
+            f"{one.exact:.6g} ± {one.reach:.1g} {unit(joint)}" for joint, one in found
+        ),
+        message=f"Of the printed durations ({called(motion)}): {'; '.join(said)}.{note}",
+        root=f"{claim.quantity}s of {motion.id}" if clash else "",
+        between=(claim.id, motion.id) if clash else (),
+    )

@@ -271,10 +271,9 @@ def _same_total(study: Study) -> Iterator[Finding]:
         found, said = _stated_as(study, claim)
         agreeing = [c for c in found if meet(hull(claim.value), _total_shown(study, c)[1])]
         # A total may count end blends by half, and how long they take is not always printed.
-        found = agreeing or [c for c in found if end_blends(study, c) is not None]
-        others = found
+        others = agreeing or [c for c in found if end_blends(study, c) is not None]
         if not others:
-            if claim.algorithm is not None:
+            if claim.algorithm is not None and not found:
                 yield _rival(claim)
             continue
         other = others[0]
@@ -285,9 +284,9 @@ def _same_total(study: Study) -> Iterator[Finding]:
         message += f"total{whose}."
         verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
         # Two totals by themselves may be a mean and a best: nothing says that they are one.
-        if not agreeing and (len(found) > 1 or isinstance(other, TotalTimeClaim)):
+        if not agreeing and (len(others) > 1 or isinstance(other, TotalTimeClaim)):
             verdict = ClaimVerdict.NOT_CHECKABLE
-            places = "; ".join(f"{c.where}: {_total_shown(study, c)[0]}" for c in found)
+            places = "; ".join(f"{c.where}: {_total_shown(study, c)[0]}" for c in others)
             message = (
                 f"{claim.where} prints {printed}, which is none of the totals printed elsewhere "
                 f"({places}); the text does not say that it is one of them."

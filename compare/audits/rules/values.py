@@ -8,12 +8,12 @@ import numpy as np
 
 from ....problem import QUANTITIES, Array, Curve, Printed, Trajectory, extrema, fit
 from ....problem.cases import AnyClaim, ValueClaim, named_places
-from ...documents import Basis, ClaimVerdict, Finding
+from ...documents import Finding
+from ..sentences import place_of_value
 from ..study import Study
-from .loose_curves import FITTING, misfit
-from .motion_numbers import SAMPLES, NumberBeside, nearest_number
+from .motion_numbers import SAMPLES, NumberBeside, nearest_number, told_beside
 from .peaks import each_motion, has_curve, peak_numbers
-from .wording import UNEXPLAINED, called, in_units, unit_shown
+from .wording import in_units, unit_shown
 
 _NO_MOTION = "No durations are printed of whose motion this could be a value."
 """Said of a value where nothing defines a motion."""
@@ -28,22 +28,9 @@ def judge_values(study: Study) -> Iterator[Finding]:
     return each_motion(study, ValueClaim, _values, "TG211", _NO_MOTION)
 
 
-def place_words(claim: ValueClaim, labelled: bool) -> str:
-    """Where a value is taken, as a sentence says it; empty for the largest and the smallest."""
-    if claim.time is not None:
-        return " at the printed instant"
-    if claim.place in ("largest", "smallest"):
-        return ""
-    if claim.place in ("start", "finish"):
-        return f" at the {claim.place}"
-    return f" at {claim.place}" if labelled else f" at way-point {claim.place}"
-
-
 def _values(study: Study, claim: ValueClaim, motion: AnyClaim) -> Iterator[Finding]:
     for pid, rid in study.claim_pairs(motion):
         if claim.problem not in (None, pid) or not has_curve(study, motion, pid, rid):
-            continue
-        if study.unmoved(motion, pid, rid) is not None:
             continue
         joints = study.claim_problem(motion, pid, rid).joints
         sole = joints[0] if len(joints) == 1 else None
@@ -55,36 +42,16 @@ def _values(study: Study, claim: ValueClaim, motion: AnyClaim) -> Iterator[Findi
         ]
         if not found:
             continue
-        wrong = [(joint, one) for joint, one in found if not one.fits]
-        labelled = bool(study.case.statement(pid, rid).waypoints.labels)
-        where = place_words(claim, labelled)
+        where = place_of_value(study.case, claim)
         size = f"{claim.place} " if claim.place in ("largest", "smallest") else ""
-        said = []
-        for joint, one in wrong or found:
-            unit = unit_shown(study, pid, rid, claim.derivative, joint)
-            said.append(
-                f"the {size}{claim.derivative} of joint {joint}{where}{one.meaning} is "
-                f"{one.exact:.6g} {unit}, printed is {one.printed}, {one.fits or UNEXPLAINED}"
-            )
-        verdict, severity, note = misfit(study, pid, rid) if wrong else FITTING
-        yield Finding(
-            rule="TG211",
-            severity=severity,
-            verdict=verdict,
-            basis=Basis.CHECK if all(one.met for _, one in found) else Basis.COMPUTED,
-            claim=claim.id,
-            problem=pid,
-            reading=rid,
-            printed=", ".join(map(str, claim.printed)),
-            computed="; ".join(
-                f"{one.exact:.6g} ± {one.reach:.1g} "
-                f"{unit_shown(study, pid, rid, claim.derivative, joint)}"
-                for joint, one in found
-            ),
-            message=f"Of the printed durations ({called(motion)}): {'; '.join(said)}.{note}",
-            root=f"values of {motion.id}" if verdict is ClaimVerdict.INCONSISTENT else "",
-            between=(claim.id, motion.id) if verdict is ClaimVerdict.INCONSISTENT else (),
-        )
+
+        def unit(joint: str | None, pair: tuple[str, str] = (pid, rid)) -> str:
+            return unit_shown(study, *pair, claim.derivative, joint)
+
+        def name(joint: str | None, one: NumberBeside, size: str = size, at: str = where) -> str:
+            return f"the {size}{claim.derivative} of joint {joint}{at}{one.meaning}"
+
+        yield told_beside(study, "TG211", claim, motion, (pid, rid), found, unit, name)
 
 
 def _beside(

@@ -97,6 +97,19 @@ def test_a_distance_is_told_with_the_limit_that_its_motion_breaks(times: str, sa
     assert line(f"{text}{claim}\n").startswith(said)
 
 
+def test_a_total_that_was_cut_off_is_said_to_agree_if_it_was() -> None:
+    """6/1.499 s are 4.00267 s, of which 4.002 s is cut off and 4.003 s rounded."""
+    text = TWO.format(coupling="shared").split("[[claims]]")[0].replace("= 1.5", "= 1.499")
+    claim = """[[claims]]
+id = "all"
+quantity = "durations"
+where = "Table 1"
+durations = ["2.001", "2.001"]
+"""
+    assert line(f'{text}{claim}total = "4.002"\n').endswith("4.0027 s if digits were cut off.")
+    assert line(f'{text}{claim}total = "4.003"\n').endswith("4.0027 s.")
+
+
 @pytest.mark.parametrize(
     ("example", "said"),
     [

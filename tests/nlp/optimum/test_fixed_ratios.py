@@ -166,6 +166,9 @@ def test_a_path_that_leaves_its_range_is_not_mended_by_time() -> None:
     answer = solve(problem)
     assert answer.status is Status.INFEASIBLE
     assert "at these ratios joint 2 reaches" in str(answer.why)
+    sliding = solve(replace(problem, linear=(False, True)))
+    assert " m, beyond" in sliding.why
+    assert "rad" not in sliding.why
     wider = replace(problem, limits=replace(limits, position_upper=[1.31, 1.4]))
     assert shortest(wider) == pytest.approx(shortest(replace(problem, limits=LIMITS)), rel=1e-12)
 

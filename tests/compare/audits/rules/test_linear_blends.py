@@ -206,3 +206,44 @@ def test_a_blend_of_nothing_is_no_acceleration_of_a_joint_that_rests() -> None:
     still = made_up("blends = 0.0").replace('"10.00", "35.00", "25.00", "10.00"', "10, 10, 10, 10")
     (found,) = said_of(study_of(still), judge_blends, "row", "TG210")
     assert found.verdict is ClaimVerdict.SUPPORTED
+
+
+def test_rounding_of_blends_counts_where_all_else_is_exact() -> None:
+    """0.40 s may be 0.41 s: 22.5 °/s within it take 56.25 or 54.9 °/s²; within, 59.7 or 58.4."""
+    text = made_up('blends = "0.40"\nend_blends = "beyond"', "[2, 1, 3]", limit="56")
+    for quoted in ("10.00", "35.00", "25.00"):
+        text = text.replace(f'"{quoted}"', quoted)
+    (found,) = said_of(study_of(text), judge_blends, "row", "TG210")
+    assert found.verdict is ClaimVerdict.NOT_CHECKABLE
+    (exact,) = said_of(study_of(text.replace('"0.40"', "0.40")), judge_blends, "row", "TG210")
+    assert exact.verdict is ClaimVerdict.REFUTED
+
+
+def test_a_joint_that_does_not_change_its_speed_needs_no_acceleration() -> None:
+    """60 °/s² is printed for the blends of an arm whose second joint rests, within 50 °/s²."""
+    text = made_up("blend_acceleration = 60", limit="[60, 50]")
+    text = text.replace('joints = ["1"]', 'joints = ["1", "2"]')
+    text = text.replace('"25.00", "10.00"]]', '"25.00", "10.00"], [5, 5, 5, 5]]')
+    (found,) = said_of(study_of(text), judge_blends, "row", "TG210")
+    assert found.verdict is ClaimVerdict.SUPPORTED
+    moving = text.replace("[5, 5, 5, 5]", "[5, 5, 6, 6]")
+    (found,) = said_of(study_of(moving), judge_blends, "row", "TG210")
+    assert found.verdict is ClaimVerdict.REFUTED
+
+
+def test_what_is_said_of_a_row_follows_from_it() -> None:
+    """One cause, and the sentence that the limits are kept as its consequence."""
+    text = (
+        made_up('blends = "0.40"')
+        + """
+[[claims]]
+id = "kept"
+quantity = "statement"
+where = "section 4"
+checks = "within_limits"
+of = ["row"]
+"""
+    )
+    (cause,) = audit_case(study_of(text)).causes
+    assert cause.claim == "row"
+    assert [one.claim for one in cause.consequences] == ["kept"]

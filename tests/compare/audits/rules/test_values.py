@@ -115,12 +115,15 @@ def test_a_printed_instant_is_an_interval() -> None:
     [
         ('place = "5"\nvalue = 1', "'5' is no place of the motion"),
         ("value = 1", "or time is needed"),
+        ('place = "1"\nvalue = 1\nTWO', "is one number for 2 joints"),
         ('place = "1"\ntime = 1\nvalue = 1', "or time is needed, and not both"),
     ],
 )
 def test_a_place_is_asked_for_in_one_line(keys: str, said: str) -> None:
+    rows = [EXAM, EXAM] if "TWO" in keys else None
+    text = made_up(f'derivative = "velocity"\n{keys.removesuffix("TWO")}', rows)
     with pytest.raises(CaseError, match=said):
-        parse_case(made_up(f'derivative = "velocity"\n{keys}'), "made-up.toml")
+        parse_case(text, "made-up.toml")
 
 
 def test_the_report_says_where() -> None:
