@@ -361,11 +361,14 @@ def _shortened(problem: Problem, solution: Solution, ask: Ask) -> Solution:
         return solution
     assert solution.durations is not None
     floor = _floor(problem, DEEPER[-1])
-    points = shortened(problem, solution.durations, floor, ask.seed)
-    if points.size == 0:
-        return solution
-    found = _searched(problem, replace(ask, initial=points), shares=DEEPER)
-    return _better_of(solution, replace(found, starts=solution.starts + found.starts))
+    for point in shortened(problem, solution.durations, floor, ask.seed):
+        if _late(ask):
+            break
+        # One by one: a start that ends above a floor says nothing of one that ends at it.
+        found = _searched(problem, replace(ask, initial=point[None]), shares=DEEPER)
+        starts = solution.starts + found.starts
+        solution = replace(_better_of(solution, found), starts=starts)
+    return solution
 
 
 def _late(ask: Ask) -> bool:

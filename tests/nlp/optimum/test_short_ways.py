@@ -62,6 +62,26 @@ TWICE = Problem(
     cubic_spline(3),
 )
 """Two short ways, one a hundred thousandth of the other: found by an attack, not by the search."""
+ENTERING = Problem(
+    np.array(
+        [
+            [-0.0278838, 0.00184774],
+            [-0.0278838, -0.00326112],
+            [-0.027883661775939168, -0.003261293270186826],
+        ]
+    ),
+    Limits(acceleration=1.0, joints=2).with_sides(
+        np.array(
+            [
+                [[np.inf, np.inf, np.inf], [np.inf, 0.00467441, np.inf]],
+                [[np.inf, 0.00997806, np.inf], [np.inf, 0.00320589, np.inf]],
+            ]
+        )
+    ),
+    cubic_spline(2, ((1, -0.000241806),)),
+)
+"""It enters and leaves in motion: a joint that comes back to where it was covers more than its
+span, and the limits hold at a ten thousandth of the other optimum's second duration alone."""
 FOUND = {
     "three joints": (
         THREE_JOINTS,
@@ -78,6 +98,7 @@ FOUND = {
         [0.00098523223563552038, 7.8247720745806148e-09, 0.3187312810277706],
         0.3294088537,
     ),
+    "entering": (ENTERING, [2.8729255591705578, 0.00071321653797503726], 3.21147828),
 }
 """A problem, what differential evolution found, and the total of the other optimum, s."""
 
@@ -127,6 +148,11 @@ def test_ways_that_are_short(
 ) -> None:
     problem = Problem(np.array(rows, dtype=float), Limits(1.0, joints=2), curve)
     assert short_ways(problem) == segments
+
+
+def test_a_way_is_short_beside_what_a_joint_covers_that_enters_in_motion() -> None:
+    assert short_ways(ENTERING) == [1]
+    assert short_ways(replace(ENTERING, curve=cubic_spline(2))) == []
 
 
 def test_starts_are_much_shorter_there_and_about_as_long_in_all() -> None:
