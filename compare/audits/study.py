@@ -17,6 +17,8 @@ from ...nlp import (
     ProvedInterval,
     Solution,
     Status,
+    lower_bounds,
+    proved_joints,
     solve_per_joint,
     stated_exactly,
     with_certificates,
@@ -126,12 +128,16 @@ class Study(ReplayedCase):
             slacks = dict.fromkeys((*self.half_digits(pid, rid), OPTIMUM_SLACK))
             problem = self.problem(pid, rid)
             known = {label: self.known_motions(pid, rid, label) for label in problem.joints}
+            intervals = proved_joints(
+                problem, self.case.statement(pid, rid), self._proved(pid, rid)
+            )
+            bounds = lower_bounds(intervals)
             try:
-                found = solve_per_joint(problem, slacks=tuple(slacks), known=known)
+                found = solve_per_joint(problem, slacks=tuple(slacks), known=known, lower=bounds)
             except TrajgapError as error:
                 joints = tuple(self.optimum(pid, rid, label) for label in problem.joints)
                 return PerJointSolution(problem, joints, None, None, (), str(error), 0.0)
-            return with_certificates(found, self.case.statement(pid, rid), self._proved(pid, rid))
+            return with_certificates(found, intervals)
 
         return self.once(("per joint", pid, rid), compute)
 

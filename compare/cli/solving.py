@@ -10,6 +10,8 @@ from rich.console import RenderableType
 
 from ...nlp import (
     Solution,
+    lower_bounds,
+    proved_joints,
     solve,
     solve_per_joint,
     stated_exactly,
@@ -84,8 +86,10 @@ def _solved(
     if one.problem.coupling is Coupling.PER_JOINT:
         halves = Study(case).half_digits(one.problem_id, one.reading_id)
         slacks = tuple(dict.fromkeys((*halves, OPTIMUM_SLACK)))
-        apart = solve_per_joint(one.problem, starts=starts, seed=seed, slacks=slacks)
-        apart = with_certificates(apart, case.statement(one.problem_id, one.reading_id))
+        intervals = proved_joints(one.problem, case.statement(one.problem_id, one.reading_id))
+        bounds = lower_bounds(intervals)
+        apart = solve_per_joint(one.problem, starts=starts, seed=seed, slacks=slacks, lower=bounds)
+        apart = with_certificates(apart, intervals)
         together = solve(one.problem, starts=starts, seed=seed)
         retimed = [_retimed(s, retimings) for s in apart.joints]
         return solve_result(*ids, apart, retimed, together), together

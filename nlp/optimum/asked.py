@@ -23,6 +23,8 @@ class Ask:
     form: Form | None
     until: float
     """Reading of the monotonic clock after which no further start is begun."""
+    lower: float = 0.0
+    """A proved lower bound of the total, s."""
 
 
 def vectors(problem: Problem, name: str, given: ArrayLike) -> Array:

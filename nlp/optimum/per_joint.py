@@ -113,6 +113,7 @@ def solve_per_joint(
     seed: int = 0,
     slacks: tuple[float, ...] = (OPTIMUM_SLACK,),
     known: Mapping[str, ArrayLike] | None = None,
+    lower: Mapping[str, float] | None = None,
 ) -> PerJointSolution:
     """Optimise each joint by itself and take the longest duration of each segment.
 
@@ -128,7 +129,7 @@ def solve_per_joint(
     slacks : tuple of float
         Excesses over each joint's own optimum, s, for which the range of the procedure's total
         is reported; none for an empty tuple.
-    known : mapping, optional
+    known, lower : mapping, optional
         As in `solve`, by the joint's label.
 
     Returns
@@ -137,9 +138,16 @@ def solve_per_joint(
     """
     began = time.perf_counter()
     singles = [problem.joint(j) for j in range(problem.waypoints.shape[1])]
-    given = known or {}
+    given, bounds = known or {}, lower or {}
     solutions = tuple(
-        solve(p, starts=starts, seed=seed, known=given.get(p.joints[0])) for p in singles
+        solve(
+            p,
+            starts=starts,
+            seed=seed,
+            known=given.get(p.joints[0]),
+            lower=bounds.get(p.joints[0], 0.0),
+        )
+        for p in singles
     )
     answers = [s.durations for s in solutions if s.durations is not None]
     ranges: list[Range] = []

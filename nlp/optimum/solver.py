@@ -69,6 +69,7 @@ def solve(
     form: Form | None = None,
     seconds: float = math.inf,
     start_seconds: float = math.inf,
+    lower: float = 0.0,
 ) -> Solution:
     """Best known total time of a problem with shared durations, from an exact NLP.
 
@@ -99,6 +100,9 @@ def solve(
         `why` says that the time ran out. What is found then depends on the machine.
     start_seconds : float
         After so long no further start is begun; one that has begun is finished.
+    lower : float
+        A proved lower bound of the total, s. It saves searches, and is no part of the answer: no
+        further descents challenge a total that it leaves no room below.
 
     Returns
     -------
@@ -118,6 +122,7 @@ def solve(
         None if known_nodal is None else np.asarray(known_nodal, dtype=np.float64),
         form,
         time.monotonic() + start_seconds,
+        lower,
     )
     wanted = (len(ask.known), problem.curve.free, len(problem.joints))
     if ask.known_nodal is not None and ask.known_nodal.shape != wanted:
@@ -191,7 +196,7 @@ def _quickly(problem: Problem, ask: Ask) -> Solution | None:
     """The answer of Newton descents, where they settle."""
     if ask.form is not None or time_up():
         return None
-    return settled_quickly(problem, ask.starts, ask.seed, FLOORS[-1], ask.until)
+    return settled_quickly(problem, ask.starts, ask.seed, FLOORS[-1], ask.until, ask.lower)
 
 
 def _widely(problem: Problem, ask: Ask) -> Solution:

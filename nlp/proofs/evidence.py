@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ...problem import TrajgapError, Verdict, check
+from ...problem import Problem, TrajgapError, Verdict, check
 from ...problem.cases import Statement
 from ...verify import CertificateVerdict, Subject, verify_certificate
 from ..optimum import PerJointSolution, Solution, solve
@@ -189,16 +189,16 @@ def _proved_answer(solution: Solution, durations: tuple[Fraction, ...]) -> Solut
     return replace(solution, durations=h, check=found)
 
 
-def with_certificates(
-    answer: PerJointSolution,
+def proved_joints(
+    problem: Problem,
     statement: Statement,
     find: Callable[[ExactProblem], ProvedInterval | None] = proved,
-) -> PerJointSolution:
-    """`with_certificate` for each joint's own optimum; the procedure's output stays what it is.
+) -> dict[str, ProvedInterval]:
+    """What is proved of the optimum of each joint by itself.
 
     Parameters
     ----------
-    answer : PerJointSolution
+    problem : Problem
     statement : Statement
         Of the same problem.
     find : callable, optional
@@ -206,13 +206,38 @@ def with_certificates(
 
     Returns
     -------
+    dict
+        By the joint's label, of those of which something is proved.
+    """
+    stated = {label: stated_exactly(statement, j) for j, label in enumerate(problem.joints)}
+    found = {label: find(exact) for label, exact in stated.items() if exact is not None}
+    return {label: interval for label, interval in found.items() if interval is not None}
+
+
+def with_certificates(
+    answer: PerJointSolution, intervals: Mapping[str, ProvedInterval]
+) -> PerJointSolution:
+    """`with_interval` for each joint's own optimum; the procedure's output stays what it is.
+
+    Parameters
+    ----------
+    answer : PerJointSolution
+    intervals : mapping
+        As `proved_joints` finds them for the same problem.
+
+    Returns
+    -------
     PerJointSolution
     """
-    exact = [stated_exactly(statement, j) for j in range(len(answer.joints))]
     joints = [
-        with_interval(s, None if problem is None else find(problem))
-        for s, problem in zip(answer.joints, exact, strict=True)
+        with_interval(s, intervals.get(label))
+        for s, label in zip(answer.joints, answer.problem.joints, strict=True)
     ]
     same = all(new.best == old.best for new, old in zip(joints, answer.joints, strict=True))
     # Durations of another answer would not be the ones behind the procedure's output.
     return replace(answer, joints=tuple(joints)) if same else answer
+
+
+def lower_bounds(intervals: Mapping[str, ProvedInterval]) -> dict[str, float]:
+    """Proved lower bounds by the joint's label, s, as `solve_per_joint` takes them."""
+    return {label: float(interval.lower) for label, interval in intervals.items()}

@@ -60,6 +60,9 @@ def solve(
     TrajgapError
         If ``initial`` or ``known`` has the wrong shape.
     """
+    size = len(problem.waypoints), len(problem.joints)
+    place = _place(problem, *size)
+    interval = None if place is None else _proved(*size, place)
     found = optimum.solve(
         problem,
         starts=starts,
@@ -69,10 +72,9 @@ def solve(
         known_nodal=known_nodal,
         form=form,
         seconds=seconds,
+        lower=0.0 if interval is None else float(interval.lower),
     )
-    size = len(problem.waypoints), len(problem.joints)
-    place = _place(problem, *size)
-    return found if place is None else with_interval(found, _proved(*size, place))
+    return with_interval(found, interval)
 
 
 def _place(problem: Problem, waypoints: int, joints: int) -> int | None:

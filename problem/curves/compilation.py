@@ -7,25 +7,30 @@ import builtins
 import hashlib
 import inspect
 import math
+import os
 import sys
 import textwrap
+import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from functools import cache
+from functools import cache, update_wrapper
 from pathlib import Path
 from types import FunctionType
 from typing import Any, cast
 
-import numba
 import numpy as np
-from numba.core.registry import CPUDispatcher
 
 LOOK = 0.1
 """Share of the time of compiling after which it is looked again whether another process did it."""
 BUSY = 3.0
 """Times as long as on an idle machine that compiling may take: where less is left none begins."""
+LOADING = 0.5
+"""Seconds that importing numba and its first compiled function take: before one function has been
+interpreted for as long, nothing is looked for on disk unless something compiled is in use."""
+_MAKING = threading.RLock()
+"""Held while a function is handed to numba: two threads make one dispatcher."""
 _UNTIL: ContextVar[float] = ContextVar("until", default=math.inf)
 """Reading of the clock by which everything is to have ended: none without `compiling_until`."""
 _AT_ONCE: ContextVar[bool] = ContextVar("at once", default=False)
@@ -62,8 +67,8 @@ def _left() -> float:
     return _UNTIL.get() - time.perf_counter()
 
 
-def compiler(*sources: Path) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
-    """Make a decorator that compiles functions, cached on disk where there is a writable place.
+def compiler(*sources: Path) -> Callable[[Callable[..., Any]], Kernel]:
+    """Make a decorator for functions to be compiled, and cached where there is a writable place.
 
     numba's cache looks at the file of the function alone, so that a function would go on calling an
     old callee from another file. Functions that call each other are compiled by one decorator, and
@@ -80,15 +85,63 @@ def compiler(*sources: Path) -> Callable[[Callable[..., Any]], Callable[..., Any
     """
     stamp = hashlib.sha256(b"".join(path.read_bytes() for path in sources)).hexdigest()[:16]
 
-    def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
+    def compiled(function: Callable[..., Any]) -> Kernel:
         function.__qualname__ = f"{function.__qualname__}_{stamp}"
-        try:
-            jitted = numba.njit(cache=True, nogil=True, error_model="numpy")(function)
-        except RuntimeError:  # no writable place for the cache: compile in memory
-            jitted = numba.njit(nogil=True, error_model="numpy")(function)
-        return cast(Callable[..., Any], jitted)
+        return Kernel(function)
 
     return compiled
+
+
+class Kernel:
+    """A function that numba compiles, and that brings numba in only when it is called or compiled.
+
+    Parameters
+    ----------
+    function : callable
+
+    Attributes
+    ----------
+    py_func : function
+        The function itself, as of numba's dispatchers.
+    """
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self.py_func = cast(FunctionType, function)
+        self._dispatcher: Any = None
+        update_wrapper(self, function)
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Call the compiled function."""
+        made = self._dispatcher or self.dispatcher
+        return made(*arguments)
+
+    @property
+    def dispatcher(self) -> Any:
+        """What numba makes of the function, and the function itself where it is switched off."""
+        with _MAKING:
+            if self._dispatcher is None:
+                # numba knows dispatchers alone where a function calls another one.
+                for name, value in _globals_of(self.py_func):
+                    if isinstance(value, Kernel):
+                        self.py_func.__globals__[name] = value.dispatcher
+                self._dispatcher = _jitted(self.py_func)
+                if hasattr(self, "writes"):
+                    self._dispatcher.writes = self.writes
+        return self._dispatcher
+
+    @property
+    def signatures(self) -> list[Any]:
+        """Forms of arguments that it is compiled for in this process."""
+        return [] if self._dispatcher is None else list(getattr(self._dispatcher, "signatures", ()))
+
+
+def _jitted(function: FunctionType) -> Any:
+    import numba
+
+    try:
+        return numba.njit(cache=True, nogil=True, error_model="numpy")(function)
+    except RuntimeError:  # no writable place for the cache: compile in memory
+        return numba.njit(nogil=True, error_model="numpy")(function)
 
 
 def by_elements(*writes: str) -> Callable[[Any], Any]:
@@ -122,7 +175,7 @@ def interpreted(function: Any) -> Callable[..., Any]:
 
     Parameters
     ----------
-    function : numba dispatcher
+    function : Kernel
 
     Returns
     -------
@@ -132,7 +185,7 @@ def interpreted(function: Any) -> Callable[..., Any]:
     """
     plain = getattr(function, "py_func", function)  # plain already where compiling is switched off
     names = {
-        name: interpreted(value) if isinstance(value, CPUDispatcher) else value
+        name: interpreted(value) if hasattr(value, "py_func") else value
         for name, value in _globals_of(plain)
     }
     names["__builtins__"] = builtins  # numpy looks for them where it is called
@@ -230,12 +283,15 @@ class Deferred:
 
     Parameters
     ----------
-    function : numba dispatcher
+    function : Kernel
     seconds : float
         Time that compiling it takes.
     plainly : callable, optional
         What runs meanwhile, with the same bits; without it the function itself is interpreted.
     """
+
+    _in_use = False
+    """Whether a compiled function is in use in this process: the next one loads quickly."""
 
     def __init__(
         self, function: Any, seconds: float, plainly: Callable[..., Any] | None = None
@@ -257,8 +313,10 @@ class Deferred:
         if at_once or self._spent >= self._look:
             due = at_once or self._spent >= self._seconds
             worth = due and _left() > BUSY * self._seconds
-            self._ready = worth or at_hand(self._function)
-            self._look = self._spent + LOOK * self._seconds
+            near = self._spent >= LOADING or Deferred._in_use
+            self._ready = worth or (near and at_hand(self._function))
+            Deferred._in_use |= self._ready
+            self._look = self._spent + LOOK * (self._seconds if near else LOADING)
         return self._ready
 
     def __call__(self, *arguments: Any) -> Any:
@@ -277,16 +335,31 @@ def at_hand(function: Any) -> bool:
 
     Parameters
     ----------
-    function : numba dispatcher
+    function : Kernel
 
     Returns
     -------
     bool
     """
-    if not isinstance(function, CPUDispatcher):
-        return True  # compiling is switched off: it is a plain function
-    if function.signatures:
+    if getattr(function, "signatures", ()):
         return True
-    place = function.stats.cache_path
+    beside = _beside(function)
+    if "numba" not in sys.modules and beside is not None and not _on_disk(function, beside):
+        return False
+    made = getattr(function, "dispatcher", function)
+    if not hasattr(made, "stats"):
+        return True  # compiling is switched off: it is a plain function
+    return _on_disk(function, made.stats.cache_path)
+
+
+def _beside(function: Any) -> Path | None:
+    """Where numba keeps compiled functions unless told otherwise: asked without importing it."""
+    named = os.environ.get("NUMBA_CACHE_DIR")
+    beside = Path(inspect.getfile(function.py_func)).parent / "__pycache__"
+    return None if named or not os.access(beside, os.W_OK) else beside
+
+
+def _on_disk(function: Any, place: str | Path | None) -> bool:
+    """Whether a folder has a compiled form of a function, for this Python."""
     name = f"*{function.py_func.__qualname__}-*py{sys.version_info[0]}{sys.version_info[1]}*.nbi"
     return place is not None and any(Path(place).glob(name))
