@@ -8,9 +8,7 @@ from typing import cast
 
 import numpy as np
 
-from ...heuristics import (
-    JointRuns,
-)
+from ...heuristics import JointRuns
 from ...nlp import (
     ExactProblem,
     PerJointSolution,
@@ -128,16 +126,14 @@ class Study(ReplayedCase):
             slacks = dict.fromkeys((*self.half_digits(pid, rid), OPTIMUM_SLACK))
             problem = self.problem(pid, rid)
             known = {label: self.known_motions(pid, rid, label) for label in problem.joints}
-            intervals = proved_joints(
-                problem, self.case.statement(pid, rid), self._proved(pid, rid)
-            )
-            bounds = lower_bounds(intervals)
+            stated = self.case.statement(pid, rid)
+            bounds = lower_bounds(proved := proved_joints(problem, stated, self._proved(pid, rid)))
             try:
                 found = solve_per_joint(problem, slacks=tuple(slacks), known=known, lower=bounds)
             except TrajgapError as error:
                 joints = tuple(self.optimum(pid, rid, label) for label in problem.joints)
                 return PerJointSolution(problem, joints, None, None, (), str(error), 0.0)
-            return with_certificates(found, intervals)
+            return with_certificates(found, proved)
 
         return self.once(("per joint", pid, rid), compute)
 

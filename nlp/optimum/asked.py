@@ -27,6 +27,27 @@ class Ask:
     """A proved lower bound of the total, s."""
 
 
+def asked(
+    problem: Problem,
+    starts: int,
+    seed: int,
+    initial: ArrayLike | None,
+    known: ArrayLike | None,
+    known_nodal: ArrayLike | None,
+    form: Form | None,
+    until: float,
+    lower: float,
+) -> Ask:
+    """The arguments of `solve`, read; a clear refusal of what has the wrong shape."""
+    points = np.empty((0, problem.segments)) if known is None else vectors(problem, "known", known)
+    nodal = None if known_nodal is None else np.asarray(known_nodal, dtype=np.float64)
+    wanted = (len(points), problem.curve.free, len(problem.joints))
+    if nodal is not None and nodal.shape != wanted:
+        raise TrajgapError(f"known_nodal: expected shape {wanted}, got {nodal.shape}")
+    first = None if initial is None else vectors(problem, "initial", initial)
+    return Ask(starts, seed, first, points, nodal, form, until, lower)
+
+
 def vectors(problem: Problem, name: str, given: ArrayLike) -> Array:
     """Durations that are given to `solve`, shape (vectors, segments), or a clear refusal."""
     points = np.atleast_2d(np.asarray(given, dtype=np.float64))

@@ -9,8 +9,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...problem import Array, Problem, TrajgapError, check
-from .asked import Ask, vectors
+from ...problem import Array, Problem, check
+from .asked import Ask, asked
 from .clock import TooLong, stopping_after, time_up
 from .decided import decided, kept
 from .descent import restored
@@ -114,19 +114,8 @@ def solve(
     TrajgapError
         If ``initial`` or ``known`` has the wrong shape, or there is no formula for fixed ratios.
     """
-    ask = Ask(
-        starts,
-        seed,
-        None if initial is None else vectors(problem, "initial", initial),
-        np.empty((0, problem.segments)) if known is None else vectors(problem, "known", known),
-        None if known_nodal is None else np.asarray(known_nodal, dtype=np.float64),
-        form,
-        time.monotonic() + start_seconds,
-        lower,
-    )
-    wanted = (len(ask.known), problem.curve.free, len(problem.joints))
-    if ask.known_nodal is not None and ask.known_nodal.shape != wanted:
-        raise TrajgapError(f"known_nodal: expected shape {wanted}, got {ask.known_nodal.shape}")
+    until = time.monotonic() + start_seconds
+    ask = asked(problem, starts, seed, initial, known, known_nodal, form, until, lower)
     if problem.ratios is not None:
         return at_ratios(problem)
     with stopping_after(seconds):
