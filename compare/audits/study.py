@@ -124,9 +124,8 @@ class Study(ReplayedCase):
         def compute() -> PerJointSolution:
             self._progress(f"{self.case.id}: each joint by itself; {posed_as(self.case, pid, rid)}")
             slacks = dict.fromkeys((*self.half_digits(pid, rid), OPTIMUM_SLACK))
-            problem = self.problem(pid, rid)
+            problem, stated = self.problem(pid, rid), self.case.statement(pid, rid)
             known = {label: self.known_motions(pid, rid, label) for label in problem.joints}
-            stated = self.case.statement(pid, rid)
             bounds = lower_bounds(proved := proved_joints(problem, stated, self._proved(pid, rid)))
             try:
                 found = solve_per_joint(problem, slacks=tuple(slacks), known=known, lower=bounds)
