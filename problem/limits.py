@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import overload
 
 import numpy as np
@@ -121,7 +122,7 @@ class Limits:
         names = (*QUANTITIES, "position_lower", "position_upper", "joints")
         return f"Limits({', '.join(f'{name}={self.__dict__[name]!r}' for name in names)})"
 
-    @property
+    @cached_property
     def sides(self) -> Array:
         """Sizes of the limits to both sides, shape (2, joints, 3): below 0, then above 0.
 
@@ -132,6 +133,7 @@ class Limits:
             given = self.__dict__[name]
             found[0, :, r] = given if given.ndim == 1 else np.abs(given[:, 0])
             found[1, :, r] = given if given.ndim == 1 else given[:, 1]
+        found.flags.writeable = False  # all readers share it
         return found
 
     @property

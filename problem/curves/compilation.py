@@ -341,8 +341,8 @@ def at_hand(function: Any) -> bool:
     -------
     bool
     """
-    if getattr(function, "signatures", ()):
-        return True
+    if not hasattr(function, "py_func") or function.signatures:
+        return True  # a plain function has nothing to wait for
     beside = _beside(function)
     if "numba" not in sys.modules and beside is not None and not _on_disk(function, beside):
         return False
