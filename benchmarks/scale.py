@@ -315,7 +315,7 @@ def tables(rows):
             size = "samples" if curve == "samples" else "segments"
             ours = {row["segments"]: float(row["seconds"]) for row in some if row["code"] == "ours"}
             out += [
-                f"## `{question}`, {title}, {some[0]['joints']} joints",
+                f"### `{question}`, {title}, {some[0]['joints']} joints",
                 "",
                 f"| code | {size} | seconds | times ours | MB | answer |",
                 "|---|---|---|---|---|---|",

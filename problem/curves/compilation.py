@@ -353,13 +353,18 @@ def at_hand(function: Any) -> bool:
 
 
 def _beside(function: Any) -> Path | None:
-    """Where numba keeps compiled functions unless told otherwise: asked without importing it."""
+    """Where numba keeps compiled functions: asked without importing it; None where only it knows.
+
+    It takes the folder that is named, with a folder in it for each of ours, else ``__pycache__``.
+    """
     named = os.environ.get("NUMBA_CACHE_DIR")
+    if named:
+        return Path(named)
     beside = Path(inspect.getfile(function.py_func)).parent / "__pycache__"
-    return None if named or not os.access(beside, os.W_OK) else beside
+    return beside if os.access(beside, os.W_OK) else None
 
 
 def _on_disk(function: Any, place: str | Path | None) -> bool:
-    """Whether a folder has a compiled form of a function, for this Python."""
+    """Whether a folder, or one in it, has a compiled form of a function, for this Python."""
     name = f"*{function.py_func.__qualname__}-*py{sys.version_info[0]}{sys.version_info[1]}*.nbi"
-    return place is not None and any(Path(place).glob(name))
+    return place is not None and any(Path(place).rglob(name))
