@@ -102,10 +102,10 @@ class AskedRun:
 
 
 def _started(method: Method, questions: Sequence[AskedRun]) -> list[Start]:
-    judges: dict[tuple[int, str], Judge] = {}
+    judges: dict[tuple[Problem, str], Judge] = {}
     starts = []
     for one in questions:
-        key = (id(one.problem), one.handling)
+        key = (one.problem, one.handling)
         if key not in judges:
             judges[key] = judge_of(one.problem, method.penalty, one.handling)
         # Named, not numpy's default, which may change: the same seed must give the same bits.

@@ -106,7 +106,7 @@ class _Judges:
     def __init__(self, starts: Sequence[Start]) -> None:
         self._parts: list[tuple[slice, Counted]] = []
         at = 0
-        for _, group in groupby(starts, key=lambda one: id(one.judge)):
+        for _, group in groupby(starts, key=lambda one: one.judge):
             alike = list(group)
             self._parts.append((slice(at, at + len(alike)), Counted(alike[0].judge)))
             at += len(alike)

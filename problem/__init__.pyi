@@ -45,7 +45,7 @@ from .curves import (
     uniform_cubic_b_spline,
 )
 from .described import Described
-from .errors import CaseError, CurveError, ProcessError, TrajgapError
+from .errors import CaseError, CurveError, ProcessError, RatiosError, TrajgapError
 from .evaluation import Evaluation, evaluate, keeps_limits, reachable_total
 from .fields import LimitPair, Strict
 from .file_names import LONGEST_NAME, file_name
@@ -129,6 +129,7 @@ __all__ = [
     "ProcessError",
     "Proximity",
     "Quantity",
+    "RatiosError",
     "Scale",
     "StepKind",
     "Strict",

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from .arrays import Array
 from .curves import Curve
-from .errors import TrajgapError
+from .errors import RatiosError
 
 RatioWord = Literal["equal", "chord"]
 """Words for ratios that need no numbers."""
@@ -39,14 +39,14 @@ def chord_lengths(waypoints: Array) -> Array:
 
     Raises
     ------
-    TrajgapError
+    RatiosError
         If two neighbours coincide: the segment between them would take no time.
     """
     lengths = np.hypot.reduce(np.diff(waypoints, axis=0), axis=1)
     if (lengths == 0).any():
         k = int(np.argmax(lengths == 0))
-        raise TrajgapError(
-            f'ratios: "chord" gives the segment between way-points {k + 1} and {k + 2}, which '
+        raise RatiosError(
+            f'"chord" gives the segment between way-points {k + 1} and {k + 2}, which '
             "coincide, no time; give numbers, or leave one of the two out"
         )
     return np.asarray(lengths)
@@ -69,7 +69,7 @@ def as_ratios(given: ArrayLike | RatioWord, waypoints: Array, segments: int) -> 
 
     Raises
     ------
-    TrajgapError
+    RatiosError
         If they are not positive numbers, one per segment.
     """
     if isinstance(given, str):
@@ -78,16 +78,14 @@ def as_ratios(given: ArrayLike | RatioWord, waypoints: Array, segments: int) -> 
         try:
             found = np.array(given, dtype=np.float64)
         except (TypeError, ValueError):
-            raise TrajgapError(
-                'ratios: not numbers; give one per segment, "equal" or "chord"'
-            ) from None
+            raise RatiosError('not numbers; give one per segment, "equal" or "chord"') from None
         if found.shape != (segments,):
-            raise TrajgapError(f"ratios: expected {segments}, one per segment, got {found.size}")
+            raise RatiosError(f"expected {segments}, one per segment, got {found.size}")
     if not (np.isfinite(found) & (found > 0)).all():
-        raise TrajgapError("ratios: every one must be positive and finite")
+        raise RatiosError("every one must be positive and finite")
     if found.max() > found.min() * _MOST_APART:
-        raise TrajgapError(
-            f"ratios: the largest is more than {_MOST_APART:g} times the smallest; correct them"
+        raise RatiosError(
+            f"the largest is more than {_MOST_APART:g} times the smallest; correct them"
         )
     found.setflags(write=False)
     return found
@@ -97,12 +95,10 @@ def _by_word(word: str, waypoints: Array, segments: int) -> Array:
     if word == "equal":
         return np.ones(segments)
     if word != "chord":
-        raise TrajgapError(
-            f'ratios: {word!r} is unknown; give one number per segment, "equal" or "chord"'
-        )
+        raise RatiosError(f'{word!r} is unknown; give one number per segment, "equal" or "chord"')
     if len(waypoints) != segments + 1:
-        raise TrajgapError(
-            f'ratios: "chord" needs a way-point at every end of the {segments} segments, '
+        raise RatiosError(
+            f'"chord" needs a way-point at every end of the {segments} segments, '
             f"{len(waypoints)} are given; give numbers"
         )
     return chord_lengths(waypoints)

@@ -14,6 +14,20 @@ class TrajgapError(ValueError):
     """Root of every exception that trajgap raises on purpose."""
 
 
+class RatiosError(TrajgapError):
+    """Ratios of durations that cannot be.
+
+    Parameters
+    ----------
+    why : str
+        What is wrong, and how to fix it.
+    """
+
+    def __init__(self, why: str) -> None:
+        super().__init__(f"ratios: {why}")
+        self.why = why
+
+
 class ProcessError(TrajgapError):
     """Processes that compute ended or cannot be started; it says nothing about a problem."""
 

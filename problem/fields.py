@@ -55,12 +55,17 @@ def fault(
     return PydanticCustomError(kind, "{reason}", told)
 
 
+def spelt_like(word: str, known: Iterable[str]) -> str | None:
+    """The known word that an unknown one is probably meant to be."""
+    return next(iter(get_close_matches(word, list(known), n=1, cutoff=0.6)), None)
+
+
 def nearest(word: str, known: Iterable[str]) -> str:
     """How to fix an unknown word: the nearest known one, or all of them."""
     choices = list(known)
-    close = get_close_matches(word, choices, n=1, cutoff=0.6)
+    close = spelt_like(word, choices)
     if close:
-        return f"did you mean {close[0]!r}?"
+        return f"did you mean {close!r}?"
     return f"known: {', '.join(choices)}" if choices else "none are declared"
 
 

@@ -71,7 +71,7 @@ def optimum_line(
 
 def on_doubted_points(judgement: Judgement) -> bool:
     """Whether a claim was judged by motions through way-points in doubt."""
-    return any(c.kind is CaveatKind.POINTS for c in judgement.caveats)
+    return any(c.kind in (CaveatKind.POINTS, CaveatKind.SOME_POINTS) for c in judgement.caveats)
 
 
 def _side_by_side(parts: Sequence[_Part]) -> str:

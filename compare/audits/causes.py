@@ -22,7 +22,8 @@ from ..documents import (
     Why,
     built_remark,
     first_sentence,
-    nature_remark,
+    nature_caveat,
+    said_beside,
 )
 from .explanations import explained
 from .study import Study
@@ -134,8 +135,9 @@ def with_caveats(
     found = list(findings)
     against = _contradictions(found)
     return tuple(
-        j.model_copy(update={"caveats": tuple(_caveats(study, j, against, found))})
+        j.model_copy(update={"caveats": caveats, "beside": said_beside(j.verdict, caveats)})
         for j in judgements
+        for caveats in (tuple(_caveats(study, j, against, found)),)
     )
 
 
@@ -175,11 +177,12 @@ def _caveats(
     if jumping:
         yield Caveat(CaveatKind.JUMPING, _jumping(len(jumping), len(held), len(judgement.readings)))
     if isinstance(claim, StatementClaim) and claim.nature is not None:
-        yield Caveat(CaveatKind.STATED, nature_remark(claim.nature))
+        yield nature_caveat(claim.nature)
     doubts = _doubts(study, claim, own, findings)
     if doubts:
-        partly = "partly " if _without_points(judgement, own) else ""
-        yield Caveat(CaveatKind.POINTS, f"{partly}{POINTS}: {' '.join(doubts)}")
+        partly = _without_points(judgement, own)
+        kind = CaveatKind.SOME_POINTS if partly else CaveatKind.POINTS
+        yield Caveat(kind, f"{'partly ' if partly else ''}{POINTS}: {' '.join(doubts)}")
     rests = {claim.id, *_rests_on(claim)}
     # What holds whatever the numbers are rests on none of them.
     if built or judgement.verdict is ClaimVerdict.INCONSISTENT:

@@ -64,10 +64,12 @@ def judge(
     verdict = words[0] if len(words) == 1 else ClaimVerdict.DEPENDS
     if verdict is ClaimVerdict.NOT_CHECKABLE:
         beside = [f"{f.message} ({f.rule}, informational)" for f in about if not f.decides]
+        informs = not own and bool(beside)
         why = next((f.message for f in own), next(iter(beside), "no rule applies to this claim"))
         scope, evidence = Scope.NO, Evidence.NONE
         confidence: Confidence | Why = UNDECIDED
     else:
+        informs = False
         partial = len(words) > 1 or len(each) < len(admissible)
         scope = Scope.SOME if partial else Scope.ALL
         behind = [f for f in own if f.verdict in words and f.verdict in DECIDING]
@@ -85,6 +87,7 @@ def judge(
         confidence=confidence,
         why=why,
         readings=each,
+        informs=informs,
     )
 
 

@@ -149,7 +149,7 @@ def _rows(case: AuditedCase) -> list[tuple[str, str, str]]:
     stated = {one.claim: one for one in case.claims}
     places: dict[tuple[str, str, str], list[str]] = {}
     for v in sorted(case.verdicts, key=lambda v: _ORDER.index(v.verdict)):
-        key = (qualified(v.verdict, v.caveats), _under(v), stated[v.claim].text)
+        key = (qualified(v.verdict, v.beside), _under(v), stated[v.claim].text)
         places.setdefault(key, []).append(stated[v.claim].where)
     return [
         (verdict, under, f"{text} ({'; '.join(where)})")
@@ -160,8 +160,6 @@ def _rows(case: AuditedCase) -> list[tuple[str, str, str]]:
 _REASONS = 3
 """Reasons that a terminal shows for claims that cannot be checked: enough for a first case, while
 those of a long one fill a page."""
-_INFORMS = "informational)"
-"""How what stands in place of a reason ends, where a finding informs and decides nothing."""
 _ORDER = (
     ClaimVerdict.REFUTED,
     ClaimVerdict.INCONSISTENT,
@@ -178,7 +176,7 @@ def _unchecked(case: AuditedCase) -> list[str]:
     reasons: dict[str, list[str]] = {}
     for one in case.verdicts:
         # What only informs stands with the claim on its page: it is no reason.
-        if one.verdict is ClaimVerdict.NOT_CHECKABLE and not one.why.endswith(_INFORMS):
+        if one.verdict is ClaimVerdict.NOT_CHECKABLE and not one.informs:
             first = first_sentence(one.why)
             reasons.setdefault(first, []).append(places[one.claim])
     told = [

@@ -67,13 +67,13 @@ from .motion_checked import (
 )
 from .provenance import Provenance, UsedCertificate
 from .remarks import (
-    BUILT,
     DOUBTED,
     POINTS,
     built_remark,
     evident,
-    nature_remark,
+    nature_caveat,
     qualified,
+    said_beside,
     same_reason,
     worth_little,
 )
@@ -163,7 +163,6 @@ from .why_judged import (
 
 __all__ = [
     "BENCH_COLUMNS",
-    "BUILT",
     "CARD_WORDS",
     "DECIDING",
     "DOCUMENTS",
@@ -315,7 +314,7 @@ __all__ = [
     "meaning",
     "meanings",
     "more_errors",
-    "nature_remark",
+    "nature_caveat",
     "noted",
     "output_schema",
     "overall_cells",
@@ -323,6 +322,7 @@ __all__ = [
     "qualified",
     "quoted",
     "reason",
+    "said_beside",
     "same_reason",
     "schema_text",
     "sentences_of",

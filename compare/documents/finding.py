@@ -138,10 +138,18 @@ class CaveatKind(Enum):
     """Printed numbers contradict each other."""
     POINTS = auto()
     """It was judged by motions through way-points that a finding puts in doubt."""
+    SOME_POINTS = auto()
+    """It was, but not by these alone."""
     BUILT = auto()
     """A claim holds of any curve of its kind."""
-    STATED = auto()
-    """A sentence claims nothing that numbers could decide."""
+    DEFINITION = auto()
+    """A sentence defines something."""
+    IDENTITY = auto()
+    """It is true whatever the paper prints."""
+    AIM = auto()
+    """It says what is wanted."""
+    JUDGEMENT = auto()
+    """It names no measure that could be computed."""
 
 
 @dataclass(frozen=True)
@@ -169,5 +177,9 @@ class Judgement(Entry):
         Annotated[Caveat, PlainSerializer(str), WithJsonSchema({"type": "string"})], ...
     ] = ()
     """What goes with the word: a curve whose velocity jumps, a contradiction in print."""
+    beside: str = ""
+    """What stands beside the word wherever it is shown, such as "but on doubted numbers"."""
     readings: dict[str, ClaimVerdict]
     """The verdict under each reading by itself."""
+    informs: bool = Field(default=False, exclude=True)
+    """Whether ``why`` is of a finding that informs, and no reason for the verdict."""

@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 
 from ...problem.cases import Nature
-from .finding import Judgement
+from .finding import Caveat, CaveatKind, Judgement
 from .vocabulary import ClaimVerdict, Confidence
 
 DOUBTED = "rests on numbers that other printed numbers contradict"
@@ -20,20 +20,26 @@ POINTS = "rests on doubted way-points"
 BUILT = "true of any such curve"
 """How one begins where nothing that is printed could make the claim false."""
 _STATED = {
-    Nature.DEFINITION: "a definition",
-    Nature.IDENTITY: "a mathematical identity",
-    Nature.AIM: "an aim",
-    Nature.JUDGEMENT: "a judgement",
+    Nature.DEFINITION: CaveatKind.DEFINITION,
+    Nature.IDENTITY: CaveatKind.IDENTITY,
+    Nature.AIM: CaveatKind.AIM,
+    Nature.JUDGEMENT: CaveatKind.JUDGEMENT,
 }
-"""How one begins where nothing is claimed that numbers could decide."""
+"""Kinds of caveats where nothing is claimed that numbers could decide."""
 _BESIDE = {
-    BUILT: (ClaimVerdict.SUPPORTED, "by construction"),
-    **{said: (ClaimVerdict.NOT_CHECKABLE, said) for said in _STATED.values()},
+    CaveatKind.BUILT: (ClaimVerdict.SUPPORTED, "by construction"),
+    CaveatKind.DEFINITION: (ClaimVerdict.NOT_CHECKABLE, "a definition"),
+    CaveatKind.IDENTITY: (ClaimVerdict.NOT_CHECKABLE, "a mathematical identity"),
+    CaveatKind.AIM: (ClaimVerdict.NOT_CHECKABLE, "an aim"),
+    CaveatKind.JUDGEMENT: (ClaimVerdict.NOT_CHECKABLE, "a judgement"),
 }
-"""What stands beside which verdict, by the beginning of a caveat."""
+"""What a caveat puts beside which verdict."""
 _DOUBTS = {
-    DOUBTED: ((ClaimVerdict.SUPPORTED,), "numbers"),
-    POINTS: (tuple(v for v in ClaimVerdict if v is not ClaimVerdict.NOT_CHECKABLE), "way-points"),
+    CaveatKind.DOUBTED: ((ClaimVerdict.SUPPORTED,), "numbers"),
+    CaveatKind.POINTS: (
+        tuple(v for v in ClaimVerdict if v is not ClaimVerdict.NOT_CHECKABLE),
+        "way-points",
+    ),
 }
 """What a doubt is of, beside which verdicts: a word that is against a claim may rest on way-points,
 and then they are in doubt for it as they are for one in its favour."""
@@ -44,7 +50,7 @@ def built_remark() -> str:
     return f"{BUILT}, whatever the durations, so that it is no evidence for the printed numbers"
 
 
-def nature_remark(nature: Nature) -> str:
+def nature_caveat(nature: Nature) -> Caveat:
     """The caveat of a sentence that claims nothing that numbers could decide."""
     why = {
         Nature.DEFINITION: "it says how something is called or made, and claims no result",
@@ -52,43 +58,47 @@ def nature_remark(nature: Nature) -> str:
         Nature.AIM: "it says what is wanted, not what was reached",
         Nature.JUDGEMENT: "no measure is named that could be computed",
     }
-    return f"{_STATED[nature]}: {why[nature]}"
+    kind = _STATED[nature]
+    return Caveat(kind, f"{_BESIDE[kind][1]}: {why[nature]}")
 
 
-def qualified(verdict: str, caveats: Iterable[object]) -> str:
-    """A verdict with what goes with it.
+def qualified(verdict: str, beside: str) -> str:
+    """A verdict with what stands beside it.
 
     Parameters
     ----------
-    verdict : str
-    caveats : iterable of object
-        Their texts.
+    verdict, beside : str
+        Of a `Judgement`.
 
     Returns
     -------
     str
         Such as "supported, but on doubted numbers".
     """
-    return ", ".join([verdict, *_beside(verdict, caveats)])
+    return f"{verdict}, {beside}" if beside else verdict
 
 
-def _beside(verdict: str, caveats: Iterable[object]) -> list[str]:
-    """What stands beside a verdict; what holds by construction rests on no numbers at all."""
-    texts = list(map(str, caveats))
-    found = {
-        start: said
-        for start, (word, said) in _BESIDE.items()
-        if word == verdict and any(text.startswith(start) for text in texts)
-    }
-    doubts = [
-        what
-        for start, (words, what) in _DOUBTS.items()
-        if verdict in words and any(text.startswith(start) for text in texts)
-    ]
-    if doubts and BUILT not in found:
-        joins = "and" if verdict == ClaimVerdict.DEPENDS else "but"
-        return [f"{joins} on doubted {' and '.join(doubts)}", *found.values()]
-    return list(found.values())
+def said_beside(verdict: ClaimVerdict, caveats: Iterable[Caveat]) -> str:
+    """What stands beside a verdict; what holds by construction rests on no numbers at all.
+
+    Parameters
+    ----------
+    verdict : ClaimVerdict
+    caveats : iterable of Caveat
+
+    Returns
+    -------
+    str
+        Such as "but on doubted numbers"; empty where nothing does.
+    """
+    kinds = {caveat.kind for caveat in caveats}
+    found = {k: said for k, (word, said) in _BESIDE.items() if word is verdict and k in kinds}
+    doubts = [what for k, (words, what) in _DOUBTS.items() if verdict in words and k in kinds]
+    said = list(found.values())
+    if doubts and CaveatKind.BUILT not in found:
+        joins = "and" if verdict is ClaimVerdict.DEPENDS else "but"
+        said.insert(0, f"{joins} on doubted {' and '.join(doubts)}")
+    return ", ".join(said)
 
 
 def worth_little(judgements: Sequence[Judgement]) -> str:
@@ -104,10 +114,9 @@ def worth_little(judgements: Sequence[Judgement]) -> str:
         Such as "18 on doubted numbers, 2 by construction".
     """
     counts = Counter(
-        said.removeprefix("but ")
+        judgement.beside.removeprefix("but ")
         for judgement in judgements
-        if judgement.verdict is ClaimVerdict.SUPPORTED
-        for said in _beside(judgement.verdict, judgement.caveats)
+        if judgement.verdict is ClaimVerdict.SUPPORTED and judgement.beside
     )
     parts = [f"{count} {said}" for said, count in counts.items()]
     return ", ".join(parts)
@@ -133,12 +142,11 @@ def same_reason(text: str, where: str, own: str) -> str:
 
 def claims_nothing(judgement: Judgement) -> bool:
     """Whether a claim that is not checkable states no result: a definition, an aim and the like."""
-    starts = tuple(f"{said}:" for said in _STATED.values())
     undecided = judgement.verdict is ClaimVerdict.NOT_CHECKABLE
-    return undecided and any(str(caveat).startswith(starts) for caveat in judgement.caveats)
+    return undecided and any(c.kind in _STATED.values() for c in judgement.caveats)
 
 
 def evident(judgement: Judgement) -> bool:
     """Whether a verdict is decided and says something of the paper: not by construction."""
     known = isinstance(judgement.confidence, Confidence)
-    return known and not any(str(caveat).startswith(BUILT) for caveat in judgement.caveats)
+    return known and not any(c.kind is CaveatKind.BUILT for c in judgement.caveats)

@@ -97,7 +97,7 @@ class Store:
             yield
         except sqlite3.Error as error:
             name = str(self.path)
-            if "not a database" in str(error):
+            if error.sqlite_errorcode == sqlite3.SQLITE_NOTADB:
                 fix = "is no store of trajgap; name a new file"
             elif self.path.parent.is_dir():
                 fix = f"cannot be used ({error}); check the disk, or name another file"

@@ -11,7 +11,6 @@ from ...problem import file_name
 from ...problem.cases import AnyClaim
 from ..audits import CaseAudit, claim_text, digits_of, place, plainly, spoken
 from ..documents import (
-    POINTS,
     Cause,
     Caveat,
     CaveatKind,
@@ -93,11 +92,11 @@ def claimed(one: CaseAudit, judgement: Judgement) -> Claimed:
         where=claim.where,
         printed=digits_of(one.case, claim),
         verdict=replace(
-            word(judgement.verdict), text=qualified(judgement.verdict, judgement.caveats)
+            word(judgement.verdict), text=qualified(judgement.verdict, judgement.beside)
         ),
         holds=_holds(judgement, names(one)),
         why=why,
-        more=(*more, *(_in_full(one, c) for c in judgement.caveats if c.kind is CaveatKind.POINTS)),
+        more=(*more, *(_in_full(one, c) for c in judgement.caveats if c.kind in _POINTS)),
         caveats=tuple(_caveats(one, judgement)),
         anchor=file_name("claim", claim.id),
         id=claim.id,
@@ -105,12 +104,16 @@ def claimed(one: CaseAudit, judgement: Judgement) -> Claimed:
     )
 
 
+_POINTS = (CaveatKind.POINTS, CaveatKind.SOME_POINTS)
+"""Doubted way-points: in full behind a fold."""
+
+
 def _caveats(one: CaseAudit, judgement: Judgement) -> Iterator[str]:
     """What goes with the word; of doubted way-points the word has said so, or a short line does."""
     for caveat in judgement.caveats:
-        if caveat.kind is not CaveatKind.POINTS:
+        if caveat.kind not in _POINTS:
             yield _in_full(one, caveat)
-        elif not caveat.text.startswith(POINTS):
+        elif caveat.kind is CaveatKind.SOME_POINTS:
             yield f"{capital(caveat.text.partition(':')[0])}."
 
 

@@ -103,15 +103,15 @@ class Claims(FromResults):
         reasoned: dict[str, tuple[str, str]] = {}
         groups: dict[tuple[str, ...], list[dict[str, Any]]] = {}
         for one in chosen:
-            key = (stated[one["claim"]]["text"], qualified(one["verdict"], one["caveats"]))
+            key = (stated[one["claim"]]["text"], qualified(one["verdict"], one["beside"]))
             groups.setdefault((*key, _holds(one)), []).append(one)
         for verdict, *others in groups.values():
             claim = _with_places(stated, verdict, others)
             box = nodes.container(classes=["trajgap-claim"])
             head = nodes.paragraph(classes=["trajgap-said"])
             head += badge(verdict["verdict"])
-            beside = qualified(verdict["verdict"], verdict["caveats"])
-            head += nodes.Text(f"{beside.removeprefix(verdict['verdict'])} {claim['text']}")
+            beside = f", {verdict['beside']}" if verdict["beside"] else ""
+            head += nodes.Text(f"{beside} {claim['text']}")
             place = ". ".join(filter(None, (claim["where"], claim["printed"], _holds(verdict))))
             place = f"{place[:1].upper()}{place[1:]}"
             box += [head, paragraph(place, "trajgap-beside")]

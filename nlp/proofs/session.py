@@ -140,7 +140,7 @@ class Session:
         self.infeasible = self.one_sided = False
         self.left_out: str | None = None
         self.nodes = self.open_boxes = self.judged_boxes = 0
-        self._at_once: Argument | None = None
+        self._unsearched = True
         self.judging = JUDGING
         self._judging: float | None = None
         self._answering = 0.0
@@ -151,6 +151,7 @@ class Session:
             if resumed.durations is not None:
                 self.answer = resumed.durations, resumed.speeds
             self.lower, self.proof = resumed.lower, resumed.proof
+            self._unsearched = resumed.proof is None
             if resumed.proposals is not None:
                 self.proposals = EarlierProof(resumed.proposals)
 
@@ -210,7 +211,7 @@ class Session:
             self.judging * seconds if self._judging is None else self._judging * self.judged_boxes
         )
         if seconds + judging + self._answering + ahead > self.request.seconds:
-            if self.proof is self._at_once and self.left_out is None:
+            if self._unsearched and self.left_out is None:
                 self.left_out = UNBOUNDED if self.proof is None else BARE
             raise OutOfTime
 
@@ -307,13 +308,12 @@ class Session:
     def keep(self, lower: Fraction, proof: Argument) -> None:
         """Keep a proof if it is the best."""
         if lower > self.lower:
-            self.lower, self.proof = lower, proof
+            self.lower, self.proof, self._unsearched = lower, proof, False
 
     def keep_at_once(self, lower: Fraction, proof: Argument) -> None:
         """Keep a proof that needs no search, before one begins: with no time left it is there."""
-        self.keep(lower, proof)
-        if self.proof is proof:
-            self._at_once = proof
+        if lower > self.lower:
+            self.lower, self.proof, self._unsearched = lower, proof, True
 
     def climb(
         self,

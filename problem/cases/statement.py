@@ -11,7 +11,7 @@ import numpy as np
 from ..arrays import Array
 from ..curves import MOST_OPEN, Curve, Derivatives
 from ..duration_ratios import ratio_word
-from ..errors import CaseError, TrajgapError
+from ..errors import CaseError, RatiosError, TrajgapError
 from ..fields import LimitPair
 from ..limits import Limits
 from ..printed import Printed
@@ -350,10 +350,9 @@ class Statement:
                 name=self.name,
                 ratios=ratio_word(fixed) if numbers is None else np.array(numbers),
             )
+        except RatiosError as error:
+            raise self.fail("durations.ratios", error.why) from None
         except TrajgapError as error:
-            field, of, why = str(error).partition("ratios: ")
-            if of and not field:
-                raise self.fail("durations.ratios", why) from None
             raise self.fail("", str(error)) from None
 
     def data(self, digits: Digits = Digits.PRINTED) -> Data:

@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict
 
 from ..cases import SUITE_PREFIX, Case
 from ..errors import TrajgapError
-from ..fields import nearest
+from ..fields import spelt_like
 from .instance import BenchmarkInstance
 
 _TABLE = "suite.json"
@@ -61,9 +61,9 @@ def load_instance(name: str) -> BenchmarkInstance:
     wanted = name.removeprefix(SUITE_PREFIX)
     found = {one.name: one for one in list_instances()}
     if wanted not in found:
-        near = nearest(wanted, found)
-        near = near if near.startswith("did you mean") else "`trajgap suite` lists them"
-        raise TrajgapError(f"suite: no instance {wanted!r}; {near}")
+        near = spelt_like(wanted, found)
+        fix = f"did you mean {near!r}?" if near else "`trajgap suite` lists them"
+        raise TrajgapError(f"suite: no instance {wanted!r}; {fix}")
     return found[wanted]
 
 

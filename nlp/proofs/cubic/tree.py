@@ -156,7 +156,7 @@ class Prover:
 
     def bound(self, box: TickBox, target: Target, weights: Weights) -> Fraction | None:
         """Proved bound of a target (of nothing: whether it is positive), in ticks."""
-        if weights.scale < 1 and target is not NOTHING:
+        if weights.scale < 1 and target.sign != 0:
             return None
         value = least(self.system, self.total, target, weights, self.side(box), box.ranges)
         if not np.isfinite(value):

@@ -13,8 +13,9 @@ from trajgap.compare.documents import (
     Judgement,
     Scope,
     built_remark,
-    nature_remark,
+    nature_caveat,
     qualified,
+    said_beside,
     tally,
     worth_little,
 )
@@ -25,6 +26,8 @@ S, R, N = ClaimVerdict.SUPPORTED, ClaimVerdict.REFUTED, ClaimVerdict.NOT_CHECKAB
 D = ClaimVerdict.DEPENDS
 DOUBT = Caveat(CaveatKind.DOUBTED, f"{DOUBTED}: two tables are alike.")
 PLACES = Caveat(CaveatKind.POINTS, f"{POINTS}: they repeat the digits of another table.")
+SOME = Caveat(CaveatKind.SOME_POINTS, f"partly {POINTS}: digits repeat.")
+JUMPS = Caveat(CaveatKind.JUMPING, "the velocity of the curve jumps")
 BUILT = Caveat(CaveatKind.BUILT, built_remark())
 
 
@@ -37,6 +40,7 @@ def judged(verdict: ClaimVerdict, *caveats: Caveat) -> Judgement:
         evidence=Evidence.NONE,
         why="",
         caveats=caveats,
+        beside=said_beside(verdict, caveats),
         readings={},
         **decided,
     )
@@ -58,20 +62,20 @@ def judged(verdict: ClaimVerdict, *caveats: Caveat) -> Judgement:
         (D, (PLACES,), "depends on the reading, and on doubted way-points"),
         (N, (PLACES,), "not checkable"),
         (S, (DOUBT, PLACES), "supported, but on doubted numbers and way-points"),
-        (R, (f"partly {POINTS}: digits repeat.",), "refuted"),
-        (N, (nature_remark(Nature.DEFINITION),), "not checkable, a definition"),
-        (N, (nature_remark(Nature.IDENTITY),), "not checkable, a mathematical identity"),
-        (N, (nature_remark(Nature.AIM),), "not checkable, an aim"),
-        (N, (nature_remark(Nature.JUDGEMENT),), "not checkable, a judgement"),
-        (S, ("the velocity of the curve jumps",), "supported"),
+        (R, (SOME,), "refuted"),
+        (N, (nature_caveat(Nature.DEFINITION),), "not checkable, a definition"),
+        (N, (nature_caveat(Nature.IDENTITY),), "not checkable, a mathematical identity"),
+        (N, (nature_caveat(Nature.AIM),), "not checkable, an aim"),
+        (N, (nature_caveat(Nature.JUDGEMENT),), "not checkable, a judgement"),
+        (S, (JUMPS,), "supported"),
     ],
 )
 def test_a_word_has_what_it_is_worth_beside_it(verdict, caveats, wanted) -> None:
-    assert qualified(verdict, caveats) == wanted
+    assert qualified(verdict, said_beside(verdict, caveats)) == wanted
 
 
 def test_what_holds_by_construction_is_counted_as_no_evidence() -> None:
-    aim = Caveat(CaveatKind.STATED, nature_remark(Nature.AIM))
+    aim = nature_caveat(Nature.AIM)
     every = [judged(S), judged(S, BUILT), judged(S, DOUBT), judged(S, DOUBT), judged(N)]
     every.append(judged(N, aim))
     assert tally(every) == (

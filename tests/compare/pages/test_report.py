@@ -161,7 +161,7 @@ def test_every_claim_stands_with_its_digits_and_verdict(
         assert flat(claim.text) in page.words
         assert claim.where in page.words
         assert flat(plain(claim.where)) in flat(written)
-        assert shown[claim.id].verdict.text == qualified(judgement.verdict, judgement.caveats)
+        assert shown[claim.id].verdict.text == qualified(judgement.verdict, judgement.beside)
         if judgement.evidence is not Evidence.NONE:
             assert f"reference: {judgement.evidence}" in shown[claim.id].holds
     assert "0.7615, 0.3854, 0.4572 s" in page.words
