@@ -64,7 +64,7 @@ def mutate(kind: str, per_field: int, seed: int) -> Counter[str]:
 
 
 def test_every_kind_of_proof_is_attacked() -> None:
-    # Proofs about any curve are attacked in test_family_free_attacks.py, trees of steps in
+    # Proofs about any curve are attacked in test_forged_any_curve.py, trees of steps in
     # test_cubic_attacks.py.
     declared = {k for k in PROOFS if verdict._proof_kind(k).subject is Subject.DECLARED}
     assert {*KINDS, "cubic"} == declared

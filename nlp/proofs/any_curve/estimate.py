@@ -57,16 +57,18 @@ class AnyCurveEstimate:
 
     def __str__(self) -> str:
         if self.total_time is None or self.durations is None:
-            return f"family-free optimum: not computed, {self.why}"
+            return f"optimum over any curve: not computed, {self.why}"
         shown = ", ".join(f"{d:.6f}" for d in self.durations)
         lines = [
-            f"family-free optimum {self.total_time:.9f} s  [{self.evidence}, an upper estimate]",
-            f"durations           {shown} s",
+            f"optimum over any curve {self.total_time:.9f} s  [{self.evidence}, an upper estimate]",
+            f"durations              {shown} s",
         ]
         if not self.attained:
-            lines.append(f"not attained        {self.why}")
+            lines.append(f"not attained           {self.why}")
         if self.starts:
-            lines.append(f"starts              {self.starts_at_best} of {self.starts} at the best")
+            lines.append(
+                f"starts                 {self.starts_at_best} of {self.starts} at the best"
+            )
         return "\n".join(lines)
 
 

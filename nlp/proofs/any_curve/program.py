@@ -68,7 +68,7 @@ def least_total(
 
 
 def lower(scaled: Floats, rows: Ints, weights: Array, low: Array, high: Array) -> float:
-    """What weights prove in a box: `family_free_rows.bound` in floats, scaled."""
+    """What weights prove in a box: `rows.bound` in floats, scaled."""
     left, right, size = matrix(scaled, rows, low, high)
     push = weights * size
     rest = -(left.T @ push)

@@ -1,4 +1,4 @@
-"""The rows of `family_free_rows` in floats: as a matrix, and chosen where a point breaks them."""
+"""The rows of `rows` in floats: as a matrix, and chosen where a point breaks them."""
 
 from __future__ import annotations
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from trajgap.nlp.proofs.any_curve import certifier as family_free_certify
+from trajgap.nlp.proofs.any_curve import certifier as any_curve_certify
 from trajgap.nlp.proofs.any_curve.estimate import estimate_any_curve
 from trajgap.nlp.proofs.any_curve.exact import question
 from trajgap.nlp.proofs.any_curve.proof import restored
@@ -54,8 +54,8 @@ def stretched_first_motion(monkeypatch: pytest.MonkeyPatch, factor: float | None
         slow = known.nodal_velocities / factor
         return replace(known, durations=known.durations * factor, nodal_velocities=slow)
 
-    monkeypatch.setattr(family_free_certify, "estimate_any_curve", found)
-    monkeypatch.setattr(family_free_certify, "_local_motion", lambda *_: None)
+    monkeypatch.setattr(any_curve_certify, "estimate_any_curve", found)
+    monkeypatch.setattr(any_curve_certify, "_local_motion", lambda *_: None)
 
 
 def stopped_state(problem: Problem, after: int = 1) -> dict[str, Any]:
@@ -127,7 +127,7 @@ def test_an_interrupt_between_answer_and_boxes_leaves_a_true_pair(
     def stop(*_: Any) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(family_free_certify, "restored", stop)
+    monkeypatch.setattr(any_curve_certify, "restored", stop)
     found = certify_any(detour(), resume=state)
     assert found.upper is not None
     assert found.upper < Fraction(state["claim"]["upper"]) * Fraction(3, 4)

@@ -159,7 +159,7 @@ def test_not_computed(limits: Limits, why: str) -> None:
     assert found.evidence is Evidence.NONE
     assert found.why is not None
     assert found.why.startswith(why)
-    assert str(found).startswith(f"family-free optimum: not computed, {why}")
+    assert str(found).startswith(f"optimum over any curve: not computed, {why}")
 
 
 def test_nothing_moves() -> None:

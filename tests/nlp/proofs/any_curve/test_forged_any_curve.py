@@ -17,13 +17,13 @@ from support.any_curve_proofs import certify_any, printed, proved
 from support.joint_splines import posed
 from support.unjudged import unjudged
 from trajgap.nlp.proofs.any_curve import (
-    certifier as family_free_certify,
+    certifier as any_curve_certify,
 )
 from trajgap.nlp.proofs.any_curve import (
-    rows as family_free_rows,
+    rows as any_curve_rows,
 )
 from trajgap.nlp.proofs.any_curve import (
-    search as family_free_search,
+    search as any_curve_search,
 )
 from trajgap.nlp.proofs.any_curve.estimate import estimate_any_curve
 from trajgap.nlp.proofs.any_curve.exact import question
@@ -59,7 +59,7 @@ def test_falsified_rows_are_seen_and_refused(monkeypatch: pytest.MonkeyPatch) ->
         found = exact_row(asked, row, box, speed)
         return replace(found, right=found.right + Fraction(1, 20) * abs(found.right))
 
-    monkeypatch.setattr(family_free_rows, "exact_row", stronger)
+    monkeypatch.setattr(any_curve_rows, "exact_row", stronger)
     raw = unjudged(monkeypatch)
     found = certify_any(problem, gap=1e-5)
     assert raw[0].upper is not None
@@ -72,7 +72,7 @@ def test_falsified_rows_are_seen_and_refused(monkeypatch: pytest.MonkeyPatch) ->
 
 def poor(monkeypatch: pytest.MonkeyPatch) -> Problem:
     """A problem for which the local solver's first answer is 5 % too long."""
-    first = family_free_certify._first_motion
+    first = any_curve_certify._first_motion
 
     def longer(*given: Any) -> Any:
         motion = first(*given)
@@ -83,7 +83,7 @@ def poor(monkeypatch: pytest.MonkeyPatch) -> Problem:
             tuple(tuple(v / slow for v in row) for row in motion[1]),
         )
 
-    monkeypatch.setattr(family_free_certify, "_first_motion", longer)
+    monkeypatch.setattr(any_curve_certify, "_first_motion", longer)
     return attacked()[0]
 
 
@@ -101,7 +101,7 @@ def test_a_poor_first_answer_is_replaced(monkeypatch: pytest.MonkeyPatch) -> Non
 def test_an_answer_that_is_not_optimal_is_never_certified(monkeypatch: pytest.MonkeyPatch) -> None:
     problem, _ = attacked()
     honest = certify_any(problem, gap=1e-6)
-    monkeypatch.setattr(family_free_certify, "_local_motion", lambda *_: None)
+    monkeypatch.setattr(any_curve_certify, "_local_motion", lambda *_: None)
     found = certify_any(poor(monkeypatch), gap=1e-6, seconds=1.0)
     assert found.outcome is Outcome.INTERVAL
     assert honest.upper is not None
@@ -113,9 +113,9 @@ def test_a_bound_that_is_too_high_is_refused(monkeypatch: pytest.MonkeyPatch) ->
     problem, _ = attacked()
 
     def higher(*given: Any) -> Fraction:
-        return family_free_rows.bound(*given) * Fraction(1001, 1000)
+        return any_curve_rows.bound(*given) * Fraction(1001, 1000)
 
-    monkeypatch.setattr(family_free_search, "bound", higher)
+    monkeypatch.setattr(any_curve_search, "bound", higher)
     raw = unjudged(monkeypatch)
     assert certify_any(problem, gap=1e-2).proof is None
     assert not verify(certificate(raw[0])).proves
