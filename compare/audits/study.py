@@ -443,7 +443,7 @@ class Study(ReplayedCase):
         """What the two procedures of an improvement do on instances that are drawn for it."""
 
         def compute() -> InstancesResult:
-            what = f"{self.case.id}: family {block.id}"
+            what = f"{self.case.id}: instances {block.id}"
             self._progress(what)
             return examined(self, block, lambda done: self._progress(f"{what}, {done}"))
 

@@ -140,7 +140,7 @@ GROUPS = (
     ),
     RuleGroup(
         judge_instances,
-        {"TG404": "A relative claim beside a family of instances drawn from the robot's workspace"},
+        {"TG404": "A relative claim beside instances drawn from the robot's workspace"},
         without_waypoints=True,
     ),
     RuleGroup(
