@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ..problem import TOLERANCE, Array, Problem, TrajgapError, evaluate
+from ..problem import TOLERANCE, Array, Problem, TrajgapError, evaluate, evaluate_leading
 from ..problem.curves import compiling_at_once
 from .objective import DeathPenalty
 from .settings import checked
@@ -82,7 +82,7 @@ class Stretch:
 
     def _stretched(self, durations: Array) -> tuple[Array, NDArray[np.bool_]]:
         """Stretched vectors, and whether each is admissible."""
-        found = evaluate(self.problem, durations)
+        found = evaluate_leading(self.problem, durations)
         factor = found.stretch
         if not self.shorten:
             factor = np.maximum(factor, 1.0)

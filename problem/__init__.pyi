@@ -46,7 +46,7 @@ from .curves import (
 )
 from .described import Described
 from .errors import CaseError, CurveError, ProcessError, RatiosError, TrajgapError
-from .evaluation import Evaluation, evaluate, keeps_limits, reachable_total
+from .evaluation import Evaluation, evaluate, evaluate_leading, keeps_limits, reachable_total
 from .fields import LimitPair, Strict
 from .file_names import LONGEST_NAME, file_name
 from .files import (
@@ -152,6 +152,7 @@ __all__ = [
     "down",
     "escaped",
     "evaluate",
+    "evaluate_leading",
     "extrema",
     "file_name",
     "fit",

@@ -57,6 +57,40 @@ class Evaluation:
         return stretch
 
 
+def evaluate_leading(problem: Problem, durations: Array) -> Evaluation:
+    """Evaluate many duration vectors as far as their `stretch` and their positions need it.
+
+    Parameters
+    ----------
+    problem : Problem
+    durations : ndarray, shape (batch, segments)
+        s.
+
+    Returns
+    -------
+    Evaluation
+        Sooner than `evaluate`, where bounds decide: ratios that ask for a smaller stretch than
+        another one of their vector may come out too small.
+    """
+    if problem.limits.uneven:
+        return evaluate(problem, durations)
+    values, limits, wanted, plain = _fixed_question(problem)
+    peaks = problem.curve.leading_peaks(values, durations, wanted, limits)
+    asked = _positions_asked(problem)
+    reach = None if asked is None else partial(_reached, problem, asked, durations.copy())
+    return Evaluation(_over(peaks, limits, plain), reach)
+
+
+def _over(peaks: Array, limits: Array, plain: bool) -> Array:
+    """Peaks by their limits."""
+    if plain:
+        return peaks / limits
+    with np.errstate(invalid="ignore", divide="ignore"):
+        ratios = peaks / limits
+    ratios[np.isnan(ratios)] = 0.0  # 0/0 is kept
+    return ratios
+
+
 def evaluate(problem: Problem, durations: ArrayLike, nodal: ArrayLike | None = None) -> Evaluation:
     """Exact peak ratios for many duration vectors at once, and how far positions go.
 
@@ -90,12 +124,7 @@ def evaluate(problem: Problem, durations: ArrayLike, nodal: ArrayLike | None = N
         _fixed_question(problem) if extra is None else _question(problem, extra)
     )
     peaks = problem.curve.batch_peaks(values, h, wanted)
-    if plain:
-        return Evaluation(peaks / limits, reach)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        ratios = peaks / limits
-    ratios[np.isnan(ratios)] = 0.0  # 0/0 is kept
-    return Evaluation(ratios, reach)
+    return Evaluation(_over(peaks, limits, plain), reach)
 
 
 def keeps_limits(problem: Problem, durations: Array, tolerance: float) -> NDArray[np.bool_]:

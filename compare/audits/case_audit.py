@@ -173,7 +173,7 @@ def audit(
     cases: Iterable[str | Path | Case] | str | Path | Case | None = None,
     *,
     seeds: int = SEEDS,
-    workers: int = 1,
+    workers: int | None = 1,
     problem: str | None = None,
     reading: str | None = None,
     progress: Callable[[str], None] | None = None,
@@ -191,8 +191,8 @@ def audit(
         Ids of shipped cases or case files; all shipped cases by default.
     seeds : int
         Seeds of each replay.
-    workers : int
-        Processes for the replays; the result does not depend on it.
+    workers : int or None
+        Processes for the replays, as many as pay if None; the result does not depend on it.
     problem, reading : str, optional
         Keep to one problem or reading.
     progress : callable, optional

@@ -27,8 +27,8 @@ class ChosenCase:
     case : Case
     seeds : int
         Seeds of each replay, 0 to seeds − 1.
-    workers : int
-        Processes for the replays; the results do not depend on it.
+    workers : int or None
+        Processes for the replays, as many as pay if None; the results do not depend on it.
     problem, reading : str, optional
         Keep to one problem or reading of the case.
     progress : callable, optional
@@ -47,7 +47,7 @@ class ChosenCase:
         self,
         case: Case,
         seeds: int = SEEDS,
-        workers: int = 1,
+        workers: int | None = 1,
         problem: str | None = None,
         reading: str | None = None,
         progress: Callable[[str], None] | None = None,

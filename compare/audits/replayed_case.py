@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from typing import Any
 
 from ...heuristics import (
@@ -24,6 +25,9 @@ Replays = tuple[Run, ...] | tuple[JointRuns, ...]
 SPREAD_SEEDS = 3
 """Seeds under each of the spread settings, of which there are sixteen: enough to see a median
 move across them."""
+WORTH_PROCESSES = 50_000
+"""Iterations of all seeds of a replay from which further processes pay: fewer take some seconds
+side by side, and each process takes two to import what it needs."""
 
 
 class ReplayedCase(ChosenCase):
@@ -87,9 +91,13 @@ class ReplayedCase(ChosenCase):
         called = next((a.name for a in self.case.algorithms if a.id == name), name)
         under = posed_as(self.case, pid, rid)
         self._progress(f"{self.case.id}: {seeds} replays of {called}; {under}")
+        workers = self.workers
+        if workers is None:
+            long = seeds * algorithm.iterations >= WORTH_PROCESSES
+            workers = (os.cpu_count() or 1) if long else 1
         if problem.coupling is Coupling.PER_JOINT and len(problem.joints) > 1:
-            return run_many_per_joint(algorithm, problem, range(seeds), self.workers)
-        return run_many(algorithm, problem, range(seeds), self.workers)
+            return run_many_per_joint(algorithm, problem, range(seeds), workers)
+        return run_many(algorithm, problem, range(seeds), workers)
 
     def settings(self, algorithm_id: str) -> dict[str, Algorithm[Any]]:
         """The algorithm as listed, and under settings spread over all that the paper leaves open.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
@@ -40,8 +39,6 @@ from .output import check_folder, emit, new_output, progress, say
 from .result_tables import seconds
 from .table import Columns, line
 
-FEW_SEEDS = 20
-"""Seeds below which one process is done before others have started."""
 AUDIT_FOLDER = Path("trajgap-audit")
 """Where the pages go, unless the command line says otherwise."""
 
@@ -81,7 +78,7 @@ def audit_cases(
         report = audit(
             chosen,
             seeds=seeds,
-            workers=workers or (1 if seeds < FEW_SEEDS else os.cpu_count() or 1),
+            workers=workers,
             problem=problem,
             reading=reading,
             progress=step,

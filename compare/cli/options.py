@@ -54,8 +54,8 @@ Workers = Annotated[
         min=1,
         max=MOST,
         help="Processes for the replays; the result does not depend on it. Starting one takes "
-        "longer than a few dozen short replays.",
-        show_default="all cores; 1 below 20 seeds",
+        "longer than a hundred short replays.",
+        show_default="all cores; 1 for short replays",
     ),
 ]
 ProofWorkers = Annotated[

@@ -147,11 +147,25 @@ def finish(figure: Picture, note: str = "") -> None:
     figure.suptitle(shown(figure.title, 105, 2), x=0.005, ha="left", fontsize=11, weight="bold")
     if note:
         figure.supxlabel(note, x=0.005, ha="left", fontsize=8, color=MUTED)
+    for axes in figure.axes:
+        _settle_titles(axes)
     # The layout moves a little with every drawing; frozen, the same figure gives the same bytes.
     layout = figure.get_layout_engine()
     if layout is not None:
         layout.execute(figure)
     figure.set_layout_engine("none")
+
+
+def _settle_titles(axes: Axes) -> None:
+    """Tell matplotlib that titles need not rise, where nothing stands in their way.
+
+    Otherwise it measures every axis anew for each title of each drawing, half of its time.
+    """
+    formatter = axes.yaxis.get_major_formatter()
+    formatter.format_ticks(axes.get_yticks().tolist())
+    above = axes.xaxis.get_ticks_position() in ("top", "unknown") or formatter.get_offset()
+    if not above and not axes.get_title(loc="center"):
+        axes.set_title("", loc="center", y=1.0)  # the height of one settles those beside it
 
 
 def light_grid(axes: Axes, which: str = "both") -> None:

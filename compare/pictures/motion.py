@@ -34,6 +34,8 @@ _FEWEST = 8
 Units: TypeAlias = Mapping[tuple[str, str], tuple[str, float]]
 """How a quantity of a joint is shown, by the joint's label and the quantity: the unit as it is
 written, and how much of SI one of it is."""
+_BESIDE = 0.02
+"""Share of the time that is left free before and after it: markers at both ends are whole."""
 _OFF_SCALE = 0.12
 """Share of a limit below which drawing the limit would flatten the curve."""
 
@@ -101,11 +103,15 @@ def motion_picture(
     )
     with drawing():
         figure = Picture(title, description, 3.3 * len(orders), 0.95 + 1.45 * joints)
-        grid = figure.subplots(joints, len(orders), squeeze=False, sharex="all")
+        # Axes that share one scale ask all others at every turn: each has its own, of one range.
+        grid = figure.subplots(joints, len(orders), squeeze=False)
+        longest = max(trajectory.total_time for trajectory, _ in rows)
         for j, (trajectory, column) in enumerate(rows):
             for axes, r in zip(grid[j], orders, strict=True):
                 unit = shown_in(units, problem, j, _name(r))
                 _panel(axes, problem, trajectory, column, j, r, unit)
+                axes.set_xlim(-_BESIDE * longest, (1.0 + _BESIDE) * longest)
+                axes.tick_params(axis="x", labelbottom=j == joints - 1)
         for axes in grid[-1]:
             axes.set_xlabel("time, s")
         key = "○ way-point   ● largest value   - - limit   red: beyond a limit"
@@ -174,8 +180,16 @@ def _panel(
     low, high = _limits_of(problem, joint, order)
     too_much = beyond(trajectory, column, order, low, high)
     values, low, high = values / one, low / one, high / one
-    for b in trajectory.breaks:
-        axes.axvline(float(b), color=GRID, linewidth=0.7, zorder=0)
+    ends = np.tile([0.0, 1.0, np.nan], len(trajectory.breaks))
+    axes.plot(
+        np.repeat(trajectory.breaks, 3),
+        ends,
+        transform=axes.get_xaxis_transform(),
+        color=GRID,
+        linewidth=0.7,
+        zorder=0,
+        scaley=False,
+    )
     axes.axhline(0.0, color=GRID, linewidth=0.7, zorder=0)
     axes.plot(times, values, color=BLUE, linewidth=1.4, zorder=2)
     size = float(np.nanmax(np.abs(values)))
@@ -208,7 +222,6 @@ def _panel(
     extent = np.concatenate([[np.nanmin(values), np.nanmax(values)], drawn])
     room = 0.1 * (float(np.ptp(extent)) or 1.0)
     axes.set_ylim(float(extent.min()) - room, float(extent.max()) + room)
-    axes.margins(x=0.02)
     axes.locator_params(axis="y", nbins=4)
     axes.locator_params(axis="x", nbins=6)
 
@@ -244,9 +257,10 @@ def sampled(trajectory: Trajectory, column: int, order: int) -> tuple[Array, Arr
     times: list[Array] = []
     values: list[Array] = []
     count = max(_FEWEST, min(_SAMPLES, _POINTS // len(trajectory.durations)))
-    scale = max(abs(e.value) for e in extrema(trajectory, column, order)) or 1.0
+    turning = extrema(trajectory, column, order)
+    scale = max(abs(e.value) for e in turning) or 1.0
     for k, start in enumerate(trajectory.breaks[:-1]):
-        own = [e.s for e in extrema(trajectory, column, order) if e.segment == k]
+        own = [e.s for e in turning if e.segment == k]
         s = np.unique(np.concatenate([np.linspace(0.0, 1.0, count + 1), own]))
         v = trajectory.values(k, column, order, s)
         if values and abs(values[-1][-1] - v[0]) > 1e-6 * scale:

@@ -31,6 +31,8 @@ from .trajectory import Trajectory
 MOST_OPEN = 600
 """Coefficients up to which a case file may leave some free: finding the derivatives that complete
 the declaration takes a dense decomposition for each, some seconds in all."""
+_UNDECIDED = 1e-9
+"""Relative distance from a ceiling within which peaks are computed: bounds know them to 1e-12."""
 _DENSE = 300
 """Coefficients above which the rank is judged by a banded factorisation: a dense one is cubic."""
 
@@ -209,6 +211,19 @@ class Interpolant(Curve):
     def batch_peaks(self, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
         """True peaks by the compiled kernel, on several threads where that pays."""
         return spline.batch_peaks(self, values, as_batch(self, durations), wanted)
+
+    def decided_peaks(
+        self, values: Array, durations: Array, wanted: NDArray[np.bool_], ceilings: Array
+    ) -> Array:
+        """Peaks of pieces that bounds alone do not decide."""
+        h = as_batch(self, durations)
+        return spline.leading_peaks(self, values, h, wanted, ceilings, 1.0 - _UNDECIDED)
+
+    def leading_peaks(
+        self, values: Array, durations: Array, wanted: NDArray[np.bool_], limits: Array
+    ) -> Array:
+        """Peaks of pieces whose bounds leave open whether they demand the largest stretch."""
+        return spline.leading_peaks(self, values, as_batch(self, durations), wanted, limits, 0.0)
 
     def batch_sides(
         self,

@@ -24,6 +24,7 @@ KERNELS = (
     "kernel.py",
     "banded.py",
     "clamped_kernel.py",
+    "leading_kernel.py",
     "piece_kernel.py",
     "pieces.py",
     "range_kernel.py",

@@ -198,6 +198,27 @@ class Curve(ABC):
         """
         return self.batch_peaks(values, durations, wanted)
 
+    def leading_peaks(
+        self, values: Array, durations: Array, wanted: NDArray[np.bool_], limits: Array
+    ) -> Array:
+        """Peaks that demand the same stretch of all durations as the true ones.
+
+        A curve that knows bounds answers sooner than `batch_peaks`; this is that.
+
+        Parameters
+        ----------
+        values, durations, wanted : ndarray
+            As `batch_peaks` takes them.
+        limits : ndarray, shape (joints, 3)
+            rad/s, rad/s², rad/s³.
+
+        Returns
+        -------
+        ndarray, shape (batch, joints, 3)
+            Those that demand less than another one of that vector may be too small.
+        """
+        return self.batch_peaks(values, durations, wanted)
+
     def batch_sides(
         self,
         waypoints: Array,

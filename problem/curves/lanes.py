@@ -49,6 +49,27 @@ def batch_peaks(
                         _raise_peaks(scaled[k], h[k], int(degrees[k]), r, perm, asked, side, found)
 
 
+def leading_peaks(
+    durations: Array,
+    values: Array,
+    kinds: NDArray[np.int64],
+    breaks: NDArray[np.int64],
+    orders: NDArray[np.int64],
+    degrees: NDArray[np.int64],
+    column: NDArray[np.int64],
+    lower: int,
+    upper: int,
+    perm: Array,
+    wanted: NDArray[np.bool_],
+    ceilings: Array,
+    floor: float,
+    peaks: Array,
+) -> None:
+    """Find all true peaks, those that lead among them; arguments as compiled."""
+    rows = (values, kinds, breaks, orders, degrees, column, lower, upper, perm)
+    batch_peaks(durations, *rows, wanted, 0.0, peaks)
+
+
 def fit_coefficients(
     h: Array,
     vectors: int,

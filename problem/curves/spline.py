@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array
 from ..errors import TrajgapError
-from . import kernel, lanes, range_kernel
+from . import kernel, lanes, leading_kernel, range_kernel
 from .compilation import Deferred
 from .condition import ConditionKind
 
@@ -32,6 +32,8 @@ _fit_many = Deferred(kernel.fit_coefficients, 2.0, lanes.fit_coefficients)
 """The fit of many."""
 _peaks_of_many = Deferred(kernel.batch_peaks, 10.0, lanes.batch_peaks)
 """True peaks of a batch; compiling it takes eight to twelve seconds."""
+_leading_of_many = Deferred(leading_kernel.leading_peaks, 12.0, lanes.leading_peaks)
+"""The peaks that decide a batch; compiling it takes ten to fourteen seconds."""
 _ranges_of_many = Deferred(range_kernel.batch_ranges, 8.0)
 """Positions of a batch; compiling it takes six to ten seconds."""
 _THREAD_WORK = 4000
@@ -263,6 +265,41 @@ def batch_peaks(
         _peaks_of_many(h[part], values, *rows, wanted, side, peaks[part])
 
     _in_parts(run, _peaks_of_many, h.shape[0], values.shape[1])
+    return peaks
+
+
+def leading_peaks(
+    interpolant: Interpolant,
+    values: Array,
+    durations: Array,
+    wanted: NDArray[np.bool_],
+    ceilings: Array,
+    floor: float,
+) -> Array:
+    """`batch_peaks` of which those that cannot decide may come out too small.
+
+    Parameters
+    ----------
+    interpolant, values, durations, wanted
+        As `batch_peaks` takes them.
+    ceilings : ndarray, shape (joints, 3)
+        What peaks are divided by: rad/s, rad/s², rad/s³.
+    floor : float
+        Stretch of all durations below which it does not matter how large one is.
+
+    Returns
+    -------
+    ndarray, shape (batch, joints, 3)
+        The least stretch that brings all of them below the ceilings has the bits of that of all
+        true peaks, or both are below the floor.
+    """
+    rows, h = layout(interpolant).rows, durations
+    peaks = np.empty((h.shape[0], values.shape[1], 3))
+
+    def run(part: slice) -> None:
+        _leading_of_many(h[part], values, *rows, wanted, ceilings, floor, peaks[part])
+
+    _in_parts(run, _leading_of_many, h.shape[0], values.shape[1])
     return peaks
 
 

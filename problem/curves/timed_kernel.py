@@ -75,26 +75,36 @@ def _power(x, n):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def _at_least_at_most(shape, speeds, k, j, order, least):  # type: ignore[no-untyped-def]
-    """Numbers that the peak of order 1 or 2 on a piece is not below, or not above."""
+def _bounded(a, b, c, room, first, last, least, power):  # type: ignore[no-untyped-def]
+    """Numbers that the peak of |a + b e + c e²| / t′ⁿ on a piece is not below, and not above.
+
+    ``first``, ``last`` and ``least`` are reciprocals of t′ at both ends and where it is smallest.
+    """
+    start, end = abs(a), abs(a + b + c)
+    low = (start - room) * _power(first, power)
+    other = (end - room) * _power(last, power)
+    low = low if low >= other else other
+    top = abs(a + 0.5 * b)  # with both ends the Bernstein coefficients
+    top = top if top >= start else start
+    top = top if top >= end else end
+    high = (top + room) * _power(least, power)
+    return low * (1.0 - _BEYOND_ROUNDING), high * (1.0 + _BEYOND_ROUNDING)
+
+
+@compiled
+def _bounds(shape, speeds, inverse, k, j, order):  # type: ignore[no-untyped-def]
+    """Numbers that the peak of order 1 or 2 on a piece is not below, and not above."""
     a, b, c = shape[k, 1, j], 2.0 * shape[k, 2, j], 3.0 * shape[k, 3, j]
-    s, t, u = speeds[k, 0], speeds[k, 1], speeds[k, 2]
-    first, last = s, s + t + u
-    room = 0.0
-    if order == 2:  # N_2 = q″t′ − q′t″, a quadratic for two cubics
-        size = (abs(a) + abs(b) + abs(c)) * (abs(s) + abs(t) + abs(u))
-        a, b, c = b * s - a * t, 2.0 * (c * s - a * u), c * t - b * u
-        room = 8.0 * _BEYOND_ROUNDING * size
-    else:
+    first, last, least = inverse[k, 0], inverse[k, 1], inverse[k, 2]
+    if order == 1:
         room = _BEYOND_ROUNDING * (abs(a) + abs(b) + abs(c))
-    if least:
-        power = 2 * order - 1
-        value = max(
-            (abs(a) - room) / _power(first, power), (abs(a + b + c) - room) / _power(last, power)
-        )
-        return value * (1.0 - _BEYOND_ROUNDING)
-    top = max(abs(a), abs(a + b + c), abs(a + 0.5 * b)) + room  # Bernstein coefficients
-    return top / _power(speeds[k, 3], 2 * order - 1) * (1.0 + _BEYOND_ROUNDING)
+        return _bounded(a, b, c, room, first, last, least, 1)
+    s, t, u = speeds[k, 0], speeds[k, 1], speeds[k, 2]
+    size = (abs(a) + abs(b) + abs(c)) * (abs(s) + abs(t) + abs(u))
+    room = 8.0 * _BEYOND_ROUNDING * size
+    # N_2 = q″t′ − q′t″, a quadratic for two cubics
+    a, b, c = b * s - a * t, 2.0 * (c * s - a * u), c * t - b * u
+    return _bounded(a, b, c, room, first, last, least, 3)
 
 
 @compiled
@@ -114,13 +124,14 @@ def _largest(a, na, speed, order, turning, turns):  # type: ignore[no-untyped-de
 
 
 @compiled
-def _all_speeds(clock, durations, speeds):  # type: ignore[no-untyped-def]
+def _all_speeds(rates, durations, speeds):  # type: ignore[no-untyped-def]
     """Coefficients of t′ on every piece, and its least value; whether that is positive on all."""
-    for k in range(clock.shape[0]):
+    for k in range(rates.shape[0]):
         for m in range(3):
-            speeds[k, m] = 0.0
+            speed = 0.0
             for i in range(durations.size):
-                speeds[k, m] += (m + 1) * clock[k, m + 1, i] * durations[i]
+                speed += rates[k, m, i] * durations[i]
+            speeds[k, m] = speed
         speeds[k, 3] = least_speed(speeds[k])[0]
         if not speeds[k, 3] > 0.0:
             return False
@@ -140,9 +151,14 @@ def batch_peaks(durations, shape, clock, wanted, low, high, peaks):  # type: ign
     with one above ``high`` may come out infinite in all: 0 and infinity for true peaks.
     """
     n, joints = shape.shape[0], shape.shape[2]
+    rates = np.empty((n, 3, clock.shape[2]))
+    for m in range(3):
+        rates[:, m] = (m + 1) * clock[:, m + 1]
     speeds = np.empty((n, 4))
-    floor = np.empty(2)
-    open_ = np.empty(3, np.bool_)
+    inverse = np.empty((n, 3))
+    floors = np.empty((joints, 2))
+    tops = np.empty((joints, 2, n))
+    open_ = np.ones(3, np.bool_)
     first = np.empty(ROOM)
     second = np.empty(ROOM)
     turning = np.empty(ROOM)
@@ -151,32 +167,30 @@ def batch_peaks(durations, shape, clock, wanted, low, high, peaks):  # type: ign
         valid = True
         for k in range(n):
             valid = valid and 0.0 < durations[v, k] < np.inf
-        if not (valid and _all_speeds(clock, durations[v], speeds)):
+        if not (valid and _all_speeds(rates, durations[v], speeds)):
             peaks[v] = np.inf
             continue
-        peaks[v] = 0.0
+        for k in range(n):
+            inverse[k, 0] = 1.0 / speeds[k, 0]
+            inverse[k, 1] = 1.0 / (speeds[k, 0] + speeds[k, 1] + speeds[k, 2])
+            inverse[k, 2] = 1.0 / speeds[k, 3]
+        kept = True
         for j in range(joints):
-            for r in range(2):
-                floor[r] = low[j, r]
             for r in range(1, 3):
-                for k in range(n if wanted[j, r - 1] else 0):
-                    value = _at_least_at_most(shape, speeds, k, j, r, True)
-                    floor[r - 1] = max(floor[r - 1], value)
-                if floor[r - 1] > high[j, r - 1]:
-                    valid = False
-            if not valid:
-                peaks[v] = np.inf
-                break
-            for k in range(n):
-                highest = 0
-                for r in range(1, 4):
-                    below = r < 3 and wanted[j, r - 1]
-                    below = (
-                        below and _at_least_at_most(shape, speeds, k, j, r, False) < floor[r - 1]
-                    )
-                    open_[r - 1] = wanted[j, r - 1] and not below
-                    if open_[r - 1]:
-                        highest = r
+                floor = low[j, r - 1]
+                for k in range(n if kept and wanted[j, r - 1] else 0):
+                    least, tops[j, r - 1, k] = _bounds(shape, speeds, inverse, k, j, r)
+                    floor = floor if floor >= least else least
+                floors[j, r - 1] = floor
+                kept = kept and not floor > high[j, r - 1]
+        peaks[v] = 0.0 if kept else np.inf
+        for j in range(joints):
+            for k in range(n if kept else 0):
+                open_[0] = wanted[j, 0] and not tops[j, 0, k] < floors[j, 0]
+                open_[1] = wanted[j, 1] and not tops[j, 1, k] < floors[j, 1]
+                highest = 3 if wanted[j, 2] else (2 if open_[1] else (1 if open_[0] else 0))
+                if highest == 0:
+                    continue
                 speed = speeds[k]
                 for m in range(3):
                     first[m] = (m + 1) * shape[k, m + 1, j]
@@ -188,6 +202,7 @@ def batch_peaks(durations, shape, clock, wanted, low, high, peaks):  # type: ign
                         top = _largest(first, count, speed, r, turning, turns)
                         if not top <= peaks[v, j, r - 1]:
                             peaks[v, j, r - 1] = top if top == top else np.inf
+                        kept = kept and not top > high[j, r - 1]
                     count = follow
                     for m in range(count):
                         first[m] = second[m]

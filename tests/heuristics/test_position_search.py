@@ -29,7 +29,7 @@ from trajgap.problem import (
     cubic_spline,
     evaluate,
 )
-from trajgap.problem.curves import Deferred, compilation, kernel, range_kernel, spline
+from trajgap.problem.curves import Deferred, compilation, leading_kernel, range_kernel, spline
 
 SWARM = PSO(particles=20, iterations=60, position_initial=(0.2, 4.0))
 SWINGING = Problem(
@@ -143,10 +143,11 @@ def test_equal_durations_that_swing_too_far_are_no_baseline() -> None:
 def test_processes_find_every_kernel_compiled() -> None:
     """Ones break a limit of velocity here: a penalty alone would not look at positions."""
     problem = limited(cubic_spline(3), 0.3, Limits(0.1, joints=3))
-    peaks, ranges = (Deferred(one, 1e9) for one in (kernel.batch_peaks, range_kernel.batch_ranges))
+    asked = (leading_kernel.leading_peaks, range_kernel.batch_ranges)
+    peaks, ranges = (Deferred(one, 1e9) for one in asked)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(compilation, "at_hand", lambda _: False)
-        patch.setattr(spline, "_peaks_of_many", peaks)
+        patch.setattr(spline, "_leading_of_many", peaks)
         patch.setattr(spline, "_ranges_of_many", ranges)
         DeathPenalty(problem)(np.ones((2, 3)))
         assert not peaks.compiled

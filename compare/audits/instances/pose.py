@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, cast
 
@@ -127,7 +128,7 @@ def examined(
         printed=printed_reduction(study, block),
         readings=readings,
         iterations=last.iterations,
-        samples=examine(tasks, study.workers, progress),
+        samples=examine(tasks, study.workers or os.cpu_count() or 1, progress),
         printed_totals=_printed_totals(study, block, readings[0]),
         labels=study.case.labels,
     )

@@ -13,6 +13,7 @@ import pytest
 from matplotlib.text import Text
 from support.drawn import DURATIONS, STEPS, fall
 from trajgap.compare.pictures.drawing import (
+    RED,
     THEME,
     Picture,
     drawing,
@@ -275,3 +276,21 @@ def test_a_limit_far_away_does_not_flatten_the_curve(problem: Problem) -> None:
     axes = motion_picture(far, DURATIONS, title="Motion").axes[1]
     assert max(np.abs(axes.get_ylim())) < 30
     assert "% of ±300" in axes.get_title(loc="right")
+
+
+@pytest.mark.parametrize("size", [1.0, 3e7])
+def test_titles_stay_clear_of_a_power_of_ten(size: float) -> None:
+    with drawing():
+        picture = Picture("title", "words", 4.0, 2.0)
+        axes = picture.subplots()
+        axes.plot([0.0, 1.0, 2.0], np.array([0.0, 3.0, 1.0]) * size)
+        axes.set_title("a title", weight="bold", color=RED)
+        finish(picture)
+    title = next(
+        t for t in axes.get_children() if isinstance(t, Text) and t.get_text() == "a title"
+    )
+    power = axes.yaxis.get_offset_text()
+    assert (power.get_text() != "") == (size > 1.0)
+    assert (title.get_position()[1] > 1.0) == (size > 1.0)
+    assert not title.get_window_extent().overlaps(power.get_window_extent()) or size == 1.0
+    assert title.get_color() == RED

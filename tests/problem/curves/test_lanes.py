@@ -16,6 +16,8 @@ from trajgap.problem import (
     Limits,
     Problem,
     evaluate,
+    evaluate_leading,
+    keeps_limits,
     rest_to_rest,
     uniform_cubic_b_spline,
 )
@@ -26,6 +28,7 @@ from trajgap.problem.curves import (
     interpreted,
     kernel,
     lanes,
+    leading_kernel,
     spline,
     timed_kernel,
     uniform,
@@ -75,6 +78,57 @@ def test_numpy_finds_the_peaks_of_the_compiled_kernel_to_the_last_bit(
     np.testing.assert_array_equal(found[0], found[1])
     monkeypatch.setattr(lanes, "_LANES", 2 * JOINTS)  # two vectors at a time
     np.testing.assert_array_equal(spline.batch_peaks(curve, values, h, wanted, side), found[0])
+
+
+def stretches(peaks: Array, limits: Array) -> Array:
+    """Largest stretch that the peaks of each vector ask for."""
+    with np.errstate(all="ignore"):
+        asked = np.where(np.isfinite(limits), peaks / limits, 0.0).max(axis=1)
+    return np.max([asked[:, 0], np.sqrt(asked[:, 1]), np.cbrt(asked[:, 2])], axis=0)
+
+
+@pytest.mark.parametrize("floor", [0.0, 0.8])
+@pytest.mark.parametrize("scale", [(1.0, 1.0, 1.0), (0.01, 1.0, 1.0), (1.0, 1e-6, 1.0)])
+@pytest.mark.parametrize("name", CURVES)
+def test_peaks_that_lead_ask_for_the_stretch_of_all_to_the_last_bit(
+    name: str, scale: tuple[float, float, float], floor: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    curve = CURVES[name]
+    q, h, free = drawn(curve, 6)
+    values = spline.motion_values(curve, q, free if name in FREE else None)
+    limits = np.array([[2.0, 9.0, 80.0], [2.5, np.inf, 60.0], [3.0, 7.0, np.inf]]) * scale
+    wanted = np.isfinite(limits)
+    every = spline.batch_peaks(curve, values, h, wanted)
+    due = np.maximum(stretches(every, limits), floor)
+    monkeypatch.setattr(spline, "_leading_of_many", leading_kernel.leading_peaks)
+    monkeypatch.setattr(spline, "_THREAD_WORK", np.inf)
+    found = spline.leading_peaks(curve, values, h, wanted, limits, floor)
+    assert np.isfinite(due).any()
+    assert (found < every).any()  # something was left out
+    assert (found <= every).all()
+    np.testing.assert_array_equal(np.maximum(stretches(found, limits), floor), due)
+    waiting = never(leading_kernel.leading_peaks, lanes.leading_peaks)
+    monkeypatch.setattr(spline, "_leading_of_many", waiting)
+    plain = spline.leading_peaks(curve, values, h, wanted, limits, floor)
+    np.testing.assert_array_equal(plain, every)
+
+
+@pytest.mark.parametrize("least", [2.0, 0.0])
+def test_stretches_and_kept_limits_are_those_of_all_peaks(least: float) -> None:
+    curve = DECLARATIONS["cubic"]
+    q, h, _ = drawn(curve, 7)
+    limits = Limits([least, 3.0, 4.0], [9.0, 8.0, 7.0], position_upper=[9.0, 8.0, 8.5])
+    problem = Problem(q, limits, curve)
+    due, found = evaluate(problem, h), evaluate_leading(problem, h)
+    np.testing.assert_array_equal(found.stretch, due.stretch)
+    np.testing.assert_array_equal(found.positions, due.positions)
+    with np.errstate(invalid="ignore"):
+        h = h * due.stretch[:, None] * np.linspace(0.9, 1.3, len(h))[:, None]
+    every = evaluate(problem, h)
+    kept = (every.ratios <= 1.0).all(axis=(1, 2)) & (every.positions <= 1.0).all(axis=1)
+    assert kept.any() == (least > 0)
+    assert not kept.all()
+    np.testing.assert_array_equal(keeps_limits(problem, h, 0.0), kept)
 
 
 @pytest.mark.parametrize("name", CURVES)
