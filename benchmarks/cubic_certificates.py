@@ -1,8 +1,9 @@
 """Certified C2 cubic splines: tables, and the example's file.
 
 The tables stand in docs/explanation/certificates-cubic.md.
-Without arguments all tables; with names of problems only their lines of the first; with "widths"
-only the last.
+Without arguments all tables but "cores"; with names of problems only their lines of the first; with
+"widths" only the last. With "cores", which wants an idle machine, long proofs on one core and on
+two: in seconds of the clock, and in processor seconds of all processes.
 """
 
 from __future__ import annotations
@@ -10,9 +11,11 @@ from __future__ import annotations
 import argparse
 import json
 import time
+from functools import partial
 from pathlib import Path
 
 import numpy as np
+from on_cores import CORES, on_cores
 from trajgap.nlp.proofs.certifiers import certify
 from trajgap.nlp.proofs.cubic.guide import peaks
 from trajgap.nlp.proofs.cubic.proof import TOTAL
@@ -35,6 +38,8 @@ EXAMPLE = Path(__file__).parents[1] / "docs" / "examples" / "gasparetto-zanotto2
 SECONDS = 300.0
 GAPS = (0.1, 0.03, 0.01, 0.003, 0.001)
 CHOSEN = ("gasparetto-zanotto2008", "clamped-8-seed-0", "virtual-6-seed-0")
+LONG = ("virtual-6-seed-1", "virtual-8-seed-0", "clamped-6-only-j", "virtual-6-only-vj")
+"""Whose proofs at 1 % take about ten processor seconds or more."""
 WIDTHS = (0.2, 0.1, 0.05, 0.025, 0.0125)
 
 
@@ -151,6 +156,8 @@ def main() -> None:
     known = problems()
     if only == ["widths"]:
         return widths(known)
+    if only == ["cores"]:
+        return cores(known)
     print("| problem | pieces | lower (s) | upper (s) | gap | boxes | seconds | kB | check (s) |")
     print("|---|---|---|---|---|---|---|---|---|")
     for name, exact in known.items():
@@ -163,6 +170,14 @@ def main() -> None:
     for name in CHOSEN:
         print(by_gap(name, known[name]), flush=True)
     widths(known)
+
+
+def cores(known: dict[str, ExactProblem]) -> None:
+    certify(known["clamped-8-seed-0"], gap=0.1)  # compiles, imports
+    print(CORES)
+    for name in LONG:
+        ask = partial(certify, known[name], gap=0.01, seconds=SECONDS)
+        print(on_cores(f"`{name}`", ask), flush=True)
 
 
 def widths(known: dict[str, ExactProblem]) -> None:

@@ -3,7 +3,7 @@
 The table stands in docs/explanation/certificates-any-curve.md.
 Without options each problem is certified and its certificate written beside the others; problems
 that differ in the declared curve alone share one. With --convergence the effort for several gaps
-is printed instead.
+is printed instead; with --cores, which wants an idle machine, long proofs on one core and on two.
 """
 
 from __future__ import annotations
@@ -11,12 +11,16 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Iterator
+from functools import partial
 
+import numpy as np
 from certificates import HEAD, line, named, statements
+from on_cores import CORES, on_cores
 from trajgap.nlp import certify
 from trajgap.nlp.proofs.any_curve.exact import missing
 from trajgap.nlp.proofs.document import problem_document, question
 from trajgap.nlp.proofs.exact import ExactProblem
+from trajgap.problem import Limits, Problem, cubic_spline
 from trajgap.verify import CertifiedQuestion, Subject
 
 GAPS = {"irb1600-ga-cubic-bspline": 1e-5}
@@ -42,12 +46,33 @@ def convergence(exact: ExactProblem, gap: float, seconds: float) -> str:
     )
 
 
+def seeded(waypoints: int, seed: int) -> Problem:
+    """Six joints through random way-points (rad)."""
+    rng = np.random.default_rng(seed)
+    q = rng.uniform(-1.0, 1.0, (waypoints, 6))
+    limits = Limits(rng.uniform(1.0, 2.0, 6), rng.uniform(1.0, 2.0, 6))
+    return Problem(q, limits, cubic_spline(waypoints - 1))
+
+
+def cores() -> None:
+    """Long proofs on one core and on two."""
+    ask = partial(certify, subject=Subject.ANY, gap=1e-6, seconds=300.0)
+    ask(seeded(6, 2))  # imports
+    print(CORES)
+    for waypoints, seed in ((12, 2), (16, 1)):
+        name = f"{waypoints} way-points, six joints, seed {seed}"
+        print(on_cores(name, partial(ask, seeded(waypoints, seed))), flush=True)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("only", nargs="*", help="beginnings of names; all by default")
     parser.add_argument("--seconds", type=float, default=120.0, help="limit for each")
     parser.add_argument("--convergence", action="store_true")
+    parser.add_argument("--cores", action="store_true", help="one core and two, when it is idle")
     options = parser.parse_args()
+    if options.cores:
+        return cores()
     if not options.convergence:
         print(HEAD)
     for asked, exact, gap in problems():

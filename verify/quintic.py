@@ -46,6 +46,7 @@ class QuinticSpline(ProofKind[Sides]):
     """
 
     keys = ("powers", "second", "low", "windows", "rows")
+    apart = True
 
     def __init__(
         self, problem: StatedProblem, proof: dict[str, Any], total: Fraction, clock: Clock

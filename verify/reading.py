@@ -46,7 +46,16 @@ class Clock:
 
     def __init__(self, seconds: float) -> None:
         self.seconds = seconds
+        self.begin(seconds)
+
+    def begin(self, seconds: float) -> None:
+        """From now on so many seconds are left."""
         self.end = time.monotonic() + seconds
+
+    @property
+    def left(self) -> float:
+        """Seconds; below 0 where time is up."""
+        return self.end - time.monotonic()
 
     def check(self, ahead: float = 0.0) -> None:
         """Stop when time is up, or when a stage that takes so many seconds would end later."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterable, Iterator
 from enum import StrEnum
 from fractions import Fraction
 from typing import Any, ClassVar, Generic, NoReturn, TypeVar
@@ -12,6 +13,15 @@ from .ranges import MOST_DEPTH, MOST_NODES, MOST_SEGMENTS
 from .reading import Clock, Refused, listed, need, shown, text, whole
 
 B = TypeVar("B")
+
+Spread = Callable[[Callable[..., Any], Any, Iterable[tuple[Any, ...]]], Iterable[Any]]
+"""Calls a function with something in common and each of the tuples, and gives what it returns."""
+
+_PARTS = 12
+"""Parts of a tree, about: some for each of a few cores. One process walks what is above them, so
+that more would keep the others waiting."""
+_LEAST = 8
+"""Nodes of a part at least: fewer are not worth handing out."""
 
 CUT, LEAF, OPEN = "/", ".", "?"
 """Tags of a cut at a stated place, of a leaf, and of a leaf that nothing proves yet.
@@ -51,6 +61,9 @@ class ProofKind(ABC, Generic[B]):
     subject: ClassVar[Subject] = Subject.DECLARED
     keys: ClassVar[tuple[str, ...]] = ()
     """Of ``proof``, besides the three that all have."""
+    apart: ClassVar[bool] = False
+    """Whether what is below a box is judged by itself, so that parts of a tree may be judged in any
+    order and elsewhere: worth it where judging can take seconds."""
 
     def __init__(
         self, problem: StatedProblem, proof: dict[str, Any], total: Fraction, clock: Clock
@@ -83,7 +96,7 @@ class ProofKind(ABC, Generic[B]):
         return False
 
 
-def walk(kind: ProofKind[B], tree: Any, clock: Clock) -> None:
+def walk(kind: ProofKind[B], tree: Any, clock: Clock, spread: Spread | None = None) -> None:
     """Walk through a tree in preorder, and refuse it unless every leaf is proved.
 
     Parameters
@@ -94,39 +107,102 @@ def walk(kind: ProofKind[B], tree: Any, clock: Clock) -> None:
         lower part comes first; ``[".", ...]`` is a leaf; a list with another tag is a step, after
         which the smaller box comes.
     clock : Clock
+    spread : callable, optional
+        Where parts of the tree are walked, if its kind has parts; see `verify_certificate`.
 
     Raises
     ------
     Refused
-        At the first node that is not proved.
+        At a node that is not proved; the first one, unless parts are walked elsewhere.
     """
     nodes = listed(tree, "tree", MOST_NODES, 1)
-    waiting = [kind.root()]
-    for count, node in enumerate(nodes):
+    if spread is not None and kind.apart:
+        sizes = _sizes(nodes)
+        if sizes is not None:
+            parts = _walked_above(kind, nodes, sizes, clock)
+            for why in spread(_walked_part, kind, parts):
+                clock.check()
+                need(why is None, why or "")
+            kind.end()
+            return
+    _walk(kind, kind.root(), nodes, 0, clock)
+    kind.end()
+
+
+def _walk(kind: ProofKind[B], root: B, nodes: list[Any], first: int, clock: Clock) -> None:
+    """Walk through the nodes below a box; ``first`` is the place of the first of them."""
+    waiting = [root]
+    for count, node in enumerate(nodes, first):
         clock.check()
         need(bool(waiting), "the tree has too many nodes")
-        box = waiting.pop()
-        if type(node) is int:
-            waiting += reversed(kind.cut(box, whole(node, 0, MOST_SEGMENTS), None))
-            need(len(waiting) <= MOST_DEPTH, "the tree is too deep")
-            continue
-        need(type(node) is list and len(node) > 0, f"malformed: node {count} of the tree")
-        tag, data = text(node[0], "a tag of the tree"), node[1:]
-        if tag == LEAF:
-            try:
-                kind.leaf(box, data)
-            except Refused as error:
-                raise Refused(f"leaf at node {count}: {error}") from None
-        elif tag == CUT:
-            coordinate, place = listed(data, "a cut", 2, 2)
-            waiting += reversed(kind.cut(box, whole(coordinate, 0, MOST_SEGMENTS), place))
-            need(len(waiting) <= MOST_DEPTH, "the tree is too deep")
-        elif tag == OPEN:
-            _open(count)
-        else:
-            waiting.append(kind.step(box, tag, data))
+        waiting += reversed(_below(kind, waiting.pop(), node, count))
+        need(len(waiting) <= MOST_DEPTH, "the tree is too deep")
     need(not waiting, "the tree leaves a part open")
-    kind.end()
+
+
+def _below(kind: ProofKind[B], box: B, node: Any, count: int) -> tuple[B, ...]:
+    """The boxes that a node leaves of a box: none where it is proved."""
+    if type(node) is int:
+        return kind.cut(box, whole(node, 0, MOST_SEGMENTS), None)
+    need(type(node) is list and len(node) > 0, f"malformed: node {count} of the tree")
+    tag, data = text(node[0], "a tag of the tree"), node[1:]
+    if tag == LEAF:
+        try:
+            kind.leaf(box, data)
+        except Refused as error:
+            raise Refused(f"leaf at node {count}: {error}") from None
+        return ()
+    if tag == CUT:
+        coordinate, place = listed(data, "a cut", 2, 2)
+        return kind.cut(box, whole(coordinate, 0, MOST_SEGMENTS), place)
+    if tag == OPEN:
+        _open(count)
+    return (kind.step(box, tag, data),)
+
+
+def _sizes(nodes: list[Any]) -> list[int] | None:
+    """How many nodes the subtree of each node has; None if they are not those of one tree."""
+    sizes, waiting = [0] * len(nodes), list[int]()
+    for at in range(len(nodes) - 1, -1, -1):
+        node = nodes[at]
+        tag = node[0] if type(node) is list and node else CUT
+        below = 2 if tag == CUT else 0 if tag in (LEAF, OPEN) else 1
+        if len(waiting) < below:
+            return None
+        sizes[at] = 1 + sum(waiting.pop() for _ in range(below))
+        waiting.append(sizes[at])
+    return sizes if len(waiting) == 1 else None
+
+
+def _walked_above(
+    kind: ProofKind[B], nodes: list[Any], sizes: list[int], clock: Clock
+) -> Iterator[tuple[B, list[Any], int, float]]:
+    """Walk through the nodes above the parts, and give each part with its box when it is due."""
+    most = max(_LEAST, len(nodes) // _PARTS)
+    waiting, at = [kind.root()], 0
+    while waiting:
+        clock.check()
+        box = waiting.pop()
+        if sizes[at] <= most:
+            yield box, nodes[at : at + sizes[at]], at, clock.left
+            at += sizes[at]
+            continue
+        waiting += reversed(_below(kind, box, nodes[at], at))
+        need(len(waiting) <= MOST_DEPTH, "the tree is too deep")
+        at += 1
+
+
+def _walked_part(
+    kind: ProofKind[B], box: B, nodes: list[Any], first: int, left: float
+) -> str | None:
+    """Why a part of a tree is refused; None if it is proved."""
+    kind.clock.begin(left)
+    try:
+        _walk(kind, box, nodes, first, kind.clock)
+        kind.end()
+    except Refused as error:
+        return str(error)
+    return None
 
 
 def _open(count: int) -> NoReturn:

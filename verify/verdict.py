@@ -28,7 +28,7 @@ from .reading import (
     shown,
     text,
 )
-from .tree import ProofKind, Subject, walk
+from .tree import ProofKind, Spread, Subject, walk
 
 CERTIFICATE_FORMAT = "trajgap-certificate-2"
 """Of a finished proof."""
@@ -164,7 +164,11 @@ def seal(part: Any) -> str:
 
 
 def verify_certificate(
-    source: str | Path | dict[str, Any], *, seconds: float = SECONDS, clock: Clock | None = None
+    source: str | Path | dict[str, Any],
+    *,
+    seconds: float = SECONDS,
+    clock: Clock | None = None,
+    spread: Spread | None = None,
 ) -> CertificateVerdict:
     """Prove a certificate, or what a state has proved so far, again.
 
@@ -176,6 +180,10 @@ def verify_certificate(
         Time limit, reading the file included.
     clock : Clock, optional
         That the caller began before, instead of one of ``seconds`` from now.
+    spread : callable, optional
+        Where parts of a large tree are judged: given a function, what all its calls have in common
+        and an iterable of the other arguments, it yields the results in this order. Without one,
+        the tree is walked here.
 
     Returns
     -------
@@ -193,7 +201,7 @@ def verify_certificate(
         clock.check()
         altered |= document["seal"] != seal({k: x for k, x in document.items() if k != "seal"})
         question = _question(document["question"])
-        subject, lower, upper, infeasible = _judged(document, clock)
+        subject, lower, upper, infeasible = _judged(document, clock, spread)
     except Refused as error:
         why, late = str(error), False
     except OutOfTime:
@@ -240,7 +248,7 @@ Claimed = tuple[Subject, Fraction, Fraction | None, bool]
 """Subject, lower, upper, infeasible."""
 
 
-def _judged(document: dict[str, Any], clock: Clock) -> Claimed:
+def _judged(document: dict[str, Any], clock: Clock, spread: Spread | None) -> Claimed:
     """Judge the claim once, whatever the kind of proof."""
     problem = read_problem(document["problem"])
     claim = fields(document["claim"], "claim", _CLAIM)
@@ -264,7 +272,7 @@ def _judged(document: dict[str, Any], clock: Clock) -> Claimed:
         else:
             check_answer(problem, h, clock)
     if kind is not None:
-        walk(kind, document["proof"]["tree"], clock)
+        walk(kind, document["proof"]["tree"], clock, spread)
     contradicted = least is not None and total > least
     need(not contradicted, "the proof contradicts the answer: one of them is wrong")
     if infeasible:

@@ -14,6 +14,7 @@ from typing import Any
 from ...problem import Problem, TrajgapError
 from ...verify import Subject
 from .certifier import Certifier
+from .crew import ProofCrew
 from .exact import MOVING, ExactProblem, exact_problem
 from .judged import SPARE, Deadline, judged, unstated
 from .kept import KeptProofs, cache_folder
@@ -149,18 +150,19 @@ def certify(
     began, deadline = time.perf_counter(), Deadline.after(seconds)
     where = None if resume is not None or cache is False else cache
     kept = KeptProofs(cache_folder() if where is True else where)
-    known = kept.taken(exact, subject, gap, seed, deadline)
-    if known is not None:
-        return replace(known, seconds=time.perf_counter() - began)
-    certifier = _certifier(exact, subject)
-    assert certifier is not None
-    taken_up, before = None, None
-    if resume is not None:
-        taken_up = resumed(exact, resume, subject, seconds + SPARE)
-        request = Request(gap, 0.0, seed, taken_up)
-        before = Session(exact, request).result(False, subject)
-        before = replace(before, verdict=taken_up.verdict)
-    request = Request(gap, deadline.left, seed, taken_up, report, workers, executor)
-    found = judged(certifier.run(exact, request), deadline, before)
+    with ProofCrew(workers, executor) as crew:
+        known = kept.taken(exact, subject, gap, seed, deadline, crew)
+        if known is not None:
+            return replace(known, seconds=time.perf_counter() - began)
+        certifier = _certifier(exact, subject)
+        assert certifier is not None
+        taken_up, before = None, None
+        if resume is not None:
+            taken_up = resumed(exact, resume, subject, seconds + SPARE, crew)
+            request = Request(gap, 0.0, seed, taken_up)
+            before = Session(exact, request).result(False, subject)
+            before = replace(before, verdict=taken_up.verdict)
+        request = Request(gap, deadline.left, seed, taken_up, report, workers, executor, crew)
+        found = judged(certifier.run(exact, request), deadline, before, crew)
     kept.keep(found, gap, seed)
     return found

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from ...verify import Refused, read_problem, verify_certificate
+from .crew import ProofCrew
 from .document import certificate, problem_document
 from .exact import ExactProblem
 from .outcome import Certified, Outcome
@@ -63,7 +64,12 @@ def unstated(problem: ExactProblem) -> str | None:
     return None
 
 
-def judged(found: Certified, deadline: Deadline, before: Certified | None = None) -> Certified:
+def judged(
+    found: Certified,
+    deadline: Deadline,
+    before: Certified | None = None,
+    crew: ProofCrew | None = None,
+) -> Certified:
     """What was found, with the verdict of `trajgap.verify`; nothing is proved without one.
 
     Parameters
@@ -74,6 +80,8 @@ def judged(found: Certified, deadline: Deadline, before: Certified | None = None
         count: it becomes what a state proposes, so that a run with more time can go on from it.
     before : Certified, optional
         What the state that the run went on from proved, with its verdict: it holds if time is up.
+    crew : ProofCrew, optional
+        Who judges; without one, this process alone.
 
     Returns
     -------
@@ -81,7 +89,8 @@ def judged(found: Certified, deadline: Deadline, before: Certified | None = None
     """
     if found.proof is None:
         return found
-    verdict = verify_certificate(certificate(found), seconds=deadline.judging)
+    document, spread = certificate(found), None if crew is None else crew.spread
+    verdict = verify_certificate(document, seconds=deadline.judging, spread=spread)
     if verdict.proves:
         return replace(found, verdict=verdict)
     nothing = replace(

@@ -27,6 +27,7 @@ from ...verify import (
     seal,
     verify_certificate,
 )
+from .crew import ProofCrew
 from .document import certificate, fits, problem_document
 from .exact import ExactProblem
 from .judged import Deadline
@@ -75,7 +76,13 @@ class KeptProofs:
         self._folder = folder
 
     def taken(
-        self, problem: ExactProblem, subject: Subject, gap: float, seed: int, deadline: Deadline
+        self,
+        problem: ExactProblem,
+        subject: Subject,
+        gap: float,
+        seed: int,
+        deadline: Deadline,
+        crew: ProofCrew | None = None,
     ) -> Certified | None:
         """What was proved before to the very question, proved again.
 
@@ -88,6 +95,8 @@ class KeptProofs:
         seed : int
         deadline : Deadline
             Until which proving again may take.
+        crew : ProofCrew, optional
+            Who proves it again; without one, this process alone.
 
         Returns
         -------
@@ -102,7 +111,8 @@ class KeptProofs:
             document, nodes = _parts(kept)
             if not fits(document, problem, subject):
                 return None
-            verdict = verify_certificate(document, seconds=deadline.left)
+            left, spread = deadline.left, None if crew is None else crew.spread
+            verdict = verify_certificate(document, seconds=left, spread=spread)
             if not verdict.proves or verdict.altered or verdict.lower is None:
                 return None
             if verdict.question != CertifiedQuestion():

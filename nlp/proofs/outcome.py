@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from fractions import Fraction
 from typing import Any, Protocol
 
 from ...verify import CertificateVerdict, Subject
+from .crew import ProofCrew
 from .exact import ExactProblem
 
 GAP = 1e-6
@@ -106,6 +107,8 @@ class Request:
         Parts of a search that run at a time, where its kind of proof has parts.
     executor : concurrent.futures.Executor or None
         Where they run; None for threads of this process.
+    crew : ProofCrew
+        Who works on pieces of search and judging that hold the interpreter's lock.
     """
 
     gap: float = GAP
@@ -115,6 +118,7 @@ class Request:
     report: Callable[[Progress], None] | None = None
     workers: int = 1
     executor: Executor | None = None
+    crew: ProofCrew = field(default_factory=ProofCrew)
 
 
 @dataclass(frozen=True, eq=False)

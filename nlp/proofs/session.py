@@ -106,6 +106,8 @@ class Session:
     ----------
     exact : ExactProblem
     request : Request
+    crew : ProofCrew
+        Who works on pieces of search and judging.
     floats : Problem
         The nearest problem in floats, for the local solver.
     answer : tuple of (durations, speeds) or None
@@ -131,7 +133,7 @@ class Session:
     """
 
     def __init__(self, exact: ExactProblem, request: Request) -> None:
-        self.exact, self.request = exact, request
+        self.exact, self.request, self.crew = exact, request, request.crew
         self.floats = float_problem(exact)
         self.answer: Answer | None = None
         self.lower = Fraction(0)
@@ -244,7 +246,8 @@ class Session:
             return
         part = replace(self.result(False, Subject.DECLARED), lower=Fraction(0), proof=proof())
         began = time.perf_counter()
-        verify_certificate(certificate(part), seconds=max(0.0, self.request.seconds - self.seconds))
+        left = max(0.0, self.request.seconds - self.seconds)
+        verify_certificate(certificate(part), seconds=left, spread=self.crew.spread)
         self._judging = SAFE * (time.perf_counter() - began) / boxes
 
     # --- the answer -------------------------------------------------------------------------------

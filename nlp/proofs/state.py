@@ -18,6 +18,7 @@ from ...verify import (
     read_document,
     verify_certificate,
 )
+from .crew import ProofCrew
 from .document import document_of, fits, sealed
 from .exact import ExactProblem
 from .outcome import Certified, EarlierProof, Resumed
@@ -101,6 +102,7 @@ def resumed(
     state: Certified | dict[str, Any],
     subject: Subject = Subject.DECLARED,
     seconds: float = SECONDS,
+    crew: ProofCrew | None = None,
 ) -> Resumed:
     """What a stopped run left, its proof and its answer proved again by `trajgap.verify`.
 
@@ -112,6 +114,8 @@ def resumed(
     subject : Subject
     seconds : float
         Time limit.
+    crew : ProofCrew, optional
+        Who judges; without one, this process alone.
 
     Returns
     -------
@@ -125,7 +129,8 @@ def resumed(
     document = state_document(state) if isinstance(state, Certified) else state
     if not isinstance(document, dict) or document.get("format") != STATE_FORMAT:
         raise TrajgapError(f"resume: no {STATE_FORMAT}; give a run that was stopped, or its state")
-    verdict = verify_certificate(document, seconds=seconds)
+    spread = None if crew is None else crew.spread
+    verdict = verify_certificate(document, seconds=seconds, spread=spread)
     if not verdict.proves:
         raise TrajgapError(f"resume: the state is not proved ({verdict.reason})")
     if not fits(document, problem, subject):

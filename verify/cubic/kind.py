@@ -22,6 +22,7 @@ class CubicSpline(ProofKind[Box]):
     """Boxes of durations, which steps narrow."""
 
     keys = ("powers", "second", "cap", "root", "rows")
+    apart = True
 
     def __init__(
         self, problem: StatedProblem, proof: dict[str, Any], total: Fraction, clock: Clock

@@ -48,7 +48,7 @@ def _prove(session: Session) -> bool:
         cap = sum(longest, Fraction(0)) * (1 + _ABOVE)
     else:
         return True
-    search = Search(asked, cap)
+    search = Search(asked, cap, searching=lambda: session.searching, crew=session.crew)
     found: list[Motion] = []
 
     def take(better: Motion) -> None:

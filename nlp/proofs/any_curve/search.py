@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import heapq
 import itertools
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ....problem import Array
+from ..crew import Common, ProofCrew, ProofPiece
+from ..session import OutOfTime
 from .exact import FreeQuestion
 from .program import least_total, lower
 from .rows import BRAKE, CHANGE, REACH, ReachRow, Sides, bound
@@ -35,6 +39,8 @@ _NEAR = 1e-3
 """Rows this close to being active are handed on to the halves of a box."""
 _MARGIN = 0.1
 """A box is never cut closer to its sides than this share of its width."""
+_AHEAD = 3
+"""Trials under way for each worker: the next one is there when one ends, and few are in vain."""
 _TRIALS = 5
 """Cuts tried for one box: each costs the bounds of two halves."""
 _FAINT = 0.01
@@ -86,6 +92,38 @@ class Node:
         return [leaf for part in self.parts for leaf in part.leaves] if self.parts else [self]
 
 
+class Trials:
+    """Trials of cuts that were begun, by box.
+
+    All boxes whose bound is below the target are cut, in whatever order: those of the lowest ones
+    may begin before it is their turn.
+    """
+
+    def __init__(self, crew: ProofCrew) -> None:
+        self.crew, self.most = crew, _AHEAD * crew.workers
+        self._begun: dict[Node, list[ProofPiece]] = {}
+
+    def begin(self, nodes: list[Node], begun: Callable[[Node, int], ProofPiece]) -> None:
+        """Begin the trials of the first box, and as many of the next ones as there is room for."""
+        for node in nodes:
+            if node is nodes[0] or sum(map(len, self._begun.values())) < self.most:
+                every = self._begun.setdefault(node, [])
+                every += [begun(node, cut) for cut in range(len(every), len(node.cuts))]
+
+    def of(self, node: Node) -> Iterator[ProofPiece]:
+        """The trials of a box, one after the other; what is left over is dropped."""
+        every = self._begun.pop(node)
+        try:
+            yield from every
+        finally:
+            self.crew.drop(every)
+
+    def drop(self) -> None:
+        """Give up what is left."""
+        for every in self._begun.values():
+            self.crew.drop(every)
+
+
 @dataclass(eq=False)
 class Search:
     """The tree of boxes for one question.
@@ -97,6 +135,11 @@ class Search:
         Totals below it are looked at, s.
     clock : callable
         Called before every box; stops the search by raising.
+    searching : callable
+        Seconds that are left.
+    crew : ProofCrew
+        Who tries the cuts. The tree does not depend on it: what a trial finds is a function of the
+        box, and trials count in the order of `Node.cuts`, the box with the least bound first.
     """
 
     asked: FreeQuestion
@@ -104,6 +147,9 @@ class Search:
     nodes: int = 0
     looks: int = 8
     clock: Callable[[], None] = lambda: None
+    searching: Callable[[], float] = lambda: np.inf
+    crew: ProofCrew = field(default_factory=ProofCrew)
+    until: float = np.inf
     speeds: tuple[Fraction, ...] = field(init=False)
     scaled: Floats = field(init=False)
 
@@ -111,6 +157,14 @@ class Search:
         joints = range(len(self.asked.joints))
         self.speeds = tuple(self.asked.speed(j, self.cap) for j in joints)
         self.scaled = floats(self.asked, self.speeds, float(self.cap) / len(self.asked.steps))
+
+    def __getstate__(self) -> dict[str, Any]:
+        """All that another process needs to bound a box."""
+        own = {"clock", "searching", "crew"}
+        return {key: value for key, value in vars(self).items() if key not in own}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update(state, clock=lambda: None, searching=lambda: np.inf, crew=ProofCrew())
 
     def whole(self) -> Sides | None:
         """The box of all durations with a total below the cap; None if it is empty."""
@@ -136,6 +190,8 @@ class Search:
             The box that this one is a part of: its weights serve if no better ones are found.
         """
         self.clock()
+        if time.time() > self.until:
+            raise OutOfTime
         self.nodes += 1
         scaled, unit = self.scaled, self.scaled.time
         carried = carried[[box[k][0] > 0 or kind != BRAKE for kind, k in carried[:, :2]]]
@@ -230,11 +286,12 @@ class Search:
         ValueError
             If the cut lies outside the box.
         """
-        node.parts = self._parts(node, segment, at, target)
+        node.parts = self.parts(node, segment, at, target)
         node.segment, node.at = segment, at
         return node.parts
 
-    def _parts(self, node: Node, segment: int, at: Fraction, target: float) -> tuple[Node, ...]:
+    def parts(self, node: Node, segment: int, at: Fraction, target: float) -> tuple[Node, ...]:
+        """The halves of a box, which is not changed."""
         low, high = node.box[segment]
         if not low < at < high:
             raise ValueError("a cut lies outside its box")
@@ -244,7 +301,7 @@ class Search:
             for side in ((low, at), (at, high))
         )
 
-    def _best_cut(self, node: Node, target: float) -> tuple[Node, ...]:
+    def _best_cut(self, node: Node, target: float, trials: Trials) -> tuple[Node, ...]:
         """Try several cuts and keep the one whose worse half is bounded best."""
 
         def worth(parts: tuple[Node, ...]) -> tuple[float, float]:
@@ -252,8 +309,9 @@ class Search:
             return ends[0], ends[1]
 
         tried = []
-        for segment, at in node.cuts:
-            parts = self._parts(node, segment, at, target)
+        for (segment, at), piece in zip(node.cuts, trials.of(node), strict=False):
+            parts, nodes = self.crew.value(piece, self.clock)
+            self.nodes += nodes
             tried.append((worth(parts), segment, at, parts))
             if worth(parts)[0] >= target:
                 break
@@ -288,24 +346,36 @@ class Search:
         count = itertools.count()
         heap = [(leaf.lower, next(count), leaf) for leaf in root.leaves if leaf.lower < target]
         heapq.heapify(heap)
-        stuck = False
-        while heap:
-            watch(heap[0][0], len(heap))
-            node = heap[0][2]
-            if node.durations is not None and node.excess < _DOUBTFUL and self.looks > 0:
-                self.looks -= 1
-                if improve(node.durations * self.scaled.time):
-                    return False
-            if not node.cuts:
+        stuck, trials = False, Trials(self.crew)
+        try:
+            while heap:
+                watch(heap[0][0], len(heap))
+                node = heap[0][2]
+                if node.durations is not None and node.excess < _DOUBTFUL and self.looks > 0:
+                    self.looks -= 1
+                    if improve(node.durations * self.scaled.time):
+                        return False
+                if not node.cuts:
+                    heapq.heappop(heap)
+                    stuck = True
+                    continue
+                lowest = heapq.nsmallest(trials.most, heap)
+                trials.begin([one for _, _, one in lowest], self._trial(target))
+                parts = self._best_cut(node, target, trials)
                 heapq.heappop(heap)
-                stuck = True
-                continue
-            parts = self._best_cut(node, target)
-            heapq.heappop(heap)
-            for part in parts:
-                if part.lower < target:
-                    heapq.heappush(heap, (part.lower, next(count), part))
+                for part in parts:
+                    if part.lower < target:
+                        heapq.heappush(heap, (part.lower, next(count), part))
+        finally:
+            trials.drop()
         return not stuck
+
+    def _trial(self, target: float) -> Callable[[Node, int], ProofPiece]:
+        """What begins the trial of a cut of a node."""
+        common, until = Common(self), time.time() + self.searching()
+        return lambda node, cut: self.crew.begin(
+            trial, common, node, *node.cuts[cut], target, until
+        )
 
     def root(self, durations: Array, speeds: Array, target: float) -> Node:
         """The undivided box, bounded with tangents at a known motion.
@@ -339,3 +409,21 @@ class Search:
         ]
         weighted = ((row, Fraction(text)) for row, text in texts)
         return bound(self.asked, self.speeds, leaf.box, weighted), texts
+
+
+def trial(
+    search: Search, node: Node, segment: int, at: Fraction, target: float, until: float
+) -> tuple[tuple[Node, ...], int]:
+    """Halves of a box, and how many boxes were bounded for them.
+
+    Raises
+    ------
+    OutOfTime
+        If it would take longer than until then, by `time.time`.
+    """
+    before, search.until = search.nodes, until
+    try:
+        parts = search.parts(node, segment, at, target)
+        return parts, search.nodes - before
+    finally:
+        search.nodes, search.until = before, np.inf

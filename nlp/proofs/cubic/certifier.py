@@ -53,21 +53,26 @@ class _Watch:
     """What a search asks of the session between its steps."""
 
     def __init__(self, session: Session) -> None:
-        self.session = session
+        self.session, self.crew = session, session.crew
         self.nodes = 0
         """Boxes of the stages that are over."""
         self._tried = math.inf
+
+    @property
+    def searching(self) -> float:
+        """Seconds that are left."""
+        return self.session.searching
 
     def clock(self) -> None:
         """Stop when time is up."""
         self.session.check_clock()
 
-    def look(self, search: Search) -> None:
+    def look(self, search: Search, under_way: int) -> None:
         """Stop when time is up, and report."""
         tree = Tree(search.prover, search.root, search.lower)
         self.session.weigh(search.worked, lambda: tree)
         self.session.check_clock()
-        self.session.report(len(search.heap), self.nodes + search.boxes, tree.seconds)
+        self.session.report(len(search.heap) + under_way, self.nodes + search.boxes, tree.seconds)
 
     def improve(self, system: CubicSystem, point: Array) -> None:
         """Start the local solver from a point of the relaxation, if it is a better start."""

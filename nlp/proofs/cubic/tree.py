@@ -61,6 +61,13 @@ class TickBox:
     children: tuple[TickBox, ...] = ()
     closed: bool = False
 
+    def take(self, other: TickBox) -> None:
+        """Take over what was done to a copy; wherever an interrupt strikes, steps stand for it."""
+        if other is not self:
+            self.steps = other.steps
+            self.low, self.high, self.ranges = other.low, other.high, other.ranges
+            self.floor, self.closed = other.floor, other.closed
+
     def leaves(self) -> Iterator[TickBox]:
         """Open leaves below it, itself included."""
         stack = [self]

@@ -49,7 +49,7 @@ def test_a_resumed_run_without_time_replays_nothing_and_loses_nothing(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     given = stopped()
-    monkeypatch.setattr(state, "verify_certificate", lambda document, seconds: verify(document))
+    monkeypatch.setattr(state, "verify_certificate", lambda document, **_: verify(document))
     steps: list[Any] = []
     monkeypatch.setattr(replay, "_again", lambda *data: steps.append(data))
     found = certify(LONG, gap=1e-3, seconds=0.0, resume=given)
@@ -69,7 +69,7 @@ def test_what_is_not_judged_in_time_is_not_certified_and_can_be_resumed(
 ) -> None:
     asked: list[float] = []
 
-    def late(_: Any, seconds: float) -> CertificateVerdict:
+    def late(_: Any, seconds: float, spread: Any = None) -> CertificateVerdict:
         asked.append(seconds)
         return LATE
 
@@ -94,7 +94,7 @@ def test_what_a_state_proved_stays_if_the_rest_is_not_judged_in_time(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     given = stopped()
-    monkeypatch.setattr(judged, "verify_certificate", lambda *_, seconds: LATE)
+    monkeypatch.setattr(judged, "verify_certificate", lambda *_, **__: LATE)
     found = certify(LONG, gap=0.1, resume=given)
     assert found.lower == Fraction(given["claim"]["lower"]) > 0
     assert found.verdict is not None
@@ -110,7 +110,7 @@ def test_a_state_is_judged_within_the_time_limit(monkeypatch: pytest.MonkeyPatch
     given = stopped()
     asked: list[float] = []
 
-    def late(_: Any, seconds: float) -> CertificateVerdict:
+    def late(_: Any, seconds: float, spread: Any = None) -> CertificateVerdict:
         asked.append(seconds)
         return LATE
 
@@ -160,7 +160,7 @@ def test_judging_is_measured_once_and_grows_with_the_proof(
     hands.now = 0.0
     calls: list[float] = []
 
-    def slow(document: Any, seconds: float) -> CertificateVerdict:
+    def slow(document: Any, seconds: float, spread: Any = None) -> CertificateVerdict:
         calls.append(seconds)
         assert document["proof"]["tree"]
         hands.now += 20.0

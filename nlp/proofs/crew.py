@@ -1,0 +1,215 @@
+"""Pieces of a proof worked on here and, once that pays, in other processes too."""
+
+from __future__ import annotations
+
+import pickle
+import time
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import CancelledError, Executor, Future, wait
+from dataclasses import dataclass
+from types import TracebackType
+from typing import Any
+
+from .processes import Processes, ProcessGone, packed, worked
+
+_WORTH = 1.0
+"""Seconds of a run before processes are started: starting one takes about as long, and most proofs
+are over by then."""
+_LOOK = 0.1
+"""Seconds between two looks at the clock while pieces are worked on elsewhere."""
+_AHEAD = 3
+"""Pieces handed out for each worker: the next one is there when it ends one."""
+
+
+@dataclass(eq=False)
+class ProofPiece:
+    """A piece of work: ``work(common, *arguments)``.
+
+    Attributes
+    ----------
+    work : callable
+        A function of a module, whose result depends on its arguments alone.
+    common : Common
+    arguments : tuple
+    future : Future or None
+        Of the answer from elsewhere.
+    done : bool
+    value : Any
+        Once it is done.
+    error : Exception or None
+        Raised instead of a result.
+    """
+
+    work: Callable[..., Any]
+    common: Common
+    arguments: tuple[Any, ...]
+    future: Future[bytes] | None = None
+    done: bool = False
+    value: Any = None
+    error: Exception | None = None
+
+    def run(self) -> None:
+        """Do it here."""
+        try:
+            self.value = self.work(self.common.value, *self.arguments)
+        except Exception as error:
+            self.error = error
+        self.done = True
+
+    def taken_back(self) -> bool:
+        """Whether nobody has begun it, and nobody else will."""
+        return not self.done and (self.future is None or self.future.cancel())
+
+
+class Common:
+    """What many pieces have in common: packed once, and unpacked once by each process."""
+
+    def __init__(self, value: Any) -> None:
+        self.value = value
+        self._packed: bytes | None = None
+
+    @property
+    def packed(self) -> bytes:
+        """As a message."""
+        if self._packed is None:
+            self._packed = pickle.dumps(self.value)
+        return self._packed
+
+
+class ProofCrew:
+    """Who works on the pieces of one run; what comes out does not depend on it.
+
+    Pieces are handed out in the order in which they are begun. Whoever waits for one works on it,
+    or on the next that nobody has begun.
+
+    Parameters
+    ----------
+    workers : int
+        This process is one of them; the others are started after `_WORTH` seconds, if there are
+        pieces for them.
+    executor : concurrent.futures.Executor, optional
+        Works on all pieces instead, from the beginning.
+    """
+
+    def __init__(self, workers: int = 1, executor: Executor | None = None) -> None:
+        self.workers, self._executor = workers, executor
+        self._processes: Processes | None = None
+        self._answered = False
+        self._waiting: deque[ProofPiece] = deque()
+        self._began = time.perf_counter()
+
+    def __enter__(self) -> ProofCrew:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        if self._processes is not None:
+            self._processes.end()
+
+    @property
+    def processes(self) -> int:
+        """How many were started."""
+        return 0 if self._processes is None else self.workers
+
+    def begin(self, work: Callable[..., Any], common: Common, *arguments: Any) -> ProofPiece:
+        """A piece that somebody may begin from now on."""
+        piece = ProofPiece(work, common, arguments)
+        self._waiting.append(piece)
+        self._hand_out()
+        return piece
+
+    def value(self, piece: ProofPiece, watch: Callable[[], None] = lambda: None) -> Any:
+        """The result of a piece.
+
+        Parameters
+        ----------
+        piece : ProofPiece
+        watch : callable
+            Called now and then while it is worked on elsewhere; may raise.
+
+        Raises
+        ------
+        Exception
+            Whatever its work raises.
+        """
+        while not piece.done:
+            self._hand_out()
+            mine = self._mine(piece)
+            if mine is not None:
+                mine.run()
+            elif piece.future is not None and not wait([piece.future], _LOOK).done:
+                watch()
+            elif piece.future is not None:
+                self._collect(piece)
+        self._forget(piece)
+        if piece.error is not None:
+            raise piece.error
+        return piece.value
+
+    def drop(self, pieces: Iterable[ProofPiece]) -> list[ProofPiece]:
+        """Give up what nobody has begun; returns what was begun."""
+        kept = []
+        for piece in pieces:
+            if not piece.taken_back():
+                kept.append(piece)
+            self._forget(piece)
+        return kept
+
+    def spread(
+        self, work: Callable[..., Any], common: Any, items: Iterable[tuple[Any, ...]]
+    ) -> Iterator[Any]:
+        """Results of ``work(common, *item)`` in the order of the items, some of them ahead."""
+        shared, begun = Common(common), deque[ProofPiece]()
+        try:
+            for item in items:
+                begun.append(self.begin(work, shared, *item))
+                if len(begun) > _AHEAD * self.workers:
+                    yield self.value(begun.popleft())
+            while begun:
+                yield self.value(begun.popleft())
+        finally:
+            self.drop(begun)
+
+    def _hand_out(self) -> None:
+        """Give pieces to others, if there are others."""
+        late = time.perf_counter() - self._began >= _WORTH
+        if self.workers > 1 and self._executor is None and late and len(self._waiting) > 1:
+            self._processes = self._processes or Processes(self.workers)
+        others = self._executor or self._processes
+        if others is None:
+            return
+        for piece in self._waiting:
+            if piece.future is None and not piece.done:
+                work = packed(piece.work, piece.arguments)
+                run = worked if self._processes is None else self._processes.run
+                piece.future = others.submit(run, work, piece.common.packed)
+
+    def _mine(self, piece: ProofPiece) -> ProofPiece | None:
+        """What to do here while waiting for a piece: that one, or the first that is not begun."""
+        if piece.future is not None and (self._executor is not None or self._answered):
+            return None
+        ahead = (other for other in self._waiting if other is not piece)
+        return next((one for one in (piece, *ahead) if one.taken_back()), None)
+
+    def _collect(self, piece: ProofPiece) -> None:
+        """Take what came back; a piece whose process is gone is done here."""
+        assert piece.future is not None
+        try:
+            finished, value = pickle.loads(piece.future.result())
+        except (ProcessGone, CancelledError):
+            piece.run()
+            return
+        if finished:
+            piece.value = value
+        else:
+            piece.error = value
+        piece.done = self._answered = True
+
+    def _forget(self, piece: ProofPiece) -> None:
+        if piece in self._waiting:
+            self._waiting.remove(piece)

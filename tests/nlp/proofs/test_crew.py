@@ -1,0 +1,212 @@
+"""Pieces of a proof: the same results wherever they are worked on, and whatever becomes of it."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from collections import deque
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from trajgap.nlp.proofs import certifiers, crew
+from trajgap.nlp.proofs.certifiers import certify
+from trajgap.nlp.proofs.crew import ProofCrew
+from trajgap.nlp.proofs.document import certificate
+from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress
+from trajgap.nlp.proofs.state import state_document
+from trajgap.problem import Limits, Problem, cubic_spline
+from trajgap.verify import Subject, verify_certificate
+
+ROUGH = Problem(
+    [[-1.0, 0.3], [0.4, -0.7], [1.1, 0.9], [-0.2, 0.1]],
+    Limits(np.inf, np.inf, [5.0, 7.0]),
+    cubic_spline(3),
+)
+"""Jerk limits alone take boxes enough for several to be under way."""
+
+
+def _fast() -> Problem:
+    rng = np.random.default_rng(2)
+    q = rng.uniform(-1.0, 1.0, (6, 3))
+    return Problem(q, Limits(rng.uniform(1, 2, 3), rng.uniform(1, 2, 3)), cubic_spline(5))
+
+
+FAST = _fast()
+"""Several ways of braking have to be told apart."""
+
+
+def shifted(common: int, number: int) -> int:
+    return common + number
+
+
+def ending(common: int, number: int) -> int:
+    """A process that the system ends at one number; this one is not ended."""
+    if number == 3 and os.getpid() != common:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return number
+
+
+def talking(common: str, number: int) -> int:
+    print(common, number, flush=True)
+    return number
+
+
+def refusing(common: str, number: int) -> int:
+    raise ValueError(f"{common} {number}")
+
+
+class LastFirst(Executor):
+    """Works on the piece that was handed out last."""
+
+    def __init__(self) -> None:
+        self.given: deque[tuple[Future[Any], Any, Any]] = deque()
+
+    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
+        future: Future[Any] = Future()
+        self.given.append((future, fn, args))
+        return future
+
+    def finish(self) -> None:
+        if self.given:
+            future, fn, args = self.given.pop()
+            if future.set_running_or_notify_cancel():
+                future.set_result(fn(*args))
+
+
+@pytest.fixture
+def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Processes are started for the first pieces."""
+    monkeypatch.setattr(crew, "_WORTH", 0.0)
+
+
+@pytest.mark.usefixtures("at_once")
+def test_results_come_in_the_order_of_the_pieces() -> None:
+    items = [(n,) for n in (5, 1, 4, 2, 3, 9, 8, 7)]
+    for workers in (1, 3):
+        with ProofCrew(workers) as some:
+            assert list(some.spread(shifted, 10, items)) == [10 + n for (n,) in items]
+            assert some.processes == (workers if workers > 1 else 0)
+
+
+@pytest.mark.usefixtures("at_once")
+@pytest.mark.skipif(sys.platform == "win32", reason="processes are ended by signals")
+def test_what_a_dead_process_had_is_done_here() -> None:
+    with ProofCrew(2) as some:
+        found = list(some.spread(ending, os.getpid(), [(n,) for n in range(8)]))
+    assert found == list(range(8))
+
+
+@pytest.mark.usefixtures("at_once")
+def test_what_a_process_prints_does_not_stand_between_answers() -> None:
+    with ProofCrew(2) as some:
+        assert list(some.spread(talking, "said", [(n,) for n in range(6)])) == list(range(6))
+
+
+@pytest.mark.usefixtures("at_once")
+@pytest.mark.parametrize("workers", [1, 2])
+def test_what_a_piece_raises_comes_out(workers: int) -> None:
+    with ProofCrew(workers) as some, pytest.raises(ValueError, match="twice 0"):
+        list(some.spread(refusing, "twice", [(n,) for n in range(4)]))
+
+
+def test_no_process_is_started_below_a_second(monkeypatch: pytest.MonkeyPatch) -> None:
+    crews: list[ProofCrew] = []
+
+    class Seen(ProofCrew):
+        def __init__(self, workers: int, executor: Executor | None) -> None:
+            super().__init__(workers, executor)
+            crews.append(self)
+
+    monkeypatch.setattr(certifiers, "ProofCrew", Seen)
+    monkeypatch.setattr(crew, "_WORTH", np.inf)
+    assert certify(ROUGH, gap=0.01, workers=2).outcome is Outcome.CERTIFIED
+    assert [one.processes for one in crews] == [0]
+    monkeypatch.setattr(crew, "_WORTH", 0.0)
+    assert certify(ROUGH, gap=0.01, workers=2).outcome is Outcome.CERTIFIED
+    assert [one.processes for one in crews] == [0, 2]
+
+
+def test_a_program_without_a_guard_may_ask_for_processes(tmp_path: Path) -> None:
+    program = tmp_path / "bare.py"
+    program.write_text(
+        "from trajgap.nlp.proofs import crew\n"
+        "crew._WORTH = 0.0\n"
+        "print('once')\n"
+        "import math\n"
+        "with crew.ProofCrew(2) as some:\n"
+        "    print(list(some.spread(math.gcd, 12, [(8,), (9,), (18,)])), some.processes)\n",
+        encoding="utf-8",
+    )
+    ran = subprocess.run([sys.executable, program], capture_output=True, text=True, check=True)
+    assert ran.stdout.split("\n") == ["once", "[4, 3, 6] 2", ""]
+    assert not ran.stderr
+
+
+# --- proofs ---------------------------------------------------------------------------------------
+
+
+def proof(found: Certified) -> Any:
+    assert found.outcome is Outcome.CERTIFIED
+    return certificate(found)["proof"], found.lower, found.upper
+
+
+@pytest.mark.usefixtures("at_once")
+def test_a_cubic_proof_does_not_depend_on_who_worked_on_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    alone = proof(certify(ROUGH, gap=0.01))
+    assert sum(node[0] == "/" for node in alone[0]["tree"]) > 4, "too few boxes for several"
+    assert proof(certify(ROUGH, gap=0.01, workers=2)) == alone
+    with ThreadPoolExecutor(3) as threads:
+        assert proof(certify(ROUGH, gap=0.01, workers=3, executor=threads)) == alone
+    late, waited = LastFirst(), crew.wait
+
+    def finishing(futures: Any, timeout: float) -> Any:
+        late.finish()
+        return waited(futures, 0.0)
+
+    monkeypatch.setattr(crew, "wait", finishing)
+    assert proof(certify(ROUGH, gap=0.01, workers=4, executor=late)) == alone
+
+
+@pytest.mark.usefixtures("at_once")
+@pytest.mark.parametrize("workers", [1, 2])
+def test_a_cubic_proof_that_is_stopped_goes_on(workers: int) -> None:
+    def stop(now: Progress) -> None:
+        if now.nodes > 1:
+            raise KeyboardInterrupt
+
+    part = certify(ROUGH, gap=0.01, workers=workers, report=stop)
+    assert part.outcome is Outcome.INTERVAL
+    assert part.stopped
+    state = state_document(part)
+    assert state is not None
+    assert verify_certificate(state).proves
+    whole = certify(ROUGH, gap=0.01, workers=workers, resume=state)
+    assert whole.outcome is Outcome.CERTIFIED
+    assert whole.gap <= 0.01
+
+
+@pytest.mark.usefixtures("at_once")
+def test_at_the_time_limit_what_others_proved_is_kept() -> None:
+    """The boxes that are under way end with the time, and nothing of them is lost."""
+    part = certify(ROUGH, gap=1e-6, seconds=2.0, workers=2)
+    assert part.outcome is Outcome.INTERVAL
+    assert verify_certificate(certificate(part)).proves
+    whole = certify(ROUGH, gap=0.01, workers=2, resume=part)
+    assert whole.outcome is Outcome.CERTIFIED
+
+
+@pytest.mark.usefixtures("at_once")
+@pytest.mark.parametrize("workers", [2, 3])
+def test_a_bound_over_any_curve_does_not_depend_on_who_worked_on_it(workers: int) -> None:
+    alone = certify(FAST, subject=Subject.ANY, gap=1e-6)
+    assert alone.nodes > 10, "too few boxes for several"
+    shared = certify(FAST, subject=Subject.ANY, gap=1e-6, workers=workers)
+    assert proof(shared) == proof(alone)
+    assert shared.nodes == alone.nodes
