@@ -121,6 +121,47 @@ def _worst_ratios(problem: Problem, h: Array) -> Array:
     return worst
 
 
+def _excess(problem: Problem, h: Array) -> float:
+    """Relative excess over the limits, as a stretch: what `evaluate` says, of long motions sooner."""
+    limits = problem.limits.derivatives
+    if (limits == 0.0).any():
+        return float(evaluate(problem, h[None]).stretch[0]) - 1.0
+    return float(_worst_ratios(problem, h).max()) - 1.0
+
+
+def _lines(rows: Rows, joints: int) -> Array:
+    """Rows as points on a line: places of different limits are more than 1 apart."""
+    at = rows.places
+    key = ((at.segment * 4 + at.order) * 2 + (rows.sign > 0)) * joints + at.joint
+    return 2.0 * key + at.s
+
+
+def _nearest(points: Array, to: Array) -> Indices:
+    """Number of the nearest of some points to each of others."""
+    order = np.argsort(points, kind="stable")
+    ahead = np.clip(np.searchsorted(points[order], to), 1, points.size - 1)
+    a, b = order[ahead - 1], order[ahead]
+    return np.asarray(np.where(np.abs(points[a] - to) <= np.abs(points[b] - to), a, b))
+
+
+def carried(before: Rows, duals: Array, rows: Rows) -> Array:
+    """Multipliers of new rows: each that of the old row that it continues, else zero.
+
+    A row continues the nearest one of the same side of the same limit in the same segment, if it is
+    the nearest to that one too.
+    """
+
+    out = np.zeros(rows.sign.size)
+    if not (before.sign.size and rows.sign.size):
+        return out
+    joints = 1 + max(int(these.places.joint.max()) for these in (before, rows))
+    old, new = (_lines(these, joints) for these in (before, rows))
+    to, back = _nearest(old, new), _nearest(new, old)
+    same = (back[to] == np.arange(new.size)) & (np.abs(old[to] - new) < 1.0)
+    out[same] = duals[to[same]]
+    return out
+
+
 def near_rows(program: LongProgram, trajectory: Trajectory, near: float) -> Rows:
     """Rows at all extrema inside segments that come near their limit, with their weights."""
     problem = program.problem
@@ -201,12 +242,13 @@ class _State:
     bounds: Array | None
     equalities: Array
     ends: Array
+    rows: Array
 
 
 def _fresh(program: LongProgram, h: Array, trajectory: Trajectory) -> _State:
     """At a motion, with no multipliers yet."""
     given, ends = program.equalities.numel(), program.ends.s.size
-    return _State(program.pack(h, trajectory.scaled), None, np.zeros(given), np.zeros(ends))
+    return _State(program.pack(h, trajectory.scaled), None, np.zeros(given), np.zeros(ends), np.zeros(0))
 
 
 def _round(
@@ -235,7 +277,7 @@ def _round(
     }
     if state.bounds is not None:
         arguments["lam_x0"] = state.bounds
-        duals = [state.equalities, state.ends, np.zeros(rows.sign.size)]
+        duals = [state.equalities, state.ends, state.rows]
         arguments["lam_g0"] = np.concatenate(duals)
     result = solver(**arguments)
     stats = solver.stats()
@@ -300,7 +342,7 @@ def long_search(problem: Problem, start: Array, floor: Array, until: float) -> L
         iterations, build = iterations + count, build + seconds
         h = state.x[: problem.segments] * program.unit
         whole = bool(np.isfinite(h).all() and (h > 0).all())
-        excess = float(evaluate(problem, h[None]).stretch[0]) - 1.0 if whole else np.inf
+        excess = _excess(problem, h) if whole else np.inf
         if np.isfinite(excess):
             longer = _within(problem, h, excess)
             rough = longer if rough is None or longer.sum() < rough.sum() else rough
@@ -322,7 +364,8 @@ def long_search(problem: Problem, start: Array, floor: Array, until: float) -> L
             # A round with an eased tolerance leaves its barrier's gap: 1.6e-7 of a total was seen.
             if kkt.residual <= KKT_TOLERANCE and turn >= len(TOLERANCES) - 1:
                 break
-        rows, turn = near_rows(program, trajectory, NEAR), turn + 1
+        before, rows = rows, near_rows(program, trajectory, NEAR)
+        state.rows, turn = carried(before, duals, rows), turn + 1
     if local is None and rough is not None:
         local = LongLocal(rough, None, iterations, build)
     return local
