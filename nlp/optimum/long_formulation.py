@@ -16,10 +16,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...problem import Array, Problem
-from ...problem.curves import ConditionKind, Places, layout
+from ...problem.curves import ConditionKind, Layout, Places, Trajectory, layout
 from .symbolic import ca
 
 Indices = NDArray[np.int64]
+
+LABELS = 11
+"""Quantities of a segment that are told apart: its duration, derivatives up to the ninth, and a
+position that is free."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,35 +55,53 @@ class LongProgram:
         Time unit, s.
     floor : ndarray, shape (segments,)
         Least durations, s.
+    span : tuple of int, optional
+        Segments from the first to before the second alone: a window, between breaks that carry
+        way-points. Places, variables and conditions then count from the first. All by default.
+    beyond : Trajectory, optional
+        Of all segments: gives the derivatives at the ends of a window.
     """
 
-    def __init__(self, problem: Problem, unit: float, floor: Array) -> None:
-        plan = layout(problem.piecewise)
-        self.problem, self.unit, self._floor = problem, unit, floor
-        self.degrees, self.joints = plan.degrees, problem.waypoints.shape[1]
-        self.top = int(plan.degrees.max())
+    def __init__(
+        self,
+        problem: Problem,
+        unit: float,
+        floor: Array,
+        span: tuple[int, int] | None = None,
+        beyond: Trajectory | None = None,
+    ) -> None:
+        whole = layout(problem.piecewise)
+        self.problem, self.unit = problem, unit
+        self.span = span or (0, problem.segments)
+        self.segments = self.span[1] - self.span[0]
+        self._own = slice(*self.span)
+        self._floor = floor[self._own]
+        self.degrees, self.joints = whole.degrees[self._own], problem.waypoints.shape[1]
+        self.top = int(self.degrees.max())
         steps = np.abs(np.diff(problem.waypoints, axis=0)).mean(axis=0)
         self.angle = np.where(steps > 0, steps, 1.0)
         limits = problem.limits.derivatives * unit ** np.arange(1, 4) / self.angle[:, None]
         self.limits = np.where(limits > 0, limits, np.inf)
-        self._plan = plan
-        self._held = {r: np.flatnonzero(plan.degrees >= r) for r in range(1, self.top + 1)}
-        self._row = {r: _inverted(k, problem.segments) for r, k in self._held.items()}
-        self._virtual = np.array(problem.piecewise.virtual, dtype=np.int64)
+        self._plan = whole if beyond is None else _conditions(whole, self.span, beyond)
+        self._held = {r: np.flatnonzero(self.degrees >= r) for r in range(1, self.top + 1)}
+        self._row = {r: _inverted(k, self.segments) for r, k in self._held.items()}
+        virtual = np.array(problem.piecewise.virtual, dtype=np.int64) - self.span[0]
+        self._virtual = virtual[(virtual > 0) & (virtual < self.segments)]
         self._declare()
         self.equalities = self._equalities()
         self.ends = self._end_places()
 
     def _declare(self) -> None:
-        n, joints = self.problem.segments, self.joints
+        n, joints = self.segments, self.joints
         self._h = ca.MX.sym("h", n)
         self._d = {r: ca.MX.sym(f"d{r}", len(k), joints) for r, k in self._held.items()}
         free = ca.MX.sym("q", self._virtual.size, joints)
         breaks = list(self.problem.curve.waypoint_breaks)
         shifted = (self.problem.waypoints - self.problem.waypoints[0]) / self.angle
-        fixed = np.zeros((n + 1, joints))
+        fixed = np.zeros((self.problem.segments + 1, joints))
         fixed[breaks] = shifted
-        self._q = ca.MX(ca.DM(fixed))
+        self._fixed = fixed[self.span[0] : self.span[1] + 1]
+        self._q = ca.MX(ca.DM(self._fixed))
         if self._virtual.size:
             self._q[self._virtual.tolist(), :] = free
         parts = [ca.vec(self._d[r]) for r in range(1, self.top + 1)]
@@ -94,7 +116,7 @@ class LongProgram:
 
     def _taylor(self, order: int, k: Indices) -> Any:
         """Derivative of some segments of one degree at their ends; of order 0 their way."""
-        h = self._h if k.size == self.problem.segments else self._h[k.tolist()]
+        h = self._h if k.size == self.segments else self._h[k.tolist()]
         t = ca.repmat(h, 1, self.joints)
         return self._series(order, int(self.degrees[k[0]]), t, lambda r: self._left(r, k))
 
@@ -114,7 +136,7 @@ class LongProgram:
         plan, unit = self._plan, self.unit
         rows = np.flatnonzero(plan.kinds != ConditionKind.RIGHT_VALUE)
         keys = np.stack([plan.kinds[rows], plan.orders[rows], self.degrees[plan.breaks[rows] - 1]])
-        found = []
+        found, labels = [], []
         for kind, r, degree in np.unique(keys, axis=1).T.tolist():
             i = rows[(keys == np.array([[kind], [r], [degree]])).all(axis=0)]
             b = plan.breaks[i]
@@ -133,7 +155,18 @@ class LongProgram:
                     if there.any():
                         wanted[np.flatnonzero(there).tolist(), :] = self._left(r, b[there])
             found.append(ca.vec(value - wanted))
+            labels.append(self._labels(b - 1, r))
+        self.equality_labels = np.concatenate(labels)
         return ca.vertcat(*found)
+
+    def _labels(self, k: Indices, order: int) -> Indices:
+        """Numbers of one quantity of some segments, the same in every window, joint by joint.
+
+        Multiples of `LABELS` times the number of joints lie between segments.
+        """
+        joint = np.repeat(np.arange(self.joints), k.size)
+        base = (np.tile(k, self.joints) + self.span[0]) * LABELS + order
+        return np.asarray(base * self.joints + joint)
 
     def _end_places(self) -> Places:
         """Right ends at which a limited derivative is neither given nor bounded on the left."""
@@ -141,10 +174,11 @@ class LongProgram:
         found: list[tuple[int, int, int]] = []
         for r in (1, 2, 3):
             joints = np.flatnonzero(np.isfinite(self.limits[:, r - 1]))
-            smooth = np.array([*curve.continuity, -1])
+            smooth = np.array([*curve.continuity, -1])[self._own]
+            smooth[-1] = -1  # nothing bounds the right end of a window but rows
             open_ = (self.degrees > r) & (smooth < r)
             for k in np.flatnonzero(open_).tolist():
-                given = any(order == r for order, _ in curve.prescribed_at(k + 1))
+                given = any(order == r for order, _ in curve.prescribed_at(self.span[0] + k + 1))
                 found += [] if given else [(int(j), k, r) for j in joints]
         whole = np.array(found, dtype=np.int64).reshape(-1, 3)
         places = Places(whole[:, 0], whole[:, 1], whole[:, 2], np.ones(len(whole)))
@@ -178,14 +212,14 @@ class LongProgram:
             s = s - ca.DM(w) * h * self._series(r + 1, degree, s * h, flat.__getitem__)
         value = self._series(r, degree, s * h, flat.__getitem__)
         if r == 0:
-            return value + ca.vec(self._q)[(k + (self.degrees.size + 1) * j).tolist()]
+            return value + ca.vec(self._q)[(k + (self.segments + 1) * j).tolist()]
         return value / ca.DM(self.limits[j, r - 1])
 
     def bounds(self) -> tuple[Array, Array]:
         """Bounds on the variables: durations, limits at left ends, given derivatives."""
         problem, plan, unit = self.problem, self._plan, self.unit
-        low = [np.maximum(problem.duration_lower, self._floor) / unit]
-        high = [np.maximum(problem.duration_upper / unit, low[0])]
+        low = [np.maximum(problem.duration_lower[self._own], self._floor) / unit]
+        high = [np.maximum(problem.duration_upper[self._own] / unit, low[0])]
         right = plan.kinds == ConditionKind.RIGHT_VALUE
         for r, held in self._held.items():
             width = self.limits[:, r - 1] if r <= 3 else np.full(self.joints, np.inf)
@@ -220,6 +254,34 @@ class LongProgram:
         at = scaled[self._virtual, 0] - self.problem.waypoints[0]
         return np.concatenate([*parts, (at / self.angle).ravel("F")])
 
+    def trajectory(self, x: Array) -> Trajectory:
+        """The polynomials that variables stand for, from the derivatives at left ends."""
+        size, joints = self.segments, self.joints
+        h = x[:size]
+        scaled = np.zeros((size, self.top + 1, joints))
+        scaled[:, 0] = self._fixed[:-1]
+        scaled[self._virtual, 0] = x[self._offset[-2] :].reshape(joints, -1).T
+        for r, held in self._held.items():
+            own = x[self._offset[r] : self._offset[r + 1]].reshape(joints, -1).T
+            scaled[held, r] = own * (h[held] ** r / math.factorial(r))[:, None]
+        scaled *= self.angle
+        scaled[:, 0] += self.problem.waypoints[0]
+        return Trajectory(h * self.unit, scaled, tuple(self.degrees.tolist()))
+
+    def labels(self) -> tuple[Indices, Indices, Indices]:
+        """Numbers of variables, of equalities and of rows at right ends, the same in every window.
+
+        Divided by `LABELS` times the number of joints they tell the segment, counted from the
+        first of all.
+        """
+        h = (np.arange(self.segments) + self.span[0]) * LABELS * self.joints
+        parts = [h]
+        parts += [self._labels(held, r) for r, held in self._held.items()]
+        parts.append(self._labels(self._virtual, LABELS - 1))
+        at = self.ends
+        ends = ((at.segment + self.span[0]) * LABELS + at.order) * self.joints + at.joint
+        return np.concatenate(parts), self.equality_labels, ends
+
     def left_places(self) -> tuple[Places, Indices]:
         """Limits that are bounds on variables, as places, and the variables' numbers."""
         found: list[tuple[Indices, Indices, Indices, Indices]] = []
@@ -242,6 +304,28 @@ class LongProgram:
         at = np.flatnonzero(low[number] < high[number])  # what is given is no limit
         places = Places(joint[at], segment[at], order[at], np.zeros(at.size))
         return places, np.asarray(number[at])
+
+
+def _conditions(plan: Layout, span: tuple[int, int], beyond: Trajectory) -> Layout:
+    """The conditions at and between two breaks, on the sides between them, and those of a cut.
+
+    There the lower half of what is continuous is given, which is what a spline has free at an end.
+    """
+    first, last = span
+    right, left = plan.kinds == ConditionKind.RIGHT_VALUE, plan.kinds == ConditionKind.LEFT_VALUE
+    match = plan.kinds == ConditionKind.MATCH
+    own = np.where(right, plan.breaks >= first, plan.breaks > first)
+    own &= np.where(left, plan.breaks <= last, plan.breaks < last)
+    kinds, orders = plan.kinds[own], plan.orders[own]
+    breaks, given = plan.breaks[own] - first, plan.prescribed[own]
+    for b, kind in ((first, ConditionKind.RIGHT_VALUE), (last, ConditionKind.LEFT_VALUE)):
+        smooth = np.sort(plan.orders[match & (plan.breaks == b) & (plan.orders > 0)])
+        for r in smooth[: smooth.size // 2].tolist():
+            value = beyond.scaled[b, r] * math.factorial(r) / beyond.durations[b] ** r
+            kinds, orders = np.append(kinds, kind), np.append(orders, r)
+            breaks = np.append(breaks, b - first)
+            given = np.vstack([np.broadcast_to(given, (len(given), value.size)), value])
+    return replace(plan, kinds=kinds, breaks=breaks, orders=orders, prescribed=given)
 
 
 def _inverted(held: Indices, size: int) -> Indices:

@@ -13,7 +13,8 @@ from .clock import time_up
 from .decided import decided, kept
 from .exact_multistart import made_up
 from .judgement import BLURRED, KKT_TOLERANCE, SAME, still_falling, unmet
-from .long_search import LongLocal, long_search, way_start
+from .long_search import LongLocal, long_search
+from .long_start import way_start
 from .solution import Solution, Status
 from .starts import SETTLED_SEGMENTS, equal_start
 

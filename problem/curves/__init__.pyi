@@ -33,6 +33,7 @@ from .pieces import MANY_PIECES, largest_of_each, may_jump, near_extrema, step_s
 from .refined import coefficient_gradient
 from .spline import (
     PERM,
+    Layout,
     as_durations,
     batch_coefficients,
     layout,
@@ -63,6 +64,7 @@ __all__ = [
     "Extremum",
     "Interpolant",
     "Knots",
+    "Layout",
     "Parameters",
     "PeakGradients",
     "Places",

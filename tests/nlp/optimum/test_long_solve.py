@@ -7,8 +7,11 @@ from trajgap.nlp.optimum import long_search as long_search_module
 from trajgap.nlp.optimum import solver
 from trajgap.nlp.optimum.formulation import Form
 from trajgap.nlp.optimum.long_formulation import LongProgram, Rows
-from trajgap.nlp.optimum.long_search import along, long_search, near_rows, way_start
+from trajgap.nlp.optimum.long_optimality import along
+from trajgap.nlp.optimum.long_rows import near_rows
+from trajgap.nlp.optimum.long_search import long_search
 from trajgap.nlp.optimum.long_solve import long_enough
+from trajgap.nlp.optimum.long_start import way_start
 from trajgap.nlp.optimum.optimality import kkt
 from trajgap.nlp.optimum.unsearched import CUT_SHORT
 from trajgap.problem import (
@@ -137,7 +140,7 @@ def test_a_round_that_fails_begins_again_from_the_best_motion(
 ) -> None:
     problem = posed(CURVES["cubic"])
     total = solve(problem).total_time
-    round_ = long_search_module._round
+    round_ = long_search_module.solve_round
     calls: list[int] = []
 
     def failing(
@@ -147,7 +150,7 @@ def test_a_round_that_fails_begins_again_from_the_best_motion(
         calls.append(turn)
         return duals, success and len(calls) != 2, count, seconds
 
-    monkeypatch.setattr(long_search_module, "_round", failing)
+    monkeypatch.setattr(long_search_module, "solve_round", failing)
     again = solve(problem)
     assert calls[:4] == [0, 1, 0, 1]
     assert again.status is Status.OPTIMAL

@@ -1,0 +1,151 @@
+"""One round of IPOPT on a program of many segments, begun where another ended."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ...problem import Array
+from ...problem.curves import Places, Trajectory
+from .clock import seconds_left
+from .ipopt import ipopt_options
+from .long_formulation import LongProgram, Rows
+from .long_optimality import Multipliers
+from .symbolic import ca
+
+ITERATIONS = 150
+"""IPOPT's most iterations in a round: what settles takes 10 to 60."""
+TOLERANCES = (1e-3, 1e-6, 1e-9)
+"""IPOPT's tolerances in the first round, the second and the later ones: the first rows are not the
+last."""
+BARRIERS = (1e-2, 1e-3, 1e-9)
+"""Barriers at which those rounds begin: IPOPT's own 0.1 costs quintics half as many iterations
+again, and the later rows hardly move."""
+ABSOLUTE = ("ipopt.constr_viol_tol", "ipopt.dual_inf_tol", "ipopt.compl_inf_tol")
+"""What IPOPT demands beside its tolerance: eased where that is."""
+SHORTEST = 0.05
+"""Seconds that a call of IPOPT has at least: its limit must be positive."""
+SOLVER = {
+    "ipopt.mumps_permuting_scaling": 0,
+    "ipopt.mumps_scaling": 0,
+    "ipopt.mumps_pivot_order": 0,
+}
+"""MUMPS as it takes a band best: approximate minimum degree, and no scaling. To permute by the size
+of values takes longer than to factorise, and grows faster than the number of segments."""
+
+
+def _cap() -> float | None:
+    """What is left of the time, s: each round's solver is its own, so that no cap is shared."""
+    left = seconds_left()
+    return None if left == math.inf else max(left, SHORTEST)
+
+
+def _options(turn: int, cap: float | None) -> dict[str, Any]:
+    stage = min(turn, 2)
+    tolerance = TOLERANCES[stage]
+    usual = ipopt_options(warm=False, cap=cap)
+    eased = {key: max(tolerance, usual[key]) for key in ABSOLUTE} if stage < 2 else {}
+    options = (
+        usual
+        | eased
+        | SOLVER
+        | {
+            "ipopt.max_iter": ITERATIONS,
+            "ipopt.mu_init": BARRIERS[stage],
+            "ipopt.tol": tolerance,
+        }
+    )
+    if turn == 0:
+        return options
+    push = 1e-5 if turn == 1 else 1e-9
+    names = ("bound_push", "bound_frac", "slack_bound_push", "slack_bound_frac", "mult_bound_push")
+    return options | {
+        "ipopt.warm_start_init_point": "yes",
+        **{f"ipopt.warm_start_{name}": push for name in names},
+    }
+
+
+@dataclass(eq=False)
+class RoundState:
+    """Where the rounds stand: variables, and the multipliers of what stays from round to round."""
+
+    x: Array
+    bounds: Array | None
+    equalities: Array
+    ends: Array
+    rows: Array
+
+
+def fresh(program: LongProgram, h: Array, trajectory: Trajectory) -> RoundState:
+    """At a motion, with no multipliers yet."""
+    given, ends = program.equalities.numel(), program.ends.s.size
+    return RoundState(
+        program.pack(h, trajectory.scaled), None, np.zeros(given), np.zeros(ends), np.zeros(0)
+    )
+
+
+def solve_round(
+    program: LongProgram, rows: Rows, state: RoundState, turn: int, least: Array | None = None
+) -> tuple[Array, bool, int, float]:
+    """One call of IPOPT: the rows' multipliers, success, iterations, and seconds of building.
+
+    No duration becomes shorter than ``least`` (s) where that is given.
+    """
+    began = time.perf_counter()
+    ends = program.ends
+    expressions = [
+        program.equalities,
+        program.at_places(ends, np.zeros(ends.s.size)),
+        program.at_places(rows.places, rows.weight),
+    ]
+    nlp = {"x": program.variables, "f": ca.sum1(program.durations), "g": ca.vertcat(*expressions)}
+    solver = ca.nlpsol("many", "ipopt", nlp, _options(turn, _cap()))
+    build = time.perf_counter() - began
+    low, high = program.bounds()
+    if least is not None:
+        n = program.segments
+        low[:n] = np.maximum(low[:n], np.minimum(least / program.unit, high[:n]))
+    room, upper = program.rooms(rows.places, rows.sign), rows.sign > 0
+    one, zero = np.ones(ends.s.size), np.zeros(state.equalities.size)
+    arguments = {
+        "x0": np.clip(state.x, low, high),
+        "lbx": low,
+        "ubx": high,
+        "lbg": np.concatenate([zero, -one, np.where(upper, -np.inf, room)]),
+        "ubg": np.concatenate([zero, one, np.where(upper, room, np.inf)]),
+    }
+    if state.bounds is not None:
+        arguments["lam_x0"] = state.bounds
+        duals = [state.equalities, state.ends, state.rows]
+        arguments["lam_g0"] = np.concatenate(duals)
+    result = solver(**arguments)
+    stats = solver.stats()
+    state.x, state.bounds = (np.asarray(result[name]).ravel() for name in ("x", "lam_x"))
+    cuts = [zero.size, zero.size + one.size]
+    state.equalities, state.ends, duals_ = np.split(np.asarray(result["lam_g"]).ravel(), cuts)
+    return duals_, bool(stats["success"]), int(stats["iter_count"]), build
+
+
+def multipliers(program: LongProgram, rows: Rows, state: RoundState, of_rows: Array) -> Multipliers:
+    """What a round of all segments leaves, in seconds."""
+    at_left, number = program.left_places()
+    assert state.bounds is not None
+    parts = (at_left, program.ends, rows.places)
+    joint, segment, order, s = (
+        np.concatenate([getattr(part, name) for part in parts])
+        for name in ("joint", "segment", "order", "s")
+    )
+    # A bound on a variable is no share of its limit, as the rows are.
+    shares = program.limits[at_left.joint, np.maximum(at_left.order, 1) - 1]
+    left = state.bounds[number] * np.where(at_left.order == 0, 1.0, shares)
+    limits = np.concatenate([left, state.ends, of_rows])
+    angle = np.where(order == 0, program.angle[joint], 1.0)
+    return Multipliers(
+        Places(joint, segment, order, s),
+        limits * program.unit / angle,
+        state.bounds[: program.degrees.size],
+    )

@@ -1,0 +1,93 @@
+"""Rows of a program of many segments: extrema near their limits, and what continues them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...problem import Array
+from ...problem.curves import Places, Trajectory, near_extrema
+from .long_formulation import Indices, LongProgram, Rows
+from .long_optimality import along
+
+EVERY = 0.0
+"""All interior extrema have rows at first: without those below a fifth of their limit, quintics
+often leave the region in which the others mean anything."""
+NEAR = 0.5
+"""Share from which one has a row later: what grows beyond its limit meanwhile is found next. With
+0.7 a round of quintics fails now and then."""
+POSITION_NEAR = 0.3
+"""Distance to a position limit, in the joint's span, from which an extremum has a row."""
+
+
+def _lines(rows: Rows, joints: int) -> Array:
+    """Rows as points on a line: places of different limits are more than 1 apart."""
+    at = rows.places
+    key = ((at.segment * 4 + at.order) * 2 + (rows.sign > 0)) * joints + at.joint
+    return 2.0 * key + at.s
+
+
+def _nearest(points: Array, to: Array) -> Indices:
+    """Number of the nearest of some points to each of others."""
+    order = np.argsort(points, kind="stable")
+    ahead = np.clip(np.searchsorted(points[order], to), 1, points.size - 1)
+    a, b = order[ahead - 1], order[ahead]
+    return np.asarray(np.where(np.abs(points[a] - to) <= np.abs(points[b] - to), a, b))
+
+
+def carried(before: Rows, duals: Array, rows: Rows) -> Array:
+    """Multipliers of new rows: each that of the old row that it continues, else zero.
+
+    A row continues the nearest one of the same side of the same limit in the same segment, if it is
+    the nearest to that one too.
+    """
+    out = np.zeros(rows.sign.size)
+    if not (before.sign.size and rows.sign.size):
+        return out
+    joints = 1 + max(int(these.places.joint.max()) for these in (before, rows))
+    old, new = (_lines(these, joints) for these in (before, rows))
+    to, back = _nearest(old, new), _nearest(new, old)
+    same = (back[to] == np.arange(new.size)) & (np.abs(old[to] - new) < 1.0)
+    out[same] = duals[to[same]]
+    return out
+
+
+def near_rows(program: LongProgram, trajectory: Trajectory, near: float) -> Rows:
+    """Rows at all extrema inside segments that come near their limit, with their weights."""
+    problem = program.problem
+    found: list[tuple[Array | Indices, ...]] = []
+    for j in range(program.joints):
+        for r in (0, 1, 2, 3):
+            if r > 0:
+                limit = float(program.limits[j, r - 1]) * program.angle[j] / program.unit**r
+                low, high = (-near * limit, near * limit) if limit < np.inf else (-limit, limit)
+            else:
+                room = POSITION_NEAR * float(np.ptp(problem.waypoints[:, j]))
+                low = float(problem.limits.position_lower[j]) + room
+                high = float(problem.limits.position_upper[j]) - room
+            if program.top - r < 2 or not (np.isfinite(low) or np.isfinite(high)):
+                continue
+            k, s, value = near_extrema(trajectory, j, r, low, high)
+            inner = (s > 0.0) & (s < 1.0)
+            k, s, value = k[inner], s[inner], value[inner]
+            sides = [value >= high, value <= low] if r == 0 else [value > 0.0, value <= 0.0]
+            for side, which in zip(sides, (1.0, -1.0), strict=True):
+                at = np.flatnonzero(side)
+                whole = (np.full(at.size, j), k[at], np.full(at.size, r))
+                found.append((*whole, s[at], np.full(at.size, which)))
+    if not found:
+        none = np.zeros(0, dtype=np.int64)
+        return Rows(Places(none, none, none, np.zeros(0)), np.zeros(0), np.zeros(0))
+    joint, segment, order, place, sign = (np.concatenate([f[i] for f in found]) for i in range(5))
+    places = Places(joint, segment, order, place)
+    at = program.order_of_rows(places)
+    places = Places(joint[at], segment[at], order[at], place[at])
+    return Rows(places, sign[at], _newton_weights(program, trajectory, places))
+
+
+def _newton_weights(program: LongProgram, trajectory: Trajectory, places: Places) -> Array:
+    """1/f″ of f, a derivative in units of order one as a function of s; 0 where f is flat."""
+    curvature = along(trajectory, places, 2)
+    rate = (program.unit / trajectory.durations[places.segment]) ** places.order
+    curvature = curvature * rate / program.angle[places.joint]
+    flat = np.abs(curvature) < 1e-9 * np.abs(curvature).max(initial=1.0)
+    return np.where(flat, 0.0, 1.0 / np.where(flat, 1.0, curvature))

@@ -1,0 +1,220 @@
+"""Windows of long problems: the same program in parts, the same optimum when joined."""
+
+import itertools
+from dataclasses import replace
+
+import casadi as ca
+import numpy as np
+import pytest
+from trajgap.nlp import Status, solve
+from trajgap.nlp.optimum import long_search as long_search_module
+from trajgap.nlp.optimum import long_windows
+from trajgap.nlp.optimum.long_formulation import LongProgram, Rows
+from trajgap.nlp.optimum.long_rows import carried, near_rows
+from trajgap.nlp.optimum.long_search import long_search
+from trajgap.nlp.optimum.long_start import excess_of, way_start
+from trajgap.nlp.optimum.long_windows import Joined, joined_windows, spans
+from trajgap.problem import (
+    Interpolant,
+    Limits,
+    Problem,
+    check,
+    cubic_spline,
+    cubic_spline_virtual,
+    evaluate,
+    fit,
+    piecewise,
+    quintic_spline,
+)
+from trajgap.problem.curves import Places, Trajectory
+
+SEGMENTS = 40
+CURVES = {
+    "cubic": cubic_spline(SEGMENTS),
+    "quintic": quintic_spline(SEGMENTS),
+    "virtual": cubic_spline_virtual(SEGMENTS - 1),
+    "degrees of two kinds": piecewise((4, *(3,) * (SEGMENTS - 2), 4), 2),
+    "ends apart": cubic_spline(SEGMENTS, ((1, (0.25, -0.4)),), ((1, (-0.1, 0.3)),)),
+}
+
+
+def posed(curve: Interpolant, **changes: object) -> Problem:
+    rng = np.random.default_rng(11)
+    count = len(curve.waypoint_breaks)
+    q = np.cumsum(rng.normal(size=(count, 2)) * [0.4, 0.9], axis=0) - 5.0
+    limits = Limits([1.5, 3.0], [6.0, 15.0], [np.inf, 90.0], -30.0, [20.0, np.inf])
+    return Problem(q, limits, curve, **changes)  # type: ignore[arg-type]
+
+
+@pytest.fixture
+def small_windows(monkeypatch: pytest.MonkeyPatch) -> list[Joined | None]:
+    """Windows of some 13 segments, and what they leave."""
+    monkeypatch.setattr(long_search_module, "FEWEST", SEGMENTS)
+    monkeypatch.setattr(long_windows, "WIDTH", 13)
+    monkeypatch.setattr(long_windows, "OVERLAP", 4)
+    seen: list[Joined | None] = []
+
+    def watched(
+        program: LongProgram, trajectory: Trajectory, floor: np.ndarray, until: float
+    ) -> Joined | None:
+        seen.append(joined_windows(program, trajectory, floor, until))
+        return seen[-1]
+
+    monkeypatch.setattr(long_search_module, "joined_windows", watched)
+    return seen
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_joined_windows_end_at_the_optimum_of_the_whole(
+    name: str, small_windows: list[Joined | None]
+) -> None:
+    problem = posed(CURVES[name])
+    answer = solve(problem)
+    assert [joined is None for joined in small_windows] == [False]
+    floor = np.full(problem.segments, 1e-4)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(long_search_module, "FEWEST", SEGMENTS + 1)
+        whole = long_search(problem, way_start(problem), floor, np.inf)
+    assert len(small_windows) == 1
+    assert whole is not None
+    assert answer.status is Status.OPTIMAL
+    assert answer.kkt_residual is not None
+    assert answer.kkt_residual <= 1e-8
+    assert answer.total_time == pytest.approx(float(whole.durations.sum()), rel=1e-8)
+    assert solve(problem).durations == pytest.approx(answer.durations, rel=0.0, abs=0.0)
+
+
+def test_what_windows_leave_is_nearly_the_optimum(small_windows: list[Joined | None]) -> None:
+    problem = posed(CURVES["quintic"])
+    answer = solve(problem)
+    (joined,) = small_windows
+    assert joined is not None
+    unit = float(way_start(problem).mean())
+    h = joined.state.x[:SEGMENTS] * unit
+    assert h.sum() == pytest.approx(answer.total_time, rel=0.01)
+    assert check(problem, h).stretch < 1.3
+    assert joined.duals.size == joined.rows.sign.size
+    assert (joined.duals * joined.rows.sign >= -1e-6).all()
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_a_window_is_a_part_of_the_whole_program(name: str) -> None:
+    problem = posed(CURVES[name])
+    h = way_start(problem) * np.random.default_rng(1).uniform(0.8, 1.3, SEGMENTS)
+    motion, unit, floor = fit(problem.curve, problem.waypoints, h), float(h.mean()), np.zeros(40)
+    whole = LongProgram(problem, unit, floor)
+    x, labels = whole.pack(h, motion.scaled), whole.labels()
+    assert all(np.unique(some).size == some.size for some in labels)
+    assert labels[1].size == whole.equalities.numel()
+    for span in ((0, 15), (11, 29), (26, SEGMENTS)):
+        own = slice(*span)
+        part = LongProgram(problem, unit, floor, span, motion)
+        cut = Trajectory(h[own], motion.scaled[own], motion.degrees[own])
+        mine = part.pack(cut.durations, cut.scaled)
+        numbers = dict(zip(labels[0].tolist(), x.tolist(), strict=True))
+        assert [numbers[at] for at in part.labels()[0].tolist()] == mine.tolist()
+        assert np.isin(part.labels()[1], labels[1]).mean() > 0.8
+        back = part.trajectory(mine)
+        np.testing.assert_allclose(back.durations, cut.durations, rtol=1e-14)
+        width = back.scaled.shape[1]
+        np.testing.assert_allclose(back.scaled, cut.scaled[:, :width], rtol=1e-12, atol=1e-13)
+        ends = part.at_places(part.ends, np.zeros(part.ends.s.size))
+        equal, last = ca.Function("f", [part.variables], [part.equalities, ends])(mine)
+        np.testing.assert_allclose(np.asarray(equal), 0.0, atol=1e-9)
+        low, high = part.bounds()
+        assert (low <= high).all()
+        # What a cut gives is what the motion has there.
+        given = low == high
+        np.testing.assert_allclose(mine[given], low[given], rtol=1e-9, atol=1e-9)
+        assert last.numel() >= (2 if span[1] < SEGMENTS and name != "quintic" else 0)
+
+
+def test_windows_cover_all_segments_and_end_at_waypoints() -> None:
+    problem = posed(cubic_spline_virtual(SEGMENTS - 1))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(long_windows, "WIDTH", 9)
+        patch.setattr(long_windows, "OVERLAP", 3)
+        found = list(spans(problem))
+    assert len(found) > 3
+    owns = [own for _, own in found]
+    assert owns[0][0] == 0
+    assert owns[-1][1] == problem.segments
+    assert all(a[1] == b[0] for a, b in itertools.pairwise(owns))
+    breaks = set(problem.curve.waypoint_breaks)
+    for span, own in found:
+        assert {*span, *own} <= breaks
+        assert span[0] <= own[0] < own[1] <= span[1]
+        assert span[1] - own[1] in ({0} if own[1] == problem.segments else {2, 3, 4})
+
+
+def test_a_window_that_fails_begins_slower_and_then_the_whole_is_searched(
+    small_windows: list[Joined | None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    problem = posed(CURVES["cubic"])
+    total = solve(problem).total_time
+    solved, tried = long_windows._solved, []
+
+    def failing(limit: int) -> None:
+        tried.clear()
+
+        def some(part: LongProgram, state: object, own: slice) -> object:
+            tried.append(float(state.x[: part.segments].sum()))  # type: ignore[attr-defined]
+            ended = solved(part, state, own)  # type: ignore[arg-type]
+            return replace(ended, success=len(tried) > limit)
+
+        monkeypatch.setattr(long_windows, "_solved", some)
+
+    failing(1)
+    assert solve(problem).total_time == pytest.approx(total, rel=1e-8)
+    assert tried[1] == pytest.approx(1.2 * tried[0], rel=1e-9)
+    assert len(tried) == 4
+    assert small_windows[-1] is not None
+    failing(9)
+    assert solve(problem).total_time == pytest.approx(total, rel=1e-6)
+    assert len(tried) == 3
+    assert small_windows[-1] is None
+
+
+def test_time_that_ends_between_windows_and_after_them(
+    small_windows: list[Joined | None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    problem = posed(CURVES["quintic"])
+    start, floor = way_start(problem), np.full(SEGMENTS, 1e-4)
+    assert long_search(problem, start, floor, -np.inf) is not None
+    assert small_windows == [None]
+    monkeypatch.setattr(long_search_module, "time_up", lambda: True)
+    late = long_search(problem, start, floor, np.inf)
+    assert small_windows[-1] is not None
+    assert late is not None
+    assert late.kkt is None
+    assert check(problem, late.durations).max_violation <= 1e-9
+
+
+def test_multipliers_go_to_the_rows_that_continue_theirs() -> None:
+    def rows(*places: tuple[int, int, int, float, float]) -> Rows:
+        j, k, r, s, sign = (np.array(column) for column in zip(*places, strict=True))
+        return Rows(Places(j, k, r, s), sign, np.zeros(len(places)))
+
+    before = rows((0, 3, 1, 0.2, 1.0), (0, 3, 1, 0.8, 1.0), (1, 3, 1, 0.5, 1.0), (0, 4, 2, 0.9, -1))
+    duals = np.array([1.0, 2.0, 3.0, 4.0])
+    after = rows(
+        (0, 3, 1, 0.75, 1.0), (0, 3, 1, 0.95, 1.0), (0, 3, 1, 0.75, -1.0), (1, 3, 2, 0.5, 1.0),
+        (0, 4, 2, 0.1, -1), (0, 5, 2, 0.9, -1), (1, 3, 1, 0.51, 1.0),
+    )  # fmt: skip
+    assert carried(before, duals, after).tolist() == [2.0, 0.0, 0.0, 0.0, 4.0, 0.0, 3.0]
+    none = rows((0, 0, 1, 0.5, 1.0))
+    none = replace(none, sign=none.sign[:0], places=Places(*(np.zeros(0, int),) * 3, np.zeros(0)))
+    assert carried(none, np.zeros(0), after).tolist() == [0.0] * 7
+    assert carried(before, duals, none).size == 0
+
+
+def test_the_excess_is_that_of_the_batch_evaluator() -> None:
+    for name, curve in CURVES.items():
+        problem = posed(curve)
+        h = way_start(problem) * np.random.default_rng(2).uniform(0.5, 1.1, SEGMENTS)
+        stretch = float(evaluate(problem, h[None]).stretch[0])
+        assert excess_of(problem, h) == pytest.approx(stretch - 1.0, rel=1e-9), name
+    still = replace(problem, limits=Limits([1.5, 0.0], [6.0, 15.0], [np.inf, 90.0]))
+    assert excess_of(still, h) == np.inf
+    program = LongProgram(problem, 1.0, np.zeros(SEGMENTS))
+    assert near_rows(program, fit(problem.curve, problem.waypoints, h), 0.0).sign.size > 10
