@@ -26,7 +26,7 @@ FEWEST = 200
 """Segments from which there are windows: cubics of 200 are as quick in one, quintics take twice as
 long."""
 WIDTH = 100
-"""Segments of a window, about: with 50 and with 200 cubics take as long, quintics some sixth longer."""
+"""Segments of a window, about: with 50 all splines take a sixth longer, with 200 quintics do."""
 OVERLAP = 10
 """Segments beyond its own that a window has on both sides: of a derivative that is given at the end
 of an even spline 2e-6 arrives where its own begin, 2e-4 of a quintic one."""
