@@ -66,7 +66,7 @@ def walk(segments, joints):
     return np.cumsum(0.5 * rng.normal(size=(segments + 1, joints)), axis=0)
 
 
-def posed(curve, segments, joints):
+def problem_of(curve, segments, joints):
     """The problem of a row."""
     from trajgap.problem import Limits, Problem, cubic_spline, quintic_spline
 
@@ -78,7 +78,7 @@ def check_ours(curve, joints, segments):
     from trajgap.problem import check
 
     h = np.random.default_rng(6).uniform(0.5, 1.5, segments)
-    return lambda: check(posed(curve, segments, joints), h).stretch
+    return lambda: check(problem_of(curve, segments, joints), h).stretch
 
 
 def check_scipy(curve, joints, segments):
@@ -105,7 +105,7 @@ def solve_ours(curve, joints, segments):
     from trajgap.nlp import solve
 
     def run():
-        answer = solve(posed(curve, segments, joints))
+        answer = solve(problem_of(curve, segments, joints))
         assert answer.status == "optimal", answer.why
         assert answer.kkt_residual <= 1e-8
         return answer.total_time
@@ -201,7 +201,7 @@ def solve_slsqp(curve, joints, segments):
     from scipy.optimize import minimize
     from trajgap.problem import evaluate, extrema, fit, peak_gradients
 
-    problem = posed(curve, segments, joints)
+    problem = problem_of(curve, segments, joints)
     limits = problem.limits.derivatives
 
     def tops(h):

@@ -5,7 +5,7 @@ from .provenance import certificate_files, package_version
 from .reading_words import KEPT, segments
 from .rounding import Point, RoundingBox, RoundingVerdict, judge_rounding
 from .rules import EXPLAINED, RULES
-from .stated import asked_as, claim_text, digits_of, place, posed_as, spoken
+from .stated import asked_as, claim_text, digits_of, in_words, place, spoken
 from .study import Study
 from .waterfall import waterfalls
 
@@ -25,12 +25,12 @@ __all__ = [
     "certificate_files",
     "claim_text",
     "digits_of",
+    "in_words",
     "judge_rounding",
     "package_version",
     "place",
     "plainly",
     "planned_apart",
-    "posed_as",
     "segments",
     "spoken",
     "waterfalls",

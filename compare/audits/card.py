@@ -191,7 +191,7 @@ def _within(study: Study, sets: Sequence[DurationsClaim | MaximumClaim]) -> str:
 def _limits(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[str]]:
     """Whether printed durations keep their limits, and the claims that the sentence speaks of."""
     case = study.case
-    if not study.posed:
+    if not study.has_problems:
         unread = "the text that was read has no way-points"
         return f"Whether the limits are kept is not checkable: {unread}.", set()
     about = [c for c in case.claims if getattr(c, "checks", "") == "within_limits"]

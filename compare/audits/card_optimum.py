@@ -56,7 +56,7 @@ def optimum_line(
     -------
     str
     """
-    if not study.posed:
+    if not study.has_problems:
         return "The optimum is not checkable either."
     main = [w for w in waterfalls if w.reading == study.main_reading]
     beside = [found for found in (_beside(study, w) for w in main) if found is not None]

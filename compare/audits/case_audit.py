@@ -84,7 +84,7 @@ class CaseAudit:
         """Where the time goes, for each problem and reading."""
         if self.made_falls is not None:
             return self.made_falls
-        return waterfalls(self.study) if self.study.posed else ()
+        return waterfalls(self.study) if self.study.has_problems else ()
 
     @cached_property
     def readings(self) -> ReadingsSummary | None:
@@ -251,7 +251,7 @@ def audit_case(study: Study) -> CaseAudit:
 
     What a rule cannot compute for a claim is a finding that says why, and ends nothing else.
     """
-    groups = [group for group in GROUPS if study.posed or group.without_waypoints]
+    groups = [group for group in GROUPS if study.has_problems or group.without_waypoints]
     found = [finding for group in groups for finding in _judged(group.judge, study)]
     found = [f for at, f in enumerate(found) if f.rule != NOT_COMPUTED.id or f not in found[:at]]
     found = [f.model_copy(update={"message": spoken(study.case, f.message)}) for f in found]

@@ -100,7 +100,7 @@ class ChosenCase:
         return view
 
     @property
-    def posed(self) -> bool:
+    def has_problems(self) -> bool:
         """Whether way-points are printed, so that there are problems to solve."""
         return bool(self.pairs)
 

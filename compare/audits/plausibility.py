@@ -28,7 +28,7 @@ def implausible(study: Study) -> dict[str, str]:
     dict of str to str
         Why, by the reading's id; empty where readings do not differ so much.
     """
-    if len(study.readings) < 2 or not study.posed:
+    if len(study.readings) < 2 or not study.has_problems:
         return {}
     found = {rid: _stretch(study, rid) for rid in study.readings}
     known = {rid: stretch for rid, stretch in found.items() if stretch is not None}

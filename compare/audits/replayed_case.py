@@ -18,7 +18,7 @@ from ...heuristics import (
 from ...problem import Coupling, TrajgapError
 from .chosen_case import ChosenCase
 from .replay_settings import LISTED, spread_settings
-from .stated import posed_as
+from .stated import in_words
 
 Replays = tuple[Run, ...] | tuple[JointRuns, ...]
 """Runs of one algorithm, one for each seed: of all joints, or of each joint by itself."""
@@ -89,7 +89,7 @@ class ReplayedCase(ChosenCase):
     ) -> Replays:
         problem = self.problem(pid, rid)
         called = next((a.name for a in self.case.algorithms if a.id == name), name)
-        under = posed_as(self.case, pid, rid)
+        under = in_words(self.case, pid, rid)
         self._progress(f"{self.case.id}: {seeds} replays of {called}; {under}")
         workers = self.workers
         if workers is None:

@@ -136,7 +136,7 @@ def spoken(case: Case, text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
-def posed_as(case: Case, problem: str, reading: str) -> str:
+def in_words(case: Case, problem: str, reading: str) -> str:
     """A problem and a reading in words, each where the case has several; else the problem."""
     only = case.title if len(case.problems) == 1 else problem
     title = next((p.title for p in case.problems if p.id == problem), "") or only
@@ -144,15 +144,15 @@ def posed_as(case: Case, problem: str, reading: str) -> str:
     return "; ".join([*said, *([case.labels[reading]] if len(case.readings) > 1 else [])])
 
 
-def posed_among(case: Case, problem: str, reading: str) -> str:
-    """What `posed_as` says; empty where there is one problem under one reading alone."""
+def in_words_among(case: Case, problem: str, reading: str) -> str:
+    """What `in_words` says; empty where there is one problem under one reading alone."""
     several = len(case.problems) > 1 or len(case.readings) > 1
-    return posed_as(case, problem, reading) if several else ""
+    return in_words(case, problem, reading) if several else ""
 
 
 def asked_as(case: Case, problem: str, reading: str) -> str:
     """A problem and a reading in words, with the ids by which a command asks for them if it can."""
-    words = posed_as(case, problem, reading)
+    words = in_words(case, problem, reading)
     if len(case.problems) == len(case.readings) == 1:
         return words
     return noted(words, f"problem {problem}, reading {reading}")

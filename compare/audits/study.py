@@ -52,7 +52,7 @@ from .fixed_ratios import freed
 from .instances import InstancesResult, examined, readings_of
 from .replayed_case import ReplayedCase, Replays
 from .rounding import RoundingBox, RoundingVerdict, judge_rounding
-from .stated import place, posed_among, posed_as
+from .stated import in_words, in_words_among, place
 from .total_bound import excludes_total
 
 RELAXED_SECONDS = 15.0
@@ -76,7 +76,7 @@ class Study(ReplayedCase):
         def compute() -> Solution:
             problem = self.problem(pid, rid)
             which = "all joints" if joint is None else f"joint {joint}"
-            self._progress(f"{self.case.id}: optimum of {which}; {posed_as(self.case, pid, rid)}")
+            self._progress(f"{self.case.id}: optimum of {which}; {in_words(self.case, pid, rid)}")
             index = None if joint is None else problem.joints.index(joint)
             one = problem if index is None else problem.joint(index)
             try:
@@ -122,7 +122,7 @@ class Study(ReplayedCase):
         """Each joint by itself, with the ranges within half a printed digit and 1e-6 s."""
 
         def compute() -> PerJointSolution:
-            self._progress(f"{self.case.id}: each joint by itself; {posed_as(self.case, pid, rid)}")
+            self._progress(f"{self.case.id}: each joint by itself; {in_words(self.case, pid, rid)}")
             slacks = dict.fromkeys((*self.half_digits(pid, rid), OPTIMUM_SLACK))
             problem, stated = self.problem(pid, rid), self.case.statement(pid, rid)
             known = {label: self.known_motions(pid, rid, label) for label in problem.joints}
@@ -142,7 +142,7 @@ class Study(ReplayedCase):
         def find(exact: ExactProblem) -> ProvedInterval | None:
             apart = len(exact.joints) < len(self.problem(pid, rid).joints)
             which = f"joint {' '.join(exact.joints)}" if apart else ""
-            asked = noted("the optimum", which, posed_among(self.case, pid, rid))
+            asked = noted("the optimum", which, in_words_among(self.case, pid, rid))
             return self.intervals.interval(exact, asked)
 
         return find
@@ -167,7 +167,7 @@ class Study(ReplayedCase):
             if given is None:
                 why = "only a declared piecewise polynomial is a member of its relaxed family"
                 return Solution(problem, Status.FAILED, why)
-            self._progress(f"{self.case.id}: relaxed family; {posed_as(self.case, pid, rid)}")
+            self._progress(f"{self.case.id}: relaxed family; {in_words(self.case, pid, rid)}")
             inner = problem.segments - 1
             family = Interpolant(
                 tuple(max(5, degree) for degree in given.degrees),
@@ -324,7 +324,7 @@ class Study(ReplayedCase):
 
     def _judged_box(self, claim: Claim, pid: str, rid: str, cut: bool) -> RoundingVerdict:
         self._progress(
-            f"{self.case.id}: rounding of {place(claim)}; {posed_as(self.case, pid, rid)}"
+            f"{self.case.id}: rounding of {place(claim)}; {in_words(self.case, pid, rid)}"
         )
         problem = self._determined(claim, pid, rid)
         durations, waypoints = self.claim_boxes(claim, pid, rid)
@@ -365,14 +365,14 @@ class Study(ReplayedCase):
             if best.durations is not None and best.best <= longest:
                 return False  # a motion within the limits takes no longer
             self._progress(
-                f"{self.case.id}: total of {place(claim)}; {posed_as(self.case, pid, rid)}"
+                f"{self.case.id}: total of {place(claim)}; {in_words(self.case, pid, rid)}"
             )
             problem = self.claim_problem(claim, pid, rid, Digits.LOOSEST_CUT)
             waypoints = self.waypoint_box(problem, pid, rid).or_cut_off()
             with self.intervals.lent() as seconds:
                 excluded = excludes_total(problem, longest, waypoints, seconds=seconds)
             if excluded is None:
-                asked = posed_among(self.case, pid, rid)
+                asked = in_words_among(self.case, pid, rid)
                 self.intervals.left_out.append(
                     noted(f"whether any motion takes {total[0]} or less", asked)
                     + f", tried for {seconds:.0f} s"

@@ -10,7 +10,7 @@ from rich.console import RenderableType
 
 from ...nlp import Evidence
 from ...problem import Case, published_ids
-from ..audits import Study, posed_as
+from ..audits import Study, in_words
 from ..documents import (
     OPTIMA_STEPS,
     Advice,
@@ -233,7 +233,7 @@ def _time_goes(waterfalls: Sequence[Waterfall], case: Case) -> list[RenderableTy
     for pid, one in first.items():
         rows = [(step.name, *_step(step)) for step in one.steps if step.name not in unknown]
         if rows:
-            under = f"; {posed_as(case, pid, one.reading)}" if several else ""
+            under = f"; {in_words(case, pid, one.reading)}" if several else ""
             parts.append(line(f"Where the time goes{under}"))
             parts.append(Columns(("step", ">time s", "evidence"), rows))
     told = dict.fromkeys(said for one in first.values() for said in one.without_optimum)

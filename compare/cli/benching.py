@@ -39,7 +39,7 @@ from ..gaps import (
     run_bench,
 )
 from ..pages import bench_document, check_bench_folder, most_solved, optimum_said, write_bench
-from .input import Posed, naming, read_case, select
+from .input import Selected, naming, read_case, select
 from .output import NEVER_RAN, emit, progress, say
 from .table import Columns, line
 
@@ -140,7 +140,7 @@ def _own(case: Case, chosen: Sequence[str]) -> dict[str, dict[str, Any]]:
     return found
 
 
-def _coupling_said(case: Case, one: Posed, plan: BenchPlan) -> BenchPlan:
+def _coupling_said(case: Case, one: Selected, plan: BenchPlan) -> BenchPlan:
     stated = case.problem(one.problem_id, one.reading_id).coupling
     if stated is Coupling.SHARED or len(one.problem.joints) == 1:
         return plan
@@ -157,7 +157,7 @@ class _Asked:
     """One problem with its runs, before they are made."""
 
     case: Case
-    posed: Posed
+    selected: Selected
     plan: BenchPlan
 
     @property
@@ -168,7 +168,7 @@ class _Asked:
         head = noted(case.title, "" if name == case.title else name)
         if len(case.problems) == len(case.readings) == 1:
             return head
-        return f"{head}; {asked_as(case, self.posed.problem_id, self.posed.reading_id)}"
+        return f"{head}; {asked_as(case, self.selected.problem_id, self.selected.reading_id)}"
 
 
 def _run(
@@ -180,7 +180,7 @@ def _run(
         for one in asked:
             solving(f"the optimum: {one.words}")
             with naming(one.case.file):
-                optima.append(_optimum(one.case, one.posed))
+                optima.append(_optimum(one.case, one.selected))
     with ExitStack() as stack:
         store = None if kept is None else stack.enter_context(Store(kept))
         engine = stack.enter_context(on_this_machine(workers))
@@ -194,7 +194,7 @@ def _run(
     return results
 
 
-def _optimum(case: Case, one: Posed) -> Solution | Reference:
+def _optimum(case: Case, one: Selected) -> Solution | Reference:
     """What the suite knows of its own; else solved, certified where a certificate is shipped."""
     instance = instance_of(case)
     if instance is not None:

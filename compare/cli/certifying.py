@@ -46,7 +46,7 @@ from ...verify import (
     read_document,
     verify_certificate,
 )
-from ..audits import posed_as
+from ..audits import in_words
 from ..documents import (
     CertifiedResult,
     CertifyDocument,
@@ -57,7 +57,7 @@ from ..documents import (
     worth,
 )
 from . import proof_tables as cli_proofs
-from .input import Posed, naming, read_case, select
+from .input import Selected, naming, read_case, select
 from .kept import kept_proofs
 from .output import (
     Steps,
@@ -84,7 +84,7 @@ class Question:
     """One problem to certify: all joints together, or one that is optimised by itself."""
 
     name: str
-    posed: Posed
+    selected: Selected
     asked: CertifiedQuestion
     problem: ExactProblem | str
     """Or why it is not covered."""
@@ -163,7 +163,7 @@ def certify_case(
                 kept += not isinstance(found, str) and found.kept
                 unsettled |= isinstance(found, str) or found.outcome not in _SETTLED
                 files = _written(folder, one, found, clock)
-                ids = (case.id, one.posed.problem_id, one.posed.reading_id, one.asked.joint)
+                ids = (case.id, one.selected.problem_id, one.selected.reading_id, one.asked.joint)
                 results.append(certify_result(*ids, subject, found, *files, _why(found)))
         document = CertifyDocument(intervals=tuple(results))
         write(json_text(document))
@@ -198,7 +198,7 @@ def read_certificates(folder: Path) -> list[dict[str, Any]]:
     return found
 
 
-def _questions(case: Case, one: Posed, subject: Subject) -> Iterator[Question]:
+def _questions(case: Case, one: Selected, subject: Subject) -> Iterator[Question]:
     """What is asked under one reading, of all joints or of each, with why it is not covered."""
     # A bound over any curve is one of all joints together: what else would they share.
     coupling = Coupling.SHARED if subject is Subject.ANY else one.problem.coupling
@@ -209,11 +209,11 @@ def _questions(case: Case, one: Posed, subject: Subject) -> Iterator[Question]:
         yield asked if why is None else replace(asked, problem=why)
 
 
-def _stated(case: Case, one: Posed, coupling: Coupling) -> Iterator[Question]:
+def _stated(case: Case, one: Selected, coupling: Coupling) -> Iterator[Question]:
     """What is asked under one reading, covered or not."""
     statement = case.statement(one.problem_id, one.reading_id)
     name = f"{case.id}.{one.problem_id}.{one.reading_id}"
-    said = posed_as(case, one.problem_id, one.reading_id)
+    said = in_words(case, one.problem_id, one.reading_id)
     ids, content = (case.id, one.problem_id, one.reading_id), _hash(case)
     labels: list[str | None] = [None]
     if coupling is Coupling.PER_JOINT:

@@ -9,7 +9,7 @@ from pathlib import Path
 from rich.console import RenderableType
 
 from ...problem import Case, Check, Coupling, Peak, check
-from ..audits import Point, RoundingBox, RoundingVerdict, judge_rounding, posed_as
+from ..audits import Point, RoundingBox, RoundingVerdict, in_words, judge_rounding
 from ..documents import (
     BrokenPlace,
     CheckDocument,
@@ -26,7 +26,7 @@ from ..documents import (
     reason,
 )
 from .input import (
-    Posed,
+    Selected,
     duration_box,
     naming,
     one_joint,
@@ -51,14 +51,14 @@ def check_durations(
 ) -> int:
     """Judge printed durations under each selected problem and reading."""
     case = read_case(source)
-    posed = select(case, problem, reading, coupling)
+    selected = select(case, problem, reading, coupling)
     printed = read_durations(text, case.file)
-    boxes = [duration_box(case, one, printed) for one in posed]
+    boxes = [duration_box(case, one, printed) for one in selected]
     with new_output(out) as write:
         results = []
-        with progress("check", len(posed)) as step, naming(case.file):
-            for one, box in zip(posed, boxes, strict=True):
-                step(posed_as(case, one.problem_id, one.reading_id))
+        with progress("check", len(selected)) as step, naming(case.file):
+            for one, box in zip(selected, boxes, strict=True):
+                step(in_words(case, one.problem_id, one.reading_id))
                 results.append(_checked(case, one, box))
         document = CheckDocument(results=tuple(results))
         write(json_text(document))
@@ -66,7 +66,7 @@ def check_durations(
     return 0
 
 
-def _checked(case: Case, one: Posed, box: RoundingBox) -> CheckResult:
+def _checked(case: Case, one: Selected, box: RoundingBox) -> CheckResult:
     problem, points = one.problem, waypoint_box(case, one)
     joints: list[tuple[str, Check, RoundingVerdict]] = []
     loose = case.statement(one.problem_id, one.reading_id).loose_ends

@@ -14,7 +14,7 @@ from ..audits import RoundingBox
 
 
 @dataclass(frozen=True, eq=False)
-class Posed:
+class Selected:
     """One problem of a case under one reading, in radians and seconds."""
 
     problem_id: str
@@ -73,7 +73,7 @@ def read_cases(sources: Sequence[str]) -> list[Case]:
 
 def select(
     case: Case, problem: str | None, reading: str | None, coupling: str | None = None
-) -> list[Posed]:
+) -> list[Selected]:
     """Problems of a case under its readings.
 
     Parameters
@@ -86,7 +86,7 @@ def select(
 
     Returns
     -------
-    list of Posed
+    list of Selected
 
     Raises
     ------
@@ -94,7 +94,7 @@ def select(
         If an id or the coupling is unknown.
     """
     return [
-        Posed(pid, rid, case.problem(pid, rid, coupling))
+        Selected(pid, rid, case.problem(pid, rid, coupling))
         for pid, rid in case.selections(problem, reading)
     ]
 
@@ -134,7 +134,7 @@ def read_durations(text: str, file: str) -> tuple[Printed, ...]:
     return tuple(numbers)
 
 
-def duration_box(case: Case, posed: Posed, printed: Sequence[Printed]) -> RoundingBox:
+def duration_box(case: Case, selected: Selected, printed: Sequence[Printed]) -> RoundingBox:
     """Printed durations, in s: the numbers, and the bounds of what rounds to them.
 
     Raises
@@ -142,15 +142,15 @@ def duration_box(case: Case, posed: Posed, printed: Sequence[Printed]) -> Roundi
     CaseError
         If their number is not that of the segments.
     """
-    wanted = posed.problem.segments
+    wanted = selected.problem.segments
     if len(printed) != wanted:
         raise CaseError(
             case.file,
             "--durations",
-            f"{len(printed)} numbers for {wanted} segments of problem {posed.problem_id!r}; "
+            f"{len(printed)} numbers for {wanted} segments of problem {selected.problem_id!r}; "
             "give one each, with decimal points, separated by commas",
         )
-    unit = case.statement(posed.problem_id, posed.reading_id).units.time or "s"
+    unit = case.statement(selected.problem_id, selected.reading_id).units.time or "s"
     with naming(case.file, "--durations"):
         measured = [to_si(number, unit) for number in printed]
     return RoundingBox(
@@ -160,10 +160,10 @@ def duration_box(case: Case, posed: Posed, printed: Sequence[Printed]) -> Roundi
     )
 
 
-def waypoint_box(case: Case, posed: Posed) -> RoundingBox:
+def waypoint_box(case: Case, selected: Selected) -> RoundingBox:
     """The problem's way-points, in rad: the numbers, and the bounds of what rounds to them."""
-    lower, upper = case.waypoint_box(posed.problem_id, posed.reading_id)
-    return RoundingBox(posed.problem.waypoints, lower, upper)
+    lower, upper = case.waypoint_box(selected.problem_id, selected.reading_id)
+    return RoundingBox(selected.problem.waypoints, lower, upper)
 
 
 def one_joint(box: RoundingBox, joint: int) -> RoundingBox:

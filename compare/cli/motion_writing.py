@@ -16,9 +16,9 @@ from ...problem.motions import (
     motion_text,
     read_back,
 )
-from ..audits import posed_as
+from ..audits import in_words
 from ..documents import WrittenMotion, given
-from .input import Posed
+from .input import Selected
 from .motion_checking import checked_motion
 
 _RATE = 500.0
@@ -53,21 +53,21 @@ def asked_samples(
     return AskedSamples(file, _RATE if rate is None else rate, wanted, retimed)
 
 
-def check_one_motion(case: Case, posed: Sequence[Posed]) -> None:
+def check_one_motion(case: Case, selected: Sequence[Selected]) -> None:
     """Refuse more than one problem: a file holds one motion, of the first reading.
 
     Raises
     ------
     CaseError
     """
-    problems = list(dict.fromkeys(one.problem_id for one in posed))
+    problems = list(dict.fromkeys(one.problem_id for one in selected))
     if len(problems) > 1:
         raise CaseError(
             case.file, "--samples", f"{len(problems)} problems; add --problem {problems[0]}"
         )
 
 
-def write_motion(one: Posed, answer: Solution, asked: AskedSamples) -> tuple[str, WrittenMotion]:
+def write_motion(one: Selected, answer: Solution, asked: AskedSamples) -> tuple[str, WrittenMotion]:
     """Text of a motion, and what is true of it when it is read back.
 
     Raises
@@ -106,7 +106,7 @@ def written_lines(written: WrittenMotion, case: Case) -> list[str]:
     ratio = "" if worst is None else f", largest ratio {worst.ratio:.6f}"
     lines = [
         f"{written.file}: the motion as {written.form} "
-        f"({posed_as(case, written.problem, written.reading)}); "
+        f"({in_words(case, written.problem, written.reading)}); "
         f"read back: {result.verdict}{ratio} ({result.concluded[0].rstrip('.')})"
     ]
     if result.verdict != "pass" and written.form is MotionForm.CSV:

@@ -11,7 +11,7 @@ from rich.console import RenderableType
 
 from ...nlp import Outcome
 from ...problem import Case
-from ..audits import asked_as, posed_as
+from ..audits import asked_as, in_words
 from ..documents import (
     UNNAMED,
     AskedQuestion,
@@ -94,7 +94,7 @@ def _found(found: AskedQuestion, named: AskedQuestion, case: Case | None) -> str
     if case is None or found.problem is None or found.reading is None:
         return _asked(found)
     ids = (found.problem, found.reading)
-    words = posed_as if ids == (named.problem, named.reading) else asked_as
+    words = in_words if ids == (named.problem, named.reading) else asked_as
     joint = "" if found.joint is None else f"joint {found.joint} alone; "
     return f"{joint}{words(case, *ids)}"
 

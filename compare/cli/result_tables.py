@@ -10,7 +10,7 @@ from rich.console import RenderableType
 from rich.text import Text
 
 from ...problem import Case
-from ..audits import asked_as, posed_as
+from ..audits import asked_as, in_words
 from ..documents import ActiveLimit, Why, WorstPeak
 from .table import Columns, line
 
@@ -54,7 +54,7 @@ def by_question(
     One table of them all, or one for each where they are set apart or there is only one.
     """
     if not apart and len(rows) > 1:
-        told = [(posed_as(case, *ids), *row) for ids, own in rows.items() for row in own]
+        told = [(in_words(case, *ids), *row) for ids, own in rows.items() for row in own]
         return [Columns(("~problem", *columns), told), *_ids(rows, case)]
     parts: list[RenderableType] = []
     for ids, own in rows.items():
@@ -81,7 +81,7 @@ def reasons(
 ) -> list[Text]:
     """Why a number is missing, for each result without joints of its own."""
     return [
-        line(f"{name}: {why} ({posed_as(case, result.problem, result.reading)})", "dim")
+        line(f"{name}: {why} ({in_words(case, result.problem, result.reading)})", "dim")
         for result in results
         if not result.joints
         for name, why in told(result).items()

@@ -21,7 +21,7 @@ from ...nlp import (
 from ...nlp.optimum import OPTIMUM_SLACK, stopping_after
 from ...nlp.retiming import Retiming, retime
 from ...problem import Case, Coupling, fit
-from ..audits import Study, posed_as
+from ..audits import Study, in_words
 from ..documents import (
     Answer,
     SolveDocument,
@@ -32,7 +32,7 @@ from ..documents import (
     reason,
     solve_result,
 )
-from .input import Posed, naming, read_case, select
+from .input import Selected, naming, read_case, select
 from .motion_writing import AskedSamples, check_one_motion, write_motion, written_lines
 from .output import emit, new_output, progress
 from .result_tables import by_result, place, reasons, seconds
@@ -53,16 +53,16 @@ def solve_case(
 ) -> int:
     """Solve each selected problem and reading; write the motion of the first if asked to."""
     case = read_case(source)
-    posed = select(case, problem, reading, coupling)
+    selected = select(case, problem, reading, coupling)
     if asked is not None:
-        check_one_motion(case, posed)
+        check_one_motion(case, selected)
     samples_file = None if asked is None else asked.file
     with new_output(out) as write, new_output(samples_file, "--samples") as write_samples:
         results, written = [], None
         retimings: _Retimings = {}
-        with progress("solve", len(posed)) as step, naming(case.file):
-            for one in posed:
-                step(posed_as(case, one.problem_id, one.reading_id))
+        with progress("solve", len(selected)) as step, naming(case.file):
+            for one in selected:
+                step(in_words(case, one.problem_id, one.reading_id))
                 with stopping_after(math.inf if limit is None else limit):
                     result, answer = _solved(case, one, starts, seed, retimings)
                 results.append(result)
@@ -80,7 +80,7 @@ _Retimings = dict[tuple[object, ...], Retiming]
 
 
 def _solved(
-    case: Case, one: Posed, starts: int, seed: int, retimings: _Retimings
+    case: Case, one: Selected, starts: int, seed: int, retimings: _Retimings
 ) -> tuple[SolveResult, Solution]:
     ids = (case.id, one.problem_id, one.reading_id)
     if one.problem.coupling is Coupling.PER_JOINT:
@@ -125,7 +125,7 @@ def _tables(document: SolveDocument, case: Case) -> list[RenderableType]:
     parts += [line(said) for result in results for said in _procedure(result, case)]
     active = [
         (name, place(a), f"{a.multiplier:.6g}", f"{a.sensitivity:+.4f}")
-        for r, name in ((r, posed_as(case, r.problem, r.reading)) for r in results)
+        for r, name in ((r, in_words(case, r.problem, r.reading)) for r in results)
         for a in r.active
     ]
     if active:
@@ -163,7 +163,7 @@ def _procedure(result: SolveResult, case: Case) -> list[str]:
     longest = result.longest_per_segment
     if longest is None:
         return []
-    under = posed_as(case, result.problem, result.reading)
+    under = in_words(case, result.problem, result.reading)
     name = f"{under}: longest per segment"
     shared = result.shared
     together = [] if shared is None else [f"{under}: {_together(shared)}"]

@@ -20,15 +20,15 @@ import numpy as np
 from rich.console import RenderableType
 
 from ...problem import CaseError
-from ..audits import posed_as
+from ..audits import in_words
 from ..documents import noted
 from ..gaps import (
     Engine,
-    PosedProblem,
     Row,
     RowStatus,
     Store,
     StudyPlan,
+    StudyProblem,
     StudySession,
     check_export,
     export_rows,
@@ -206,10 +206,10 @@ def _tables(
     return parts
 
 
-def _words(one: PosedProblem) -> str:
+def _words(one: StudyProblem) -> str:
     """What a problem of a study is called."""
     joint = "" if one.joint is None else f"joint {one.joint} alone; "
-    return f"{joint}{posed_as(one.case, one.problem_id, one.reading)}"
+    return f"{joint}{in_words(one.case, one.problem_id, one.reading)}"
 
 
 def _named(row: Row) -> tuple[str, str, str, str, str]:

@@ -18,7 +18,7 @@ from .statistics import (
     spread,
 )
 from .store import Store
-from .studies import PosedProblem, StudyPlan, load_study, parse_study
+from .studies import StudyPlan, StudyProblem, load_study, parse_study
 from .targets import (
     CURVE_TARGETS,
     TARGETS,
@@ -39,13 +39,13 @@ __all__ = [
     "Bracket",
     "Engine",
     "Entrant",
-    "PosedProblem",
     "Row",
     "RowStatus",
     "Runs",
     "Spread",
     "Store",
     "StudyPlan",
+    "StudyProblem",
     "StudySession",
     "Trial",
     "TrialOutcome",

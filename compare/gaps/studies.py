@@ -113,7 +113,7 @@ class StudyFile(Strict):
 
 
 @dataclass(frozen=True, eq=False)
-class PosedProblem:
+class StudyProblem:
     """One problem of a study.
 
     Attributes
@@ -158,12 +158,12 @@ class StudyPlan:
     ----------
     file : str
     document : StudyFile
-    problems : tuple of PosedProblem
+    problems : tuple of StudyProblem
     """
 
     file: str
     document: StudyFile
-    problems: tuple[PosedProblem, ...]
+    problems: tuple[StudyProblem, ...]
 
     def __len__(self) -> int:
         """Number of its trials."""
@@ -180,13 +180,13 @@ class StudyPlan:
             Knows or keeps the optima that gaps are set against; without it, rows have no gaps.
         """
         asked = self.document
-        for posed in self.problems:
-            bare = Trial(posed.problem, posed.name, posed.reading, "")
+        for entry in self.problems:
+            bare = Trial(entry.problem, entry.name, entry.reading, "")
             reference = None
             if store is not None:
-                reference = store.optimum(bare.problem_sha256, posed.solve)
+                reference = store.optimum(bare.problem_sha256, entry.solve)
             for name, settings, handling in self._entrants():
-                own = {**settings, **first_range(name, settings, posed.box)}
+                own = {**settings, **first_range(name, settings, entry.box)}
                 entrant = Entrant(name, own, handling, name)
                 first = replace(
                     bare,
@@ -195,7 +195,7 @@ class StudyPlan:
                     handling=handling,
                     seed=asked.first_seed,
                     budget=asked.budget,
-                    stream=(entrant.stream, *posed.stream),
+                    stream=(entrant.stream, *entry.stream),
                     origin=origin_of(name),
                     reference=reference,
                     seconds=asked.seconds,
@@ -266,15 +266,15 @@ def parse_study(text: str, file: str, folder: Path) -> StudyPlan:
         raise refusal(file, all_faults(error)) from None
     _check_optimizers(document, file)
     problems = tuple(
-        posed
+        entry
         for at, block in enumerate(document.problems)
-        for posed in _posed(block, document.handlings, file, f"problems[{at}]", folder)
+        for entry in _entries(block, document.handlings, file, f"problems[{at}]", folder)
     )
     _check_repeats(problems, document, file)
     return StudyPlan(file, document, problems)
 
 
-def _check_repeats(problems: tuple[PosedProblem, ...], document: StudyFile, file: str) -> None:
+def _check_repeats(problems: tuple[StudyProblem, ...], document: StudyFile, file: str) -> None:
     """Refuse what would be run twice under the same key."""
     asked = [
         ("problems", [f"{one.name}, {one.reading}" for one in problems]),
@@ -305,9 +305,9 @@ def _check_optimizers(document: StudyFile, file: str) -> None:
                 raise CaseError(file, field, f"{error}; see the optimiser's manual") from None
 
 
-def _posed(
+def _entries(
     block: ProblemsBlock, handlings: tuple[Handling, ...], file: str, field: str, folder: Path
-) -> Iterator[PosedProblem]:
+) -> Iterator[StudyProblem]:
     """Problems that a block names, joint by joint where each is searched by itself."""
     try:
         if block.case.startswith(SUITE_PREFIX) or block.case == SUITE_PREFIX.rstrip(":"):
@@ -318,12 +318,12 @@ def _posed(
     except TrajgapError as error:
         raise CaseError(file, f"{field}.case", str(error)) from None
     for case in cases:
-        yield from _posed_of(case, block, handlings, file, field)
+        yield from _of_case(case, block, handlings, file, field)
 
 
-def _posed_of(
+def _of_case(
     case: Case, block: ProblemsBlock, handlings: tuple[Handling, ...], file: str, field: str
-) -> Iterator[PosedProblem]:
+) -> Iterator[StudyProblem]:
     try:
         pairs = _pairs(case, block)
         problems = [case.problem(*pair, block.coupling) for pair in pairs]
@@ -340,7 +340,7 @@ def _posed_of(
                     _check_judged(one, handling)
             except TrajgapError as error:
                 raise CaseError(file, field, f"{pid}, {rid}{label}: {error}") from None
-            yield PosedProblem(
+            yield StudyProblem(
                 name=f"{case.id}/{pid}{label}",
                 reading=rid,
                 case=case,

@@ -237,7 +237,7 @@ def _printed_path(study: Study, dh: DhTable, chain: Chain) -> _Path | None:
 
 def _joint_path(study: Study, chain: Chain) -> _Path | None:
     """Positions of the printed joint way-points, if the table gives every joint and its range."""
-    if not study.posed:
+    if not study.has_problems:
         return None
     problem = study.problem(study.problems[0], study.main_reading)
     if set(chain.labels) != set(problem.joints) or not chain.revolute.all():

@@ -326,7 +326,7 @@ def _procedure(answer: PerJointSolution) -> str:
 def sensitivities(one: CaseAudit) -> Section:
     """What 10 % more of each active limit buys, to first order."""
     title = "What 10 % more of a limit buys"
-    if not one.study.posed:
+    if not one.study.has_problems:
         return Section("sensitivities", title, ())
     rows = []
     for pid, rid in one.study.pairs:

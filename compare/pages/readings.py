@@ -36,7 +36,7 @@ def side_by_side(one: CaseAudit) -> Section:
     blocks: list[Block] = []
     summary = one.readings
     if summary is not None:
-        tables = _outcomes(one, summary) if summary.outcomes else [_unposed(one)]
+        tables = _outcomes(one, summary) if summary.outcomes else [_without_problems(one)]
         rows = sum(len(t.rows) for t in tables if isinstance(t, Grid))
         title = f"{len(summary.admissible)} readings side by side"
         if rows > _FEW:
@@ -168,7 +168,7 @@ def _row(outcome: ReadingOutcome, default: str, summary: ReadingsSummary) -> tup
     )
 
 
-def _unposed(one: CaseAudit) -> Grid:
+def _without_problems(one: CaseAudit) -> Grid:
     """Curve and limits of each reading, where nothing can be computed for want of way-points."""
     rows, slides = [], False
     for pid, rid in one.case.selections():

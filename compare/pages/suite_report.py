@@ -90,7 +90,7 @@ def instance_page(one: BenchmarkInstance) -> Page:
             Section("bounds", "What is known", (_bounds(one),)),
             Section("verify", "Verify in 60 seconds with one file", _verified(one)),
             Section("hardness", "How hard it is", _hardness(one)),
-            Section("problem", "The problem", (_size(one), _posed(problem), _limits(problem))),
+            Section("problem", "The problem", (_size(one), _question(problem), _limits(problem))),
             Section("source", "Where it comes from", (Prose(case.source.title),)),
             Section("use", "Use it", _used(one)),
         ),
@@ -165,7 +165,7 @@ def _size(one: BenchmarkInstance) -> Block:
     )
 
 
-def _posed(problem: Problem) -> Block:
+def _question(problem: Problem) -> Block:
     columns = ("way-point", *(f"joint {label} (rad)" for label in problem.joints))
     rows = [
         (Cell(str(k)), *(number(f"{q:.6g}") for q in row))

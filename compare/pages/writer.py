@@ -33,7 +33,7 @@ from .instances import other_instances
 from .markdown_text import markdown
 from .numbers import card_picture, optima, sensitivities, where_time_goes
 from .readings import side_by_side
-from .verdicts import findings, foundations, posed
+from .verdicts import findings, foundations, posed_problems
 
 MARK = "audit.json"
 """The file by which the folder of an earlier report is known."""
@@ -205,7 +205,7 @@ def case_page(one: CaseAudit) -> Page:
             side_by_side(one),
             _not_computed(one),
             *folded_claims(one),
-            posed(one),
+            posed_problems(one),
             findings(one),
             optima(one),
             sensitivities(one),
@@ -235,7 +235,7 @@ def _card(one: CaseAudit) -> Section:
 
 def _not_computed(one: CaseAudit) -> Section:
     """Why there are no optima; nothing where there are some."""
-    if one.study.posed:
+    if one.study.has_problems:
         return Section("not-computed", "Not computed", ())
     why = one.case.statement().waypoints.not_printed or "none of its readings poses a problem"
     # Where there are several readings, the section above has said why.

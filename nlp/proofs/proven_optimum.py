@@ -108,10 +108,10 @@ def _stated(waypoints: int, joints: int) -> tuple[tuple[dict[str, Any], dict[str
     """Certificates about declared curves of one size, each with its problem in rationals."""
     every = (*all_shipped(), *suite_documents(waypoints - 1, joints))
     declared = [one for one in every if one["claim"]["subject"] == Subject.DECLARED]
-    posed = [(one, question(one["problem"])) for one in declared]
+    asked = [(one, question(one["problem"])) for one in declared]
     return tuple(
         (one, stated)
-        for one, stated in posed
+        for one, stated in asked
         if (len(stated["waypoints"]), len(stated["joints"])) == (waypoints, joints)
     )
 

@@ -96,14 +96,14 @@ def check_case(raw: dict[str, Any], file: str) -> Case:
     with faults.noted():
         chain = case.chain()
         check_kinematics(document, faults, chain)
-    posed = []
+    statements = []
     for problem_id, reading_id in case.selections():
         with faults.noted():
             statement = case.statement(problem_id, reading_id)
-            posed.append(statement)
+            statements.append(statement)
             check_kinds(statement, chain)
             statement.check()
-    check_clues(document, faults, posed)
+    check_clues(document, faults, statements)
     check_claims(
         document,
         faults,

@@ -78,8 +78,8 @@ def check_sizes(document: CaseFile, file: str) -> None:
         instances = len(block.steps) * block.instances
         if instances > _MOST_INSTANCES:
             raise _exceeded(file, f"{at}.instances", instances, "instances", _MOST_INSTANCES)
-        posed = len(block.readings) or readings
-        runs = instances * block.runs * len(block.objectives) * posed
+        count = len(block.readings) or readings
+        runs = instances * block.runs * len(block.objectives) * count
         if runs > _MOST_RUNS:
             raise _exceeded(file, f"{at}.runs", runs, "runs", _MOST_RUNS)
 

@@ -1,5 +1,5 @@
+from .drawn import examined, readings_of
 from .entries import examined_entry
-from .pose import examined, readings_of
 from .result import (
     MIDDLE,
     InstancesResult,

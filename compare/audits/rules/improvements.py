@@ -155,7 +155,7 @@ def _unquantified(
                 " Their tables agree in every number, and elsewhere in print the two results "
                 "differ."
             )
-    elif seconds.lower > 0 and not study.posed:
+    elif seconds.lower > 0 and not study.has_problems:
         message = (
             f"The printed totals are {between}, in the order that is claimed; neither can be "
             "computed from the text."

@@ -15,7 +15,7 @@ def list_open_points(study: Study) -> Iterator[Finding]:
         if isinstance(claim, StatementClaim) and claim.not_checkable:
             why = claim.not_checkable.removesuffix(".")
             yield _listed(claim.id, f"{why[:1].upper()}{why[1:]}.")
-    if not study.posed:
+    if not study.has_problems:
         yield from _without_waypoints(study)
     for item in study.case.not_checkable:
         yield _listed(None, f"{item.where}: {item.what} {item.why}")

@@ -69,13 +69,13 @@ def judge_kinematics(study: Study) -> Iterator[Finding]:
         yield _of_claim(study, _not_checkable(None, said))
         return
     for reading in study.readings:
-        posed: dict[object, tuple[str, Statement]] = {}
+        chains: dict[object, tuple[str, Statement]] = {}
         for pid, rid in study.pairs:
             posing = case.statement(pid, rid)
             if rid == reading:
-                posed.setdefault((posing.waypoints.points, posing.units.position), (pid, posing))
-        for pid, posing in posed.values():
-            found = _compared(study, dh, posing, reading, pid if len(posed) > 1 else None)
+                chains.setdefault((posing.waypoints.points, posing.units.position), (pid, posing))
+        for pid, posing in chains.values():
+            found = _compared(study, dh, posing, reading, pid if len(chains) > 1 else None)
             yield _of_claim(study, found)
 
 

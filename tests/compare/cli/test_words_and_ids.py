@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from support.command_line import IRB, PUMA, Run
 from support.one_joint import QUESTION
-from trajgap.compare.audits import asked_as, posed_as
+from trajgap.compare.audits import asked_as, in_words
 from trajgap.compare.cli import output as cli_output
 from trajgap.compare.cli import table as cli_table
 from trajgap.problem import load_case
@@ -33,7 +33,7 @@ def test_a_problem_is_called_by_what_tells_it_from_others() -> None:
     # Nothing has to be typed where there is one problem under one reading.
     alone = load_case("suite:353-puma560-joint-1")
     assert asked_as(alone, "main", "as-printed") == alone.title
-    assert posed_as(alone, "main", "as-printed") == alone.title
+    assert in_words(alone, "main", "as-printed") == alone.title
 
 
 def test_check_says_each_id_once(run: Run) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from support.families import WHALE, examined, small
 from trajgap.compare.audits.instances import study as family_study
-from trajgap.compare.audits.instances.pose import printed_reduction
+from trajgap.compare.audits.instances.drawn import printed_reduction
 from trajgap.compare.audits.instances.result import (
     InstancesResult,
     Optimum,

@@ -13,7 +13,7 @@ from support.documents import SCHEMA, validator
 from support.families import SMALL, WHALE, small
 from trajgap.compare import audit
 from trajgap.compare.audits.case_audit import audit_case
-from trajgap.compare.audits.instances.pose import printed_reduction
+from trajgap.compare.audits.instances.drawn import printed_reduction
 from trajgap.compare.audits.instances.result import (
     MIDDLE,
     InstancesResult,

@@ -374,7 +374,7 @@ def test_totals_and_the_saving_follow_from_the_digits() -> None:
 
 def test_a_case_without_waypoints_says_of_each_time_why_it_is_not_checkable() -> None:
     study = shipped(WHALE)
-    assert not study.posed
+    assert not study.has_problems
     found = list(list_open_points(study))
     for claim in ("b-spline-total", "quintic-total", "convergence"):
         (finding,) = of(found, "TG501", claim)
@@ -390,6 +390,6 @@ def test_a_case_without_waypoints_says_of_each_time_why_it_is_not_checkable() ->
 
 def test_a_posed_case_has_no_such_finding() -> None:
     study = shipped(POLISH)
-    assert study.posed
+    assert study.has_problems
     assert not of(list_open_points(study), "TG501", "after")
     assert check(study.case.problem(), np.full(9, 1.0)).verdict is Verdict.PASS
