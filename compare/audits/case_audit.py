@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ...heuristics import kept_processes
+from ...nlp.optimum import kept_calls
 from ...problem import Case, CaseError, ProcessError, TrajgapError, load_case, published_ids
 from ...problem.cases import AnyClaim
 from ..documents import (
@@ -84,7 +85,8 @@ class CaseAudit:
         """Where the time goes, for each problem and reading."""
         if self.made_falls is not None:
             return self.made_falls
-        return waterfalls(self.study) if self.study.has_problems else ()
+        with kept_calls():
+            return waterfalls(self.study) if self.study.has_problems else ()
 
     @cached_property
     def readings(self) -> ReadingsSummary | None:
@@ -242,7 +244,7 @@ def audit(
         for algorithm in study.case.algorithms:
             # Settings that are wrong end the audit, before anything is computed.
             study.algorithm(algorithm.id)
-    with kept_processes():
+    with kept_processes(), kept_calls():
         return AuditReport(tuple(replace(audit_case(study), draft=draft) for study in studies))
 
 

@@ -6,6 +6,7 @@ from .optimality import KKT, Active, kkt
 from .per_joint import OPTIMUM_SLACK, PerJointSolution, Range, solve_per_joint
 from .solution import Evidence, Solution, Status, weakest
 from .solver import STARTS, solve
+from .solver_calls import kept_calls, solved_before
 from .starts import random_starts
 from .symbolic import ca
 from .tracking import free_values
@@ -29,11 +30,13 @@ __all__ = [
     "ca",
     "call_cap",
     "free_values",
+    "kept_calls",
     "kkt",
     "random_starts",
     "seconds_left",
     "solve",
     "solve_per_joint",
+    "solved_before",
     "stopping_after",
     "structure_of",
     "time_up",

@@ -18,6 +18,7 @@ from .formulation import (
     pack_parameters,
 )
 from .ipopt import Compiled
+from .solver_calls import solved_before
 from .starts import first_nodal
 
 _PASSES = 40
@@ -219,7 +220,10 @@ def run(
     bounds: tuple[Array, Array],
     duals: tuple[Any, Any] | None = None,
 ) -> tuple[Array, tuple[Any, Any], bool, int]:
-    """Call a solver once: variables, multipliers, success, iterations."""
+    """Call a solver once: variables, multipliers, success, iterations.
+
+    Inside of `kept_calls` one that was made before has its answer.
+    """
     sizes = formulation.sizes
     low = np.concatenate([np.zeros(sizes["equalities"]), np.full(sizes["inequalities"], -np.inf)])
     arguments: dict[str, Any] = {
@@ -232,10 +236,18 @@ def run(
     }
     if duals is not None:
         arguments |= {"lam_g0": duals[0], "lam_x0": duals[1]}
-    result = solver(**arguments)
-    stats = solver.stats()
-    x = np.asarray(result["x"]).ravel()
-    return x, (result["lam_g"], result["lam_x"]), bool(stats["success"]), int(stats["iter_count"])
+
+    def called() -> tuple[Array, tuple[Any, Any], bool, int]:
+        result = solver(**arguments)
+        stats = solver.stats()
+        found = np.asarray(result["x"]).ravel()
+        found.setflags(write=False)
+        multipliers = (result["lam_g"], result["lam_x"])
+        return found, multipliers, bool(stats["success"]), int(stats["iter_count"])
+
+    first = [np.asarray(part).ravel() for part in duals or ()]
+    given = (arguments["x0"], p, *bounds, *first)
+    return solved_before(solver, given, called, lambda answer: answer[2])
 
 
 def solve_coarse(

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...optimum import ca, call_cap
+from ...optimum import ca, call_cap, solved_before
 from .reach import reachable
 
 QUICK_SIZE = 16
@@ -122,17 +122,20 @@ def local_optimum(
     tall = np.tile(cap, (n, 1)).ravel("F")
     free = np.full(n * joints, -np.inf)
     solver = _solver(n, joints, call_cap() if n * joints > QUICK_SIZE else None)
-    found = solver(
-        x0=np.concatenate([h, *[part.ravel("F") for part in (v, up, down)]]),
-        p=np.concatenate([steps.ravel("F"), a]),
-        lbx=np.concatenate([low, v_low.ravel("F"), free, free]),
-        ubx=np.concatenate(
+    given = {
+        "x0": np.concatenate([h, *[part.ravel("F") for part in (v, up, down)]]),
+        "p": np.concatenate([steps.ravel("F"), a]),
+        "lbx": np.concatenate([low, v_low.ravel("F"), free, free]),
+        "ubx": np.concatenate(
             [np.maximum(question.upper / time_unit, low), v_high.ravel("F"), tall, tall]
         ),
-        lbg=0.0,
-        ubg=np.inf,
-    )
-    x = np.asarray(found["x"]).ravel()
+    }
+
+    def called() -> tuple[NDArray[np.float64], bool]:
+        found = solver(**given, lbg=0.0, ubg=np.inf)
+        return np.asarray(found["x"]).ravel(), bool(solver.stats()["success"])
+
+    x, _ = solved_before(solver, tuple(given.values()), called, lambda answer: answer[1])
     if not np.isfinite(x).all():
         return None
     velocities = x[n : n + (n + 1) * joints].reshape((n + 1, joints), order="F")
