@@ -17,6 +17,7 @@ from .ranges import (
     SHORTEST_TOTAL,
     SMALLEST,
     TICKS,
+    USUAL_WEIGHT,
 )
 from .reading import Clock, OutOfTime, Refused, number, read_document, shown
 from .tree import CUT, LEAF, OPEN, Subject
@@ -50,6 +51,7 @@ __all__ = [
     "SMALLEST",
     "STATE_FORMAT",
     "TICKS",
+    "USUAL_WEIGHT",
     "CertificateVerdict",
     "CertifiedQuestion",
     "Clock",

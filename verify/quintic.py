@@ -5,6 +5,7 @@ The argument is that of docs/explanation/certificates-quintic.md.
 
 from __future__ import annotations
 
+from copy import copy
 from fractions import Fraction
 from math import sqrt
 from typing import Any
@@ -14,6 +15,7 @@ import numpy as np
 from .problem import StatedProblem
 from .quintic_bound import SLACK, Array, Bound, Task
 from .quintic_parts import ROUND
+from .quintic_tree import read_tree
 from .ranges import (
     LEAST_TAU,
     MOST_POWER,
@@ -101,6 +103,10 @@ class QuinticSpline(ProofKind[Sides]):
         self._batch = max(1, min(_LEAVES, _NUMBERS // (16 * n**3)))
         self._waiting: list[tuple[Sides, list[Any]]] = []
 
+    def nodes(self, tree: Any) -> Any:
+        """A text, which has half the length, or the list that it stands for."""
+        return read_tree(tree, self.clock) if type(tree) is str else tree
+
     def root(self) -> Sides:
         """From the least durations, which are proved, to the total."""
         return self._shrunk(self._low, [self._task.total] * len(self._low))
@@ -144,6 +150,12 @@ class QuinticSpline(ProofKind[Sides]):
             self._waiting.append((box, data))
             if len(self._waiting) == self._batch:
                 self.end()
+
+    def alone(self) -> QuinticSpline:
+        """Its leaves wait for nobody else's."""
+        own = copy(self)
+        own._waiting = []
+        return own
 
     def end(self) -> None:
         """Judge the leaves with limits that wait."""

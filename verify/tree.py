@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator
+from copy import copy
 from enum import StrEnum
 from fractions import Fraction
-from typing import Any, ClassVar, Generic, NoReturn, TypeVar
+from typing import Any, ClassVar, Generic, NoReturn, Self, TypeVar
 
 from .problem import StatedProblem
 from .ranges import MOST_DEPTH, MOST_NODES, MOST_SEGMENTS
@@ -70,6 +71,10 @@ class ProofKind(ABC, Generic[B]):
     ) -> None:
         self.problem, self.total, self.clock = problem, total, clock
 
+    def nodes(self, tree: Any) -> Any:
+        """The list of nodes that a tree stands for, where its kind has a shorter form."""
+        return tree
+
     @abstractmethod
     def root(self) -> B:
         """The box that holds every feasible answer with a total below ``total``."""
@@ -85,6 +90,10 @@ class ProofKind(ABC, Generic[B]):
     @abstractmethod
     def leaf(self, box: B, data: list[Any]) -> None:
         """Refuse a box unless nothing in it is feasible with a total below ``total``."""
+
+    def alone(self) -> Self:
+        """A copy for one part of the tree, which shares nothing that changes with other parts."""
+        return copy(self)
 
     def end(self) -> None:
         """Refuse what was put off until the walk is over."""
@@ -115,7 +124,7 @@ def walk(kind: ProofKind[B], tree: Any, clock: Clock, spread: Spread | None = No
     Refused
         At a node that is not proved; the first one, unless parts are walked elsewhere.
     """
-    nodes = listed(tree, "tree", MOST_NODES, 1)
+    nodes = listed(kind.nodes(tree), "tree", MOST_NODES, 1)
     if spread is not None and kind.apart:
         sizes = _sizes(nodes)
         if sizes is not None:
@@ -196,10 +205,11 @@ def _walked_part(
     kind: ProofKind[B], box: B, nodes: list[Any], first: int, left: float
 ) -> str | None:
     """Why a part of a tree is refused; None if it is proved."""
-    kind.clock.begin(left)
+    own = kind.alone()
+    own.clock.begin(left)
     try:
-        _walk(kind, box, nodes, first, kind.clock)
-        kind.end()
+        _walk(own, box, nodes, first, own.clock)
+        own.end()
     except Refused as error:
         return str(error)
     return None

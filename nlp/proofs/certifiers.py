@@ -117,11 +117,13 @@ def certify(
     report : callable, optional
         Called with a `Progress` after every batch of boxes.
     workers : int
-        Parts of the search that run at a time; the result does not depend on it. So far C4 quintic
-        splines alone are searched in parts: the other proofs take one core.
+        Parts of search and judging that run at a time; the result does not depend on it. 3-5-3 and
+        4-3-4 polynomials and closed forms take one core: they are over in a second.
     executor : concurrent.futures.Executor, optional
-        Where parts run, such as processes or a Dask cluster's `get_executor()`; without one, in
-        threads of this process, since compiled searches do not hold the interpreter's lock.
+        Where parts run, such as processes or a Dask cluster's `get_executor()`. Without one, C4
+        quintic splines are searched in threads, since compiled searches do not hold the
+        interpreter's lock; the rest runs in processes that are started after a second and end with
+        the run.
     cache : bool or Path
         Whether a proof that settles the question is kept for later runs, and one that an earlier
         run kept is used: in the user's cache folder, or in the folder given. Nothing that is kept

@@ -57,6 +57,11 @@ class ProofPiece:
             self.error = error
         self.done = True
 
+    @property
+    def finished(self) -> bool:
+        """Whether nobody has to work on it any more."""
+        return self.done or (self.future is not None and self.future.done())
+
     def taken_back(self) -> bool:
         """Whether nobody has begun it, and nobody else will."""
         return not self.done and (self.future is None or self.future.cancel())
@@ -110,6 +115,11 @@ class ProofCrew:
     ) -> None:
         if self._processes is not None:
             self._processes.end()
+
+    @property
+    def shared(self) -> bool:
+        """Whether there may be others than this process."""
+        return self.workers > 1 or self._executor is not None
 
     @property
     def processes(self) -> int:

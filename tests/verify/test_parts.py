@@ -75,3 +75,21 @@ def test_parts_end_with_the_time() -> None:
     document = small("cubic")
     late = verify_certificate(document, seconds=0.0, spread=in_parts)
     assert late.out_of_time
+
+
+def test_leaves_of_a_part_wait_for_no_other_part(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Parts may be judged at the same time with one copy of what they have in common."""
+    monkeypatch.setattr(tree, "_LEAST", 1)
+    judged: list[int] = []
+
+    def guarded(work: Any, common: Any, items: Any) -> Iterator[Any]:
+        waiting = common._waiting
+        for item in items:
+            before = list(waiting)
+            yield work(common, *item)
+            assert common._waiting is waiting
+            assert waiting == before
+            judged.append(len(item[1]))
+
+    assert verify_certificate(small("quintic-spline"), spread=guarded).proves
+    assert sum(judged) > 2

@@ -5,7 +5,8 @@ from __future__ import annotations
 import heapq
 import itertools
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
+from copy import copy
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
@@ -39,8 +40,10 @@ _NEAR = 1e-3
 """Rows this close to being active are handed on to the halves of a box."""
 _MARGIN = 0.1
 """A box is never cut closer to its sides than this share of its width."""
-_AHEAD = 3
-"""Trials under way for each worker: the next one is there when one ends, and few are in vain."""
+_AHEAD = 2
+"""Trials under way for each worker: the next one is there when one ends."""
+_LOWEST = 64
+"""Boxes whose first trials may begin before their turn: enough for many workers."""
 _TRIALS = 5
 """Cuts tried for one box: each costs the bounds of two halves."""
 _FAINT = 0.01
@@ -100,23 +103,36 @@ class Trials:
     """
 
     def __init__(self, crew: ProofCrew) -> None:
-        self.crew, self.most = crew, _AHEAD * crew.workers
+        self.crew, self.most = crew, _AHEAD * crew.workers if crew.shared else 1
         self._begun: dict[Node, list[ProofPiece]] = {}
 
-    def begin(self, nodes: list[Node], begun: Callable[[Node, int], ProofPiece]) -> None:
-        """Begin the trials of the first box, and as many of the next ones as there is room for."""
-        for node in nodes:
-            if node is nodes[0] or sum(map(len, self._begun.values())) < self.most:
-                every = self._begun.setdefault(node, [])
-                every += [begun(node, cut) for cut in range(len(every), len(node.cuts))]
+    def take(
+        self, number: int, lowest: list[Node], begun: Callable[[Node, int], ProofPiece]
+    ) -> ProofPiece:
+        """A trial of the lowest box, while others are under way.
 
-    def of(self, node: Node) -> Iterator[ProofPiece]:
-        """The trials of a box, one after the other; what is left over is dropped."""
-        every = self._begun.pop(node)
-        try:
-            yield from every
-        finally:
-            self.crew.drop(every)
+        What is sure to be needed comes first: the first trial of each box. Others of the lowest box
+        follow where boxes are few.
+        """
+        mine = self._begun.setdefault(lowest[0], [])
+        while len(mine) <= number:
+            mine.append(begun(lowest[0], len(mine)))
+        for node in lowest[1:]:
+            if node not in self._begun and node.cuts and self._room:
+                self._begun[node] = [begun(node, 0)]
+        while len(mine) < len(lowest[0].cuts) and self._room:
+            mine.append(begun(lowest[0], len(mine)))
+        return mine[number]
+
+    @property
+    def _room(self) -> bool:
+        """Whether fewer are under way than would keep everybody at work."""
+        every = (piece for pieces in self._begun.values() for piece in pieces)
+        return sum(not piece.finished for piece in every) < self.most
+
+    def end(self, node: Node) -> None:
+        """Give up the trials of a box that are not needed."""
+        self.crew.drop(self._begun.pop(node))
 
     def drop(self) -> None:
         """Give up what is left."""
@@ -156,15 +172,17 @@ class Search:
     def __post_init__(self) -> None:
         joints = range(len(self.asked.joints))
         self.speeds = tuple(self.asked.speed(j, self.cap) for j in joints)
+        self._common = Common(self)
         self.scaled = floats(self.asked, self.speeds, float(self.cap) / len(self.asked.steps))
 
     def __getstate__(self) -> dict[str, Any]:
-        """All that another process needs to bound a box."""
-        own = {"clock", "searching", "crew"}
+        """All that another process, or a trial, needs to bound a box."""
+        own = {"clock", "searching", "crew", "_common", "nodes", "looks"}
         return {key: value for key, value in vars(self).items() if key not in own}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        vars(self).update(state, clock=lambda: None, searching=lambda: np.inf, crew=ProofCrew())
+        rest = {"clock": lambda: None, "searching": lambda: np.inf, "crew": ProofCrew()}
+        vars(self).update(state, **rest, nodes=0, looks=0)
 
     def whole(self) -> Sides | None:
         """The box of all durations with a total below the cap; None if it is empty."""
@@ -301,20 +319,23 @@ class Search:
             for side in ((low, at), (at, high))
         )
 
-    def _best_cut(self, node: Node, target: float, trials: Trials) -> tuple[Node, ...]:
-        """Try several cuts and keep the one whose worse half is bounded best."""
+    def _best_cut(self, lowest: list[Node], target: float, trials: Trials) -> tuple[Node, ...]:
+        """Try several cuts of the lowest box and keep the one whose worse half is bounded best."""
+        node, begun = lowest[0], self._trial(target)
 
         def worth(parts: tuple[Node, ...]) -> tuple[float, float]:
             ends = sorted(min(part.lower, target) for part in parts)
             return ends[0], ends[1]
 
         tried = []
-        for (segment, at), piece in zip(node.cuts, trials.of(node), strict=False):
+        for number, (segment, at) in enumerate(node.cuts):
+            piece = trials.take(number, lowest, begun)
             parts, nodes = self.crew.value(piece, self.clock)
             self.nodes += nodes
             tried.append((worth(parts), segment, at, parts))
             if worth(parts)[0] >= target:
                 break
+        trials.end(node)
         _, node.segment, node.at, node.parts = max(tried, key=lambda found: found[0])
         return node.parts
 
@@ -359,9 +380,8 @@ class Search:
                     heapq.heappop(heap)
                     stuck = True
                     continue
-                lowest = heapq.nsmallest(trials.most, heap)
-                trials.begin([one for _, _, one in lowest], self._trial(target))
-                parts = self._best_cut(node, target, trials)
+                lowest = [one for _, _, one in heapq.nsmallest(_LOWEST, heap)]
+                parts = self._best_cut(lowest, target, trials)
                 heapq.heappop(heap)
                 for part in parts:
                     if part.lower < target:
@@ -372,9 +392,9 @@ class Search:
 
     def _trial(self, target: float) -> Callable[[Node, int], ProofPiece]:
         """What begins the trial of a cut of a node."""
-        common, until = Common(self), time.time() + self.searching()
+        until = time.time() + self.searching()
         return lambda node, cut: self.crew.begin(
-            trial, common, node, *node.cuts[cut], target, until
+            trial, self._common, node, *node.cuts[cut], target, until
         )
 
     def root(self, durations: Array, speeds: Array, target: float) -> Node:
@@ -421,9 +441,6 @@ def trial(
     OutOfTime
         If it would take longer than until then, by `time.time`.
     """
-    before, search.until = search.nodes, until
-    try:
-        parts = search.parts(node, segment, at, target)
-        return parts, search.nodes - before
-    finally:
-        search.nodes, search.until = before, np.inf
+    own = copy(search)
+    own.until = until
+    return own.parts(node, segment, at, target), own.nodes

@@ -144,9 +144,10 @@ def _stages(session: Session, resumed: Tree | None) -> Iterator[_Stage]:
         system = resumed.prover.system
         yield _Stage(resumed.prover, resumed.root, partial(_ticks, session, 0.0, system))
     for gap in _LADDER.stages(session.request.gap):
-        while session.lower < min(
-            _target(session, gap * (1 + _NEAR)), _target(session, session.request.gap)
-        ):
+        asked = session.request.gap
+        # Near a stage that others follow is enough; the last one has to reach what is asked for.
+        wanted = gap * (1 + _NEAR) if gap > asked else asked
+        while session.lower < _target(session, wanted):
             system = cubic_system(session.exact, _target(session, gap))
             cap = _ticks(session, gap, system)
             prover, goal = Prover(system, cap), partial(_ticks, session, gap, system)

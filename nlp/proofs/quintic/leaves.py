@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ....verify import LEAF
+from ....verify import USUAL_WEIGHT
 from .search import EMPTY, WINDOW
 from .windows import UNIT, Windows
 
+T = TypeVar("T")
+
+_CUTS = " abcdefghijklmnopqrstuvwxyz"
+"""Letter k + 1 of the search as the document has it."""
 _ROOM = (1 << 12, 1 << 12, 1 << 13)
 """Letters, leaves and rows of the first arrays: 0.3 MB, and doubled when full."""
 
@@ -98,26 +104,38 @@ class Leaves:
         )
 
     def document(self, windows: Windows) -> dict[str, Any]:
-        """Tables of windows and rows that are used, and the tree."""
-        letters, leaves = int(self.sizes[0]), int(self.sizes[1])
-        tables: tuple[dict[Any, int], dict[Any, int]] = ({}, {})
-        found: list[list[int | str]] = []
-        nodes: list[Any] = []
-        ids, share = self.ids.tolist(), self.share.tolist()
-        for i, (a, b) in enumerate(pairwise(self.starts[: leaves + 1].tolist())):
-            if self.kinds[i] == EMPTY:
-                found.append([LEAF])
-            elif self.kinds[i] == WINDOW:
-                number = tables[0].setdefault(ids[a][0], len(tables[0]))
-                found.append([LEAF, number, repr(float(self.tau[i]))])
+        """Tables of windows and rows that are used, and the tree as a text.
+
+        What is used most stands first in its table, so that its number is short.
+        """
+        leaves = int(self.sizes[1])
+        ids, share = list(map(tuple, self.ids.tolist())), self.share.tolist()
+        parts = list(pairwise(self.starts[: leaves + 1].tolist()))
+        kinds = self.kinds[:leaves].tolist()
+        of_windows = _places(
+            ids[a][0] for (a, _), kind in zip(parts, kinds, strict=True) if kind == WINDOW
+        )
+        of_rows = _places(
+            row
+            for (a, b), kind in zip(parts, kinds, strict=True)
+            if kind not in (WINDOW, EMPTY)
+            for row in ids[a:b]
+        )
+        found = []
+        for (a, b), kind, tau in zip(parts, kinds, self.tau.tolist(), strict=True):
+            if kind == EMPTY:
+                found.append(".")
+            elif kind == WINDOW:
+                found.append(f"#{of_windows[ids[a][0]]}" + (f"({tau!r})" if tau else ""))
             else:
-                leaf: list[int | str] = [LEAF, int(self.tau[i])]
-                for row, weight in zip(ids[a:b], share[a:b], strict=True):
-                    leaf += [tables[1].setdefault(tuple(row), len(tables[1])), int(weight)]
-                found.append(leaf)
+                rows = zip(ids[a:b], share[a:b], strict=True)
+                weighted = (
+                    f" {of_rows[row]}" + ("" if weight == USUAL_WEIGHT else f":{int(weight)}")
+                    for row, weight in rows
+                )
+                found.append(f".{int(tau)}" + "".join(weighted))
         leaf_by_leaf = iter(found)
-        for letter in self.tree[:letters].tolist():
-            nodes.append(letter - 1 if letter else next(leaf_by_leaf))
+        letters = self.tree[: int(self.sizes[0])].tolist()
         return {
             "windows": [
                 [
@@ -125,8 +143,13 @@ class Leaves:
                     *(int(x) for x in windows.psi[w] * UNIT),
                     *(int(x) for x in windows.weights[w] * UNIT),
                 ]
-                for w in tables[0]
+                for w in of_windows
             ],
-            "rows": [list(row) for row in tables[1]],
-            "tree": nodes,
+            "rows": [list(row) for row in of_rows],
+            "tree": "".join(_CUTS[k] if k else next(leaf_by_leaf) for k in letters),
         }
+
+
+def _places(used: Iterable[T]) -> dict[T, int]:
+    """Where each entry stands in a table: by how often it is used, then by when first."""
+    return {entry: k for k, (entry, _) in enumerate(Counter(used).most_common())}
