@@ -64,8 +64,7 @@ ProofWorkers = Annotated[
         "--workers",
         min=1,
         max=MOST,
-        help="With --certify: threads for the proof of a C4 quintic spline; the result does not "
-        "depend on it.",
+        help="With --certify: cores for the proof; the result does not depend on it.",
         show_default="all cores",
     ),
 ]
