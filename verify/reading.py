@@ -46,11 +46,19 @@ class Clock:
 
     def __init__(self, seconds: float) -> None:
         self.seconds = seconds
-        self.begin(seconds)
-
-    def begin(self, seconds: float) -> None:
-        """From now on so many seconds are left."""
         self.end = time.monotonic() + seconds
+
+    def __getstate__(self) -> tuple[float, float]:
+        return self.seconds, self.left
+
+    def __setstate__(self, state: tuple[float, float]) -> None:
+        # Another machine counts from another moment: what was left when it was sent is left.
+        self.seconds, left = state
+        self.end = time.monotonic() + left
+
+    def shorten(self, seconds: float) -> None:
+        """From now on so many seconds are left at most."""
+        self.end = min(self.end, time.monotonic() + seconds)
 
     @property
     def left(self) -> float:

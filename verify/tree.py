@@ -128,10 +128,22 @@ def walk(kind: ProofKind[B], tree: Any, clock: Clock, spread: Spread | None = No
     if spread is not None and kind.apart:
         sizes = _sizes(nodes)
         if sizes is not None:
-            parts = _walked_above(kind, nodes, sizes, clock)
-            for why in spread(_walked_part, kind, parts):
+            handed, judged = 0, 0
+            left = True
+
+            def parts() -> Iterator[tuple[B, list[Any], int, float]]:
+                nonlocal handed, left
+                for part in _walked_above(kind, nodes, sizes, clock):
+                    handed += 1
+                    yield part
+                left = False
+
+            for why in spread(_walked_part, kind, parts()):
                 clock.check()
                 need(why is None, why or "")
+                judged += 1
+            # Whoever judges elsewhere cannot prove a tree by leaving a part out.
+            need(not left and judged == handed, "a part of the tree was not judged")
             kind.end()
             return
     _walk(kind, kind.root(), nodes, 0, clock)
@@ -206,7 +218,7 @@ def _walked_part(
 ) -> str | None:
     """Why a part of a tree is refused; None if it is proved."""
     own = kind.alone()
-    own.clock.begin(left)
+    own.clock.shorten(left)
     try:
         _walk(own, box, nodes, first, own.clock)
         own.end()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import pickle
 import random
 from pathlib import Path
 from types import SimpleNamespace
@@ -167,3 +168,15 @@ def test_reading_is_part_of_the_time(looks: Any) -> None:
     verdict = verify_certificate(rest_to_rest(), clock=clock)
     assert verdict.out_of_time
     assert str(verdict).endswith("nothing was decided in 0.02 s; give more time")
+
+
+def test_a_clock_that_is_sent_keeps_what_was_left_and_is_never_put_back() -> None:
+    clock = Clock(100.0)
+    clock.end -= 40.0
+    sent = pickle.loads(pickle.dumps(clock))
+    assert sent.left == pytest.approx(60.0, abs=1.0)
+    assert sent.seconds == 100.0
+    sent.shorten(1000.0)
+    assert sent.left < 61.0
+    sent.shorten(5.0)
+    assert sent.left <= 5.0
