@@ -7,10 +7,8 @@ from dataclasses import fields, replace
 from enum import StrEnum
 from typing import Any, cast
 
-import numpy as np
-
 from ...heuristics import Algorithm
-from ...problem import Array, TrajgapError
+from ...problem import TrajgapError
 
 LISTED = "as listed"
 """Name of the settings that the case lists."""
@@ -75,7 +73,9 @@ def spread_settings(
             open_.append((one.name, _OPEN_NUMBERS[one.name]))
     if not open_:
         return found
-    for row in _spread(DESIGN, len(open_)):
+    from scipy.stats import qmc  # half a second, and few need it
+
+    for row in qmc.LatinHypercube(len(open_), rng=0).random(DESIGN):
         changes = {
             name: _drawn(name, getattr(algorithm, name), of, share)
             for (name, of), share in zip(open_, row, strict=True)
@@ -87,19 +87,6 @@ def spread_settings(
         said = ", ".join(f"{name} = {_shown(value)}" for name, value in changes.items())
         found[said] = cast(Algorithm[Any], changed)
     return found
-
-
-def _spread(count: int, dimensions: int) -> Array:
-    """Points of a Latin hypercube, shape (count, dimensions): of each share of a side one.
-
-    As `scipy.stats.qmc.LatinHypercube` draws them from seed 0, without half a second of imports.
-    """
-    rng = np.random.default_rng(0).spawn(1)[0]
-    within = rng.uniform(size=(count, dimensions))
-    cells = np.tile(np.arange(1, count + 1), (dimensions, 1))
-    for row in cells:
-        rng.shuffle(row)
-    return np.asarray((cells.T - within) / count)
 
 
 def _drawn(name: str, current: Any, of: tuple[Any, ...], share: float) -> Any:

@@ -19,8 +19,6 @@ MIDDLE = 0.9
 
 _RESAMPLED = 1000
 """Samples of instances behind an interval: its ends move by about a tenth of its width."""
-_SHARES = ((1 - 0.95) / 2, 1 - (1 - 0.95) / 2)
-"""Of the samples, below the ends of a 95 % interval; rounded as scipy rounds them."""
 
 
 @dataclass(frozen=True)
@@ -195,11 +193,12 @@ class InstancesResult:
             return float("nan"), float("nan")
         if np.ptp(known) == 0.0:
             return float(known[0]), float(known[0])
-        # As `scipy.stats.bootstrap` draws them, without half a second of imports.
-        drawn = np.random.default_rng(0).integers(0, known.size, (_RESAMPLED, known.size))
-        medians = np.median(known[drawn], axis=-1)
-        low, high = (float(np.percentile(medians, 100 * share)) for share in _SHARES)
-        return low, high
+        from scipy.stats import bootstrap  # half a second, and few need it
+
+        found = bootstrap(
+            (known,), np.median, n_resamples=_RESAMPLED, method="percentile", rng=0
+        ).confidence_interval
+        return float(found.low), float(found.high)
 
     def totals(self, reading: str, route: int, objective: int = 0) -> Array:
         """Totals (s) of a procedure's runs on all instances: 0 the slower one, 2 the faster."""

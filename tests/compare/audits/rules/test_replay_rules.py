@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy.stats import qmc
 from support.studies import hurried
-from trajgap.compare.audits.replay_settings import DESIGN, LISTED, _spread, spread_settings
+from trajgap.compare.audits.replay_settings import DESIGN, LISTED, spread_settings
 from trajgap.compare.audits.rules.replays import _typical, interval_words, judge_replays
 from trajgap.compare.audits.study import Study
 from trajgap.compare.documents import ClaimVerdict, Severity
@@ -102,9 +101,3 @@ def test_a_total_beside_spread_settings_names_the_nearest() -> None:
     assert _typical(spreads, 3.0, 3.001).endswith("every one of these settings is longer.")
     assert _typical(spreads, 3.4, 3.401).endswith("all runs lie on one side of it.")
     assert _typical({LISTED: spreads[LISTED]}, 3.5, 3.6) == ""
-
-
-@pytest.mark.parametrize(("count", "dimensions"), [(16, 1), (16, 5), (7, 3)])
-def test_settings_are_spread_as_scipy_spreads_them(count: int, dimensions: int) -> None:
-    due = qmc.LatinHypercube(dimensions, rng=0).random(count)
-    np.testing.assert_array_equal(_spread(count, dimensions), due)
