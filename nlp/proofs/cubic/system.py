@@ -36,7 +36,7 @@ class CubicRow:
     joint : int
         −1 where no joint takes part.
     index : int
-        ProofPiece, or span for "velocity".
+        Piece, or span for "velocity".
     sign : int
     place : int
         Of the velocity, in 1/PLACES of the piece of that span that no virtual way-point ends at.
