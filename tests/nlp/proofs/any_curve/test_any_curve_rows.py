@@ -330,7 +330,7 @@ def test_every_shipped_question_has_a_bound_that_is_proved() -> None:
                     continue
                 name = f"{case_id}, {problem.id}, {reading.id}"
                 found = evidence.proved(exact, Subject.ANY)
-                assert found is not None, f"{name}: run benchmarks/family_free_bound.py"
+                assert found is not None, f"{name}: run benchmarks/any_curve_bound.py"
                 assert found.upper is not None
                 assert found.upper - found.lower <= found.upper / 10**5, name
                 estimate = estimate_any_curve(statement.problem(), starts=1).total_time
