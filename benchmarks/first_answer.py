@@ -30,7 +30,7 @@ PAPERS = (
 )
 """The four papers that trajgap began with."""
 COMMANDS = (
-    ("list",),
+    ("--help",),
     ("show", PAPERS[0]),
     ("check", PAPERS[0], "--durations", "1,1.3,1.2"),
     ("solve", PAPERS[0]),

@@ -27,8 +27,8 @@ LOOK = 0.1
 BUSY = 3.0
 """Times as long as on an idle machine that compiling may take: where less is left none begins."""
 LOADING = 0.5
-"""Seconds that importing numba and its first compiled function take: before one function has been
-interpreted for as long, nothing is looked for on disk unless something compiled is in use."""
+"""Seconds that importing numba and its first compiled function take: before what is on disk has
+been interpreted for as long, it is left there unless something compiled is in use."""
 _MAKING = threading.RLock()
 """Held while a function is handed to numba: two threads make one dispatcher."""
 _UNTIL: ContextVar[float] = ContextVar("until", default=math.inf)
@@ -292,13 +292,15 @@ class Deferred:
 
     _in_use = False
     """Whether a compiled function is in use in this process: the next one loads quickly."""
+    _waited = 0.0
+    """Seconds for which functions were interpreted that a compiled form is at hand of."""
 
     def __init__(
         self, function: Any, seconds: float, plainly: Callable[..., Any] | None = None
     ) -> None:
         self._function, self._plainly = function, plainly
         self._seconds, self._spent, self._look = seconds, 0.0, 0.0
-        self._ready = False
+        self._ready = self._at_hand = False
 
     @property
     def compiled(self) -> bool:
@@ -313,10 +315,12 @@ class Deferred:
         if at_once or self._spent >= self._look:
             due = at_once or self._spent >= self._seconds
             worth = due and _left() > BUSY * self._seconds
-            near = self._spent >= LOADING or Deferred._in_use
-            self._ready = worth or (near and at_hand(self._function))
-            Deferred._in_use |= self._ready
-            self._look = self._spent + LOOK * (self._seconds if near else LOADING)
+            self._at_hand = at_hand(self._function)
+            self._ready = worth
+            self._look = self._spent + LOOK * self._seconds
+        if self._at_hand and (Deferred._in_use or Deferred._waited >= LOADING):
+            self._ready = True
+        Deferred._in_use |= self._ready
         return self._ready
 
     def __call__(self, *arguments: Any) -> Any:
@@ -326,7 +330,10 @@ class Deferred:
         began = time.thread_time()
         with np.errstate(all="ignore"):
             found = (self._plainly or interpreted(self._function))(*arguments)
-        self._spent += time.thread_time() - began
+        took = time.thread_time() - began
+        self._spent += took
+        if self._at_hand:
+            Deferred._waited += took
         return found
 
 
@@ -343,13 +350,13 @@ def at_hand(function: Any) -> bool:
     """
     if not hasattr(function, "py_func") or function.signatures:
         return True  # a plain function has nothing to wait for
-    beside = _beside(function)
-    if "numba" not in sys.modules and beside is not None and not _on_disk(function, beside):
-        return False
-    made = getattr(function, "dispatcher", function)
-    if not hasattr(made, "stats"):
-        return True  # compiling is switched off: it is a plain function
-    return _on_disk(function, made.stats.cache_path)
+    place = _beside(function)
+    if place is None:
+        made = getattr(function, "dispatcher", function)
+        if not hasattr(made, "stats"):
+            return True  # compiling is switched off: it is a plain function
+        place = made.stats.cache_path
+    return _on_disk(function, place)
 
 
 def _beside(function: Any) -> Path | None:
