@@ -52,11 +52,11 @@ def main() -> None:
     parser.add_argument("--write", type=Path)
     given = parser.parse_args()
     certify(instances()[0], gap=0.3)  # compile
-    print(*COLUMNS, sep=" | ")
+    print(f"| {' | '.join(COLUMNS)} |\n|{'---|' * len(COLUMNS)}")
     rows = []
     for problem in instances()[given.first :: given.every]:
         rows.append(measured(problem, given.gap, given.seconds, given.workers))
-        print(*rows[-1], sep=" | ", flush=True)
+        print(f"| {' | '.join(map(str, rows[-1]))} |", flush=True)
     if given.write is not None:
         with given.write.open("w", encoding="utf-8", newline="") as file:
             command = f"--gap {given.gap:g} --workers {given.workers}"
