@@ -328,7 +328,8 @@ def tables(rows):
             ]
             for row in some:
                 own = ours.get(row["segments"])
-                ratio = "" if own is None else f"{float(row['seconds']) / own:.2g}"
+                times = None if own is None else float(row["seconds"]) / own
+                ratio = "" if times is None else f"{times:.2g}" if times < 100 else f"{times:,.0f}"
                 cells = (
                     row["code"], f"{int(row['segments']):,}", f"{float(row['seconds']):.3g}", ratio,
                     f"{float(row['megabytes']):.0f}", f"{float(row['answer']):.9g}",
