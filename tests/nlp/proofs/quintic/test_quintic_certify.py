@@ -185,7 +185,7 @@ def test_a_row_of_the_docs_is_proved_again() -> None:
     problems = runpy.run_path(str(ROOT / "benchmarks" / "quintic_instances.py"))["instances"]()
     assert sum(f"| {problem.name} | [" in page for problem in problems) == 20
     problem = next(p for p in problems if p.name == "step 3.0 rad, number 2")
-    found = certify(problem, gap=0.1, seconds=600.0)
+    found = certify(problem, gap=0.01, seconds=600.0)
     assert found.upper is not None
     interval = f"[{float(found.lower):.6f}, {float(found.upper):.6f}]"
     assert f"| {problem.name} | {interval} |" in page
