@@ -1,6 +1,6 @@
 """Every table of the page on speed, measured now and in one run.
 
-    python benchmarks                      all of them (half an hour on an idle machine)
+    python benchmarks                      all of them, on an idle machine
     python benchmarks solve-small          one or more by name
     python benchmarks --list               their names, and the file that measures each
     python benchmarks --write              into docs/measurements and its page

@@ -128,25 +128,29 @@ def walk(kind: ProofKind[B], tree: Any, clock: Clock, spread: Spread | None = No
     if spread is not None and kind.apart:
         sizes = _sizes(nodes)
         if sizes is not None:
-            handed, judged = 0, 0
-            left = True
-
-            def parts() -> Iterator[tuple[B, list[Any], int, float]]:
-                nonlocal handed, left
-                for part in _walked_above(kind, nodes, sizes, clock):
-                    handed += 1
-                    yield part
-                left = False
-
-            for why in spread(_walked_part, kind, parts()):
-                clock.check()
-                need(why is None, why or "")
-                judged += 1
-            # Whoever judges elsewhere cannot prove a tree by leaving a part out.
-            need(not left and judged == handed, "a part of the tree was not judged")
-            kind.end()
+            _walk_parts(kind, nodes, sizes, clock, spread)
             return
     _walk(kind, kind.root(), nodes, 0, clock)
+    kind.end()
+
+
+def _walk_parts(
+    kind: ProofKind[B], nodes: list[Any], sizes: list[int], clock: Clock, spread: Spread
+) -> None:
+    """Walk through a tree in parts; whoever judges them proves nothing by leaving one out."""
+    every, handed, judged = _walked_above(kind, nodes, sizes, clock), 0, 0
+
+    def parts() -> Iterator[tuple[B, list[Any], int, float]]:
+        nonlocal handed
+        for part in every:
+            handed += 1
+            yield part
+
+    for why in spread(_walked_part, kind, parts()):
+        clock.check()
+        need(why is None, why or "")
+        judged += 1
+    need(next(every, None) is None and judged == handed, "a part of the tree was not judged")
     kind.end()
 
 

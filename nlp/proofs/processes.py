@@ -7,6 +7,7 @@ import pickle
 import signal
 import subprocess
 import sys
+import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
@@ -42,7 +43,7 @@ class Processes(ThreadPoolExecutor):
         super().__init__(count, thread_name_prefix="proof")
         self._idle: SimpleQueue[subprocess.Popen[bytes] | None] = SimpleQueue()
         self._started: list[subprocess.Popen[bytes]] = []
-        self._over = False
+        self._over, self._starting = False, threading.Lock()
         for _ in range(count):
             self._idle.put(None)
 
@@ -70,25 +71,27 @@ class Processes(ThreadPoolExecutor):
             self._idle.put(process)
 
     def _start(self) -> subprocess.Popen[bytes]:
-        if self._over or not sys.executable:
-            raise OSError("no process can be started")
-        process = subprocess.Popen(
-            [sys.executable, "-c", _BEGIN],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            # A terminal sends Ctrl-C to every process of the group; the parent alone answers it.
-            start_new_session=True,
-        )
-        self._started.append(process)
+        with self._starting:  # none begins while `end` goes through those that have begun
+            if self._over or not sys.executable:
+                raise OSError("no process can be started")
+            process = subprocess.Popen(
+                [sys.executable, "-c", _BEGIN],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                # A terminal sends Ctrl-C to every process of the group; the parent alone answers.
+                start_new_session=True,
+            )
+            self._started.append(process)
         assert process.stdin is not None
         pickle.dump((sys.path, __name__), process.stdin)
         return process
 
     def end(self) -> None:
         """End the processes, whatever they do."""
-        self._over = True
-        for process in self._started:
-            process.kill()
+        with self._starting:
+            self._over = True
+            for process in self._started:
+                process.kill()
         self.shutdown(wait=True, cancel_futures=True)
         for process in self._started:
             for pipe in (process.stdin, process.stdout):

@@ -18,6 +18,7 @@ from trajgap.nlp.proofs.certifiers import certify
 from trajgap.nlp.proofs.crew import ProofCrew
 from trajgap.nlp.proofs.document import certificate
 from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress
+from trajgap.nlp.proofs.processes import Processes, ProcessGone
 from trajgap.nlp.proofs.state import state_document
 from trajgap.problem import Limits, Problem, cubic_spline
 from trajgap.verify import Subject, verify_certificate
@@ -210,3 +211,10 @@ def test_a_bound_over_any_curve_does_not_depend_on_who_worked_on_it(workers: int
     shared = certify(FAST, subject=Subject.ANY, gap=1e-6, workers=workers)
     assert proof(shared) == proof(alone)
     assert shared.nodes == alone.nodes
+
+
+def test_no_process_begins_once_the_run_is_over() -> None:
+    processes = Processes(1)
+    processes.end()
+    with pytest.raises(ProcessGone, match="no process can be started"):
+        processes.run(b"", b"")
