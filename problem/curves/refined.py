@@ -25,6 +25,9 @@ SHARES = (1e-5, 1e-9, 1e-14)
 """Of the largest entry in a row of the inverse, below which entries are left out, tried in turn:
 the first nearly always does (at 1e-3 a second image is needed, at 1e-8 rows are a third longer),
 the last leaves out what rounding would lose."""
+GUESSED = 1e-2
+"""The same for the guess that an image has to stay below: shorter rows, and twice the sum of what
+is left covers the rest."""
 DENSE_AFTER_ALL = 6000
 """Up to this many coefficients, 300 MB, a dense inverse is tried where no banded one settles."""
 IMAGES = 3
@@ -257,7 +260,7 @@ def _refined_in_band(
     flat = _refined(rows, values, first, factors.solve)
     excess = _excess(rows, values, flat, rows.columns.shape[1])
     for share in SHARES:
-        guess = 2.0 * (_POSITIVE + image(factors, share, excess, None))
+        guess = 2.0 * (_POSITIVE + image(factors, max(share, GUESSED), excess, None))
         for _ in range(IMAGES):
             error = _POSITIVE + image(factors, share, excess, guess)
             if (error <= guess).all():

@@ -214,7 +214,7 @@ def writing_raises(patch: Patch) -> None:
 
 
 def trees_are_not_walked(patch: Patch) -> None:
-    patch.setattr("trajgap.verify.verdict.walk", lambda kind, tree, clock: None)
+    patch.setattr("trajgap.verify.verdict.walk", lambda *_: None)
 
 
 def leaves_are_not_proved(patch: Patch) -> None:
@@ -235,7 +235,7 @@ def the_verifier_raises(patch: Patch) -> None:
 
 
 def the_clock_stands(patch: Patch) -> None:
-    def slowly(kind: Any, tree: Any, clock: Any) -> None:
+    def slowly(*_: Any) -> None:
         end = time.process_time() + 4
         while time.process_time() < end:
             pass
