@@ -12,6 +12,9 @@ from .optimality import MORE, Active
 
 NEWTON_STEPS = 4
 """Steps by which a place inside a segment is brought onto its extremum; it starts very near."""
+BESIDE = 1e-3
+"""Farthest that they move: farther away only where a derivative is all but constant, as on a plateau
+at its limit. Any place is as good as the extremum there, and the multiplier belongs to this one."""
 COUNTS = 1e-6
 """Multiplier, in shares of the total of a mean segment, from which a limit is called active."""
 REACHED = 1e-6
@@ -65,7 +68,7 @@ def on_extrema(trajectory: Trajectory, places: Places) -> Places:
         with np.errstate(divide="ignore", invalid="ignore"):
             step = np.where(inner & (bend != 0.0), slope / bend, 0.0)
         s = np.clip(s - np.clip(step, -0.1, 0.1), 0.0, 1.0)
-    return replace(places, s=s)
+    return replace(places, s=np.where(np.abs(s - places.s) <= BESIDE, s, places.s))
 
 
 def long_kkt(problem: Problem, durations: Array, found: Multipliers, violation: float) -> LongKKT:

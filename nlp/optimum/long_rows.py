@@ -15,6 +15,10 @@ often leave the region in which the others mean anything."""
 NEAR = 0.5
 """Share from which one has a row later: what grows beyond its limit meanwhile is found next. With
 0.7 a round of quintics fails now and then."""
+FLAT = 1e-8
+"""Second derivative by the segment's parameter, in shares of the limit, below which a row stays at
+its place: the whole segment differs by an eighth of that, less than the excess that is repaired by
+a stretch. To follow the extremum would mean to follow rounding errors."""
 POSITION_NEAR = 0.3
 """Distance to a position limit, in the joint's span, from which an extremum has a row."""
 
@@ -89,5 +93,6 @@ def _newton_weights(program: LongProgram, trajectory: Trajectory, places: Places
     curvature = along(trajectory, places, 2)
     rate = (program.unit / trajectory.durations[places.segment]) ** places.order
     curvature = curvature * rate / program.angle[places.joint]
-    flat = np.abs(curvature) < 1e-9 * np.abs(curvature).max(initial=1.0)
+    limits = program.limits[places.joint, np.maximum(places.order, 1) - 1]
+    flat = np.abs(curvature) < FLAT * np.where(places.order == 0, 1.0, limits)
     return np.where(flat, 0.0, 1.0 / np.where(flat, 1.0, curvature))
