@@ -44,6 +44,10 @@ class Rows:
     weight: Array
 
 
+REACH = 0.5
+"""..."""
+
+
 class LongProgram:
     """A problem of many segments in units of order one, with the expressions of its NLP.
 
@@ -209,7 +213,8 @@ class LongProgram:
         s, w = ca.DM(places.s[i]), weight[i]
         if w.any():
             # f′(s) is h times the next derivative in time.
-            s = s - ca.DM(w) * h * self._series(r + 1, degree, s * h, flat.__getitem__)
+            step = ca.DM(w) * h * self._series(r + 1, degree, s * h, flat.__getitem__)
+            s = s - REACH * ca.tanh(step / REACH)
         value = self._series(r, degree, s * h, flat.__getitem__)
         if r == 0:
             return value + ca.vec(self._q)[(k + (self.segments + 1) * j).tolist()]

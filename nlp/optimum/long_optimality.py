@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...problem import QUANTITIES, Array, Problem, fit
 from ...problem.curves import PERM, Adjoint, Places, Trajectory
@@ -12,9 +13,6 @@ from .optimality import MORE, Active
 
 NEWTON_STEPS = 4
 """Steps by which a place inside a segment is brought onto its extremum; it starts very near."""
-BESIDE = 1e-3
-"""Farthest that they move: farther away only where a derivative is all but constant, as on a plateau
-at its limit. Any place is as good as the extremum there, and the multiplier belongs to this one."""
 COUNTS = 1e-6
 """Multiplier, in shares of the total of a mean segment, from which a limit is called active."""
 REACHED = 1e-6
@@ -28,6 +26,10 @@ class Multipliers:
     Attributes
     ----------
     places : Places
+    follows : ndarray of bool
+        Which places belong to the extremum beside them; the others stay: where a derivative is all
+        but constant, as on a plateau at its limit, any place does, but a multiplier belongs to its
+        own.
     limits : ndarray
         Signed by the side, of limits in shares of themselves (positions in rad); s.
     walls : ndarray, shape (segments,)
@@ -35,6 +37,7 @@ class Multipliers:
     """
 
     places: Places
+    follows: NDArray[np.bool_]
     limits: Array
     walls: Array
 
@@ -68,7 +71,7 @@ def on_extrema(trajectory: Trajectory, places: Places) -> Places:
         with np.errstate(divide="ignore", invalid="ignore"):
             step = np.where(inner & (bend != 0.0), slope / bend, 0.0)
         s = np.clip(s - np.clip(step, -0.1, 0.1), 0.0, 1.0)
-    return replace(places, s=np.where(np.abs(s - places.s) <= BESIDE, s, places.s))
+    return replace(places, s=s)
 
 
 def long_kkt(problem: Problem, durations: Array, found: Multipliers, violation: float) -> LongKKT:
@@ -95,7 +98,8 @@ def long_kkt(problem: Problem, durations: Array, found: Multipliers, violation: 
     """
     total = float(durations.sum())
     trajectory = fit(problem.curve, problem.waypoints, durations)
-    places = on_extrema(trajectory, found.places)
+    moved = on_extrema(trajectory, found.places)
+    places = replace(moved, s=np.where(found.follows, moved.s, found.places.s))
     adjoint = Adjoint(problem.piecewise, problem.waypoints, durations)
     limits, j, position = problem.limits, places.joint, places.order == 0
     side = np.where(found.limits >= 0.0, 1.0, -1.0)

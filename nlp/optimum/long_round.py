@@ -146,6 +146,7 @@ def multipliers(program: LongProgram, rows: Rows, state: RoundState, of_rows: Ar
     angle = np.where(order == 0, program.angle[joint], 1.0)
     return Multipliers(
         Places(joint, segment, order, s),
+        np.concatenate([np.zeros(s.size - rows.weight.size, dtype=bool), rows.weight != 0.0]),
         limits * program.unit / angle,
         state.bounds[: program.degrees.size],
     )

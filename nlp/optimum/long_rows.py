@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ...problem import Array
@@ -15,10 +17,13 @@ often leave the region in which the others mean anything."""
 NEAR = 0.5
 """Share from which one has a row later: what grows beyond its limit meanwhile is found next. With
 0.7 a round of quintics fails now and then."""
-FLAT = 1e-8
+FLAT = 1e-6
 """Second derivative by the segment's parameter, in shares of the limit, below which a row stays at
 its place: the whole segment differs by an eighth of that, less than the excess that is repaired by
 a stretch. To follow the extremum would mean to follow rounding errors."""
+AWAY = 0.02
+"""Share of its segment from which an extremum has gone, not moved."""
+_FIELDS = ("joint", "segment", "order", "s")
 POSITION_NEAR = 0.3
 """Distance to a position limit, in the joint's span, from which an extremum has a row."""
 
@@ -53,6 +58,31 @@ def carried(before: Rows, duals: Array, rows: Rows) -> Array:
     same = (back[to] == np.arange(new.size)) & (np.abs(old[to] - new) < 1.0)
     out[same] = duals[to[same]]
     return out
+
+
+def kept_rows(
+    program: LongProgram, before: Rows, duals: Array, rows: Rows, loaded_from: float
+) -> Rows:
+    """The rows, and old ones with a multiplier whose extremum has gone: these stay at their place.
+
+    Where a derivative is all but constant its extremum jumps through the whole segment. Without
+    the places where it was, rounds would go on in a circle.
+    """
+    loaded = np.flatnonzero(np.abs(duals) > loaded_from)
+    if not loaded.size:
+        return rows
+    joints = program.joints
+    old, new = _lines(before, joints)[loaded], _lines(rows, joints)
+    gone = np.ones(loaded.size, dtype=bool)
+    if new.size:
+        gone = np.abs(new[_nearest(new, old)] - old) > AWAY
+    kept = loaded[gone]
+    parts = [(getattr(rows.places, f), getattr(before.places, f)[kept]) for f in _FIELDS]
+    places = Places(*(np.concatenate(part) for part in parts))
+    at = program.order_of_rows(places)
+    sign = np.concatenate([rows.sign, before.sign[kept]])[at]
+    weight = np.concatenate([rows.weight, np.zeros(kept.size)])[at]
+    return Rows(replace(places, **{f: getattr(places, f)[at] for f in _FIELDS}), sign, weight)
 
 
 def near_rows(program: LongProgram, trajectory: Trajectory, near: float) -> Rows:

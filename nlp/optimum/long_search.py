@@ -19,7 +19,7 @@ from .judgement import KKT_TOLERANCE
 from .long_formulation import LongProgram
 from .long_optimality import LongKKT, long_kkt
 from .long_round import TOLERANCES, fresh, multipliers, solve_round
-from .long_rows import EVERY, NEAR, carried, near_rows
+from .long_rows import EVERY, NEAR, carried, kept_rows, near_rows
 from .long_start import excess_of
 from .long_windows import FEWEST, joined_windows
 
@@ -31,6 +31,9 @@ tolerance and barrier are the last ones."""
 FAILURES = 2
 """Rounds without success after which a search is given up; each begins again from the best motion
 with rows at all its extrema."""
+LOADED = 10.0
+"""Multiplier, in tolerances of its round, from which a row stays although its extremum has gone:
+what is not active keeps about the tolerance."""
 SETTLED = 2e-9
 """Excess over a limit at which the rounds end: a stretch, which costs as much, repairs it."""
 
@@ -121,7 +124,9 @@ def long_search(problem: Problem, start: Array, floor: Array, until: float) -> L
             # A round with an eased tolerance leaves its barrier's gap: 1.6e-7 of a total was seen.
             if kkt.residual <= KKT_TOLERANCE and turn >= len(TOLERANCES) - 1:
                 break
-        before, rows = rows, near_rows(program, trajectory, NEAR)
+        before = rows
+        loaded = LOADED * TOLERANCES[min(turn, len(TOLERANCES) - 1)]
+        rows = kept_rows(program, before, duals, near_rows(program, trajectory, NEAR), loaded)
         state.rows, turn = carried(before, duals, rows), turn + 1
     if local is None and rough is not None:
         local = LongLocal(rough, None, iterations, build)
