@@ -51,8 +51,8 @@ def fault(
 
     ``others`` are the paths and reasons of further ones.
     """
-    told = {"path": path, "reason": reason, "others": list(others)}
-    return PydanticCustomError(kind, "{reason}", told)
+    context = {"path": path, "reason": reason, "others": list(others)}
+    return PydanticCustomError(kind, "{reason}", context)
 
 
 def spelt_like(word: str, known: Iterable[str]) -> str | None:

@@ -85,8 +85,8 @@ def verdict_card(
     errors, more = _fitting(sentences, left)
     # Where an error on the card says which percentage falls by it, no line says so again.
     tells = {plainly(study.case, c, far) for c in grave if _tells(study, c, improved)}
-    told = not tells.isdisjoint(errors)
-    if improvement is not None and not told:
+    covered = not tells.isdisjoint(errors)
+    if improvement is not None and not covered:
         left -= count_words(improvement)
         errors, more = _fitting(sentences, left)
     left -= sum(map(count_words, errors)) + (count_words(more_errors(more)) if more else 0)
@@ -100,7 +100,7 @@ def verdict_card(
         limits=limits,
         optimum=optimum,
         improvement=Why("an error says it")
-        if told
+        if covered
         else known(improvement, "no improvement is claimed"),
         errors=errors,
         more=more,

@@ -19,7 +19,7 @@ from ..documents import (
     Severity,
     Why,
     grouped,
-    told,
+    with_readings,
 )
 
 _RANK = (Evidence.NONE, Evidence.CERTIFIED, Evidence.BEST_KNOWN, Evidence.UNCONVERGED)
@@ -77,7 +77,9 @@ def judge(
         said = (Said(f.verdict, f.message, f.rule, f.reading) for f in behind)
         depends = verdict is ClaimVerdict.DEPENDS
         behind_it = grouped(said, tuple(each), named)
-        why = " ".join(told(one, tuple(each), named, word=depends, why=True) for one in behind_it)
+        why = " ".join(
+            with_readings(one, tuple(each), named, word=depends, why=True) for one in behind_it
+        )
         confidence = _confidence(behind, verdict)
     return Judgement(
         claim=claim,

@@ -316,11 +316,11 @@ _SENTENCES = {
 
 
 def _sentence(result: CheckedMotion) -> str:
-    told = _SENTENCES[result.verdict]
+    sentence = _SENTENCES[result.verdict]
     if result.verdict is Verdict.DISCONTINUOUS:
         kept = "kept" if result.limits_verdict is Verdict.PASS else "not decided"
-        told += f"; limits, jumps apart: {kept}"
-    return f"{told} (relative tolerance {result.tolerance:g})"
+        sentence += f"; limits, jumps apart: {kept}"
+    return f"{sentence} (relative tolerance {result.tolerance:g})"
 
 
 def _number(value: float, unit: str) -> str:

@@ -122,12 +122,12 @@ def _ends(one: Statement) -> str:
     if block.family != "cubic-spline" and not (block.family in _SPLINES and chosen):
         return ""
     if block.finish_orders is None and block.finish_derivatives is None:
-        return _told(block.orders, block.end_derivatives, "at the ends")
-    start = _told(block.orders, block.end_derivatives, "at the start")
-    return start + _told(block.last_orders, block.last_derivatives, "at the finish")
+        return _zeros(block.orders, block.end_derivatives, "at the ends")
+    start = _zeros(block.orders, block.end_derivatives, "at the start")
+    return start + _zeros(block.last_orders, block.last_derivatives, "at the finish")
 
 
-def _told(orders: Sequence[int], values: object, where: str) -> str:
+def _zeros(orders: Sequence[int], values: object, where: str) -> str:
     """What is 0 at an end; where something else is given, the curve's name says so."""
     names = " and ".join(_DERIVATIVES.get(k, f"derivative {k}") for k in orders)
     return f", {names} 0 {where}" if names and values is None else ""

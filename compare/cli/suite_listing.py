@@ -65,8 +65,10 @@ def _table(document: SuiteDocument) -> list[RenderableType]:
     ]
     names = ("instance", "curve", ">joints", ">segments", "tight in", ">lower (s)", ">upper (s)")
     narrow = sum(one.evidence == "certified" for one in document.instances)
-    told = f"suite {document.version}: {len(rows)} instances, {narrow} certified to 1 % or better"
-    return [Columns((*names, ">width", "evidence"), rows), line(told)]
+    summary = (
+        f"suite {document.version}: {len(rows)} instances, {narrow} certified to 1 % or better"
+    )
+    return [Columns((*names, ">width", "evidence"), rows), line(summary)]
 
 
 def show_instance(name: str, as_json: bool, out: Path | None) -> int:

@@ -157,8 +157,8 @@ from .why_judged import (
     in_full,
     noted,
     quoted,
-    told,
     under,
+    with_readings,
 )
 
 __all__ = [
@@ -331,9 +331,9 @@ __all__ = [
     "solve_result",
     "suite_document",
     "tally",
-    "told",
     "under",
     "verify_document",
+    "with_readings",
     "worth",
     "worth_little",
     "write_docs",

@@ -54,7 +54,7 @@ _ROWS = "rows.csv"
 """Every run, as an export of a study has it."""
 _ONE_BY_ONE = 6
 """Problems up to which each has its own tables and pictures on the page; JSON and CSV have all."""
-_TOLD = 0.01
+_LEADING_GAP = 0.01
 """Gap of the sentence that leads over many problems: what a paper's digits can tell apart."""
 _PICTURES = "pictures/bench-"
 """What its pictures begin with."""
@@ -242,13 +242,13 @@ def _width(result: BenchResult) -> float:
 def most_solved(standings: Sequence[OverallStanding]) -> str:
     """Which optimiser comes within 1 % most often, in a sentence."""
     first = standings[0]
-    target = next(one for one in first.targets if one.gap == _TOLD)
+    target = next(one for one in first.targets if one.gap == _LEADING_GAP)
     said = (
         f"Within 1 % of the optimum most often: {first.optimizer}, in {100 * target.rate:.0f} % of "
         f"its runs over {first.problems} problems"
     )
     if len(standings) > 1:
-        second = next(one for one in standings[1].targets if one.gap == _TOLD)
+        second = next(one for one in standings[1].targets if one.gap == _LEADING_GAP)
         said += f"; next {standings[1].optimizer} with {100 * second.rate:.0f} %"
     return f"{said}."
 

@@ -1,4 +1,4 @@
-"""Claims that `trajgap new` writes: what it is told, and a block to fill in of every other kind."""
+"""Claims that `trajgap new` writes: what it is given, and a block to fill in of every other kind."""
 
 from __future__ import annotations
 
@@ -192,8 +192,8 @@ def _rival(timed: str) -> list[str]:
 
 def _commented(prose: Sequence[str], *keys: str | None, block: str = "claims") -> list[str]:
     """A block as comments; the prose keeps a mark when one is taken off every line."""
-    told = [f"## {line}" for line in prose]
-    return [*told, f"# [[{block}]]", *(f"# {key}" for key in keys if key is not None), ""]
+    comments = [f"## {line}" for line in prose]
+    return [*comments, f"# [[{block}]]", *(f"# {key}" for key in keys if key is not None), ""]
 
 
 def _derivative(units: Collection[str]) -> str:

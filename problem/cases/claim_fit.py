@@ -41,7 +41,7 @@ def check_claims(
     problems = [problem.id for problem in document.problems]
     for index, claim in enumerate(document.claims):
         if claim.problem is not None and claim.problem not in problems:
-            continue  # told already
+            continue  # refused already
         with faults.noted():
             every = statements_of(claim)
             _check_claim(document, faults, claim, every, f"claims[{index}]")

@@ -111,7 +111,7 @@ def check_kinds(statement: Statement, chain: Chain | None) -> None:
         return
     for joint, label in enumerate(statement.labels):
         if label not in chain.labels:
-            continue  # told elsewhere
+            continue  # refused elsewhere
         slides = chain.kinds[chain.labels.index(label)] is JointKind.PRISMATIC
         quantity, unit = next(_stated(statement.units, joint), ("", ""))
         if unit and is_linear(unit) != slides:
@@ -138,9 +138,9 @@ def check_clues(document: CaseFile, faults: Faults, statements: Sequence[Stateme
     kinds = dict.fromkeys(statement.linear for statement in statements)
     for index, clue in enumerate(document.clues):
         for linear in kinds:
-            told = _misfit(clue, document.robot.joints, linear)
-            if told is not None:
-                faults.add(f"clues[{index}].{told[0]}", told[1])
+            misfit = _misfit(clue, document.robot.joints, linear)
+            if misfit is not None:
+                faults.add(f"clues[{index}].{misfit[0]}", misfit[1])
 
 
 def _misfit(clue: AnyClue, labels: Sequence[str], linear: Sequence[bool]) -> tuple[str, str] | None:

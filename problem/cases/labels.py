@@ -73,7 +73,7 @@ _TIME_ENDS = {
 }
 """How a smooth time ends."""
 _FEW_RATIOS = 6
-"""Ratios that are told one by one: more are no label."""
+"""Ratios that are listed one by one: more are no label."""
 _DERIVATIVES = {1: "velocity", 2: "acceleration", 3: "jerk"}
 """Derivatives at the ends, by their order."""
 
@@ -103,9 +103,9 @@ def reading_labels(document: CaseFile, readings: Sequence[Reading]) -> dict[str,
 def _differing(document: CaseFile, reading: Reading, readings: Sequence[Reading]) -> str:
     """What a reading says where another one says something else."""
     parts = []
-    for told in _ASPECTS:
-        own = list(told(document, reading))
-        others = [list(told(document, one)) for one in readings]
+    for aspect in _ASPECTS:
+        own = list(aspect(document, reading))
+        others = [list(aspect(document, one)) for one in readings]
         # A part that all readings share tells none from another.
         parts += [part for part in own if not all(part in other for other in others)]
     return ", ".join(dict.fromkeys(parts))

@@ -203,7 +203,7 @@ class Statement:
                 self.data()
         if not faults.found:
             return
-        # What is told first may hide the rest: each part is asked for by itself.
+        # The first fault may hide the rest: each part is asked for by itself.
         with faults.noted():
             self.curve()
         with faults.noted():

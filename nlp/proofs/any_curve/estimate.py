@@ -251,7 +251,7 @@ def _matter(problem: Problem) -> NDArray[np.bool_]:
 
 
 def _not_covered(problem: Problem) -> str | None:
-    """The reason why there is no value, as far as it can be told before solving."""
+    """The reason why there is no value, as far as it is known before solving."""
     limits, restless = problem.limits, _restless(problem)
     if limits.uneven:
         return "lower and upper limits differ; this optimum is computed within equal ones only"

@@ -339,9 +339,9 @@ def test_control_vertices_are_judged_joint_by_joint():
 
 def test_a_turn_explains_no_slide():
     found = find_causes(study(), findings())
-    told = [each.change for cause in found for each in cause.explanations]
-    assert told
-    assert not any("full turn" in change and "d3" in change for change in told)
+    changes = [each.change for cause in found for each in cause.explanations]
+    assert changes
+    assert not any("full turn" in change and "d3" in change for change in changes)
 
 
 def test_polynomials_of_a_slide_are_in_metres(tmp_path):

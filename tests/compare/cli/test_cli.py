@@ -100,9 +100,9 @@ def test_every_rule_is_explained_with_an_example(run: Run) -> None:
     assert_valid(document, "explain")
     assert [one["id"] for one in document["rules"]] == [rule.id for rule in RULES]
     for one in document["rules"]:
-        told = [one["asks"], one["concludes"], one["example"]]
-        assert all(text[0] not in " " and text.endswith((".", "?")) for text in told), one["id"]
-        assert not re.search(r"\bmend|alike\b.*print|  ", " ".join(told)), one["id"]
+        texts = [one["asks"], one["concludes"], one["example"]]
+        assert all(text[0] not in " " and text.endswith((".", "?")) for text in texts), one["id"]
+        assert not re.search(r"\bmend|alike\b.*print|  ", " ".join(texts)), one["id"]
     code, out, err = run("explain", "tg301", "Best known")
     assert (code, err) == (0, "")
     assert out.startswith("TG301: ")

@@ -208,9 +208,9 @@ def test_the_optimiser_of_the_guide_has_ten_lines_and_is_measured(run: Run, fold
 def test_the_help_says_what_is_replaced_and_when_it_fails(run: Run) -> None:
     code, out, _ = run("bench", "--help")
     assert code == 0
-    told = " ".join(out.split())
-    assert "or that of an earlier bench, which is replaced" in told
-    assert "bench and study, and every run of an optimiser on a problem failed" in told
+    text = " ".join(out.split())
+    assert "or that of an earlier bench, which is replaced" in text
+    assert "bench and study, and every run of an optimiser on a problem failed" in text
 
 
 def test_the_docs_name_what_is_there() -> None:

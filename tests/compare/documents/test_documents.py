@@ -80,13 +80,13 @@ def test_every_word_is_explained_once_and_in_the_schema() -> None:
     for enum in enums:
         shape = SCHEMA["$defs"][named(enum)]
         assert shape["enum"] == [str(word) for word in enum]
-        told = meanings(enum)
+        explained = meanings(enum)
         assert shape["description"].split("\n") == [
             meaning(enum),
-            *(f"{word}: {said}" for word, said in told.items()),
+            *(f"{word}: {said}" for word, said in explained.items()),
         ]
         # How many readings agree needs no more; four words of one are those of another.
-        left = {*map(str, enum)} - {*told}
+        left = {*map(str, enum)} - {*explained}
         assert left == {Scope: {*Scope}, Keeping: {*Rounding}}.get(enum, set())
 
 

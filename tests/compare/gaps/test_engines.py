@@ -81,9 +81,11 @@ def test_an_engine_that_is_lost_ends_the_session(
     end: Callable[[Future[Any]], object], said: str
 ) -> None:
     engine = Engine(Failing(end), lambda: 1, "far")
-    with pytest.raises(ProcessError, match=r"far: lost \(.*\); what is finished is stored") as told:
+    with pytest.raises(
+        ProcessError, match=r"far: lost \(.*\); what is finished is stored"
+    ) as caught:
         list(outcomes([small_trial()], engine))
-    assert said in str(told.value)
+    assert said in str(caught.value)
 
 
 def test_an_executor_that_takes_no_more_ends_the_session() -> None:

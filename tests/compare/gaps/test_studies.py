@@ -107,7 +107,7 @@ def test_a_session_that_ends_early_is_gone_on_with(
             raise KeyboardInterrupt
 
     with Store(path) as store, pytest.raises(KeyboardInterrupt):
-        run_study(plan, store, engine, told=stop)
+        run_study(plan, store, engine, progress=stop)
     assert len(texts(plan, path)) == 5
     with Store(path) as store:
         session = run_study(plan, store, engine)
@@ -202,9 +202,9 @@ def test_published_cases_are_named_by_their_ids(tmp_path: Path) -> None:
 def test_a_fault_inside_a_list_is_told_alone(tmp_path: Path) -> None:
     """The list is not empty for it: pydantic says so of what is left after its faults."""
     path = written(tmp_path, STUDY.replace('coupling = "shared"', 'coupling = "share"'))
-    with pytest.raises(CaseError, match=r"problems\[0\].coupling: 'share' is not") as told:
+    with pytest.raises(CaseError, match=r"problems\[0\].coupling: 'share' is not") as caught:
         load_study(path)
-    assert "is empty" not in str(told.value)
+    assert "is empty" not in str(caught.value)
     written(tmp_path, "format = 1\nproblems = []\noptimizers = []\n")
     with pytest.raises(CaseError, match=r"problems: is empty; .*optimizers: is empty"):
         load_study(path)
@@ -243,10 +243,10 @@ def test_bad_input_is_one_line_with_file_and_field(
 ) -> None:
     assert old in STUDY
     path = written(tmp_path, STUDY.replace(old, new))
-    with pytest.raises(CaseError, match=re.escape(said)) as told:
+    with pytest.raises(CaseError, match=re.escape(said)) as caught:
         load_study(path)
-    assert str(told.value).startswith(str(path))
-    assert "\n" not in str(told.value)
+    assert str(caught.value).startswith(str(path))
+    assert "\n" not in str(caught.value)
 
 
 def test_a_problem_that_the_objective_cannot_judge_is_refused(tmp_path: Path) -> None:
@@ -275,7 +275,7 @@ def test_a_lost_engine_leaves_what_is_finished(plan: StudyPlan, tmp_path: Path) 
                 engine.executor.shutdown(wait=False)
 
         with pytest.raises(ProcessError, match=r"1 process: lost \(.*the same command goes on"):
-            run_study(plan, store, engine, told=lose)
+            run_study(plan, store, engine, progress=lose)
     assert len(texts(plan, path)) >= 3
 
 

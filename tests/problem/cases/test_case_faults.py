@@ -335,5 +335,5 @@ def test_misspelt_keys_of_one_block_are_told_together():
 
 def test_one_refusal_tells_a_handful_and_counts_the_rest():
     faults = [(f"claims[{k}].id", "is missing; add it") for k in range(11)]
-    told = str(refusal("x.toml", faults))
-    assert told.endswith("also claims[7].id: is missing; add it (and 3 more)")
+    message = str(refusal("x.toml", faults))
+    assert message.endswith("also claims[7].id: is missing; add it (and 3 more)")

@@ -218,9 +218,9 @@ def test_peaks_of_each_joint_stand_in_one_claim() -> None:
     study = study_of(swapped)
     (found,) = said_of(study, judge_peaks, "p", "TG203")
     assert found.verdict is ClaimVerdict.INCONSISTENT
-    (told,) = said_of(study, judge_places, "p", "TG108")
-    assert "Table 2, joint 2" in told.message
-    assert "Table 2, joint 1" in told.message
+    (exchanged,) = said_of(study, judge_places, "p", "TG108")
+    assert "Table 2, joint 2" in exchanged.message
+    assert "Table 2, joint 1" in exchanged.message
 
 
 def test_equal_rows_under_two_names_are_told() -> None:
@@ -231,8 +231,8 @@ def test_equal_rows_under_two_names_are_told() -> None:
     )
     text = one_joint("0, 1, 2, 3], [0.5, 1, 2.5, 3", "9", "2", "optimal")
     text = text[: text.index("[[claims]]")].replace('["1"]', '["1", "2"]')
-    (told,) = said_of(study_of(text + rows), judge_places, "r2", "TG108")
-    assert "row 1 and row 2 print the same 3 durations" in told.message
+    (found,) = said_of(study_of(text + rows), judge_places, "r2", "TG108")
+    assert "row 1 and row 2 print the same 3 durations" in found.message
     other = rows.replace('"1.40"', '"1.41"', 1)
     assert not said_of(study_of(text + other), judge_places, "r2", "TG108")
 
@@ -248,8 +248,8 @@ def test_a_row_that_fits_another_joint_is_told() -> None:
     text = one_joint("0, 1], [0.5, 2.5", "1.9", "2", "optimal")
     text = text[: text.index("[[claims]]")].replace('["1"]', '["1", "2"]')
     study = study_of(text + rows)
-    (told,) = said_of(study, judge_places, "r2", "TG108")
-    assert "fit those of joint 1 within" in told.message
+    (found,) = said_of(study, judge_places, "r2", "TG108")
+    assert "fit those of joint 1 within" in found.message
     assert not said_of(study, judge_places, "r1", "TG108")
 
 
