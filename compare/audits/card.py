@@ -93,7 +93,7 @@ def verdict_card(
     explanation = _explanation(causes, left)
     if not more:
         left -= count_words(explanation or "")
-        warned = [c for c in causes if _falls(c, words) and (c.rule, c.claim) not in said]
+        warned = [c for c in causes if _warns_against(c, words) and (c.rule, c.claim) not in said]
         briefly = [plainly(study.case, cause, far, brief=True) for cause in warned]
         errors += _fitting(briefly, left)[0]
     return VerdictCard(
@@ -108,22 +108,22 @@ def verdict_card(
     )
 
 
-_FALLEN = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT)
+_AGAINST = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT)
 """Words that are against a claim under every reading."""
 
 
-def _falls(cause: Cause, words: Mapping[str, Judgement]) -> bool:
+def _warns_against(cause: Cause, words: Mapping[str, Judgement]) -> bool:
     """Whether a cause that is no error is what a claim falls by."""
     own, head = words.get(cause.claim or ""), cause.head
-    against = head is not None and head.verdict in _FALLEN
+    against = head is not None and head.verdict in _AGAINST
     warns = cause.severity is Severity.WARNING
-    return warns and against and own is not None and own.verdict in _FALLEN
+    return warns and against and own is not None and own.verdict in _AGAINST
 
 
 def _tells(study: Study, cause: Cause, improved: set[str]) -> bool:
     """Whether the sentence of a cause says that a claimed percentage falls with it."""
-    falls = improved & {one.claim for one in cause.consequences}
-    claims = [study.case.claim(one) for one in falls]
+    affected = improved & {one.claim for one in cause.consequences}
+    claims = [study.case.claim(one) for one in affected]
     counted = any(isinstance(c, ImprovementClaim) and c.percent is not None for c in claims)
     return cause.rule == "TG104" and counted
 

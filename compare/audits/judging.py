@@ -127,14 +127,14 @@ def weigh(
         In their order.
     """
     against = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT)
-    fallen = {
+    refuted = {
         j.claim
         for j in judgements
         if set(j.readings) == set(admissible) and all(v in against for v in j.readings.values())
     }
     return tuple(
         f.model_copy(update={"severity": Severity.WARNING})
-        if f.severity is Severity.ERROR and f.reading is not None and f.claim not in fallen
+        if f.severity is Severity.ERROR and f.reading is not None and f.claim not in refuted
         else f
         for f in findings
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterable, Sequence
 
-from ..fields import nearest
+from ..fields import spelling_hint
 from ..printed import Printed
 from ..units import Quantity
 from .claim import (
@@ -91,7 +91,7 @@ def _check_claim(
         if claim.time is not None:
             number(claim.time, "time", "time")
         elif claim.place not in (known := named_places(statement)):
-            fix = nearest(claim.place or "", known)
+            fix = spelling_hint(claim.place or "", known)
             faults.add(f"{at}.place", f"{claim.place!r} is no place of the motion; {fix}")
     if isinstance(claim, ControlVerticesClaim):
         _check_vertices(claim, statement, f"{at}.joint_rows")

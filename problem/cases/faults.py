@@ -9,7 +9,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from ..errors import CaseError
-from ..fields import UNION_TAGS, describe, nearest
+from ..fields import UNION_TAGS, describe, spelling_hint
 from .claim import QUANTITY_KINDS
 from .clue import CLUE_KINDS
 
@@ -129,7 +129,7 @@ def _read(detail: Mapping[str, Any]) -> list[tuple[str, str]]:
         given = raw.get(key) if isinstance(raw, dict) else None
         if given is None:
             return [(f"{path}.{key}", f"is missing; add one of {', '.join(kinds)}")]
-        fix = nearest(str(given), kinds)
+        fix = spelling_hint(str(given), kinds)
         return [(f"{path}.{key}", f"{_short(given)} is no {name}; {fix}")]
     if kind == "missing" and detail["loc"][-1] in _MISSING:
         return [(path, _MISSING[detail["loc"][-1]])]

@@ -118,7 +118,7 @@ def estimate_any_curve(
     if reason is not None:
         return AnyCurveEstimate(None, why=reason)
     matter = _matter(problem)
-    question = _pose(problem, matter)
+    question = _question(problem, matter)
     short = np.flatnonzero(question.lower > question.upper * (1 + KEPT))
     if short.size:
         return AnyCurveEstimate(
@@ -274,7 +274,7 @@ def _not_covered(problem: Problem) -> str | None:
     return None
 
 
-def _pose(problem: Problem, matter: NDArray[np.bool_]) -> LocalQuestion:
+def _question(problem: Problem, matter: NDArray[np.bool_]) -> LocalQuestion:
     steps = np.diff(problem.waypoints, axis=0)[:, matter]
     velocity = problem.limits.velocity[matter]
     return LocalQuestion(

@@ -70,7 +70,7 @@ def one_study() -> Study:
 def said(study: Study) -> tuple[list[str], set[Evidence]]:
     """Every sentence and every evidence word beside an optimum."""
     findings = list(judge_distances(study))
-    steps = [step for fall in waterfalls(study) for step in fall.steps]
+    steps = [step for waterfall in waterfalls(study) for step in waterfall.steps]
     texts = [f.message for f in findings] + [f"{s.name} {s.note}" for s in steps]
     return texts, {f.evidence for f in findings} | {s.evidence for s in steps}
 
@@ -85,8 +85,8 @@ def test_what_is_proved_is_called_certified() -> None:
     assert interval is not None
     assert answer.lower_bound is not None
     assert Fraction(answer.lower_bound) <= interval.lower < answer.total_time
-    (fall,) = waterfalls(study)
-    step = next(s for s in fall.steps if s.name.startswith("optimum"))
+    (waterfall,) = waterfalls(study)
+    step = next(s for s in waterfall.steps if s.name.startswith("optimum"))
     assert (step.low, step.high) == (answer.lower_bound, answer.total_time)
     assert "proved" in str(answer)
 
@@ -286,8 +286,8 @@ def test_a_bound_for_any_curve_stands_on_the_waterfall(
         return bound if subject is Subject.ANY else None
 
     monkeypatch.setattr(intervals_module, "proved", only_any)
-    (fall,) = waterfalls(one_study())
-    step = fall.steps[-1]
+    (waterfall,) = waterfalls(one_study())
+    step = waterfall.steps[-1]
     # The nearest double lies above 2/5, and would be no lower bound.
     assert step.low == np.nextafter(0.4, 0.0)
     assert step.note.count("no motion within the limits is shorter than 0.4 s: certified") == 1
@@ -318,8 +318,8 @@ def test_a_bound_for_any_curve_may_round_above_the_answer_and_no_more(
 
 
 def test_what_is_proved_of_any_curve_is_called_certified_under_every_reading() -> None:
-    for fall in waterfalls(Study(load_case(IRB), seeds=2)):
-        assert fall.steps[-1].evidence is Evidence.CERTIFIED
+    for waterfall in waterfalls(Study(load_case(IRB), seeds=2)):
+        assert waterfall.steps[-1].evidence is Evidence.CERTIFIED
 
 
 def test_only_a_proof_sets_a_lower_bound() -> None:
