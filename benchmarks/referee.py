@@ -194,7 +194,7 @@ def best_of(setting: Setting, question: Question) -> float | None:
 def judged(setting: Setting, question: Question, motion: Motion, seconds: float) -> Answer:
     """Peaks of an output over its limits, and its time beside the floor."""
     jerk = question.jerk if setting.order == 3 else np.inf
-    limits = JointLimits.given(motion.joints, question.velocity, question.acceleration, jerk)
+    limits = JointLimits.from_values(motion.joints, question.velocity, question.acceleration, jerk)
     check = check_motion(motion, limits)
     ratios = tuple(
         max(p.ratio for p in check.peaks if p.quantity == name)

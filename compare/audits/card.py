@@ -83,7 +83,7 @@ def verdict_card(
     sentences = [plainly(study.case, first, far, also=also) for first, *also in alike.values()]
     left = CARD_WORDS - sum(map(count_words, (limits, optimum)))
     errors, more = _fitting(sentences, left)
-    # Where an error on the card says which percentage falls by it, no line says so again.
+    # Where an error on the card says which percentage it refutes, no line says so again.
     tells = {plainly(study.case, c, far) for c in grave if _tells(study, c, improved)}
     covered = not tells.isdisjoint(errors)
     if improvement is not None and not covered:
@@ -113,7 +113,7 @@ _AGAINST = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT)
 
 
 def _warns_against(cause: Cause, words: Mapping[str, Judgement]) -> bool:
-    """Whether a cause that is no error is what a claim falls by."""
+    """Whether a cause that is no error speaks against its claim, as every reading does."""
     own, head = words.get(cause.claim or ""), cause.head
     against = head is not None and head.verdict in _AGAINST
     warns = cause.severity is Severity.WARNING
@@ -121,7 +121,7 @@ def _warns_against(cause: Cause, words: Mapping[str, Judgement]) -> bool:
 
 
 def _tells(study: Study, cause: Cause, improved: set[str]) -> bool:
-    """Whether the sentence of a cause says that a claimed percentage falls with it."""
+    """Whether the sentence of a cause says that a claimed percentage is refuted with it."""
     affected = improved & {one.claim for one in cause.consequences}
     claims = [study.case.claim(one) for one in affected]
     counted = any(isinstance(c, ImprovementClaim) and c.percent is not None for c in claims)

@@ -110,8 +110,8 @@ def weigh(
 ) -> tuple[Finding, ...]:
     """Findings whose severity fits the verdict on their claim.
 
-    What a proof says under one reading is an error only where the claim falls under every
-    admissible reading; otherwise it is a warning, for the reading may not be the one meant.
+    What a proof says under one reading is an error only where every admissible reading is against
+    the claim; otherwise it is a warning, for the reading may not be the one meant.
 
     Parameters
     ----------

@@ -13,7 +13,7 @@ from typing import Any
 from rich.console import RenderableType
 
 from ...heuristics import KINDS
-from ...nlp import Evidence, Solution, solve, stated_exactly, with_certificate
+from ...nlp import Evidence, Solution, printed_problem_or_none, solve, with_certificate
 from ...problem import Case, CaseError, Coupling, TrajgapError
 from ...problem.cases import SUITE_PREFIX
 from ...problem.suite import instance_of, select_instances
@@ -204,7 +204,7 @@ def _optimum(case: Case, one: Selected) -> Solution | Reference:
         evidence = Evidence(str(instance.evidence))
         return Reference(upper=instance.upper, lower=lower, evidence=evidence)
     answer = solve(one.problem)
-    exact = stated_exactly(case.statement(one.problem_id, one.reading_id))
+    exact = printed_problem_or_none(case.statement(one.problem_id, one.reading_id))
     answer = with_certificate(answer, exact)
     if not 0 < answer.best < math.inf:
         why = answer.why or str(answer.status)

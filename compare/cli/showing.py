@@ -70,7 +70,7 @@ def _tables(document: ShowDocument, case: Case) -> list[RenderableType]:
         Columns(("reading", "~what it means, and why it is admissible"), readings),
     ]
     if document.claims:
-        claims = [(c.id, _stated(c), f"{claim_text(case, c)} ({c.where})") for c in document.claims]
+        claims = [(c.id, _digits(c), f"{claim_text(case, c)} ({c.where})") for c in document.claims]
         parts.append(Columns(("claim", "printed", "~what is said, and where"), claims))
     if document.assumptions:
         choices = [(str(k), f"{a.text} {a.choice}") for k, a in enumerate(document.assumptions, 1)]
@@ -145,7 +145,7 @@ def _limit(one: Statement, quantity: Literal["velocity", "acceleration", "jerk"]
     return f"{quantity} {' '.join(with_unit(numbers, units))}"
 
 
-def _stated(claim: AnyClaim) -> str:
+def _digits(claim: AnyClaim) -> str:
     """The printed digits of a claim."""
     match claim:
         case DurationsClaim() | MaximumClaim():

@@ -22,10 +22,10 @@ from ...problem.suite import (
 from ..documents import (
     SuiteDocument,
     SuiteShowDocument,
-    given,
     instance_document,
     json_text,
     suite_document,
+    value_or_none,
 )
 from ..pages import suite_pages
 from .output import emit, new_output, progress, say
@@ -88,7 +88,7 @@ def _certificate(one: BenchmarkInstance) -> str | None:
 
 
 def _shown(document: SuiteShowDocument) -> list[RenderableType]:
-    one, hard = document.instance, given(document.instance.hardness)
+    one, hard = document.instance, value_or_none(document.instance.hardness)
     facts = [
         ("curve", f"{one.curve}, {one.segments} segments, {one.joints} joints"),
         ("source", document.source),
@@ -99,7 +99,7 @@ def _shown(document: SuiteShowDocument) -> list[RenderableType]:
         ("tight in", ", ".join(one.tight)),
         ("certificate", str(one.certificate)),
     ]
-    verify = given(document.verify)
+    verify = value_or_none(document.verify)
     if verify is None:
         facts.append(("verify", str(document.verify)))
     if hard is not None:

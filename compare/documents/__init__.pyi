@@ -39,10 +39,10 @@ from .entry import (
     Real,
     Why,
     facts,
-    given,
     json_text,
     known,
     reason,
+    value_or_none,
 )
 from .explain_shown import ExplainDocument, ExplainedRule, ExplainedWord
 from .export import DOCUMENTS, filled, output_schema, schema_text, write_docs
@@ -304,7 +304,6 @@ __all__ = [
     "filled",
     "first_sentence",
     "gap_cell",
-    "given",
     "grouped",
     "implausibly",
     "in_full",
@@ -332,6 +331,7 @@ __all__ = [
     "suite_document",
     "tally",
     "under",
+    "value_or_none",
     "verify_document",
     "with_readings",
     "worth",

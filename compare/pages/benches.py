@@ -21,10 +21,10 @@ from ..documents import (
     Why,
     bench_cells,
     gap_cell,
-    given,
     json_text,
     overall_cells,
     percent,
+    value_or_none,
 )
 from ..gaps import (
     CURVE_TARGETS,
@@ -128,7 +128,7 @@ def _unwritten(out: Path, error: OSError) -> CaseError:
 
 def _rows(result: BenchResult, runs: Runs) -> Iterator[Row]:
     """Every run with its gaps: a bench makes its runs before it sets them against the optimum."""
-    upper, lower = result.optimum.upper, given(result.optimum.lower)
+    upper, lower = result.optimum.upper, value_or_none(result.optimum.lower)
     bracket = Bracket(upper, min(lower, upper) if lower else None)
     return (against(row, bracket) for row in runs.rows)
 
@@ -142,7 +142,7 @@ def bench_picture(result: BenchResult, runs: Runs) -> Picture:
         What `measure_gaps` returned for the runs.
     runs : Runs
     """
-    upper, lower = result.optimum.upper, given(result.optimum.lower)
+    upper, lower = result.optimum.upper, value_or_none(result.optimum.lower)
     return gap_picture(
         _anytime(runs.by_label, upper),
         title=f"Gap to the optimum over the evaluations: {result.title}",
@@ -235,7 +235,7 @@ def _all_sections(results: Sequence[tuple[BenchResult, Runs]]) -> list[Section]:
 
 
 def _width(result: BenchResult) -> float:
-    lower = given(result.optimum.lower)
+    lower = value_or_none(result.optimum.lower)
     return 0.0 if lower is None else 1 - lower / result.optimum.upper
 
 
@@ -302,7 +302,7 @@ def _section(at: int, head: str, result: BenchResult, runs: Runs) -> Section:
 
 def optimum_said(optimum: Reference) -> str:
     """What is known of the optimum, in a sentence."""
-    lower = given(optimum.lower)
+    lower = value_or_none(optimum.lower)
     if lower is None:
         return f"Optimum: {optimum.upper:.6f} s, {optimum.evidence}; true gaps may be larger."
     width = percent(1 - lower / optimum.upper)

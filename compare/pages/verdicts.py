@@ -20,7 +20,7 @@ _TITLES = {rule.id: rule.title for rule in RULES}
 
 
 def problems_audited(one: CaseAudit) -> Section:
-    """The problems that the paper poses, as they were computed."""
+    """The problems of the paper, as they were computed."""
     grid = _problems(one.study)
     case = one.case
     terms = [

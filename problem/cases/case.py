@@ -228,10 +228,8 @@ class Case:
         for claim in self.claims:
             if claim.id == claim_id:
                 return claim
-        ids = [claim.id for claim in self.claims]
-        raise CaseError(
-            self.file, "claim", f"no claim {claim_id!r}; {spelling_hint(claim_id, ids)}"
-        )
+        fix = spelling_hint(claim_id, (claim.id for claim in self.claims))
+        raise CaseError(self.file, "claim", f"no claim {claim_id!r}; {fix}")
 
     def table_claims(self, table_id: str) -> tuple[AnyClaim, ...]:
         """Claims that a table prints, in the order of the file."""

@@ -13,7 +13,7 @@ from ..fields import UNION_TAGS, describe, spelling_hint
 from .claim import QUANTITY_KINDS
 from .clue import CLUE_KINDS
 
-_MIXED_LISTS = {
+_OF_SEVERAL_KINDS = {
     "claims": ("quantity", QUANTITY_KINDS, "quantity of a claim"),
     "clues": ("kind", CLUE_KINDS, "kind of clue"),
 }
@@ -125,7 +125,7 @@ def _read(detail: Mapping[str, Any]) -> list[tuple[str, str]]:
         found = [(context["path"], context["reason"]), *context.get("others", ())]
         return [((path + at).removeprefix("."), reason) for at, reason in found]
     if kind in ("union_tag_invalid", "union_tag_not_found"):
-        key, kinds, name = _MIXED_LISTS[detail["loc"][0]]
+        key, kinds, name = _OF_SEVERAL_KINDS[detail["loc"][0]]
         given = raw.get(key) if isinstance(raw, dict) else None
         if given is None:
             return [(f"{path}.{key}", f"is missing; add one of {', '.join(kinds)}")]
@@ -166,7 +166,11 @@ def _path(location: tuple[str | int, ...]) -> str:
         before = location[position - 1] if position else None
         if part in UNION_TAGS and before in _ONE_OR_EACH:
             continue
-        if position == 2 and location[0] in _MIXED_LISTS and part in _MIXED_LISTS[location[0]][1]:
+        if (
+            position == 2
+            and location[0] in _OF_SEVERAL_KINDS
+            and part in _OF_SEVERAL_KINDS[location[0]][1]
+        ):
             continue
         path += f"[{part}]" if isinstance(part, int) else f".{part}"
     return path.removeprefix(".")

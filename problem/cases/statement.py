@@ -188,7 +188,7 @@ class Statement:
         return bool(self.waypoints.points)
 
     def check(self) -> None:
-        """Check that a problem can be posed, and tell all that is in the way at once.
+        """Check that a problem can be made, and list all that is in the way at once.
 
         Raises
         ------

@@ -95,14 +95,14 @@ def _spline_name(ends: Derivatives, finish: Derivatives | None) -> str:
             return "clamped C2 cubic spline"
         if merged_values(ends) == ((2, 0.0),):
             return "natural C2 cubic spline"
-        return f"C2 cubic spline with {_given_words(ends)} given at the ends"
-    start, last = _given_words(ends), _given_words(finish or ())
+        return f"C2 cubic spline with {_derivative_names(ends)} given at the ends"
+    start, last = _derivative_names(ends), _derivative_names(finish or ())
     if start == last:
         return f"C2 cubic spline with {start} given at the ends"
     return f"C2 cubic spline with {start} given at the start, {last} at the finish"
 
 
-def _given_words(at: Derivatives) -> str:
+def _derivative_names(at: Derivatives) -> str:
     words = ("", "velocity", "acceleration", "jerk")
     return " and ".join(words[order] for order, _ in at if order < len(words)) or "nothing"
 

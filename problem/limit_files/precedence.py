@@ -12,8 +12,6 @@ from ..errors import CaseError, TrajgapError
 from ..fields import spelling_hint
 from ..motions import BRAKING, ORDERS, JointLimits, check_range
 
-STATED = (*ORDERS, BRAKING)
-"""Quantities that a source may limit."""
 Range = tuple[float, float]
 """Lower and upper limit, rad and s; infinite where that side has none."""
 

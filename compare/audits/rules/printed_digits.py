@@ -288,9 +288,9 @@ def _repeated_digits(study: Study) -> Iterator[Finding]:
                     doubts=(label,),
                     printed=", ".join(repeated),
                     message=f"{len(repeated)} of the {len(entries)} way-points of joint {label} "
-                    f"({statement.waypoints.where}: {', '.join(repeated)}) repeat digits of {where}, "
-                    "a quantity of another kind. The digits alone do not say which column, "
-                    "if any, is meant otherwise.",
+                    f"({statement.waypoints.where}: {', '.join(repeated)}) repeat digits of "
+                    f"{where}, a quantity of another kind. The digits alone do not say which "
+                    "column, if any, is meant otherwise.",
                 )
 
 

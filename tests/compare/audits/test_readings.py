@@ -47,10 +47,10 @@ POLISH, WHALE, PALLET = "irb1600-ga-cubic-bspline", "z1-woa-bspline", "irb460-ps
 
 def summed(case: Case, claims: dict[str, str], reading: str | None = None) -> CaseAudit:
     """Readings of a case, without the slow rest of its audit."""
-    return audited(Study(case, seeds=2, reading=reading), claims)
+    return case_audit(Study(case, seeds=2, reading=reading), claims)
 
 
-def audited(study: Study, claims: dict[str, str]) -> CaseAudit:
+def case_audit(study: Study, claims: dict[str, str]) -> CaseAudit:
     case = study.case
     waterfalls = tuple(
         Waterfall(problem=pid, reading=rid, claim=claims.get(pid), steps=())
@@ -82,12 +82,12 @@ def audited(study: Study, claims: dict[str, str]) -> CaseAudit:
 
 @cache
 def polish() -> CaseAudit:
-    return audited(shipped(POLISH), {"nine-segments": "after"})
+    return case_audit(shipped(POLISH), {"nine-segments": "after"})
 
 
 @cache
 def pallet() -> CaseAudit:
-    return audited(shipped(PALLET), {"limit-80": "durations-80", "limit-110": "durations-110"})
+    return case_audit(shipped(PALLET), {"limit-80": "durations-80", "limit-110": "durations-110"})
 
 
 def summary_of(one: CaseAudit) -> ReadingsSummary:
@@ -287,7 +287,7 @@ total = "6.81\""""
     hasty = '"5", "0.01", "5", "0.01", "5", "0.01", "5", "0.01", "5"]'
     case = changed(POLISH, (printed, hasty)).case
     study = Study(case, seeds=2, reading="angles-deg-v-rad-a-rad-timed")
-    (outcome,) = summary_of(audited(study, {"nine-segments": "after"})).outcomes
+    (outcome,) = summary_of(case_audit(study, {"nine-segments": "after"})).outcomes
     assert outcome.keeping is Keeping.UNDECIDED
     assert outcome.excesses == ()
     assert isinstance(outcome.stretch, Why)

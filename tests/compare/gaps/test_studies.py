@@ -166,7 +166,7 @@ def test_exports_are_the_same_bytes_on_one_process_three_and_dask(
 def test_each_joint_is_a_problem_where_the_case_says_so(tmp_path: Path) -> None:
     text = STUDY.replace('coupling = "shared"\n', "")
     plan = load_study(written(tmp_path, text))
-    assert [posed.name for posed in plan.problems] == ["mine/main, joint a", "mine/main, joint b"]
+    assert [one.name for one in plan.problems] == ["mine/main, joint a", "mine/main, joint b"]
     first, *_, last = plan.trials()
     assert (len(first.problem.joints), first.stream[1:], last.stream[1:]) == (1, (0,), (1,))
     assert len(plan) == 2 * RUNS
@@ -195,7 +195,7 @@ def test_published_cases_are_named_by_their_ids(tmp_path: Path) -> None:
     text = HEAD.replace("mine.toml", "puma560-mnam-pso-353") + OPTIMIZERS
     text = text.replace('coupling = "shared"', 'readings = "durations-positive"')
     plan = load_study(written(tmp_path, text))
-    assert {posed.reading for posed in plan.problems} == {"durations-positive"}
+    assert {one.reading for one in plan.problems} == {"durations-positive"}
     assert len(plan.problems) == 6
 
 

@@ -1,4 +1,4 @@
-"""What a page does with many readings, with none posed, and with sections that hold nothing."""
+"""What a page does with many readings, with none complete, and with sections that hold nothing."""
 
 import html.parser
 import re
