@@ -120,7 +120,7 @@ def _declared_certificates(
 
 @lru_cache(maxsize=256)
 def _proved(waypoints: int, joints: int, place: int) -> ProvedInterval | None:
-    """What one of `_stated` proves, proved again once a process."""
+    """What one of `_declared_certificates` proves, proved again once a process."""
     document, _ = _declared_certificates(waypoints, joints)[place]
     return narrow(document, verify_certificate(document))
 

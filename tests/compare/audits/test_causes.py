@@ -184,7 +184,7 @@ def test_one_digit_off_is_one_digit_or_two_neighbours_exchanged() -> None:
     assert "1.20" not in off
 
 
-@pytest.mark.parametrize(("limit", "told"), [("2.035", True), ("2.03", False)])
+@pytest.mark.parametrize(("limit", "explained"), [("2.035", True), ("2.03", False)])
 def test_limits_that_hold_at_samples_are_explained_by_them(limit: str, explained: bool) -> None:
     """A cubic spline peaks at 2.0431 rad/s, and at 2.0326 rad/s at ten steps a segment."""
     text = TWO_SEGMENTS.replace('family = "rest-to-rest"\ndegree = 5', 'family = "cubic-spline"')

@@ -73,7 +73,7 @@ def test_what_is_printed_rightly_is_supported(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", WRONG)
-def test_a_largest_value_that_is_another_is_told_with_both(name: str) -> None:
+def test_a_largest_value_that_is_another_is_shown_with_both(name: str) -> None:
     claim, printed = WRONG[name]
     truth = by_hand(name)
     assert abs(truth - printed) > 0.005

@@ -81,7 +81,7 @@ def test_each_command_explains_itself(run: Run, command: str) -> None:
     ("given", "wanted"),
     [({}, "1"), ({"OMP_NUM_THREADS": "3"}, None), ({"OPENBLAS_NUM_THREADS": "2"}, "2")],
 )
-def test_linear_algebra_has_one_thread_unless_it_is_told(
+def test_linear_algebra_has_one_thread_unless_another_number_is_set(
     given: dict[str, str], wanted: str | None
 ) -> None:
     program_ = (
@@ -310,7 +310,7 @@ def test_audit_passes_its_options_on(run: Run, stand_in: dict[str, Any]) -> None
 
 
 @pytest.mark.usefixtures("stand_in", "pages")
-def test_audit_json_writes_only_where_told(run: Run) -> None:
+def test_audit_json_writes_only_where_asked(run: Run) -> None:
     code, out, err = run("audit", IRB, "--json")
     assert (code, err) == (0, "")
     assert_valid(strict(out), "audit")

@@ -169,11 +169,11 @@ def test_what_is_there_is_not_overwritten(run: Run, folder: Path) -> None:
     assert (folder / "mine" / "letter.txt").read_text("utf-8") == "dear"
 
 
-def test_a_folder_that_cannot_be_written_is_told(run: Run) -> None:
+def test_a_folder_that_cannot_be_written_is_refused(run: Run) -> None:
     assert_refused(run("suite", "export", "mine.toml/in"), "cannot be written")
 
 
-def test_unknown_words_are_told(run: Run) -> None:
+def test_unknown_words_are_refused(run: Run) -> None:
     assert_refused(run("suite", "show", "353-puma"), "did you mean '353-puma560'?")
     assert_refused(run("suite", "--curve", "spiral"), "no curve is called 'spiral'", "3-5-3")
     assert_refused(run("show", "suite:nothing-like-it"), "`trajgap suite` lists them")

@@ -50,7 +50,7 @@ def test_check_says_each_id_once(run: Run) -> None:
     assert "as-printed" not in out
 
 
-def test_proofs_are_told_in_words(run: Run) -> None:
+def test_proofs_are_shown_in_words(run: Run) -> None:
     reading = ("--reading", "waypoints-rad")
     out = output_of(
         "solve", IRB, "--certify", "--gap", "0.1", *reading, "--problem", "limit-80", run=run
@@ -166,7 +166,7 @@ def _ids() -> str:
     return "problem limit-80, reading waypoints-rad"
 
 
-def test_where_the_time_goes_is_told_of_each_problem_in_words(run: Run) -> None:
+def test_where_the_time_goes_is_shown_of_each_problem_in_words(run: Run) -> None:
     out = output_of("audit", IRB, "--seeds", "2", "--certify-seconds", "0", run=run)
     for limit in ("80", "110"):
         words = f"Shortest time of joint 5 under {limit} °/s; way-points in radians"

@@ -91,7 +91,7 @@ def test_what_holds_under_every_reading_has_none_before_it_unless_words_differ()
     assert with_readings(one, READINGS, NAMED, word=True) == "Under every reading: always."
 
 
-def test_rules_that_say_the_same_are_told_together() -> None:
+def test_rules_that_say_the_same_are_named_together() -> None:
     (one,) = grouped(
         [*said("a", "same.", rule="TG201"), *said("b", "same.", rule="TG302")], READINGS, NAMED
     )

@@ -102,7 +102,7 @@ def test_a_process_that_cannot_start_ends_the_session() -> None:
         list(outcomes([small_trial()], engine))
 
 
-def test_dask_that_does_not_answer_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_dask_that_does_not_answer_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("distributed")
     monkeypatch.setattr("trajgap.compare.gaps.engines._PATIENCE", 0.2)
     with (
@@ -112,7 +112,7 @@ def test_dask_that_does_not_answer_is_told(monkeypatch: pytest.MonkeyPatch) -> N
         pass
 
 
-def test_dask_that_is_not_installed_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_dask_that_is_not_installed_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(__import__("sys").modules, "distributed", None)
     with (
         pytest.raises(ProcessError, match=r'dask: is not installed; run `.*"trajgap\[dask\]"`'),

@@ -122,7 +122,7 @@ def test_iohprofiler_is_read_by_iohinspector(rows: list[Row], tmp_path: Path) ->
         ("nowhere/rows.csv", "rows.csv: --export: its folder is not there; make it first"),
     ],
 )
-def test_a_name_that_cannot_be_used_is_told(tmp_path: Path, name: str, said: str) -> None:
+def test_a_name_that_cannot_be_used_is_refused(tmp_path: Path, name: str, said: str) -> None:
     (tmp_path / "there.csv").touch()
     with pytest.raises(CaseError, match=said):
         check_export(tmp_path / name)

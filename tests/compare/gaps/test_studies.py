@@ -199,7 +199,7 @@ def test_published_cases_are_named_by_their_ids(tmp_path: Path) -> None:
     assert len(plan.problems) == 6
 
 
-def test_a_fault_inside_a_list_is_told_alone(tmp_path: Path) -> None:
+def test_a_fault_inside_a_list_is_named_alone(tmp_path: Path) -> None:
     """The list is not empty for it: pydantic says so of what is left after its faults."""
     path = written(tmp_path, STUDY.replace('coupling = "shared"', 'coupling = "share"'))
     with pytest.raises(CaseError, match=r"problems\[0\].coupling: 'share' is not") as caught:

@@ -35,7 +35,7 @@ def swarm(best: list[float]) -> Swarm:
 
 
 @pytest.mark.parametrize(
-    ("n", "falls"),
+    ("n", "falling"),
     [
         (50, 0.9 - 0.5 * (1 - math.exp(-0.25))),
         (100, 0.9 - 0.5 * (1 - math.exp(-1.0))),

@@ -142,7 +142,7 @@ def test_gradients_are_differences(curve: Interpolant) -> None:
         np.testing.assert_allclose(mine[:, k], slope, rtol=1e-5, atol=1e-5)
 
 
-def test_joints_that_agree_are_told_once() -> None:
+def test_joints_that_agree_share_one_value() -> None:
     same = cubic_spline(3, ((1, (0.5, 0.5, 0.5)),), ((1, [0.0, 0.0, 0.0]),))
     assert same == cubic_spline(3, ((1, 0.5),), ((1, 0.0),))
     assert same.prescribed_joints is None

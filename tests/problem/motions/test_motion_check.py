@@ -161,7 +161,7 @@ def test_braking_is_told_from_speeding_up_inside_a_piece():
     assert by["acceleration"].time == pytest.approx(3.0)
 
 
-def test_jumps_are_told_with_place_and_number():
+def test_jumps_are_reported_with_place_and_number():
     zigzag = Samples(("1",), [0.0, 1.0, 2.0, 4.0], [[0.0], [1.0], [0.0], [-6.0]])
     found = check_motion(
         interpolated(zigzag, Interpolation.LINEAR), JointLimits.from_values(("1",), velocity=5.0)

@@ -194,7 +194,7 @@ value = "{value}"
     ("of", "value", "fits"),
     [("before", "1.2500", "Table 2"), ("d", "1.5000", "row before"), ("d", "1.7", None)],
 )
-def test_peaks_exchanged_between_rows_are_told(of: str, value: str, fits: str | None) -> None:
+def test_peaks_exchanged_between_rows_are_found(of: str, value: str, fits: str | None) -> None:
     """2 rad in 3 s peak at 1.25 rad/s, in 2.5 s at 1.5 rad/s."""
     tail = EXCHANGED.format(of=of, value=value)
     study = study_of(one_joint("0, 2", "1.9", "3.0000", "optimal", tail))
@@ -223,7 +223,7 @@ def test_peaks_of_each_joint_stand_in_one_claim() -> None:
     assert "Table 2, joint 1" in exchanged.message
 
 
-def test_equal_rows_under_two_names_are_told() -> None:
+def test_equal_rows_under_two_names_are_found() -> None:
     rows = "".join(
         f'[[claims]]\nid = "r{j}"\nquantity = "durations"\nwhere = "row {j}"\njoint = "{j}"\n'
         f'durations = ["0.91", "1.25", "{last}"]\n'
@@ -237,7 +237,7 @@ def test_equal_rows_under_two_names_are_told() -> None:
     assert not said_of(study_of(text + other), judge_places, "r2", "TG108")
 
 
-def test_a_row_that_fits_another_joint_is_told() -> None:
+def test_a_row_that_fits_another_joint_is_found() -> None:
     """Steps of 1 and 2 rad under 1.9 rad/s take 0.98684 and 1.97368 s; the rows are exchanged."""
     rows = "".join(
         f'[[claims]]\nid = "r{j}"\nquantity = "durations"\nwhere = "row {j}"\njoint = "{j}"\n'
