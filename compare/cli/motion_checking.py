@@ -59,7 +59,7 @@ class MotionOptions:
     strict: bool = False
 
     @property
-    def named(self) -> list[str]:
+    def names(self) -> list[str]:
         """Options that are there, for the message where they do not belong."""
         named = {
             **self.limits,

@@ -74,8 +74,8 @@ def test_show_says_how_to_verify_and_the_command_does(
     for lines in (out.splitlines(), narrow.splitlines()):
         assert one.command in lines
         assert f"python -m trajgap.verify {shlex.quote(str(file))}" in lines
-    lines = [line for line in narrow.splitlines() if "trajgap" not in line]
-    assert max(map(len, lines)) <= 60
+    prose = [line for line in narrow.splitlines() if "trajgap" not in line]
+    assert max(map(len, prose)) <= 60
     code, out, _ = run("verify", str(file), "--case", "suite:353-irb460")
     assert code == 0
     assert out.startswith(str(file))
