@@ -295,8 +295,8 @@ def tables() -> dict[str, str]:
 def described() -> str:
     """The commit of the checkout, with a mark if files differ from it."""
     command = ["git", "describe", "--always", "--dirty", "--abbrev=9"]
-    told = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
-    return told.stdout.strip() or "unknown"
+    answer = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    return answer.stdout.strip() or "unknown"
 
 
 def show(fault: str, seed: int) -> None:

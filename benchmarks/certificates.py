@@ -15,7 +15,7 @@ from fractions import Fraction
 
 from trajgap.nlp.proofs.certifiers import certify, covered
 from trajgap.nlp.proofs.document import shipped_folder, write_certificate
-from trajgap.nlp.proofs.evidence import stated_exactly
+from trajgap.nlp.proofs.evidence import printed_problem_or_none
 from trajgap.nlp.proofs.exact import ExactProblem
 from trajgap.nlp.proofs.outcome import Certified
 from trajgap.problem import Coupling, load_case, published_ids
@@ -35,7 +35,7 @@ def statements() -> Iterator[tuple[CertifiedQuestion, Statement, ExactProblem]]:
         for problem in case.problems:
             for reading in case.readings:
                 statement = case.statement(problem.id, reading.id)
-                exact = stated_exactly(statement) if statement.complete else None
+                exact = printed_problem_or_none(statement) if statement.complete else None
                 if exact is not None:
                     yield CertifiedQuestion(case_id, problem.id, reading.id), statement, exact
 

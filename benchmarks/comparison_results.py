@@ -214,8 +214,8 @@ def ablated_of(
 def settings_key(table: dict[str, Any], there: dict[str, Any]) -> str:
     """The settings of a row that state all of a table."""
     for key in there:
-        told = json.loads(key)
-        if all(told.get(name) == plain(value) for name, value in table.items()):
+        settings = json.loads(key)
+        if all(settings.get(name) == plain(value) for name, value in table.items()):
             return key
     return ""
 

@@ -192,14 +192,14 @@ def page_with(page: str, shown: str) -> str:
 
 def described() -> str:
     """The commit of the checkout, with a mark if files differ from it."""
-    told = subprocess.run(
+    answer = subprocess.run(
         ["git", "describe", "--always", "--dirty", "--abbrev=12"],
         cwd=ROOT,
         capture_output=True,
         text=True,
         check=False,
     )
-    return told.stdout.strip() or "unknown"
+    return answer.stdout.strip() or "unknown"
 
 
 def enter(path: Path, new: Sequence[Row]) -> None:

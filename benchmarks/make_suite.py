@@ -246,8 +246,8 @@ def run_baselines(asked: argparse.Namespace) -> None:
                 continue
             with Store(ROWS / "baselines.sqlite") as store:
                 rates = success_rates(one.name, before, seeds, store)
-            told = {"baselines": rates, "baseline_runs": seeds, "baseline_budget": BASELINE_BUDGET}
-            keep({**before, "hardness": {**before["hardness"], **told}})
+            found = {"baselines": rates, "baseline_runs": seeds, "baseline_budget": BASELINE_BUDGET}
+            keep({**before, "hardness": {**before["hardness"], **found}})
             print(f"{one.name}: {seeds} runs: {rates}", flush=True)
 
 

@@ -116,7 +116,7 @@ def study_text(paper: str, part: str) -> str:
         f"budget = {budget}",
         f"seeds = {SEEDS[part]}",
         f"handlings = {toml(HANDLINGS if part == 'listed' else HANDLINGS[:1])}",
-        *posed(paper, part),
+        *problem_blocks(paper, part),
     ]
     for at, name in enumerate(names):
         block = next(one for one in case.algorithms if one.id == name)
@@ -135,7 +135,7 @@ def study_text(paper: str, part: str) -> str:
     return "\n".join(lines) + "\n"
 
 
-def posed(paper: str, part: str) -> list[str]:
+def problem_blocks(paper: str, part: str) -> list[str]:
     """The problems of a study."""
     if paper == "woa":
         blocks = [[f'case = "whale-{n}.toml"'] for n in range(SETS if part == "readings" else 1)]

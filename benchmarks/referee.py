@@ -130,7 +130,7 @@ def suite_questions() -> Iterator[Question]:
         yield Question(instance.name, waypoints, sizes[:, 0], sizes[:, 1], sizes[:, 2])
 
 
-def poses(setting: Setting, question: Question) -> bool:
+def can_be_asked(setting: Setting, question: Question) -> bool:
     """Whether a planner can be asked: its path fits, and the limits that it needs are there."""
     if (setting.path == "states") != bool(question.states):
         return False
@@ -194,7 +194,7 @@ def best_of(setting: Setting, question: Question) -> float | None:
 def judged(setting: Setting, question: Question, motion: Motion, seconds: float) -> Answer:
     """Peaks of an output over its limits, and its time beside the floor."""
     jerk = question.jerk if setting.order == 3 else np.inf
-    limits = JointLimits.given(motion.joints, question.velocity, question.acceleration, jerk)
+    limits = JointLimits.from_values(motion.joints, question.velocity, question.acceleration, jerk)
     check = check_motion(motion, limits)
     ratios = tuple(
         max(p.ratio for p in check.peaks if p.quantity == name)
@@ -229,7 +229,7 @@ def answers_of(
     setting: Setting, questions: Sequence[Question]
 ) -> tuple[list[Answer], Counter[str], list[str]]:
     """Outputs of a planner, its failures by message, and the questions that it got."""
-    able = [one for one in questions if poses(setting, one)]
+    able = [one for one in questions if can_be_asked(setting, one)]
     if able and able[0].name.isdigit():
         able = able[: math.ceil(setting.share * len(able))]
     found, failures = [], Counter[str]()

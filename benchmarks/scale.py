@@ -350,8 +350,8 @@ def tables(rows):
     # Only ratios of one machine mean anything: each question is measured on one.
     out.append(
         "\n\n".join(
-            where if len(used) == 1 else f"{', '.join(told)}: {where}"
-            for where, told in used.items()
+            where if len(used) == 1 else f"{', '.join(questions)}: {where}"
+            for where, questions in used.items()
         )
     )
     return "\n".join(out)

@@ -36,7 +36,7 @@ def file_ours(curve, joints, samples):
     def run():
         with folder:
             read = read_motion(path).content
-            limits = JointLimits.given(read.joints, *LIMITS)
+            limits = JointLimits.from_values(read.joints, *LIMITS)
             return max(p.ratio for p in check_samples(read, limits).peaks)
 
     return run

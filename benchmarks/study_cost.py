@@ -65,14 +65,14 @@ def memory(runs: int) -> tuple[list[float], list[float]]:
     with tempfile.TemporaryDirectory() as folder, Store(Path(folder, "runs.sqlite")) as store:
         begun = time.monotonic()
 
-        def told(session: StudySession) -> None:
+        def note(session: StudySession) -> None:
             if session.run in (0, 10, 100) or session.run % max(1, runs // 10) == 0:
                 rate = session.run / (time.monotonic() - begun)
                 held.append(resident())
                 print(f"{session.run:6} runs  {held[-1]:7.1f} MB  {rate:6.1f} a second", flush=True)
 
         with on_this_machine(2) as engine:
-            run_study(plan, store, engine, told=told)
+            run_study(plan, store, engine, progress=note)
         for name in ("rows.csv", "rows.parquet", "rows.ioh"):
             count = export_rows(study_rows(plan, store), Path(folder, name))
             written.append(resident())
@@ -89,14 +89,14 @@ def workers(seeds: int) -> float:
         with tempfile.TemporaryDirectory() as folder, Store(Path(folder, "runs.sqlite")) as store:
             begun = 0.0
 
-            def told(session: StudySession) -> None:
+            def start(session: StudySession) -> None:
                 nonlocal begun
                 # The first runs start the processes.
                 if session.run == 4:
                     begun = time.monotonic()
 
             with on_this_machine(count) as engine:
-                run_study(plan, store, engine, told=told)
+                run_study(plan, store, engine, progress=start)
             rate = (seeds - 4) / (time.monotonic() - begun)
             took.setdefault(count, []).append(rate)
             print(f"{count} workers: {rate:.2f} runs a second", flush=True)

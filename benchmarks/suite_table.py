@@ -129,13 +129,13 @@ def csv_text(found: Sequence[dict[str, Any]]) -> str:
     writer.writerow(CSV_COLUMNS)
     for row in found:
         hard = row["hardness"] or {}
-        told = {
+        derived = {
             "tight": " ".join(row["tight"]),
             "command": BenchmarkInstance.model_validate(row).command,
             "verify": row["certificate"]
             and f"python -m trajgap.verify certificates/{row['certificate']}",
         }
-        flat = {**row, **hard, **hard.get("baselines", {}), **told}
+        flat = {**row, **hard, **hard.get("baselines", {}), **derived}
         writer.writerow(["" if flat.get(key) is None else flat[key] for key in CSV_COLUMNS])
     return text.getvalue()
 

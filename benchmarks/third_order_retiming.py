@@ -95,7 +95,7 @@ def retimed(motion: Trajectory, limits: Array, cells: int) -> Retimed:
 
 
 def _judged(motion: Motion, limits: Array) -> tuple[float, float]:
-    check = check_motion(motion, JointLimits.given(motion.joints, *limits.T))
+    check = check_motion(motion, JointLimits.from_values(motion.joints, *limits.T))
     return motion.total_time * check.stretch, max(peak.ratio for peak in check.peaks)
 
 

@@ -155,7 +155,7 @@ family = "{curve}-spline"
     return parse_case(text, "timed.toml")
 
 
-def told(word):
+def report(word):
     """Tell the parent where the run is, and wait until it has looked at the clock."""
     print(word, flush=True)
     sys.stdin.readline()
@@ -178,11 +178,11 @@ def audited(curve, count, seconds):
     certify = intervals.certify
 
     def noted(*given, **named):
-        told("begin")
+        report("begin")
         try:
             return certify(*given, **named)
         finally:
-            told("pause")
+            report("pause")
 
     intervals.certify = noted
     audit(case_of(curve, count), seeds=2, certify_seconds=seconds)
@@ -205,14 +205,14 @@ def work(what, curve, count, seconds, first, path):
         import trajgap.verify.__main__
         import trajgap.verify.quintic  # noqa: F401
 
-        told("begin")
+        report("begin")
         word = verified(path, seconds)
     else:
         if not first:
             run(4, 5.0)
-        told("begin")
+        report("begin")
         word = run(count, seconds)
-    told(f"end {word}")
+    report(f"end {word}")
 
 
 def processor(pid):

@@ -36,8 +36,8 @@ def rows(instances, workers):
         for at, objective in enumerate(block.objectives):
             for r in range(block.runs):
                 times = (*sample.totals[at, :, r], sample.slower.total, sample.faster.total)
-                told = (f"{t:.6f}" if np.isfinite(t) else "" for t in times)
-                yield (sample.reading, f"{sample.step:g}", sample.index, objective, r, *told)
+                totals = (f"{t:.6f}" if np.isfinite(t) else "" for t in times)
+                yield (sample.reading, f"{sample.step:g}", sample.index, objective, r, *totals)
 
 
 def summary(path):

@@ -69,10 +69,15 @@ def rules() -> str:
     """Every rule of the audit, with what it asks, what it may say, and an example."""
     lines = ["# Rules", "", "What `trajgap explain RULE` prints, for every rule of an audit.", ""]
     for rule in RULES:
-        told = EXPLAINED[rule.id]
+        explained = EXPLAINED[rule.id]
         lines += [f"(rule-{rule.id.lower()})=", f"## {rule.id}: {plain(rule.title)}", ""]
-        lines += [plain(told.asks), "", f"**What it may say.** {plain(told.concludes)}", ""]
-        lines += [f"**Example.** {plain(told.example)}", ""]
+        lines += [
+            plain(explained.asks),
+            "",
+            f"**What it may say.** {plain(explained.concludes)}",
+            "",
+        ]
+        lines += [f"**Example.** {plain(explained.example)}", ""]
     return "\n".join(lines)
 
 
@@ -108,8 +113,8 @@ def block(name: str, shape: dict[str, Any]) -> Iterator[str]:
         yield from ("| key | takes | meaning |", "|---|---|---|")
         for key, one in shape["properties"].items():
             must = ", required" if key in shape.get("required", ()) else ""
-            told = plain(one.get("description", ""))
-            yield f"| `{key}` | {taken(one)}{must} | {told} |"
+            meaning = plain(one.get("description", ""))
+            yield f"| `{key}` | {taken(one)}{must} | {meaning} |"
         yield ""
 
 

@@ -46,7 +46,7 @@ def states(
 
 
 _SEED = Annotated[int, whole(0)]
-"""What numpy takes as entropy, told in one line."""
+"""What numpy takes as entropy, in one line."""
 _WORKERS = Annotated[int, whole(1)]
 """The calling process counts as one."""
 Method = Algorithm[Any] | Search

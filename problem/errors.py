@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 from .characters import visible
 
-_MOST_TOLD = 8
-"""Faults that one refusal tells: more hide the ones to begin with."""
+_MOST_FAULTS = 8
+"""Faults that one refusal names: more hide the ones to begin with."""
 
 
 class TrajgapError(ValueError):
@@ -90,9 +90,9 @@ class CaseError(TrajgapError):
         return ((self.field, self.reason), *self.others)
 
     def __str__(self) -> str:
-        told = [": ".join(part for part in one if part) for one in self.faults[:_MOST_TOLD]]
-        more = len(self.faults) - len(told)
-        said = "; also ".join(told) + (f" (and {more} more)" if more else "")
+        shown = [": ".join(part for part in one if part) for one in self.faults[:_MOST_FAULTS]]
+        more = len(self.faults) - len(shown)
+        said = "; also ".join(shown) + (f" (and {more} more)" if more else "")
         line = " ".join(": ".join(part for part in (self.file, said) if part).split())
         # File names and values come from outside; nothing of them may steer a terminal.
         return visible(line)

@@ -51,8 +51,8 @@ def fault(
 
     ``others`` are the paths and reasons of further ones.
     """
-    told = {"path": path, "reason": reason, "others": list(others)}
-    return PydanticCustomError(kind, "{reason}", told)
+    context = {"path": path, "reason": reason, "others": list(others)}
+    return PydanticCustomError(kind, "{reason}", context)
 
 
 def spelt_like(word: str, known: Iterable[str]) -> str | None:
@@ -60,7 +60,7 @@ def spelt_like(word: str, known: Iterable[str]) -> str | None:
     return next(iter(get_close_matches(word, list(known), n=1, cutoff=0.6)), None)
 
 
-def nearest(word: str, known: Iterable[str]) -> str:
+def spelling_hint(word: str, known: Iterable[str]) -> str:
     """How to fix an unknown word: the nearest known one, or all of them."""
     choices = list(known)
     close = spelt_like(word, choices)
@@ -80,7 +80,7 @@ class Strict(Described):
         if not isinstance(data, dict):
             raise fault("", f"expected a table of keys, got {describe(data)}; write it as a table")
         unknown = [
-            (f".{key}", f"unknown key; {nearest(str(key), cls.model_fields)}")
+            (f".{key}", f"unknown key; {spelling_hint(str(key), cls.model_fields)}")
             for key in data
             if key not in cls.model_fields
         ]

@@ -96,9 +96,9 @@ class Problem:
                 f"waypoints: {self.curve.name} with {self.curve.segments} segments "
                 f"needs {wanted}, got {q.shape[0]}"
             )
-        if self.curve.told_joints not in (None, q.shape[1]):
+        if self.curve.prescribed_joints not in (None, q.shape[1]):
             raise TrajgapError(
-                f"curve: prescribes derivatives for {self.curve.told_joints} joints, "
+                f"curve: prescribes derivatives for {self.curve.prescribed_joints} joints, "
                 f"way-points are given for {q.shape[1]}"
             )
         q.setflags(write=False)

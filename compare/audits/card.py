@@ -83,24 +83,24 @@ def verdict_card(
     sentences = [plainly(study.case, first, far, also=also) for first, *also in alike.values()]
     left = CARD_WORDS - sum(map(count_words, (limits, optimum)))
     errors, more = _fitting(sentences, left)
-    # Where an error on the card says which percentage falls by it, no line says so again.
+    # Where an error on the card says which percentage it refutes, no line says so again.
     tells = {plainly(study.case, c, far) for c in grave if _tells(study, c, improved)}
-    told = not tells.isdisjoint(errors)
-    if improvement is not None and not told:
+    covered = not tells.isdisjoint(errors)
+    if improvement is not None and not covered:
         left -= count_words(improvement)
         errors, more = _fitting(sentences, left)
     left -= sum(map(count_words, errors)) + (count_words(more_errors(more)) if more else 0)
     explanation = _explanation(causes, left)
     if not more:
         left -= count_words(explanation or "")
-        warned = [c for c in causes if _falls(c, words) and (c.rule, c.claim) not in said]
+        warned = [c for c in causes if _warns_against(c, words) and (c.rule, c.claim) not in said]
         briefly = [plainly(study.case, cause, far, brief=True) for cause in warned]
         errors += _fitting(briefly, left)[0]
     return VerdictCard(
         limits=limits,
         optimum=optimum,
         improvement=Why("an error says it")
-        if told
+        if covered
         else known(improvement, "no improvement is claimed"),
         errors=errors,
         more=more,
@@ -108,22 +108,22 @@ def verdict_card(
     )
 
 
-_FALLEN = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT)
+_AGAINST = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT)
 """Words that are against a claim under every reading."""
 
 
-def _falls(cause: Cause, words: Mapping[str, Judgement]) -> bool:
-    """Whether a cause that is no error is what a claim falls by."""
+def _warns_against(cause: Cause, words: Mapping[str, Judgement]) -> bool:
+    """Whether a cause that is no error speaks against its claim, as every reading does."""
     own, head = words.get(cause.claim or ""), cause.head
-    against = head is not None and head.verdict in _FALLEN
+    against = head is not None and head.verdict in _AGAINST
     warns = cause.severity is Severity.WARNING
-    return warns and against and own is not None and own.verdict in _FALLEN
+    return warns and against and own is not None and own.verdict in _AGAINST
 
 
 def _tells(study: Study, cause: Cause, improved: set[str]) -> bool:
-    """Whether the sentence of a cause says that a claimed percentage falls with it."""
-    falls = improved & {one.claim for one in cause.consequences}
-    claims = [study.case.claim(one) for one in falls]
+    """Whether the sentence of a cause says that a claimed percentage is refuted with it."""
+    affected = improved & {one.claim for one in cause.consequences}
+    claims = [study.case.claim(one) for one in affected]
     counted = any(isinstance(c, ImprovementClaim) and c.percent is not None for c in claims)
     return cause.rule == "TG104" and counted
 

@@ -45,7 +45,7 @@ def plainly(
     also : sequence of Cause
         Others that say the same of other claims: one sentence names all their places.
     brief : bool
-        Whether a warning is told as shortly as an error: where the claim falls by it.
+        Whether a warning is as short as an error: where it speaks against the claim.
 
     Returns
     -------
@@ -75,7 +75,7 @@ def _plain(
     if claim is None or head is None:
         return spoken(case, first_sentence(cause.says) + ".")
     if cause.severity is not Severity.ERROR and cause.rule != "TG201" and not brief:
-        # A warning proves nothing: it is told in its own words.
+        # A warning proves nothing: it keeps its own words.
         return spoken(case, cause.says)
     claims = [claim, *(case.claim(one.claim) for one in also if one.claim)]
     where = " and ".join(dict.fromkeys(map(place, claims)))

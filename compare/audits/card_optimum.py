@@ -65,8 +65,8 @@ def optimum_line(
     where = ["under the default reading"] if len(study.readings) > 1 else []
     if any(w.claim in words and on_doubted_points(words[w.claim]) for w in main if w.claim):
         where.insert(0, "through them" if before else "on doubted way-points")
-    told = ", ".join([*where, _side_by_side(beside)])
-    return f"{told[:1].upper()}{told[1:]}."
+    sentence = ", ".join([*where, _side_by_side(beside)])
+    return f"{sentence[:1].upper()}{sentence[1:]}."
 
 
 def on_doubted_points(judgement: Judgement) -> bool:

@@ -77,14 +77,14 @@ class CaseAudit:
     made: VerdictCard | None = None
     """The card, where it was made by hand; otherwise `card` makes it."""
 
-    made_falls: tuple[Waterfall, ...] | None = None
+    made_waterfalls: tuple[Waterfall, ...] | None = None
     """The waterfalls, where they were made by hand; otherwise `waterfalls` computes them."""
 
     @cached_property
     def waterfalls(self) -> tuple[Waterfall, ...]:
         """Where the time goes, for each problem and reading."""
-        if self.made_falls is not None:
-            return self.made_falls
+        if self.made_waterfalls is not None:
+            return self.made_waterfalls
         with kept_calls():
             return waterfalls(self.study) if self.study.has_problems else ()
 

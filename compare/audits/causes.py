@@ -107,8 +107,8 @@ def _elsewhere(
     """What contradicts a claim that is called optimal where no motion is shown to be shorter."""
     left = {reading.id for reading in study.case.readings} - readings
     breaking = {f.reading for f in against if f.claim == first.claim and f.kind == "breaks"}
-    told = first.kind == "longer" and left and left <= breaking
-    return "limits broken" if told else ""
+    broken = first.kind == "longer" and left and left <= breaking
+    return "limits broken" if broken else ""
 
 
 def _mildest(study: Study, first: Finding, group: list[Finding]) -> Finding:

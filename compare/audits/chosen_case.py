@@ -106,7 +106,7 @@ class ChosenCase:
 
     @property
     def problems(self) -> tuple[str, ...]:
-        """Ids of the problems that are posed, in order."""
+        """Ids of the problems that are complete, in order."""
         return tuple(dict.fromkeys(pid for pid, _ in self.pairs))
 
     def problem(self, pid: str, rid: str) -> Problem:

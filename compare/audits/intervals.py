@@ -82,9 +82,9 @@ class Intervals:
 
     def any_curve(self, problem: ExactProblem) -> ProvedInterval | None:
         """The interval over any curve that a given or shipped certificate proves."""
-        return self._given(problem, Subject.ANY)
+        return self._by_document(problem, Subject.ANY)
 
-    def _given(self, problem: ExactProblem, subject: Subject) -> ProvedInterval | None:
+    def _by_document(self, problem: ExactProblem, subject: Subject) -> ProvedInterval | None:
         mine = (interval_of(one, problem, subject) for one in self._documents)
         return next((found for found in mine if found is not None), None) or proved(
             problem, subject
@@ -100,7 +100,7 @@ class Intervals:
             self._left -= time.monotonic() - began
 
     def _sought(self, problem: ExactProblem, called: str) -> ProvedInterval | None:
-        found = self._given(problem, Subject.DECLARED)
+        found = self._by_document(problem, Subject.DECLARED)
         if found is not None or covered(problem) is not None:
             return found
         seconds = self._left * _SHARE

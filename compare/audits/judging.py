@@ -19,7 +19,7 @@ from ..documents import (
     Severity,
     Why,
     grouped,
-    told,
+    with_readings,
 )
 
 _RANK = (Evidence.NONE, Evidence.CERTIFIED, Evidence.BEST_KNOWN, Evidence.UNCONVERGED)
@@ -77,7 +77,9 @@ def judge(
         said = (Said(f.verdict, f.message, f.rule, f.reading) for f in behind)
         depends = verdict is ClaimVerdict.DEPENDS
         behind_it = grouped(said, tuple(each), named)
-        why = " ".join(told(one, tuple(each), named, word=depends, why=True) for one in behind_it)
+        why = " ".join(
+            with_readings(one, tuple(each), named, word=depends, why=True) for one in behind_it
+        )
         confidence = _confidence(behind, verdict)
     return Judgement(
         claim=claim,
@@ -108,8 +110,8 @@ def weigh(
 ) -> tuple[Finding, ...]:
     """Findings whose severity fits the verdict on their claim.
 
-    What a proof says under one reading is an error only where the claim falls under every
-    admissible reading; otherwise it is a warning, for the reading may not be the one meant.
+    What a proof says under one reading is an error only where every admissible reading is against
+    the claim; otherwise it is a warning, for the reading may not be the one meant.
 
     Parameters
     ----------
@@ -125,14 +127,14 @@ def weigh(
         In their order.
     """
     against = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT)
-    fallen = {
+    refuted = {
         j.claim
         for j in judgements
         if set(j.readings) == set(admissible) and all(v in against for v in j.readings.values())
     }
     return tuple(
         f.model_copy(update={"severity": Severity.WARNING})
-        if f.severity is Severity.ERROR and f.reading is not None and f.claim not in fallen
+        if f.severity is Severity.ERROR and f.reading is not None and f.claim not in refuted
         else f
         for f in findings
     )

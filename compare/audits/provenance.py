@@ -13,7 +13,7 @@ from hashlib import sha256
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from ...nlp import ExactProblem, proved, shipped_file, stated_exactly
+from ...nlp import ExactProblem, printed_problem_or_none, proved, shipped_file
 from ...problem import Coupling, TrajgapError
 from ...verify import Subject
 from ..documents import Provenance, UsedCertificate, Why, known
@@ -147,7 +147,7 @@ def _questions(study: Study) -> Iterator[tuple[ExactProblem, Subject]]:
         if problem.coupling is Coupling.PER_JOINT and len(problem.joints) > 1:
             joints += range(len(problem.joints))
         for joint in joints:
-            exact = stated_exactly(statement, joint)
+            exact = printed_problem_or_none(statement, joint)
             if exact is not None:
                 yield exact, Subject.DECLARED
                 if joint is None:

@@ -16,9 +16,9 @@ from ...nlp import (
     Solution,
     Status,
     lower_bounds,
+    printed_problem_or_none,
     proved_joints,
     solve_per_joint,
-    stated_exactly,
     with_certificates,
     with_interval,
 )
@@ -85,7 +85,7 @@ class Study(ReplayedCase):
                 )
             except TrajgapError as error:
                 return Solution(one, Status.FAILED, str(error))
-            exact = stated_exactly(self.case.statement(pid, rid), index)
+            exact = printed_problem_or_none(self.case.statement(pid, rid), index)
             return with_interval(found, None if exact is None else self._proved(pid, rid)(exact))
 
         if joint is not None and len(self.problem(pid, rid).joints) == 1:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from decimal import ROUND_FLOOR, Context, Decimal, localcontext
 from fractions import Fraction
 
-from ...nlp import Evidence, Solution, Status, stated_exactly
+from ...nlp import Evidence, Solution, Status, printed_problem_or_none
 from ...nlp.proofs.any_curve import estimate_any_curve
 from ...nlp.retiming import retime
 from ...problem import down, fit, up
@@ -229,7 +229,7 @@ def _free(study: Study, pid: str, rid: str) -> Step:
     if answer.total_time is None:
         return Step.missing(name, answer.why or "")
     note = "upper estimate" + (f"; {answer.why}" if answer.why else "")
-    exact = stated_exactly(study.case.statement(pid, rid))
+    exact = printed_problem_or_none(study.case.statement(pid, rid))
     bound = None if exact is None else study.intervals.any_curve(exact)
     # An infimum that is met to the last digit may round to either side of its bound.
     if bound is None or not 0 < bound.lower <= answer.total_time * (1 + _ROUNDING):

@@ -362,7 +362,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         catch_interrupts()
     try:
         code = _run(sys.argv[1:] if arguments is None else arguments)
-        if code != BAD_INPUT:  # told already, where it is that nothing can be written
+        if code != BAD_INPUT:  # said already, where it is that nothing can be written
             sys.stdout.flush()
         return code
     except BrokenPipeError:

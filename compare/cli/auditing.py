@@ -176,13 +176,13 @@ def _unchecked(case: AuditedCase) -> list[str]:
         if one.verdict is ClaimVerdict.NOT_CHECKABLE and not one.informs:
             first = first_sentence(one.why)
             reasons.setdefault(first, []).append(places[one.claim])
-    told = [
+    lines = [
         f"not checkable, {where[0] if len(where) == 1 else f'{len(where)} claims'}: {why}."
         for why, where in list(reasons.items())[:_REASONS]
     ]
-    more = len(reasons) - len(told)
+    more = len(reasons) - len(lines)
     rest = [f"{more} more reason{'s' if more > 1 else ''} on the pages."] if more else []
-    return told + rest
+    return lines + rest
 
 
 def _advised(advice: Sequence[Advice]) -> list[RenderableType]:
@@ -236,9 +236,9 @@ def _time_goes(waterfalls: Sequence[Waterfall], case: Case) -> list[RenderableTy
             under = f"; {in_words(case, pid, one.reading)}" if several else ""
             parts.append(line(f"Where the time goes{under}"))
             parts.append(Columns(("step", ">time s", "evidence"), rows))
-    told = dict.fromkeys(said for one in first.values() for said in one.without_optimum)
-    told |= dict.fromkeys(f"{capital(name)}: {why}." for name, why in unknown.items())
-    return [*parts, *(line(said, "dim") for said in told)]
+    notes = dict.fromkeys(said for one in first.values() for said in one.without_optimum)
+    notes |= dict.fromkeys(f"{capital(name)}: {why}." for name, why in unknown.items())
+    return [*parts, *(line(said, "dim") for said in notes)]
 
 
 def _step(step: Step) -> tuple[str, str]:

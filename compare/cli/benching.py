@@ -13,7 +13,7 @@ from typing import Any
 from rich.console import RenderableType
 
 from ...heuristics import KINDS
-from ...nlp import Evidence, Solution, solve, stated_exactly, with_certificate
+from ...nlp import Evidence, Solution, printed_problem_or_none, solve, with_certificate
 from ...problem import Case, CaseError, Coupling, TrajgapError
 from ...problem.cases import SUITE_PREFIX
 from ...problem.suite import instance_of, select_instances
@@ -75,7 +75,9 @@ def bench_case(
     asked = []
     for case in cases:
         own = _own(case, chosen)
-        settled = own | {name: {**own.get(name, {}), **told} for name, told in set_here.items()}
+        settled = own | {
+            name: {**own.get(name, {}), **changed} for name, changed in set_here.items()
+        }
         with naming(case.file):
             for one in select(case, problem, reading or case.default_reading.id, "shared"):
                 plan = plan_bench(
@@ -116,14 +118,14 @@ def _settings(texts: Sequence[str]) -> dict[str, dict[str, Any]]:
     for text in texts:
         name, equals, value = text.partition("=")
         try:
-            told = json.loads(value) if equals else None
+            values = json.loads(value) if equals else None
         except ValueError:
-            told = None
-        if not isinstance(told, dict):
+            values = None
+        if not isinstance(values, dict):
             raise CaseError(
                 "--set", "", f'{text!r} is not NAME={{"setting": value}}; give JSON after the ='
             )
-        found[name] = told
+        found[name] = values
     return found
 
 
@@ -132,10 +134,10 @@ def _own(case: Case, chosen: Sequence[str]) -> dict[str, dict[str, Any]]:
     found: dict[str, dict[str, Any]] = {}
     for block in case.algorithms:
         if block.kind in chosen and block.kind in KINDS:
-            told = {k: v for k, v in block.parameters.items() if k != "iterations"}
+            values = {k: v for k, v in block.parameters.items() if k != "iterations"}
             # An infinite penalty is every algorithm's default, and JSON knows no infinity.
             found[block.kind] = {
-                k: v for k, v in told.items() if not (isinstance(v, float) and math.isinf(v))
+                k: v for k, v in values.items() if not (isinstance(v, float) and math.isinf(v))
             }
     return found
 
@@ -202,7 +204,7 @@ def _optimum(case: Case, one: Selected) -> Solution | Reference:
         evidence = Evidence(str(instance.evidence))
         return Reference(upper=instance.upper, lower=lower, evidence=evidence)
     answer = solve(one.problem)
-    exact = stated_exactly(case.statement(one.problem_id, one.reading_id))
+    exact = printed_problem_or_none(case.statement(one.problem_id, one.reading_id))
     answer = with_certificate(answer, exact)
     if not 0 < answer.best < math.inf:
         why = answer.why or str(answer.status)

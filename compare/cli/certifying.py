@@ -202,14 +202,14 @@ def _questions(case: Case, one: Selected, subject: Subject) -> Iterator[Question
     """What is asked under one reading, of all joints or of each, with why it is not covered."""
     # A bound over any curve is one of all joints together: what else would they share.
     coupling = Coupling.SHARED if subject is Subject.ANY else one.problem.coupling
-    for question in _stated(case, one, coupling):
+    for question in _questions_of(case, one, coupling):
         exact = question.problem
         why = exact if isinstance(exact, str) else covered(exact, subject)
         asked = replace(question, subject=subject)
         yield asked if why is None else replace(asked, problem=why)
 
 
-def _stated(case: Case, one: Selected, coupling: Coupling) -> Iterator[Question]:
+def _questions_of(case: Case, one: Selected, coupling: Coupling) -> Iterator[Question]:
     """What is asked under one reading, covered or not."""
     statement = case.statement(one.problem_id, one.reading_id)
     name = f"{case.id}.{one.problem_id}.{one.reading_id}"
@@ -400,7 +400,7 @@ def verify_files(
             question
             for one in select(stated, None, None)
             for coupling in Coupling
-            for question in _stated(stated, one, coupling)
+            for question in _questions_of(stated, one, coupling)
         ]
     with new_output(out) as write:
         verdicts: list[JudgedFile] = []

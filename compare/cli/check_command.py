@@ -98,8 +98,8 @@ def check(
     if math.isnan(tolerance):
         raise typer.BadParameter("--tolerance is no number; give one from 0 to 1")
     if durations is not None:
-        if options.given:
-            raise typer.BadParameter(f"{options.given[0]} is of a motion; --durations of a case")
+        if options.names:
+            raise typer.BadParameter(f"{options.names[0]} is of a motion; --durations of a case")
         from .checking import check_durations
 
         return check_durations(case, durations, problem, reading, coupling, as_json, out)

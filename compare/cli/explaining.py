@@ -46,13 +46,13 @@ def _document(asked: Sequence[str]) -> ExplainDocument:
 
 def _rules() -> Iterator[ExplainedRule]:
     for rule in RULES:
-        told = EXPLAINED[rule.id]
+        explained = EXPLAINED[rule.id]
         yield ExplainedRule(
             id=rule.id,
             title=rule.title,
-            asks=told.asks,
-            concludes=told.concludes,
-            example=told.example,
+            asks=explained.asks,
+            concludes=explained.concludes,
+            example=explained.example,
         )
 
 

@@ -34,9 +34,9 @@ from ..documents import (
     MotionPeakShown,
     MotionQuantity,
     Why,
-    given,
     json_text,
     known,
+    value_or_none,
 )
 from .input import naming
 from .output import emit, new_output
@@ -59,7 +59,7 @@ class MotionOptions:
     strict: bool = False
 
     @property
-    def given(self) -> list[str]:
+    def names(self) -> list[str]:
         """Options that are there, for the message where they do not belong."""
         named = {
             **self.limits,
@@ -228,7 +228,7 @@ _POWERS = {
 def _shown(document: MotionCheckDocument) -> list[RenderableType]:
     result = document.result
     units = dict(zip(document.joints, document.units, strict=True))
-    how = given(document.interpolation)
+    how = value_or_none(document.interpolation)
     between = "" if how is None else f", interpolation {how}"
     head = (
         f"{document.file}: {document.format}, {len(document.joints)} joints, "
@@ -257,7 +257,7 @@ def _verdict(result: CheckedMotion, units: Mapping[str, str]) -> list[Renderable
     parts: list[RenderableType] = [
         line(f"{result.verdict}: {_sentence(result)}", "bold"),
     ]
-    worst = given(result.worst)
+    worst = value_or_none(result.worst)
     if worst is not None:
         unit = units[worst.joint] + _POWERS[worst.quantity]
         parts.append(
@@ -277,14 +277,14 @@ def _verdict(result: CheckedMotion, units: Mapping[str, str]) -> list[Renderable
                 f"it jumps at {one.breaks} break{'s' * (one.breaks > 1)}"
             )
         )
-    repaired = given(result.feasible_time)
+    repaired = value_or_none(result.feasible_time)
     if repaired is None:
         parts.append(line(f"repair: none, {result.feasible_time}"))
     elif result.slow_down > 1 + result.tolerance:
         parts.append(
             line(f"repair: {result.slow_down:.6f} times slower keeps the limits, {repaired:.6f} s")
         )
-    floor = given(result.floor)
+    floor = value_or_none(result.floor)
     if floor is None:
         parts.append(line(f"floor: none, {result.floor}", "dim"))
     else:
@@ -316,11 +316,11 @@ _SENTENCES = {
 
 
 def _sentence(result: CheckedMotion) -> str:
-    told = _SENTENCES[result.verdict]
+    sentence = _SENTENCES[result.verdict]
     if result.verdict is Verdict.DISCONTINUOUS:
         kept = "kept" if result.limits_verdict is Verdict.PASS else "not decided"
-        told += f"; limits, jumps apart: {kept}"
-    return f"{told} (relative tolerance {result.tolerance:g})"
+        sentence += f"; limits, jumps apart: {kept}"
+    return f"{sentence} (relative tolerance {result.tolerance:g})"
 
 
 def _number(value: float, unit: str) -> str:

@@ -17,7 +17,7 @@ from ...problem.motions import (
     read_back,
 )
 from ..audits import in_words
-from ..documents import WrittenMotion, given
+from ..documents import WrittenMotion, value_or_none
 from .input import Selected
 from .motion_checking import checked_motion
 
@@ -102,7 +102,7 @@ def write_motion(one: Selected, answer: Solution, asked: AskedSamples) -> tuple[
 def written_lines(written: WrittenMotion, case: Case) -> list[str]:
     """What the terminal says of a written file."""
     result = written.result
-    worst = given(result.worst)
+    worst = value_or_none(result.worst)
     ratio = "" if worst is None else f", largest ratio {worst.ratio:.6f}"
     lines = [
         f"{written.file}: the motion as {written.form} "

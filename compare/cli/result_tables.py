@@ -54,8 +54,8 @@ def by_question(
     One table of them all, or one for each where they are set apart or there is only one.
     """
     if not apart and len(rows) > 1:
-        told = [(in_words(case, *ids), *row) for ids, own in rows.items() for row in own]
-        return [Columns(("~problem", *columns), told), *_ids(rows, case)]
+        joined = [(in_words(case, *ids), *row) for ids, own in rows.items() for row in own]
+        return [Columns(("~problem", *columns), joined), *_ids(rows, case)]
     parts: list[RenderableType] = []
     for ids, own in rows.items():
         words = asked_as(case, *ids)
@@ -77,14 +77,14 @@ def _ids(asked: Iterable[tuple[str, str]], case: Case) -> list[RenderableType]:
 
 
 def reasons(
-    results: Iterable[R], told: Callable[[R], Mapping[str, str | None]], case: Case
+    results: Iterable[R], missing: Callable[[R], Mapping[str, str | None]], case: Case
 ) -> list[Text]:
     """Why a number is missing, for each result without joints of its own."""
     return [
         line(f"{name}: {why} ({in_words(case, result.problem, result.reading)})", "dim")
         for result in results
         if not result.joints
-        for name, why in told(result).items()
+        for name, why in missing(result).items()
         if why
     ]
 

@@ -63,7 +63,7 @@ def new_case(
 
         faults: list[tuple[str, str]] = []
         file = ""
-        # A faulty table or option should be told before anything is asked.
+        # A faulty table or option should be refused before anything is asked.
         guess = {name: CHOICES[name][0] for name in needed} | given
         try:
             written(guess)
@@ -71,7 +71,7 @@ def new_case(
             file, faults = error.file, [(_option(field), why) for field, why in error.faults]
         asked = [name for name in (*needed, "time") if name not in given]
         if faults:
-            # Nobody is asked in vain; what a pipe does not hold either is told with the faults.
+            # Nobody is asked in vain; what a pipe does not hold either is named with the faults.
             asked = [] if _interactive() else [name for name in asked if name != "time"]
         for name in asked:
             answer = _ask(name, str(table))

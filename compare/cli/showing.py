@@ -70,7 +70,7 @@ def _tables(document: ShowDocument, case: Case) -> list[RenderableType]:
         Columns(("reading", "~what it means, and why it is admissible"), readings),
     ]
     if document.claims:
-        claims = [(c.id, _stated(c), f"{claim_text(case, c)} ({c.where})") for c in document.claims]
+        claims = [(c.id, _digits(c), f"{claim_text(case, c)} ({c.where})") for c in document.claims]
         parts.append(Columns(("claim", "printed", "~what is said, and where"), claims))
     if document.assumptions:
         choices = [(str(k), f"{a.text} {a.choice}") for k, a in enumerate(document.assumptions, 1)]
@@ -122,12 +122,12 @@ def _ends(one: Statement) -> str:
     if block.family != "cubic-spline" and not (block.family in _SPLINES and chosen):
         return ""
     if block.finish_orders is None and block.finish_derivatives is None:
-        return _told(block.orders, block.end_derivatives, "at the ends")
-    start = _told(block.orders, block.end_derivatives, "at the start")
-    return start + _told(block.last_orders, block.last_derivatives, "at the finish")
+        return _zeros(block.orders, block.end_derivatives, "at the ends")
+    start = _zeros(block.orders, block.end_derivatives, "at the start")
+    return start + _zeros(block.last_orders, block.last_derivatives, "at the finish")
 
 
-def _told(orders: Sequence[int], values: object, where: str) -> str:
+def _zeros(orders: Sequence[int], values: object, where: str) -> str:
     """What is 0 at an end; where something else is given, the curve's name says so."""
     names = " and ".join(_DERIVATIVES.get(k, f"derivative {k}") for k in orders)
     return f", {names} 0 {where}" if names and values is None else ""
@@ -145,7 +145,7 @@ def _limit(one: Statement, quantity: Literal["velocity", "acceleration", "jerk"]
     return f"{quantity} {' '.join(with_unit(numbers, units))}"
 
 
-def _stated(claim: AnyClaim) -> str:
+def _digits(claim: AnyClaim) -> str:
     """The printed digits of a claim."""
     match claim:
         case DurationsClaim() | MaximumClaim():

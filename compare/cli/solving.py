@@ -11,10 +11,10 @@ from rich.console import RenderableType
 from ...nlp import (
     Solution,
     lower_bounds,
+    printed_problem_or_none,
     proved_joints,
     solve,
     solve_per_joint,
-    stated_exactly,
     with_certificate,
     with_certificates,
 )
@@ -27,10 +27,10 @@ from ..documents import (
     SolveDocument,
     SolveResult,
     Why,
-    given,
     json_text,
     reason,
     solve_result,
+    value_or_none,
 )
 from .input import Selected, naming, read_case, select
 from .motion_writing import AskedSamples, check_one_motion, write_motion, written_lines
@@ -95,7 +95,7 @@ def _solved(
         return solve_result(*ids, apart, retimed, together), together
     answer = solve(one.problem, starts=starts, seed=seed)
     answer = with_certificate(
-        answer, stated_exactly(case.statement(one.problem_id, one.reading_id))
+        answer, printed_problem_or_none(case.statement(one.problem_id, one.reading_id))
     )
     return solve_result(*ids, answer, [_retimed(answer, retimings)]), answer
 
@@ -144,7 +144,7 @@ def _tables(document: SolveDocument, case: Case) -> list[RenderableType]:
 
 def _cells(result: Answer) -> tuple[object, ...]:
     longest = result.longest_per_segment if isinstance(result, SolveResult) else None
-    durations = given((longest or result).segment_durations) or ()
+    durations = value_or_none((longest or result).segment_durations) or ()
     residual, retimed = result.kkt_residual, result.toppra_extrapolated
     known = retimed is not None and not isinstance(retimed.duration, Why)
     return (
@@ -180,7 +180,7 @@ def _procedure(result: SolveResult, case: Case) -> list[str]:
 
 def _together(shared: Answer) -> str:
     """The optimum with durations that all joints share."""
-    durations = " ".join(f"{d:.4f}" for d in given(shared.segment_durations) or ())
+    durations = " ".join(f"{d:.4f}" for d in value_or_none(shared.segment_durations) or ())
     return (
         f"all joints with the same durations: {shared.status}, {seconds(shared.total_time)} s, "
         f"{shared.evidence}" + (f" ({durations} s)" if durations else "")

@@ -81,14 +81,14 @@ def conduct(
             with _engine(workers, dask) as engine, progress("study", len(plan)) as step:
                 begun = time.monotonic()
 
-                def told(now: StudySession) -> None:
+                def show(now: StudySession) -> None:
                     nonlocal session
                     session = now
                     step(_going(now, time.monotonic() - begun))
 
                 step("the optima that gaps are set against")
                 with _interruptible():
-                    session = run_study(plan, kept, engine, retry=retry, told=told)
+                    session = run_study(plan, kept, engine, retry=retry, progress=show)
         except KeyboardInterrupt:
             rest = [*([] if dask is None else ["--dask", dask]), *_options("--export", exports)]
             print(f"\ntrajgap: {_interrupted(session, [*again, *rest])}", file=sys.stderr)

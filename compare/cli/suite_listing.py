@@ -22,10 +22,10 @@ from ...problem.suite import (
 from ..documents import (
     SuiteDocument,
     SuiteShowDocument,
-    given,
     instance_document,
     json_text,
     suite_document,
+    value_or_none,
 )
 from ..pages import suite_pages
 from .output import emit, new_output, progress, say
@@ -65,8 +65,10 @@ def _table(document: SuiteDocument) -> list[RenderableType]:
     ]
     names = ("instance", "curve", ">joints", ">segments", "tight in", ">lower (s)", ">upper (s)")
     narrow = sum(one.evidence == "certified" for one in document.instances)
-    told = f"suite {document.version}: {len(rows)} instances, {narrow} certified to 1 % or better"
-    return [Columns((*names, ">width", "evidence"), rows), line(told)]
+    summary = (
+        f"suite {document.version}: {len(rows)} instances, {narrow} certified to 1 % or better"
+    )
+    return [Columns((*names, ">width", "evidence"), rows), line(summary)]
 
 
 def show_instance(name: str, as_json: bool, out: Path | None) -> int:
@@ -86,7 +88,7 @@ def _certificate(one: BenchmarkInstance) -> str | None:
 
 
 def _shown(document: SuiteShowDocument) -> list[RenderableType]:
-    one, hard = document.instance, given(document.instance.hardness)
+    one, hard = document.instance, value_or_none(document.instance.hardness)
     facts = [
         ("curve", f"{one.curve}, {one.segments} segments, {one.joints} joints"),
         ("source", document.source),
@@ -97,7 +99,7 @@ def _shown(document: SuiteShowDocument) -> list[RenderableType]:
         ("tight in", ", ".join(one.tight)),
         ("certificate", str(one.certificate)),
     ]
-    verify = given(document.verify)
+    verify = value_or_none(document.verify)
     if verify is None:
         facts.append(("verify", str(document.verify)))
     if hard is not None:

@@ -39,10 +39,10 @@ from .entry import (
     Real,
     Why,
     facts,
-    given,
     json_text,
     known,
     reason,
+    value_or_none,
 )
 from .explain_shown import ExplainDocument, ExplainedRule, ExplainedWord
 from .export import DOCUMENTS, filled, output_schema, schema_text, write_docs
@@ -157,8 +157,8 @@ from .why_judged import (
     in_full,
     noted,
     quoted,
-    told,
     under,
+    with_readings,
 )
 
 __all__ = [
@@ -304,7 +304,6 @@ __all__ = [
     "filled",
     "first_sentence",
     "gap_cell",
-    "given",
     "grouped",
     "implausibly",
     "in_full",
@@ -331,9 +330,10 @@ __all__ = [
     "solve_result",
     "suite_document",
     "tally",
-    "told",
     "under",
+    "value_or_none",
     "verify_document",
+    "with_readings",
     "worth",
     "worth_little",
     "write_docs",

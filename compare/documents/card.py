@@ -61,7 +61,7 @@ def tally(judgements: Sequence[Judgement]) -> str:
     """
     own = [j for j in judgements if evident(j)]
     many = Counter(j.confidence for j in own if isinstance(j.confidence, Confidence))
-    parts = [f"{many[one]} {told[many[one] != 1]}" for one, told in _KNOWN.items() if many[one]]
+    parts = [f"{many[one]} {forms[many[one] != 1]}" for one, forms in _KNOWN.items() if many[one]]
     held = sum(isinstance(j.confidence, Confidence) for j in judgements) - len(own)
     parts += [f"{held} {'holds' if held == 1 else 'hold'} by construction"] if held else []
     said = sum(claims_nothing(j) for j in judgements)

@@ -34,9 +34,9 @@ _WRITTEN = PlainSerializer(_as_in_the_file)
 def _keys(*texts: str, **others: JsonSchemaValue) -> WithJsonSchema:
     """JSON Schema of a block: the keys that every such block has, most of them texts."""
     keys = {**{key: {"type": "string"} for key in texts}, **others}
-    told = "As in the case file, digits as printed: case.schema.json."
+    description = "As in the case file, digits as printed: case.schema.json."
     return WithJsonSchema(
-        {"type": "object", "description": told, "required": [*keys], "properties": keys}
+        {"type": "object", "description": description, "required": [*keys], "properties": keys}
     )
 
 

@@ -78,7 +78,7 @@ def known(value: T | None, why: str | None = None) -> T | Why:
     return Why(why or "not computed") if value is None else value
 
 
-def given(value: T | Why) -> T | None:
+def value_or_none(value: T | Why) -> T | None:
     """A value, or None where there is none."""
     return None if isinstance(value, Why) else value
 
@@ -147,7 +147,13 @@ def facts(entry: Entry) -> list[tuple[str, str]]:
     for name, field in type(entry).model_fields.items():
         for words in (mark.words for mark in field.metadata if isinstance(mark, Fact)):
             value = getattr(entry, name)
-            values = value if isinstance(value, tuple) else () if given(value) is None else (value,)
+            values = (
+                value
+                if isinstance(value, tuple)
+                else ()
+                if value_or_none(value) is None
+                else (value,)
+            )
             found += [(words, str(one)) for one in values]
     return found
 

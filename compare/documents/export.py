@@ -88,7 +88,7 @@ def output_schema() -> dict[str, Any]:
     for inside in (Why, Caveat, CaveatKind):
         del shapes[named(inside)]
     for words in (enum for one in VOCABULARY for enum in one.enums):
-        said = [f"{word}: {told}" for word, told in meanings(words).items()]
+        said = [f"{word}: {sense}" for word, sense in meanings(words).items()]
         shapes[named(words)]["description"] = "\n".join([meaning(words), *said])
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
@@ -125,8 +125,8 @@ def _row(words: Words) -> str:
 
 def _listed(every: Iterable[str], explained: Mapping[str, str]) -> str:
     plain = ", ".join(f"`{word}`" for word in every if word not in explained)
-    told = " ".join(f"`{word}`: {_inner(m)}." for word, m in explained.items())
-    return ". ".join(part for part in (plain, told) if part)
+    senses = " ".join(f"`{word}`: {_inner(m)}." for word, m in explained.items())
+    return ". ".join(part for part in (plain, senses) if part)
 
 
 def _inner(sentence: str) -> str:

@@ -19,7 +19,7 @@ POINTS = "rests on doubted way-points"
 """How one begins where a claim was judged by motions through way-points that a finding doubts."""
 BUILT = "true of any such curve"
 """How one begins where nothing that is printed could make the claim false."""
-_STATED = {
+_KINDS = {
     Nature.DEFINITION: CaveatKind.DEFINITION,
     Nature.IDENTITY: CaveatKind.IDENTITY,
     Nature.AIM: CaveatKind.AIM,
@@ -58,7 +58,7 @@ def nature_caveat(nature: Nature) -> Caveat:
         Nature.AIM: "it says what is wanted, not what was reached",
         Nature.JUDGEMENT: "no measure is named that could be computed",
     }
-    kind = _STATED[nature]
+    kind = _KINDS[nature]
     return Caveat(kind, f"{_BESIDE[kind][1]}: {why[nature]}")
 
 
@@ -143,7 +143,7 @@ def same_reason(text: str, where: str, own: str) -> str:
 def claims_nothing(judgement: Judgement) -> bool:
     """Whether a claim that is not checkable states no result: a definition, an aim and the like."""
     undecided = judgement.verdict is ClaimVerdict.NOT_CHECKABLE
-    return undecided and any(c.kind in _STATED.values() for c in judgement.caveats)
+    return undecided and any(c.kind in _KINDS.values() for c in judgement.caveats)
 
 
 def evident(judgement: Judgement) -> bool:

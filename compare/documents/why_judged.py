@@ -150,7 +150,7 @@ def _alike(
     return [group for groups in found.values() for group in groups]
 
 
-def told(
+def with_readings(
     one: Reason,
     computed: Sequence[str],
     named: Named = NAMELESS,

@@ -85,8 +85,8 @@ class Entrant:
         independent samples. The key depends on nothing but the entrant, so that its rows are the
         same in any company.
         """
-        told = hashlib.sha256(canonical(self.identity).encode()).digest()
-        return int.from_bytes(told[:4], "big")
+        digest = hashlib.sha256(canonical(self.identity).encode()).digest()
+        return int.from_bytes(digest[:4], "big")
 
 
 @dataclass(frozen=True, eq=False)
@@ -269,13 +269,13 @@ def run_bench(
 
     With a store, runs that it holds are not made again, and each new one is in it as it ends.
     """
-    told = progress or (lambda _: None)
+    report = progress or (lambda _: None)
     found: dict[str, Row] = {}
     for trial in plan.trials if store is not None else ():
         row = None if store is None else store.row(trial.key)
         if row is not None and row.status is RowStatus.FINISHED:
             found[row.key] = against(row, trial.reference)
-            told(row)
+            report(row)
     left = [trial for trial in plan.trials if trial.key not in found]
     made = (
         (TrialOutcome(run_trial(trial), 0.0) for trial in left)
@@ -286,7 +286,7 @@ def run_bench(
         found[outcome.row.key] = outcome.row
         if store is not None:
             store.put(outcome.row, outcome.seconds)
-        told(outcome.row)
+        report(outcome.row)
     return Runs(plan, tuple(found[trial.key] for trial in plan.trials))
 
 

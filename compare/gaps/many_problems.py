@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..documents import BenchResult, OverallStanding, OverallTarget, Standing, Why, given
+from ..documents import BenchResult, OverallStanding, OverallTarget, Standing, Why, value_or_none
 from .benching import Runs
 from .rows import Row
 from .statistics import quantiles
@@ -48,7 +48,7 @@ def overall(results: Sequence[BenchResult]) -> tuple[OverallStanding, ...]:
 
 
 def _median(standing: Standing) -> float:
-    known = given(standing.median)
+    known = value_or_none(standing.median)
     return np.inf if known is None else known
 
 
@@ -79,7 +79,7 @@ def _gap(value: float) -> float | Why:
 
 def _order(standing: OverallStanding) -> tuple[float, float]:
     rate = next(target.rate for target in standing.targets if target.gap == _FIRST_TARGET)
-    return -rate, given(standing.median) or np.inf
+    return -rate, value_or_none(standing.median) or np.inf
 
 
 def relative_rows(results: Iterable[tuple[BenchResult, Runs]]) -> dict[str, list[Row]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from ...nlp import solve, stated_exactly, with_certificate
+from ...nlp import printed_problem_or_none, solve, with_certificate
 from ...problem import Problem
 from ...problem.cases import Statement
 from .rows import Bracket
@@ -31,7 +31,7 @@ def bracket_of(
     """
     found = solve(problem)
     if statement is not None:
-        found = with_certificate(found, stated_exactly(statement, joint))
+        found = with_certificate(found, printed_problem_or_none(statement, joint))
     if not 0 < found.best < math.inf:
         return None
     return Bracket(found.best, found.lower_bound)

@@ -148,8 +148,8 @@ class Trial:
     @property
     def key(self) -> str:
         """SHA-256 of all that determines the run."""
-        told = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in _APART}
-        text = canonical({"format": ROW_FORMAT, **told})
+        inputs = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in _APART}
+        text = canonical({"format": ROW_FORMAT, **inputs})
         return hashlib.sha256(text.encode()).hexdigest()
 
 

@@ -68,7 +68,7 @@ def run_study(
     engine: Engine,
     *,
     retry: bool = False,
-    told: Callable[[StudySession], None] = lambda _: None,
+    progress: Callable[[StudySession], None] = lambda _: None,
 ) -> StudySession:
     """Run what the store does not hold yet.
 
@@ -81,7 +81,7 @@ def run_study(
     engine : Engine
     retry : bool
         Run the failed ones again.
-    told : callable
+    progress : callable
         Called before the first run and after each.
 
     Returns
@@ -98,7 +98,7 @@ def run_study(
     store.note("software", _software())
     left = sum(1 for _ in unfinished(study, store, retry))
     session = StudySession(total=len(study), resumed=len(study) - left)
-    told(session)
+    progress(session)
     for outcome in outcomes(unfinished(study, store, retry), engine):
         store.put(outcome.row, outcome.seconds)
         session = StudySession(
@@ -108,7 +108,7 @@ def run_study(
             failed=session.failed + (outcome.row.status is RowStatus.FAILED),
             seconds=session.seconds + outcome.seconds,
         )
-        told(session)
+        progress(session)
     return session
 
 

@@ -15,8 +15,8 @@ from ..documents import (
     Standing,
     TargetReached,
     Why,
-    given,
     known,
+    value_or_none,
 )
 from .optimality_gap import gap
 from .pairs import compare_pairs
@@ -92,7 +92,7 @@ def bench_result(
 
 
 def _order(standing: Standing) -> tuple[float, float]:
-    median, best = given(standing.median), given(standing.best)
+    median, best = value_or_none(standing.median), value_or_none(standing.best)
     return np.inf if median is None else median, np.inf if best is None else best
 
 
@@ -100,7 +100,7 @@ def _standing(label: str, rows: Sequence[Row], reference: Reference) -> Standing
     totals = totals_of(rows)
     ends = quantiles(totals, _QUANTILES)
     best, low, median, high = (_gap(total, reference.upper) for total in ends)
-    base = given(reference.lower)
+    base = value_or_none(reference.lower)
     failed = [row for row in rows if row.status is RowStatus.FAILED]
     return Standing(
         optimizer=label,

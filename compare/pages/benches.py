@@ -21,10 +21,10 @@ from ..documents import (
     Why,
     bench_cells,
     gap_cell,
-    given,
     json_text,
     overall_cells,
     percent,
+    value_or_none,
 )
 from ..gaps import (
     CURVE_TARGETS,
@@ -54,7 +54,7 @@ _ROWS = "rows.csv"
 """Every run, as an export of a study has it."""
 _ONE_BY_ONE = 6
 """Problems up to which each has its own tables and pictures on the page; JSON and CSV have all."""
-_TOLD = 0.01
+_LEADING_GAP = 0.01
 """Gap of the sentence that leads over many problems: what a paper's digits can tell apart."""
 _PICTURES = "pictures/bench-"
 """What its pictures begin with."""
@@ -128,7 +128,7 @@ def _unwritten(out: Path, error: OSError) -> CaseError:
 
 def _rows(result: BenchResult, runs: Runs) -> Iterator[Row]:
     """Every run with its gaps: a bench makes its runs before it sets them against the optimum."""
-    upper, lower = result.optimum.upper, given(result.optimum.lower)
+    upper, lower = result.optimum.upper, value_or_none(result.optimum.lower)
     bracket = Bracket(upper, min(lower, upper) if lower else None)
     return (against(row, bracket) for row in runs.rows)
 
@@ -142,7 +142,7 @@ def bench_picture(result: BenchResult, runs: Runs) -> Picture:
         What `measure_gaps` returned for the runs.
     runs : Runs
     """
-    upper, lower = result.optimum.upper, given(result.optimum.lower)
+    upper, lower = result.optimum.upper, value_or_none(result.optimum.lower)
     return gap_picture(
         _anytime(runs.by_label, upper),
         title=f"Gap to the optimum over the evaluations: {result.title}",
@@ -235,20 +235,20 @@ def _all_sections(results: Sequence[tuple[BenchResult, Runs]]) -> list[Section]:
 
 
 def _width(result: BenchResult) -> float:
-    lower = given(result.optimum.lower)
+    lower = value_or_none(result.optimum.lower)
     return 0.0 if lower is None else 1 - lower / result.optimum.upper
 
 
 def most_solved(standings: Sequence[OverallStanding]) -> str:
     """Which optimiser comes within 1 % most often, in a sentence."""
     first = standings[0]
-    target = next(one for one in first.targets if one.gap == _TOLD)
+    target = next(one for one in first.targets if one.gap == _LEADING_GAP)
     said = (
         f"Within 1 % of the optimum most often: {first.optimizer}, in {100 * target.rate:.0f} % of "
         f"its runs over {first.problems} problems"
     )
     if len(standings) > 1:
-        second = next(one for one in standings[1].targets if one.gap == _TOLD)
+        second = next(one for one in standings[1].targets if one.gap == _LEADING_GAP)
         said += f"; next {standings[1].optimizer} with {100 * second.rate:.0f} %"
     return f"{said}."
 
@@ -302,7 +302,7 @@ def _section(at: int, head: str, result: BenchResult, runs: Runs) -> Section:
 
 def optimum_said(optimum: Reference) -> str:
     """What is known of the optimum, in a sentence."""
-    lower = given(optimum.lower)
+    lower = value_or_none(optimum.lower)
     if lower is None:
         return f"Optimum: {optimum.upper:.6f} s, {optimum.evidence}; true gaps may be larger."
     width = percent(1 - lower / optimum.upper)

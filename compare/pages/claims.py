@@ -26,8 +26,8 @@ from ..documents import (
     qualified,
     quoted,
     sentences_of,
-    told,
     under,
+    with_readings,
     worth_little,
 )
 from .blocks import Behind, Block, Cell, Claimed, Prose, Section, slug, word
@@ -60,7 +60,7 @@ def against(one: CaseAudit) -> Section:
         claimed(one, j) for verdict in _AGAINST for j in one.judgements if j.verdict is verdict
     ]
     blocks: list[Block] = [*shown_once(found)]
-    causes = [c for c in one.causes if not _told(one, c)]
+    causes = [c for c in one.causes if not _covered(one, c)]
     if causes:
         blocks += [Prose("The causes", "heading"), *(_behind(one, c) for c in causes)]
     if not found:
@@ -191,14 +191,14 @@ def _why(one: CaseAudit, judgement: Judgement) -> Iterator[str]:
         yield judgement.why
     depends = judgement.verdict is ClaimVerdict.DEPENDS
     for reason in found:
-        text = told(reason, tuple(judgement.readings), names(one), word=depends)
+        text = with_readings(reason, tuple(judgement.readings), names(one), word=depends)
         yield f"{text} ({', '.join(reason.rules)})"
 
 
 # --- causes ---------------------------------------------------------------------------------------
 
 
-def _told(one: CaseAudit, cause: Cause) -> bool:
+def _covered(one: CaseAudit, cause: Cause) -> bool:
     """Whether a claim above says all of a warning: nothing rests on it, nothing explains it."""
     if cause.severity is Severity.ERROR or cause.explanations or cause.consequences:
         return False

@@ -20,23 +20,23 @@ def shown_once(found: Sequence[Claimed]) -> Iterator[Claimed]:
     -------
     iterator of Claimed
         Claims of the same words and the same verdict are one with several places. A reason that an
-        earlier claim gave is named, and a long caveat is told in full once.
+        earlier claim gave is named, and a long caveat is given in full once.
     """
     groups: dict[tuple[str, ...], list[Claimed]] = {}
     for one in found:
         groups.setdefault((one.text, one.verdict.text, one.holds), []).append(one)
     first: dict[tuple[str, ...], Claimed] = {}
-    told: set[str] = set()
+    seen: set[str] = set()
     for group in groups.values():
         one = _joined(group)
         before = first.setdefault((*one.why, *one.more), one)
         if before is not one:
             one = replace(one, why=(same_reason(before.text, before.where, one.where),), more=())
         caveats = tuple(
-            f"{caveat.partition(':')[0]} (see above)." if caveat in told else caveat
+            f"{caveat.partition(':')[0]} (see above)." if caveat in seen else caveat
             for caveat in one.caveats
         )
-        told.update(caveat for caveat in one.caveats if ":" in caveat)
+        seen.update(caveat for caveat in one.caveats if ":" in caveat)
         yield replace(one, caveats=caveats)
 
 

@@ -152,8 +152,8 @@ def _hardness(one: BenchmarkInstance) -> tuple[Block, ...]:
 
 def _rates(hard: Hardness) -> tuple[tuple[str, str], ...]:
     """How often each baseline succeeds."""
-    told = f"of {hard.baseline_runs} runs of {hard.baseline_budget} evaluations end within 1 %"
-    return tuple((f"baseline {n}", f"{r:.0%} {told}") for n, r in hard.baselines.items())
+    ending = f"of {hard.baseline_runs} runs of {hard.baseline_budget} evaluations end within 1 %"
+    return tuple((f"baseline {n}", f"{r:.0%} {ending}") for n, r in hard.baselines.items())
 
 
 def _size(one: BenchmarkInstance) -> Block:

@@ -19,8 +19,8 @@ _TITLES = {rule.id: rule.title for rule in RULES}
 """What each rule looks at, by its id."""
 
 
-def posed_problems(one: CaseAudit) -> Section:
-    """The problems that the paper poses, as they were computed."""
+def problems_audited(one: CaseAudit) -> Section:
+    """The problems of the paper, as they were computed."""
     grid = _problems(one.study)
     case = one.case
     terms = [

@@ -33,7 +33,7 @@ from .instances import other_instances
 from .markdown_text import markdown
 from .numbers import card_picture, optima, sensitivities, where_time_goes
 from .readings import side_by_side
-from .verdicts import findings, foundations, posed_problems
+from .verdicts import findings, foundations, problems_audited
 
 MARK = "audit.json"
 """The file by which the folder of an earlier report is known."""
@@ -205,7 +205,7 @@ def case_page(one: CaseAudit) -> Page:
             side_by_side(one),
             _not_computed(one),
             *folded_claims(one),
-            posed_problems(one),
+            problems_audited(one),
             findings(one),
             optima(one),
             sensitivities(one),

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Patch
 
 from ...nlp import Evidence
-from ..documents import Step, Waterfall, Why, given
+from ..documents import Step, Waterfall, Why, value_or_none
 from .drawing import (
     BLUE,
     GRID,
@@ -90,7 +90,9 @@ def waterfall_picture(waterfall: Waterfall, *, title: str, narrow: bool = False)
         axes.plot([0, 0], [-0.5, len(steps) - 0.5], color=MUTED, linewidth=0.8)
         place = edges[-1] * top
         axes.text(place, -0.62, _HEADING, color=MUTED, fontsize=8, va="center", ha="right")
-        present = [e for e in Evidence if any(s.evidence is e and given(s.time) for s in steps)]
+        present = [
+            e for e in Evidence if any(s.evidence is e and value_or_none(s.time) for s in steps)
+        ]
         axes.legend(
             [Patch(linewidth=0.9, **_fill(e)) for e in present],
             [_WORDS[e] for e in present],
@@ -142,7 +144,7 @@ def _bar(axes: Axes, row: int, step: Step, top: float, narrow: bool) -> None:
         axes.text(0.015 * top, row, note, color=MUTED, fontsize=8, style="italic", va="center")
         return
     axes.barh(row, step.time, height=0.62, linewidth=0.9, **_fill(step.evidence))
-    end, low, high = step.time, given(step.low), given(step.high)
+    end, low, high = step.time, value_or_none(step.low), value_or_none(step.high)
     if low is not None and high is not None and high - low > 2e-3 * top:
         end = max(end, high)
         axes.plot([low, high], [row, row], color=INK, linewidth=2.2, zorder=4)

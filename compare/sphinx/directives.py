@@ -98,7 +98,7 @@ class Claims(FromResults):
         chosen = [one for one in case["verdicts"] if not wanted or one["verdict"] in wanted]
         if wanted:
             chosen.sort(key=lambda one: wanted.index(one["verdict"]))
-        told: set[str] = set()
+        seen: set[str] = set()
         innocent = _explained(case)
         reasoned: dict[str, tuple[str, str]] = {}
         groups: dict[tuple[str, ...], list[dict[str, Any]]] = {}
@@ -125,9 +125,9 @@ class Claims(FromResults):
             for one in (verdict, *others):
                 box += [paragraph(said) for said in innocent.get(one["claim"], ())]
             for caveat in verdict["caveats"]:
-                # One long reason is told once.
-                short = f"{caveat.partition(':')[0]} (see above)." if caveat in told else caveat
-                told.add(caveat)
+                # One long reason is given once.
+                short = f"{caveat.partition(':')[0]} (see above)." if caveat in seen else caveat
+                seen.add(caveat)
                 box += paragraph(f"{short[:1].upper()}{short[1:]}", "trajgap-beside")
             found.append(box)
         return found or [paragraph(none_said(wanted))]
@@ -196,17 +196,17 @@ def readings_of(case: dict[str, Any]) -> list[nodes.Node]:
     marked = {
         one: f"{labels.get(one, one)}{' (implausible)' if one in far else ''}" for one in names
     }
-    told = [
+    notes = [
         paragraph(f"Implausible, though admissible: {labels.get(one, one)}, for {why}.")
         for one, why in far.items()
     ]
     rows = [_under(case, outcome, marked) for outcome in said["outcomes"]]
     if not rows:
-        return [head, *told, *known]
+        return [head, *notes, *known]
     alone = any(step["name"] == OWN_OPTIMA for w in case["waterfalls"] for step in w["steps"])
     shortest = "shortest if the joints share durations, s" if alone else "shortest, s"
     columns = ["reading", "durations of", "limits", "largest ratio", shortest, "evidence"]
-    shown: list[nodes.Node] = [head, *told]
+    shown: list[nodes.Node] = [head, *notes]
     places = {row[1] for row in rows}
     if len(places) == 1:  # a column of one text would take the room of the others
         shown.append(paragraph(f"Durations judged: {next(iter(places))}."))
@@ -341,9 +341,9 @@ class SourceShown(FromResults):
             self.env.note_dependency(str(path))
             verdict = proved_again(path, one["sha256"])
             rows.append([nodes.literal("", one["file"]), badge(worth(verdict)), verdict.reason])
-        told = paragraph("Each certificate was proved again when this page was built.")
+        note = paragraph("Each certificate was proved again when this page was built.")
         count = f"{len(rows)} certificate{'' if len(rows) == 1 else 's'}"
-        return folded(count, told, table(("file", "evidence", "what it proves"), rows))
+        return folded(count, note, table(("file", "evidence", "what it proves"), rows))
 
 
 class CertificateShown(SphinxDirective):

@@ -6,11 +6,11 @@ from typing import Any
 
 from docutils import nodes
 
-from ..documents import ClaimVerdict, Named, Said, grouped, in_full, sentences_of, told
+from ..documents import ClaimVerdict, Named, Said, grouped, in_full, sentences_of, with_readings
 from .parts import folded, paragraph
 
 _PLAIN = 2
-"""Reasons that are told as they are; of more, all but one are folded."""
+"""Reasons that are shown as they are; of more, all but one are folded."""
 _OPEN_WORDS = 60
 """Words of a reason that stand in the open: a verdict and its numbers have room, conditions of a
 long one are a fold away."""
@@ -44,7 +44,7 @@ def reasons(case: dict[str, Any], verdict: dict[str, Any]) -> list[nodes.Node]:
         more = folded("The whole reason", paragraph(whole)) if cut != whole else []
         return [paragraph(cut), *more]
     depends = verdict["verdict"] == ClaimVerdict.DEPENDS
-    first = told(found[0], computed, named, word=depends)
+    first = with_readings(found[0], computed, named, word=depends)
     every = summed or opened(first) != first
     rest = [
         line

@@ -150,7 +150,7 @@ def distance_of(case: dict[str, Any]) -> tuple[str, str, str, str]:
     Returns
     -------
     tuple of str
-        Dashes where no problem is posed, or no total is printed; and in place of the distance,
+        Dashes where no problem is complete, or no total is printed; and in place of the distance,
         where the total was minimised for something else than time alone.
     """
     otherwise = {c["claim"] for c in case["claims"] if c.get("objective")}

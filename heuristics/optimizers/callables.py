@@ -13,7 +13,7 @@ from ...problem import TrajgapError
 from ..settings import nearest
 from .borrowed import BorrowedTask
 
-_GIVEN = ("fun", "bounds", "budget", "rng")
+_ARGUMENTS = ("fun", "bounds", "budget", "rng")
 """What every function of somebody else's is called with, in this order."""
 
 
@@ -73,11 +73,11 @@ def check_call(name: str, function: Callable[..., object], settings: Mapping[str
             one.name
             for at, one in every
             if one.kind == kinds.KEYWORD_ONLY
-            or (at >= len(_GIVEN) and one.kind == kinds.POSITIONAL_OR_KEYWORD)
+            or (at >= len(_ARGUMENTS) and one.kind == kinds.POSITIONAL_OR_KEYWORD)
         ]
         check_settings(name, settings, known)
     try:
-        signature.bind(*_GIVEN, **settings)
+        signature.bind(*_ARGUMENTS, **settings)
     except TypeError as error:
         raise TrajgapError(
             f"{name}: is called with fun, bounds, budget and rng; it takes {signature} ({error})"
@@ -104,7 +104,7 @@ def call_function(name: str, options: Mapping[str, Any], task: BorrowedTask) -> 
     return load_function(name)(task.fun, task.box, task.budget, task.rng, **options)
 
 
-def call_given(
+def call_object(
     function: Callable[..., object], options: Mapping[str, Any], task: BorrowedTask
 ) -> object:
     """Call a function that was handed over itself."""

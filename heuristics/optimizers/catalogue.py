@@ -16,7 +16,7 @@ from ..objective import Bounds, Counted
 from ..settings import checked, nearest, whole
 from .baselines import rescale_equal, search_locally, search_randomly
 from .borrowed import Borrowed, BorrowedTask
-from .callables import call_function, call_given, check_call, load_function
+from .callables import call_function, call_object, check_call, load_function
 from .libraries import (
     check_cma,
     check_mealpy,
@@ -104,7 +104,7 @@ def find_optimizer(
     if callable(name):
         said = f"{getattr(name, '__module__', '?')}:{getattr(name, '__qualname__', name)}"
         check_call(said, name, settings)
-        return _borrowed(said, partial(call_given, name), budget, settings)
+        return _borrowed(said, partial(call_object, name), budget, settings)
     if name in KINDS:
         algorithm = from_settings(name, settings)
         return algorithm if "iterations" in settings else _fitted(algorithm, budget)

@@ -65,10 +65,10 @@ class _Plan:
 
 @lru_cache(maxsize=64)
 def _plan(curve: Interpolant) -> _Plan:
-    told = layout(curve)
+    system = layout(curve)
     inner = [curve.smooth_order(b) for b in range(1, curve.segments)]
-    rows = (told.kinds, told.breaks, told.orders, told.degrees, told.column)
-    return _Plan(rows, np.array([-1, *inner, -1], dtype=np.int64), max(told.unknowns, 1))
+    rows = (system.kinds, system.breaks, system.orders, system.degrees, system.column)
+    return _Plan(rows, np.array([-1, *inner, -1], dtype=np.int64), max(system.unknowns, 1))
 
 
 def covered(problem: Problem) -> bool:

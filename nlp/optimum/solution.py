@@ -114,7 +114,7 @@ class Solution:
     def best(self) -> float:
         """The infimum where it is not attained, else the total, s; inf without an answer.
 
-        Where nothing keeps the total from 0, what the floors of the search left of it is not told.
+        Where nothing keeps the total from 0, what the floors of the search left of it is not given.
         """
         if self.boundless is not None:
             return 0.0

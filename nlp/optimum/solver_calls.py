@@ -14,7 +14,7 @@ import numpy as np
 from ...problem import Array
 
 SAME = 1e-12
-"""Difference, relative to a number or to 1, that is rounding: NLPs are posed in units in which
+"""Difference, relative to a number or to 1, that is rounding: NLPs are written in units in which
 their numbers are of order 1, and solved to 1e-9."""
 CALLS = 256
 """Calls that are kept: an audit makes some hundred, and twins follow each other within these."""

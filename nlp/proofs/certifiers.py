@@ -16,7 +16,7 @@ from ...verify import Subject
 from .certifier import Certifier
 from .crew import ProofCrew
 from .exact import MOVING, ExactProblem, exact_problem
-from .judged import SPARE, Deadline, judged, unstated
+from .judged import SPARE, Deadline, judged, why_too_large
 from .kept import KeptProofs, cache_folder
 from .outcome import GAP, Certified, Progress, Request
 from .session import Session
@@ -66,7 +66,7 @@ def covered(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> str |
         return f"{problem.curve.name} {MOVING}"
     certifier = _certifier(problem, subject)
     if certifier is not None:
-        return unstated(problem) or certifier.missing(problem)
+        return why_too_large(problem) or certifier.missing(problem)
     families = ", ".join(certifier.family for certifier in certifiers(subject))
     return f"{problem.curve.name}: not covered; covered are {families}"
 

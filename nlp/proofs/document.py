@@ -107,7 +107,7 @@ def _named(curve: Curve) -> str:
 
 
 def _declaration(problem: ExactProblem, interpolant: Interpolant) -> dict[str, Any]:
-    told = interpolant.prescribed if problem.prescribed is None else problem.prescribed
+    prescribed = interpolant.prescribed if problem.prescribed is None else problem.prescribed
     return {
         "degrees": list(interpolant.degrees),
         "continuity": list(interpolant.continuity),
@@ -118,7 +118,7 @@ def _declaration(problem: ExactProblem, interpolant: Interpolant) -> dict[str, A
                 else [order, decimal(Fraction(value))]
                 for order, value in entries
             ]
-            for entries in told
+            for entries in prescribed
         ],
         "virtual": list(interpolant.virtual),
     }

@@ -18,7 +18,7 @@ from ..optimum import PerJointSolution, Solution, solve
 from .certifiers import certify, covered, instant
 from .document import certificate, fits, shipped
 from .exact import ExactProblem, printed_problem
-from .judged import unstated
+from .judged import why_too_large
 
 WIDEST = Fraction(1, 100)
 """Relative width from which an interval is too wide to call the optimum certified."""
@@ -66,7 +66,7 @@ def proved(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> Proved
         None without a certificate of exactly this problem, or if it does not prove its claim
         or leaves an interval wider than `WIDEST`.
     """
-    if unstated(problem) is not None:
+    if why_too_large(problem) is not None:
         return None
     document = shipped(problem, subject)
     if document is None and subject is Subject.DECLARED and covered(problem) is None:
@@ -103,7 +103,7 @@ def interval_of(
         None if it is about another problem, proves nothing, or leaves an interval wider than
         `WIDEST`.
     """
-    if unstated(problem) is not None or not fits(document, problem, subject):
+    if why_too_large(problem) is not None or not fits(document, problem, subject):
         return None
     return narrow(document, verdict or verify_certificate(document))
 
@@ -119,7 +119,7 @@ def narrow(document: dict[str, Any], verdict: CertificateVerdict) -> ProvedInter
     return ProvedInterval(verdict.lower, verdict.upper, durations, verdict.infeasible)
 
 
-def stated_exactly(statement: Statement, joint: int | None = None) -> ExactProblem | None:
+def printed_problem_or_none(statement: Statement, joint: int | None = None) -> ExactProblem | None:
     """`printed_problem` of all joints or of one; None where it cannot be stated exactly."""
     try:
         exact = printed_problem(statement)
@@ -209,7 +209,9 @@ def proved_joints(
     dict
         By the joint's label, of those of which something is proved.
     """
-    stated = {label: stated_exactly(statement, j) for j, label in enumerate(problem.joints)}
+    stated = {
+        label: printed_problem_or_none(statement, j) for j, label in enumerate(problem.joints)
+    }
     found = {label: find(exact) for label, exact in stated.items() if exact is not None}
     return {label: interval for label, interval in found.items() if interval is not None}
 

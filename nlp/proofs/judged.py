@@ -46,7 +46,7 @@ class Deadline:
         return max(LEAST, self.end + SPARE - time.perf_counter())
 
 
-def unstated(problem: ExactProblem) -> str | None:
+def why_too_large(problem: ExactProblem) -> str | None:
     """Why no certificate can state a problem, since something in it is too large; or None.
 
     Parameters

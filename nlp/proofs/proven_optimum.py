@@ -83,7 +83,7 @@ def _place(problem: Problem, waypoints: int, joints: int) -> int | None:
     A problem in floats is that of a certificate if each of its numbers is the printed one, rounded.
     """
     wanted = None
-    for place, (_, stated) in enumerate(_stated(waypoints, joints)):
+    for place, (_, stated) in enumerate(_declared_certificates(waypoints, joints)):
         if not _near(problem, stated):
             continue
         if wanted is None:
@@ -104,7 +104,9 @@ def _near(problem: Problem, stated: dict[str, Any]) -> bool:
 
 
 @lru_cache(maxsize=64)
-def _stated(waypoints: int, joints: int) -> tuple[tuple[dict[str, Any], dict[str, Any]], ...]:
+def _declared_certificates(
+    waypoints: int, joints: int
+) -> tuple[tuple[dict[str, Any], dict[str, Any]], ...]:
     """Certificates about declared curves of one size, each with its problem in rationals."""
     every = (*all_shipped(), *suite_documents(waypoints - 1, joints))
     declared = [one for one in every if one["claim"]["subject"] == Subject.DECLARED]
@@ -118,8 +120,8 @@ def _stated(waypoints: int, joints: int) -> tuple[tuple[dict[str, Any], dict[str
 
 @lru_cache(maxsize=256)
 def _proved(waypoints: int, joints: int, place: int) -> ProvedInterval | None:
-    """What one of `_stated` proves, proved again once a process."""
-    document, _ = _stated(waypoints, joints)[place]
+    """What one of `_declared_certificates` proves, proved again once a process."""
+    document, _ = _declared_certificates(waypoints, joints)[place]
     return narrow(document, verify_certificate(document))
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import CaseError
-from ..fields import UnitOrEach, nearest
+from ..fields import UnitOrEach, spelling_hint
 from ..printed import Printed
 from ..problem import Coupling, Problem
 from ..robots import Chain, Convention, DhTable
@@ -180,7 +180,7 @@ class Case:
             raise CaseError(
                 self.file,
                 "robot.model",
-                f"no robot {model!r} is shipped; {nearest(model, robot_ids())}",
+                f"no robot {model!r} is shipped; {spelling_hint(model, robot_ids())}",
             )
         return robot_file(model).dh
 
@@ -228,8 +228,8 @@ class Case:
         for claim in self.claims:
             if claim.id == claim_id:
                 return claim
-        ids = [claim.id for claim in self.claims]
-        raise CaseError(self.file, "claim", f"no claim {claim_id!r}; {nearest(claim_id, ids)}")
+        fix = spelling_hint(claim_id, (claim.id for claim in self.claims))
+        raise CaseError(self.file, "claim", f"no claim {claim_id!r}; {fix}")
 
     def table_claims(self, table_id: str) -> tuple[AnyClaim, ...]:
         """Claims that a table prints, in the order of the file."""
@@ -439,12 +439,12 @@ class Case:
         for problem in self.problems:
             if problem.id == problem_id:
                 return problem
-        fix = nearest(problem_id, (p.id for p in self.problems))
+        fix = spelling_hint(problem_id, (p.id for p in self.problems))
         raise CaseError(self.file, "problem", f"no problem {problem_id!r}; {fix}")
 
     def _reading(self, reading_id: str) -> Reading:
         for reading in self.readings:
             if reading.id == reading_id:
                 return reading
-        fix = nearest(reading_id, (r.id for r in self.readings))
+        fix = spelling_hint(reading_id, (r.id for r in self.readings))
         raise CaseError(self.file, "reading", f"no reading {reading_id!r}; {fix}")

@@ -1,4 +1,4 @@
-"""Claims that `trajgap new` writes: what it is told, and a block to fill in of every other kind."""
+"""Claims that `trajgap new` writes: of its options, and a block to fill in of every other kind."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def claim_blocks(
     list of str
         Lines of TOML.
     """
-    lines = _given(durations, total, where)
+    lines = _claim_of_options(durations, total, where)
     # What a block is about: durations, unless a total stands alone. Where nothing is given the
     # block of durations comes first, and whoever leaves it empty has no use for the others.
     timed = "total" if total and not durations else "durations"
@@ -133,7 +133,7 @@ def claim_blocks(
     return lines
 
 
-def _given(durations: Sequence[str], total: str | None, where: str) -> list[str]:
+def _claim_of_options(durations: Sequence[str], total: str | None, where: str) -> list[str]:
     """The claim of what is given on the command line."""
     place = f"where = {json.dumps(where, ensure_ascii=False)}"
     place += "" if where else "  # fill in: table, section or figure"
@@ -192,8 +192,8 @@ def _rival(timed: str) -> list[str]:
 
 def _commented(prose: Sequence[str], *keys: str | None, block: str = "claims") -> list[str]:
     """A block as comments; the prose keeps a mark when one is taken off every line."""
-    told = [f"## {line}" for line in prose]
-    return [*told, f"# [[{block}]]", *(f"# {key}" for key in keys if key is not None), ""]
+    comments = [f"## {line}" for line in prose]
+    return [*comments, f"# [[{block}]]", *(f"# {key}" for key in keys if key is not None), ""]
 
 
 def _derivative(units: Collection[str]) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterable, Sequence
 
-from ..fields import nearest
+from ..fields import spelling_hint
 from ..printed import Printed
 from ..units import Quantity
 from .claim import (
@@ -41,7 +41,7 @@ def check_claims(
     problems = [problem.id for problem in document.problems]
     for index, claim in enumerate(document.claims):
         if claim.problem is not None and claim.problem not in problems:
-            continue  # told already
+            continue  # refused already
         with faults.noted():
             every = statements_of(claim)
             _check_claim(document, faults, claim, every, f"claims[{index}]")
@@ -91,7 +91,7 @@ def _check_claim(
         if claim.time is not None:
             number(claim.time, "time", "time")
         elif claim.place not in (known := named_places(statement)):
-            fix = nearest(claim.place or "", known)
+            fix = spelling_hint(claim.place or "", known)
             faults.add(f"{at}.place", f"{claim.place!r} is no place of the motion; {fix}")
     if isinstance(claim, ControlVerticesClaim):
         _check_vertices(claim, statement, f"{at}.joint_rows")

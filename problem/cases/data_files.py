@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 from pydantic import BaseModel, ValidationError
 
 from ..errors import CaseError
-from ..fields import nearest
+from ..fields import spelling_hint
 from ..textfile import read_hashed
 from .faults import all_faults, refusal
 
@@ -77,7 +77,7 @@ class Shipped:
         meant = bool(self.prefix) and str(source).startswith(self.prefix)
         if meant or (not path.suffix and not path.exists()):
             name = str(source)
-            near = nearest(name, known)
+            near = spelling_hint(name, known)
             if self.listed_by and not near.startswith("did you mean"):
                 near = f"`{self.listed_by}` lists them"
             said = f"no {self.kind}" if meant else f"neither a {self.kind} nor a file"

@@ -198,7 +198,7 @@ class InterpolantBlock(Strict):
                     ".degree",
                     f"{self.degree} is not allowed; use {words} or {allowed_degrees[-1]}",
                 )
-        self._check_given()
+        self._check_numbers()
         virtual = self.virtual or ()
         if len(set(virtual)) != len(virtual):
             raise fault(".virtual", "names a break twice; leave one out")
@@ -208,7 +208,7 @@ class InterpolantBlock(Strict):
             _check_values(f".{end}_derivatives", getattr(self, f"{end}_derivatives"), orders)
         return self
 
-    def _check_given(self) -> None:
+    def _check_numbers(self) -> None:
         """Find out whether what is printed of knots and parameters is there where it is used."""
         for key, listed in (("knots", "knot_vector"), ("parameters", "parameter_values")):
             numbers = getattr(self, listed)

@@ -9,11 +9,11 @@ from typing import Any
 from pydantic import ValidationError
 
 from ..errors import CaseError
-from ..fields import UNION_TAGS, describe, nearest
+from ..fields import UNION_TAGS, describe, spelling_hint
 from .claim import QUANTITY_KINDS
 from .clue import CLUE_KINDS
 
-_TOLD_APART = {
+_OF_SEVERAL_KINDS = {
     "claims": ("quantity", QUANTITY_KINDS, "quantity of a claim"),
     "clues": ("kind", CLUE_KINDS, "kind of clue"),
 }
@@ -122,14 +122,14 @@ def _read(detail: Mapping[str, Any]) -> list[tuple[str, str]]:
     kind, raw = detail["type"], detail["input"]
     path = _path(detail["loc"])
     if kind in ("fault", "unknown_key"):
-        told = [(context["path"], context["reason"]), *context.get("others", ())]
-        return [((path + at).removeprefix("."), reason) for at, reason in told]
+        found = [(context["path"], context["reason"]), *context.get("others", ())]
+        return [((path + at).removeprefix("."), reason) for at, reason in found]
     if kind in ("union_tag_invalid", "union_tag_not_found"):
-        key, kinds, name = _TOLD_APART[detail["loc"][0]]
+        key, kinds, name = _OF_SEVERAL_KINDS[detail["loc"][0]]
         given = raw.get(key) if isinstance(raw, dict) else None
         if given is None:
             return [(f"{path}.{key}", f"is missing; add one of {', '.join(kinds)}")]
-        fix = nearest(str(given), kinds)
+        fix = spelling_hint(str(given), kinds)
         return [(f"{path}.{key}", f"{_short(given)} is no {name}; {fix}")]
     if kind == "missing" and detail["loc"][-1] in _MISSING:
         return [(path, _MISSING[detail["loc"][-1]])]
@@ -166,7 +166,11 @@ def _path(location: tuple[str | int, ...]) -> str:
         before = location[position - 1] if position else None
         if part in UNION_TAGS and before in _ONE_OR_EACH:
             continue
-        if position == 2 and location[0] in _TOLD_APART and part in _TOLD_APART[location[0]][1]:
+        if (
+            position == 2
+            and location[0] in _OF_SEVERAL_KINDS
+            and part in _OF_SEVERAL_KINDS[location[0]][1]
+        ):
             continue
         path += f"[{part}]" if isinstance(part, int) else f".{part}"
     return path.removeprefix(".")

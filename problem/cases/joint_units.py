@@ -26,11 +26,11 @@ def unit_of(units: UnitOrEach, joint: int) -> str | None:
 
 def linear_joints(units: Units, count: int) -> tuple[bool, ...]:
     """Whether each of the robot's joints slides, by its units; one without any turns."""
-    every = ([unit for _, unit in _stated(units, joint)] for joint in range(count))
+    every = ([unit for _, unit in _units_of(units, joint)] for joint in range(count))
     return tuple(any(map(is_linear, own)) for own in every)
 
 
-def _stated(units: Units, joint: int) -> Iterator[tuple[str, str]]:
+def _units_of(units: Units, joint: int) -> Iterator[tuple[str, str]]:
     for quantity in OF_JOINTS:
         unit = unit_of(getattr(units, quantity), joint)
         if unit is not None:
@@ -79,7 +79,7 @@ def check_units(units: Units, labels: Sequence[str], faults: Faults, selected: s
     if len(faults.found) > before:
         return
     for joint, label in enumerate(labels):
-        (first, own), *others = [*_stated(units, joint)] or [("", "")]
+        (first, own), *others = [*_units_of(units, joint)] or [("", "")]
         for quantity, unit in others:
             if is_linear(unit) != is_linear(own):
                 which = f"[{joint}]" if isinstance(getattr(units, quantity), tuple) else ""
@@ -111,9 +111,9 @@ def check_kinds(statement: Statement, chain: Chain | None) -> None:
         return
     for joint, label in enumerate(statement.labels):
         if label not in chain.labels:
-            continue  # told elsewhere
+            continue  # refused elsewhere
         slides = chain.kinds[chain.labels.index(label)] is JointKind.PRISMATIC
-        quantity, unit = next(_stated(statement.units, joint), ("", ""))
+        quantity, unit = next(_units_of(statement.units, joint), ("", ""))
         if unit and is_linear(unit) != slides:
             named = "prismatic" if slides else "revolute"
             fix = "a length such as mm" if slides else "an angle such as deg"
@@ -138,9 +138,9 @@ def check_clues(document: CaseFile, faults: Faults, statements: Sequence[Stateme
     kinds = dict.fromkeys(statement.linear for statement in statements)
     for index, clue in enumerate(document.clues):
         for linear in kinds:
-            told = _misfit(clue, document.robot.joints, linear)
-            if told is not None:
-                faults.add(f"clues[{index}].{told[0]}", told[1])
+            misfit = _misfit(clue, document.robot.joints, linear)
+            if misfit is not None:
+                faults.add(f"clues[{index}].{misfit[0]}", misfit[1])
 
 
 def _misfit(clue: AnyClue, labels: Sequence[str], linear: Sequence[bool]) -> tuple[str, str] | None:

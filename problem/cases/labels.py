@@ -73,7 +73,7 @@ _TIME_ENDS = {
 }
 """How a smooth time ends."""
 _FEW_RATIOS = 6
-"""Ratios that are told one by one: more are no label."""
+"""Ratios that are listed one by one: more are no label."""
 _DERIVATIVES = {1: "velocity", 2: "acceleration", 3: "jerk"}
 """Derivatives at the ends, by their order."""
 
@@ -103,15 +103,15 @@ def reading_labels(document: CaseFile, readings: Sequence[Reading]) -> dict[str,
 def _differing(document: CaseFile, reading: Reading, readings: Sequence[Reading]) -> str:
     """What a reading says where another one says something else."""
     parts = []
-    for told in _ASPECTS:
-        own = list(told(document, reading))
-        others = [list(told(document, one)) for one in readings]
+    for aspect in _ASPECTS:
+        own = list(aspect(document, reading))
+        others = [list(aspect(document, one)) for one in readings]
         # A part that all readings share tells none from another.
         parts += [part for part in own if not all(part in other for other in others)]
     return ", ".join(dict.fromkeys(parts))
 
 
-def _stated(document: CaseFile, reading: Reading, block: str, key: str) -> object:
+def _key_value(document: CaseFile, reading: Reading, block: str, key: str) -> object:
     """A key of a block as a reading has it, else the file; None where a problem says it."""
     own = getattr(reading, block)
     if key in own.model_fields_set:
@@ -123,7 +123,7 @@ def _stated(document: CaseFile, reading: Reading, block: str, key: str) -> objec
 
 def _units(document: CaseFile, reading: Reading) -> Iterator[str]:
     for quantity in CHOICES:
-        unit = _stated(document, reading, "units", quantity)
+        unit = _key_value(document, reading, "units", quantity)
         if isinstance(unit, tuple | str):
             each = unit if isinstance(unit, tuple) else (unit,)
             shown = _and([_SHOWN.get(one, shown_unit(one)) for one in dict.fromkeys(each)])
@@ -202,7 +202,7 @@ def _end_words(end: str, orders: tuple[int, ...], values: Values | None) -> Iter
 def _durations(document: CaseFile, reading: Reading) -> Iterator[str]:
     unit = document.units.time or "s"
     for key, least in (("lower", "at least"), ("upper", "at most")):
-        value = _stated(document, reading, "durations", key)
+        value = _key_value(document, reading, "durations", key)
         if value is None or isinstance(value, tuple):
             if key in reading.durations.model_fields_set:
                 yield f"{key} bounds on the durations" if value else f"no {key} bound on durations"
@@ -213,7 +213,7 @@ def _durations(document: CaseFile, reading: Reading) -> Iterator[str]:
 
 
 def _ratios(document: CaseFile, reading: Reading) -> Iterator[str]:
-    value = _stated(document, reading, "durations", "ratios")
+    value = _key_value(document, reading, "durations", "ratios")
     if value is None and any(p.durations.ratios is not None for p in document.problems):
         return
     yield ratio_words(value)

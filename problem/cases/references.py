@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from ..fields import nearest
+from ..fields import spelling_hint
 from ..robots import Chain
 from ..units import CHOICES
 from .claim import (
@@ -64,7 +64,7 @@ def check_references(document: CaseFile, faults: Faults) -> None:
     def known(kind: str, field: str, name: str | None) -> None:
         if name is not None and name not in ids[kind]:
             faults.add(field, f"{name!r} is not the id of any of the {kind}; "
-                f"{nearest(name, ids[kind])}"
+                f"{spelling_hint(name, ids[kind])}"
             )  # fmt: skip
 
     for index, reading in enumerate(document.readings):
@@ -171,7 +171,9 @@ def _check_clues(document: CaseFile, faults: Faults, claims: Sequence[str]) -> N
             for position, name in enumerate(clue.of):
                 field = f"{at}.of[{position}]"
                 if name not in by_id:
-                    faults.add(field, f"{name!r} is not the id of a claim; {nearest(name, claims)}")
+                    faults.add(
+                        field, f"{name!r} is not the id of a claim; {spelling_hint(name, claims)}"
+                    )
                 elif not isinstance(by_id[name], DurationsClaim | MaximumClaim):
                     quantity = by_id[name].quantity
                     faults.add(
@@ -269,7 +271,7 @@ def check_kinematics(document: CaseFile, faults: Faults, chain: Chain | None) ->
         if name is not None and name not in known:
             faults.add(
                 f"cartesian[{index}].waypoint",
-                f"{name!r} is no label of a way-point; {nearest(name, known)}",
+                f"{name!r} is no label of a way-point; {spelling_hint(name, known)}",
             )
     if named and None in named and waypoints is not None and len(named) != waypoints.number:
         faults.add(

@@ -127,10 +127,10 @@ def scaffold(
 
 
 def _refuse(table: Faults, options: Faults) -> None:
-    """Tell all faults at once, those of the table, which names its file, in front."""
-    told = Faults(table.file if table.found else "")
-    told.found = [*table.found, *options.found]
-    told.refuse()
+    """Name all faults at once, those of the table, which names its file, in front."""
+    faults = Faults(table.file if table.found else "")
+    faults.found = [*table.found, *options.found]
+    faults.refuse()
 
 
 def _argument(field: str) -> str | None:
@@ -203,7 +203,7 @@ def _units(
 
 
 def _table(faults: Faults, text: str) -> tuple[list[str], list[list[str]]]:
-    """Header and rows; what does not keep the rows from being read is told with the options."""
+    """Header and rows; what does not keep the rows from being read is refused with the options."""
     delimiter = max(",;\t", key=text.split("\n", 1)[0].count)
     reader = csv.reader(text.splitlines(), delimiter=delimiter, strict=True)
     lines: list[tuple[int, list[str]]] = []

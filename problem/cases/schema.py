@@ -54,7 +54,7 @@ LISTS = (
     "cartesian",
     "not_checkable",
 )
-"""Lists of blocks with ids, in the order in which their faults are told."""
+"""Lists of blocks with ids, in the order in which their faults are listed."""
 
 
 class Source(Strict):

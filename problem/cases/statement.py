@@ -188,7 +188,7 @@ class Statement:
         return bool(self.waypoints.points)
 
     def check(self) -> None:
-        """Check that a problem can be posed, and tell all that is in the way at once.
+        """Check that a problem can be made, and list all that is in the way at once.
 
         Raises
         ------
@@ -203,7 +203,7 @@ class Statement:
                 self.data()
         if not faults.found:
             return
-        # What is told first may hide the rest: each part is asked for by itself.
+        # The first fault may hide the rest: each part is asked for by itself.
         with faults.noted():
             self.curve()
         with faults.noted():

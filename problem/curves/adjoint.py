@@ -80,10 +80,10 @@ class Adjoint:
         column = rows.columns[pattern.jumps, pattern.slots]
         self._slope = (plan.orders[pattern.jumps] * own)[:, None] * flat[column]
         # The right-hand side of a given derivative holds hʳ.
-        self._given = np.flatnonzero((plan.kinds != ConditionKind.MATCH) & (plan.orders > 0))
-        self._at = pattern.segment[self._given]
-        values = right_hand_sides(interpolant, waypoints, nodal)[self._given]
-        rate = plan.orders[self._given] * rows.factor[self._given] / durations[self._at]
+        self._prescribed = np.flatnonzero((plan.kinds != ConditionKind.MATCH) & (plan.orders > 0))
+        self._at = pattern.segment[self._prescribed]
+        values = right_hand_sides(interpolant, waypoints, nodal)[self._prescribed]
+        rate = plan.orders[self._prescribed] * rows.factor[self._prescribed] / durations[self._at]
         self._rate = rate[:, None] * values
         self._sizes = (waypoints.shape[0], interpolant.free)
 
@@ -149,5 +149,5 @@ class Adjoint:
         change = y[self._jumps] * self._slope[:, joint]
         np.add.at(out, b - 1, -change / h[b - 1, None])
         np.add.at(out, b, change / h[b, None])
-        np.add.at(out, self._at, y[self._given] * self._rate[:, joint])
+        np.add.at(out, self._at, y[self._prescribed] * self._rate[:, joint])
         return out

@@ -112,7 +112,7 @@ class ClampedBSpline(StretchedCurve):
                 "interpolant.time: parameters from the times are times already; "
                 "leave stretched out, or take the parameters from chords"
             )
-        self._check_given()
+        self._check_numbers()
         if self.inner_knots < 0:
             raise TrajgapError(
                 f"interpolant {self.name}: degree {self.degree} needs at least "
@@ -138,7 +138,7 @@ class ClampedBSpline(StretchedCurve):
         if self.knots is Knots.GIVEN and self._stretched:
             self._check_passing()
 
-    def _check_given(self) -> None:
+    def _check_numbers(self) -> None:
         """Find out whether what is printed of knots and parameters is there, and goes together."""
         given = self.knots is Knots.GIVEN
         if given != bool(self.knot_vector):

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from ..errors import TrajgapError
 from .interpolant import Interpolant
-from .kind import Derivatives, told_once
+from .kind import Derivatives, merged_values
 
 
 def piecewise(
@@ -90,19 +90,19 @@ def cubic_spline(
 
 def _spline_name(ends: Derivatives, finish: Derivatives | None) -> str:
     """What tells a cubic spline from others: what holds at its ends."""
-    if told_once(ends) == told_once(ends if finish is None else finish):
-        if told_once(ends) == ((1, 0.0),):
+    if merged_values(ends) == merged_values(ends if finish is None else finish):
+        if merged_values(ends) == ((1, 0.0),):
             return "clamped C2 cubic spline"
-        if told_once(ends) == ((2, 0.0),):
+        if merged_values(ends) == ((2, 0.0),):
             return "natural C2 cubic spline"
-        return f"C2 cubic spline with {_given_words(ends)} given at the ends"
-    start, last = _given_words(ends), _given_words(finish or ())
+        return f"C2 cubic spline with {_derivative_names(ends)} given at the ends"
+    start, last = _derivative_names(ends), _derivative_names(finish or ())
     if start == last:
         return f"C2 cubic spline with {start} given at the ends"
     return f"C2 cubic spline with {start} given at the start, {last} at the finish"
 
 
-def _given_words(at: Derivatives) -> str:
+def _derivative_names(at: Derivatives) -> str:
     words = ("", "velocity", "acceleration", "jerk")
     return " and ".join(words[order] for order, _ in at if order < len(words)) or "nothing"
 
@@ -113,7 +113,7 @@ def quintic_spline(
     finish: Derivatives | None = None,
     virtual: tuple[int, ...] = (),
 ) -> Interpolant:
-    """C4 quintic spline; velocity and acceleration are 0 at both ends unless told otherwise.
+    """C4 quintic spline; velocity and acceleration are 0 at both ends unless others are given.
 
     Parameters
     ----------
@@ -133,7 +133,7 @@ def septic_spline(
     finish: Derivatives | None = None,
     virtual: tuple[int, ...] = (),
 ) -> Interpolant:
-    """C6 spline of degree 7; v = a = j = 0 at both ends unless told otherwise.
+    """C6 spline of degree 7; v = a = j = 0 at both ends unless others are given.
 
     Parameters
     ----------

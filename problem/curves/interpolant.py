@@ -22,7 +22,7 @@ from .kind import (
     PeakGradients,
     as_batch,
     derivative_row,
-    told_once,
+    merged_values,
     value_errors,
 )
 from .peak import Extremum
@@ -99,12 +99,12 @@ class Interpolant(Curve):
                 "interpolant.virtual: only interior breaks can be virtual, "
                 f"{f'1 to {n - 1}' if n > 1 else 'of which one segment has none'}"
             )
-        object.__setattr__(self, "prescribed", tuple(map(told_once, self.prescribed)))
-        told = {len(v) for at in self.prescribed for _, v in at if isinstance(v, tuple)}
-        if len(told) > 1:
+        object.__setattr__(self, "prescribed", tuple(map(merged_values, self.prescribed)))
+        counts = {len(v) for at in self.prescribed for _, v in at if isinstance(v, tuple)}
+        if len(counts) > 1:
             raise TrajgapError(
                 "interpolant.prescribed: given for "
-                f"{' and for '.join(map(str, sorted(told)))} joints; give one value for all "
+                f"{' and for '.join(map(str, sorted(counts)))} joints; give one value for all "
                 "joints, or one for each of them"
             )
         for b, entries in enumerate(self.prescribed):
@@ -174,14 +174,14 @@ class Interpolant(Curve):
         return self.prescribed[break_index]
 
     @cached_property
-    def told_joints(self) -> int | None:
+    def prescribed_joints(self) -> int | None:
         """Joints that prescribed derivatives differ between."""
         several = (v for at in self.prescribed for _, v in at if isinstance(v, tuple))
         return next(map(len, several), None)
 
     def for_joint(self, waypoints: Array, index: int) -> Interpolant:
         """The declaration with the derivatives that are prescribed for one joint."""
-        if self.told_joints is None:
+        if self.prescribed_joints is None:
             return self
         own = tuple(
             tuple((r, v[index] if isinstance(v, tuple) else v) for r, v in at)

@@ -115,8 +115,8 @@ class Curve(ABC):
         return self.prescribed_at(0), self.prescribed_at(self.segments)
 
     @property
-    def told_joints(self) -> int | None:
-        """Number of joints that prescribed derivatives are told apart for; None where all agree."""
+    def prescribed_joints(self) -> int | None:
+        """Number of joints for which derivatives are prescribed apart; None where all agree."""
         return None
 
     @property
@@ -357,7 +357,7 @@ def fit(
     return curve.fitted(q, as_durations(durations, curve.segments), extra)
 
 
-def told_once(entries: Derivatives) -> Derivatives:
+def merged_values(entries: Derivatives) -> Derivatives:
     """Derivatives at a break, with one number wherever all joints have the same value."""
     found: list[tuple[int, float | tuple[float, ...]]] = []
     for order, value in entries:

@@ -169,7 +169,7 @@ def tops(trajectory: Trajectory, error: Array, joint: int, order: int) -> Tops:
     -------
     Tops
     """
-    found, reach = _deciding(*_given(trajectory, order), error, joint, order)
+    found, reach = _deciding(*_polynomials(trajectory, order), error, joint, order)
     breaks = trajectory.breaks
     points = [
         Extremum(
@@ -239,7 +239,7 @@ def near_extrema(
     -------
     pieces, places, values : ndarray, shape (extrema,)
     """
-    given = _given(trajectory, order)
+    given = _polynomials(trajectory, order)
     room = 2 * len(trajectory.durations)
     while True:
         pieces, found = np.empty(room, dtype=np.int64), np.empty((room, 2))
@@ -249,7 +249,7 @@ def near_extrema(
         room = count
 
 
-def _given(trajectory: Trajectory, order: int) -> tuple[Array, NDArray[np.int64], Array]:
+def _polynomials(trajectory: Trajectory, order: int) -> tuple[Array, NDArray[np.int64], Array]:
     degrees = np.array(trajectory.degrees, dtype=np.int64)
     return trajectory.scaled, degrees, trajectory.durations**order
 

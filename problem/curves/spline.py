@@ -61,8 +61,8 @@ class Layout:
     @property
     def rows(self) -> tuple[Any, ...]:
         """What every kernel takes of it, in their order."""
-        told = (self.kinds, self.breaks, self.orders, self.degrees, self.column)
-        return (*told, self.lower, self.upper, PERM)
+        shared = (self.kinds, self.breaks, self.orders, self.degrees, self.column)
+        return (*shared, self.lower, self.upper, PERM)
 
 
 @lru_cache(maxsize=256)
@@ -91,7 +91,7 @@ def layout(interpolant: Interpolant) -> Layout:
     used = beyond >= 0
     lower = max(lower, int((equation - beyond)[used].max(initial=0)))
     upper = max(upper, int((beyond - equation)[used].max(initial=0)))
-    values = np.zeros((n + 1, kernel.MAX_COEFFICIENTS + 1, full.told_joints or 1))
+    values = np.zeros((n + 1, kernel.MAX_COEFFICIENTS + 1, full.prescribed_joints or 1))
     for b, entries in enumerate(full.prescribed):
         for order, value in entries:
             if order < values.shape[1]:
@@ -132,10 +132,10 @@ def right_hand_sides(interpolant: Interpolant, waypoints: Array, nodal: Array | 
             f"{interpolant.coefficients} coefficients; give nodal derivatives of shape "
             f"({interpolant.free}, {joints}) or add conditions"
         )
-    if interpolant.told_joints not in (None, joints):
+    if interpolant.prescribed_joints not in (None, joints):
         raise TrajgapError(
             f"interpolant {interpolant.name}: prescribes derivatives for "
-            f"{interpolant.told_joints} joints, the way-points have {joints}"
+            f"{interpolant.prescribed_joints} joints, the way-points have {joints}"
         )
     values = np.array(np.broadcast_to(plan.prescribed, (plan.kinds.size, joints)))
     rows = plan.waypoint >= 0

@@ -9,11 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import CaseError, TrajgapError
-from ..fields import nearest
+from ..fields import spelling_hint
 from ..motions import BRAKING, ORDERS, JointLimits, check_range
 
-STATED = (*ORDERS, BRAKING)
-"""Quantities that a source may limit."""
 Range = tuple[float, float]
 """Lower and upper limit, rad and s; infinite where that side has none."""
 
@@ -93,7 +91,7 @@ def merge(joints: Sequence[str], sources: Sequence[StatedLimits]) -> JointLimits
     said: dict[tuple[str, str], str] = {}
     for one in sources:
         if one.named and not set(joints) & set(one.ranges):
-            known = nearest(joints[0], one.ranges)
+            known = spelling_hint(joints[0], one.ranges)
             raise CaseError(one.source, "", f"names none of the joints {_few(joints)}; {known}")
         for j, joint in enumerate(joints):
             stated = one.ranges.get(joint, {})

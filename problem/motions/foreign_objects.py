@@ -1,4 +1,4 @@
-"""Motions held by objects of other libraries, told by what they offer: nothing is imported."""
+"""Motions held by objects of other libraries, known by what they offer: nothing is imported."""
 
 from __future__ import annotations
 

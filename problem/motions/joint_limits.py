@@ -64,7 +64,7 @@ class JointLimits:
         return cls(tuple(joints), lower, upper, free)
 
     @classmethod
-    def given(
+    def from_values(
         cls,
         joints: Sequence[str],
         velocity: ArrayLike = np.inf,

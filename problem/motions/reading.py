@@ -1,4 +1,4 @@
-"""A file with a motion of whatever format, told by its ending and its keys."""
+"""A file with a motion of whatever format, known by its ending and its keys."""
 
 from __future__ import annotations
 

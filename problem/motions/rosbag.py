@@ -85,11 +85,13 @@ def read_rosbag(path: Path, topic: str | None = None) -> Samples:
     except CaseError:
         raise
     except Exception as error:  # whatever a damaged bag does to its reader
-        told = (str(error).splitlines() or [type(error).__name__])[0][:200]
-        raise CaseError(name, "", f"no readable bag ({told}); record it again") from None
+        reason = (str(error).splitlines() or [type(error).__name__])[0][:200]
+        raise CaseError(name, "", f"no readable bag ({reason}); record it again") from None
     if len(held) != 1:
-        told = "none" if not held else "more than one"
-        raise CaseError(name, "--topic", f"the bag holds {told}; name a topic with one trajectory")
+        number = "none" if not held else "more than one"
+        raise CaseError(
+            name, "--topic", f"the bag holds {number}; name a topic with one trajectory"
+        )
     return samples_of_message(held[0], name)
 
 

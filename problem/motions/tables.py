@@ -1,4 +1,4 @@
-"""Samples from tables: CSV and Parquet, one row per time, columns told by their names."""
+"""Samples from tables: CSV and Parquet, one row per time, columns known by their names."""
 
 from __future__ import annotations
 
@@ -111,8 +111,8 @@ def read_parquet(path: Path, joints: Sequence[str] = (), noise: float | Array = 
         table = file.read()
         columns = [np.asarray(c.to_numpy(), dtype=np.float64) for c in table.itercolumns()]
     except (lib.ArrowException, OSError, ValueError, TypeError, MemoryError) as error:
-        told = str(error).splitlines()[0] if str(error) else type(error).__name__
-        raise CaseError(name, "", f"no Parquet table ({told}); export it again") from None
+        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+        raise CaseError(name, "", f"no Parquet table ({reason}); export it again") from None
     if not columns or rows == 0:
         raise CaseError(name, "", "holds no rows; give one row per sample")
     return _samples(name, np.column_stack(columns), names, joints, noise)
@@ -219,8 +219,10 @@ def _meaning(name: str, header: Sequence[str]) -> tuple[int, dict[tuple[str, int
     """Column of times, and of each joint and order."""
     times = [k for k, one in enumerate(header) if _TIME.fullmatch(one.strip().lower())]
     if len(times) != 1:
-        told = "no column is" if not times else "several columns are"
-        raise CaseError(name, "line 1", f"{told} named time; name the column of seconds 'time'")
+        columns_are = "no column is" if not times else "several columns are"
+        raise CaseError(
+            name, "line 1", f"{columns_are} named time; name the column of seconds 'time'"
+        )
     columns: dict[tuple[str, int], int] = {}
     for k, one in enumerate(header):
         if k == times[0]:

@@ -113,19 +113,19 @@ def _reword(rng: Rng, raw: dict[str, Any]) -> None:
 
 
 def ends_said(block: dict[str, Any], units: dict[str, str], said: Any) -> dict[str, Any]:
-    """A block whose end derivatives, in rad and s, are told in the units of a file."""
-    told = dict(block)
+    """A block whose end derivatives, in rad and s, are written in the units of a file."""
+    written = dict(block)
     first = block.get("end_orders", [1] if block["family"] == "cubic-spline" else [1, 2])
     for key, orders in (
         ("end_derivatives", first),
         ("finish_derivatives", block.get("finish_orders", first)),
     ):
-        if key in told:
-            told[key] = [
+        if key in written:
+            written[key] = [
                 _each_said(value, r, units, said)
-                for r, value in zip(orders, told[key], strict=True)
+                for r, value in zip(orders, written[key], strict=True)
             ]
-    return told
+    return written
 
 
 def _each_said(value: Any, order: int, units: dict[str, str], said: Any) -> Any:

@@ -63,8 +63,8 @@ def verdict(rng: Rng, folder: Path) -> str | None:
         # Below, rounding of the way-points alone moves a derivative by a part of its limit.
         noise = 1e-13 * np.abs(asked.waypoints).max() / h.min() ** np.array([1, 2, 3])
         # Where a curve's clock nearly stands, rounding is larger; the judge says by how much.
-        told = min(0.05, max((p.error / p.limit for p in found.peaks), default=0.0))
-        room = max(1e-3, 2.0 * told)
+        rounding = min(0.05, max((p.error / p.limit for p in found.peaks), default=0.0))
+        room = max(1e-3, 2.0 * rounding)
         apart = (least > 1 + room or most < 1 - room) and (noise < 1e-4 * asked.sides).all()
         demand(not apart, f"undecided where it is clear: {said}")
     jumps = peaks(asked, h).jumps
@@ -139,8 +139,8 @@ def identities(rng: Rng, folder: Path) -> str | None:
     found = check(_problem(drawn), durations)
     a, b = (_worst(x) for x in (base, found))
     # Where rounding may be the whole of a value, as on a line passed in 1e-8 s, the judge says so.
-    told = max((p.error / p.limit for x in (base, found) for p in x.peaks), default=0.0)
-    close = a == b or abs(a - b) <= 1e-6 * max(abs(a), abs(b), 1e-6) + told
+    rounding = max((p.error / p.limit for x in (base, found) for p in x.peaks), default=0.0)
+    close = a == b or abs(a - b) <= 1e-6 * max(abs(a), abs(b), 1e-6) + rounding
     demand(close, f"{kind}: worst ratio {a!r} becomes {b!r}")
     # Beside a limit a last digit may turn a verdict.
     if abs(a - 1) > 1e-6 and "undecided" not in (base.limits, found.limits):

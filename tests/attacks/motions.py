@@ -272,7 +272,7 @@ def motion_verdicts(rng: Rng, folder: Path) -> str:
     factors = rng.choice([0.9, 0.999, 1.02, 2.0], (4, count), p=[0.03, 0.03, 0.47, 0.47])
     near = np.where(rng.random((4, count)) < 0.3, np.inf, seen * factors)
     near = np.where(near == 0.0, np.inf, near)
-    limits = JointLimits.given(
+    limits = JointLimits.from_values(
         motion.joints, near[1], near[2], near[3], (-near[0] - 1e-12, near[0] + 1e-12)
     )
     keep(folder, case=f"{how} {time.tolist()} {values.tolist()} {near.tolist()}")
@@ -318,7 +318,7 @@ def true_samples(rng: Rng, folder: Path) -> str:
     rounding = 1e-12 * (1.0 + start)
     found = check_samples(
         Samples((), time, shaken, *more, noise=noise + rounding),
-        JointLimits.given(
+        JointLimits.from_values(
             tuple(str(j + 1) for j in range(count)), *bounds[1:], (-bounds[0], bounds[0])
         ),
     )
@@ -326,7 +326,7 @@ def true_samples(rng: Rng, folder: Path) -> str:
     tight = [0.5 * np.abs(value(order)).max(axis=0) for order in range(4)]
     proved = check_samples(
         Samples((), time, value(0), value(1), noise=rounding),
-        JointLimits.given(tuple(str(j + 1) for j in range(count)), tight[1]),
+        JointLimits.from_values(tuple(str(j + 1) for j in range(count)), tight[1]),
     )
     demand(proved.verdict == "violated", "a stated velocity beyond its limit is not told")
     return "not accused"

@@ -164,9 +164,9 @@ def resumed(rng: Rng, folder: Path) -> str | None:
         from trajgap.problem import TrajgapError, parse_case
         from trajgap.verify import Subject
 
-        from attacks.cases import alone as posed
+        from attacks.cases import alone as written_case
 
-        problem = parse_case(posed(_posable(asked)).text, "case.toml").problem()
+        problem = parse_case(written_case(_as_written(asked)).text, "case.toml").problem()
         # A damaged word names no subject: the question is then that of the declared curve.
         about = Subject(subject) if subject in list(Subject) else Subject.DECLARED
         try:
@@ -187,7 +187,7 @@ def resumed(rng: Rng, folder: Path) -> str | None:
     return "true"
 
 
-def _posable(asked: Asked) -> Asked:
+def _as_written(asked: Asked) -> Asked:
     """The question of a state in words of a case file."""
     from dataclasses import replace
 

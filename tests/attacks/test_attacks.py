@@ -115,9 +115,9 @@ def test_ends_sides_and_fences_are_drawn() -> None:
         for pair, asked in one.asked.items():
             problem = case.problem(*pair)
             np.testing.assert_allclose(problem.limits.sides, asked.sides, rtol=1e-14)
-            told = [values for end in (asked.ends, asked.finish) for values in end.values()]
+            ends = [v for end in (asked.ends, asked.finish) for v in end.values()]
             seen["a moving end"] += bool(asked.moving.any())
-            seen["joints that differ at an end"] += any(np.ptp(v) > 0 for v in told)
+            seen["joints that differ at an end"] += any(np.ptp(v) > 0 for v in ends)
             seen["another finish"] += any(
                 (asked.finish.get(r, 0.0 * v) != v).any() for r, v in asked.ends.items()
             )

@@ -91,7 +91,7 @@ def degrees_a_little_off(patch: Patch) -> None:
     patch.setattr(trajgap.problem, "parse_case", parse)
 
 
-def _posed(patch: Patch, changed: Callable[[Any], Any]) -> None:
+def _with_problems(patch: Patch, changed: Callable[[Any], Any]) -> None:
     """Every problem of a case file is another one."""
 
     class Read:
@@ -105,7 +105,7 @@ def _posed(patch: Patch, changed: Callable[[Any], Any]) -> None:
 
 
 def sides_are_one_size(patch: Patch) -> None:
-    _posed(patch, lambda problem: replace(problem, limits=problem.limits.hull))
+    _with_problems(patch, lambda problem: replace(problem, limits=problem.limits.hull))
 
 
 def the_finish_is_the_start(patch: Patch) -> None:
@@ -116,7 +116,7 @@ def the_finish_is_the_start(patch: Patch) -> None:
         both = (curve.prescribed[0], *curve.prescribed[1:-1], curve.prescribed[0])
         return replace(problem, curve=replace(curve, prescribed=both))
 
-    _posed(patch, changed)
+    _with_problems(patch, changed)
 
 
 def positions_at_way_points(patch: Patch) -> None:

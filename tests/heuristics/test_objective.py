@@ -29,7 +29,7 @@ WAYPOINTS = np.array([[0.19, -1.63], [0.82, -2.01], [0.13, -1.07], [-0.88, -1.31
 LIMITS = Limits([5.0, 3.0], [8.0, 11.0], [np.inf, 90.0])
 
 
-def posed(**changes: object) -> Problem:
+def problem_with(**changes: object) -> Problem:
     given = {
         "waypoints": WAYPOINTS,
         "limits": LIMITS,
@@ -54,7 +54,7 @@ def sampled_ratio(problem: Problem, durations: np.ndarray) -> float:
 
 
 def test_agrees_with_dense_sampling() -> None:
-    problem = posed()
+    problem = problem_with()
     rng = np.random.default_rng(5)
     batch = rng.uniform(0.35, 1.9, (300, 3))
     fitness = DeathPenalty(problem)(batch)
@@ -67,7 +67,7 @@ def test_agrees_with_dense_sampling() -> None:
 
 
 def test_stretch_to_the_limit_is_the_edge() -> None:
-    problem = posed()
+    problem = problem_with()
     h = np.array([[0.9, 1.2, 0.7]])
     tight = h * evaluate(problem, h).stretch[0]
     objective = DeathPenalty(problem)
@@ -76,7 +76,7 @@ def test_stretch_to_the_limit_is_the_edge() -> None:
 
 
 def test_an_answer_at_the_edge_of_the_tolerance_passes_the_checker() -> None:
-    problem = posed(limits=Limits(5.0, 8.0, joints=2))
+    problem = problem_with(limits=Limits(5.0, 8.0, joints=2))
     h = np.array([[0.9, 1.2, 0.7]])
     tight = h * evaluate(problem, h).stretch[0]
     # Acceleration scales with the inverse square: half of the tolerance is a quarter in time.
@@ -101,12 +101,12 @@ def test_an_answer_at_the_edge_of_the_tolerance_passes_the_checker() -> None:
 )
 @pytest.mark.parametrize("penalty", [np.inf, 1e6])
 def test_outside_the_bounds_is_infeasible(durations: list[float], penalty: float) -> None:
-    fitness = DeathPenalty(posed(), penalty)(np.array([durations, [1.9, 1.9, 1.9]]))
+    fitness = DeathPenalty(problem_with(), penalty)(np.array([durations, [1.9, 1.9, 1.9]]))
     np.testing.assert_array_equal(fitness, [penalty, 1.9 + 1.9 + 1.9])
 
 
 def test_bounds_themselves_are_feasible() -> None:
-    problem = posed(duration_lower=[1.5, 1.5, 1.5], duration_upper=[1.5, 2.0, 2.5])
+    problem = problem_with(duration_lower=[1.5, 1.5, 1.5], duration_upper=[1.5, 2.0, 2.5])
     batch = np.array([[1.5, 1.5, 1.5], [1.5, 2.0, 2.5]])
     np.testing.assert_array_equal(DeathPenalty(problem)(batch), [4.5, 6.0])
 
@@ -118,7 +118,7 @@ def test_a_lower_bound_of_zero_excludes_zero() -> None:
 
 
 def test_a_batch_is_its_members() -> None:
-    objective = DeathPenalty(posed())
+    objective = DeathPenalty(problem_with())
     batch = np.random.default_rng(8).uniform(-0.2, 2.2, (40, 3))
     alone = np.array([objective(row[None])[0] for row in batch])
     np.testing.assert_array_equal(objective(batch), alone)
@@ -126,13 +126,13 @@ def test_a_batch_is_its_members() -> None:
 
 
 def test_bounds_of_a_problem() -> None:
-    bounds = Bounds.of(posed())
+    bounds = Bounds.of(problem_with())
     np.testing.assert_array_equal(bounds.lower, [0.2, 0.3, 0.1])
     np.testing.assert_array_equal(bounds.upper, [2.0, 3.0, 2.5])
 
 
 def test_counts_every_position() -> None:
-    counted = Counted(DeathPenalty(posed()))
+    counted = Counted(DeathPenalty(problem_with()))
     counted(np.full((7, 3), 1.5))
     counted(np.full((2, 3), -1.0))
     assert counted.evaluations == 9
@@ -141,19 +141,19 @@ def test_counts_every_position() -> None:
 @pytest.mark.parametrize("penalty", [0.0, -1.0, np.nan])
 def test_penalty_must_be_positive(penalty: float) -> None:
     with pytest.raises(TrajgapError, match=r"penalty: must be positive, got .*inf is allowed"):
-        DeathPenalty(posed(), penalty)
+        DeathPenalty(problem_with(), penalty)
 
 
 def test_penalty_must_exceed_every_admissible_total() -> None:
     with pytest.raises(TrajgapError, match=r"penalty: 7.5 does not exceed .* of 7.5 s; raise it"):
-        DeathPenalty(posed(), 7.5)
-    DeathPenalty(posed(), 7.6)
+        DeathPenalty(problem_with(), 7.5)
+    DeathPenalty(problem_with(), 7.6)
 
 
 def test_free_derivatives_are_not_searched() -> None:
     free = piecewise((5, 5, 5), 2, ((1, 0.0), (2, 0.0)))
     with pytest.raises(TrajgapError, match=r"leaves 4 derivatives per joint free.*prescribe them"):
-        DeathPenalty(posed(curve=free))
+        DeathPenalty(problem_with(curve=free))
 
 
 def test_other_interpolants() -> None:

@@ -46,7 +46,7 @@ LONG = Problem(
 )
 
 
-def posed(**changes: object) -> Problem:
+def problem_with(**changes: object) -> Problem:
     given = {
         "waypoints": WAYPOINTS,
         "limits": LIMITS,
@@ -58,7 +58,7 @@ def posed(**changes: object) -> Problem:
 
 
 def test_fitness_is_what_the_checker_calls_feasible_and_tight_time() -> None:
-    problem = posed(duration_lower=0.0, duration_upper=np.inf)
+    problem = problem_with(duration_lower=0.0, duration_upper=np.inf)
     batch = np.exp(np.random.default_rng(5).uniform(np.log(0.4), np.log(3.0), (40, 3)))
     repaired, rescaled = Stretch(problem)(batch), Stretch(problem, shorten=True)(batch)
     found = [check(problem, h) for h in batch]
@@ -69,7 +69,7 @@ def test_fitness_is_what_the_checker_calls_feasible_and_tight_time() -> None:
 
 
 def test_decoded_durations_keep_every_limit_and_touch_one() -> None:
-    problem = posed()
+    problem = problem_with()
     batch = np.random.default_rng(6).uniform(0.15, 0.6, (40, 3))
     for h in Stretch(problem).decode(batch):
         found = check(problem, h)
@@ -79,7 +79,7 @@ def test_decoded_durations_keep_every_limit_and_touch_one() -> None:
 
 
 def test_what_keeps_the_limits_is_not_touched() -> None:
-    problem = posed()
+    problem = problem_with()
     batch = np.random.default_rng(7).uniform(1.5, 3.0, (20, 3))
     assert np.isfinite(DeathPenalty(problem)(batch)).all()
     np.testing.assert_array_equal(Stretch(problem).decode(batch), batch)
@@ -89,12 +89,12 @@ def test_what_keeps_the_limits_is_not_touched() -> None:
 
 def test_proportions_are_kept() -> None:
     batch = np.random.default_rng(8).uniform(0.15, 0.6, (20, 3))
-    decoded = Stretch(posed()).decode(batch)
+    decoded = Stretch(problem_with()).decode(batch)
     np.testing.assert_allclose(decoded / decoded[:, :1], batch / batch[:, :1], rtol=1e-14)
 
 
 def test_rescaling_knows_no_scale() -> None:
-    objective = Stretch(posed(), shorten=True)
+    objective = Stretch(problem_with(), shorten=True)
     batch = np.random.default_rng(9).uniform(0.5, 1.0, (20, 3))
     np.testing.assert_allclose(objective(batch), objective(3.7 * batch), rtol=1e-12)
 
@@ -114,14 +114,14 @@ def test_rescaling_knows_no_scale() -> None:
 )
 def test_what_no_stretch_mends(durations: list[float], penalty: float) -> None:
     """The last one would need more than 9 s in a segment, the one before less than 0.1 s."""
-    objective = Stretch(posed(duration_upper=[9.0, 9.0, 9.0]), penalty)
+    objective = Stretch(problem_with(duration_upper=[9.0, 9.0, 9.0]), penalty)
     batch = np.array([durations, [1.9, 1.9, 1.9]])
     np.testing.assert_array_equal(objective(batch), [penalty, 1.9 + 1.9 + 1.9])
     np.testing.assert_array_equal(objective.decode(batch), batch)
 
 
 def test_a_stretch_may_lift_a_duration_over_its_lower_bound() -> None:
-    problem = posed(duration_lower=0.3)
+    problem = problem_with(duration_lower=0.3)
     h = np.array([[0.2, 0.25, 0.2]])
     assert DeathPenalty(problem)(h)[0] == np.inf
     decoded = Stretch(problem).decode(h)
@@ -130,17 +130,17 @@ def test_a_stretch_may_lift_a_duration_over_its_lower_bound() -> None:
 
 
 def test_a_joint_with_limit_zero() -> None:
-    objective = Stretch(posed(limits=Limits([5.0, 0.0])))
+    objective = Stretch(problem_with(limits=Limits([5.0, 0.0])))
     assert objective(np.full((1, 3), 1.5))[0] == np.inf
 
 
 def test_rescaling_where_nothing_is_limited() -> None:
-    objective = Stretch(posed(limits=Limits(joints=2), duration_lower=0.0), shorten=True)
+    objective = Stretch(problem_with(limits=Limits(joints=2), duration_lower=0.0), shorten=True)
     assert objective(np.full((1, 3), 1.5))[0] == np.inf
 
 
 def test_a_prescribed_derivative_cannot_be_stretched() -> None:
-    problem = posed(curve=cubic_spline(3, ((1, 0.5),)))
+    problem = problem_with(curve=cubic_spline(3, ((1, 0.5),)))
     DeathPenalty(problem)
     with pytest.raises(TrajgapError, match=r"^stretch: a prescribed .* use the death penalty"):
         Stretch(problem)
@@ -148,20 +148,20 @@ def test_a_prescribed_derivative_cannot_be_stretched() -> None:
 
 def test_it_refuses_what_the_death_penalty_refuses() -> None:
     with pytest.raises(TrajgapError, match=r"^penalty: must be positive"):
-        Stretch(posed(), 0.0)
+        Stretch(problem_with(), 0.0)
     free = piecewise((5, 5, 5), 2, ((1, 0.0), (2, 0.0)))
     with pytest.raises(TrajgapError, match=r"leaves 4 derivatives per joint free"):
-        Stretch(posed(curve=free))
+        Stretch(problem_with(curve=free))
 
 
 def test_handlings_by_name() -> None:
-    assert isinstance(judge_of(posed(), np.inf, "death-penalty"), DeathPenalty)
-    stretch, rescale = (judge_of(posed(), np.inf, name) for name in ("stretch", "rescale"))
+    assert isinstance(judge_of(problem_with(), np.inf, "death-penalty"), DeathPenalty)
+    stretch, rescale = (judge_of(problem_with(), np.inf, name) for name in ("stretch", "rescale"))
     assert isinstance(stretch, Stretch)
     assert isinstance(rescale, Stretch)
     assert (stretch.shorten, rescale.shorten) == (False, True)
     with pytest.raises(TrajgapError, match=r"^objective: 'streched' is unknown; .*'stretch'"):
-        run(PSO(), posed(), 0, 1, objective="streched")
+        run(PSO(), problem_with(), 0, 1, objective="streched")
 
 
 ALGORITHMS = (
@@ -177,7 +177,7 @@ ALGORITHMS = (
 
 @pytest.mark.parametrize("algorithm", ALGORITHMS, ids=lambda a: a.kind)
 @pytest.mark.parametrize("handling", ["stretch", "rescale"])
-@pytest.mark.parametrize("problem", [posed(), LONG], ids=["3", "9"])
+@pytest.mark.parametrize("problem", [problem_with(), LONG], ids=["3", "9"])
 def test_the_account_is_that_of_the_decoded_durations(
     algorithm: PSO, handling: str, problem: Problem
 ) -> None:
@@ -195,7 +195,7 @@ def test_the_account_is_that_of_the_decoded_durations(
 
 
 def test_the_trace_is_that_of_decoded_totals() -> None:
-    problem = posed()
+    problem = problem_with()
     rng = np.random.Generator(np.random.PCG64(6))
     judge = Stretch(problem)
     totals = [
@@ -207,9 +207,9 @@ def test_the_trace_is_that_of_decoded_totals() -> None:
 
 
 def test_joints_by_themselves() -> None:
-    found = run_per_joint(PSO(), posed(), 12, 30, objective="stretch")
+    found = run_per_joint(PSO(), problem_with(), 12, 30, objective="stretch")
     for j, one in enumerate(found.runs):
-        assert check(posed().joint(j), one.durations).verdict is Verdict.PASS
+        assert check(problem_with().joint(j), one.durations).verdict is Verdict.PASS
         assert one.reported_time == one.durations.sum()
     np.testing.assert_array_equal(
         found.durations, np.maximum(found.runs[0].durations, found.runs[1].durations)
@@ -218,8 +218,8 @@ def test_joints_by_themselves() -> None:
 
 @pytest.mark.slow
 def test_same_bits_for_any_number_of_workers() -> None:
-    one = run_many(WOA(), posed(), range(3), 1, 10, objective="stretch")
-    two = run_many(WOA(), posed(), range(3), 2, 10, objective="stretch")
+    one = run_many(WOA(), problem_with(), range(3), 1, 10, objective="stretch")
+    two = run_many(WOA(), problem_with(), range(3), 2, 10, objective="stretch")
     for a, b in zip(one, two, strict=True):
         assert a.durations.tobytes() == b.durations.tobytes()
         assert a.position.tobytes() == b.position.tobytes()

@@ -185,13 +185,13 @@ def test_what_all_processes_need_is_compiled_before_they_start(
     workers: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     loop = import_module("trajgap.heuristics.loop")
-    told: list[object] = []
+    calls: list[object] = []
 
     def started(some: object, parts: list[tuple[int, ...]], count: int) -> Iterator[tuple[()]]:
-        told.append(count)
+        calls.append(count)
         yield from ()
 
     monkeypatch.setattr(loop, "in_processes", started)
-    monkeypatch.setattr(loop, "compile_judge", lambda *asked: told.append(asked))
+    monkeypatch.setattr(loop, "compile_judge", lambda *asked: calls.append(asked))
     run_many(PSO(particles=4, iterations=1), PROBLEM, range(4), workers, objective="stretch")
-    assert told == ([] if workers == 1 else [(PROBLEM, "stretch"), 2])
+    assert calls == ([] if workers == 1 else [(PROBLEM, "stretch"), 2])

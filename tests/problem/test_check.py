@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from support import exact_route
 from support.checked import one_joint, table
-from support.samples import DECLARATIONS, FREE, posed
+from support.samples import DECLARATIONS, FREE, sample_problem
 from trajgap.problem import (
     QUANTITIES,
     Interpolant,
@@ -83,7 +83,7 @@ def test_puma_joint_one_at_its_printed_durations() -> None:
 @pytest.mark.parametrize("name", [*DECLARATIONS, *FREE])
 def test_values_lie_within_the_stated_error(name: str) -> None:
     interpolant = (DECLARATIONS | FREE)[name]
-    problem, _ = posed(interpolant, 31, joints=2)
+    problem, _ = sample_problem(interpolant, 31, joints=2)
     rng = np.random.default_rng(7)
     for spread in (0.3, 1.2):
         h = 10.0 ** rng.uniform(-spread, spread, interpolant.segments)
@@ -104,7 +104,7 @@ def test_values_lie_within_the_stated_error(name: str) -> None:
 
 @given(NAMES, SEEDS, st.floats(0.05, 20.0))
 def test_stretching_time(name: str, seed: int, c: float) -> None:
-    problem, h = posed(DECLARATIONS[name], seed)
+    problem, h = sample_problem(DECLARATIONS[name], seed)
     before, after = check(problem, h), check(problem, c * h)
     expected = table(before, problem.joints) / [c, c**2, c**3]
     np.testing.assert_allclose(table(after, problem.joints), expected, rtol=1e-10, atol=1e-12)
@@ -115,7 +115,7 @@ def test_stretching_time(name: str, seed: int, c: float) -> None:
 
 @given(NAMES, SEEDS)
 def test_stretch_makes_it_tight(name: str, seed: int) -> None:
-    problem, h = posed(DECLARATIONS[name], seed)
+    problem, h = sample_problem(DECLARATIONS[name], seed)
     loose = check(problem, h)
     if any(jump.order < 2 for jump in loose.jumps):
         return
@@ -131,7 +131,7 @@ def test_stretch_makes_it_tight(name: str, seed: int) -> None:
 
 @given(st.sampled_from(list(DECLARATIONS)), SEEDS)
 def test_permuted_joints(name: str, seed: int) -> None:
-    problem, h = posed(DECLARATIONS[name], seed)
+    problem, h = sample_problem(DECLARATIONS[name], seed)
     order = np.random.default_rng(seed).permutation(3)
     other = Problem(
         problem.waypoints[:, order],
@@ -149,7 +149,7 @@ def test_permuted_joints(name: str, seed: int) -> None:
 
 @given(NAMES, SEEDS, st.floats(-50, 50))
 def test_mirror_and_shift(name: str, seed: int, shift: float) -> None:
-    problem, h = posed(DECLARATIONS[name], seed)
+    problem, h = sample_problem(DECLARATIONS[name], seed)
     mirrored = dataclasses.replace(problem, waypoints=shift - problem.waypoints)
     np.testing.assert_allclose(
         table(check(mirrored, h), problem.joints),
@@ -174,7 +174,7 @@ def backwards(interpolant: Interpolant) -> Interpolant:
 
 @given(st.sampled_from(list(DECLARATIONS)), SEEDS)
 def test_time_reversal(name: str, seed: int) -> None:
-    problem, h = posed(DECLARATIONS[name], seed)
+    problem, h = sample_problem(DECLARATIONS[name], seed)
     other = Problem(problem.waypoints[::-1], problem.limits, backwards(problem.curve))
     forth, back = check(problem, h), check(other, h[::-1])
     np.testing.assert_allclose(
@@ -189,7 +189,7 @@ def test_time_reversal(name: str, seed: int) -> None:
 def test_degrees_or_radians(name: str, seed: int) -> None:
     if not DECLARATIONS[name].homogeneous:
         return
-    problem, h = posed(DECLARATIONS[name], seed)
+    problem, h = sample_problem(DECLARATIONS[name], seed)
     in_degrees = Problem(
         np.degrees(problem.waypoints),
         Limits(*np.degrees(problem.limits.derivatives).T),
@@ -205,7 +205,7 @@ def test_degrees_or_radians(name: str, seed: int) -> None:
 
 @given(SEEDS, st.floats(0.2, 5.0))
 def test_limits_enter_as_ratios(seed: int, factor: float) -> None:
-    problem, h = posed(three_five_three(), seed)
+    problem, h = sample_problem(three_five_three(), seed)
     wider = dataclasses.replace(
         problem, limits=problem.limits.with_derivatives(factor * problem.limits.derivatives)
     )
@@ -222,7 +222,7 @@ def test_limits_enter_as_ratios(seed: int, factor: float) -> None:
 @given(st.sampled_from([*DECLARATIONS, *FREE]), SEEDS, st.floats(0.1, 1.0))
 def test_evaluate_agrees_with_check(name: str, seed: int, spread: float) -> None:
     interpolant = (DECLARATIONS | FREE)[name]
-    problem, _ = posed(interpolant, seed)
+    problem, _ = sample_problem(interpolant, seed)
     rng = np.random.default_rng(seed)
     batch = 10.0 ** rng.uniform(-spread, spread, (3, interpolant.segments))
     nodal = rng.normal(size=(interpolant.free, 3)) if interpolant.free else None
@@ -237,7 +237,7 @@ def test_evaluate_agrees_with_check(name: str, seed: int, spread: float) -> None
 
 @pytest.mark.parametrize("name", ["3-5-3", "quintic", "cubic, virtual", "rest 7"])
 def test_same_bits_in_any_company(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    problem, _ = posed(DECLARATIONS[name], 6)
+    problem, _ = sample_problem(DECLARATIONS[name], 6)
     rng = np.random.default_rng(0)
     batch = rng.uniform(0.1, 3.0, (1500, problem.segments))
     together = evaluate(problem, batch)
@@ -258,7 +258,7 @@ def test_same_bits_in_any_company(name: str, monkeypatch: pytest.MonkeyPatch) ->
 
 
 def test_evaluate_bad_durations_are_infinite_and_nothing_else() -> None:
-    problem, h = posed(three_five_three(), 1, limits=Limits(2, [np.inf, 3, 4], joints=3))
+    problem, h = sample_problem(three_five_three(), 1, limits=Limits(2, [np.inf, 3, 4], joints=3))
     good = evaluate(problem, [h])
     bad = [0.0, -1.0, np.nan, np.inf, -np.inf]
     batch = np.tile(h, (2 * len(bad) + 1, 1))
@@ -275,14 +275,14 @@ def test_evaluate_bad_durations_are_infinite_and_nothing_else() -> None:
 
 
 def test_evaluate_overflow_is_infinite() -> None:
-    problem, _ = posed(three_five_three(), 1)
+    problem, _ = sample_problem(three_five_three(), 1)
     ratios = evaluate(problem, [[1e-200, 1.0, 1.0], [1.0, 1e-300, 1.0], [5e-324, 1.0, 1.0]]).ratios
     assert np.isinf(ratios[:, :, 2]).all()
     assert not np.isnan(ratios).any()
 
 
 def test_evaluate_shapes() -> None:
-    problem, h = posed(three_five_three(), 1)
+    problem, h = sample_problem(three_five_three(), 1)
     empty = evaluate(problem, np.empty((0, 3)))
     assert (empty.ratios.shape, empty.stretch.shape) == ((0, 3, 3), (0,))
     np.testing.assert_array_equal(
@@ -298,6 +298,6 @@ def test_evaluate_shapes() -> None:
     for wrong in ("abc", [[1.0, "x", 2.0]], [[1.0, 2.0, 3.0], [1.0]]):
         with pytest.raises(TrajgapError, match=r"durations: not numbers; give seconds"):
             evaluate(problem, wrong)
-    free, _ = posed(FREE["5-5-5 C2"], 1)
+    free, _ = sample_problem(FREE["5-5-5 C2"], 1)
     with pytest.raises(TrajgapError, match="give nodal derivatives of shape"):
         evaluate(free, [h])

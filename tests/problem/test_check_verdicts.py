@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from support import exact_route
 from support.checked import one_joint, table
-from support.samples import FREE, posed
+from support.samples import FREE, sample_problem
 from trajgap.problem import (
     QUANTITIES,
     Check,
@@ -129,7 +129,7 @@ def test_at_rest_between_virtual_waypoints() -> None:
 
 
 def test_nothing_limited() -> None:
-    problem, h = posed(three_five_three(), 1, limits=Limits(joints=3))
+    problem, h = sample_problem(three_five_three(), 1, limits=Limits(joints=3))
     result = check(problem, h)
     assert result.verdict is Verdict.PASS
     assert result.worst is None
@@ -252,7 +252,7 @@ def test_position_within_one_ulp_of_its_limit_is_undecided() -> None:
 
 
 def test_duration_bounds() -> None:
-    problem, h = posed(three_five_three(), 3)
+    problem, h = sample_problem(three_five_three(), 3)
     c = check(problem, h).stretch
     tight = h * c
 
@@ -298,7 +298,7 @@ def test_duration_bounds() -> None:
 
 def test_free_derivatives_are_taken_as_given() -> None:
     quintics = FREE["5-5-5 C2"]
-    problem, h = posed(quintics, 12, joints=1)
+    problem, h = sample_problem(quintics, 12, joints=1)
     nodal = np.array([[0.4], [-0.3], [1.1], [0.7]])
     given_values = Interpolant(
         (5, 5, 5),
@@ -334,7 +334,7 @@ def test_summary_reads_on_one_screen() -> None:
 
 
 def test_check_refuses_durations() -> None:
-    problem, _ = posed(three_five_three(), 3)
+    problem, _ = sample_problem(three_five_three(), 3)
     for wrong, message in (
         ([1.0, 1.0], r"durations: expected 3 \(one per segment\), got 2"),
         ([1.0, -1.0, 1.0], "must all be positive and finite"),

@@ -13,7 +13,7 @@ from trajgap.problem import Limits, Problem, TrajgapError, cubic_spline, cubic_s
 Q = np.array([[0.2, -1.0], [0.5, -0.6], [0.5, 0.6]])
 
 
-def posed(ratios: object, **other: object) -> Problem:
+def problem_with(ratios: object, **other: object) -> Problem:
     return Problem(Q, Limits(1.0), cubic_spline(2), ratios=ratios, **other)
 
 
@@ -28,7 +28,7 @@ def posed(ratios: object, **other: object) -> Problem:
     ],
 )
 def test_their_scale_is_irrelevant(ratios, shares) -> None:
-    problem = posed(ratios)
+    problem = problem_with(ratios)
     np.testing.assert_allclose(problem.shares, shares, rtol=1e-12)
     for same in (problem.joint(1), problem.hull, replace(problem, name="x")):
         assert same.shares.tolist() == problem.shares.tolist()
@@ -56,7 +56,7 @@ def test_without_them_each_duration_is_chosen() -> None:
 )
 def test_bad_ratios_are_one_line(ratios, said: str) -> None:
     with pytest.raises(TrajgapError, match=said):
-        posed(ratios)
+        problem_with(ratios)
 
 
 def test_chord_lengths_need_steps_at_every_segment() -> None:
@@ -68,7 +68,10 @@ def test_chord_lengths_need_steps_at_every_segment() -> None:
 
 def test_the_seal_of_a_question_holds_its_ratios() -> None:
     free = Problem(Q, Limits(1.0), cubic_spline(2))
-    seals = {problem_seal(one) for one in (free, posed("equal"), posed("chord"), posed([1, 3]))}
+    seals = {
+        problem_seal(one)
+        for one in (free, problem_with("equal"), problem_with("chord"), problem_with([1, 3]))
+    }
     assert len(seals) == 4
-    assert problem_seal(posed([2, 6])) == problem_seal(posed([1, 3]))
-    assert problem_seal(posed([5, 5])) == problem_seal(posed("equal"))
+    assert problem_seal(problem_with([2, 6])) == problem_seal(problem_with([1, 3]))
+    assert problem_seal(problem_with([5, 5])) == problem_seal(problem_with("equal"))

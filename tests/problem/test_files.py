@@ -94,7 +94,7 @@ def test_a_new_file_without_hard_links(tmp_path: Path, monkeypatch: pytest.Monke
     assert names(tmp_path) == ["a", "b"]
 
 
-def test_two_at_once_are_told_before_they_compute(tmp_path: Path) -> None:
+def test_two_at_once_are_refused_before_they_compute(tmp_path: Path) -> None:
     with new_file(tmp_path / "a") as write:
         with pytest.raises(OSError, match="another process writes it"), new_file(tmp_path / "a"):
             pass
@@ -138,7 +138,7 @@ def test_drafts_are_removed_when_the_program_ends(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["x" * 300, "none/a"])
-def test_a_name_that_cannot_be_is_told_before_computing(tmp_path: Path, name: str) -> None:
+def test_a_name_that_cannot_be_is_refused_before_computing(tmp_path: Path, name: str) -> None:
     with pytest.raises(OSError, match=r"too long|No such file"), new_file(tmp_path / name):
         pytest.fail("computes")
 

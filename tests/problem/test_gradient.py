@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from support.samples import DECLARATIONS, FREE, posed
+from support.samples import DECLARATIONS, FREE, sample_problem
 from trajgap.problem import Extremum, Problem, evaluate, extrema, fit, peak_gradients
 
 SEEDS = st.integers(0, 10**6)
@@ -49,7 +49,7 @@ def moved(
 @pytest.mark.parametrize("name", [*DECLARATIONS, *FREE])
 def test_against_finite_differences(name: str) -> None:
     interpolant = (DECLARATIONS | FREE)[name]
-    problem, h = posed(interpolant, 41, joints=2)
+    problem, h = sample_problem(interpolant, 41, joints=2)
     rng = np.random.default_rng(3)
     nodal = rng.normal(size=(interpolant.free, 2)) if interpolant.free else None
     points = interior(problem, h, nodal)
@@ -98,7 +98,7 @@ def test_against_finite_differences(name: str) -> None:
 @given(st.sampled_from([n for n, i in DECLARATIONS.items() if i.homogeneous]), SEEDS)
 def test_euler_identity(name: str, seed: int) -> None:
     # f(c·h) = f(h)/cʳ, so h · ∂f/∂h = −r f; f is linear in the way-points, and blind to a shift
-    problem, h = posed(DECLARATIONS[name], seed)
+    problem, h = sample_problem(DECLARATIONS[name], seed)
     curve = fit(problem.curve, problem.waypoints, h)
     points = [e for j in range(3) for r in (1, 2, 3) for e in extrema(curve, j, r)]
     gradient = peak_gradients(problem, h, points)
@@ -113,7 +113,7 @@ def test_euler_identity(name: str, seed: int) -> None:
 
 
 def test_position_extrema_move_with_a_shift() -> None:
-    problem, h = posed(DECLARATIONS["3-5-3"], 2)
+    problem, h = sample_problem(DECLARATIONS["3-5-3"], 2)
     curve = fit(problem.curve, problem.waypoints, h)
     points = [e for j in range(3) for e in extrema(curve, j, 0)]
     gradient = peak_gradients(problem, h, points)
@@ -121,7 +121,7 @@ def test_position_extrema_move_with_a_shift() -> None:
 
 
 def test_gradient_predicts_the_batched_peaks() -> None:
-    problem, h = posed(DECLARATIONS["quintic"], 77)
+    problem, h = sample_problem(DECLARATIONS["quintic"], 77)
     curve = fit(problem.curve, problem.waypoints, h)
     tops = [
         max(extrema(curve, j, r), key=lambda e: abs(e.value)) for j in range(3) for r in (1, 2, 3)
@@ -139,7 +139,7 @@ def test_gradient_predicts_the_batched_peaks() -> None:
 
 
 def test_no_points_no_rows() -> None:
-    problem, h = posed(DECLARATIONS["3-5-3"], 2)
+    problem, h = sample_problem(DECLARATIONS["3-5-3"], 2)
     gradient = peak_gradients(problem, h, [])
     assert gradient.durations.shape == (0, 3)
     assert gradient.waypoints.shape == (0, 4)

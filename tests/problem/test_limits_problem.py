@@ -19,7 +19,7 @@ from trajgap.problem import (
 WAYPOINTS = np.array([[0.19, -1.63], [0.82, -2.01], [0.13, -1.07], [-0.88, -1.31]])
 
 
-def posed(**changes: object) -> Problem:
+def problem_with(**changes: object) -> Problem:
     given = {
         "waypoints": WAYPOINTS,
         "limits": Limits([5.0, 3.0], [8.0, 11.0]),
@@ -97,15 +97,15 @@ def test_limits_refuse(arguments: dict[str, object], message: str) -> None:
 
 
 def test_problem_fills_in() -> None:
-    problem = posed(duration_lower=0.3, duration_upper=[1.0, 2.0, 3.0])
+    problem = problem_with(duration_lower=0.3, duration_upper=[1.0, 2.0, 3.0])
     assert problem.joints == ("1", "2")
     assert problem.segments == 3
     assert problem.coupling is Coupling.SHARED
     np.testing.assert_array_equal(problem.duration_lower, [0.3, 0.3, 0.3])
     np.testing.assert_array_equal(problem.duration_upper, [1.0, 2.0, 3.0])
-    assert posed(coupling="per-joint").coupling is Coupling.PER_JOINT
-    np.testing.assert_array_equal(posed().duration_lower, np.zeros(3))
-    assert np.isinf(posed().duration_upper).all()
+    assert problem_with(coupling="per-joint").coupling is Coupling.PER_JOINT
+    np.testing.assert_array_equal(problem_with().duration_lower, np.zeros(3))
+    assert np.isinf(problem_with().duration_upper).all()
 
 
 def test_one_joint_as_a_plain_list() -> None:
@@ -114,14 +114,14 @@ def test_one_joint_as_a_plain_list() -> None:
 
 
 def test_one_limit_for_all_joints() -> None:
-    problem = posed(limits=Limits(2, 5, 9, -3, 4))
+    problem = problem_with(limits=Limits(2, 5, 9, -3, 4))
     np.testing.assert_array_equal(problem.limits.derivatives, [[2, 5, 9], [2, 5, 9]])
     np.testing.assert_array_equal(problem.limits.position_upper, [4, 4])
 
 
 def test_problem_is_a_frozen_copy() -> None:
     given = WAYPOINTS.copy()
-    problem = posed(waypoints=given)
+    problem = problem_with(waypoints=given)
     given[:] = 0.0
     np.testing.assert_array_equal(problem.waypoints, WAYPOINTS)
     with pytest.raises(ValueError, match="read-only"):
@@ -131,7 +131,7 @@ def test_problem_is_a_frozen_copy() -> None:
 
 
 def test_joint_alone_is_judged_alike() -> None:
-    problem = posed(joints=("shoulder", "elbow"), duration_lower=0.2, coupling="per-joint")
+    problem = problem_with(joints=("shoulder", "elbow"), duration_lower=0.2, coupling="per-joint")
     h = [0.7, 0.9, 0.8]
     whole = check(problem, h)
     for j, label in enumerate(problem.joints):
@@ -189,7 +189,7 @@ def test_joint_alone_is_judged_alike() -> None:
 )
 def test_problem_refuses(changes: dict[str, object], message: str) -> None:
     with pytest.raises(TrajgapError, match=message) as refusal:
-        posed(**changes)
+        problem_with(**changes)
     assert "\n" not in str(refusal.value)
 
 

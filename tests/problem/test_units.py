@@ -111,8 +111,8 @@ def test_rates_per_minute_are_exact():
     ],
 )
 def test_what_papers_write_is_answered(quantity, written, meant):
-    told = re.escape(f"{written!r} for {quantity}; write it as {meant!r}")
-    with pytest.raises(TrajgapError, match=told):
+    said = re.escape(f"{written!r} for {quantity}; write it as {meant!r}")
+    with pytest.raises(TrajgapError, match=said):
         check_unit(written, quantity)
 
 

@@ -128,7 +128,7 @@ def report() -> AuditReport:
         why="TG302: text",
         readings={},
     )
-    fall = Waterfall(problem="limit-80", reading="waypoints-rad", claim=None, steps=steps)
+    waterfall = Waterfall(problem="limit-80", reading="waypoints-rad", claim=None, steps=steps)
     cause = Cause(
         severity=Severity.ERROR,
         rule="TG302",
@@ -152,7 +152,7 @@ def report() -> AuditReport:
         (finding, proof),
         (judgement,),
         causes=(cause,),
-        made_falls=(fall,),
+        made_waterfalls=(waterfall,),
         made=card,
     )
     return AuditReport((one,))

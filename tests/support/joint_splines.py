@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 from trajgap.problem import Limits, Problem, cubic_spline
 
 
-def posed(
+def spline_problem(
     waypoints: ArrayLike,
     velocity: ArrayLike = np.inf,
     acceleration: ArrayLike = np.inf,

@@ -19,8 +19,8 @@ import sys
 from pathlib import Path
 from trajgap.compare.gaps import Store, load_study, on_this_machine, run_study
 with Store(Path(sys.argv[2])) as store, on_this_machine(2) as engine:
-    told = lambda session: print(session.run, flush=True)
-    run_study(load_study(Path(sys.argv[1])), store, engine, told=told)
+    show = lambda session: print(session.run, flush=True)
+    run_study(load_study(Path(sys.argv[1])), store, engine, progress=show)
 """
 """A session that says how many runs it has stored."""
 STUDY = (
@@ -73,7 +73,7 @@ def killed_at(running: subprocess.Popen[str], rng: random.Random, most: int) -> 
 
 
 def kill_and_resume(
-    folder: Path, kills: int, seeds: int, most: int, told: Callable[[str], None] = lambda _: None
+    folder: Path, kills: int, seeds: int, most: int, report: Callable[[str], None] = lambda _: None
 ) -> None:
     """Kill studies so many times; each must end with the rows of one that was left alone.
 
@@ -86,7 +86,7 @@ def kill_and_resume(
         Of the study: a third of its runs.
     most : int
         Rows after which a session is killed at the latest.
-    told : callable
+    report : callable
         Takes a line about each session.
     """
     study = written(folder, STUDY.replace("seeds = 4", f"seeds = {seeds}"))
@@ -116,7 +116,7 @@ def kill_and_resume(
             assert len(found) >= before
             assert [text for text in wanted if text in set(found)] == found
             word = "was finished" if finished else f"kill {done}"
-            told(f"study {fresh}: {word}, {len(found)} of {len(wanted)} rows stored")
+            report(f"study {fresh}: {word}, {len(found)} of {len(wanted)} rows stored")
             before = len(found)
         assert found == wanted, "the resumed study differs from the uninterrupted one"
-        told(f"study {fresh}: equal to the uninterrupted one, row for row")
+        report(f"study {fresh}: equal to the uninterrupted one, row for row")

@@ -13,7 +13,9 @@ from trajgap.problem import (
 MOVING_ENDS = piecewise((4, 3, 4), 2, ((1, 0.3), (2, -0.7)))
 
 
-def posed(seed: int, interpolant: Interpolant, joints: int = 2) -> tuple[Problem, np.ndarray]:
+def rounded_problem(
+    seed: int, interpolant: Interpolant, joints: int = 2
+) -> tuple[Problem, np.ndarray]:
     """Shifted, unequal data under velocity, acceleration and, for C4, jerk limits."""
     rng = np.random.default_rng(seed)
     count = len(interpolant.waypoint_breaks)

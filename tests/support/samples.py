@@ -48,7 +48,7 @@ FREE: dict[str, Interpolant] = {
 """Under-determined declarations, completed by nodal derivatives."""
 
 
-def posed(
+def sample_problem(
     interpolant: Interpolant,
     seed: int,
     joints: int = 3,

@@ -1,12 +1,12 @@
 """The shipped problems that a proof about the declared curve covers, by name of their files."""
 
 from trajgap.nlp.proofs.certifiers import covered
-from trajgap.nlp.proofs.evidence import stated_exactly
+from trajgap.nlp.proofs.evidence import printed_problem_or_none
 from trajgap.nlp.proofs.exact import ExactProblem
 from trajgap.problem import Coupling, load_case, published_ids
 
 
-def posed() -> list[tuple[str, ExactProblem]]:
+def covered_problems() -> list[tuple[str, ExactProblem]]:
     """Every shipped problem that is covered; each joint too where joints are optimised alone."""
     found = []
     for case_id in published_ids():
@@ -16,7 +16,7 @@ def posed() -> list[tuple[str, ExactProblem]]:
                 statement = case.statement(problem.id, reading.id)
                 if not statement.complete:
                     continue
-                exact = stated_exactly(statement)
+                exact = printed_problem_or_none(statement)
                 if exact is None or covered(exact) is not None:
                     continue
                 found.append((f"{case_id}.{problem.id}.{reading.id}", exact))
@@ -27,4 +27,4 @@ def posed() -> list[tuple[str, ExactProblem]]:
     return found
 
 
-POSED = dict(posed())
+COVERED_PROBLEMS = dict(covered_problems())

@@ -52,11 +52,11 @@ def small_problem() -> Problem:
 
 def small_trial(optimizer: str = "support.optimizers:draws", **changes: object) -> Trial:
     """A trial of an optimiser on the small problem."""
-    told: dict[str, Any] = {
+    settings: dict[str, Any] = {
         "name": "mine/main",
         "reading": "plain",
         "budget": 200,
         "seed": 3,
         "reference": Bracket(2.5, 2.4),
     }
-    return Trial(small_problem(), optimizer=optimizer, **(told | changes))
+    return Trial(small_problem(), optimizer=optimizer, **(settings | changes))

@@ -16,7 +16,7 @@ from trajgap.compare.audits.case_audit import CaseAudit, audit_case
 from trajgap.compare.audits.study import Study
 from trajgap.compare.pages.blocks import Page
 from trajgap.compare.pages.writer import case_page
-from trajgap.nlp import PerJointSolution, Solution, stated_exactly
+from trajgap.nlp import PerJointSolution, Solution, printed_problem_or_none
 from trajgap.problem import Case, parse_case, published_ids
 from trajgap.problem.cases.load import check_case
 
@@ -36,7 +36,7 @@ class Reworded(Study):
         if (pid, rid) not in self.original.pairs:
             return False
         one, other = (s.case.statement(pid, rid) for s in (self, self.original))
-        exact = stated_exactly(one, None) == stated_exactly(other, None)
+        exact = printed_problem_or_none(one, None) == printed_problem_or_none(other, None)
         return exact and pickle.dumps(one.problem()) == pickle.dumps(other.problem())
 
     def optimum(self, pid: str, rid: str, joint: str | None = None) -> Solution:

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from support.alterations import Path_, changed, fields, get, put
 from support.certificate_kinds import KINDS, stated, text
-from support.shipped_problems import POSED
+from support.shipped_problems import COVERED_PROBLEMS
 from trajgap.nlp.proofs.certifiers import certify
 from trajgap.nlp.proofs.document import shipped, write_certificate
 from trajgap.nlp.proofs.exact import ExactProblem
@@ -191,8 +191,8 @@ def tampered(data: dict[str, Any], tamper: Tampering) -> tuple[bool, str]:
 )
 def test_what_favours_the_claim_is_refused(kind: str, tamper: Tampering, reason: str) -> None:
     # Among the shipped ones, if possible: their interval is narrow and their numbers are printed.
-    name = next((n for n, e in POSED.items() if shipped_kind(e) == kind), None)
-    data = document(kind) if name is None else shipped(POSED[name])
+    name = next((n for n, e in COVERED_PROBLEMS.items() if shipped_kind(e) == kind), None)
+    data = document(kind) if name is None else shipped(COVERED_PROBLEMS[name])
     assert data is not None
     proves, why = tampered(data, tamper)
     assert not proves
@@ -206,7 +206,7 @@ def shipped_kind(exact: ExactProblem) -> str | None:
 
 @pytest.mark.slow
 def test_what_favours_the_claim_is_refused_of_every_shipped_certificate() -> None:
-    for name, exact in POSED.items():
+    for name, exact in COVERED_PROBLEMS.items():
         data = shipped(exact)
         assert data is not None
         for what, tamper, reason in TAMPERED:

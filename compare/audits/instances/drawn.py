@@ -1,4 +1,4 @@
-"""From a declared design to its instances, posed for the two procedures that a claim compares."""
+"""From a declared design to its instances, and their problems for both compared procedures."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def _printed_totals(study: Study, block: InstancesBlock, rid: str) -> tuple[str 
 def examined(
     study: Study, block: InstancesBlock, progress: Callable[[str], None] | None = None
 ) -> InstancesResult:
-    """Draw instances, pose them under their readings, and examine them.
+    """Draw instances, make their problems under their readings, and examine them.
 
     Parameters
     ----------

@@ -24,7 +24,7 @@ _ROUTES = 3
 
 @dataclass(frozen=True, eq=False)
 class Task:
-    """One instance: its way-points, posed for both procedures under every reading."""
+    """One instance: its way-points, with a problem for both procedures under every reading."""
 
     step: float
     index: int

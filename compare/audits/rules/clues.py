@@ -45,7 +45,7 @@ _STEPS = 10
 
 
 def reading_clues(study: Study) -> tuple[ReadingClue, ...]:
-    """Every clue of a case under every reading that is posed.
+    """Every clue of a case under every reading with a problem.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def _under(study: Study, clue: AnyClue, rid: str) -> Iterator[ReadingClue]:
 
 
 _Said = tuple[Speaks, str] | None
-"""On which side a clue speaks and what was computed; None where a reading poses nothing."""
+"""On which side a clue speaks and what was computed; None where a reading has no problem."""
 
 
 def _motions(study: Study, names: Sequence[str], rid: str) -> list[tuple[AnyClaim, str]]:

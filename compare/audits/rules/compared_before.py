@@ -62,15 +62,15 @@ def _each(listed: Sequence[Listed]) -> str:
     """Shares of the first problem and reading, one for each handling; the rest as a range."""
     first = listed[0]
     same = [o for o in listed if (o.problem, o.reading) == (first.problem, first.reading)]
-    told = "with probability " + "; ".join(
+    shares = "with probability " + "; ".join(
         f"{_percent(one.shown.share)} ({_sure(one)}) under {one.handling}" for one in same
     )
     others = [one.shown.share for one in listed if one not in same and one.shown.share is not None]
     if not others:
-        return told
+        return shares
     ends = " to ".join(dict.fromkeys(_percent(end) for end in (min(others), max(others))))
     where = "other problem or reading" if len(others) == 1 else "other problems and readings"
-    return f"{told}; under {len(others)} {where} {ends}"
+    return f"{shares}; under {len(others)} {where} {ends}"
 
 
 def _sure(one: Listed) -> str:

@@ -11,7 +11,7 @@ from ....problem import QUANTITIES, Array, Printed, Trajectory, fit
 from ....problem.cases import AnyClaim, MeasureClaim
 from ...documents import Finding
 from ..study import Study
-from .motion_numbers import SAMPLES, NumberBeside, nearest_number, told_beside
+from .motion_numbers import SAMPLES, NumberBeside, finding_of_numbers, nearest_number
 from .peaks import each_motion, has_curve, peak_numbers
 from .wording import in_units, unit_shown
 
@@ -154,7 +154,7 @@ def _measures(study: Study, claim: MeasureClaim, motion: AnyClaim) -> Iterator[F
             whose = one.meaning if joint is None else f" of joint {joint}"
             return f"the {NAMES[claim.measure]} of {claim.derivative}{whose}"
 
-        yield told_beside(study, "TG208", claim, motion, (pid, rid), found, unit, name)
+        yield finding_of_numbers(study, "TG208", claim, motion, (pid, rid), found, unit, name)
 
 
 def _unit(study: Study, claim: MeasureClaim, joint: str | None, pid: str, rid: str) -> str:

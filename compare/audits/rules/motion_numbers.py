@@ -150,7 +150,7 @@ def _with(values: Array, k: tuple[int, ...], others: Array) -> Array:
     return found
 
 
-def told_beside(
+def finding_of_numbers(
     study: Study,
     rule: str,
     claim: MeasureClaim | ValueClaim,

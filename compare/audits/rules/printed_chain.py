@@ -71,11 +71,13 @@ def judge_kinematics(study: Study) -> Iterator[Finding]:
     for reading in study.readings:
         chains: dict[object, tuple[str, Statement]] = {}
         for pid, rid in study.pairs:
-            posing = case.statement(pid, rid)
+            statement = case.statement(pid, rid)
             if rid == reading:
-                chains.setdefault((posing.waypoints.points, posing.units.position), (pid, posing))
-        for pid, posing in chains.values():
-            found = _compared(study, dh, posing, reading, pid if len(chains) > 1 else None)
+                chains.setdefault(
+                    (statement.waypoints.points, statement.units.position), (pid, statement)
+                )
+        for pid, statement in chains.values():
+            found = _compared(study, dh, statement, reading, pid if len(chains) > 1 else None)
             yield _of_claim(study, found)
 
 
@@ -89,10 +91,12 @@ def _of_claim(study: Study, finding: Finding) -> Finding:
     return finding.model_copy(update={"claim": next(own, None)})
 
 
-def _compared(study: Study, dh: DhTable, posing: Statement, rid: str, pid: str | None) -> Finding:
+def _compared(
+    study: Study, dh: DhTable, statement: Statement, rid: str, pid: str | None
+) -> Finding:
     printed = study.case.chain()
     assert printed is not None
-    joints = _joints(study, posing)
+    joints = _joints(study, statement)
     named = [(i, label) for i, label in enumerate(printed.labels) if label in joints]
     kinds = dict(zip(printed.labels, printed.kinds, strict=True))
     free = [label for label in printed.labels if label not in joints]
@@ -102,10 +106,10 @@ def _compared(study: Study, dh: DhTable, posing: Statement, rid: str, pid: str |
         column.joint
         for column in study.case.columns
         if column.joint in joints
-        and is_linear(_column_unit(column, posing))
+        and is_linear(_column_unit(column, statement))
         != (kinds.get(column.joint) is JointKind.PRISMATIC)
     ]
-    places = _places(study, posing)
+    places = _places(study, statement)
     if sliding or apart or any(k is None for k, _ in places):
         why = (
             f"joint {sliding[0]} slides, and its positions are not printed"
@@ -123,26 +127,26 @@ def _compared(study: Study, dh: DhTable, posing: Statement, rid: str, pid: str |
                 tuple(c) for n in range(len(dh.twisted)) for c in combinations(dh.twisted, n + 1)
             ]
         matches.append(_match(study, dh, convention, joints, places, flips))
-    return _judged(study, posing, rid, pid, [label for _, label in named], places, matches)
+    return _judged(study, statement, rid, pid, [label for _, label in named], places, matches)
 
 
-def _joints(study: Study, posing: Statement) -> Joints:
+def _joints(study: Study, statement: Statement) -> Joints:
     """Angles of every printed joint: those of the problems, and those in columns of their own."""
-    rows = posing.waypoints.points
+    rows = statement.waypoints.points
     found = {
-        label: tuple(posing.si(row[j], "position", joint=j) for row in rows)
-        for j, label in enumerate(posing.labels)
+        label: tuple(statement.si(row[j], "position", joint=j) for row in rows)
+        for j, label in enumerate(statement.labels)
     }
     for column in study.case.columns:
         if column.joint is not None and len(column.values) == len(rows):
-            unit = _column_unit(column, posing)
+            unit = _column_unit(column, statement)
             found[column.joint] = tuple(to_si(v, unit) for v in column.values)
     return found
 
 
-def _column_unit(column: Column, posing: Statement) -> str:
+def _column_unit(column: Column, statement: Statement) -> str:
     """The unit of a printed joint beside those of the problems."""
-    unit = posing.units.position
+    unit = statement.units.position
     return unit if isinstance(unit, str) else column.unit
 
 
@@ -156,9 +160,9 @@ def _bounded(chain: Chain, joints: Joints) -> Chain:
     return replace(chain, lower=lower, upper=upper)
 
 
-def _places(study: Study, posing: Statement) -> list[tuple[int | None, Cartesian]]:
+def _places(study: Study, statement: Statement) -> list[tuple[int | None, Cartesian]]:
     """Printed positions with the index of their way-point; None where there is none."""
-    labels, count = posing.waypoints.labels, len(posing.waypoints.points)
+    labels, count = statement.waypoints.labels, len(statement.waypoints.points)
     places = study.case.cartesian
     found: list[tuple[int | None, Cartesian]] = []
     for k, place in enumerate(places):
@@ -263,7 +267,7 @@ def _misses(near: tuple[Proximity, ...], slack: tuple[float, ...]) -> bool:
 
 def _judged(
     study: Study,
-    posing: Statement,
+    statement: Statement,
     rid: str,
     pid: str | None,
     printed: list[str],
@@ -274,8 +278,8 @@ def _judged(
     assert chain is not None
     free = [label for label in chain.labels if label not in printed]
     names = [place.label or place.id for _, place in places]
-    numbers = "values" if any(posing.linear) else "angles"
-    given = f"The {numbers} of {_named(printed)} are read in {_units(posing)}"
+    numbers = "values" if any(statement.linear) else "angles"
+    given = f"The {numbers} of {_named(printed)} are read in {_units(statement)}"
     given += f"; {_named(free)} may have any value." if free else "."
     fitting = next((m for m in matches if m.fits), None)
     if fitting is not None:
@@ -336,9 +340,9 @@ def _judged(
     )
 
 
-def _units(posing: Statement) -> str:
+def _units(statement: Statement) -> str:
     """The units of the robot's joints, each once where one after the other has the same."""
-    units = posing.units.position
+    units = statement.units.position
     return ", ".join(units) if isinstance(units, tuple) else str(units)
 
 

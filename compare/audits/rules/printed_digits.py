@@ -268,9 +268,9 @@ def _significant(number: Printed) -> str:
 def _repeated_digits(study: Study) -> Iterator[Finding]:
     """Way-point digits that stand in another printed column too."""
     case = study.case
-    posing = case.statement()
-    for j, label in zip(posing.joints, posing.labels, strict=False):
-        entries = [row[j] for row in posing.waypoints.points]
+    statement = case.statement()
+    for j, label in zip(statement.joints, statement.labels, strict=False):
+        entries = [row[j] for row in statement.waypoints.points]
         for group in _column_groups([*case.columns, *case.cartesian]):
             where, values = group
             repeated = [
@@ -288,9 +288,9 @@ def _repeated_digits(study: Study) -> Iterator[Finding]:
                     doubts=(label,),
                     printed=", ".join(repeated),
                     message=f"{len(repeated)} of the {len(entries)} way-points of joint {label} "
-                    f"({posing.waypoints.where}: {', '.join(repeated)}) repeat digits of {where}, "
-                    "a quantity of another kind. The digits alone do not say which column, "
-                    "if any, is meant otherwise.",
+                    f"({statement.waypoints.where}: {', '.join(repeated)}) repeat digits of "
+                    f"{where}, a quantity of another kind. The digits alone do not say which "
+                    "column, if any, is meant otherwise.",
                 )
 
 

@@ -120,17 +120,17 @@ def _above(study: Study, claim: StatementClaim) -> Finding:
     height = float(upper.values[2].fraction - lower.values[2].fraction)
     message = f"{names.format(f'{beside[0]:.4g}')} and {height:.4g} {upper.unit} above it."
     if _meets(upper, lower) and rise.lower > floor.upper:
-        return _told(claim, ClaimVerdict.SUPPORTED, message)
+        return _finding(claim, ClaimVerdict.SUPPORTED, message)
     least = min(_beside(upper, lower, signs) for signs in product((1, -1), repeat=2))
     if least[0] < beside[0]:
         message += (
             f" With another sign of {' and '.join(least[1])} it would be {least[0]:.4g} "
             f"{upper.unit}; signs may be lost in the text, so that nothing is decided."
         )
-    return _told(claim, ClaimVerdict.NOT_CHECKABLE, message)
+    return _finding(claim, ClaimVerdict.NOT_CHECKABLE, message)
 
 
-def _told(claim: StatementClaim, verdict: ClaimVerdict, message: str) -> Finding:
+def _finding(claim: StatementClaim, verdict: ClaimVerdict, message: str) -> Finding:
     return Finding(
         rule="TG602", verdict=verdict, basis=Basis.DIGITS, claim=claim.id, message=message
     )

@@ -185,7 +185,7 @@ def _whose(study: Study, claim: AnyClaim) -> str | None:
     return claim.joint if len(study.case.robot.joints) > 1 else None
 
 
-def _stated_as(study: Study, claim: TotalTimeClaim) -> tuple[Sequence[AnyClaim], bool]:
+def _printed_alike(study: Study, claim: TotalTimeClaim) -> tuple[Sequence[AnyClaim], bool]:
     """Claims that print the same total, and whether the file says that they do."""
     if claim.of is not None:
         return [study.case.claim(claim.of)], True
@@ -268,7 +268,7 @@ def _same_total(study: Study) -> Iterator[Finding]:
     for claim in study.claims:
         if not isinstance(claim, TotalTimeClaim):
             continue
-        found, said = _stated_as(study, claim)
+        found, said = _printed_alike(study, claim)
         agreeing = [c for c in found if meet(hull(claim.value), _total_shown(study, c)[1])]
         # A total may count end blends by half, and how long they take is not always printed.
         others = agreeing or [c for c in found if end_blends(study, c) is not None]

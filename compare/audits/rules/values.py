@@ -11,7 +11,7 @@ from ....problem.cases import AnyClaim, ValueClaim, named_places
 from ...documents import Finding
 from ..sentences import place_of_value
 from ..study import Study
-from .motion_numbers import SAMPLES, NumberBeside, nearest_number, told_beside
+from .motion_numbers import SAMPLES, NumberBeside, finding_of_numbers, nearest_number
 from .peaks import each_motion, has_curve, peak_numbers
 from .wording import in_units, unit_shown
 
@@ -51,7 +51,7 @@ def _values(study: Study, claim: ValueClaim, motion: AnyClaim) -> Iterator[Findi
         def name(joint: str | None, one: NumberBeside, size: str = size, at: str = where) -> str:
             return f"the {size}{claim.derivative} of joint {joint}{at}{one.meaning}"
 
-        yield told_beside(study, "TG211", claim, motion, (pid, rid), found, unit, name)
+        yield finding_of_numbers(study, "TG211", claim, motion, (pid, rid), found, unit, name)
 
 
 def _beside(

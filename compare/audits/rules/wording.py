@@ -77,7 +77,7 @@ def largest_of_each_kind(
     rid : str
         Reading.
     jumps : sequence of (str, Jump)
-        With the problem of each; the kind of the first one is told first.
+        With the problem of each; the kind of the first one stands first.
     """
     found: dict[bool, tuple[str, Jump]] = {}
     for pid, jump in jumps:

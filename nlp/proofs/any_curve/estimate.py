@@ -118,7 +118,7 @@ def estimate_any_curve(
     if reason is not None:
         return AnyCurveEstimate(None, why=reason)
     matter = _matter(problem)
-    question = _pose(problem, matter)
+    question = _question(problem, matter)
     short = np.flatnonzero(question.lower > question.upper * (1 + KEPT))
     if short.size:
         return AnyCurveEstimate(
@@ -251,7 +251,7 @@ def _matter(problem: Problem) -> NDArray[np.bool_]:
 
 
 def _not_covered(problem: Problem) -> str | None:
-    """The reason why there is no value, as far as it can be told before solving."""
+    """The reason why there is no value, as far as it is known before solving."""
     limits, restless = problem.limits, _restless(problem)
     if limits.uneven:
         return "lower and upper limits differ; this optimum is computed within equal ones only"
@@ -274,7 +274,7 @@ def _not_covered(problem: Problem) -> str | None:
     return None
 
 
-def _pose(problem: Problem, matter: NDArray[np.bool_]) -> LocalQuestion:
+def _question(problem: Problem, matter: NDArray[np.bool_]) -> LocalQuestion:
     steps = np.diff(problem.waypoints, axis=0)[:, matter]
     velocity = problem.limits.velocity[matter]
     return LocalQuestion(

@@ -114,9 +114,9 @@ def local_optimum(
     v = _slopes(steps, h, cap)
     v_low, v_high = np.tile(-cap, (n + 1, 1)), np.tile(cap, (n + 1, 1))
     for at, end in zip((0, n), question.ends, strict=True):
-        told = np.isfinite(end)
+        prescribed = np.isfinite(end)
         for values in (v, v_low, v_high):
-            values[at, told] = (end * time_unit / angle)[told]
+            values[at, prescribed] = (end * time_unit / angle)[prescribed]
     up = np.minimum(cap, (v[:-1] + v[1:] + a * h[:, None]) / 2)
     down = np.minimum(cap, (-v[:-1] - v[1:] + a * h[:, None]) / 2)
     tall = np.tile(cap, (n, 1)).ravel("F")

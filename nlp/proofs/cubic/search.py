@@ -95,7 +95,7 @@ class Search:
         self.rows = prover.system.starting_rows()
         self._order = itertools.count()
         self.boxes = 0
-        self._given = sum(1 for _ in root.worked())
+        self._worked_before = sum(1 for _ in root.worked())
         self._common = Common(prover)
         self.heap = [(box.floor, next(self._order), box) for box in root.leaves()]
         heapq.heapify(self.heap)
@@ -108,7 +108,7 @@ class Search:
     @property
     def worked(self) -> int:
         """Boxes of the tree that something was done to."""
-        return self._given + self.boxes
+        return self._worked_before + self.boxes
 
     def until(self, goal: Callable[[], int], restart: int = 0) -> bool:
         """Search until ``goal()`` ticks are proved, or the goal fell below ``restart``.

@@ -42,7 +42,7 @@ def test_the_palletisers_card():
     assert card.more == 0
 
 
-def test_tables_alike_stand_on_the_card_with_the_claim_that_falls():
+def test_tables_alike_stand_on_the_card_with_the_claim_they_refute():
     audited = audited_alone("puma560-mnam-pso-353")
     card = audited.card
     # Printed to a millisecond, five rows exceed a limit by less than their rounding.
@@ -55,7 +55,7 @@ def test_tables_alike_stand_on_the_card_with_the_claim_that_falls():
         "Under the default reading, 3.528 s is 3.4 to 5.9 % above 3.3324 to 3.4128 s, found at the "
         "joints' own proven optima."
     )
-    # One slip is told once: what the claimed percentage falls by stands with the two tables.
+    # One slip is said once: what refutes the claimed percentage stands with the two tables.
     assert card.improvement == Why("an error says it")
     # Joints 3 and 4, 3.172 s beside 3.126941 s and 2.403 s beside 2.3893 s: 1.44 % and 0.57 %.
     assert (

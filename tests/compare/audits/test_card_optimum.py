@@ -89,7 +89,7 @@ def test_a_total_of_joints_that_are_planned_alone_stands_beside_their_own_optima
         ('["2.000", "2.000"]\ntotal = "4.000"', "4.000 s agrees with the "),
     ],
 )
-def test_a_distance_is_told_with_the_limit_that_its_motion_breaks(times: str, said: str) -> None:
+def test_a_distance_stands_with_the_limit_that_its_motion_breaks(times: str, said: str) -> None:
     text = TWO.format(coupling="shared").split("[[claims]]")[0]
     claim = (
         f'[[claims]]\nid = "all"\nquantity = "durations"\nwhere = "Table 1"\ndurations = {times}'

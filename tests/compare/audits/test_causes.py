@@ -184,12 +184,12 @@ def test_one_digit_off_is_one_digit_or_two_neighbours_exchanged() -> None:
     assert "1.20" not in off
 
 
-@pytest.mark.parametrize(("limit", "told"), [("2.035", True), ("2.03", False)])
-def test_limits_that_hold_at_samples_are_explained_by_them(limit: str, told: bool) -> None:
+@pytest.mark.parametrize(("limit", "explained"), [("2.035", True), ("2.03", False)])
+def test_limits_that_hold_at_samples_are_explained_by_them(limit: str, explained: bool) -> None:
     """A cubic spline peaks at 2.0431 rad/s, and at 2.0326 rad/s at ten steps a segment."""
     text = TWO_SEGMENTS.replace('family = "rest-to-rest"\ndegree = 5', 'family = "cubic-spline"')
     times = {"time": '"0.83000", "0.71000"', "total": '"1.54000"', "checks": "within_limits"}
     case = parse_case(text.format(points="0.1, 1.3, 0.9", limit=limit, **times), "made-up.toml")
     (cause,) = audit(case, seeds=2, certify_seconds=0).cases[0].causes
     assert cause.rule == "TG201"
-    assert any("at ten steps a segment none" in e.change for e in cause.explanations) is told
+    assert any("at ten steps a segment none" in e.change for e in cause.explanations) is explained

@@ -98,9 +98,9 @@ def test_a_day_that_is_none_is_refused() -> None:
 
 
 def test_who_typed_the_numbers_stands_with_the_source() -> None:
-    told = stated_source(parse_case(source(ID), f"{ID}.toml"))
-    assert told.transcribed_by == "the authors of trajgap, from extracted text"
-    assert "nobody has compared them with the printed page" in str(told.checked_by)
+    stated = stated_source(parse_case(source(ID), f"{ID}.toml"))
+    assert stated.transcribed_by == "the authors of trajgap, from extracted text"
+    assert "nobody has compared them with the printed page" in str(stated.checked_by)
     text = source(ID).replace("[transcription]", "[ignored]").split("[ignored]")
     bare = text[0] + "[robot]" + text[1].split("[robot]", 1)[1]
     unsaid = stated_source(parse_case(bare, "bare.toml")).model_dump()

@@ -96,7 +96,7 @@ def test_a_motion_called_optimal_gets_a_shorter_one_that_keeps_the_limits():
     assert total < 3.0
 
 
-def test_a_wrong_sum_is_told_with_the_right_one():
+def test_a_wrong_sum_is_shown_with_the_right_one():
     _, one = drafted(["1.000", "1.000", "1.000"], "2.500")
     found = [a for a in one.advice if "add up" in a.says]
     assert len(found) == 1

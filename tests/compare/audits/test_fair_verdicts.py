@@ -72,7 +72,7 @@ def test_durations_of_which_nothing_is_said_break_nothing() -> None:
     ("time", "severity", "scope"),
     [("0.962", Severity.WARNING, Scope.SOME), ("0.95", Severity.ERROR, Scope.ALL)],
 )
-def test_a_proof_is_an_error_only_where_the_claim_falls_under_every_reading(
+def test_a_proof_is_an_error_only_where_every_reading_is_against_the_claim(
     time: str, severity: Severity, scope: Scope
 ) -> None:
     text = HEAD.format(points="0, 1", limit="1.9496", time=time, checks="within_limits") + UNITS

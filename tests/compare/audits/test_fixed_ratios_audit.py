@@ -242,13 +242,13 @@ def test_moving_ends_leave_no_total_to_compare_with() -> None:
         '{ family = "cubic-spline" }', '{ family = "cubic-spline", end_derivatives = [0.1] }'
     )
     one = audited(text)
-    study, falls = one.study, waterfalls(one.study)
+    study, found = one.study, waterfalls(one.study)
     assert verdicts(one)["best"] is ClaimVerdict.NOT_CHECKABLE
-    said = optimum_line(study, falls, {}, before=False)
+    said = optimum_line(study, found, {}, before=False)
     assert said == (
         "The shortest total at these ratios is not checkable: it is no formula of this curve."
     )
-    own = next(step for step in falls[0].steps if step.name == RATIOS_OPTIMUM)
+    own = next(step for step in found[0].steps if step.name == RATIOS_OPTIMUM)
     assert "prescribes derivatives other than 0" in own.note
 
 

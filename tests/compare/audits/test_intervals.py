@@ -13,7 +13,7 @@ from trajgap.compare.audits.study import Study
 from trajgap.compare.audits.waterfall import waterfalls
 from trajgap.compare.cli.auditing import audited
 from trajgap.compare.documents import AuditDocument, Why, facts
-from trajgap.compare.pages.verdicts import posed_problems
+from trajgap.compare.pages.verdicts import problems_audited
 from trajgap.nlp import Evidence, Solution, Status, certificate, certify, printed_problem, solve
 from trajgap.problem import Case, parse_case
 
@@ -79,7 +79,7 @@ def test_what_the_budget_leaves_out_is_said() -> None:
     (said,) = one.document.left_out
     assert said == "the optimum: no time was left"
     assert facts(one.document) == [("not certified", said)]
-    (terms, *_) = posed_problems(one).blocks
+    (terms, *_) = problems_audited(one).blocks
     assert ("not certified", said) in terms.pairs  # page and Markdown
     assert f"not certified: {said}" in map(
         str, audited(AuditDocument(cases=(one.document,)), [stated()])

@@ -101,7 +101,7 @@ def test_the_card_gives_the_shortest_time_as_information(weighted, plain):
     assert best in plain.card.optimum
 
 
-def test_the_distance_is_told_as_information(weighted):
+def test_the_distance_is_shown_as_information(weighted):
     messages = [f.message for f in weighted.findings if f.rule == "TG302" and f.claim == "times"]
     best = f"{weighted.study.optimum('one', 'as-printed').best:.6f} s"
     assert messages == [

@@ -73,15 +73,15 @@ def test_what_is_printed_rightly_is_supported(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", WRONG)
-def test_a_largest_value_that_is_another_is_told_with_both(name: str) -> None:
+def test_a_largest_value_that_is_another_is_shown_with_both(name: str) -> None:
     claim, printed = WRONG[name]
     truth = by_hand(name)
     assert abs(truth - printed) > 0.005
     (said,) = [f for f in examined(name).findings if f.severity == Severity.WARNING]
     assert (said.rule, said.claim) == ("TG203", claim)
     assert f"printed is {load_case(EXAMPLES / f'{name}.toml').claim(claim).value}" in said.message
-    told = float(said.message.split(" is ")[1].split()[0])
-    assert told == pytest.approx(truth, rel=1e-4)
+    computed = float(said.message.split(" is ")[1].split()[0])
+    assert computed == pytest.approx(truth, rel=1e-4)
 
 
 def test_a_total_rounded_to_below_its_optimum_is_shown_without_a_minus_sign() -> None:

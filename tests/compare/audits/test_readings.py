@@ -47,12 +47,12 @@ POLISH, WHALE, PALLET = "irb1600-ga-cubic-bspline", "z1-woa-bspline", "irb460-ps
 
 def summed(case: Case, claims: dict[str, str], reading: str | None = None) -> CaseAudit:
     """Readings of a case, without the slow rest of its audit."""
-    return laid_out(Study(case, seeds=2, reading=reading), claims)
+    return case_audit(Study(case, seeds=2, reading=reading), claims)
 
 
-def laid_out(study: Study, claims: dict[str, str]) -> CaseAudit:
+def case_audit(study: Study, claims: dict[str, str]) -> CaseAudit:
     case = study.case
-    falls = tuple(
+    waterfalls = tuple(
         Waterfall(problem=pid, reading=rid, claim=claims.get(pid), steps=())
         for pid, rid in study.pairs
     )
@@ -77,17 +77,17 @@ def laid_out(study: Study, claims: dict[str, str]) -> CaseAudit:
             ("z", ClaimVerdict.NOT_CHECKABLE, Scope.NO, lost),
         )
     )
-    return CaseAudit(case, study, (), judged, made_falls=falls)
+    return CaseAudit(case, study, (), judged, made_waterfalls=waterfalls)
 
 
 @cache
 def polish() -> CaseAudit:
-    return laid_out(shipped(POLISH), {"nine-segments": "after"})
+    return case_audit(shipped(POLISH), {"nine-segments": "after"})
 
 
 @cache
 def pallet() -> CaseAudit:
-    return laid_out(shipped(PALLET), {"limit-80": "durations-80", "limit-110": "durations-110"})
+    return case_audit(shipped(PALLET), {"limit-80": "durations-80", "limit-110": "durations-110"})
 
 
 def summary_of(one: CaseAudit) -> ReadingsSummary:
@@ -287,7 +287,7 @@ total = "6.81\""""
     hasty = '"5", "0.01", "5", "0.01", "5", "0.01", "5", "0.01", "5"]'
     case = changed(POLISH, (printed, hasty)).case
     study = Study(case, seeds=2, reading="angles-deg-v-rad-a-rad-timed")
-    (outcome,) = summary_of(laid_out(study, {"nine-segments": "after"})).outcomes
+    (outcome,) = summary_of(case_audit(study, {"nine-segments": "after"})).outcomes
     assert outcome.keeping is Keeping.UNDECIDED
     assert outcome.excesses == ()
     assert isinstance(outcome.stretch, Why)

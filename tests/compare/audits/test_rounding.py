@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from support.rounding_boxes import MOVING_ENDS, posed
+from support.rounding_boxes import MOVING_ENDS, rounded_problem
 from support.rounding_samples import boxes, contradiction, sampled_worst
 from trajgap.compare.audits.rounding import (
     Place,
@@ -51,7 +51,7 @@ WIDTHS = [(1.0, 5e-4), (0.9995, 5e-4), (0.99, 5e-4), (0.98, 5e-3), (0.9, 1e-2), 
 def judged_families():
     for number, interpolant in enumerate(FAMILIES.values()):
         for w, (share, half) in enumerate(WIDTHS):
-            problem, h = posed(10 * number + w, interpolant)
+            problem, h = rounded_problem(10 * number + w, interpolant)
             h = h * check(problem, h).stretch * share
             yield problem, *boxes(h, half, problem.waypoints, half / 10), number + w
 
@@ -88,7 +88,7 @@ def test_a_fault_in_the_bound_is_seen(monkeypatch, fault):
 
 @pytest.mark.parametrize("seed", range(6))
 def test_bound_is_close_to_the_least_worst_ratio(seed):
-    problem, h = posed(seed, three_five_three())
+    problem, h = rounded_problem(seed, three_five_three())
     h = 0.99 * check(problem, h).stretch * h
     h, q = boxes(h, 5e-4, problem.waypoints, 5e-5)
     verdict = judge_rounding(problem, h, q)
@@ -168,7 +168,7 @@ def test_palletiser():
 
 @pytest.mark.parametrize("interpolant", FAMILIES.values(), ids=FAMILIES)
 def test_a_box_of_width_0_is_the_plain_check(interpolant):
-    problem, h = posed(7, interpolant)
+    problem, h = rounded_problem(7, interpolant)
     stretch = check(problem, h).stretch
     for share, expected in ((1.001, Rounding.KEEPS), (0.9999, Rounding.BREAKS)):
         at = h * stretch * share
@@ -187,7 +187,7 @@ def test_a_box_of_width_0_is_the_plain_check(interpolant):
 
 @pytest.mark.parametrize("seed", range(3))
 def test_wide_boxes_prove_nothing_false(seed):
-    problem, h = posed(seed, quintic_spline(4))
+    problem, h = rounded_problem(seed, quintic_spline(4))
     h = 0.9 * check(problem, h).stretch * h
     wide = RoundingBox(h, 0.6 * h, 1.4 * h)
     assert judge_rounding(problem, wide).verdict is Rounding.CONSISTENT
@@ -198,7 +198,7 @@ def test_wide_boxes_prove_nothing_false(seed):
 
 
 def test_mean_speed_decides_where_nothing_else_does():
-    problem, h = posed(1, quintic_spline(4))
+    problem, h = rounded_problem(1, quintic_spline(4))
     slow = replace(problem, limits=Limits(0.01, joints=2))
     with_zero = RoundingBox(h, 0.0 * h, 1.4 * h)
     verdict = judge_rounding(slow, with_zero)
@@ -220,7 +220,7 @@ def test_mean_speed_decides_where_nothing_else_does():
 @settings(max_examples=25, deadline=None)
 def test_units_do_not_matter(angle, time, which, seed):
     share = (1.001, 0.9999, 0.99, 0.97)[which]
-    problem, h = posed(seed, quintic_spline(3))
+    problem, h = rounded_problem(seed, quintic_spline(3))
     h = h * check(problem, h).stretch * share
     limits = problem.limits
     scaled = replace(
@@ -241,7 +241,7 @@ def test_units_do_not_matter(angle, time, which, seed):
 
 
 def test_the_order_of_joints_does_not_matter():
-    problem, h = posed(11, three_five_three(), joints=3)
+    problem, h = rounded_problem(11, three_five_three(), joints=3)
     h = h * check(problem, h).stretch * 0.99
     limits = problem.limits
     turned = replace(

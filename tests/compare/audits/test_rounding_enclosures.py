@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from support.rounding_boxes import MOVING_ENDS, posed
+from support.rounding_boxes import MOVING_ENDS, rounded_problem
 from trajgap.nlp.enclosure import balls as interval
 from trajgap.nlp.enclosure.balls import Ball, enclose_spline
 from trajgap.problem import (
@@ -69,7 +69,7 @@ def escaped(ball: Ball, exact: list[Fraction]) -> float:
 def worst_escape(interpolant: Interpolant, half: float, seed: int, corners: int = 3) -> float:
     """Largest escape of coefficients and of their derivatives at points of a box."""
     rng = np.random.default_rng(seed)
-    problem, h = posed(seed, interpolant, joints=2)
+    problem, h = rounded_problem(seed, interpolant, joints=2)
     q = problem.waypoints
     ball_h, ball_q = Ball.between(h - half, h + half), Ball.between(q - half, q + half)
     found = enclose_spline(interpolant, ball_h, ball_q)
@@ -112,15 +112,15 @@ def test_enclosure_holds_the_exact_coefficients(interpolant, half):
 def test_enclosure_is_not_far_too_wide():
     # At a corner the exact coefficients use a fair part of the radius.
     assert worst_escape(three_five_three(), 5e-4, seed=3) > 0.1
-    _, h = posed(3, quintic_spline(3))
-    problem, _ = posed(3, quintic_spline(3))
+    _, h = rounded_problem(3, quintic_spline(3))
+    problem, _ = rounded_problem(3, quintic_spline(3))
     found = enclose_spline(problem.curve, Ball.exact(h), Ball.exact(problem.waypoints))
     assert found is not None
     assert found.coefficients.rad.max() < 1e-12
 
 
 def test_a_wide_box_is_not_enclosed():
-    problem, h = posed(0, quintic_spline(3))
+    problem, h = rounded_problem(0, quintic_spline(3))
     wide = Ball.between(0.3 * h, 1.7 * h)
     assert enclose_spline(problem.curve, wide, Ball.exact(problem.waypoints)) is None
     zero = Ball.between(0.0 * h, 1.7 * h)

@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from support.b_splines import NATURAL, uniform
-from support.rounding_boxes import posed
+from support.rounding_boxes import rounded_problem
 from support.rounding_samples import boxes, contradiction
 from trajgap.compare.audits.rounding import (
     Place,
@@ -39,7 +39,7 @@ from trajgap.problem.cases.load import parse_case
 
 
 def test_durations_outside_their_bounds_break():
-    problem, h = posed(2, three_five_three())
+    problem, h = rounded_problem(2, three_five_three())
     h = 3.0 * check(problem, h).stretch * h
     box = RoundingBox(h, h - 5e-4, h + 5e-4)
     short = replace(problem, duration_lower=np.array([0.0, h[1] + 0.01, 0.0]))
@@ -57,7 +57,7 @@ def test_durations_outside_their_bounds_break():
 
 
 def test_the_search_stays_within_the_duration_bounds():
-    problem, h = posed(2, three_five_three())
+    problem, h = rounded_problem(2, three_five_three())
     h = 3.0 * check(problem, h).stretch * h
     box = RoundingBox(h, h - 5e-4, h + 5e-4)
     at_bound = replace(problem, duration_lower=h, duration_upper=h)
@@ -74,7 +74,7 @@ def test_the_search_stays_within_the_duration_bounds():
 
 
 def test_a_bound_keeps_the_durations_from_repairing_the_motion():
-    problem, h = posed(2, three_five_three())
+    problem, h = rounded_problem(2, three_five_three())
     h = 0.9999 * check(problem, h).stretch * h
     box = RoundingBox(h, h - 5e-4, h + 5e-4)
     assert judge_rounding(problem, box).verdict is Rounding.CONSISTENT
@@ -152,7 +152,7 @@ def test_nothing_limited():
 
 
 def test_same_input_same_answer():
-    problem, h = posed(5, quintic_spline(3))
+    problem, h = rounded_problem(5, quintic_spline(3))
     h = h * check(problem, h).stretch * 0.9995
     one, two = (judge_rounding(problem, *boxes(h, 5e-4, problem.waypoints, 5e-5)) for _ in "ab")
     assert one.lower_bound_of_worst == two.lower_bound_of_worst
@@ -160,7 +160,7 @@ def test_same_input_same_answer():
 
 
 def test_bisection_tightens():
-    problem, h = posed(4, three_five_three())
+    problem, h = rounded_problem(4, three_five_three())
     h = 0.9 * check(problem, h).stretch * h
     ball = Ball.exact(problem.waypoints)
     root = box_bound.bound_ratio(problem, 0.98 * h, 1.02 * h, ball)
@@ -175,7 +175,7 @@ def test_bisection_tightens():
 
 
 def test_bad_boxes_are_refused():
-    problem, h = posed(0, three_five_three())
+    problem, h = rounded_problem(0, three_five_three())
     with pytest.raises(TrajgapError, match="differ in shape"):
         RoundingBox(h, h[:2], h)
     with pytest.raises(TrajgapError, match="not finite"):

@@ -72,7 +72,7 @@ def message(claim: str, reading: str = "rpm", *changes: tuple[str, str]) -> str:
     return found.message
 
 
-def test_peaks_are_told_in_the_unit_of_their_joint():
+def test_peaks_are_shown_in_the_unit_of_their_joint():
     assert message("velocities") == (
         "Of the printed durations (Table 2): joint 1: the exact peak of velocity is "
         "11.3899 ± 0.03 rpm, printed is 11.4, equal within the rounding of the printed digits; "
@@ -102,7 +102,7 @@ def test_no_peak_of_a_slide_is_explained_by_angles():
     assert "as between degrees and radians" in message("slide-velocity", "rpm", turning)
 
 
-def test_limits_and_ends_are_told_in_the_unit_of_their_joint():
+def test_limits_and_ends_are_shown_in_the_unit_of_their_joint():
     assert "the acceleration of joint d3 reaches 1.26694 m/s², limit 0.5 m/s²" in message("fast")
     assert "the velocity of joint 1 reaches 148.758 °/s, limit 30 °/s" in message("fast", "deg-s")
     assert "joint 1 starts with a acceleration of 185.8 °/s²" in message("rest")
@@ -137,7 +137,7 @@ def test_positions_of_the_end_follow_from_the_slide():
     assert "0.026 m" in misses.message
 
 
-def test_clues_are_told_in_their_unit():
+def test_clues_are_shown_in_their_unit():
     found = {(one.clue, one.reading): (str(one.speaks), one.computed) for one in
              reading_clues(study())}  # fmt: skip
     assert found["figure", "rpm"] == ("for", "velocity up to 108 mm/s, last label 150")
@@ -339,9 +339,9 @@ def test_control_vertices_are_judged_joint_by_joint():
 
 def test_a_turn_explains_no_slide():
     found = find_causes(study(), findings())
-    told = [each.change for cause in found for each in cause.explanations]
-    assert told
-    assert not any("full turn" in change and "d3" in change for change in told)
+    changes = [each.change for cause in found for each in cause.explanations]
+    assert changes
+    assert not any("full turn" in change and "d3" in change for change in changes)
 
 
 def test_polynomials_of_a_slide_are_in_metres(tmp_path):

@@ -100,8 +100,8 @@ def test_durations_alone_say_nothing_of_limits_and_peaks(one: CaseAudit) -> None
         "Not computed: the curve (C4 quintic spline, 1 virtual way-point) leaves 1 coefficient per "
         "joint free, so that durations alone define no motion."
     )
-    told = {(f.claim, f.reading) for f in one.findings if f.message == why}
-    assert told == {("four", "free"), ("kept", "free"), ("peak", "free")}
+    without = {(f.claim, f.reading) for f in one.findings if f.message == why}
+    assert without == {("four", "free"), ("kept", "free"), ("peak", "free")}
 
 
 def test_a_total_alone_is_excluded_by_speed_alone() -> None:
@@ -129,5 +129,5 @@ def test_a_reading_with_other_segments_has_no_printed_motion(one: CaseAudit) -> 
         "durations are printed"
     )
     assert steps["virtual"]["published"].time == pytest.approx(3.01)
-    told = [f for f in one.findings if f.rule == "TG109"]
-    assert [(f.claim, f.reading) for f in told] == [("four", "virtual")]
+    found = [f for f in one.findings if f.rule == "TG109"]
+    assert [(f.claim, f.reading) for f in found] == [("four", "virtual")]

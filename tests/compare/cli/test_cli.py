@@ -81,7 +81,7 @@ def test_each_command_explains_itself(run: Run, command: str) -> None:
     ("given", "wanted"),
     [({}, "1"), ({"OMP_NUM_THREADS": "3"}, None), ({"OPENBLAS_NUM_THREADS": "2"}, "2")],
 )
-def test_linear_algebra_has_one_thread_unless_it_is_told(
+def test_linear_algebra_has_one_thread_unless_another_number_is_set(
     given: dict[str, str], wanted: str | None
 ) -> None:
     program_ = (
@@ -100,9 +100,9 @@ def test_every_rule_is_explained_with_an_example(run: Run) -> None:
     assert_valid(document, "explain")
     assert [one["id"] for one in document["rules"]] == [rule.id for rule in RULES]
     for one in document["rules"]:
-        told = [one["asks"], one["concludes"], one["example"]]
-        assert all(text[0] not in " " and text.endswith((".", "?")) for text in told), one["id"]
-        assert not re.search(r"\bmend|alike\b.*print|  ", " ".join(told)), one["id"]
+        texts = [one["asks"], one["concludes"], one["example"]]
+        assert all(text[0] not in " " and text.endswith((".", "?")) for text in texts), one["id"]
+        assert not re.search(r"\bmend|alike\b.*print|  ", " ".join(texts)), one["id"]
     code, out, err = run("explain", "tg301", "Best known")
     assert (code, err) == (0, "")
     assert out.startswith("TG301: ")
@@ -310,7 +310,7 @@ def test_audit_passes_its_options_on(run: Run, stand_in: dict[str, Any]) -> None
 
 
 @pytest.mark.usefixtures("stand_in", "pages")
-def test_audit_json_writes_only_where_told(run: Run) -> None:
+def test_audit_json_writes_only_where_asked(run: Run) -> None:
     code, out, err = run("audit", IRB, "--json")
     assert (code, err) == (0, "")
     assert_valid(strict(out), "audit")

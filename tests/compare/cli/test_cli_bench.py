@@ -85,7 +85,7 @@ def test_settings_and_reading(run: Run) -> None:
     assert '"position_initial":[0.3,3' in settings  # the case's own stay
 
 
-def test_joints_that_the_case_searches_apart_are_told(run: Run) -> None:
+def test_joints_that_the_case_searches_apart_are_named(run: Run) -> None:
     code, out, err = run("bench", "mine.toml", "--optimizer", "random", *SMALL)
     assert (code, err) == (0, "")
     assert out.splitlines()[0] == "Mine (mine)"
@@ -97,7 +97,7 @@ def test_joints_that_the_case_searches_apart_are_told(run: Run) -> None:
     assert "best known; true gaps may be larger" in out
 
 
-def test_an_optimiser_that_always_fails_is_told_by_the_exit_code(run: Run) -> None:
+def test_an_optimiser_that_always_fails_is_shown_by_the_exit_code(run: Run) -> None:
     arguments = ("bench", PUMA, *SMALL, "--optimizer")
     code, out, err = run(*arguments, "random,support.faulty:raises")
     assert (code, err) == (1, "")
@@ -112,7 +112,7 @@ def test_an_optimiser_that_always_fails_is_told_by_the_exit_code(run: Run) -> No
 
 
 @pytest.mark.slow
-def test_a_faulty_optimiser_is_told_and_ends_nothing(run: Run, folder: Path) -> None:
+def test_a_faulty_optimiser_is_named_and_ends_nothing(run: Run, folder: Path) -> None:
     (folder / "theirs.py").write_text(
         "def f(fun, bounds, budget, rng):\n    import os; os._exit(3)\n"
     )
@@ -208,9 +208,9 @@ def test_the_optimiser_of_the_guide_has_ten_lines_and_is_measured(run: Run, fold
 def test_the_help_says_what_is_replaced_and_when_it_fails(run: Run) -> None:
     code, out, _ = run("bench", "--help")
     assert code == 0
-    told = " ".join(out.split())
-    assert "or that of an earlier bench, which is replaced" in told
-    assert "bench and study, and every run of an optimiser on a problem failed" in told
+    text = " ".join(out.split())
+    assert "or that of an earlier bench, which is replaced" in text
+    assert "bench and study, and every run of an optimiser on a problem failed" in text
 
 
 def test_the_docs_name_what_is_there() -> None:

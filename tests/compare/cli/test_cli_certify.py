@@ -16,7 +16,7 @@ import pytest
 from support.checkout import ROOT
 from support.command_line import CASE, Run, on_terminal, strict
 from support.documents import SCHEMA, assert_valid
-from support.shipped_problems import POSED
+from support.shipped_problems import COVERED_PROBLEMS
 from trajgap.compare.cli import certifying as cli_certify
 from trajgap.compare.cli import main
 from trajgap.compare.documents import Uncovered
@@ -151,7 +151,7 @@ def test_a_narrower_certificate_stays(run: Run) -> None:
 
 
 def test_a_narrower_certificate_of_all_curves_does_not_stay(run: Run) -> None:
-    other = shipped(POSED[NAME], Subject.ANY)
+    other = shipped(COVERED_PROBLEMS[NAME], Subject.ANY)
     path = Path(f"trajgap-certificates/{NAME}.json")
     path.parent.mkdir()
     path.write_text(json.dumps(other))
@@ -170,12 +170,12 @@ def test_ctrl_c_leaves_the_interval_and_a_state(run: Run) -> None:
         "reporting = c._Stop.reporting\n"
         "def slow(self, name, step):\n"
         "    report = reporting(self, name, step)\n"
-        "    def told(now):\n"
+        "    def slowly(now):\n"
         "        if now.lower > 0:\n"
         "            print('searching', file=sys.stderr, flush=True)\n"
         "            time.sleep(0.2)\n"
         "        report(now)\n"
-        "    return told\n"
+        "    return slowly\n"
         "c._Stop.reporting = slow\n"
         "sys.exit(main())"
     )
@@ -220,7 +220,7 @@ def test_the_live_line_on_a_terminal() -> None:
 
 
 def test_verify_says_what_each_file_is_worth(run: Run, tmp_path: Path) -> None:
-    document = shipped(POSED[NAME])
+    document = shipped(COVERED_PROBLEMS[NAME])
     assert document is not None
     harmless = json.loads(json.dumps(document))
     harmless["claim"]["lower"] = "1"
@@ -244,7 +244,7 @@ def test_verify_says_what_each_file_is_worth(run: Run, tmp_path: Path) -> None:
 
 
 def test_huge_numbers_are_no_fault(run: Run, tmp_path: Path) -> None:
-    document = shipped(POSED[NAME])
+    document = shipped(COVERED_PROBLEMS[NAME])
     assert document is not None
     document["claim"]["lower"] = "-1" + "0" * 350
     (tmp_path / "huge.json").write_text(json.dumps(document))

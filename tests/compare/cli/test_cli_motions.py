@@ -113,9 +113,11 @@ def test_a_name_of_any_length_in_a_file_leaves_the_line_readable(files, capsys):
     name = "elbow " + 9000 * "- " + "velocity"
     Path("long.csv").write_text(f"time,a,{name},a velocity\n0,0,0,0\n1,1,1,0\n")
     code = main(["check", "long.csv", "--velocity", "2"])
-    told = capsys.readouterr()
-    assert_refused((code, told.out, told.err), "long.csv: line 1: ", "; give it for every joint")
-    assert len(told.err) < 2000
+    output = capsys.readouterr()
+    assert_refused(
+        (code, output.out, output.err), "long.csv: line 1: ", "; give it for every joint"
+    )
+    assert len(output.err) < 2000
 
 
 def test_a_hundred_thousand_samples_of_seven_joints(files, capsys):

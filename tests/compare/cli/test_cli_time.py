@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from support.command_line import Run, strict
 from support.documents import assert_valid
-from support.shipped_problems import POSED
+from support.shipped_problems import COVERED_PROBLEMS
 from trajgap.compare.cli import certifying, solving
 from trajgap.nlp import shipped
 from trajgap.nlp.optimum import unsearched
@@ -86,7 +86,7 @@ def test_what_cannot_be_proved_again_in_time_is_not_thrown_away(
     """Judging an earlier certificate is within the limit, too: it is kept if nobody altered it."""
     path = Path(f"trajgap-certificates/{NAME}.json")
     path.parent.mkdir()
-    document = shipped(POSED[NAME])
+    document = shipped(COVERED_PROBLEMS[NAME])
     assert document is not None
     narrow = json.dumps(document)
     path.write_text(narrow)

@@ -74,8 +74,8 @@ def test_show_says_how_to_verify_and_the_command_does(
     for lines in (out.splitlines(), narrow.splitlines()):
         assert one.command in lines
         assert f"python -m trajgap.verify {shlex.quote(str(file))}" in lines
-    told = [line for line in narrow.splitlines() if "trajgap" not in line]
-    assert max(map(len, told)) <= 60
+    prose = [line for line in narrow.splitlines() if "trajgap" not in line]
+    assert max(map(len, prose)) <= 60
     code, out, _ = run("verify", str(file), "--case", "suite:353-irb460")
     assert code == 0
     assert out.startswith(str(file))
@@ -169,11 +169,11 @@ def test_what_is_there_is_not_overwritten(run: Run, folder: Path) -> None:
     assert (folder / "mine" / "letter.txt").read_text("utf-8") == "dear"
 
 
-def test_a_folder_that_cannot_be_written_is_told(run: Run) -> None:
+def test_a_folder_that_cannot_be_written_is_refused(run: Run) -> None:
     assert_refused(run("suite", "export", "mine.toml/in"), "cannot be written")
 
 
-def test_unknown_words_are_told(run: Run) -> None:
+def test_unknown_words_are_refused(run: Run) -> None:
     assert_refused(run("suite", "show", "353-puma"), "did you mean '353-puma560'?")
     assert_refused(run("suite", "--curve", "spiral"), "no curve is called 'spiral'", "3-5-3")
     assert_refused(run("show", "suite:nothing-like-it"), "`trajgap suite` lists them")

@@ -74,8 +74,8 @@ def test_the_summary_says_why_claims_are_not_checkable_each_reason_once(run: Run
 def test_solve_names_a_problem_by_its_id_once_and_then_by_its_words(run: Run) -> None:
     out = run("solve", IRB)[1]
     plain = " ".join(out.split())
-    told = ("--problem limit-80", "--problem limit-110", "--reading waypoints-rad")
-    assert all(out.count(one) == 1 for one in told)
+    options = ("--problem limit-80", "--problem limit-110", "--reading waypoints-rad")
+    assert all(out.count(one) == 1 for one in options)
     ids = ("limit-80", "limit-110", "waypoints-rad", "waypoints-deg")
     assert all(out.count(one) == 1 for one in ids)
     assert "could jump (Shortest time of joint 5 under 80 °/s; way-points in radians)" in plain

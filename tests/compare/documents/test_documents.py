@@ -53,7 +53,7 @@ DOCS = ROOT / "docs"
 WAYPOINTS = np.array([[0.3, -1.0], [1.1, 0.4], [0.9, 1.7], [2.0, 1.2]])
 
 
-def posed(limits: Limits | None = None, **changes: Any) -> Problem:
+def problem_with(limits: Limits | None = None, **changes: Any) -> Problem:
     limits = limits or Limits(velocity=[2.0, 3.0], acceleration=[5.0, 4.0])
     return Problem(WAYPOINTS, limits, three_five_three(), **changes)
 
@@ -80,13 +80,13 @@ def test_every_word_is_explained_once_and_in_the_schema() -> None:
     for enum in enums:
         shape = SCHEMA["$defs"][named(enum)]
         assert shape["enum"] == [str(word) for word in enum]
-        told = meanings(enum)
+        explained = meanings(enum)
         assert shape["description"].split("\n") == [
             meaning(enum),
-            *(f"{word}: {said}" for word, said in told.items()),
+            *(f"{word}: {said}" for word, said in explained.items()),
         ]
         # How many readings agree needs no more; four words of one are those of another.
-        left = {*map(str, enum)} - {*told}
+        left = {*map(str, enum)} - {*explained}
         assert left == {Scope: {*Scope}, Keeping: {*Rounding}}.get(enum, set())
 
 
@@ -164,7 +164,7 @@ def solved(*answer: Any) -> Any:
 
 
 def test_a_shared_solution() -> None:
-    problem = posed(duration_lower=[0.0, 0.0, 2.5])
+    problem = problem_with(duration_lower=[0.0, 0.0, 2.5])
     answer = solve(problem)
     assert answer.durations is not None
     path = retime(fit(problem.curve, problem.waypoints, answer.durations), problem.limits)
@@ -186,7 +186,7 @@ def test_a_shared_solution() -> None:
 
 
 def test_a_per_joint_solution() -> None:
-    answer = solve_per_joint(posed(coupling=Coupling.PER_JOINT), slacks=(1e-3, 1e-6))
+    answer = solve_per_joint(problem_with(coupling=Coupling.PER_JOINT), slacks=(1e-3, 1e-6))
     result = solved(answer, ["no time", "none"])
     assert_reasons(result)
     assert result["segment_durations"] is None
@@ -204,7 +204,7 @@ def test_a_per_joint_solution() -> None:
 
 
 def test_a_problem_without_answer() -> None:
-    answer = solve(posed(Limits(velocity=[1.0, 0.0])))
+    answer = solve(problem_with(Limits(velocity=[1.0, 0.0])))
     result = solved(answer)
     assert_reasons(result)
     assert result["status"] == "infeasible"
@@ -215,7 +215,7 @@ def test_a_problem_without_answer() -> None:
 
 
 def test_joints_without_answer() -> None:
-    answer = solve_per_joint(posed(Limits(velocity=[1.0, 0.0])))
+    answer = solve_per_joint(problem_with(Limits(velocity=[1.0, 0.0])))
     result = solved(answer)
     assert_reasons(result)
     assert result["status"] == "infeasible"
@@ -237,7 +237,7 @@ def test_an_infimum_that_is_not_attained() -> None:
 
 
 def test_retiming_that_does_not_apply() -> None:
-    problem = posed()
+    problem = problem_with()
     answer = solve(problem)
     path = Retiming(False, "nothing moves", 1.0, (2, 3, 4))
     result = solved(answer, [path])
@@ -246,11 +246,11 @@ def test_retiming_that_does_not_apply() -> None:
 
 
 def test_no_number_that_json_does_not_know() -> None:
-    answer = Solution(posed(), Status.FEASIBLE, durations=np.ones(3), kkt_residual=np.inf)
+    answer = Solution(problem_with(), Status.FEASIBLE, durations=np.ones(3), kkt_residual=np.inf)
     result = solved(answer)
     assert result["kkt_residual"] is None
     assert result["kkt_residual_why"] == "unbounded"
-    answer = Solution(posed(), Status.FEASIBLE, durations=np.ones(3), kkt_residual=np.nan)
+    answer = Solution(problem_with(), Status.FEASIBLE, durations=np.ones(3), kkt_residual=np.nan)
     result = solved(answer)
     assert result["kkt_residual_why"] == "beyond the range of floating point"
 
@@ -270,7 +270,7 @@ def checked(problem: Problem, durations: Any, half: float = 5e-4) -> Any:
 
 
 def test_a_check_that_passes() -> None:
-    result = checked(posed(), [5.0, 6.0, 7.0])
+    result = checked(problem_with(), [5.0, 6.0, 7.0])
     assert_reasons(result)
     assert result["verdict"] == "pass"
     assert result["rounding_verdict"] == "keeps"
@@ -279,7 +279,7 @@ def test_a_check_that_passes() -> None:
 
 
 def test_a_check_that_breaks() -> None:
-    problem = posed()
+    problem = problem_with()
     result = checked(problem, [0.5, 0.6, 0.7])
     assert_reasons(result)
     found = check(problem, [0.5, 0.6, 0.7])
@@ -293,7 +293,7 @@ def test_a_check_that_breaks() -> None:
 
 
 def test_a_duration_bound_is_worst() -> None:
-    result = checked(posed(duration_upper=[1.0, 50.0, 50.0]), [5.0, 6.0, 7.0])
+    result = checked(problem_with(duration_upper=[1.0, 50.0, 50.0]), [5.0, 6.0, 7.0])
     assert_reasons(result)
     assert result["worst"]["joint"] is None
     assert result["worst"]["quantity"] == "duration"
@@ -302,7 +302,7 @@ def test_a_duration_bound_is_worst() -> None:
 
 
 def test_nothing_is_limited() -> None:
-    result = checked(posed(Limits(joints=2)), [5.0, 6.0, 7.0])
+    result = checked(problem_with(Limits(joints=2)), [5.0, 6.0, 7.0])
     assert result["worst"] is None
     assert result["worst_why"] == "nothing is limited"
     assert result["tight_time"] is None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from trajgap.compare.documents import Named, Said, grouped, in_full, told, under
+from trajgap.compare.documents import Named, Said, grouped, in_full, under, with_readings
 
 READINGS = tuple("abcdef")
 LABELS = {"a": "first", "b": "second", "c": "third", "d": "fourth", "e": "fifth", "f": "sixth"}
@@ -51,7 +51,7 @@ def test_reasons_that_differ_in_numbers_alone_are_one_with_those_of_the_default(
         READINGS,
         NAMED,
     )
-    assert [told(one, READINGS, NAMED) for one in found] == [
+    assert [with_readings(one, READINGS, NAMED) for one in found] == [
         "Under 3 of 6 readings (numbers of “third”): The velocity reaches 430 °/s, limit 172 °/s.",
         "Under “fourth”: The velocity jumps.",
     ]
@@ -87,11 +87,11 @@ def test_the_strongest_word_stands_first_then_the_default_and_implausible_ones_l
 
 def test_what_holds_under_every_reading_has_none_before_it_unless_words_differ() -> None:
     (one,) = grouped([Said("refuted", "always.", "TG101")], READINGS, NAMED)
-    assert told(one, READINGS, NAMED) == "always."
-    assert told(one, READINGS, NAMED, word=True) == "Under every reading: always."
+    assert with_readings(one, READINGS, NAMED) == "always."
+    assert with_readings(one, READINGS, NAMED, word=True) == "Under every reading: always."
 
 
-def test_rules_that_say_the_same_are_told_together() -> None:
+def test_rules_that_say_the_same_are_named_together() -> None:
     (one,) = grouped(
         [*said("a", "same.", rule="TG201"), *said("b", "same.", rule="TG302")], READINGS, NAMED
     )

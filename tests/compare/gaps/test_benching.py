@@ -317,7 +317,7 @@ def test_settings_reach_the_optimiser() -> None:
         plan_bench(TOY, "pso", settings={"ga": {}})
 
 
-def test_what_cannot_take_part_is_told_before_anything_runs() -> None:
+def test_what_cannot_take_part_is_refused_before_anything_runs() -> None:
     with pytest.raises(TrajgapError, match="optimizer 'poso': unknown"):
         plan_bench(TOY, "poso")
     with pytest.raises(TrajgapError, match="'death' is unknown"):

@@ -81,9 +81,11 @@ def test_an_engine_that_is_lost_ends_the_session(
     end: Callable[[Future[Any]], object], said: str
 ) -> None:
     engine = Engine(Failing(end), lambda: 1, "far")
-    with pytest.raises(ProcessError, match=r"far: lost \(.*\); what is finished is stored") as told:
+    with pytest.raises(
+        ProcessError, match=r"far: lost \(.*\); what is finished is stored"
+    ) as caught:
         list(outcomes([small_trial()], engine))
-    assert said in str(told.value)
+    assert said in str(caught.value)
 
 
 def test_an_executor_that_takes_no_more_ends_the_session() -> None:
@@ -100,7 +102,7 @@ def test_a_process_that_cannot_start_ends_the_session() -> None:
         list(outcomes([small_trial()], engine))
 
 
-def test_dask_that_does_not_answer_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_dask_that_does_not_answer_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("distributed")
     monkeypatch.setattr("trajgap.compare.gaps.engines._PATIENCE", 0.2)
     with (
@@ -110,7 +112,7 @@ def test_dask_that_does_not_answer_is_told(monkeypatch: pytest.MonkeyPatch) -> N
         pass
 
 
-def test_dask_that_is_not_installed_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_dask_that_is_not_installed_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(__import__("sys").modules, "distributed", None)
     with (
         pytest.raises(ProcessError, match=r'dask: is not installed; run `.*"trajgap\[dask\]"`'),

@@ -91,19 +91,19 @@ def test_iohprofiler_is_read_by_iohinspector(rows: list[Row], tmp_path: Path) ->
     assert export_rows([*rows[:2], *more, *rows[2:]], path) == 4  # the failed one judged nothing
     manager = inspector.DataManager()
     manager.add_folder(str(path))
-    told = manager.overview.sort("algorithm_name", "run_id").to_dicts()
-    assert [one["algorithm_name"] for one in told] == [
+    runs = manager.overview.sort("algorithm_name", "run_id").to_dicts()
+    assert [one["algorithm_name"] for one in runs] == [
         "random, stretch, {}",
         *["support.optimizers:draws, death-penalty, {}"] * 3,
     ]
-    assert {one["function_name"] for one in told} == {"mine/main, plain"}
-    assert {(one["suite"], one["dimension"]) for one in told} == {("trajgap", 3)}
-    assert [one["evals"] for one in told] == [333, 200, 200, 150]
-    best = [one["best_y"] for one in told]
+    assert {one["function_name"] for one in runs} == {"mine/main, plain"}
+    assert {(one["suite"], one["dimension"]) for one in runs} == {("trajgap", 3)}
+    assert [one["evals"] for one in runs] == [333, 200, 200, 150]
+    best = [one["best_y"] for one in runs]
     assert best[:2] == [rows[3].reported_time, rows[0].reported_time]
     assert best[2] == sys.float_info.max
     data = manager.load(monotonic=False)
-    for run, row in zip(told, [rows[3], rows[0], rows[1], more[0]], strict=True):
+    for run, row in zip(runs, [rows[3], rows[0], rows[1], more[0]], strict=True):
         lines = data.filter(data["data_id"] == run["data_id"])
         points = list(zip(lines["evaluations"], lines["raw_y"], strict=True))
         assert points[0][0] == 1
@@ -122,7 +122,7 @@ def test_iohprofiler_is_read_by_iohinspector(rows: list[Row], tmp_path: Path) ->
         ("nowhere/rows.csv", "rows.csv: --export: its folder is not there; make it first"),
     ],
 )
-def test_a_name_that_cannot_be_used_is_told(tmp_path: Path, name: str, said: str) -> None:
+def test_a_name_that_cannot_be_used_is_refused(tmp_path: Path, name: str, said: str) -> None:
     (tmp_path / "there.csv").touch()
     with pytest.raises(CaseError, match=said):
         check_export(tmp_path / name)

@@ -47,7 +47,7 @@ def test_memory_does_not_grow_over_ten_thousand_runs(tmp_path: Path) -> None:
     plan = load_study(written(tmp_path, text))
     held = 0
 
-    def told(session: StudySession) -> None:
+    def forget_the_start(session: StudySession) -> None:
         nonlocal held
         if session.run == runs // 10:
             held = tracemalloc.get_traced_memory()[0]
@@ -58,7 +58,7 @@ def test_memory_does_not_grow_over_ten_thousand_runs(tmp_path: Path) -> None:
         tracemalloc.start()
         try:
             engine = Engine(Here(), lambda: 2, "here", at_once)
-            assert run_study(plan, store, engine, told=told).run == runs
+            assert run_study(plan, store, engine, progress=forget_the_start).run == runs
             assert export_rows(study_rows(plan, store), tmp_path / "rows.csv") == runs
             assert sum(1 for _ in store.rows()) == runs
             assert tracemalloc.get_traced_memory()[1] - held < ROOM

@@ -118,7 +118,7 @@ def test_what_is_no_database_is_refused(path: Path) -> None:
         Store(path.parent)
 
 
-def test_an_altered_row_is_told(path: Path, row: Row) -> None:
+def test_an_altered_row_is_refused(path: Path, row: Row) -> None:
     with Store(path) as store:
         store.put(row, 1)
         store._data.execute("UPDATE runs SET row = '{}'")
@@ -126,7 +126,7 @@ def test_an_altered_row_is_told(path: Path, row: Row) -> None:
             store.row(row.key)
 
 
-def test_a_store_that_cannot_be_written_is_told(path: Path, row: Row) -> None:
+def test_a_store_that_cannot_be_written_is_reported(path: Path, row: Row) -> None:
     with Store(path) as store:
         store._data.execute("PRAGMA query_only = ON")
         with pytest.raises(CaseError, match=r"cannot be used \(attempt to write a readonly"):

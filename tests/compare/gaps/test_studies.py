@@ -107,7 +107,7 @@ def test_a_session_that_ends_early_is_gone_on_with(
             raise KeyboardInterrupt
 
     with Store(path) as store, pytest.raises(KeyboardInterrupt):
-        run_study(plan, store, engine, told=stop)
+        run_study(plan, store, engine, progress=stop)
     assert len(texts(plan, path)) == 5
     with Store(path) as store:
         session = run_study(plan, store, engine)
@@ -166,7 +166,7 @@ def test_exports_are_the_same_bytes_on_one_process_three_and_dask(
 def test_each_joint_is_a_problem_where_the_case_says_so(tmp_path: Path) -> None:
     text = STUDY.replace('coupling = "shared"\n', "")
     plan = load_study(written(tmp_path, text))
-    assert [posed.name for posed in plan.problems] == ["mine/main, joint a", "mine/main, joint b"]
+    assert [one.name for one in plan.problems] == ["mine/main, joint a", "mine/main, joint b"]
     first, *_, last = plan.trials()
     assert (len(first.problem.joints), first.stream[1:], last.stream[1:]) == (1, (0,), (1,))
     assert len(plan) == 2 * RUNS
@@ -195,16 +195,16 @@ def test_published_cases_are_named_by_their_ids(tmp_path: Path) -> None:
     text = HEAD.replace("mine.toml", "puma560-mnam-pso-353") + OPTIMIZERS
     text = text.replace('coupling = "shared"', 'readings = "durations-positive"')
     plan = load_study(written(tmp_path, text))
-    assert {posed.reading for posed in plan.problems} == {"durations-positive"}
+    assert {one.reading for one in plan.problems} == {"durations-positive"}
     assert len(plan.problems) == 6
 
 
-def test_a_fault_inside_a_list_is_told_alone(tmp_path: Path) -> None:
+def test_a_fault_inside_a_list_is_named_alone(tmp_path: Path) -> None:
     """The list is not empty for it: pydantic says so of what is left after its faults."""
     path = written(tmp_path, STUDY.replace('coupling = "shared"', 'coupling = "share"'))
-    with pytest.raises(CaseError, match=r"problems\[0\].coupling: 'share' is not") as told:
+    with pytest.raises(CaseError, match=r"problems\[0\].coupling: 'share' is not") as caught:
         load_study(path)
-    assert "is empty" not in str(told.value)
+    assert "is empty" not in str(caught.value)
     written(tmp_path, "format = 1\nproblems = []\noptimizers = []\n")
     with pytest.raises(CaseError, match=r"problems: is empty; .*optimizers: is empty"):
         load_study(path)
@@ -243,10 +243,10 @@ def test_bad_input_is_one_line_with_file_and_field(
 ) -> None:
     assert old in STUDY
     path = written(tmp_path, STUDY.replace(old, new))
-    with pytest.raises(CaseError, match=re.escape(said)) as told:
+    with pytest.raises(CaseError, match=re.escape(said)) as caught:
         load_study(path)
-    assert str(told.value).startswith(str(path))
-    assert "\n" not in str(told.value)
+    assert str(caught.value).startswith(str(path))
+    assert "\n" not in str(caught.value)
 
 
 def test_a_problem_that_the_objective_cannot_judge_is_refused(tmp_path: Path) -> None:
@@ -275,7 +275,7 @@ def test_a_lost_engine_leaves_what_is_finished(plan: StudyPlan, tmp_path: Path) 
                 engine.executor.shutdown(wait=False)
 
         with pytest.raises(ProcessError, match=r"1 process: lost \(.*the same command goes on"):
-            run_study(plan, store, engine, told=lose)
+            run_study(plan, store, engine, progress=lose)
     assert len(texts(plan, path)) >= 3
 
 

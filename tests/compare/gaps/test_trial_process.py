@@ -119,7 +119,9 @@ def test_a_process_does_not_outlive_its_parent(crew: Crew) -> None:
     assert child._process.wait(60) == -signal.SIGKILL
 
 
-def test_a_process_that_cannot_start_is_told(crew: Crew, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_process_that_cannot_start_is_reported(
+    crew: Crew, monkeypatch: pytest.MonkeyPatch
+) -> None:
     said: list[str] = []
 
     def try_starting() -> None:

@@ -78,9 +78,9 @@ def test_every_picture_has_words_for_those_who_cannot_see_it(page: tuple[str, Tr
         assert image["loading"] == "lazy"
     drawn = tree.every("svg")
     assert all(one["role"] == "img" for one in drawn)
-    told = [one["text"] for one in tree.every("desc")]
-    assert len(told) == len(drawn)
-    assert all(len(text.split()) >= 6 for text in told)
+    descriptions = [one["text"] for one in tree.every("desc")]
+    assert len(descriptions) == len(drawn)
+    assert all(len(text.split()) >= 6 for text in descriptions)
 
 
 def test_what_is_wider_than_a_phone_scrolls_and_can_be_reached_by_keyboard(

@@ -245,8 +245,8 @@ def test_optima_sensitivities_and_steps_are_the_studys_own(page: Seen, report: A
         assert ", ".join(f"{d:.6f}" for d in solution.durations) in page.words
         change = sum(a.sensitivity for a in solution.active)
         assert f"{change:+.6f} s".replace("-", "−") in page.words
-    for fall in one.waterfalls:
-        for step in fall.steps:
+    for waterfall in one.waterfalls:
+        for step in waterfall.steps:
             assert step.name in page.words
             assert step.note in page.words
 

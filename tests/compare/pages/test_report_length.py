@@ -1,4 +1,4 @@
-"""What a page does with many readings, with none posed, and with sections that hold nothing."""
+"""What a page does with many readings, with none complete, and with sections that hold nothing."""
 
 import html.parser
 import re
@@ -29,7 +29,7 @@ def test_many_readings_share_a_table_and_few_have_pictures() -> None:
     one = CaseAudit(case, Study(case, seeds=2, certify_seconds=0), (), ())
     for others in (3, 5):
         more = [first.model_copy(update={"reading": f"reading-{k}"}) for k in range(others)]
-        section = where_time_goes(replace(one, made_falls=(first, *more)))
+        section = where_time_goes(replace(one, made_waterfalls=(first, *more)))
         drawn = Page("p", "t", (section,)).pictures
         inner = [b for fold in section.blocks if isinstance(fold, Folded) for b in fold.blocks]
         tables = [b for b in inner if isinstance(b, Grid) and b.columns[0] == "reading"]

@@ -35,7 +35,7 @@ def test_equal_words_with_another_verdict_stay_two() -> None:
     assert [one.where for one in shown_once([FIGURE_5, refuted])] == ["Figure 5", "Figure 6"]
 
 
-def test_a_reason_and_a_long_caveat_are_told_once() -> None:
+def test_a_reason_and_a_long_caveat_are_given_once() -> None:
     again = replace(FIGURE_5, text="It is faster.", where="Figure 7")
     first, second = shown_once([FIGURE_5, again])
     assert first == FIGURE_5

@@ -40,8 +40,8 @@ def test_no_id_stands_for_a_name_folded_or_not(case_id: str) -> None:
 
 
 def test_what_is_open_about_limits_is_called_as_the_claim_is() -> None:
-    told = {k: KEPT[k] for k in (Keeping.DISCONTINUOUS, Keeping.UNDECIDED)}
-    assert all(said.startswith(str(ClaimVerdict.NOT_CHECKABLE)) for said in told.values())
+    open_words = {k: KEPT[k] for k in (Keeping.DISCONTINUOUS, Keeping.UNDECIDED)}
+    assert all(said.startswith(str(ClaimVerdict.NOT_CHECKABLE)) for said in open_words.values())
     assert len(set(KEPT.values())) == len(KEPT) == len(Keeping)
 
 

@@ -53,7 +53,7 @@ def test_the_waterfall_writes_every_value_and_every_reason(pictures: dict[str, P
     assert text.count("the first against this") == 1
 
 
-def test_evidence_is_told_by_hatching(pictures: dict[str, Picture]) -> None:
+def test_evidence_is_shown_by_hatching(pictures: dict[str, Picture]) -> None:
     (axes,) = pictures["waterfall"].axes
     hatches = [bar.get_hatch() or "" for container in axes.containers for bar in container]
     assert hatches == ["", "", "////", "", "////"]

@@ -27,7 +27,7 @@ def texts(case: dict) -> list[str]:
     return [node.astext() for node in reasons(case, VERDICT)]
 
 
-def test_few_reasons_are_told_as_they_are() -> None:
+def test_few_reasons_are_shown_as_they_are() -> None:
     case = {"readings": None, "findings": [finding("a", "one."), finding("b", "two.")]}
     assert texts(case) == ["all of it"]
 
@@ -60,7 +60,7 @@ def test_what_needs_no_reading_stands_first() -> None:
     assert texts(case)[0] == "Under every reading: three."
 
 
-def test_what_differs_in_numbers_is_told_once_and_every_number_is_folded() -> None:
+def test_what_differs_in_numbers_is_shown_once_and_every_number_is_folded() -> None:
     found = [finding("a", "3 s too long."), finding("b", "4 s too long.")]
     lead, _, folded, _ = reasons({"readings": {"default": "b"}, "findings": found}, VERDICT)
     said = "Refuted under “b” and “a” (numbers of the first): 4 s too long."
@@ -97,7 +97,7 @@ def test_a_place_that_every_row_shares_is_said_once(name):
     assert wide == {5 if len(places) == 1 else 6}
 
 
-def test_a_long_reason_is_cut_at_a_sentence_and_told_in_full_a_fold_away() -> None:
+def test_a_long_reason_is_cut_at_a_sentence_and_in_full_a_fold_away() -> None:
     long = "It breaks a limit. " + "Word after word. " * 30 + "The end."
     case = {"readings": None, "findings": [finding("a", long)]}
     lead, opening, folded, _ = reasons(case, {**VERDICT, "why": long})

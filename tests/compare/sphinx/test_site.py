@@ -427,10 +427,10 @@ def test_a_gallery_shows_each_picture_once(tmp_path):
         "example_globals": names,
         "image_path_iterator": iter([str(tmp_path / "one.png"), str(tmp_path / "two.png")]),
     }
-    told = scrape_pictures((), block, {"src_dir": str(tmp_path)})
-    assert "one.svg" in told
-    assert "In double precision" in told
-    assert '<title id="one-title">T</title>' in told  # inside the page, so that it has its colours
+    page = scrape_pictures((), block, {"src_dir": str(tmp_path)})
+    assert "one.svg" in page
+    assert "In double precision" in page
+    assert '<title id="one-title">T</title>' in page  # inside the page, so that it has its colours
     assert (tmp_path / "one.svg").read_text(encoding="utf-8").startswith("<?xml")
     assert scrape_pictures((), block, {"src_dir": str(tmp_path)}) == ""
     assert not (tmp_path / "two.svg").exists()

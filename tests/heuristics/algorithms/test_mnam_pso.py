@@ -35,27 +35,27 @@ def swarm(best: list[float]) -> Swarm:
 
 
 @pytest.mark.parametrize(
-    ("n", "falls"),
+    ("n", "falling"),
     [
         (50, 0.9 - 0.5 * (1 - math.exp(-0.25))),
         (100, 0.9 - 0.5 * (1 - math.exp(-1.0))),
         (200, 0.9 - 0.5 * (1 - math.exp(-4.0))),
     ],
 )
-def test_inertia_12(n: int, falls: float) -> None:
-    assert MNAMPSO().inertia(n) == pytest.approx(falls, rel=1e-15)
-    rises = replace(MNAMPSO(), inertia_reading="rises")
-    assert rises.inertia(n) == pytest.approx(0.9 + 0.4 - falls, rel=1e-15)
+def test_inertia_12(n: int, falling: float) -> None:
+    assert MNAMPSO().inertia(n) == pytest.approx(falling, rel=1e-15)
+    rising = replace(MNAMPSO(), inertia_reading="rises")
+    assert rising.inertia(n) == pytest.approx(0.9 + 0.4 - falling, rel=1e-15)
 
 
 def test_inertia_readings_run_between_their_ends() -> None:
     n = np.arange(1, 201)
-    falls = np.array([MNAMPSO().inertia(i) for i in n])
-    rises = np.array([MNAMPSO(inertia_reading="rises").inertia(i) for i in n])
-    assert (np.diff(falls) < 0).all()
-    assert (np.diff(rises) > 0).all()
-    assert falls[0] == pytest.approx(0.9, abs=1e-4)
-    assert falls[-1] == pytest.approx(0.4, abs=0.01)
+    falling = np.array([MNAMPSO().inertia(i) for i in n])
+    rising = np.array([MNAMPSO(inertia_reading="rises").inertia(i) for i in n])
+    assert (np.diff(falling) < 0).all()
+    assert (np.diff(rising) > 0).all()
+    assert falling[0] == pytest.approx(0.9, abs=1e-4)
+    assert falling[-1] == pytest.approx(0.4, abs=0.01)
 
 
 def test_budget_is_the_length_of_the_inertia_schedule() -> None:

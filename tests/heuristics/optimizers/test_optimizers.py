@@ -114,7 +114,7 @@ def test_one_shared_duration_is_uniform_rescaling() -> None:
         ("scipy:direct", {"maxitr": 9}, "scipy:direct: maxitr: unknown setting; did you mean"),
     ],
 )
-def test_what_cannot_be_called_is_told_before_it_runs(
+def test_what_cannot_be_called_is_refused_before_it_runs(
     name: Any, settings: dict[str, Any], said: str
 ) -> None:
     with pytest.raises(TrajgapError, match=said):

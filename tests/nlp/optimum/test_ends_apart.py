@@ -31,7 +31,7 @@ CURVES = {
 }
 
 
-def posed(curve: Interpolant, limits: Limits = LIMITS, **more: object) -> Problem:
+def problem_of(curve: Interpolant, limits: Limits = LIMITS, **more: object) -> Problem:
     return Problem(WAYPOINTS, limits, curve, 0.05, 6.0, **more)
 
 
@@ -45,7 +45,7 @@ def with_ends(curve: Interpolant, first: Derivatives, last: Derivatives) -> Inte
 
 @pytest.mark.parametrize("name", CURVES)
 def test_the_optimum_is_one(name: str) -> None:
-    problem = posed(CURVES[name])
+    problem = problem_of(CURVES[name])
     found = solve(problem)
     assert found.status is Status.OPTIMAL
     assert found.durations is not None
@@ -64,7 +64,7 @@ def test_the_optimum_is_one(name: str) -> None:
 @pytest.mark.parametrize("name", CURVES)
 def test_reversal_and_another_unit_of_time(name: str) -> None:
     curve = CURVES[name]
-    total = solve(posed(curve)).total_time
+    total = solve(problem_of(curve)).total_time
     first, last = curve.ends
     back = with_ends(curve, scaled(last, -1.0), scaled(first, -1.0))
     turned = solve(Problem(WAYPOINTS[::-1], LIMITS, back, 0.05, 6.0))
@@ -76,7 +76,7 @@ def test_reversal_and_another_unit_of_time(name: str) -> None:
 
 
 def test_both_formulations_agree() -> None:
-    problem = posed(CURVES["cubic"])
+    problem = problem_of(CURVES["cubic"])
     totals = [solve(problem, form=form).total_time for form in (Form.REDUCED, Form.LIFTED)]
     assert totals[0] == pytest.approx(totals[1], rel=1e-8)
 
@@ -93,17 +93,17 @@ def test_a_straight_line_has_a_closed_form() -> None:
 
 def test_a_velocity_beyond_one_joints_limit_is_proved_infeasible() -> None:
     curve = cubic_spline(3, ((1, 0.0),), ((1, (0.1, -1.8)),))
-    found = solve(posed(curve))
+    found = solve(problem_of(curve))
     assert found.status is Status.INFEASIBLE
     assert "velocity prescribed at break 3 exceeds the limit of joint 2" in found.why
     one_way = Limits([1.1, 1.7], [[-3.0, 3.0], [-1.0, 2.2]])
     bent = cubic_spline(3, ((1, 0.0),), ((2, (0.0, -1.5)),))
-    assert solve(posed(bent, one_way)).status is Status.INFEASIBLE
-    assert "exceeds" not in str(solve(posed(bent)).why)
+    assert solve(problem_of(bent, one_way)).status is Status.INFEASIBLE
+    assert "exceeds" not in str(solve(problem_of(bent)).why)
 
 
 def test_searches_know_them() -> None:
-    problem = posed(CURVES["cubic"])
+    problem = problem_of(CURVES["cubic"])
     best = solve(problem).total_time
     swarm = PSO(particles=20, iterations=80, position_initial=(0.2, 3.0))
     found = run(swarm, problem, 2)
@@ -116,17 +116,17 @@ def test_searches_know_them() -> None:
 
 
 def test_the_declared_curve_has_no_proof_and_any_curve_a_bound() -> None:
-    problem = posed(CURVES["cubic"])
+    problem = problem_of(CURVES["cubic"])
     with pytest.raises(TrajgapError, match="no proof covers such a curve yet"):
         certify(problem, seconds=1.0)
     found = certify(problem, subject=Subject.ANY, gap=0.5, seconds=20.0)
     assert 0 < found.lower <= solve(problem).total_time
     # Problems that differ in one joint's end alone are told apart.
-    other = posed(cubic_spline(3, ((1, (0.5, -0.2)),), ((1, (-0.3, 0.5)),)))
+    other = problem_of(cubic_spline(3, ((1, (0.5, -0.2)),), ((1, (-0.3, 0.5)),)))
     assert problem_seal(problem) != problem_seal(other)
 
 
 def test_ends_that_differ_for_all_joints_alike_are_bounded_over_any_curve() -> None:
-    problem = posed(cubic_spline(3, ((1, 0.5),), ((1, -0.3),)))
+    problem = problem_of(cubic_spline(3, ((1, 0.5),), ((1, -0.3),)))
     found = certify(problem, subject=Subject.ANY, gap=0.5, seconds=20.0)
     assert 0 < found.lower <= solve(problem).total_time

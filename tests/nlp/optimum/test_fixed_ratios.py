@@ -207,7 +207,7 @@ def test_nothing_keeps_the_total_from_zero(problem: Problem) -> None:
     assert answer.best == 0.0
 
 
-def test_a_jump_at_the_ratios_is_told() -> None:
+def test_a_jump_at_the_ratios_is_named() -> None:
     bent = Problem([[0.0], [0.5], [1.5]], Limits(1.0, 1.0), piecewise((1, 1), 0, ()))
     answer = solve(replace(bent, ratios="equal"))
     assert answer.status is Status.NONE_FOUND

@@ -31,7 +31,7 @@ from trajgap.problem import (
 SEGMENTS = 26
 
 
-def posed(curve: Interpolant, seed: int = 3, **changes: object) -> Problem:
+def problem_of(curve: Interpolant, seed: int = 3, **changes: object) -> Problem:
     rng = np.random.default_rng(seed)
     count = len(curve.waypoint_breaks)
     q = np.cumsum(rng.normal(size=(count, 2)) * [0.4, 0.9], axis=0) - 5.0
@@ -51,7 +51,7 @@ CURVES = {
 
 @pytest.mark.parametrize("name", CURVES)
 def test_the_answer_is_optimal_by_the_dense_conditions(name: str) -> None:
-    problem = posed(CURVES[name])
+    problem = problem_of(CURVES[name])
     answer = solve(problem)
     assert answer.status is Status.OPTIMAL
     assert answer.durations is not None
@@ -73,13 +73,13 @@ def test_the_answer_is_optimal_by_the_dense_conditions(name: str) -> None:
 @pytest.mark.parametrize("name", ["cubic", "quintic"])
 @pytest.mark.parametrize("seed", [1, 2])
 def test_the_tracked_formulation_ends_at_the_same_total(name: str, seed: int) -> None:
-    problem = posed(CURVES[name], seed)
+    problem = problem_of(CURVES[name], seed)
     tracked = solve(problem, form=Form.LIFTED)
     assert solve(problem).total_time == pytest.approx(tracked.total_time, rel=1e-8)
 
 
 def test_time_scaling_and_mirror() -> None:
-    problem = posed(CURVES["quintic"])
+    problem = problem_of(CURVES["quintic"])
     total = solve(problem).total_time
     slower = problem.limits.with_derivatives(problem.limits.derivatives / 3.0 ** np.arange(1, 4))
     scaled = solve(Problem(problem.waypoints, slower, problem.curve)).total_time
@@ -90,16 +90,16 @@ def test_time_scaling_and_mirror() -> None:
 
 def test_bounds_on_durations_and_positions_are_kept_and_priced() -> None:
     curve = CURVES["cubic"]
-    free = solve(posed(curve))
+    free = solve(problem_of(curve))
     assert free.durations is not None
-    trajectory = fit(curve, posed(curve).waypoints, free.durations)
+    trajectory = fit(curve, problem_of(curve).waypoints, free.durations)
     top = max(extrema(trajectory, 1, 0), key=lambda e: e.value)
-    edge = max(float(posed(curve).waypoints[:, 1].max()), 0.5 * (top.value + top.value)) - 1e-3
-    edge = max(edge, float(posed(curve).waypoints[:, 1].max()) + 1e-4)
+    edge = max(float(problem_of(curve).waypoints[:, 1].max()), 0.5 * (top.value + top.value)) - 1e-3
+    edge = max(edge, float(problem_of(curve).waypoints[:, 1].max()) + 1e-4)
     limits = Limits([1.5, 3.0], [6.0, 15.0], [np.inf, 90.0], -np.inf, [np.inf, edge])
     lower = np.zeros(SEGMENTS)
     lower[7] = 1.3 * free.durations[7]
-    problem = posed(curve, limits=limits, duration_lower=lower)
+    problem = problem_of(curve, limits=limits, duration_lower=lower)
     answer = solve(problem)
     assert answer.status is Status.OPTIMAL
     assert answer.durations is not None
@@ -110,13 +110,13 @@ def test_bounds_on_durations_and_positions_are_kept_and_priced() -> None:
     assert [a.segment for a in walls] == [7]
     longer = lower.copy()
     longer[7] *= 1.0001
-    more = solve(posed(curve, limits=limits, duration_lower=longer))
+    more = solve(problem_of(curve, limits=limits, duration_lower=longer))
     slope = (more.total_time - answer.total_time) / np.log(1.0001)
     assert walls[0].multiplier == pytest.approx(slope, rel=1e-3)
 
 
 def test_a_known_motion_is_never_lost() -> None:
-    problem = posed(CURVES["cubic"])
+    problem = problem_of(CURVES["cubic"])
     answer = solve(problem)
     assert answer.durations is not None
     slow = solve(problem, known=answer.durations[None] * 1.01)
@@ -126,7 +126,7 @@ def test_a_known_motion_is_never_lost() -> None:
 
 
 def test_out_of_time_the_best_motion_so_far_is_the_answer() -> None:
-    problem = posed(CURVES["quintic"])
+    problem = problem_of(CURVES["quintic"])
     answer = solve(problem, seconds=0.0)
     assert answer.status is Status.FEASIBLE
     assert answer.check is not None
@@ -138,7 +138,7 @@ def test_out_of_time_the_best_motion_so_far_is_the_answer() -> None:
 def test_a_round_that_fails_begins_again_from_the_best_motion(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    problem = posed(CURVES["cubic"])
+    problem = problem_of(CURVES["cubic"])
     total = solve(problem).total_time
     round_ = long_search_module.solve_round
     calls: list[int] = []
@@ -160,7 +160,7 @@ def test_a_round_that_fails_begins_again_from_the_best_motion(
 
 @pytest.mark.slow
 def test_what_does_not_settle_is_searched_as_before() -> None:
-    q = posed(CURVES["cubic"]).waypoints.copy()
+    q = problem_of(CURVES["cubic"]).waypoints.copy()
     q[14] = q[13] + 1e-9
     problem = Problem(q, Limits([1.5, 3.0], [np.inf, np.inf]), CURVES["cubic"])
     answer = solve(problem)
@@ -172,16 +172,16 @@ def test_what_does_not_settle_is_searched_as_before() -> None:
 
 def test_what_is_not_searched_here(monkeypatch: pytest.MonkeyPatch) -> None:
     seen: list[Problem] = []
-    standing = np.repeat(posed(CURVES["cubic"]).waypoints[:9], 3, axis=0)
+    standing = np.repeat(problem_of(CURVES["cubic"]).waypoints[:9], 3, axis=0)
     monkeypatch.setattr(solver, "solve_long", lambda problem, _: seen.append(problem))
     for problem in (
-        posed(cubic_spline(24)),
-        posed(piecewise((5,) * 26, 2)),
+        problem_of(cubic_spline(24)),
+        problem_of(piecewise((5,) * 26, 2)),
         Problem(standing, Limits(1.0, 5.0, joints=2), CURVES["cubic"]),
     ):
         ask = solver.Ask(4, 0, None, np.empty((0, 0)), None, None, np.inf)
         assert not long_enough(problem, ask)
-    solve(posed(cubic_spline(24)), starts=1)
+    solve(problem_of(cubic_spline(24)), starts=1)
     assert seen == []
 
 
@@ -189,7 +189,7 @@ def test_what_is_not_searched_here(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_expressions_are_those_of_the_fitted_curve(name: str) -> None:
     import casadi as ca
 
-    problem = posed(CURVES[name])
+    problem = problem_of(CURVES[name])
     h = way_start(problem) * np.random.default_rng(1).uniform(0.7, 1.4, SEGMENTS)
     program = LongProgram(problem, float(h.mean()), np.zeros(SEGMENTS))
     trajectory = fit(problem.curve, problem.waypoints, h)

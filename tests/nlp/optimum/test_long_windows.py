@@ -38,7 +38,7 @@ CURVES = {
 }
 
 
-def posed(curve: Interpolant, **changes: object) -> Problem:
+def problem_of(curve: Interpolant, **changes: object) -> Problem:
     rng = np.random.default_rng(11)
     count = len(curve.waypoint_breaks)
     q = np.cumsum(rng.normal(size=(count, 2)) * [0.4, 0.9], axis=0) - 5.0
@@ -68,7 +68,7 @@ def small_windows(monkeypatch: pytest.MonkeyPatch) -> list[Joined | None]:
 def test_joined_windows_end_at_the_optimum_of_the_whole(
     name: str, small_windows: list[Joined | None]
 ) -> None:
-    problem = posed(CURVES[name])
+    problem = problem_of(CURVES[name])
     answer = solve(problem)
     assert [joined is None for joined in small_windows] == [False]
     floor = np.full(problem.segments, 1e-4)
@@ -85,7 +85,7 @@ def test_joined_windows_end_at_the_optimum_of_the_whole(
 
 
 def test_what_windows_leave_is_nearly_the_optimum(small_windows: list[Joined | None]) -> None:
-    problem = posed(CURVES["quintic"])
+    problem = problem_of(CURVES["quintic"])
     answer = solve(problem)
     (joined,) = small_windows
     assert joined is not None
@@ -99,7 +99,7 @@ def test_what_windows_leave_is_nearly_the_optimum(small_windows: list[Joined | N
 
 @pytest.mark.parametrize("name", CURVES)
 def test_a_window_is_a_part_of_the_whole_program(name: str) -> None:
-    problem = posed(CURVES[name])
+    problem = problem_of(CURVES[name])
     h = way_start(problem) * np.random.default_rng(1).uniform(0.8, 1.3, SEGMENTS)
     motion, unit, floor = fit(problem.curve, problem.waypoints, h), float(h.mean()), np.zeros(40)
     whole = LongProgram(problem, unit, floor)
@@ -130,7 +130,7 @@ def test_a_window_is_a_part_of_the_whole_program(name: str) -> None:
 
 
 def test_windows_cover_all_segments_and_end_at_waypoints() -> None:
-    problem = posed(cubic_spline_virtual(SEGMENTS - 1))
+    problem = problem_of(cubic_spline_virtual(SEGMENTS - 1))
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(long_windows, "WIDTH", 9)
         patch.setattr(long_windows, "OVERLAP", 3)
@@ -150,7 +150,7 @@ def test_windows_cover_all_segments_and_end_at_waypoints() -> None:
 def test_a_window_that_fails_begins_slower_and_then_the_whole_is_searched(
     small_windows: list[Joined | None], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    problem = posed(CURVES["cubic"])
+    problem = problem_of(CURVES["cubic"])
     total = solve(problem).total_time
     solved, tried = long_windows._solved, []
 
@@ -178,7 +178,7 @@ def test_a_window_that_fails_begins_slower_and_then_the_whole_is_searched(
 def test_time_that_ends_between_windows_and_after_them(
     small_windows: list[Joined | None], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    problem = posed(CURVES["quintic"])
+    problem = problem_of(CURVES["quintic"])
     start, floor = way_start(problem), np.full(SEGMENTS, 1e-4)
     assert long_search(problem, start, floor, -np.inf) is not None
     assert small_windows == [None]
@@ -210,7 +210,7 @@ def test_multipliers_go_to_the_rows_that_continue_theirs() -> None:
 
 def test_the_excess_is_that_of_the_batch_evaluator() -> None:
     for name, curve in CURVES.items():
-        problem = posed(curve)
+        problem = problem_of(curve)
         h = way_start(problem) * np.random.default_rng(2).uniform(0.5, 1.1, SEGMENTS)
         stretch = float(evaluate(problem, h[None]).stretch[0])
         assert excess_of(problem, h) == pytest.approx(stretch - 1.0, rel=1e-9), name

@@ -17,7 +17,7 @@ BACK = np.array([0.21, 0.9, 0.34, 1.87])
 V, A, J = 1.1, 2.1, 6.3
 
 
-def posed(q: Array, jerk: float | list[float] = J) -> Problem:
+def problem_through(q: Array, jerk: float | list[float] = J) -> Problem:
     q = q.reshape(4, -1)
     joints = q.shape[1]
     return Problem(q, Limits([V] * joints, [A] * joints, jerk, joints=joints), CURVE)
@@ -98,11 +98,11 @@ def brute_total(q: Array, count: int = 201) -> float:
 @cache
 def shortest() -> Solution:
     """The answer for one joint that goes on, which two tests look at."""
-    return solve(posed(ONWARDS))
+    return solve(problem_through(ONWARDS))
 
 
 def test_the_shortest_motion_without_a_jump_is_found() -> None:
-    problem, solution = posed(ONWARDS), shortest()
+    problem, solution = problem_through(ONWARDS), shortest()
     assert solution.status is Status.FEASIBLE
     assert "at which the motion does not jump" in str(solution.why)
     assert check(problem, solution.durations, solution.nodal).verdict is Verdict.PASS
@@ -116,27 +116,27 @@ def test_the_shortest_motion_without_a_jump_is_found() -> None:
 def test_there_is_none_where_the_middle_turns_back() -> None:
     """The mean speed of the middle lies between those at its ends, both of the outer ways' sign."""
     assert brute_total(BACK, 61) == np.inf
-    solution = solve(posed(BACK))
+    solution = solve(problem_through(BACK))
     assert solution.status is Status.NONE_FOUND
     assert "jumps" in str(solution.why)
 
 
 def test_two_joints_have_two_equations_for_two_ratios() -> None:
     both = np.column_stack([ONWARDS, 0.5 - 0.4 * ONWARDS])
-    assert jump_equations(posed(both)) == (2, 2)
-    (shared, *_) = matched(posed(both), 0)
+    assert jump_equations(problem_through(both)) == (2, 2)
+    (shared, *_) = matched(problem_through(both), 0)
     assert shared[0].sum() == pytest.approx(shortest().total_time, rel=1e-5)
 
 
 def test_more_equations_than_ratios_are_named() -> None:
     q = np.column_stack([ONWARDS, ONWARDS**2, np.sqrt(ONWARDS)])
-    solution = solve(posed(q))
+    solution = solve(problem_through(q))
     assert solution.status is Status.NONE_FOUND
     assert "it would take 2 ratios of durations that meet 3 equations" in str(solution.why)
 
 
 def test_without_a_jerk_limit_the_acceleration_may_jump() -> None:
-    assert jump_equations(posed(ONWARDS, np.inf)) == (0, 2)
-    solution = solve(posed(ONWARDS, np.inf))
+    assert jump_equations(problem_through(ONWARDS, np.inf)) == (0, 2)
+    solution = solve(problem_through(ONWARDS, np.inf))
     assert solution.status is Status.OPTIMAL
     assert solution.total_time < brute_total(ONWARDS, 61)

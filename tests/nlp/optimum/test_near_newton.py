@@ -19,7 +19,7 @@ SAME = 1e-7
 and whose last pass moves by 1e-8 at most."""
 
 
-def posed(family: str, seed: int) -> tuple[list[Problem], list[Array]]:
+def joints_and_optima(family: str, seed: int) -> tuple[list[Problem], list[Array]]:
     """Up to two joints of a random problem, each with its own optimum; none if one has none."""
     problem = small_problem(family, seed)
     singles = [problem.joint(j) for j in range(min(2, len(problem.joints)))]
@@ -31,7 +31,7 @@ def posed(family: str, seed: int) -> tuple[list[Problem], list[Array]]:
 
 def compare(family: str, seed: int, slack: float) -> int:
     """Compare both ways for some objectives; how many of them the Newton steps settled."""
-    singles, optima = posed(family, seed)
+    singles, optima = joints_and_optima(family, seed)
     if not singles or not applies(singles):
         return 0
     caps = [h.sum() * (1.0 + slack) for h in optima]
@@ -102,7 +102,7 @@ def test_bounds_of_durations_hold() -> None:
 
 
 def test_what_does_not_settle_goes_to_ipopt(monkeypatch: pytest.MonkeyPatch) -> None:
-    singles, optima = posed("3-5-3", 0)
+    singles, optima = joints_and_optima("3-5-3", 0)
     both = near_optimal.longest_per_segment_range(singles, optima, 1e-3)
     asked = []
     monkeypatch.setattr(near_newton, "STEPS", 1)

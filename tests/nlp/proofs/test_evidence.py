@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from support.checkout import ROOT
 from support.documents import assert_valid, plain
-from support.shipped_problems import POSED
+from support.shipped_problems import COVERED_PROBLEMS
 from trajgap.compare.audits.rules.distances import judge_distances
 from trajgap.compare.audits.study import Study
 from trajgap.compare.audits.waterfall import waterfalls
@@ -34,7 +34,7 @@ from trajgap.nlp import (
     with_certificates,
 )
 from trajgap.nlp.optimum import solve
-from trajgap.nlp.proofs import interval_of, stated_exactly
+from trajgap.nlp.proofs import interval_of, printed_problem_or_none
 from trajgap.nlp.proofs.evidence import WIDEST
 from trajgap.nlp.proofs.exact import exact_problem, printed_problem
 from trajgap.problem import (
@@ -70,7 +70,7 @@ def one_study() -> Study:
 def said(study: Study) -> tuple[list[str], set[Evidence]]:
     """Every sentence and every evidence word beside an optimum."""
     findings = list(judge_distances(study))
-    steps = [step for fall in waterfalls(study) for step in fall.steps]
+    steps = [step for waterfall in waterfalls(study) for step in waterfall.steps]
     texts = [f.message for f in findings] + [f"{s.name} {s.note}" for s in steps]
     return texts, {f.evidence for f in findings} | {s.evidence for s in steps}
 
@@ -85,8 +85,8 @@ def test_what_is_proved_is_called_certified() -> None:
     assert interval is not None
     assert answer.lower_bound is not None
     assert Fraction(answer.lower_bound) <= interval.lower < answer.total_time
-    (fall,) = waterfalls(study)
-    step = next(s for s in fall.steps if s.name.startswith("optimum"))
+    (waterfall,) = waterfalls(study)
+    step = next(s for s in waterfall.steps if s.name.startswith("optimum"))
     assert (step.low, step.high) == (answer.lower_bound, answer.total_time)
     assert "proved" in str(answer)
 
@@ -96,7 +96,7 @@ def test_a_proof_of_a_wide_interval_certifies_nothing(
     monkeypatch: pytest.MonkeyPatch, width: float, word: str
 ) -> None:
     assert f"at most {float(100 * WIDEST):g} % wide" in VERDICTS
-    problem = replace(POSED[f"{IRB}.{PAIR[0]}.{PAIR[1]}"], name=f"width {width}")
+    problem = replace(COVERED_PROBLEMS[f"{IRB}.{PAIR[0]}.{PAIR[1]}"], name=f"width {width}")
     document = certificate(certify(problem, gap=width))
     monkeypatch.setattr(evidence_module, "shipped", lambda *_: document)
     answer = solve(one_study().problem(*PAIR))
@@ -121,7 +121,7 @@ def test_nothing_is_called_certified_without_a_certificate() -> None:
 def test_a_certificate_that_does_not_prove_its_claim_is_not_used(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    exact = POSED[f"{IRB}.limit-80.waypoints-rad"]
+    exact = COVERED_PROBLEMS[f"{IRB}.limit-80.waypoints-rad"]
     wrong = copy.deepcopy(shipped(exact))
     assert wrong is not None
     wrong["claim"]["lower"] = str(Fraction(wrong["claim"]["lower"]) * 2)
@@ -131,7 +131,7 @@ def test_a_certificate_that_does_not_prove_its_claim_is_not_used(
 
 
 def test_a_certificate_of_another_problem_is_not_used() -> None:
-    exact = POSED[f"{IRB}.limit-80.waypoints-rad"]
+    exact = COVERED_PROBLEMS[f"{IRB}.limit-80.waypoints-rad"]
     other = replace(exact, duration_lower=(Fraction(1, 10**9), *exact.duration_lower[1:]))
     assert proved(other) is None
     assert proved(exact, Subject.ANY) is None or shipped(exact, Subject.ANY) is not None
@@ -150,7 +150,7 @@ def test_a_certificate_for_other_end_velocities_is_not_used(
     monkeypatch: pytest.MonkeyPatch, forged: dict[str, object]
 ) -> None:
     # The question and the verifier must read the ends in the same place.
-    exact = POSED[f"{PUMA}.six-joints.durations-positive"]
+    exact = COVERED_PROBLEMS[f"{PUMA}.six-joints.durations-positive"]
     document = shipped(exact, Subject.ANY)
     assert document is not None
     if "curve" in forged:
@@ -166,7 +166,7 @@ def test_every_shipped_reading_that_is_covered_is_certified() -> None:
     case = load_case(GA)
     words = {}
     for reading in case.readings:
-        exact = stated_exactly(case.statement("nine-segments", reading.id))
+        exact = printed_problem_or_none(case.statement("nine-segments", reading.id))
         words[reading.id] = exact is not None and proved(exact) is not None
     assert {name for name, found in words.items() if found} == {
         name for name in words if name.endswith("stretched") and "modulo" not in name
@@ -184,7 +184,7 @@ def test_a_closed_form_needs_no_file() -> None:
 
 
 def test_an_answer_below_the_bound_is_not_called_certified() -> None:
-    exact = POSED[f"{IRB}.limit-80.waypoints-rad"]
+    exact = COVERED_PROBLEMS[f"{IRB}.limit-80.waypoints-rad"]
     answer = one_study().optimum(*PAIR)
     assert answer.durations is not None
     short = replace(answer, durations=answer.durations * 0.99, lower_bound=None)
@@ -213,7 +213,7 @@ def test_an_answer_that_rounding_puts_below_the_bound_takes_the_proved_durations
 
 def test_a_worse_answer_is_replaced_by_that_of_the_certificate() -> None:
     study = one_study()
-    exact = POSED[f"{IRB}.limit-80.waypoints-rad"]
+    exact = COVERED_PROBLEMS[f"{IRB}.limit-80.waypoints-rad"]
     answer = study.optimum(*PAIR)
     assert answer.durations is not None
     worse = replace(answer, durations=answer.durations * 1.2, lower_bound=None)
@@ -286,8 +286,8 @@ def test_a_bound_for_any_curve_stands_on_the_waterfall(
         return bound if subject is Subject.ANY else None
 
     monkeypatch.setattr(intervals_module, "proved", only_any)
-    (fall,) = waterfalls(one_study())
-    step = fall.steps[-1]
+    (waterfall,) = waterfalls(one_study())
+    step = waterfall.steps[-1]
     # The nearest double lies above 2/5, and would be no lower bound.
     assert step.low == np.nextafter(0.4, 0.0)
     assert step.note.count("no motion within the limits is shorter than 0.4 s: certified") == 1
@@ -318,8 +318,8 @@ def test_a_bound_for_any_curve_may_round_above_the_answer_and_no_more(
 
 
 def test_what_is_proved_of_any_curve_is_called_certified_under_every_reading() -> None:
-    for fall in waterfalls(Study(load_case(IRB), seeds=2)):
-        assert fall.steps[-1].evidence is Evidence.CERTIFIED
+    for waterfall in waterfalls(Study(load_case(IRB), seeds=2)):
+        assert waterfall.steps[-1].evidence is Evidence.CERTIFIED
 
 
 def test_only_a_proof_sets_a_lower_bound() -> None:
@@ -343,10 +343,10 @@ interpolant = { family = "cubic-spline" }
 """,
         "tiny.toml",
     )
-    exact = stated_exactly(case.statement())
+    exact = printed_problem_or_none(case.statement())
     assert exact is not None
     assert proved(exact) is None
-    other = stated_exactly(load_case("irb460-pso-353").statement("limit-80"))
+    other = printed_problem_or_none(load_case("irb460-pso-353").statement("limit-80"))
     assert other is not None
     document = shipped(other)
     assert document is not None

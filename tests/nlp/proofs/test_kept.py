@@ -44,9 +44,9 @@ def searches(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     return begun
 
 
-def posed(shift: float = 0.0) -> Problem:
+def shifted_problem(shift: float = 0.0) -> Problem:
     waypoints = [[0.1 + shift, 0.5], [0.7, 0.2], [1.2, -0.4], [0.9, 0.3]]
-    return Problem(waypoints, Limits(6.0, 8.0, joints=2), three_five_three(), name="posed")
+    return Problem(waypoints, Limits(6.0, 8.0, joints=2), three_five_three(), name="shifted")
 
 
 def only(folder: Path) -> Path:
@@ -63,7 +63,7 @@ def alike(one, other) -> bool:
 @pytest.mark.parametrize("name", [*sorted(KINDS), "any-curve"])
 def test_a_kept_proof_of_every_kind_says_what_the_search_said(name, tmp_path, searches):
     any_curve = name == "any-curve"
-    problem = posed() if any_curve else KINDS[name].make()
+    problem = shifted_problem() if any_curve else KINDS[name].make()
     # Wide for quintic splines, whose search would take a minute on a busy machine.
     gap = 0.5 if name in ("any-curve", "quintic-spline") else KINDS[name].gap
     subject = Subject.ANY if any_curve else Subject.DECLARED
@@ -80,53 +80,53 @@ def test_a_kept_proof_of_every_kind_says_what_the_search_said(name, tmp_path, se
 def test_without_a_folder_nothing_is_kept(tmp_path, searches, monkeypatch):
     monkeypatch.setenv(VARIABLE, str(tmp_path))
     for _ in range(2):
-        assert not certify(posed(), gap=GAP).kept
+        assert not certify(shifted_problem(), gap=GAP).kept
     assert len(searches) == 2
     assert not list(tmp_path.iterdir())
     monkeypatch.setenv(VARIABLE, "")
     assert cache_folder() is None
-    assert not certify(posed(), gap=GAP, cache=True).kept
+    assert not certify(shifted_problem(), gap=GAP, cache=True).kept
 
 
 def test_the_folder_is_the_systems_own_or_the_one_that_is_named(tmp_path, searches, monkeypatch):
     monkeypatch.setenv(VARIABLE, str(tmp_path))
     assert cache_folder() == tmp_path / "proofs"
-    assert not certify(posed(), gap=GAP, cache=True).kept
-    assert certify(posed(), gap=GAP, cache=True).kept
+    assert not certify(shifted_problem(), gap=GAP, cache=True).kept
+    assert certify(shifted_problem(), gap=GAP, cache=True).kept
     monkeypatch.delenv(VARIABLE)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "own"))
     assert cache_folder() == tmp_path / "own" / "trajgap" / "proofs"
 
 
 def test_another_question_is_searched(tmp_path, searches):
-    certify(posed(), gap=GAP, cache=tmp_path)
+    certify(shifted_problem(), gap=GAP, cache=tmp_path)
     for change in ({"gap": GAP / 2}, {"seed": 1}):
-        assert not certify(posed(), **({"gap": GAP} | change), cache=tmp_path).kept
-    assert not certify(posed(0.01), gap=GAP, cache=tmp_path).kept
+        assert not certify(shifted_problem(), **({"gap": GAP} | change), cache=tmp_path).kept
+    assert not certify(shifted_problem(0.01), gap=GAP, cache=tmp_path).kept
     assert len(searches) == 4
     # What a problem is called is no part of it.
-    assert certify(replace(posed(), name="other"), gap=GAP, cache=tmp_path).kept
+    assert certify(replace(shifted_problem(), name="other"), gap=GAP, cache=tmp_path).kept
 
 
 def test_what_another_version_kept_is_not_looked_at(tmp_path, searches, monkeypatch):
-    certify(posed(), gap=GAP, cache=tmp_path)
+    certify(shifted_problem(), gap=GAP, cache=tmp_path)
     monkeypatch.setattr(kept, "_code", lambda: "another version")
-    assert not certify(posed(), gap=GAP, cache=tmp_path).kept
+    assert not certify(shifted_problem(), gap=GAP, cache=tmp_path).kept
     assert len(list(tmp_path.glob("*.json"))) == 2
 
 
 def test_a_run_that_is_cut_short_or_goes_on_keeps_nothing(tmp_path, searches):
-    open_run = certify(posed(), gap=0.0, seconds=0.2, cache=tmp_path)
+    open_run = certify(shifted_problem(), gap=0.0, seconds=0.2, cache=tmp_path)
     assert open_run.outcome is not Outcome.CERTIFIED
     assert not list(tmp_path.iterdir())
     state = state_document(open_run)
     assert state is not None
-    certify(posed(), gap=GAP, resume=state, cache=tmp_path)
+    certify(shifted_problem(), gap=GAP, resume=state, cache=tmp_path)
     assert not list(tmp_path.iterdir())
 
 
 def test_no_flipped_byte_changes_an_answer(tmp_path):
-    cold = certify(posed(), gap=GAP, cache=tmp_path)
+    cold = certify(shifted_problem(), gap=GAP, cache=tmp_path)
     file = only(tmp_path)
     content = file.read_bytes()
     survived = 0
@@ -159,11 +159,11 @@ def test_no_flipped_byte_changes_an_answer(tmp_path):
     ],
 )
 def test_a_foreign_file_is_searched_over_and_replaced(content, tmp_path, searches):
-    cold = certify(posed(), gap=GAP, cache=tmp_path)
+    cold = certify(shifted_problem(), gap=GAP, cache=tmp_path)
     file = only(tmp_path)
     own = file.read_bytes()
     file.write_bytes(content)
-    again = certify(posed(), gap=GAP, cache=tmp_path)
+    again = certify(shifted_problem(), gap=GAP, cache=tmp_path)
     assert not again.kept
     assert alike(cold, again)
     assert file.read_bytes() == own
@@ -171,23 +171,23 @@ def test_a_foreign_file_is_searched_over_and_replaced(content, tmp_path, searche
 
 @pytest.mark.parametrize("part", [0.1, 0.5, 0.99])
 def test_a_truncated_file_is_searched_over(part, tmp_path, searches):
-    cold = certify(posed(), gap=GAP, cache=tmp_path)
+    cold = certify(shifted_problem(), gap=GAP, cache=tmp_path)
     file = only(tmp_path)
     file.write_bytes(file.read_bytes()[: int(part * file.stat().st_size)])
-    again = certify(posed(), gap=GAP, cache=tmp_path)
+    again = certify(shifted_problem(), gap=GAP, cache=tmp_path)
     assert len(searches) == 2
     assert alike(cold, again)
 
 
 def test_swapped_files_are_searched_over(tmp_path, searches):
-    first = certify(posed(), gap=GAP, cache=tmp_path / "a")
-    second = certify(posed(0.01), gap=GAP, cache=tmp_path / "b")
+    first = certify(shifted_problem(), gap=GAP, cache=tmp_path / "a")
+    second = certify(shifted_problem(0.01), gap=GAP, cache=tmp_path / "b")
     one, other = only(tmp_path / "a"), only(tmp_path / "b")
     shutil.copy(other, tmp_path / "swapped")
     shutil.copy(one, other)
     shutil.copy(tmp_path / "swapped", one)
-    assert alike(first, certify(posed(), gap=GAP, cache=tmp_path / "a"))
-    assert alike(second, certify(posed(0.01), gap=GAP, cache=tmp_path / "b"))
+    assert alike(first, certify(shifted_problem(), gap=GAP, cache=tmp_path / "a"))
+    assert alike(second, certify(shifted_problem(0.01), gap=GAP, cache=tmp_path / "b"))
     assert len(searches) == 4
 
 
@@ -243,22 +243,23 @@ FORGED = (higher, shorter, wider, infeasible, other_limits, other_words, unprove
 
 @pytest.mark.parametrize("change", FORGED, ids=lambda change: change.__name__)
 def test_a_forged_file_with_right_seals_is_searched_over(change, tmp_path, searches):
-    cold = certify(posed(), gap=GAP, cache=tmp_path)
+    cold = certify(shifted_problem(), gap=GAP, cache=tmp_path)
     forge(tmp_path, change)
-    again = certify(posed(), gap=GAP, cache=tmp_path)
+    again = certify(shifted_problem(), gap=GAP, cache=tmp_path)
     assert not again.kept
     assert len(searches) == 2
     assert alike(cold, again)
 
 
 def test_a_file_that_is_no_regular_one_is_not_waited_for(tmp_path, searches):
-    certify(posed(), gap=GAP, cache=tmp_path)
+    certify(shifted_problem(), gap=GAP, cache=tmp_path)
     file = only(tmp_path)
     file.unlink()
     os.mkfifo(file)
     began = threading.Event()
     thread = threading.Thread(
-        target=lambda: (certify(posed(), gap=GAP, cache=tmp_path), began.set()), daemon=True
+        target=lambda: (certify(shifted_problem(), gap=GAP, cache=tmp_path), began.set()),
+        daemon=True,
     )
     thread.start()
     thread.join(60)
@@ -266,28 +267,28 @@ def test_a_file_that_is_no_regular_one_is_not_waited_for(tmp_path, searches):
 
 
 def test_where_nothing_can_be_written_the_answer_is_the_same(tmp_path, monkeypatch):
-    cold = certify(posed(), gap=GAP)
+    cold = certify(shifted_problem(), gap=GAP)
     (tmp_path / "file").write_text("in the way")
-    assert alike(cold, certify(posed(), gap=GAP, cache=tmp_path / "file" / "folder"))
+    assert alike(cold, certify(shifted_problem(), gap=GAP, cache=tmp_path / "file" / "folder"))
 
     def full(path, text):
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(kept, "replace_file", full)
-    assert alike(cold, certify(posed(), gap=GAP, cache=tmp_path / "full"))
+    assert alike(cold, certify(shifted_problem(), gap=GAP, cache=tmp_path / "full"))
     assert not (tmp_path / "full").exists()
 
 
 def test_no_time_proves_nothing_again(tmp_path):
-    certify(posed(), gap=GAP, cache=tmp_path)
-    without = certify(posed(), gap=GAP, seconds=0.0)
-    again = certify(posed(), gap=GAP, seconds=0.0, cache=tmp_path)
+    certify(shifted_problem(), gap=GAP, cache=tmp_path)
+    without = certify(shifted_problem(), gap=GAP, seconds=0.0)
+    again = certify(shifted_problem(), gap=GAP, seconds=0.0, cache=tmp_path)
     assert not again.kept
     assert again.outcome is without.outcome
 
 
 def test_two_at_once_leave_one_whole_file(tmp_path):
-    found = certify(posed(), gap=GAP)
+    found = certify(shifted_problem(), gap=GAP)
     stores = [KeptProofs(tmp_path) for _ in range(2)]
     threads = [
         threading.Thread(target=lambda s=s: [s.keep(found, GAP, 0) for _ in range(20)])
@@ -300,11 +301,11 @@ def test_two_at_once_leave_one_whole_file(tmp_path):
             json.loads(files[0].read_text())
         time.sleep(0.001)
     assert [file.name for file in tmp_path.iterdir()] == [only(tmp_path).name]
-    assert certify(posed(), gap=GAP, cache=tmp_path).kept
+    assert certify(shifted_problem(), gap=GAP, cache=tmp_path).kept
 
 
 def test_the_oldest_proofs_make_way(tmp_path, monkeypatch):
-    found = certify(posed(), gap=GAP)
+    found = certify(shifted_problem(), gap=GAP)
     store = KeptProofs(tmp_path)
     seen: set[Path] = set()
     for seed in range(4):

@@ -13,9 +13,9 @@ LIMITS = Limits([2.0, 3.0], [6.0, 9.0])
 def test_it_is_as_long_and_on_the_path():
     trajectory = fit(three_five_three(), WAYPOINTS, [0.9, 1.1, 0.8])
     motion = retimed_motion(trajectory, LIMITS, ("a", "b"), cells=1000)
-    told = retime(trajectory, LIMITS)
-    assert motion.total_time == pytest.approx(told.durations[1], rel=1e-3)
-    assert motion.total_time == pytest.approx(told.extrapolated, rel=5e-3)
+    retiming = retime(trajectory, LIMITS)
+    assert motion.total_time == pytest.approx(retiming.durations[1], rel=1e-3)
+    assert motion.total_time == pytest.approx(retiming.extrapolated, rel=5e-3)
     dense = trajectory(np.linspace(0.0, trajectory.total_time, 200_001))
     for place in motion(np.linspace(0.0, motion.total_time, 60)):
         assert np.linalg.norm(dense - place, axis=1).min() < 5e-5

@@ -184,7 +184,7 @@ def test_toml_syntax(old, new, line):
     assert "\n" not in str(caught.value)
 
 
-def test_several_faults_are_told_and_spelling_comes_first():
+def test_several_faults_are_named_and_spelling_comes_first():
     text = BASE.replace('name = "arm"\n', "").replace('kind = "pso"', 'kinds = "pso"')
     with pytest.raises(CaseError) as caught:
         parse_case(text, "base.toml")
@@ -307,7 +307,7 @@ def test_an_unforeseen_fault_still_names_the_field():
     assert CaseFile.model_fields
 
 
-def test_all_missing_units_are_told_in_one_refusal():
+def test_all_missing_units_are_named_in_one_refusal():
     units = BASE[BASE.index("[units]") : BASE.index("[waypoints]")]
     with pytest.raises(CaseError) as caught:
         parse_case(BASE.replace(units, ""), "base.toml")
@@ -318,7 +318,7 @@ def test_all_missing_units_are_told_in_one_refusal():
     assert "also units.velocity: is missing; add one of rad/s, deg/s, rpm" in str(caught.value)
 
 
-def test_faults_of_every_stage_are_told_together():
+def test_faults_of_every_stage_are_named_together():
     """Of a reference, of what an assumption affects, and of a unit under one reading."""
     text = BASE.replace('slower = "times-b"', 'slower = "times-c"')
     text = text.replace('affects = ["durations"', 'affects = ["nothing"')
@@ -328,12 +328,12 @@ def test_faults_of_every_stage_are_told_together():
     assert {"claims[2].slower", "assumptions[0].affects[0]", "units.velocity"} <= fields
 
 
-def test_misspelt_keys_of_one_block_are_told_together():
+def test_misspelt_keys_of_one_block_are_named_together():
     with pytest.raises(CaseError, match=r"limits\.velocty: .*; also limits\.jrk: unknown key"):
         parse_case(BASE.replace("[limits]", "[limits]\nvelocty = 1\njrk = 2", 1), "base.toml")
 
 
 def test_one_refusal_tells_a_handful_and_counts_the_rest():
     faults = [(f"claims[{k}].id", "is missing; add it") for k in range(11)]
-    told = str(refusal("x.toml", faults))
-    assert told.endswith("also claims[7].id: is missing; add it (and 3 more)")
+    message = str(refusal("x.toml", faults))
+    assert message.endswith("also claims[7].id: is missing; add it (and 3 more)")

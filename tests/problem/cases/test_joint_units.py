@@ -180,10 +180,10 @@ REFUSED = [
 def test_each_refusal_has_its_line(change: tuple[str, str], line: str) -> None:
     with pytest.raises(CaseError) as caught:
         scara(change)
-    told = str(caught.value)
-    assert told.startswith("scara.toml: ")
-    assert "\n" not in told
-    assert line in told
+    message = str(caught.value)
+    assert message.startswith("scara.toml: ")
+    assert "\n" not in message
+    assert line in message
 
 
 def test_instances_need_steps_that_a_sliding_joint_has():

@@ -117,12 +117,12 @@ def test_a_name_that_may_mean_several_is_answered_with_them(declared, name, mean
         "sinusoidal jerk profile",
     ],
 )
-def test_profiles_are_told_where_they_belong(declared, name):
+def test_profiles_are_refused_with_where_they_belong(declared, name):
     with pytest.raises(CaseError, match="is a profile from rest to rest, not a curve through"):
         declared(name, 4)
 
 
-def test_a_case_file_that_names_a_curve_as_papers_do_is_told_how_to_write_it(tmp_path):
+def test_a_case_file_that_names_a_curve_as_papers_do_is_shown_how_to_write_it(tmp_path):
     path = tmp_path / "table.csv"
     path.write_text("1\n0.1\n0.2\n0.3\n0.4\n0.5\n0.6\n", encoding="utf-8")
     text = scaffold(path, {"position": "rad"}, family="cubic-spline")

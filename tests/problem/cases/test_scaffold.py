@@ -250,7 +250,7 @@ def test_new_options_that_are_refused(table, options, reason):
     assert str(caught.value).startswith(reason)
 
 
-def test_all_faults_of_table_and_arguments_are_told_at_once(table):
+def test_all_faults_of_table_and_arguments_are_named_at_once(table):
     path = table("a,b\n1,x\n3\n")
     with pytest.raises(CaseError) as caught:
         scaffold(path, {}, family="bezier", velocity="6", jerk="1,2,3", durations="y")

@@ -52,12 +52,12 @@ def curve(interpolant: str) -> Interpolant:
 )
 def test_the_short_names_are_what_the_keys_say(long: str, short: str, same: Interpolant) -> None:
     orders = "[1, 2]" if long == "cubic-spline" else "[1, 2, 3]"
-    told = curve(f'family = "{long}"\nvirtual = [4, 1]\nend_orders = {orders}')
+    declared = curve(f'family = "{long}"\nvirtual = [4, 1]\nend_orders = {orders}')
     named = curve(f'family = "{short}"')
     assert named == same
     for name in ("degrees", "continuity", "prescribed", "virtual", "conditions", "free"):
-        assert getattr(told, name) == getattr(named, name)
-    assert told.name.endswith(", 2 virtual way-points")
+        assert getattr(declared, name) == getattr(named, name)
+    assert declared.name.endswith(", 2 virtual way-points")
 
 
 @pytest.mark.parametrize(

@@ -60,11 +60,11 @@ def test_descents_end_at_the_same_bits(curve, monkeypatch):
         starts = np.log([[0.9, 1.2, 0.8], [2.0, 0.3, 1.0], [0.2, 3.0, 0.4]])
         low, high = np.log(problem.duration_lower), np.full(3, 4.0)
         found.append(newton.Descents(problem).run(starts, low, high, 60))
-    (ends, told), (plain_ends, plain_told) = found
+    (ends, status), (plain_ends, plain_status) = found
     assert np.isfinite(ends).all()
-    assert (told[:, 0] == newton.kernel.CONVERGED).any()
+    assert (status[:, 0] == newton.kernel.CONVERGED).any()
     assert ends.tobytes() == plain_ends.tobytes()
-    assert told.tobytes() == plain_told.tobytes()
+    assert status.tobytes() == plain_status.tobytes()
 
 
 def quiet(run):

@@ -117,7 +117,7 @@ def test_the_batch_and_each_joint_alone_agree_with_the_checker(curve: Interpolan
         assert inside == (check(problem, one).verdict is Verdict.PASS)
     for j in range(3):
         alone = problem.joint(j)
-        assert alone.curve.told_joints is None
+        assert alone.curve.prescribed_joints is None
         np.testing.assert_allclose(
             evaluate(alone, h).ratios[:, 0], found.ratios[:, j], rtol=1e-10, atol=1e-13
         )
@@ -142,14 +142,14 @@ def test_gradients_are_differences(curve: Interpolant) -> None:
         np.testing.assert_allclose(mine[:, k], slope, rtol=1e-5, atol=1e-5)
 
 
-def test_joints_that_agree_are_told_once() -> None:
+def test_joints_that_agree_share_one_value() -> None:
     same = cubic_spline(3, ((1, (0.5, 0.5, 0.5)),), ((1, [0.0, 0.0, 0.0]),))
     assert same == cubic_spline(3, ((1, 0.5),), ((1, 0.0),))
-    assert same.told_joints is None
+    assert same.prescribed_joints is None
     rest = cubic_spline(3, ((1, (0.0, 0.0)),))
     assert rest == cubic_spline(3)
     assert rest.homogeneous
-    assert (CLAMPED.told_joints, CLAMPED.homogeneous) == (3, False)
+    assert (CLAMPED.prescribed_joints, CLAMPED.homogeneous) == (3, False)
     assert hash(CLAMPED) == hash(replace(CLAMPED))
 
 

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from numpy.polynomial import Chebyshev
 from numpy.polynomial import Polynomial as Power
 from support import exact_route
-from support.samples import DECLARATIONS, posed
+from support.samples import DECLARATIONS, sample_problem
 from trajgap.problem import (
     Extremum,
     Interpolant,
@@ -182,7 +182,7 @@ def test_no_turning_point_outside_or_without_sign_change() -> None:
 @pytest.mark.parametrize("name", DECLARATIONS)
 def test_extrema_against_fifty_digits(name: str) -> None:
     interpolant = DECLARATIONS[name]
-    problem, h = posed(interpolant, 9, joints=2)
+    problem, h = sample_problem(interpolant, 9, joints=2)
     curve = fit(interpolant, problem.waypoints, h)
     for j in range(2):
         pieces = exact_route.fitted(interpolant, problem.waypoints[:, j], h)
@@ -201,7 +201,7 @@ def test_extrema_against_fifty_digits(name: str) -> None:
 
 
 def test_every_sampled_bump_is_an_extremum() -> None:
-    problem, h = posed(DECLARATIONS["quintic"], 4)
+    problem, h = sample_problem(DECLARATIONS["quintic"], 4)
     curve = fit(problem.curve, problem.waypoints, h)
     t = np.linspace(0.0, h.sum(), 20_001)
     for j in range(3):
@@ -223,7 +223,7 @@ def test_another_piece_that_may_be_larger_blurs_the_peak() -> None:
 
 
 def test_batched_evaluation_against_fifty_digits() -> None:
-    problem, _ = posed(three_five_three(), 2, joints=2)
+    problem, _ = sample_problem(three_five_three(), 2, joints=2)
     rng = np.random.default_rng(8)
     batch = 10.0 ** rng.uniform(-1.0, 1.0, (12, 3))
     ratios = evaluate(problem, batch).ratios

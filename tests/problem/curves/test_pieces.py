@@ -4,7 +4,7 @@ from dataclasses import astuple, replace
 
 import numpy as np
 import pytest
-from support.samples import DECLARATIONS, posed
+from support.samples import DECLARATIONS, sample_problem
 from trajgap.problem import (
     Extremum,
     Limits,
@@ -35,7 +35,7 @@ NAMES = ("3-5-3", "cubic", "quintic", "rest 7", "4-2-3", "lines", "uneven")
 
 @pytest.mark.parametrize("name", NAMES)
 def test_tops_are_the_largest_of_all_extrema(name: str) -> None:
-    problem, h = posed(DECLARATIONS[name], 11)
+    problem, h = sample_problem(DECLARATIONS[name], 11)
     found = problem.curve.enclosed(problem.waypoints, h)
     curve, error = (
         found.trajectory,
@@ -66,7 +66,7 @@ def test_one_call_finds_what_one_search_after_another_finds(
     each._spent, each._look = waited, 0.0 if waited else 99.0
     monkeypatch.setattr(pieces, "_each", each)
     for seed in range(4):
-        problem, h = posed(DECLARATIONS[name], seed)
+        problem, h = sample_problem(DECLARATIONS[name], seed)
         found = problem.curve.enclosed(problem.waypoints, h)
         curve = found.trajectory
         error = found.error + np.random.default_rng(seed).random(found.error.shape)
@@ -80,7 +80,7 @@ def test_one_call_finds_what_one_search_after_another_finds(
 
 
 def test_a_jump_is_never_overlooked() -> None:
-    problem, h = posed(DECLARATIONS["uneven"], 13)
+    problem, h = sample_problem(DECLARATIONS["uneven"], 13)
     found = problem.curve.enclosed(problem.waypoints, h)
     assert not may_jump(found.trajectory, found.error)
     bent = found.trajectory.scaled.copy()
@@ -96,7 +96,7 @@ def test_a_jump_is_never_overlooked() -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_near_extrema_are_those_beyond_the_two_values(name: str) -> None:
-    problem, h = posed(DECLARATIONS[name], 12)
+    problem, h = sample_problem(DECLARATIONS[name], 12)
     curve = fit(problem.curve, problem.waypoints, h)
     for r in range(4):
         points = extrema(curve, 1, r)
@@ -110,7 +110,7 @@ def test_near_extrema_are_those_beyond_the_two_values(name: str) -> None:
 
 
 def test_step_sizes_are_those_of_the_two_sides() -> None:
-    problem, h = posed(DECLARATIONS["uneven"], 13)
+    problem, h = sample_problem(DECLARATIONS["uneven"], 13)
     curve = fit(problem.curve, problem.waypoints, h)
     for order in range(4):
         size, scale = step_sizes(curve, order)

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.interpolate import BPoly, make_interp_spline
 from support.checkout import ROOT
-from support.samples import DECLARATIONS, FREE, posed
+from support.samples import DECLARATIONS, FREE, sample_problem
 from support.splines_drawn import exact_scaled, waypoints
 from trajgap.problem import (
     Interpolant,
@@ -174,7 +174,7 @@ def test_353_is_the_papers_system() -> None:
 
 def test_353_peaks_are_the_author_codes() -> None:
     theirs = author_code()
-    problem, _ = posed(three_five_three(), 11)
+    problem, _ = sample_problem(three_five_three(), 11)
     rng = np.random.default_rng(4)
     for h in rng.uniform(0.2, 3.0, (5, 3)):
         exact = evaluate(problem, h[None]).ratios[0, :, :2] * problem.limits.derivatives[:, :2]
@@ -190,7 +190,7 @@ def test_353_peaks_are_the_author_codes() -> None:
 @pytest.mark.parametrize("spread", [0.3, 1.5])
 def test_coefficients_against_rational_arithmetic(name: str, spread: float) -> None:
     interpolant = (DECLARATIONS | FREE)[name]
-    problem, _ = posed(interpolant, 5, joints=2)
+    problem, _ = sample_problem(interpolant, 5, joints=2)
     rng = np.random.default_rng(len(name))
     h = 10.0 ** rng.uniform(-spread, spread, interpolant.segments)
     nodal = rng.normal(size=(interpolant.free, 2)) if interpolant.free else None
@@ -209,7 +209,7 @@ def test_coefficients_against_rational_arithmetic(name: str, spread: float) -> N
 
 def test_trajectory_meets_its_conditions() -> None:
     for name, interpolant in DECLARATIONS.items():
-        problem, h = posed(interpolant, 8)
+        problem, h = sample_problem(interpolant, 8)
         curve = fit(interpolant, problem.waypoints, h)
         at = curve.breaks[list(interpolant.waypoint_breaks)]
         np.testing.assert_allclose(curve(at), problem.waypoints, atol=1e-12, err_msg=name)
@@ -229,7 +229,7 @@ def test_trajectory_meets_its_conditions() -> None:
 @given(st.floats(0.05, 20.0), st.integers(0, 10**6))
 def test_stretching_time_leaves_the_scaled_coefficients(factor: float, seed: int) -> None:
     for interpolant in (three_five_three(), quintic_spline(3), cubic_spline_virtual(3)):
-        problem, h = posed(interpolant, seed)
+        problem, h = sample_problem(interpolant, seed)
         one = coefficients(interpolant, problem.waypoints, h)
         other = coefficients(interpolant, problem.waypoints, factor * h)
         np.testing.assert_allclose(other, one, atol=1e-10 * np.abs(one).max())

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 from support import exact_route
-from support.samples import DECLARATIONS, FREE, posed
+from support.samples import DECLARATIONS, FREE, sample_problem
 from support.splines_drawn import exact_scaled, waypoints
 from trajgap.problem import (
     Interpolant,
@@ -155,7 +155,7 @@ def complex_step(
 @pytest.mark.parametrize("name", [*DECLARATIONS, *FREE])
 def test_coefficient_gradient_against_a_complex_step(name: str) -> None:
     interpolant = (DECLARATIONS | FREE)[name]
-    problem, h = posed(interpolant, 21)
+    problem, h = sample_problem(interpolant, 21)
     q = problem.waypoints
     rng = np.random.default_rng(1)
     nodal = rng.normal(size=(interpolant.free, 3)) if interpolant.free else None
@@ -195,7 +195,7 @@ def test_motion_values_count_from_the_first_waypoint() -> None:
 
 
 def test_unwanted_peaks_are_zero() -> None:
-    problem, h = posed(DECLARATIONS["quintic"], 4)
+    problem, h = sample_problem(DECLARATIONS["quintic"], 4)
     values = problem.curve.motion_values(problem.waypoints)
     every = problem.curve.batch_peaks(values, h[None], np.ones((3, 3), bool))
     assert (every > 0).all()
@@ -227,7 +227,7 @@ def test_error_bound_near_a_singular_system() -> None:
 def test_error_bound_at_extreme_durations() -> None:
     for name in ("3-5-3", "cubic", "quintic", "uneven"):
         interpolant = DECLARATIONS[name]
-        problem, h = posed(interpolant, 3, joints=1)
+        problem, h = sample_problem(interpolant, 3, joints=1)
         for k, extreme in ((0, 1e-12), (1, 1e-12), (0, 1e9), (1, 1e9)):
             h[k] = extreme
             found, error = refined_coefficients(interpolant, problem.waypoints, h)
@@ -243,7 +243,7 @@ def test_rows_of_the_banded_inverse_bound_the_error_like_all_of_it(
     monkeypatch: pytest.MonkeyPatch, share: float, name: str
 ) -> None:
     interpolant = LONG[name]
-    problem, h = posed(interpolant, 5, joints=1)
+    problem, h = sample_problem(interpolant, 5, joints=1)
     _, whole = refined_coefficients(interpolant, problem.waypoints, h)
     exact = exact_scaled(interpolant, problem, h, 0, None)
     monkeypatch.setattr(refined, "DENSE_UNKNOWNS", 0)
@@ -263,7 +263,7 @@ def refuse_inverse(*_: object) -> None:
 
 
 def test_a_banded_bound_that_leaves_out_too_much_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
-    problem, h = posed(quintic_spline(14), 5, joints=1)
+    problem, h = sample_problem(quintic_spline(14), 5, joints=1)
     monkeypatch.setattr(refined, "DENSE_UNKNOWNS", 0)
     monkeypatch.setattr(refined, "DENSE_AFTER_ALL", 0)
     monkeypatch.setattr(refined, "SHARES", (0.9,))
@@ -292,7 +292,7 @@ def test_a_spline_of_1000_segments_needs_no_dense_inverse(monkeypatch: pytest.Mo
 @pytest.mark.parametrize("name", ["cubic", "quintic", "virtual", "even degrees"])
 def test_adjoint_gradients_are_those_of_the_dense_system(name: str) -> None:
     interpolant = LONG[name]
-    problem, h = posed(interpolant, 7, joints=3)
+    problem, h = sample_problem(interpolant, 7, joints=3)
     curve = fit(interpolant, problem.waypoints, h)
     points = [e for j in range(3) for r in range(4) for e in extrema(curve, j, r)]
     dense = interpolant.value_gradients(problem.waypoints, h, points)
@@ -317,7 +317,7 @@ def test_long_splines_take_their_gradients_from_the_adjoint(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     interpolant = quintic_spline(60)
-    problem, h = posed(interpolant, 2, joints=2)
+    problem, h = sample_problem(interpolant, 2, joints=2)
     curve = fit(interpolant, problem.waypoints, h)
     points = extrema(curve, 0, 2)[40:60] + extrema(curve, 1, 3)[90:100]
     found = interpolant.value_gradients(problem.waypoints, h, points)

@@ -154,7 +154,7 @@ def test_one_clear_line(tmp_path, name):
     assert str(caught.value).startswith(str(path))
 
 
-def test_a_source_of_another_robot_is_told(tmp_path):
+def test_a_source_of_another_robot_is_refused(tmp_path):
     stated = read_limits(write(tmp_path, "arm.urdf", ARM))
     with pytest.raises(CaseError, match=r"names none of the joints turm; did you mean 'turn'\?"):
         stated.for_joints(("turm",))

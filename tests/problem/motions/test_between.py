@@ -42,7 +42,7 @@ def test_a_motion_that_keeps_its_limits_is_never_accused(seed):
     noise = float(rng.choice([0.0, 1e-9, 1e-4, 1e-2]))
     q = value(from_start, 0) + noise * rng.uniform(-1, 1, (time.size, 2))
     more = [value(from_start, r) if rng.random() < 0.5 else None for r in (1, 2)]
-    limits = JointLimits.given(
+    limits = JointLimits.from_values(
         NAMES, *(b * (1 + 1e-6) for b in bounds[1:]), (-bounds[0], bounds[0])
     )
     # Times that were shifted are rounded: what they stand for is off by their last digit.
@@ -59,7 +59,9 @@ def test_dense_samples_prove_a_violation_that_is_there(order, word):
     peak = np.abs(value(time, order)).max(axis=0)
     sizes = [np.inf] * 3
     sizes[order - 1] = 0.999 * peak.min()
-    found = check_samples(Samples(NAMES, time, value(time, 0)), JointLimits.given(NAMES, *sizes))
+    found = check_samples(
+        Samples(NAMES, time, value(time, 0)), JointLimits.from_values(NAMES, *sizes)
+    )
     assert found.verdict is Verdict.VIOLATED
     assert found.worst.quantity == word
     assert found.worst.ratio == pytest.approx(peak.max() / sizes[order - 1], rel=2e-3)
@@ -70,7 +72,7 @@ def test_dense_samples_prove_a_violation_that_is_there(order, word):
 def test_the_mean_value_is_that_of_the_divided_difference():
     # 3 samples of t² at unequal times: 2! [q0, q1, q2] = 2 whatever the times are.
     time = np.array([0.3, 1.1, 4.0])
-    limits = JointLimits.given(("1",), acceleration=1.9)
+    limits = JointLimits.from_values(("1",), acceleration=1.9)
     found = check_samples(Samples(("1",), time, time[:, None] ** 2), limits)
     assert found.verdict is Verdict.VIOLATED
     assert found.worst.value == pytest.approx(2.0, rel=1e-12)
@@ -81,13 +83,15 @@ def test_noise_is_averaged_over_wider_windows():
     rng = np.random.default_rng(5)
     time = np.linspace(0.0, 4.0, 4001)
     q = 1.3 * time[:, None] + 1e-3 * rng.uniform(-1, 1, (4001, 1))
-    limits = JointLimits.given(("1",), velocity=1.28)
+    limits = JointLimits.from_values(("1",), velocity=1.28)
     noisy = check_samples(Samples(("1",), time, q, noise=1e-3), limits)
     assert noisy.verdict is Verdict.VIOLATED  # neighbours alone would allow 1.3 ± 2
-    as_if_exact = check_samples(Samples(("1",), time, q), JointLimits.given(("1",), velocity=1.6))
+    as_if_exact = check_samples(
+        Samples(("1",), time, q), JointLimits.from_values(("1",), velocity=1.6)
+    )
     assert as_if_exact.verdict is Verdict.VIOLATED  # of the noise, which was not stated
     loose = check_samples(
-        Samples(("1",), time, q, noise=1e-3), JointLimits.given(("1",), velocity=1.6)
+        Samples(("1",), time, q, noise=1e-3), JointLimits.from_values(("1",), velocity=1.6)
     )
     assert loose.verdict is Verdict.UNDECIDED
 
@@ -95,31 +99,37 @@ def test_noise_is_averaged_over_wider_windows():
 def test_stated_derivatives_are_judged_themselves():
     time, q = np.array([0.0, 1.0, 2.0]), np.zeros((3, 1))
     v = np.array([[0.0], [2.5], [0.0]])
-    found = check_samples(Samples(("1",), time, q, v), JointLimits.given(("1",), velocity=2.0))
+    found = check_samples(
+        Samples(("1",), time, q, v), JointLimits.from_values(("1",), velocity=2.0)
+    )
     assert (found.verdict, found.worst.value, found.worst.time) == (Verdict.VIOLATED, 2.5, 1.0)
-    rate = check_samples(Samples(("1",), time, q, v), JointLimits.given(("1",), acceleration=2.4))
+    rate = check_samples(
+        Samples(("1",), time, q, v), JointLimits.from_values(("1",), acceleration=2.4)
+    )
     assert abs(rate.worst.value) == pytest.approx(2.5)
     assert check_samples(
-        Samples(("1",), time, q, v), JointLimits.given(("1",), acceleration=2.6)
+        Samples(("1",), time, q, v), JointLimits.from_values(("1",), acceleration=2.6)
     ).worst.ratio == pytest.approx(2.5 / 2.6)
 
 
 def test_limits_are_of_the_same_joints():
     with pytest.raises(TrajgapError, match="given for joints 1, the motion has 2; give them in"):
-        check_samples(Samples(("2",), [0.0, 1.0], [[0.0], [1.0]]), JointLimits.given(("1",), 1.0))
+        check_samples(
+            Samples(("2",), [0.0, 1.0], [[0.0], [1.0]]), JointLimits.from_values(("1",), 1.0)
+        )
 
 
 def test_rows_without_derivatives_are_left_out():
     v = np.array([[1.0], [np.nan], [3.0]])
     samples = Samples(("1",), [0.0, 1.0, 2.0], np.zeros((3, 1)), v)
-    found = check_samples(samples, JointLimits.given(("1",), acceleration=0.9))
+    found = check_samples(samples, JointLimits.from_values(("1",), acceleration=0.9))
     assert found.worst.value == pytest.approx(1.0)  # (3 − 1)/2
 
 
 def test_no_motion_may_pass_both_acceleration_and_deceleration():
     time = np.linspace(0.0, 2.0, 5)
     samples = Samples(("1",), time, 2.5 * time[:, None] ** 2)  # a = 5
-    both = JointLimits.given(("1",), acceleration=3.0, deceleration=6.0)
+    both = JointLimits.from_values(("1",), acceleration=3.0, deceleration=6.0)
     assert check_samples(samples, both).verdict is Verdict.UNDECIDED
-    less = JointLimits.given(("1",), acceleration=3.0, deceleration=4.0)
+    less = JointLimits.from_values(("1",), acceleration=3.0, deceleration=4.0)
     assert check_samples(samples, less).verdict is Verdict.VIOLATED

@@ -65,7 +65,7 @@ def test_parts_that_are_looked_at_together_change_no_bit(monkeypatch: pytest.Mon
         np.testing.assert_array_equal(widest, wide)
 
 
-def test_of_windows_that_prove_the_same_the_first_is_told() -> None:
+def test_of_windows_that_prove_the_same_the_first_is_named() -> None:
     times = np.arange(8.0)
     values = np.array([0.0, 2, 2, 4, 4, 5, 5, 4])[:, None]
     found, _ = divided_extremes(times, values, 1, 1, np.zeros(1))

@@ -92,7 +92,7 @@ def trip(stops, hold=0.0):
 
 
 def test_the_floor_sums_over_standstills_and_waits_nowhere():
-    limits = JointLimits.given(("1", "2"), 2.0, 8.0)
+    limits = JointLimits.from_values(("1", "2"), 2.0, 8.0)
     stops = np.array([[0.0, 1.0], [1.0, 0.5], [0.5, 2.0]])
     floor = check_motion(trip(stops), limits).floor
     by_hand = max(shortest(1.0, 2, 8, INF), shortest(0.5, 2, 8, INF)) + shortest(1.5, 2, 8, INF)
@@ -105,7 +105,7 @@ def test_the_floor_sums_over_standstills_and_waits_nowhere():
 
 
 def test_the_larger_side_counts():
-    uneven = JointLimits.given(("1", "2"), 2.0, 8.0)
+    uneven = JointLimits.from_values(("1", "2"), 2.0, 8.0)
     lower = uneven.lower.copy()
     lower[:, 1] = -4.0
     wide = JointLimits(("1", "2"), lower, uneven.upper, uneven.deceleration)
@@ -116,9 +116,13 @@ def test_the_larger_side_counts():
 @pytest.mark.parametrize(
     ("v", "limits", "why"),
     [
-        ([[0.5], [0.0]], JointLimits.given(("1",), 2.0), "starts moving"),
-        ([[0.0], [0.5]], JointLimits.given(("1",), 2.0), "ends moving"),
-        ([[0.0], [0.0]], JointLimits.given(("1",), position=(-5.0, 5.0)), "nothing is limited"),
+        ([[0.5], [0.0]], JointLimits.from_values(("1",), 2.0), "starts moving"),
+        ([[0.0], [0.5]], JointLimits.from_values(("1",), 2.0), "ends moving"),
+        (
+            [[0.0], [0.0]],
+            JointLimits.from_values(("1",), position=(-5.0, 5.0)),
+            "nothing is limited",
+        ),
     ],
 )
 def test_why_there_is_no_floor(v, limits, why):
@@ -132,7 +136,7 @@ def test_acceleration_at_a_standstill_leaves_jerk_out():
     # A cubic rest to rest has acceleration at its ends: with a limit of jerk alone its time says
     # nothing, and the floor must not claim the profile that begins without acceleration.
     samples = Samples(("1",), [0.0, 1.0], [[0.0], [1.0]], [[0.0], [0.0]])
-    limits = JointLimits.given(("1",), acceleration=6.0, jerk=12.0)
+    limits = JointLimits.from_values(("1",), acceleration=6.0, jerk=12.0)
     found = check_motion(interpolated(samples, Interpolation.CUBIC), limits)
     assert found.limits == "pass"
     assert found.floor.time == pytest.approx(shortest(1.0, INF, 6.0, INF))

@@ -58,7 +58,7 @@ def test_toppras_answers_are_read_as_they_are(how):
     motion = as_motion(answer)
     assert motion.total_time == pytest.approx(answer.duration)
     same(motion, answer, orders=(0, 1), loose=1e-6)
-    found = check_motion(motion, JointLimits.given(motion.joints, [2.0, 3.0], [5.0, 9.0]))
+    found = check_motion(motion, JointLimits.from_values(motion.joints, [2.0, 3.0], [5.0, 9.0]))
     # Its constraints hold at grid points: between them the acceleration is larger.
     at = np.linspace(1e-6, answer.duration - 1e-6, 4001)
     seen = np.abs(answer(at, 2)).max(axis=0) / [5.0, 9.0]
@@ -95,7 +95,7 @@ def test_ruckigs_profiles():
         motion = as_motion(answer, ("a", "b", "c"))
         assert motion.total_time == pytest.approx(answer.duration)
         same(motion, lambda t, order, a=answer: a.at_time(t)[order], loose=1e-6)
-        found = check_motion(motion, JointLimits.given(motion.joints, *limits))
+        found = check_motion(motion, JointLimits.from_values(motion.joints, *limits))
         assert found.verdict is Verdict.PASS, str(found)
         assert found.worst.ratio == pytest.approx(1.0, abs=1e-6)
 

@@ -15,7 +15,7 @@ from trajgap.problem.motions import (
 )
 
 NAMES = ("shoulder", "elbow", "wrist")
-WIDE = JointLimits.given(NAMES, 1e3, 1e3, 1e3, (-1e3, 1e3))
+WIDE = JointLimits.from_values(NAMES, 1e3, 1e3, 1e3, (-1e3, 1e3))
 """Limits that nothing here reaches: every peak is then reported."""
 
 
@@ -80,7 +80,7 @@ def test_samples_of_a_quintic_are_that_quintic(rows):
 def test_the_slow_down_makes_the_motion_tight():
     rng = np.random.default_rng(8)
     spline = CubicSpline([0, 0.4, 1.1, 1.5, 2.2], rng.normal(size=(5, 3)), bc_type="clamped")
-    limits = JointLimits.given(NAMES, [1.0, 0.7, 2.0], 3.0, 20.0)
+    limits = JointLimits.from_values(NAMES, [1.0, 0.7, 2.0], 3.0, 20.0)
     found = check_motion(as_motion(spline, NAMES), limits)
     assert found.verdict is Verdict.VIOLATED
     assert found.stretch > 1.2
@@ -95,7 +95,7 @@ def test_the_slow_down_makes_the_motion_tight():
 
 def test_two_sides_and_absent_limits():
     motion = Motion.of_polynomial(PPoly([[1.0, -3.0], [0.0, 2.0]], [0.0, 2.0, 2.5]))
-    free = JointLimits.given(("1",), velocity=5.0)
+    free = JointLimits.from_values(("1",), velocity=5.0)
     assert [p.quantity for p in check_motion(motion, free).peaks] == ["velocity"]
     lower, upper = free.lower.copy(), free.upper.copy()
     lower[0, 1], upper[0, 1] = -2.0, 1.5
@@ -107,9 +107,9 @@ def test_two_sides_and_absent_limits():
 
 def test_position_limits_are_two_sided_and_no_slow_down_repairs_them():
     motion = Motion.of_polynomial(PPoly([[-1.0], [2.0], [0.0]], [0.0, 2.0]))  # up to 1 and back
-    inside = check_motion(motion, JointLimits.given(("1",), position=(-0.5, 1.0)))
+    inside = check_motion(motion, JointLimits.from_values(("1",), position=(-0.5, 1.0)))
     assert inside.verdict is Verdict.PASS
-    beyond = check_motion(motion, JointLimits.given(("1",), position=(-0.5, 0.9)))
+    beyond = check_motion(motion, JointLimits.from_values(("1",), position=(-0.5, 0.9)))
     assert beyond.verdict is Verdict.VIOLATED
     assert beyond.worst.value == pytest.approx(1.0)
     assert beyond.worst.time == pytest.approx(1.0)
@@ -119,7 +119,7 @@ def test_position_limits_are_two_sided_and_no_slow_down_repairs_them():
 
 def test_a_limit_of_zero_is_kept_by_standing_alone():
     still = Motion.of_polynomial(PPoly([[0.0], [0.0], [3.0]], [0.0, 1.0]))
-    limits = JointLimits.given(("1",), 0.0, 0.0)
+    limits = JointLimits.from_values(("1",), 0.0, 0.0)
     assert check_motion(still, limits).verdict is Verdict.PASS
     moving = Motion.of_polynomial(PPoly([[1e-6], [3.0]], [0.0, 1.0]))
     found = check_motion(moving, limits)
@@ -136,7 +136,7 @@ def brake(speed_up, slow_down, top=2.0, sign=1.0):
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_braking_may_have_a_limit_of_its_own(sign):
-    limits = JointLimits.given(("1",), acceleration=3.0, deceleration=8.0)
+    limits = JointLimits.from_values(("1",), acceleration=3.0, deceleration=8.0)
     assert check_motion(brake(3.0, 8.0, sign=sign), limits).verdict is Verdict.PASS
     hard = check_motion(brake(3.0, 8.1, sign=sign), limits)
     assert hard.verdict is Verdict.VIOLATED
@@ -151,7 +151,9 @@ def test_braking_may_have_a_limit_of_its_own(sign):
 def test_braking_is_told_from_speeding_up_inside_a_piece():
     # q = t³/6 − t²/2 brakes from v = 0 … : v = t²/2 − t, a = t − 1: speeds up until 1, brakes to 2.
     motion = Motion.of_polynomial(PPoly([[1 / 6], [-0.5], [0.0], [0.0]], [0.0, 3.0]))
-    found = check_motion(motion, JointLimits.given(("1",), acceleration=9.0, deceleration=9.0))
+    found = check_motion(
+        motion, JointLimits.from_values(("1",), acceleration=9.0, deceleration=9.0)
+    )
     by = {p.quantity: p for p in found.peaks}
     assert by["deceleration"].value == pytest.approx(1.0)  # just before it turns back, at t = 2
     assert by["deceleration"].time == pytest.approx(2.0)
@@ -159,10 +161,10 @@ def test_braking_is_told_from_speeding_up_inside_a_piece():
     assert by["acceleration"].time == pytest.approx(3.0)
 
 
-def test_jumps_are_told_with_place_and_number():
+def test_jumps_are_reported_with_place_and_number():
     zigzag = Samples(("1",), [0.0, 1.0, 2.0, 4.0], [[0.0], [1.0], [0.0], [-6.0]])
     found = check_motion(
-        interpolated(zigzag, Interpolation.LINEAR), JointLimits.given(("1",), velocity=5.0)
+        interpolated(zigzag, Interpolation.LINEAR), JointLimits.from_values(("1",), velocity=5.0)
     )
     assert (found.verdict, found.limits) == (Verdict.DISCONTINUOUS, Verdict.PASS)
     (jump,) = [one for one in found.jumps if one.quantity == "velocity"]
@@ -173,15 +175,15 @@ def test_jumps_are_told_with_place_and_number():
 def test_a_jump_of_acceleration_counts_where_jerk_is_limited():
     samples = Samples(("1",), [0.0, 1.0, 2.0], [[0.0], [1.0], [0.0]], [[0.0], [0.0], [1.0]])
     motion = interpolated(samples, Interpolation.CUBIC)
-    free = JointLimits.given(("1",), acceleration=99.0)
+    free = JointLimits.from_values(("1",), acceleration=99.0)
     assert check_motion(motion, free).verdict is Verdict.PASS
-    held = JointLimits.given(("1",), acceleration=99.0, jerk=999.0)
+    held = JointLimits.from_values(("1",), acceleration=99.0, jerk=999.0)
     assert check_motion(motion, held).verdict is Verdict.DISCONTINUOUS
 
 
 def test_noise_makes_a_near_miss_undecided():
     time, q, v, a = quintic(2.0, np.array([1.0]), 21)
-    limits = JointLimits.given(("1",), velocity=0.9375 * 1.0001)
+    limits = JointLimits.from_values(("1",), velocity=0.9375 * 1.0001)
     exact = interpolated(Samples(("1",), time, q, v, a), Interpolation.QUINTIC)
     assert check_motion(exact, limits).verdict is Verdict.PASS
     loose = interpolated(Samples(("1",), time, q, v, a, noise=1e-3), Interpolation.QUINTIC)
@@ -194,7 +196,7 @@ def test_noise_makes_a_near_miss_undecided():
         assert bound.least_ratio - 1e-12 <= one.ratio <= bound.most_ratio + 1e-12
 
 
-WIDE_ONE = JointLimits.given(("1",), 1e3, 1e3, 1e3, (-1e3, 1e3))
+WIDE_ONE = JointLimits.from_values(("1",), 1e3, 1e3, 1e3, (-1e3, 1e3))
 
 
 def test_a_b_spline_is_read_exactly():
@@ -264,9 +266,9 @@ def test_two_sided_limits_imply_the_others_and_keep_each_side():
         (lambda: Samples(("a",), [0.0, np.inf], [[1.0], [2.0]]), "not finite"),
         (lambda: check_motion(as_motion(PPoly([[1.0]], [0.0, 1.0])), WIDE), "in that order"),
         (lambda: as_motion(object()), "no motion known"),
-        (lambda: JointLimits.given(("a",), np.nan), "NaN"),
-        (lambda: JointLimits.given(("a",), position=(2.0, 1.0)), "lies above"),
-        (lambda: JointLimits.given(("a",), deceleration=-1.0), "0 or more"),
+        (lambda: JointLimits.from_values(("a",), np.nan), "NaN"),
+        (lambda: JointLimits.from_values(("a",), position=(2.0, 1.0)), "lies above"),
+        (lambda: JointLimits.from_values(("a",), deceleration=-1.0), "0 or more"),
     ],
 )
 def test_what_is_no_motion_is_refused(make, message):

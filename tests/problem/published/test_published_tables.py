@@ -288,7 +288,7 @@ def test_whale_has_no_waypoints_and_says_so():
         case.waypoint_box("b-spline", "degree-3-averaged")
 
 
-def test_whale_waypoints_dropped_into_the_file_pose_every_problem():
+def test_whale_waypoints_dropped_into_the_file_complete_every_problem():
     text = (FOLDER / f"{WHALE}.toml").read_text(encoding="utf-8")
     start, end = text.index("not_printed = "), text.index("[limits]")
     angles = [[f"{0.37 * j - 0.29 * k:.4f}" for k in range(8)] for j in range(6)]
@@ -329,7 +329,7 @@ def test_no_number_is_in_the_file_that_is_not_in_the_transcription(case_id):
 
 
 @pytest.mark.parametrize("case_id", published_ids())
-def test_the_id_is_the_file_name_and_every_selection_is_posed(case_id):
+def test_the_id_is_the_file_name_and_every_selection_has_a_problem(case_id):
     case = load_case(case_id)
     assert case.id == case_id
     assert str(case.title)

@@ -156,7 +156,7 @@ def test_a_malformed_row_is_refused() -> None:
         ("q", r"suite: no instance 'q'; `trajgap suite` lists them"),
     ],
 )
-def test_an_unknown_name_is_told_the_nearest(name: str, message: str) -> None:
+def test_an_unknown_name_is_answered_with_the_nearest(name: str, message: str) -> None:
     with pytest.raises(TrajgapError, match=message):
         load_instance(name)
 

@@ -125,8 +125,8 @@ def test_optima_against_a_scan_of_the_shares(result: InstancesResult) -> None:
     unit = np.stack([shares, 1 - shares], axis=1)
     case = small()
     for s in result.of("as-printed"):
-        posed = {pid: case.statement(pid).problem_at(s.waypoints) for pid in ("spline", "stops")}
-        spline = evaluate(posed["spline"], unit).stretch.min()
+        asked = {pid: case.statement(pid).problem_at(s.waypoints) for pid in ("spline", "stops")}
+        spline = evaluate(asked["spline"], unit).stretch.min()
         assert s.faster.total == pytest.approx(spline, rel=1e-4)
         assert s.faster.total <= spline * (1 + 1e-9)
         way = np.abs(np.diff(s.waypoints, axis=0))

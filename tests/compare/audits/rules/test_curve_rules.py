@@ -388,7 +388,7 @@ def test_a_case_without_waypoints_says_of_each_time_why_it_is_not_checkable() ->
     assert improvement.verdict is ClaimVerdict.NOT_CHECKABLE
 
 
-def test_a_posed_case_has_no_such_finding() -> None:
+def test_a_case_with_problems_has_no_such_finding() -> None:
     study = shipped(POLISH)
     assert study.has_problems
     assert not of(list_open_points(study), "TG501", "after")

@@ -114,8 +114,8 @@ def test_one_table_does_not_say_how_two_totals_differ() -> None:
         assert (found.verdict, found.severity) == (ClaimVerdict.SUPPORTED, Severity.INFO)
     # Each total has a table of its own, and these print the same number.
     rival = SECOND_TABLE + 'algorithm = "rival"'
-    told = TABLE_AND_TOTALS.format(other=rival, slower='algorithm = "rival"') + METHOD_2000
-    _, found = said_of(study_of(text + told), judge_improvements, "gain", "TG103")
+    apart = TABLE_AND_TOTALS.format(other=rival, slower='algorithm = "rival"') + METHOD_2000
+    _, found = said_of(study_of(text + apart), judge_improvements, "gain", "TG103")
     assert (found.verdict, found.severity) == (ClaimVerdict.INCONSISTENT, Severity.ERROR)
 
 

@@ -88,7 +88,7 @@ def test_another_number_of_durations_builds_no_motion() -> None:
         ("blends = 0.4\nblend_acceleration = 50", "keep one of the two"),
     ],
 )
-def test_what_does_not_fit_is_told_in_a_line(more: str, said: str) -> None:
+def test_what_does_not_fit_is_refused_in_a_line(more: str, said: str) -> None:
     with pytest.raises(CaseError, match=said):
         parse_case(made_up(more), "made-up.toml")
 

@@ -194,7 +194,7 @@ value = "{value}"
     ("of", "value", "fits"),
     [("before", "1.2500", "Table 2"), ("d", "1.5000", "row before"), ("d", "1.7", None)],
 )
-def test_peaks_exchanged_between_rows_are_told(of: str, value: str, fits: str | None) -> None:
+def test_peaks_exchanged_between_rows_are_found(of: str, value: str, fits: str | None) -> None:
     """2 rad in 3 s peak at 1.25 rad/s, in 2.5 s at 1.5 rad/s."""
     tail = EXCHANGED.format(of=of, value=value)
     study = study_of(one_joint("0, 2", "1.9", "3.0000", "optimal", tail))
@@ -218,12 +218,12 @@ def test_peaks_of_each_joint_stand_in_one_claim() -> None:
     study = study_of(swapped)
     (found,) = said_of(study, judge_peaks, "p", "TG203")
     assert found.verdict is ClaimVerdict.INCONSISTENT
-    (told,) = said_of(study, judge_places, "p", "TG108")
-    assert "Table 2, joint 2" in told.message
-    assert "Table 2, joint 1" in told.message
+    (exchanged,) = said_of(study, judge_places, "p", "TG108")
+    assert "Table 2, joint 2" in exchanged.message
+    assert "Table 2, joint 1" in exchanged.message
 
 
-def test_equal_rows_under_two_names_are_told() -> None:
+def test_equal_rows_under_two_names_are_found() -> None:
     rows = "".join(
         f'[[claims]]\nid = "r{j}"\nquantity = "durations"\nwhere = "row {j}"\njoint = "{j}"\n'
         f'durations = ["0.91", "1.25", "{last}"]\n'
@@ -231,13 +231,13 @@ def test_equal_rows_under_two_names_are_told() -> None:
     )
     text = one_joint("0, 1, 2, 3], [0.5, 1, 2.5, 3", "9", "2", "optimal")
     text = text[: text.index("[[claims]]")].replace('["1"]', '["1", "2"]')
-    (told,) = said_of(study_of(text + rows), judge_places, "r2", "TG108")
-    assert "row 1 and row 2 print the same 3 durations" in told.message
+    (found,) = said_of(study_of(text + rows), judge_places, "r2", "TG108")
+    assert "row 1 and row 2 print the same 3 durations" in found.message
     other = rows.replace('"1.40"', '"1.41"', 1)
     assert not said_of(study_of(text + other), judge_places, "r2", "TG108")
 
 
-def test_a_row_that_fits_another_joint_is_told() -> None:
+def test_a_row_that_fits_another_joint_is_found() -> None:
     """Steps of 1 and 2 rad under 1.9 rad/s take 0.98684 and 1.97368 s; the rows are exchanged."""
     rows = "".join(
         f'[[claims]]\nid = "r{j}"\nquantity = "durations"\nwhere = "row {j}"\njoint = "{j}"\n'
@@ -248,8 +248,8 @@ def test_a_row_that_fits_another_joint_is_told() -> None:
     text = one_joint("0, 1], [0.5, 2.5", "1.9", "2", "optimal")
     text = text[: text.index("[[claims]]")].replace('["1"]', '["1", "2"]')
     study = study_of(text + rows)
-    (told,) = said_of(study, judge_places, "r2", "TG108")
-    assert "fit those of joint 1 within" in told.message
+    (found,) = said_of(study, judge_places, "r2", "TG108")
+    assert "fit those of joint 1 within" in found.message
     assert not said_of(study, judge_places, "r1", "TG108")
 
 

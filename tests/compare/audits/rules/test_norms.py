@@ -69,7 +69,7 @@ def test_a_printed_norm_accuses_nobody(curve: str, derivative: str, value: str) 
 @pytest.mark.parametrize(
     "peak", ['value = "2.99"', 'value = "2.70"', 'value = "2.958025"\njoint = "1"']
 )
-def test_what_is_no_norm_is_still_told(peak: str) -> None:
+def test_what_is_no_norm_is_still_a_finding(peak: str) -> None:
     (found,) = said_of(study_of(_arm(QUINTIC, "velocity", peak)), judge_peaks, "p", "TG203")
     assert found.verdict is ClaimVerdict.INCONSISTENT
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import linprog, minimize_scalar
 from support.any_motions import PUMA_PROBLEM, verified
-from support.joint_splines import posed, rest_to_rest_time
+from support.joint_splines import rest_to_rest_time, spline_problem
 from support.puma import PUMA
 from trajgap.nlp.proofs.any_curve.estimate import estimate_any_curve
 from trajgap.nlp.proofs.any_curve.reach import furthest, profile, reachable
@@ -30,7 +30,7 @@ Array = NDArray[np.float64]
 @pytest.mark.parametrize(("velocity", "acceleration"), [(9.0, 8.0), (0.7, 8.0), (np.inf, 2.5)])
 @pytest.mark.parametrize("step", [1.4, -0.3])
 def test_two_waypoints(velocity: float, acceleration: float, step: float) -> None:
-    problem = posed([0.3, 0.3 + step], velocity, acceleration)
+    problem = spline_problem([0.3, 0.3 + step], velocity, acceleration)
     total = verified(problem, estimate_any_curve(problem))
     assert total == pytest.approx(rest_to_rest_time(step, velocity, acceleration), rel=1e-9)
 
@@ -38,13 +38,13 @@ def test_two_waypoints(velocity: float, acceleration: float, step: float) -> Non
 @pytest.mark.parametrize("middle", [0.01, 0.4, 1.25])
 @pytest.mark.parametrize("velocity", [9.0, 1.1])
 def test_a_waypoint_on_the_way_costs_nothing(middle: float, velocity: float) -> None:
-    problem = posed([0.2, 0.2 + middle, 1.5], velocity, 4.0)
+    problem = spline_problem([0.2, 0.2 + middle, 1.5], velocity, 4.0)
     total = verified(problem, estimate_any_curve(problem))
     assert total == pytest.approx(rest_to_rest_time(1.3, velocity, 4.0), rel=1e-8)
 
 
 def test_there_and_back_stops_at_the_turning_point() -> None:
-    problem = posed([0.2, 1.5, -0.1], 1.7, 4.0)
+    problem = spline_problem([0.2, 1.5, -0.1], 1.7, 4.0)
     found = estimate_any_curve(problem)
     expected = rest_to_rest_time(1.3, 1.7, 4.0) + rest_to_rest_time(1.6, 1.7, 4.0)
     assert verified(problem, found) == pytest.approx(expected, rel=1e-8)
@@ -54,7 +54,7 @@ def test_there_and_back_stops_at_the_turning_point() -> None:
 
 def test_free_end_velocities() -> None:
     # Flat out from way-point to way-point; with a limit only on acceleration v0 would be endless.
-    problem = posed([0.2, 1.5], 1.7, 4.0, ends=())
+    problem = spline_problem([0.2, 1.5], 1.7, 4.0, ends=())
     assert verified(problem, estimate_any_curve(problem)) == pytest.approx(1.3 / 1.7, rel=1e-9)
 
 
@@ -77,7 +77,7 @@ def test_rest_at_waypoints_of_the_interpolant_is_not_asked_for() -> None:
 
 
 def test_the_slowest_joint_decides() -> None:
-    problem = posed([[0.0, 1.0], [0.5, 0.4], [0.9, -0.5]], [2.0, 9.0], [50.0, 1.5])
+    problem = spline_problem([[0.0, 1.0], [0.5, 0.4], [0.9, -0.5]], [2.0, 9.0], [50.0, 1.5])
     total = verified(problem, estimate_any_curve(problem))
     assert total == pytest.approx(rest_to_rest_time(1.5, 9.0, 1.5), rel=1e-8)
 
@@ -98,19 +98,19 @@ def test_velocity_limits_only() -> None:
 
 
 def test_velocity_limits_only_may_be_attained() -> None:
-    assert estimate_any_curve(posed([0.0, 1.0, 3.0], 2.0, ends=())).attained
-    assert not estimate_any_curve(posed([0.0, 1.0, 3.0], 2.0)).attained
-    assert not estimate_any_curve(posed([0.0, 1.0, 0.0], 2.0, ends=())).attained
-    assert estimate_any_curve(posed([0.0, 1.0, 0.0], 2.0, duration_lower=0.6)).attained
+    assert estimate_any_curve(spline_problem([0.0, 1.0, 3.0], 2.0, ends=())).attained
+    assert not estimate_any_curve(spline_problem([0.0, 1.0, 3.0], 2.0)).attained
+    assert not estimate_any_curve(spline_problem([0.0, 1.0, 0.0], 2.0, ends=())).attained
+    assert estimate_any_curve(spline_problem([0.0, 1.0, 0.0], 2.0, duration_lower=0.6)).attained
 
 
 def test_a_joint_without_acceleration_limit_only_needs_its_speed() -> None:
     q = np.array([[0.0, 0.3], [0.5, 1.9], [0.2, 0.1]])
-    problem = posed(q, [3.0, 1.5], [6.0, np.inf])
+    problem = spline_problem(q, [3.0, 1.5], [6.0, np.inf])
     found = estimate_any_curve(problem)
     both = verified(problem, found)
     floor = np.abs(np.diff(q[:, 1])) / 1.5
-    alone = posed(q[:, :1], 3.0, 6.0, duration_lower=floor)
+    alone = spline_problem(q[:, :1], 3.0, 6.0, duration_lower=floor)
     assert both == pytest.approx(verified(alone, estimate_any_curve(alone)), rel=1e-9)
     assert np.isnan(found.nodal_velocities[:, 1]).all()
 
@@ -134,7 +134,7 @@ def double_integrator_time(step: float, v0: float, v1: float, vmax: float, a: fl
 def test_one_joint_against_a_grid_of_nodal_velocities(
     waypoints: list[float], velocity: float
 ) -> None:
-    problem = posed(waypoints, velocity, 3.0)
+    problem = spline_problem(waypoints, velocity, 3.0)
     total = verified(problem, estimate_any_curve(problem))
     v = np.linspace(-1.0, 1.0, 301) * min(velocity, 2.5)
     steps = np.diff(waypoints)
@@ -179,7 +179,7 @@ def test_two_joints_against_a_linear_program() -> None:
     # With velocities sampled at many corners, feasibility of given durations is a linear program;
     # the best share of the time for the first segment is then searched on one axis.
     q = np.array([[0.0, 0.4], [0.8, -0.1], [0.3, -1.5]])
-    problem = posed(q, [1.6, 1.2], [4.0, 3.0])
+    problem = spline_problem(q, [1.6, 1.2], [4.0, 3.0])
     found = estimate_any_curve(problem)
     total = verified(problem, found)
     cells = 24

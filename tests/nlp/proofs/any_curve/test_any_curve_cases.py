@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from support.any_motions import PUMA_PROBLEM, verified
-from support.joint_splines import posed, rest_to_rest_time
+from support.joint_splines import rest_to_rest_time, spline_problem
 from support.puma import PUMA
 from trajgap.nlp import Evidence, solve
 from trajgap.nlp.optimum import stopping_after
@@ -129,12 +129,12 @@ def test_virtual_breaks_are_merged() -> None:
 
 def test_repeated_waypoints_are_passed_in_no_time() -> None:
     q = [0.2, 1.5, 1.5, 2.0]
-    found = estimate_any_curve(posed(q, 9.0, 4.0))
+    found = estimate_any_curve(spline_problem(q, 9.0, 4.0))
     assert found.total_time == pytest.approx(rest_to_rest_time(1.8, 9.0, 4.0), rel=1e-8)
     assert found.durations[1] == 0.0
     assert not found.attained
     assert found.why == "nothing moves in segment 2: its duration goes to 0"
-    held = estimate_any_curve(posed(q, 9.0, 4.0, duration_lower=0.3))
+    held = estimate_any_curve(spline_problem(q, 9.0, 4.0, duration_lower=0.3))
     assert held.attained
     assert held.durations[1] >= 0.3
 
@@ -163,7 +163,7 @@ def test_not_computed(limits: Limits, why: str) -> None:
 
 
 def test_nothing_moves() -> None:
-    assert estimate_any_curve(posed([0.4, 0.4, 0.4], 1.0, 2.0)).why == "nothing moves"
+    assert estimate_any_curve(spline_problem([0.4, 0.4, 0.4], 1.0, 2.0)).why == "nothing moves"
 
 
 @pytest.mark.parametrize(("first", "last"), [(0.5, 0.5), (0.5, -0.3)])
@@ -180,14 +180,14 @@ def test_nothing_moves_but_the_ends_are_passed_with_a_velocity(first: float, las
 
 
 def test_too_little_time() -> None:
-    found = estimate_any_curve(posed([0.0, 1.0, 0.5], 2.0, 8.0, duration_upper=0.45))
+    found = estimate_any_curve(spline_problem([0.0, 1.0, 0.5], 2.0, 8.0, duration_upper=0.45))
     assert found.why == "segment 1 cannot be done within its upper bound"
-    found = estimate_any_curve(posed([0.0, 1.0, 0.5], 2.0, 1.0, duration_upper=0.9))
+    found = estimate_any_curve(spline_problem([0.0, 1.0, 0.5], 2.0, 1.0, duration_upper=0.9))
     assert found.why == "none of 6 starts led to an answer"
 
 
 def test_prescribed_velocity_beyond_its_limit() -> None:
-    found = estimate_any_curve(posed([0.0, 1.0], 2.0, 8.0, ends=((1, 2.5),)))
+    found = estimate_any_curve(spline_problem([0.0, 1.0], 2.0, 8.0, ends=((1, 2.5),)))
     assert found.why == "the velocity prescribed at the start exceeds the limit of joint 1"
 
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy.optimize import linprog
 from support.any_curve_proofs import certify_any, printed, proved
 from support.checkout import ROOT
-from support.joint_splines import posed, rest_to_rest_time
+from support.joint_splines import rest_to_rest_time, spline_problem
 from trajgap.compare.audits import waterfall
 from trajgap.compare.audits.study import Study
 from trajgap.nlp import Evidence
@@ -26,7 +26,7 @@ from trajgap.nlp.proofs.any_curve.exact import missing, question
 from trajgap.nlp.proofs.any_curve.reach import furthest, reachable
 from trajgap.nlp.proofs.any_curve.rows import BRAKE, REACH, UNIT, ReachRow, exact_row
 from trajgap.nlp.proofs.document import certificate, shipped_folder
-from trajgap.nlp.proofs.evidence import stated_exactly
+from trajgap.nlp.proofs.evidence import printed_problem_or_none
 from trajgap.nlp.proofs.exact import exact_problem
 from trajgap.nlp.proofs.outcome import Certified, Outcome
 from trajgap.problem import (
@@ -55,13 +55,13 @@ def interval(problem: Problem, gap: float = 1e-6) -> tuple[float, float]:
 
 @pytest.mark.parametrize("d", [0.3, -0.9, 4.0])
 def test_one_segment_is_a_triangle_or_a_trapezium(d: float) -> None:
-    low, high = interval(posed([0.25, 0.25 + d], 1.5, 2.0), 1e-9)
+    low, high = interval(spline_problem([0.25, 0.25 + d], 1.5, 2.0), 1e-9)
     assert low <= rest_to_rest_time(d, 1.5, 2.0) * (1 + 1e-15)
     assert high >= rest_to_rest_time(d, 1.5, 2.0) * (1 - 1e-15)
 
 
 def test_straight_way_points_cost_nothing() -> None:
-    low, high = interval(posed([0.0, 0.5, 0.8, 2.0], 1.5, 2.0))
+    low, high = interval(spline_problem([0.0, 0.5, 0.8, 2.0], 1.5, 2.0))
     assert low <= rest_to_rest_time(2.0, 1.5, 2.0) <= high
 
 
@@ -71,19 +71,19 @@ def test_there_and_back_by_overshooting() -> None:
     d, a = 1.0, 2.0
     one = (np.sqrt(4 * a * d + 2 * w**2) - w) / a
     back = (np.sqrt(4 * a * d + 2 * w**2) + w) / a
-    low, high = interval(posed([0.0, d, 0.0], 10.0, a))
+    low, high = interval(spline_problem([0.0, d, 0.0], 10.0, a))
     assert low <= (one + back).min() <= high * (1 + 1e-9)
 
 
 def test_velocity_limits_alone_are_a_sum_of_quotients() -> None:
     q = np.array([[0.0, 1.0], [0.5, -1.0], [0.25, 2.0]])
-    low, high = interval(posed(q, [1.0, 4.0]), 1e-9)
+    low, high = interval(spline_problem(q, [1.0, 4.0]), 1e-9)
     assert low == pytest.approx(0.5 + 0.75, rel=1e-12)
     assert high > 0.5 + 0.75
 
 
 def test_lower_duration_bounds_can_be_the_optimum() -> None:
-    problem = posed([0.0, 0.1, 0.3], 5.0, 50.0, duration_lower=[2.0, 3.0])
+    problem = spline_problem([0.0, 0.1, 0.3], 5.0, 50.0, duration_lower=[2.0, 3.0])
     low, high = interval(problem, 1e-9)
     assert low <= 5.0 <= high
     assert high == pytest.approx(5.0, rel=1e-9)
@@ -91,25 +91,25 @@ def test_lower_duration_bounds_can_be_the_optimum() -> None:
 
 @pytest.mark.parametrize("ends", [(), ((1, 0.5),)])
 def test_ends_free_or_moving(ends: tuple[tuple[int, float], ...]) -> None:
-    problem = posed([0.0, 1.0, 0.4], 1.25, 2.0, ends)
+    problem = spline_problem([0.0, 1.0, 0.4], 1.25, 2.0, ends)
     low, high = interval(problem)
     known = estimate_any_curve(problem).total_time
     assert known is not None
     assert low <= known <= high * (1 + 1e-9)
     if not ends:
-        assert high < interval(posed([0.0, 1.0, 0.4], 1.25, 2.0))[0]
+        assert high < interval(spline_problem([0.0, 1.0, 0.4], 1.25, 2.0))[0]
 
 
 def test_acceleration_limits_alone() -> None:
-    low, high = interval(posed([0.0, 1.0], acceleration=2.0), 1e-9)
+    low, high = interval(spline_problem([0.0, 1.0], acceleration=2.0), 1e-9)
     assert low <= np.sqrt(2.0) <= high
-    two = posed([[0.0, 0.5], [1.0, 0.3], [0.5, 0.9]], acceleration=[2.0, 1.0])
+    two = spline_problem([[0.0, 0.5], [1.0, 0.3], [0.5, 0.9]], acceleration=[2.0, 1.0])
     assert interval(two)[0] >= interval(two.joint(0))[0] * (1 - 1e-6)
 
 
 def test_a_joint_that_brakes_for_another_needs_boxes() -> None:
     # Joint 1 would fly through the first segment, but joint 2 makes it last.
-    problem = posed([[0.0, 0.0], [0.2, 1.0], [3.0, 1.1]], [3.0, 1.4], [2.0, 4.0])
+    problem = spline_problem([[0.0, 0.0], [0.2, 1.0], [3.0, 1.1]], [3.0, 1.4], [2.0, 4.0])
     found = certify_any(problem, gap=1e-7)
     assert found.outcome is Outcome.CERTIFIED
     assert found.nodes > 1
@@ -118,7 +118,7 @@ def test_a_joint_that_brakes_for_another_needs_boxes() -> None:
 
 def random_problem(rng: np.random.Generator, segments: int, joints: int) -> Problem:
     q = rng.normal(size=(segments + 1, joints))
-    return posed(q, rng.uniform(0.8, 3.0, joints), rng.uniform(1.0, 6.0, joints))
+    return spline_problem(q, rng.uniform(0.8, 3.0, joints), rng.uniform(1.0, 6.0, joints))
 
 
 def reached(step: float, v0: Array, v1: Array, h: Array, v: float, a: float) -> Any:
@@ -221,13 +221,13 @@ def test_fixed_durations_agree_with_a_linear_program(seed: int) -> None:
 
 
 def test_too_short_upper_bounds_are_infeasible() -> None:
-    found = certify_any(posed([0.0, 1.0, 0.0], 1.0, 2.0, duration_upper=[1.2, 1.3]))
+    found = certify_any(spline_problem([0.0, 1.0, 0.0], 1.0, 2.0, duration_upper=[1.2, 1.3]))
     assert found.outcome is Outcome.INFEASIBLE
     assert proved(found).infeasible
-    late = certify_any(posed([0.0, 1.0, 0.0], 1.0, 2.0, duration_upper=[0.5, 9.0]))
+    late = certify_any(spline_problem([0.0, 1.0, 0.0], 1.0, 2.0, duration_upper=[0.5, 9.0]))
     assert late.outcome is Outcome.INFEASIBLE
     assert proved(late).infeasible
-    half = certify_any(posed([0.0, 1.0, 0.0], 1.0, 2.0, duration_upper=[1.2, np.inf]))
+    half = certify_any(spline_problem([0.0, 1.0, 0.0], 1.0, 2.0, duration_upper=[1.2, np.inf]))
     assert half.outcome is Outcome.OPEN
     assert half.proof is None
 
@@ -293,7 +293,7 @@ def test_rows_hold_for_every_motion(
     low = -furthest(*map(np.asarray, (-v0, -v1, h, velocity, acceleration)))
     d = float(low + mix * (high - low))
     sign = 1 if d >= 0 else -1
-    asked = question(exact_problem(posed([0.0, d, 1.0], velocity, acceleration)))
+    asked = question(exact_problem(spline_problem([0.0, d, 1.0], velocity, acceleration)))
     box = ((Fraction(h * others[0]), Fraction(h * others[1])),) * 2
     a, b = (round(s * UNIT) for s in slopes)
     row = ReachRow(kind, 0, 0, sign, a, b, round(others[2] * UNIT))
@@ -325,7 +325,7 @@ def test_every_shipped_question_has_a_bound_that_is_proved() -> None:
         for problem in case.problems:
             for reading in case.readings:
                 statement = case.statement(problem.id, reading.id)
-                exact = stated_exactly(statement) if statement.complete else None
+                exact = printed_problem_or_none(statement) if statement.complete else None
                 if exact is None or missing(exact) is not None:
                     continue
                 name = f"{case_id}, {problem.id}, {reading.id}"
@@ -388,7 +388,9 @@ def test_end_velocities_of_other_kinds_of_curve_are_stated(orders: tuple[int, ..
     problem = Problem(np.array([[0.0], [1.0], [0.2]]), Limits(1.0, 2.0, joints=1), curve)
     low, _ = interval(problem)
     ends = ((1, 0.0),) if 1 in orders else ()
-    assert low == pytest.approx(interval(posed([0.0, 1.0, 0.2], 1.0, 2.0, ends))[0], rel=1e-5)
+    assert low == pytest.approx(
+        interval(spline_problem([0.0, 1.0, 0.2], 1.0, 2.0, ends))[0], rel=1e-5
+    )
     data = certificate(certify_any(problem))
     assert ("ends" in data["problem"]) == (1 in orders)
     if 1 in orders:

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from support.alterations import changed, fields, get, put
 from support.any_curve_proofs import certify_any, printed, proved
-from support.joint_splines import posed
+from support.joint_splines import spline_problem
 from support.unjudged import unjudged
 from trajgap.nlp.proofs.any_curve import (
     certifier as any_curve_certify,
@@ -46,7 +46,7 @@ from trajgap.verify import verify_certificate as verify
 
 @lru_cache(maxsize=1)
 def attacked() -> tuple[Problem, str]:
-    problem = posed([[0.0, 0.0], [0.25, 1.0], [3.0, 1.125]], [3.0, 1.5], [2.0, 4.0])
+    problem = spline_problem([[0.0, 0.0], [0.25, 1.0], [3.0, 1.125]], [3.0, 1.5], [2.0, 4.0])
     found = certify_any(problem, gap=1e-5)
     return problem, json.dumps(certificate(found))
 
@@ -129,7 +129,7 @@ def restated(data: dict[str, Any]) -> Problem:
         return [none if x is None else float(Fraction(x)) for x in values]
 
     ends = tuple((1, float(Fraction(v))) for r, v in problem["prescribed"][0] if r == 1)
-    return posed(
+    return spline_problem(
         [numbers(row) for row in problem["waypoints"]],
         numbers([row[0] for row in problem["limits"]]),
         numbers([row[1] for row in problem["limits"]]),
@@ -247,7 +247,7 @@ def test_nothing_is_proved_in_floats(sign: Any) -> None:
     # With floats in it a product could overflow, and inf prove any total.
     whole = 10**118
     row = ["reach", 0, 0, sign, 0, 0, 95 * 10**8]
-    document = by_hand(posed([0.0, 1.0], 1.0, 1.0), "9" * 120, [row], [0, "1"])
+    document = by_hand(spline_problem([0.0, 1.0], 1.0, 1.0), "9" * 120, [row], [0, "1"])
     document["problem"]["waypoints"] = [["0"], [str(whole)]]
     verdict = verify(document)
     assert not verdict.proves
@@ -258,7 +258,7 @@ def test_nothing_is_proved_in_floats(sign: Any) -> None:
 
 @pytest.mark.parametrize(("key", "bound"), [("position_upper", "4"), ("position_lower", "6")])
 def test_a_joint_that_stays_where_it_must_not_be_has_no_answer(key: str, bound: str) -> None:
-    found = certify_any(posed([[0.0, 5.0], [1.0, 5.0]], 1.0, 1.0))
+    found = certify_any(spline_problem([[0.0, 5.0], [1.0, 5.0]], 1.0, 1.0))
     document = json.loads(json.dumps(certificate(found)))
     assert document["claim"]["upper"] is not None
     document["problem"][key] = [None, "5"]
@@ -269,7 +269,7 @@ def test_a_joint_that_stays_where_it_must_not_be_has_no_answer(key: str, bound: 
     assert "position" in verdict.reason
     side = {key: (np.inf if key == "position_upper" else -np.inf, float(bound))}
     limits = Limits(1.0, 1.0, joints=2, **side)
-    problem = replace(posed([[0.0, 5.0], [1.0, 5.0]], 1.0, 1.0), limits=limits)
+    problem = replace(spline_problem([[0.0, 5.0], [1.0, 5.0]], 1.0, 1.0), limits=limits)
     found = certify_any(problem)
     assert found.upper is None
     assert proved(found).lower is not None
@@ -279,7 +279,7 @@ def test_a_joint_that_stays_where_it_must_not_be_has_no_answer(key: str, bound: 
 
 
 def test_jerk_and_position_limits_keep_the_lower_bound_alone() -> None:
-    plain = posed([0.0, 1.0, 0.5], 1.0, 2.0)
+    plain = spline_problem([0.0, 1.0, 0.5], 1.0, 2.0)
     known = certify_any(plain)
     jerk = replace(plain, limits=Limits(1.0, 2.0, 9.0, joints=1))
     walls = replace(plain, limits=Limits(1.0, 2.0, np.inf, -1.0, 1.01, joints=1))
@@ -294,13 +294,13 @@ def test_jerk_and_position_limits_keep_the_lower_bound_alone() -> None:
 @pytest.mark.parametrize(
     ("problem", "reason"),
     [
-        (posed([1.0, 1.0], 1.0, 1.0), "nothing moves"),
-        (posed([0.0, 1.0]), "nothing that moves is limited"),
-        (posed([0.0, 1.0], 0.0, 1.0), "velocity limit is 0"),
-        (posed([0.0, 1.0], 1.0, 0.0), "acceleration limit is 0"),
-        (posed([0.0, 1.0], acceleration=1.0, ends=()), "its ends are free"),
-        (posed([0.0, 1.0], 1.0, 1.0, ends=((1, 2.0),)), "exceeds the limit"),
-        (posed([0.0, 1.0, 1.0, 2.0], 1.0, 1.0), "nothing moves in segment 2"),
+        (spline_problem([1.0, 1.0], 1.0, 1.0), "nothing moves"),
+        (spline_problem([0.0, 1.0]), "nothing that moves is limited"),
+        (spline_problem([0.0, 1.0], 0.0, 1.0), "velocity limit is 0"),
+        (spline_problem([0.0, 1.0], 1.0, 0.0), "acceleration limit is 0"),
+        (spline_problem([0.0, 1.0], acceleration=1.0, ends=()), "its ends are free"),
+        (spline_problem([0.0, 1.0], 1.0, 1.0, ends=((1, 2.0),)), "exceeds the limit"),
+        (spline_problem([0.0, 1.0, 1.0, 2.0], 1.0, 1.0), "nothing moves in segment 2"),
     ],
 )
 def test_what_is_not_covered_is_said(problem: Problem, reason: str) -> None:

@@ -25,7 +25,7 @@ V, A = np.array([1.5, 1.25]), np.array([4.0, 2.5])
 START, FINISH = (1.0, -0.25), (0.0, 0.75)
 
 
-def posed(
+def problem_with(
     start: tuple[float, ...] = START,
     finish: tuple[float, ...] = FINISH,
     way: Array = WAY,
@@ -38,7 +38,7 @@ def posed(
 
 @cache
 def found() -> Certified:
-    return certify_any(exact_problem(posed()), gap=1e-5, seconds=60)
+    return certify_any(exact_problem(problem_with()), gap=1e-5, seconds=60)
 
 
 def within(d: float, h: Array, v0: Array, v1: Array, top: float, bend: float) -> Any:
@@ -73,7 +73,9 @@ def test_a_joint_that_starts_in_motion_brakes_in_closed_form() -> None:
     way = np.array([[0.0, 3.0], [d, 3.0 + d]])
     need = (2 * np.sqrt(a * d + v0**2 / 2) - v0) / a
     result = certify_any(
-        posed(tuple(v0), (0.0, 0.0), way, np.full(2, 9.0), np.full(2, a)), gap=1e-8, seconds=20
+        problem_with(tuple(v0), (0.0, 0.0), way, np.full(2, 9.0), np.full(2, a)),
+        gap=1e-8,
+        seconds=20,
     )
     proved(result)
     assert result.outcome is Outcome.CERTIFIED
@@ -94,9 +96,9 @@ def test_a_dense_grid_of_durations_and_speeds_agrees() -> None:
 
 def test_joints_in_another_order_time_run_backwards_and_mirrors() -> None:
     lower = float(found().lower)
-    backwards = posed(tuple(-x for x in FINISH), tuple(-x for x in START), WAY[::-1])
-    mirrored = posed(tuple(-x for x in START), tuple(-x for x in FINISH), -WAY)
-    exchanged = posed(START[::-1], FINISH[::-1], WAY[:, ::-1], V[::-1], A[::-1])
+    backwards = problem_with(tuple(-x for x in FINISH), tuple(-x for x in START), WAY[::-1])
+    mirrored = problem_with(tuple(-x for x in START), tuple(-x for x in FINISH), -WAY)
+    exchanged = problem_with(START[::-1], FINISH[::-1], WAY[:, ::-1], V[::-1], A[::-1])
     for problem in (backwards, mirrored, exchanged):
         result = certify_any(problem, gap=1e-5, seconds=60)
         assert float(result.lower) == pytest.approx(lower, rel=3e-5)
@@ -104,7 +106,7 @@ def test_joints_in_another_order_time_run_backwards_and_mirrors() -> None:
 
 def test_a_bound_within_the_larger_sides_keeps_the_ends() -> None:
     uneven = Limits([[-1.5, 1.0], [-1.25, 1.25]], A)
-    problem = Problem(WAY, uneven, posed().curve)
+    problem = Problem(WAY, uneven, problem_with().curve)
     result = certify_any(problem, gap=1e-5, seconds=60)
     proved(result)
     assert result.upper is None
@@ -112,15 +114,15 @@ def test_a_bound_within_the_larger_sides_keeps_the_ends() -> None:
 
 
 def test_an_estimate_knows_the_ends_of_each_joint() -> None:
-    seen = estimate_any_curve(posed())
+    seen = estimate_any_curve(problem_with())
     assert seen.total_time == pytest.approx(float(found().upper or 0), rel=1e-5)
     assert seen.nodal_velocities is not None
     np.testing.assert_allclose(seen.nodal_velocities[[0, -1]], [START, FINISH])
-    fast = estimate_any_curve(posed(start=(0.0, 1.3)))
+    fast = estimate_any_curve(problem_with(start=(0.0, 1.3)))
     assert fast.why == "the velocity prescribed at the start exceeds the limit of joint b"
     with pytest.raises(TrajgapError, match="exceeds the limit of joint b"):
-        certify_any(posed(start=(0.0, 1.3)))
-    still = posed((0.5, 0.5), (0.5, -0.5), np.zeros((2, 2)))
+        certify_any(problem_with(start=(0.0, 1.3)))
+    still = problem_with((0.5, 0.5), (0.5, -0.5), np.zeros((2, 2)))
     assert "the two end velocities differ" in str(estimate_any_curve(still).why)
 
 
@@ -150,7 +152,7 @@ def test_the_bound_alone_proves_and_with_other_ends_only_what_is_true() -> None:
         if verdict.proves:
             own = (tuple(ends[0].tolist()), tuple(ends[1].tolist()))
             # The grid lies above the truth by a few per cent, the estimate by rounding.
-            shown = estimate_any_curve(posed(*own)).total_time
+            shown = estimate_any_curve(problem_with(*own)).total_time
             assert shown is not None
             assert float(verdict.lower or 0) <= min(shown * (1 + 1e-9), best_of_a_grid(*own))
     assert refused >= 3
@@ -237,7 +239,10 @@ def test_ends_that_no_certificate_states_exactly(change: tuple[str, str], why: s
 
 
 def test_a_declared_curve_in_motion_is_refused_in_one_sentence() -> None:
-    for problem in (exact_problem(posed()), exact_problem(posed((0.5, 0.5), (0.5, 0.5)))):
+    for problem in (
+        exact_problem(problem_with()),
+        exact_problem(problem_with((0.5, 0.5), (0.5, 0.5))),
+    ):
         why = covered(problem)
         assert why is not None
         assert why.endswith(

@@ -12,7 +12,7 @@ from trajgap.nlp import Outcome, certificate, certify, exact_problem, solve
 from trajgap.nlp.proofs.certifiers import covered
 from trajgap.nlp.proofs.closed_form.fixed_ratios import MOST_REBUILT
 from trajgap.nlp.proofs.document import fits
-from trajgap.nlp.proofs.evidence import interval_of, stated_exactly
+from trajgap.nlp.proofs.evidence import interval_of, printed_problem_or_none
 from trajgap.problem import (
     Limits,
     Problem,
@@ -190,14 +190,14 @@ ratios = RATIOS
 def test_printed_ratios_are_exact(ratios: str, joints: str | None, shares) -> None:
     own = "" if joints is None else f'\n[[readings]]\nid = "r"\nwhy = "one"\njoints = {joints}\n'
     case = parse_case(CASE.replace("RATIOS", ratios) + own, "made-up.toml")
-    exact = stated_exactly(case.statement())
+    exact = printed_problem_or_none(case.statement())
     assert exact is not None
     assert exact.shares == shares
 
 
 def test_chord_lengths_of_several_joints_are_not_rational() -> None:
     case = parse_case(CASE.replace("RATIOS", '"chord"'), "made-up.toml")
-    exact = stated_exactly(case.statement())
+    exact = printed_problem_or_none(case.statement())
     assert exact is not None
     assert exact.shares is None
     assert "chord lengths of several joints are no rational numbers" in str(covered(exact))

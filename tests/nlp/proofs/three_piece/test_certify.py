@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from support.checkout import ROOT
 from support.intervals import judged
-from support.shipped_problems import POSED
+from support.shipped_problems import COVERED_PROBLEMS
 from support.three_pieces import dense_best, random_problem
 from support.unjudged import unjudged
 from support.unlucky import answering
@@ -61,8 +61,8 @@ def test_dense_search_never_leaves_the_interval_of_two_hundred_problems() -> Non
 
 
 def test_shipped_certificates_are_fresh_and_prove() -> None:
-    assert POSED
-    for name, exact in POSED.items():
+    assert COVERED_PROBLEMS
+    for name, exact in COVERED_PROBLEMS.items():
         document = shipped(exact)
         assert document is not None, f"{name}: no certificate; run benchmarks/certificates.py"
         assert document["problem"] == problem_document(exact)
@@ -75,7 +75,7 @@ def test_shipped_certificates_are_fresh_and_prove() -> None:
         assert len(json.dumps(document)) < 200_000
     files = {path.stem: json.loads(path.read_text("utf-8")) for path in all_files()}
     about = {n for n, d in files.items() if d["claim"]["subject"] == Subject.DECLARED}
-    assert about == set(POSED), "a certificate of a problem that is not shipped"
+    assert about == set(COVERED_PROBLEMS), "a certificate of a problem that is not shipped"
     assert all(path.stat().st_size <= 200_000 for path in all_files())
 
 
@@ -105,7 +105,7 @@ def test_the_table_in_the_docs_is_that_of_the_files() -> None:
 
 def unlucky(monkeypatch: pytest.MonkeyPatch, seconds: float = 2.0) -> tuple[float, Certified]:
     """Certify with an answer 5 % above the optimum and no search for a better one."""
-    exact = POSED["puma560-mnam-pso-353.six-joints.durations-positive"]
+    exact = COVERED_PROBLEMS["puma560-mnam-pso-353.six-joints.durations-positive"]
     true = shipped(exact)
     assert true is not None
     upper = Fraction(true["claim"]["upper"])
@@ -136,7 +136,7 @@ def test_a_broken_relaxation_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_local_answer_is_replaced_by_a_better_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    exact = POSED["puma560-mnam-pso-353.six-joints.durations-positive.joint-6"]
+    exact = COVERED_PROBLEMS["puma560-mnam-pso-353.six-joints.durations-positive.joint-6"]
     true = shipped(exact)
     assert true is not None
     double = tuple(Fraction(h) * 2 for h in true["claim"]["durations"])
@@ -169,7 +169,7 @@ def test_what_no_certificate_can_state_is_not_covered(change: dict[str, Any], re
 
 
 def test_no_time_gives_no_lower_bound() -> None:
-    exact = POSED["irb460-pso-353.limit-80.waypoints-rad"]
+    exact = COVERED_PROBLEMS["irb460-pso-353.limit-80.waypoints-rad"]
     found = certify(exact, seconds=0.0)
     assert (found.outcome, found.lower) == (Outcome.INTERVAL, 0)
     with pytest.raises(TrajgapError, match="nothing is proved"):
@@ -178,7 +178,9 @@ def test_no_time_gives_no_lower_bound() -> None:
 
 def test_velocity_limits_alone_scale_the_optimum() -> None:
     # With velocity limits only, T·V is constant: 80 against 110 °/s.
-    slow, fast = (shipped(POSED[f"irb460-pso-353.limit-{v}.waypoints-rad"]) for v in (80, 110))
+    slow, fast = (
+        shipped(COVERED_PROBLEMS[f"irb460-pso-353.limit-{v}.waypoints-rad"]) for v in (80, 110)
+    )
     assert slow is not None
     assert fast is not None
     product = [Fraction(x["claim"]["upper"]) * v for x, v in ((slow, 80), (fast, 110))]
@@ -265,7 +267,7 @@ def test_what_is_not_covered_is_said() -> None:
 
 def test_rows_are_the_limits_of_the_curve() -> None:
     # Second route: the row's sign against the curve's derivative over its limit, for many points.
-    exact = POSED["puma560-mnam-pso-353.six-joints.durations-positive"]
+    exact = COVERED_PROBLEMS["puma560-mnam-pso-353.six-joints.durations-positive"]
     q = np.array([[float(x) for x in row] for row in exact.waypoints])
     rng = np.random.default_rng(5)
     for _ in range(20):
@@ -306,7 +308,7 @@ def test_peaks_are_judged_exactly() -> None:
 
 
 def test_a_proof_needs_weights() -> None:
-    exact = POSED["irb460-pso-353.limit-80.waypoints-rad"]
+    exact = COVERED_PROBLEMS["irb460-pso-353.limit-80.waypoints-rad"]
     row, side = PieceRow("first", 0, 1), (3, 0)
     prover = Prover(exact, Fraction(1))
     assert prover.proves((row,), (Fraction(1),), side, side)

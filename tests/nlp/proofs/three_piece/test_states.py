@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from support.shipped_problems import POSED
+from support.shipped_problems import COVERED_PROBLEMS
 from support.unlucky import answering
 from trajgap.nlp.proofs.answer import keeps_limits
 from trajgap.nlp.proofs.certifiers import certify
@@ -28,7 +28,7 @@ module = import_module("trajgap.nlp.proofs.three_piece.search")
 
 
 def test_a_stopped_run_goes_on_where_it_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
-    exact = POSED["puma560-mnam-pso-353.six-joints.durations-positive.joint-1"]
+    exact = COVERED_PROBLEMS["puma560-mnam-pso-353.six-joints.durations-positive.joint-1"]
 
     def interrupt(progress: Progress) -> None:
         if progress.nodes > 150 and progress.open_boxes > 0:
@@ -56,7 +56,7 @@ def stopped_at(name: str, monkeypatch: pytest.MonkeyPatch) -> Certified:
             raise KeyboardInterrupt
 
     monkeypatch.setattr(module, "_BATCH", 8)
-    found = certify(POSED[name], report=interrupt)
+    found = certify(COVERED_PROBLEMS[name], report=interrupt)
     assert found.outcome is Outcome.INTERVAL
     return found
 
@@ -70,7 +70,7 @@ def state_of(found: Certified) -> dict[str, Any]:
 
 def test_an_edited_state_proves_nothing_false(monkeypatch: pytest.MonkeyPatch) -> None:
     name = "irb460-pso-353.limit-80.waypoints-rad"
-    exact, found = POSED[name], stopped_at(name, monkeypatch)
+    exact, found = COVERED_PROBLEMS[name], stopped_at(name, monkeypatch)
     assert found.upper is not None
     base = state_of(found)
     assert resumed(exact, base).lower == found.lower
@@ -133,7 +133,7 @@ def mangled(value: Any, rng: np.random.Generator) -> Any:
 
 def test_a_resumed_bound_alone_proves_nothing_infeasible(monkeypatch: pytest.MonkeyPatch) -> None:
     name = "irb460-pso-353.limit-80.waypoints-rad"
-    exact, found = POSED[name], stopped_at(name, monkeypatch)
+    exact, found = COVERED_PROBLEMS[name], stopped_at(name, monkeypatch)
     state = state_of(found)
     state["claim"] |= {"durations": None, "upper": None}
     assert state["proof"] is not None
@@ -147,7 +147,7 @@ def test_a_resumed_bound_alone_proves_nothing_infeasible(monkeypatch: pytest.Mon
 
 def test_edited_open_boxes_only_cost_time(monkeypatch: pytest.MonkeyPatch) -> None:
     name = "irb460-pso-353.limit-80.waypoints-rad"
-    exact, found = POSED[name], stopped_at(name, monkeypatch)
+    exact, found = COVERED_PROBLEMS[name], stopped_at(name, monkeypatch)
     state = state_of(found)
     # "Everything is proved by any row", and a total that is far too long.
     state["proposals"] |= {"tree": [[".", 0, "1"]], "total": "100"}
@@ -169,7 +169,7 @@ def test_edited_open_boxes_only_cost_time(monkeypatch: pytest.MonkeyPatch) -> No
     ],
 )
 def test_a_bad_state_is_refused(part: str, change: dict[str, Any], reason: str) -> None:
-    exact = POSED["irb460-pso-353.limit-80.waypoints-rad"]
+    exact = COVERED_PROBLEMS["irb460-pso-353.limit-80.waypoints-rad"]
     state = state_of(certify(exact, seconds=0.0))
     state[part] |= change
     with pytest.raises(TrajgapError, match=reason):
@@ -177,7 +177,7 @@ def test_a_bad_state_is_refused(part: str, change: dict[str, Any], reason: str) 
 
 
 def test_what_is_no_state_is_refused() -> None:
-    exact = POSED["irb460-pso-353.limit-80.waypoints-rad"]
+    exact = COVERED_PROBLEMS["irb460-pso-353.limit-80.waypoints-rad"]
     finished = certify(exact, gap=0.1)
     for other in (finished, certificate(finished), {}, {"format": "trajgap-state-1"}):
         with pytest.raises(TrajgapError, match="resume: no trajgap-state-2"):
@@ -191,11 +191,11 @@ def test_a_proof_that_is_not_one_is_refused(monkeypatch: pytest.MonkeyPatch) -> 
     total = state["proof"]["total"]
     state["proof"]["total"] = str(found.upper)
     with pytest.raises(TrajgapError, match=r"not proved .leaf at node"):
-        certify(POSED[name], resume=state)
+        certify(COVERED_PROBLEMS[name], resume=state)
     state["proof"]["total"] = total
     state["proof"]["tree"][-1] = ["?"]
     with pytest.raises(TrajgapError, match=r"not proved .the tree leaves a part open"):
-        certify(POSED[name], resume=state)
+        certify(COVERED_PROBLEMS[name], resume=state)
 
 
 def test_a_state_is_proved_like_a_certificate(monkeypatch: pytest.MonkeyPatch) -> None:
