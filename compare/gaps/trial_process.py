@@ -159,7 +159,7 @@ class Crew:
     def __init__(self) -> None:
         self._own = threading.local()
         self._children: set[_Child] = set()
-        self._stopped = False
+        self._stopped, self._changing = False, threading.Lock()
 
     def run(self, trial: Trial) -> TrialOutcome:
         """Run a trial in the process of this thread, as `run_apart` says."""
@@ -179,7 +179,8 @@ class Crew:
             except _Ended as end:
                 why = f"its process ended {_TRIES} times ({end})"
             self._own.child = None
-            self._children.discard(child)
+            with self._changing:
+                self._children.discard(child)
             child.end()
         return TrialOutcome(failed(trial, f"{trial.optimizer}: {why}"), time.monotonic() - begun)
 
@@ -188,15 +189,24 @@ class Crew:
             raise ProcessError("workers: stopped")
         child: _Child | None = getattr(self._own, "child", None)
         if child is None:
-            child = self._own.child = _Child()
-            self._children.add(child)
+            child = _Child()
+            with self._changing:  # `end` may have come while it began
+                stopped = self._stopped
+                if not stopped:
+                    self._children.add(child)
+            if stopped:
+                child.end()
+                raise ProcessError("workers: stopped")
+            self._own.child = child
         return child
 
     def end(self) -> None:
         """End every process; none is started after that."""
-        self._stopped = True
-        while self._children:
-            self._children.pop().end()
+        with self._changing:
+            self._stopped = True
+            children = list(self._children)
+        for child in children:
+            child.end()
 
 
 _crew = Crew()

@@ -149,3 +149,35 @@ def test_a_crew_that_has_ended_starts_nothing(crew: Crew) -> None:
     assert child._process.returncode == -signal.SIGKILL
     with pytest.raises(ProcessError, match=r"workers: stopped"):
         crew.run(small_trial())
+
+
+def test_a_process_that_begins_while_the_crew_ends_ends_too(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    crew, beginning, may_begin = Crew(), threading.Event(), threading.Event()
+    begun: list[trial_process._Child] = []
+
+    class Slow(trial_process._Child):
+        def __init__(self) -> None:
+            beginning.set()
+            may_begin.wait()
+            super().__init__()
+            begun.append(self)
+
+    monkeypatch.setattr(trial_process, "_Child", Slow)
+    refused: list[Exception] = []
+
+    def run() -> None:
+        try:
+            crew.run(small_trial())
+        except ProcessError as error:
+            refused.append(error)
+
+    thread = threading.Thread(target=run)
+    thread.start()
+    beginning.wait()
+    crew.end()
+    may_begin.set()
+    thread.join()
+    assert [str(error) for error in refused] == ["workers: stopped"]
+    assert [child._process.poll() is None for child in begun] == [False]
