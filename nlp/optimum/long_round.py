@@ -89,11 +89,15 @@ def fresh(program: LongProgram, h: Array, trajectory: Trajectory) -> RoundState:
 
 
 def solve_round(
-    program: LongProgram, rows: Rows, state: RoundState, turn: int, least: Array | None = None
+    program: LongProgram,
+    rows: Rows,
+    state: RoundState,
+    turn: int,
+    within: tuple[Array, Array],
 ) -> tuple[Array, bool, int, float]:
     """One call of IPOPT: the rows' multipliers, success, iterations, and seconds of building.
 
-    No duration becomes shorter than ``least`` (s) where that is given.
+    No duration leaves ``within`` (s): rows say nothing of motions far from theirs.
     """
     began = time.perf_counter()
     ends = program.ends
@@ -106,9 +110,9 @@ def solve_round(
     solver = ca.nlpsol("many", "ipopt", nlp, _options(turn, _cap()))
     build = time.perf_counter() - began
     low, high = program.bounds()
-    if least is not None:
-        n = program.segments
-        low[:n] = np.maximum(low[:n], np.minimum(least / program.unit, high[:n]))
+    n = program.segments
+    least, most = (np.clip(side / program.unit, low[:n], high[:n]) for side in within)
+    low[:n], high[:n] = least, most
     room, upper = program.rooms(rows.places, rows.sign), rows.sign > 0
     one, zero = np.ones(ends.s.size), np.zeros(state.equalities.size)
     arguments = {

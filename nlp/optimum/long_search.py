@@ -31,6 +31,9 @@ tolerance and barrier are the last ones."""
 FAILURES = 2
 """Rounds without success after which a search is given up; each begins again from the best motion
 with rows at all its extrema."""
+WITHIN = 3.0
+"""Factor by which a round changes a duration at most: the extrema of a motion far away are others,
+and without a bound some quintics leave for motions of which the rows say nothing."""
 LOADED = 10.0
 """Multiplier, in tolerances of its round, from which a row stays although its extremum has gone:
 what is not active keeps about the tolerance."""
@@ -98,7 +101,9 @@ def long_search(problem: Problem, start: Array, floor: Array, until: float) -> L
     for _ in range(ROUNDS):
         if iterations and (time_up() or time.monotonic() > until):
             break
-        duals, success, count, seconds = solve_round(program, rows, state, turn)
+        before = state.x[: problem.segments] * program.unit
+        within = (before / WITHIN, before * WITHIN)
+        duals, success, count, seconds = solve_round(program, rows, state, turn, within)
         iterations, build = iterations + count, build + seconds
         h = state.x[: problem.segments] * program.unit
         whole = bool(np.isfinite(h).all() and (h > 0).all())
@@ -124,10 +129,9 @@ def long_search(problem: Problem, start: Array, floor: Array, until: float) -> L
             # A round with an eased tolerance leaves its barrier's gap: 1.6e-7 of a total was seen.
             if kkt.residual <= KKT_TOLERANCE and turn >= len(TOLERANCES) - 1:
                 break
-        before = rows
         loaded = LOADED * TOLERANCES[min(turn, len(TOLERANCES) - 1)]
-        rows = kept_rows(program, before, duals, near_rows(program, trajectory, NEAR), loaded)
-        state.rows, turn = carried(before, duals, rows), turn + 1
+        next_rows = kept_rows(program, rows, duals, near_rows(program, trajectory, NEAR), loaded)
+        state.rows, rows, turn = carried(rows, duals, next_rows), next_rows, turn + 1
     if local is None and rough is not None:
         local = LongLocal(rough, None, iterations, build)
     return local

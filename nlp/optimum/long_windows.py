@@ -173,17 +173,18 @@ def _solved(part: LongProgram, state: RoundState, own: slice) -> _Ended:
     rows = near_rows(part, motion, EVERY)
     # Places that follow their extremum lead astray as long as the motion changes much.
     rows = replace(rows, weight=np.zeros(rows.sign.size))
-    least: Array | None = SHRUNK * motion.durations
+    within = (SHRUNK * motion.durations, np.full(motion.durations.size, np.inf))
     iterations, build = 0, 0.0
     for turn in range(ROUNDS):
         # The first two tolerances and barriers: the last ones are for rows that hardly change.
-        duals, success, count, seconds = solve_round(part, rows, state, min(turn, 1), least)
-        iterations, build, least = iterations + count, build + seconds, None
+        duals, success, count, seconds = solve_round(part, rows, state, min(turn, 1), within)
+        iterations, build = iterations + count, build + seconds
         motion = part.trajectory(state.x)
         success = success and bool((motion.durations > 0).all())
         last = not success or turn + 1 == ROUNDS
         if last or (turn and worst_ratios(part.problem, motion)[own].max() <= 1 + ROUGH):
             break
+        within = (np.zeros(motion.durations.size), within[1])
         before, rows = rows, near_rows(part, motion, NEAR)
         state.rows = carried(before, duals, rows)
     return _Ended(success, rows, duals, iterations, build)
