@@ -19,11 +19,12 @@ NEAR = 0.5
 0.7 a round of quintics fails now and then."""
 FLAT = 1e-6
 """Second derivative by the segment's parameter, in shares of the limit, below which a row stays at
-its place: the whole segment differs by an eighth of that, less than the excess that is repaired by
-a stretch. To follow the extremum would mean to follow rounding errors."""
+its place: to follow an extremum of which rounding decides where it is keeps rounds from settling.
+With 1e-7 or 1e-5 some do not either."""
 AWAY = 0.02
 """Share of its segment from which an extremum has gone, not moved."""
 _FIELDS = ("joint", "segment", "order", "s")
+"""Arrays of `Places`."""
 POSITION_NEAR = 0.3
 """Distance to a position limit, in the joint's span, from which an extremum has a row."""
 
@@ -60,23 +61,32 @@ def carried(before: Rows, duals: Array, rows: Rows) -> Array:
     return out
 
 
-def kept_rows(
-    program: LongProgram, before: Rows, duals: Array, rows: Rows, loaded_from: float
+def with_loaded(
+    program: LongProgram, before: Rows, duals: Array, rows: Rows, loaded: float
 ) -> Rows:
-    """The rows, and old ones with a multiplier whose extremum has gone: these stay at their place.
+    """Rows, and with them the old ones with a multiplier whose extremum is gone, at their places.
 
     Where a derivative is all but constant its extremum jumps through the whole segment. Without
-    the places where it was, rounds would go on in a circle.
+    rows at the places where it was, rounds go on in a circle.
+
+    Parameters
+    ----------
+    program : LongProgram
+    before : Rows
+        Of a round that is over.
+    duals : ndarray
+        Their multipliers.
+    rows : Rows
+        At the extrema of the motion that it found.
+    loaded : float
+        Multiplier from which a row of that round was active.
     """
-    loaded = np.flatnonzero(np.abs(duals) > loaded_from)
-    if not loaded.size:
+    kept = np.flatnonzero(np.abs(duals) > loaded)
+    if kept.size and rows.sign.size:
+        old, new = (_lines(these, program.joints) for these in (before, rows))
+        kept = kept[np.abs(new[_nearest(new, old[kept])] - old[kept]) > AWAY]
+    if not kept.size:
         return rows
-    joints = program.joints
-    old, new = _lines(before, joints)[loaded], _lines(rows, joints)
-    gone = np.ones(loaded.size, dtype=bool)
-    if new.size:
-        gone = np.abs(new[_nearest(new, old)] - old) > AWAY
-    kept = loaded[gone]
     parts = [(getattr(rows.places, f), getattr(before.places, f)[kept]) for f in _FIELDS]
     places = Places(*(np.concatenate(part) for part in parts))
     at = program.order_of_rows(places)

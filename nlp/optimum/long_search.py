@@ -19,12 +19,12 @@ from .judgement import KKT_TOLERANCE
 from .long_formulation import LongProgram
 from .long_optimality import LongKKT, long_kkt
 from .long_round import TOLERANCES, fresh, multipliers, solve_round
-from .long_rows import EVERY, NEAR, carried, kept_rows, near_rows
+from .long_rows import EVERY, NEAR, carried, near_rows, with_loaded
 from .long_start import excess_of
 from .long_windows import FEWEST, joined_windows
 
 ROUNDS = 12
-"""Most rounds; three or four suffice where any number does."""
+"""Most rounds of one attempt; three to six suffice where any number does."""
 JOINED = 2
 """Round, counted from 0, that joined windows take the place of those before: the first whose
 tolerance and barrier are the last ones."""
@@ -35,8 +35,8 @@ WITHIN = 3.0
 """Factor by which a round changes a duration at most: the extrema of a motion far away are others,
 and without a bound some quintics leave for motions of which the rows say nothing."""
 LOADED = 10.0
-"""Multiplier, in tolerances of its round, from which a row stays although its extremum has gone:
-what is not active keeps about the tolerance."""
+"""Multiplier, in tolerances of its round, from which a row was active: the barrier leaves about the
+tolerance on the others."""
 SETTLED = 2e-9
 """Excess over a limit at which the rounds end: a stretch, which costs as much, repairs it."""
 
@@ -88,7 +88,7 @@ def long_search(problem: Problem, start: Array, floor: Array, until: float) -> L
     build, iterations = time.perf_counter() - began, 0
     local: LongLocal | None = None
     rough: Array | None = None
-    turn = failures = 0
+    turn = failures = done = 0
     if problem.segments >= FEWEST:
         joined = joined_windows(program, trajectory, floor, until)
         if joined is not None:
@@ -98,9 +98,10 @@ def long_search(problem: Problem, start: Array, floor: Array, until: float) -> L
             rows = near_rows(program, fit(problem.curve, problem.waypoints, h), NEAR)
             state.rows = carried(joined.rows, joined.duals, rows)
             iterations, build = joined.iterations, build + joined.build_seconds
-    for _ in range(ROUNDS):
+    while done < ROUNDS:
         if iterations and (time_up() or time.monotonic() > until):
             break
+        done += 1
         before = state.x[: problem.segments] * program.unit
         within = (before / WITHIN, before * WITHIN)
         duals, success, count, seconds = solve_round(program, rows, state, turn, within)
@@ -115,7 +116,8 @@ def long_search(problem: Problem, start: Array, floor: Array, until: float) -> L
             failures += 1
             if failures > FAILURES:
                 break
-            turn, back = 0, start if rough is None else rough
+            turn = done = 0
+            back = start if rough is None else rough
             trajectory = fit(problem.curve, problem.waypoints, back)
             state = fresh(program, back, trajectory)
             rows = near_rows(program, trajectory, EVERY)
@@ -130,8 +132,8 @@ def long_search(problem: Problem, start: Array, floor: Array, until: float) -> L
             if kkt.residual <= KKT_TOLERANCE and turn >= len(TOLERANCES) - 1:
                 break
         loaded = LOADED * TOLERANCES[min(turn, len(TOLERANCES) - 1)]
-        next_rows = kept_rows(program, rows, duals, near_rows(program, trajectory, NEAR), loaded)
-        state.rows, rows, turn = carried(rows, duals, next_rows), next_rows, turn + 1
+        now = with_loaded(program, rows, duals, near_rows(program, trajectory, NEAR), loaded)
+        state.rows, rows, turn = carried(rows, duals, now), now, turn + 1
     if local is None and rough is not None:
         local = LongLocal(rough, None, iterations, build)
     return local

@@ -69,6 +69,41 @@ def test_the_answer_is_optimal_by_the_dense_conditions(name: str) -> None:
         assert near == pytest.approx(a.multiplier, rel=1e-3)
 
 
+def one_joint(curve: Interpolant, seed: int) -> Problem:
+    """Way-points of a random walk of uneven limits: here and there it runs at its velocity limit.
+
+    Over two or three segments the velocity is all but constant there: its extremum is anywhere.
+    """
+    rng = np.random.default_rng(seed)
+    q = np.cumsum(rng.uniform(-1, 1, (curve.segments + 1, 1)), axis=0)
+    limits = [np.exp(rng.uniform(*np.log(pair), 1)) for pair in ((0.5, 3), (1, 10), (5, 80))]
+    return Problem(q, Limits(*limits), curve)
+
+
+PLATEAUS = [
+    pytest.param(cubic_spline(60), 0, id="60 cubic segments"),
+    pytest.param(cubic_spline(190), 2, id="190 cubic segments"),
+    pytest.param(cubic_spline(199), 0, id="199 cubic segments"),
+    pytest.param(cubic_spline(250), 1, id="250 cubic segments"),
+    pytest.param(quintic_spline(40), 0, id="40 quintic segments"),
+]
+
+
+@pytest.mark.parametrize(("curve", "seed"), PLATEAUS)
+def test_a_plateau_at_the_velocity_limit_keeps_no_search_from_its_end(
+    curve: Interpolant, seed: int
+) -> None:
+    problem = one_joint(curve, seed)
+    answer = long_search(problem, way_start(problem), np.full(curve.segments, 1e-5), np.inf)
+    assert answer is not None
+    assert answer.kkt is not None
+    assert answer.kkt.residual <= 1e-8
+    assert check(problem, answer.durations).verdict is Verdict.PASS
+    mirrored = Problem(problem.waypoints[::-1], problem.limits, curve)
+    total = solve(mirrored).total_time
+    assert total == pytest.approx(float(answer.durations.sum()), rel=1e-7)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["cubic", "quintic"])
 @pytest.mark.parametrize("seed", [1, 2])
@@ -144,9 +179,9 @@ def test_a_round_that_fails_begins_again_from_the_best_motion(
     calls: list[int] = []
 
     def failing(
-        program: LongProgram, rows: Rows, state: object, turn: int
+        program: LongProgram, rows: Rows, state: object, turn: int, within: object
     ) -> tuple[np.ndarray, bool, int, float]:
-        duals, success, count, seconds = round_(program, rows, state, turn)  # type: ignore[arg-type]
+        duals, success, count, seconds = round_(program, rows, state, turn, within)  # type: ignore[arg-type]
         calls.append(turn)
         return duals, success and len(calls) != 2, count, seconds
 

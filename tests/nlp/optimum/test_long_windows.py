@@ -10,7 +10,7 @@ from trajgap.nlp import Status, solve
 from trajgap.nlp.optimum import long_search as long_search_module
 from trajgap.nlp.optimum import long_windows
 from trajgap.nlp.optimum.long_formulation import LongProgram, Rows
-from trajgap.nlp.optimum.long_rows import carried, near_rows
+from trajgap.nlp.optimum.long_rows import carried, near_rows, with_loaded
 from trajgap.nlp.optimum.long_search import long_search
 from trajgap.nlp.optimum.long_start import excess_of, way_start
 from trajgap.nlp.optimum.long_windows import Joined, joined_windows, spans
@@ -206,6 +206,26 @@ def test_multipliers_go_to_the_rows_that_continue_theirs() -> None:
     none = replace(none, sign=none.sign[:0], places=Places(*(np.zeros(0, int),) * 3, np.zeros(0)))
     assert carried(none, np.zeros(0), after).tolist() == [0.0] * 7
     assert carried(before, duals, none).size == 0
+
+
+def test_a_row_with_a_multiplier_stays_until_an_extremum_is_beside_it() -> None:
+    problem = problem_of(CURVES["cubic"])
+    program = LongProgram(problem, 1.0, np.zeros(SEGMENTS))
+
+    def rows(*places: tuple[int, int, float, float]) -> Rows:
+        k, r, s, sign = (np.array(column) for column in zip(*places, strict=True))
+        return Rows(Places(np.zeros_like(k), k, r, s), sign, np.full(len(places), 0.5))
+
+    before = rows((1, 1, 0.2, 1.0), (3, 1, 0.2, 1.0), (4, 1, 0.2, 1.0), (5, 1, 0.2, -1.0))
+    now = rows((0, 1, 0.9, 1.0), (3, 1, 0.21, 1.0), (4, 1, 0.7, 1.0), (5, 1, 0.2, 1.0))
+    duals = np.array([2e-3, 2e-3, 2e-3, -2e-3])
+    found = with_loaded(program, before, duals, now, 1e-3)
+    rows_found = zip(found.places.segment, found.places.s, found.sign, found.weight, strict=True)
+    assert sorted(tuple(map(float, one)) for one in rows_found) == [
+        (0, 0.9, 1, 0.5), (1, 0.2, 1, 0), (3, 0.21, 1, 0.5), (4, 0.2, 1, 0), (4, 0.7, 1, 0.5),
+        (5, 0.2, -1, 0), (5, 0.2, 1, 0.5),
+    ]  # fmt: skip
+    assert with_loaded(program, before, duals, now, 1e-2) is now
 
 
 def test_the_excess_is_that_of_the_batch_evaluator() -> None:
