@@ -95,8 +95,20 @@ def with_loaded(
     return Rows(replace(places, **{f: getattr(places, f)[at] for f in _FIELDS}), sign, weight)
 
 
-def near_rows(program: LongProgram, trajectory: Trajectory, near: float) -> Rows:
-    """Rows at all extrema inside segments that come near their limit, with their weights."""
+def near_rows(
+    program: LongProgram, trajectory: Trajectory, near: float, flat: float = FLAT
+) -> Rows:
+    """Rows at all extrema inside segments that come near their limit, with their weights.
+
+    Parameters
+    ----------
+    program : LongProgram
+    trajectory : Trajectory
+    near : float
+        Share of its limit from which an extremum has a row.
+    flat : float
+        Second derivative, as in `FLAT`, below which a row stays at its place.
+    """
     problem = program.problem
     found: list[tuple[Array | Indices, ...]] = []
     for j in range(program.joints):
@@ -125,14 +137,16 @@ def near_rows(program: LongProgram, trajectory: Trajectory, near: float) -> Rows
     places = Places(joint, segment, order, place)
     at = program.order_of_rows(places)
     places = Places(joint[at], segment[at], order[at], place[at])
-    return Rows(places, sign[at], _newton_weights(program, trajectory, places))
+    return Rows(places, sign[at], _newton_weights(program, trajectory, places, flat))
 
 
-def _newton_weights(program: LongProgram, trajectory: Trajectory, places: Places) -> Array:
+def _newton_weights(
+    program: LongProgram, trajectory: Trajectory, places: Places, flat: float
+) -> Array:
     """1/f″ of f, a derivative in units of order one as a function of s; 0 where f is flat."""
     curvature = along(trajectory, places, 2)
     rate = (program.unit / trajectory.durations[places.segment]) ** places.order
     curvature = curvature * rate / program.angle[places.joint]
     limits = program.limits[places.joint, np.maximum(places.order, 1) - 1]
-    flat = np.abs(curvature) < FLAT * np.where(places.order == 0, 1.0, limits)
-    return np.where(flat, 0.0, 1.0 / np.where(flat, 1.0, curvature))
+    stays = np.abs(curvature) < flat * np.where(places.order == 0, 1.0, limits)
+    return np.where(stays, 0.0, 1.0 / np.where(stays, 1.0, curvature))

@@ -19,7 +19,7 @@ from .judgement import KKT_TOLERANCE
 from .long_formulation import LongProgram
 from .long_optimality import LongKKT, long_kkt
 from .long_round import TOLERANCES, fresh, multipliers, solve_round
-from .long_rows import EVERY, NEAR, carried, near_rows, with_loaded
+from .long_rows import EVERY, FLAT, NEAR, carried, near_rows, with_loaded
 from .long_start import excess_of
 from .long_windows import FEWEST, joined_windows
 
@@ -28,12 +28,16 @@ ROUNDS = 12
 JOINED = 2
 """Round, counted from 0, that joined windows take the place of those before: the first whose
 tolerance and barrier are the last ones."""
-FAILURES = 2
+FAILURES = 3
 """Rounds without success after which a search is given up; each begins again from the best motion
 with rows at all its extrema."""
 WITHIN = 3.0
 """Factor by which a round changes a duration at most: the extrema of a motion far away are others,
-and without a bound some quintics leave for motions of which the rows say nothing."""
+and without a bound some quintics leave for motions of which the rows say nothing. Its square root
+after each failure."""
+FLATTER, FLATTEST = 10.0, 1e-2
+"""Factor and end of the second derivative below which rows stay, where limits are kept and the
+conditions of an optimum are not met: multipliers of rows that follow a vague extremum are vague."""
 LOADED = 10.0
 """Multiplier, in tolerances of its round, from which a row was active: the barrier leaves about the
 tolerance on the others."""
@@ -89,6 +93,7 @@ def long_search(problem: Problem, start: Array, floor: Array, until: float) -> L
     local: LongLocal | None = None
     rough: Array | None = None
     turn = failures = done = 0
+    flat = FLAT
     if problem.segments >= FEWEST:
         joined = joined_windows(program, trajectory, floor, until)
         if joined is not None:
@@ -103,7 +108,8 @@ def long_search(problem: Problem, start: Array, floor: Array, until: float) -> L
             break
         done += 1
         before = state.x[: problem.segments] * program.unit
-        within = (before / WITHIN, before * WITHIN)
+        factor = WITHIN ** (0.5**failures)
+        within = (before / factor, before * factor)
         duals, success, count, seconds = solve_round(program, rows, state, turn, within)
         iterations, build = iterations + count, build + seconds
         h = state.x[: problem.segments] * program.unit
@@ -129,10 +135,13 @@ def long_search(problem: Problem, start: Array, floor: Array, until: float) -> L
             if local is None or local.kkt is None or kkt.residual < local.kkt.residual:
                 local = LongLocal(longer, kkt, iterations, build)
             # A round with an eased tolerance leaves its barrier's gap: 1.6e-7 of a total was seen.
-            if kkt.residual <= KKT_TOLERANCE and turn >= len(TOLERANCES) - 1:
-                break
+            if turn >= len(TOLERANCES) - 1:
+                if kkt.residual <= KKT_TOLERANCE:
+                    break
+                flat = min(FLATTEST, FLATTER * flat)
         loaded = LOADED * TOLERANCES[min(turn, len(TOLERANCES) - 1)]
-        now = with_loaded(program, rows, duals, near_rows(program, trajectory, NEAR), loaded)
+        extrema = near_rows(program, trajectory, NEAR, flat)
+        now = with_loaded(program, rows, duals, extrema, loaded)
         state.rows, rows, turn = carried(rows, duals, now), now, turn + 1
     if local is None and rough is not None:
         local = LongLocal(rough, None, iterations, build)
