@@ -17,8 +17,8 @@ from .long_formulation import LongProgram, Rows
 from .long_optimality import Multipliers
 from .symbolic import ca
 
-ITERATIONS = 150
-"""IPOPT's most iterations in a round: what settles takes 10 to 60."""
+ITERATIONS = 250
+"""IPOPT's most iterations in a round: what settles takes 10 to 60, seldom up to 170."""
 TOLERANCES = (1e-3, 1e-6, 1e-9)
 """IPOPT's tolerances in the first round, the second and the later ones: the first rows are not the
 last."""
