@@ -20,7 +20,7 @@ from .starts import SETTLED_SEGMENTS, equal_start
 
 LEAST_DURATION = 1e-4
 """Least duration that is searched where no bound is higher, in shares of the mean of equal ones."""
-TRIED_ANEW = 200
+TRIED_ANEW = 100
 """Segments up to which the tracked NLP takes over where this search does not settle: dense
 gradients make it take minutes beyond."""
 SHORTER = 2e-9
