@@ -28,13 +28,20 @@ SHORTER = 2e-9
 
 
 def long_enough(problem: Problem, ask: Ask) -> bool:
-    """Whether a problem is searched here: many segments, in each of which something moves.
+    """Whether a problem is searched here alone: one of many segments.
 
-    This search knows limits of equal sides.
-    Below, small dense searches are quicker and look for more basins.
+    Below, there are searches that look for more basins.
+    """
+    return problem.segments > SETTLED_SEGMENTS and covers(problem, ask)
+
+
+def covers(problem: Problem, ask: Ask) -> bool:
+    """Whether this search knows the curve and the limits, and something moves in each segment.
+
+    It knows limits of equal sides.
     """
     curve = problem.curve.piecewise
-    if curve is None or curve.free or ask.form is not None or curve.segments <= SETTLED_SEGMENTS:
+    if curve is None or curve.free or ask.form is not None:
         return False
     if problem.limits.uneven:
         return False

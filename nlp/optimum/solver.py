@@ -31,6 +31,7 @@ from .idle import idle_segments, with_least_idle
 from .ipopt import compiled, structure_of
 from .judgement import judged, stretchable
 from .long_solve import long_enough, solve_long
+from .middle_solve import settled_sparsely
 from .matching import jump_equations, matched
 from .newton import settled_quickly
 from .short_ways import moving_at_floor, short_ways, shortened
@@ -172,7 +173,9 @@ def _solve_moving(problem: Problem, ask: Ask) -> Solution:
         alike = stretchable(problem) and (ask.initial >= UNEQUAL * mean).all()
         solution = _tracked(problem, ask) if alike else _searched(problem, ask)
     else:
-        solution = _shortened(problem, _quickly(problem, ask) or _widely(problem, ask), ask)
+        floor = _floor(problem, FLOORS[-1])
+        found = _quickly(problem, ask) or settled_sparsely(problem, ask, floor)
+        solution = _shortened(problem, found or _widely(problem, ask), ask)
     solution = _with_known(problem, solution, ask)
     if solution.durations is None:
         solution = _without_jumps(problem, solution, ask.seed)
