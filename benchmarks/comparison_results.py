@@ -355,7 +355,7 @@ def tables_of(one: Comparison) -> Iterator[str]:
     medians = (f"median {one.standard} (s)", f"median {one.improved} (s)")
     yield f"### {one.improved} against {one.standard}: `{one.case}`"
     yield ""
-    yield " ".join(comparison_words(one))
+    yield " ".join(comparison_words(one, load_case(one.case)))
     yield ""
     pair = ("95 % interval", "shorter at all")
     yield from header("problem, reading", "handling", "runs", *medians, what, *pair)

@@ -151,7 +151,8 @@ def _row(outcome: ReadingOutcome, default: str, summary: ReadingsSummary) -> tup
         whose = f"joint {worst.joint} {worst.quantity}" if worst.joint else worst.quantity
         plural = "s" if len(outcome.excesses) > 1 else ""
         over = f"segment{plural} {segments(outcome.excesses)}\n{whose}, ratio {worst.ratio:.4g}"
-    jumps = f"\n{outcome.jumps} velocity jumps" if outcome.jumps else ""
+    several = "s" if outcome.jumps > 1 else ""
+    jumps = f"\n{outcome.jumps} velocity jump{several}" if outcome.jumps else ""
     limits = text(None)
     if not isinstance(outcome.keeping, Why):
         limits = word(outcome.keeping)

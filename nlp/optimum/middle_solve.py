@@ -29,7 +29,7 @@ def settled_sparsely(problem: Problem, ask: Ask, floor: Array) -> Solution | Non
     if not covers(problem, ask) or time_up():
         return None
     began = time.perf_counter()
-    wide = exact_starts(problem, ask.starts, ask.seed, floor)
+    wide = exact_starts(problem, ask.starts - 1, ask.seed, floor)
     points = np.array([way_start(problem), *(basin.durations for basin in wide)])
     found = solve_long(problem, replace(ask, initial=points))
     if found is None or found.status is not Status.OPTIMAL:

@@ -31,6 +31,8 @@ _WALL = 8.0
 """Seconds on the clock for each second of processor time, before it counts as hanging."""
 _GRACE = 5.0
 """Seconds that processes started by a child may outlive it: they notice by a closed pipe."""
+_LOOK = 0.02
+"""Seconds between two looks for a worker: one takes several times as long to import anything."""
 _PASS_MODES = 0b1110
 """CAP_DAC_OVERRIDE, CAP_DAC_READ_SEARCH and CAP_FOWNER as bits."""
 _FAILED = 99
@@ -42,8 +44,9 @@ class Plan:
     """What is done to a child while it runs.
 
     ``signal`` is sent ``after`` seconds from the start; with ``to_worker`` it goes to a process
-    that the child has started. ``largest_file`` limits every file that it writes, in bytes, and
-    ``without_rights`` takes its rights to write what it does not own.
+    that the child has started, so many seconds after the first of them is seen. ``largest_file``
+    limits every file that it writes, in bytes, and ``without_rights`` takes its rights to write
+    what it does not own.
     """
 
     signal: int | None = None
@@ -226,17 +229,21 @@ def _drop_rights() -> None:
 
 def _watched(pid: int, pipes: list[int], began: float, plan: Plan, wall: float) -> Ended:
     seen: dict[int, list[bytes]] = {fd: [] for fd in pipes}
-    due = [] if plan.signal is None else [began + plan.after]
+    awaited = plan.to_worker
+    due = [] if plan.signal is None else [began + (0.0 if awaited else plan.after)]
     late = signalled = False
     with selectors.DefaultSelector() as ready:
         for fd in pipes[plan.close_output :]:
             ready.register(fd, selectors.EVENT_READ)
         while ready.get_map():
             now = time.monotonic()
-            if due and now >= due[0]:
+            if due and now >= due[0] and awaited:
+                awaited = not _workers(pid)
+                due = [now + (_LOOK if awaited else plan.after)]
+            if due and now >= due[0] and not awaited:
                 signalled = _send(pid, plan)
-                # A worker may not have been started yet.
-                due = [] if signalled or not plan.to_worker else [now + 0.02]
+                # Between two pieces of work there may be none.
+                due = [] if signalled or not plan.to_worker else [now + _LOOK]
             if now - began > wall:
                 late = True
                 _sweep(pid)

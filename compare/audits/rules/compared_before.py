@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
-from ...documents import Basis, Finding
+from ....problem import Case
+from ...documents import Basis, Finding, noted
 from ..comparisons import Ablated, Comparison, Designed, Listed, comparison_of
 from ..study import Study
 
+_TOGETHER = "all joints together"
+"""Where a study names no other way of searching: a card calls such an optimum so."""
 _STRONG = 0.75
 """Probability from which the text says that taking something away changes a run: 3 of 4 pairs."""
 
@@ -26,12 +29,12 @@ def cite_comparisons(study: Study) -> Iterator[Finding]:
             claim=claim.id,
             printed=known.printed,
             computed=f"shows in {_percent(first.shown.share)} of the pairs",
-            message=" ".join(comparison_words(known)),
+            message=" ".join(comparison_words(known, study.case)),
         )
 
 
-def comparison_words(known: Comparison) -> Iterator[str]:
-    """What a comparison came to, in sentences."""
+def comparison_words(known: Comparison, case: Case) -> Iterator[str]:
+    """What a comparison came to, in sentences; its problems are called as the case calls them."""
     what = f"at least {100 * known.advantage:.4g} % shorter" if known.advantage else "shorter"
     runs = known.listed[0].shown.runs
     yield (
@@ -43,9 +46,9 @@ def comparison_words(known: Comparison) -> Iterator[str]:
         f"{known.standard} {_each(known.listed)}."
     )
     if known.designed:
-        several = len(known.designed) > 1
+        searched = _called(case, [one.problem for one in known.designed])
         counts = [
-            f"{one.typical} of {one.pairs} pairs of settings{f' ({one.problem})' * several}"
+            noted(f"{one.typical} of {one.pairs} pairs of settings", searched[one.problem])
             for one in known.designed
         ]
         best = max(known.designed, key=lambda one: one.most or 0.0)
@@ -55,7 +58,26 @@ def comparison_words(known: Comparison) -> Iterator[str]:
             + (f", most often with {_settings(known, best)} ({_percent(best.most)})." if best.most
                else ".")
         )  # fmt: skip
-    yield from _taken_away(known.ablated)
+    yield from _taken_away(known.ablated, case)
+
+
+def _called(case: Case, problems: Iterable[str]) -> dict[str, str]:
+    """What tells each of these problems from the others, in words; empty where there is one.
+
+    A study writes a problem as its id, and behind a comma how its joints were searched.
+    """
+    parted = {one: one.partition(", ")[::2] for one in problems}
+    titles = {one.id: one.title or one.id for one in case.problems}
+    ids, ways = ({part[k] for part in parted.values()} for k in (0, 1))
+    return {
+        one: "; ".join(
+            [
+                *([titles.get(pid, pid)] if len(ids) > 1 else []),
+                *([way or _TOGETHER] if len(ways) > 1 else []),
+            ]
+        )
+        for one, (pid, way) in parted.items()
+    }
 
 
 def _each(listed: Sequence[Listed]) -> str:
@@ -83,21 +105,19 @@ def _settings(known: Comparison, best: Designed) -> str:
     return f"{known.standard} at {best.at[0]} and {known.improved} at {best.at[1]}"
 
 
-def _taken_away(ablated: Sequence[Ablated]) -> Iterator[str]:
+def _taken_away(ablated: Sequence[Ablated], case: Case) -> Iterator[str]:
     """What single parts of the improvement change, for each problem in a sentence."""
     alone = [one for one in ablated if len(one.without) == 1 and one.shown.shorter is not None]
-    problems = list(dict.fromkeys(one.problem for one in alone))
-    for problem in problems:
+    for problem, searched in _called(case, [one.problem for one in alone]).items():
         parts = [
             f"{' and '.join(one.without)} {_percent(one.shown.shorter)}"
             + (" (it helps)" if _above(one) else " (it harms)" if _below(one) else "")
             for one in alone
             if one.problem == problem
         ]
-        where = f" ({problem})" if len(problems) > 1 else ""
         yield (
-            "Share of pairs in which the whole algorithm is shorter than itself"
-            f"{where} without {', '.join(parts)}."
+            f"{noted('Share of pairs', searched)} in which the whole algorithm is shorter than "
+            f"itself without {', '.join(parts)}."
         )
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import re
 import signal
 import subprocess
 import sys
@@ -14,7 +13,7 @@ from typing import Any
 
 import pytest
 from support.checkout import ROOT
-from support.command_line import CASE, Run, on_terminal, strict
+from support.command_line import CASE, Run, strict
 from support.documents import SCHEMA, assert_valid
 from support.shipped_problems import COVERED_PROBLEMS
 from trajgap.compare.cli import certifying as cli_certify
@@ -207,16 +206,6 @@ def test_ctrl_c_leaves_the_interval_and_a_state(run: Run) -> None:
     assert verify(result["certificate"]).proves
     code, _, _ = run("solve", *ONE, "--certify", "--gap", "0.01", "--resume", result["state"])
     assert code == 0
-
-
-@pytest.mark.slow
-def test_the_live_line_on_a_terminal() -> None:
-    code, seen = on_terminal(["solve", *ONE, "--certify"], COLUMNS="160")
-    assert code == 0
-    shown = re.search(
-        r"waypoints-rad: [\d.]+ to [\d.]+ s, gap [\de.-]+, \d+ open, \d+ nodes/s", seen
-    )
-    assert shown, seen
 
 
 def test_verify_says_what_each_file_is_worth(run: Run, tmp_path: Path) -> None:

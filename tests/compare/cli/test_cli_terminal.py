@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import re
 import signal
 import subprocess
 import sys
@@ -62,6 +63,21 @@ def test_colours_and_progress_only_on_a_terminal(run: Run) -> None:
     code, out, err = run(*arguments)
     assert (code, err) == (0, "")
     assert "\x1b" not in out
+
+
+@pytest.mark.slow
+def test_the_live_line_on_a_terminal() -> None:
+    asked = (IRB, "--problem", "limit-80", "--reading", "waypoints-rad")
+    # So narrow an interval takes several times as long as the line needs to change.
+    narrow = ("--certify", "--gap", "1e-9", "--no-cache")
+    code, seen = on_terminal(["solve", *asked, *narrow], COLUMNS="160")
+    assert code == 0
+    shown = re.findall(
+        r"way-points in radians: ([\d.]+) to [\d.]+ s, gap [\de.+-]+, \d+ open, \d+ nodes/s", seen
+    )
+    assert shown, seen
+    assert float(shown[0]) < float(shown[-1]), seen
+    assert "waypoints-rad:" not in seen
 
 
 def test_no_color(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -15,7 +15,7 @@ from trajgap.compare.audits.comparisons import (
     PairShown,
     all_comparisons,
 )
-from trajgap.compare.audits.rules.compared_before import cite_comparisons
+from trajgap.compare.audits.rules.compared_before import cite_comparisons, comparison_words
 from trajgap.compare.audits.study import Study
 from trajgap.compare.documents import ClaimVerdict, Severity
 from trajgap.problem import load_case
@@ -86,6 +86,36 @@ def test_a_study_is_cited_with_every_number_and_decides_nothing(
         "in which the whole algorithm is shorter than itself without niches 90 % (it helps), "
         "mutation 50 %."
     )
+
+
+def test_what_was_searched_is_called_by_words() -> None:
+    """The study writes problems as ids, with what was searched of their joints."""
+
+    def said(case: str, *problems: str) -> str:
+        lists = {
+            name: tuple(
+                one.model_copy(update={"problem": problem})
+                for problem in problems
+                for one in getattr(MADE_UP, name)
+            )
+            for name in ("ablated", "designed")
+        }
+        return " ".join(comparison_words(MADE_UP.model_copy(update=lists), load_case(case)))
+
+    apart = said(PUMA, "six-joints, each joint by itself", "six-joints")
+    assert "six-joints" not in apart
+    settings = "in 12 of 256 pairs of settings"
+    assert f"{settings} (each joint by itself) and {settings} (all joints together)," in apart
+    shares = "in which the whole algorithm is shorter than itself without niches 90 %"
+    assert f"Share of pairs (each joint by itself) {shares}" in apart
+    assert f"Share of pairs (all joints together) {shares}" in apart
+    both = said("irb460-pso-353", "limit-80", "limit-110")
+    title = "Shortest time of joint 5 under"
+    assert f"{settings} ({title} 80 °/s) and {settings} ({title} 110 °/s)," in both
+    assert "limit-" not in both
+    alone = said(PUMA, "six-joints, each joint by itself")
+    assert f"{settings}, most often" in alone
+    assert f"Share of pairs {shares}" in alone
 
 
 @pytest.mark.parametrize("one", all_comparisons(), ids=lambda one: one.case)
