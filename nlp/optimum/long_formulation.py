@@ -209,7 +209,8 @@ class LongProgram:
         k, j = places.segment[i], places.joint[i]
         h = self._h[k.tolist()]
         flat = {
-            m: ca.vec(self._d[m])[(self._row[m][k] + self._held[m].size * j).tolist()]
+            # One number, taken several times, is a row.
+            m: ca.vec(ca.vec(self._d[m])[(self._row[m][k] + self._held[m].size * j).tolist()])
             for m in range(max(r, 1), degree + 1)
         }
         s, w = ca.DM(places.s[i]), weight[i]

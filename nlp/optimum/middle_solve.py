@@ -15,6 +15,9 @@ from .long_solve import covers, solve_long
 from .long_start import way_start
 from .solution import Solution, Status
 
+FROM = 9
+"""Segments from which this is quicker: below, dense descents take a fraction of a second."""
+
 
 def settled_sparsely(problem: Problem, ask: Ask, floor: Array) -> Solution | None:
     """The answer of sparse searches where it is an optimum above every floor, or None.
@@ -23,10 +26,15 @@ def settled_sparsely(problem: Problem, ask: Ask, floor: Array) -> Solution | Non
     ----------
     problem : Problem
     ask : Ask
+        Without starts of its own.
     floor : ndarray, shape (segments,)
         Least durations of the wide search, s.
+
+    Returns
+    -------
+    Solution or None
     """
-    if not covers(problem, ask) or time_up():
+    if problem.segments < FROM or not covers(problem, ask) or time_up():
         return None
     began = time.perf_counter()
     wide = exact_starts(problem, ask.starts - 1, ask.seed, floor)

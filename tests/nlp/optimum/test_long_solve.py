@@ -27,6 +27,7 @@ from trajgap.problem import (
     piecewise,
     quintic_spline,
 )
+from trajgap.problem.curves import Places
 
 SEGMENTS = 26
 
@@ -244,3 +245,20 @@ def test_expressions_are_those_of_the_fitted_curve(name: str) -> None:
     local = long_search(problem, way_start(problem), np.full(SEGMENTS, 1e-4), np.inf)
     assert local is not None
     assert check(problem, local.durations).max_violation <= 1e-9
+
+
+def test_several_places_in_the_one_segment_of_a_higher_degree() -> None:
+    import casadi as ca
+
+    rest = ((1, 0.0), (2, 0.0))
+    problem = one_joint(piecewise((4, *(3,) * 8), 2, ends=rest, finish=rest[:1]), 4)
+    h = way_start(problem)
+    program = LongProgram(problem, float(h.mean()), np.zeros(h.size))
+    trajectory = fit(problem.curve, problem.waypoints, h)
+    zero = np.zeros(3, dtype=np.int64)
+    places = Places(zero, zero, zero + 1, np.array([0.2, 0.5, 0.9]))
+    values = program.at_places(places, np.zeros(3))
+    evaluated = ca.Function("f", [program.variables], [values])
+    found = np.asarray(evaluated(program.pack(h, trajectory.scaled))).ravel()
+    truth = along(trajectory, places, 0) / h[0] / problem.limits.derivatives[0, 0]
+    np.testing.assert_allclose(found, truth, rtol=1e-9)
