@@ -31,8 +31,8 @@ from .idle import idle_segments, with_least_idle
 from .ipopt import compiled, structure_of
 from .judgement import judged, stretchable
 from .long_solve import long_enough, solve_long
-from .middle_solve import settled_sparsely
 from .matching import jump_equations, matched
+from .middle_solve import settled_sparsely
 from .newton import settled_quickly
 from .short_ways import moving_at_floor, short_ways, shortened
 from .smoother import as_answer, carried_over, smoother
