@@ -20,6 +20,7 @@ FILLER = HERE.parent / "docs" / "tables.py"
 """Puts a table that was printed into its CSV and its page."""
 TABLES = {
     "scale": ("scale.py",),
+    "long-random": ("long_random.py",),
     "solve-small": ("solve_small.py",),
     "batch-evaluation": ("batch_evaluation.py",),
     "loop-overhead": ("harness.py", "overhead"),
