@@ -39,6 +39,8 @@ def asked(
     lower: float,
 ) -> Ask:
     """The arguments of `solve`, read; a clear refusal of what has the wrong shape."""
+    if starts < 1:
+        raise TrajgapError(f"starts: must be 1 or more, got {starts}")
     points = np.empty((0, problem.segments)) if known is None else vectors(problem, "known", known)
     nodal = None if known_nodal is None else np.asarray(known_nodal, dtype=np.float64)
     wanted = (len(points), problem.curve.free, len(problem.joints))

@@ -105,11 +105,11 @@ def as_local(problem: Problem, found: Descent) -> Local | None:
     h = np.clip(found.durations, problem.duration_lower, problem.duration_upper)
     try:
         verdict = check(problem, h)
+        if found.feasible and 1.0 < verdict.stretch < 1.0 + ROUND and problem.curve.homogeneous:
+            h = np.clip(h * verdict.stretch, problem.duration_lower, problem.duration_upper)
+            verdict = check(problem, h)
     except TrajgapError:
         return None
-    if found.feasible and 1.0 < verdict.stretch < 1.0 + ROUND and problem.curve.homogeneous:
-        h = np.clip(h * verdict.stretch, problem.duration_lower, problem.duration_upper)
-        verdict = check(problem, h)
     return Local(h, None, float(h.sum()), found.converged, kept(problem, verdict), found.steps)
 
 

@@ -126,13 +126,15 @@ def long_kkt(problem: Problem, durations: Array, found: Multipliers, violation: 
     counts = COUNTS / problem.segments
     active = []
     breaks = trajectory.breaks
+    size = np.where(position, np.abs(edge) / scale, 1.0)
     for i in np.flatnonzero((weights > counts) & (np.abs(excess) <= REACHED)).tolist():
         k, r, w = int(places.segment[i]), int(places.order[i]), float(weights[i] * total)
         quantity = "position" if r == 0 else QUANTITIES[r - 1]
-        more = MORE * (float(scale[i]) if r == 0 else 1.0)
         time = float(breaks[k] + places.s[i] * durations[k])
+        if places.s[i] == 0.0 and k > 0 and problem.piecewise.smooth_order(k) >= r:
+            k -= 1  # what both segments share belongs to the first, as in `optimality.kkt`
         joint = problem.joints[int(j[i])]
-        active.append(Active(joint, quantity, k, time, w, -more * w))
+        active.append(Active(joint, quantity, k, time, w, -MORE * float(size[i]) * w))
     for k in np.flatnonzero((walls > counts) & (np.abs(gap) <= REACHED)).tolist():
         w = float(walls[k] * total)
         sign = float(np.sign(found.walls[k]))

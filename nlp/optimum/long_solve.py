@@ -56,7 +56,7 @@ def solve_long(problem: Problem, ask: Ask) -> Solution | None:
     Parameters
     ----------
     problem : Problem
-        For which `long_enough` holds.
+        For which `covers` holds.
     ask : Ask
         Without starts of its own one is taken: durations after the ways of the segments.
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
 
 import numpy as np
 
 from ...problem import Array, Problem
 from .asked import Ask
+from .better import BETTER
 from .clock import time_up
 from .exact_multistart import exact_starts
 from .long_solve import covers, solve_long
@@ -19,28 +19,32 @@ FROM = 9
 """Segments from which this is quicker: below, dense descents take a fraction of a second."""
 
 
-def settled_sparsely(problem: Problem, ask: Ask, floor: Array) -> Solution | None:
-    """The answer of sparse searches where it is an optimum above every floor, or None.
+def searched_sparsely(problem: Problem, ask: Ask, floor: Array) -> tuple[Solution | None, bool]:
+    """The answer of sparse searches, and whether no other search is needed.
 
     Parameters
     ----------
     problem : Problem
     ask : Ask
-        Without starts of its own.
+        Without starts of its own: durations after the ways of the segments are the first, basins
+        are the others.
     floor : ndarray, shape (segments,)
         Least durations of the wide search, s.
 
     Returns
     -------
-    Solution or None
+    answer : Solution or None
+        *Optimal* or *feasible*; None where there is none, or this search does not apply.
+    settled : bool
+        Whether it is an optimum, and no basin has a shorter motion that keeps the limits.
     """
     if problem.segments < FROM or not covers(problem, ask) or time_up():
-        return None
-    began = time.perf_counter()
-    wide = exact_starts(problem, ask.starts - 1, ask.seed, floor)
+        return None, False
+    wide = exact_starts(problem, ask.starts, ask.seed, floor)
     points = np.array([way_start(problem), *(basin.durations for basin in wide)])
     found = solve_long(problem, replace(ask, initial=points))
-    if found is None or found.status is not Status.OPTIMAL:
-        return None
-    seconds = time.perf_counter() - began - found.build_seconds
-    return replace(found, solve_seconds=seconds)
+    if found is None or found.status not in (Status.OPTIMAL, Status.FEASIBLE):
+        return None, False
+    shortest = min((basin.total for basin in wide if basin.excess <= 0.0), default=np.inf)
+    missed = shortest < found.total_time * (1 - BETTER)
+    return found, found.status is Status.OPTIMAL and not missed

@@ -29,9 +29,11 @@ class Active:
     time : float or None
         Where on the trajectory, s.
     multiplier : float
-        Lagrange multiplier of ratio ≤ 1, s.
+        Lagrange multiplier of ratio ≤ 1, s; of a position of its excess over the limit's size, or
+        over 1 rad or m where that is larger.
     sensitivity : float
-        First-order change of the total time for 10 % more of this limit, s.
+        First-order change of the total time for 10 % more of this limit, s; of a position for a
+        range that is wider by 10 % of the limit's size.
     """
 
     joint: str | None
@@ -61,6 +63,8 @@ class _Constraint:
     excess: float
     sign: float
     scale: float
+    size: float
+    """Of the limit, in scales."""
 
 
 def _peaks_near_limit(
@@ -84,17 +88,20 @@ def _peaks_near_limit(
                 if excess >= -near and not repeated:
                     sign = float(np.sign(e.value))
                     label = (name, quantity, curve.segment_of(durations, e), e.time)
-                    found.append(_Constraint(e, label, excess, sign, limit))
+                    found.append(_Constraint(e, label, excess, sign, limit, 1.0))
         low, high = float(limits.position_lower[j]), float(limits.position_upper[j])
         if np.isfinite(low) or np.isfinite(high):
-            size = max(1.0, *(abs(x) for x in (low, high) if np.isfinite(x)))
             for e in extrema(trajectory, j, 0):
+                given = e.s in (0.0, 1.0) and every_break
                 for limit, sign in ((low, -1.0), (high, 1.0)):
-                    excess = sign * (e.value - limit) / size
-                    given = e.s in (0.0, 1.0) and every_break
-                    if np.isfinite(limit) and excess >= -near and not given:
+                    if given or not np.isfinite(limit):
+                        continue
+                    scale = max(1.0, abs(limit))
+                    excess = sign * (e.value - limit) / scale
+                    if excess >= -near:
                         label = (name, "position", curve.segment_of(durations, e), e.time)
-                        found.append(_Constraint(e, label, excess, sign, size))
+                        size = abs(limit) / scale
+                        found.append(_Constraint(e, label, excess, sign, scale, size))
     return found
 
 
@@ -177,7 +184,7 @@ def kkt(
     for c, w in zip(rows, weights, strict=False):
         joint, quantity, segment, time = c.label
         multiplier = float(w * total)
-        more = MORE if quantity != "position" else MORE * abs(c.scale)
+        more = MORE * c.size
         if multiplier > 0:
             reached.append(Active(joint, quantity, segment, time, multiplier, -more * multiplier))
     for (k, sign, _), w in zip(bounds, weights[len(rows) :], strict=True):

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from ...problem import Array, Problem, check
 from .asked import Ask, asked
+from .better import BETTER, better_of, settled
 from .clock import TooLong, stopping_after, time_up
 from .decided import decided, kept
 from .descent import restored
@@ -32,7 +33,7 @@ from .ipopt import compiled, structure_of
 from .judgement import judged, stretchable
 from .long_solve import long_enough, solve_long
 from .matching import jump_equations, matched
-from .middle_solve import settled_sparsely
+from .middle_solve import searched_sparsely
 from .newton import settled_quickly
 from .short_ways import moving_at_floor, short_ways, shortened
 from .smoother import as_answer, carried_over, smoother
@@ -55,8 +56,6 @@ RESTORABLE = 200
 """Segments up to which the feasibility phase runs: its gradients are dense, (segments)² each."""
 ANYWHERE = 8
 """Further starts all over the box before nothing is said to be found."""
-BETTER = 1e-7
-"""Relative gain from which a basin or a known motion is worth a further descent."""
 
 
 def solve(
@@ -82,8 +81,9 @@ def solve(
         Its coupling is not looked at: durations are shared by all joints of the problem. See
         `solve_per_joint` for the other procedure.
     starts : int
-        Number of starts: equal durations first, then screened random ones. Determined splines of
-        more than 24 segments have one start, durations after the way of each segment.
+        Number of starts, 1 or more: equal durations first, then screened random ones. Determined
+        splines of 9 segments and more begin with durations after the way of each segment; up to 24
+        segments so many basins of a wide search follow.
     seed : int
         Seed of the random starts.
     initial : array_like, shape (starts, segments), optional
@@ -100,7 +100,8 @@ def solve(
         Time limit, kept to within a step of the search: the best motion so far is the answer, and
         `why` says that the time ran out. What is found then depends on the machine.
     start_seconds : float
-        After so long no further start is begun; one that has begun is finished.
+        After so long no further start is begun; one that has begun is finished, and on splines of
+        9 segments and more the round that it is in.
     lower : float
         A proved lower bound of the total, s. It saves searches, and is no part of the answer: no
         further descents challenge a total that it leaves no room below.
@@ -173,9 +174,7 @@ def _solve_moving(problem: Problem, ask: Ask) -> Solution:
         alike = stretchable(problem) and (ask.initial >= UNEQUAL * mean).all()
         solution = _tracked(problem, ask) if alike else _searched(problem, ask)
     else:
-        floor = _floor(problem, FLOORS[-1])
-        found = _quickly(problem, ask) or settled_sparsely(problem, ask, floor)
-        solution = _shortened(problem, found or _widely(problem, ask), ask)
+        solution = _shortened(problem, _quickly(problem, ask) or _searched_twice(problem, ask), ask)
     solution = _with_known(problem, solution, ask)
     if solution.durations is None:
         solution = _without_jumps(problem, solution, ask.seed)
@@ -189,6 +188,14 @@ def _quickly(problem: Problem, ask: Ask) -> Solution | None:
     if ask.form is not None or time_up():
         return None
     return settled_quickly(problem, ask.starts, ask.seed, FLOORS[-1], ask.until, ask.lower)
+
+
+def _searched_twice(problem: Problem, ask: Ask) -> Solution:
+    """The answer of sparse searches, or the better one of theirs and of a wide search."""
+    found, settled = searched_sparsely(problem, ask, _floor(problem, FLOORS[-1]))
+    if found is None:
+        return _widely(problem, ask)
+    return found if settled else better_of(_widely(problem, ask), found)
 
 
 def _widely(problem: Problem, ask: Ask) -> Solution:
@@ -340,14 +347,14 @@ def _stretched_start(problem: Problem, solution: Solution) -> Solution:
 def _challenged(problem: Problem, solution: Solution, wide: list[Basin], ask: Ask) -> Solution:
     """The answer, or a better one from a basin that the tracked NLP did not reach."""
     if solution.status not in (Status.OPTIMAL, Status.FEASIBLE) and not time_up():
-        return _better_of(solution, _searched(problem, ask, solution.durations))
-    bar = solution.best * (1 - BETTER) if _settled(solution) else np.inf
+        return better_of(solution, _searched(problem, ask, solution.durations))
+    bar = solution.best * (1 - BETTER) if settled(solution) else np.inf
     points = np.array([basin.durations for basin in wide if basin.total < bar])
     if points.size == 0 or time_up():
         return solution
     floor = _floor(problem, FLOORS[-1])
     found = judged(problem, exact_search(problem, points, floor, ask.until), floor, solution.starts)
-    return _better_of(solution, found)
+    return better_of(solution, found)
 
 
 def _shortened(problem: Problem, solution: Solution, ask: Ask) -> Solution:
@@ -364,28 +371,12 @@ def _shortened(problem: Problem, solution: Solution, ask: Ask) -> Solution:
         # One by one: a start that ends above a floor says nothing of one that ends at it.
         found = _searched(problem, replace(ask, initial=point[None]), shares=DEEPER)
         starts = solution.starts + found.starts
-        solution = replace(_better_of(solution, found), starts=starts)
+        solution = replace(better_of(solution, found), starts=starts)
     return solution
 
 
 def _late(ask: Ask) -> bool:
     return time.monotonic() > ask.until or time_up()
-
-
-def _better_of(one: Solution, other: Solution) -> Solution:
-    """The first of two answers, unless the second is shorter, or as short and better founded."""
-    if other.durations is None:
-        return one
-    shorter = other.best < one.best * (1 - BETTER)
-    founded = other.best <= one.best * (1 + BETTER) and _settled(other) and not _settled(one)
-    if one.durations is not None and not shorter and not founded:
-        return one
-    iterations = one.iterations + other.iterations
-    return replace(other, build_seconds=one.build_seconds, iterations=iterations)
-
-
-def _settled(solution: Solution) -> bool:
-    return solution.status in (Status.OPTIMAL, Status.NOT_ATTAINED)
 
 
 def _with_known(problem: Problem, solution: Solution, ask: Ask) -> Solution:

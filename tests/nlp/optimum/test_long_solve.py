@@ -18,6 +18,7 @@ from trajgap.problem import (
     Interpolant,
     Limits,
     Problem,
+    TrajgapError,
     Verdict,
     check,
     cubic_spline,
@@ -68,6 +69,41 @@ def test_the_answer_is_optimal_by_the_dense_conditions(name: str) -> None:
     for a in big:
         near = mine[a.joint, a.quantity, round(a.time or 0.0, 4)]
         assert near == pytest.approx(a.multiplier, rel=1e-3)
+
+
+@pytest.mark.parametrize("sparsely", [True, False])
+@pytest.mark.parametrize("shift", [5.0, 0.0, -0.5])
+def test_sensitivities_of_position_limits_are_differences_of_totals(
+    monkeypatch: pytest.MonkeyPatch, shift: float, sparsely: bool
+) -> None:
+    if not sparsely:
+        monkeypatch.setattr(solver, "searched_sparsely", lambda *_: (None, False))
+    q = np.array([[0.0], [1.0], [0.95], [0.2], [0.25], [1.0], [0.9], [0.0], [0.1], [0.7]]) + shift
+    low, high = np.array([shift - 0.003]), np.array([shift + 1.003])
+    limits = Limits(3.0, 5.0, position_lower=low, position_upper=high)
+    problem = Problem(q, limits, cubic_spline(9))
+    answer = solve(problem)
+    assert answer.status is Status.OPTIMAL
+    step = 1e-5
+    for changed, edge in (
+        (limits.with_positions(low, high + step * np.abs(high)), shift + 1.003),
+        (limits.with_positions(low - step * np.abs(low), high), shift - 0.003),
+    ):
+        wider = solve(Problem(q, changed, problem.curve)).total_time
+        trajectory = fit(problem.curve, q, np.asarray(answer.durations))
+        found = [
+            a.sensitivity
+            for a in answer.active
+            if a.quantity == "position" and abs(trajectory(np.array([a.time]))[0, 0] - edge) < 1e-5
+        ]
+        assert sum(found) == pytest.approx(0.1 * (wider - answer.total_time) / step, rel=1e-2)
+
+
+def test_the_number_of_starts_is_one_or_more() -> None:
+    problem = problem_of(cubic_spline(9))
+    with pytest.raises(TrajgapError, match="starts: must be 1 or more, got 0"):
+        solve(problem, starts=0)
+    assert solve(problem, starts=1).status is Status.OPTIMAL
 
 
 def one_joint(curve: Interpolant, seed: int) -> Problem:
