@@ -29,7 +29,8 @@ class ActiveLimit(Entry):
     multiplier: Real
     """s"""
     sensitivity: Real
-    """First-order change of the total time for 10 % more of this limit, s."""
+    """First-order change of the total time for 10 % more of this limit, s; of a position limit, for
+    a range wider by 10 % of the limit's size."""
 
 
 class RetimedPath(Entry):
