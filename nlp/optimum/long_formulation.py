@@ -46,8 +46,8 @@ class Rows:
 
 REACH = 0.5
 """Farthest that a place follows its extremum, in shares of its segment: one of a derivative that is
-all but constant runs to any distance, where the polynomial means nothing. With 0.1 some searches
-take twice as many rounds."""
+all but constant runs to any distance, where the polynomial means nothing. With 0.1 the
+windows of a plateau over 250 segments did not join, with 0.25 one of 150 did not settle."""
 
 
 class LongProgram:

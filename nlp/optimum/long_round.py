@@ -93,11 +93,11 @@ def solve_round(
     rows: Rows,
     state: RoundState,
     turn: int,
-    within: tuple[Array, Array],
+    box: tuple[Array, Array],
 ) -> tuple[Array, bool, int, float]:
     """One call of IPOPT: the rows' multipliers, success, iterations, and seconds of building.
 
-    No duration leaves ``within`` (s): rows say nothing of motions far from theirs.
+    No duration leaves the ``box`` (s): rows say nothing of motions far from theirs.
     """
     began = time.perf_counter()
     ends = program.ends
@@ -111,7 +111,7 @@ def solve_round(
     build = time.perf_counter() - began
     low, high = program.bounds()
     n = program.segments
-    least, most = (np.clip(side / program.unit, low[:n], high[:n]) for side in within)
+    least, most = (np.clip(side / program.unit, low[:n], high[:n]) for side in box)
     low[:n], high[:n] = least, most
     room, upper = program.rooms(rows.places, rows.sign), rows.sign > 0
     one, zero = np.ones(ends.s.size), np.zeros(state.equalities.size)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...problem import Array
 from ...problem.curves import Places, Trajectory, near_extrema
@@ -23,8 +24,6 @@ its place: to follow an extremum of which rounding decides where it is keeps rou
 With 1e-7 or 1e-5 some do not either."""
 AWAY = 0.02
 """Share of its segment from which an extremum has gone, not moved."""
-_FIELDS = ("joint", "segment", "order", "s")
-"""Arrays of `Places`."""
 POSITION_NEAR = 0.3
 """Distance to a position limit, in the joint's span, from which an extremum has a row."""
 
@@ -61,6 +60,25 @@ def carried(before: Rows, duals: Array, rows: Rows) -> Array:
     return out
 
 
+def picked(rows: Rows, at: Indices | NDArray[np.bool_]) -> Rows:
+    """Some rows, by a mask or by their numbers."""
+    p = rows.places
+    places = Places(p.joint[at], p.segment[at], p.order[at], p.s[at])
+    return Rows(places, rows.sign[at], rows.weight[at])
+
+
+def together(parts: list[Rows]) -> Rows:
+    """Rows of several parts, one after the other."""
+    joint, segment, order, s = (
+        np.concatenate([getattr(rows.places, name) for rows in parts])
+        for name in ("joint", "segment", "order", "s")
+    )
+    sign, weight = (
+        np.concatenate([getattr(rows, n) for rows in parts]) for n in ("sign", "weight")
+    )
+    return Rows(Places(joint, segment, order, s), sign, weight)
+
+
 def with_loaded(
     program: LongProgram, before: Rows, duals: Array, rows: Rows, loaded: float
 ) -> Rows:
@@ -87,12 +105,9 @@ def with_loaded(
         kept = kept[np.abs(new[_nearest(new, old[kept])] - old[kept]) > AWAY]
     if not kept.size:
         return rows
-    parts = [(getattr(rows.places, f), getattr(before.places, f)[kept]) for f in _FIELDS]
-    places = Places(*(np.concatenate(part) for part in parts))
-    at = program.order_of_rows(places)
-    sign = np.concatenate([rows.sign, before.sign[kept]])[at]
-    weight = np.concatenate([rows.weight, np.zeros(kept.size)])[at]
-    return Rows(replace(places, **{f: getattr(places, f)[at] for f in _FIELDS}), sign, weight)
+    old_rows = picked(before, kept)
+    both = together([rows, replace(old_rows, weight=np.zeros(kept.size))])
+    return picked(both, program.order_of_rows(both.places))
 
 
 def near_rows(

@@ -31,7 +31,7 @@ tolerance and barrier are the last ones."""
 FAILURES = 3
 """Rounds without success after which a search is given up; each begins again from the best motion
 with rows at all its extrema."""
-WITHIN = 3.0
+CHANGED = 3.0
 """Factor by which a round changes a duration at most: the extrema of a motion far away are others,
 and without a bound some quintics leave for motions of which the rows say nothing. Its square root
 after each failure."""
@@ -108,9 +108,9 @@ def long_search(problem: Problem, start: Array, floor: Array, until: float) -> L
             break
         done += 1
         before = state.x[: problem.segments] * program.unit
-        factor = WITHIN ** (0.5**failures)
-        within = (before / factor, before * factor)
-        duals, success, count, seconds = solve_round(program, rows, state, turn, within)
+        factor = CHANGED ** (0.5**failures)
+        box = (before / factor, before * factor)
+        duals, success, count, seconds = solve_round(program, rows, state, turn, box)
         iterations, build = iterations + count, build + seconds
         h = state.x[: problem.segments] * program.unit
         whole = bool(np.isfinite(h).all() and (h > 0).all())

@@ -15,11 +15,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...problem import Array, Problem
-from ...problem.curves import Places, Trajectory
+from ...problem.curves import Trajectory
 from .clock import time_up
 from .long_formulation import LABELS, Indices, LongProgram, Rows
 from .long_round import RoundState, fresh, solve_round
-from .long_rows import EVERY, NEAR, carried, near_rows
+from .long_rows import EVERY, NEAR, carried, near_rows, picked, together
 from .long_start import worst_ratios
 
 FEWEST = 200
@@ -144,7 +144,7 @@ def joined_windows(
             into[at] = values[mine]
         found.append(_own_rows(ended, span[0], own))
     parts = [rows for rows, _ in found]
-    return Joined(state, _together(parts), np.concatenate([d for _, d in found]), iterations, build)
+    return Joined(state, together(parts), np.concatenate([d for _, d in found]), iterations, build)
 
 
 class _Numbered:
@@ -173,18 +173,18 @@ def _solved(part: LongProgram, state: RoundState, own: slice) -> _Ended:
     rows = near_rows(part, motion, EVERY)
     # Places that follow their extremum lead astray as long as the motion changes much.
     rows = replace(rows, weight=np.zeros(rows.sign.size))
-    within = (SHRUNK * motion.durations, np.full(motion.durations.size, np.inf))
+    box = (SHRUNK * motion.durations, np.full(motion.durations.size, np.inf))
     iterations, build = 0, 0.0
     for turn in range(ROUNDS):
         # The first two tolerances and barriers: the last ones are for rows that hardly change.
-        duals, success, count, seconds = solve_round(part, rows, state, min(turn, 1), within)
+        duals, success, count, seconds = solve_round(part, rows, state, min(turn, 1), box)
         iterations, build = iterations + count, build + seconds
         motion = part.trajectory(state.x)
         success = success and bool((motion.durations > 0).all())
         last = not success or turn + 1 == ROUNDS
         if last or (turn and worst_ratios(part.problem, motion)[own].max() <= 1 + ROUGH):
             break
-        within = (np.zeros(motion.durations.size), within[1])
+        box = (np.zeros(motion.durations.size), box[1])
         before, rows = rows, near_rows(part, motion, NEAR)
         state.rows = carried(before, duals, rows)
     return _Ended(success, rows, duals, iterations, build)
@@ -195,16 +195,5 @@ def _own_rows(ended: _Ended, first: int, own: tuple[int, int]) -> tuple[Rows, Ar
     rows, at = ended.rows, ended.rows.places
     segment = at.segment + first
     mine = (own[0] <= segment) & (segment < own[1])
-    places = Places(at.joint[mine], segment[mine], at.order[mine], at.s[mine])
-    return Rows(places, rows.sign[mine], rows.weight[mine]), ended.duals[mine]
-
-
-def _together(parts: list[Rows]) -> Rows:
-    joint, segment, order, s = (
-        np.concatenate([getattr(rows.places, name) for rows in parts])
-        for name in ("joint", "segment", "order", "s")
-    )
-    sign, weight = (
-        np.concatenate([getattr(rows, n) for rows in parts]) for n in ("sign", "weight")
-    )
-    return Rows(Places(joint, segment, order, s), sign, weight)
+    whole = replace(rows, places=replace(at, segment=segment))
+    return picked(whole, mine), ended.duals[mine]

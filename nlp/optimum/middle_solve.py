@@ -6,20 +6,22 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...problem import Array, Problem
+from ...problem import Problem
 from .asked import Ask
 from .better import BETTER
 from .clock import time_up
-from .exact_multistart import exact_starts
 from .long_solve import covers, solve_long
 from .long_start import way_start
 from .solution import Solution, Status
+from .wide_search import Basin
 
 FROM = 9
 """Segments from which this is quicker: below, dense descents take a fraction of a second."""
 
 
-def searched_sparsely(problem: Problem, ask: Ask, floor: Array) -> tuple[Solution | None, bool]:
+def searched_sparsely(
+    problem: Problem, ask: Ask, wide: list[Basin]
+) -> tuple[Solution | None, bool]:
     """The answer of sparse searches, and whether no other search is needed.
 
     Parameters
@@ -28,8 +30,8 @@ def searched_sparsely(problem: Problem, ask: Ask, floor: Array) -> tuple[Solutio
     ask : Ask
         Without starts of its own: durations after the ways of the segments are the first, basins
         are the others.
-    floor : ndarray, shape (segments,)
-        Least durations of the wide search, s.
+    wide : list of Basin
+        Of a wide search.
 
     Returns
     -------
@@ -40,7 +42,6 @@ def searched_sparsely(problem: Problem, ask: Ask, floor: Array) -> tuple[Solutio
     """
     if problem.segments < FROM or not covers(problem, ask) or time_up():
         return None, False
-    wide = exact_starts(problem, ask.starts, ask.seed, floor)
     points = np.array([way_start(problem), *(basin.durations for basin in wide)])
     found = solve_long(problem, replace(ask, initial=points))
     if found is None or found.status not in (Status.OPTIMAL, Status.FEASIBLE):

@@ -174,7 +174,7 @@ def _solve_moving(problem: Problem, ask: Ask) -> Solution:
         alike = stretchable(problem) and (ask.initial >= UNEQUAL * mean).all()
         solution = _tracked(problem, ask) if alike else _searched(problem, ask)
     else:
-        solution = _shortened(problem, _quickly(problem, ask) or _searched_twice(problem, ask), ask)
+        solution = _shortened(problem, _quickly(problem, ask) or _widely(problem, ask), ask)
     solution = _with_known(problem, solution, ask)
     if solution.durations is None:
         solution = _without_jumps(problem, solution, ask.seed)
@@ -190,20 +190,17 @@ def _quickly(problem: Problem, ask: Ask) -> Solution | None:
     return settled_quickly(problem, ask.starts, ask.seed, FLOORS[-1], ask.until, ask.lower)
 
 
-def _searched_twice(problem: Problem, ask: Ask) -> Solution:
-    """The answer of sparse searches, or the better one of theirs and of a wide search."""
-    found, settled = searched_sparsely(problem, ask, _floor(problem, FLOORS[-1]))
-    if found is None:
-        return _widely(problem, ask)
-    return found if settled else better_of(_widely(problem, ask), found)
-
-
 def _widely(problem: Problem, ask: Ask) -> Solution:
-    """The answer of a wide search, and of the tracked NLP where that is at its best."""
+    """The answer from the basins of a wide search: of sparse searches, else of the tracked NLP."""
     wide = exact_starts(problem, ask.starts, ask.seed, _floor(problem, FLOORS[-1]))
+    found, stands = searched_sparsely(problem, ask, wide)
+    if found is not None and stands:
+        return found
     if ordinary(problem, wide[0]):
-        return _challenged(problem, _tracked(problem, ask), wide, ask)
-    return _searched(problem, ask)
+        answer = _challenged(problem, _tracked(problem, ask), wide, ask)
+    else:
+        answer = _searched(problem, ask)
+    return answer if found is None else better_of(answer, found)
 
 
 def _floor(problem: Problem, share: float) -> Array:

@@ -27,7 +27,7 @@ the first nearly always does (at 1e-3 a second image is needed, at 1e-8 rows are
 the last leaves out what rounding would lose."""
 GUESSED = 1e-2
 """The same for the guess that an image has to stay below: shorter rows, and twice the sum of what
-is left covers the rest."""
+is left mostly covers the rest; where it does not, a further image does."""
 DENSE_AFTER_ALL = 6000
 """Up to this many coefficients, 300 MB, a dense inverse is tried where no banded one settles."""
 IMAGES = 3
