@@ -4,6 +4,7 @@
         --write docs/measurements/auditor-errors-clean.csv
     python benchmarks/auditor_errors.py faults --count 60 \
         --write docs/measurements/auditor-errors-faults.csv
+    python benchmarks/auditor_errors.py slips --count 10        # misprints that are named
     python benchmarks/auditor_errors.py show clean --seed 7     # one paper and what is said of it
     python benchmarks/auditor_errors.py page                    # the tables of the docs page
 
@@ -34,6 +35,7 @@ sys.path.insert(0, str(ROOT / "tests"))  # the papers are shared with the tests
 
 from support.papers.claims import draw  # noqa: E402
 from support.papers.planted import FAULTS, planted  # noqa: E402
+from support.papers.slipped import SLIPS, named, slipped  # noqa: E402
 
 CLEAN = ROOT / "docs" / "measurements" / "auditor-errors-clean.csv"
 FAULTY = ROOT / "docs" / "measurements" / "auditor-errors-faults.csv"
@@ -308,10 +310,21 @@ def show(fault: str, seed: int) -> None:
         print(f"{judgement.claim}: {judgement.verdict}: {judgement.why}")
 
 
+def count_slips(seeds: Sequence[int]) -> None:
+    """Print how many misprints of each kind the audit names."""
+    for kind in SLIPS:
+        papers = [slipped(kind, seed) for seed in seeds]
+        cases = [parse_case(one.draft.text(), f"{kind}.toml") for one in papers]
+        audits = [audit(case, certify_seconds=0).cases[0] for case in cases]
+        found = [named(one, heard) for one, heard in zip(papers, audits, strict=True)]
+        left = [seed for seed, hit in zip(seeds, found, strict=True) if not hit]
+        print(f"{kind}: {sum(found)} of {len(found)} named; not {left}", flush=True)
+
+
 def main() -> int:
     """Run, show or tabulate; 0 when done."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=_AS_WRITTEN)
-    parser.add_argument("what", choices=["clean", "faults", "show", "page", "merge"])
+    parser.add_argument("what", choices=["clean", "faults", "slips", "show", "page", "merge"])
     parser.add_argument("fault", nargs="?", default="clean", choices=["clean", *FAULTS])
     parser.add_argument("--count", type=int, default=100)
     parser.add_argument("--seed", type=int, default=0, help="the first seed, or that to show")
@@ -324,6 +337,8 @@ def main() -> int:
     seeds = range(given.seed + part - 1, given.seed + given.count, parts)
     if given.what == "show":
         show("" if given.fault == "clean" else given.fault, given.seed)
+    elif given.what == "slips":
+        count_slips(seeds)
     elif given.what == "page":
         PAGE.write_text(page_with(PAGE.read_text("utf-8"), tables()), encoding="utf-8")
     elif given.what == "merge":

@@ -45,7 +45,14 @@ from .curves import (
     uniform_cubic_b_spline,
 )
 from .described import Described
-from .errors import CaseError, CurveError, ProcessError, RatiosError, TrajgapError
+from .errors import (
+    CaseError,
+    CurveError,
+    ProcessError,
+    RatiosError,
+    SingularError,
+    TrajgapError,
+)
 from .evaluation import Evaluation, evaluate, evaluate_leading, keeps_limits, reachable_total
 from .fields import LimitPair, Strict
 from .file_names import LONGEST_NAME, file_name
@@ -62,8 +69,8 @@ from .files import (
 )
 from .gradient import peak_gradients
 from .jumps import Jump
-from .limits import QUANTITIES, Limits
-from .printed import Interval, Printed, down, up
+from .limits import QUANTITIES, Limits, half_range
+from .printed import Interval, Printed, down, read_float, up
 from .problem import Coupling, Problem
 from .robots import (
     CartesianLine,
@@ -131,6 +138,7 @@ __all__ = [
     "Quantity",
     "RatiosError",
     "Scale",
+    "SingularError",
     "StepKind",
     "Strict",
     "Timing",
@@ -159,6 +167,7 @@ __all__ = [
     "forward_kinematics",
     "from_si",
     "geometric_jacobian",
+    "half_range",
     "inverse_kinematics",
     "is_linear",
     "jtraj",
@@ -176,6 +185,7 @@ __all__ = [
     "quintic_spline",
     "quintic_spline_virtual",
     "reachable_total",
+    "read_float",
     "read_regular",
     "read_text",
     "recover_folder",

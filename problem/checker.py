@@ -18,7 +18,7 @@ from .curves import (
     largest_of_each,
     tops,
 )
-from .errors import CurveError
+from .errors import CurveError, SingularError
 from .jumps import Jump, jumps_of, of_many
 from .limits import QUANTITIES, half_range
 from .problem import Problem
@@ -266,11 +266,12 @@ def _duration_peaks(problem: Problem, h: Array) -> list[Peak]:
 
 
 def _no_curve(problem: Problem, h: Array, why: CurveError, tolerance: float) -> Check:
-    """Durations that define no curve keep no limit."""
+    """Durations that define no curve keep no limit; where rounding hides it, nothing is decided."""
+    verdict = Verdict.UNDECIDED if isinstance(why, SingularError) else Verdict.VIOLATED
     peak = Peak(None, "curve", why.segment, None, why.value, 0.0, np.inf, 0.0)
     return Check(
-        verdict=Verdict.VIOLATED,
-        limits=Verdict.VIOLATED,
+        verdict=verdict,
+        limits=verdict,
         worst=peak,
         peaks=(peak, *_duration_peaks(problem, h)),
         jumps=(),

@@ -54,6 +54,22 @@ class CurveError(TrajgapError):
         return self.reason
 
 
+class SingularError(CurveError):
+    """Durations at which rounding hides the curve: its linear system is singular in float64.
+
+    Nothing is known of such a curve, neither that it keeps a limit nor that it breaks one.
+
+    Parameters
+    ----------
+    reason : str
+    segment : int
+        The shortest segment, from 0.
+    """
+
+    def __init__(self, reason: str, segment: int) -> None:
+        super().__init__(reason, segment, 0.0)
+
+
 class CaseError(TrajgapError):
     """A case file, or a table meant to become one, cannot be used.
 

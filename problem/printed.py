@@ -18,6 +18,8 @@ _NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
 """One decimal number; group 2 is the exponent."""
 MINUS_SIGNS = str.maketrans({"\u2212": "-", "\u2013": "-", "\ufe63": "-", "\uff0d": "-"})
 """Minus signs that are printed or extracted, to the ASCII one."""
+_INFINITE = ("inf", "+inf", "-inf", "infinity", "+infinity", "-infinity")
+"""Words for what has no bound, as Python reads them."""
 _LONGEST = 64
 """Characters of one number: printed digits are fewer, and arithmetic on more could run away."""
 _LARGEST_EXPONENT = 300
@@ -29,6 +31,48 @@ class Interval(NamedTuple):
 
     lower: Fraction
     upper: Fraction
+
+
+def read_float(text: str) -> float:
+    """Read a decimal number, or ``inf``, as float64.
+
+    Parameters
+    ----------
+    text : str
+        Digits as `Printed` reads them; or ``inf``, ``+inf``, ``-inf`` in letters of
+        either size.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    TrajgapError
+        If it is none, or so large that it would silently become infinite.
+
+    Examples
+    --------
+    >>> read_float("-1.5e3"), read_float("inf")
+    (-1500.0, inf)
+    """
+    word = _short(text)
+    if word.lower() in _INFINITE:
+        return float(word)
+    if _NUMBER.fullmatch(word) is None:
+        raise TrajgapError(f"{text[:40]!r} is no number")
+    found = float(word)
+    if math.isinf(found):
+        raise TrajgapError(f"{text[:40]!r} is beyond the range of float64")
+    return found
+
+
+def _short(text: str) -> str:
+    """The characters of a number, of bounded length, with an ASCII minus sign."""
+    word = text.strip().translate(MINUS_SIGNS)
+    if len(word) > _LONGEST:
+        raise TrajgapError(f"a number of {len(word)} characters; at most {_LONGEST} are read")
+    return word
 
 
 def down(number: Fraction) -> float:
@@ -74,9 +118,7 @@ class Printed:
     def __post_init__(self) -> None:
         if not isinstance(self.text, str):
             raise TrajgapError(f"{self.text!r} is not text; printed digits are a string")
-        text = self.text.strip().translate(MINUS_SIGNS)
-        if len(text) > _LONGEST:
-            raise TrajgapError(f"a number of {len(text)} characters; at most {_LONGEST} are read")
+        text = _short(self.text)
         if not text:
             raise TrajgapError('is empty; write the printed digits, such as "0.660"')
         match = _NUMBER.fullmatch(text)
@@ -183,6 +225,20 @@ class Printed:
             for digit in "0123456789":
                 if digit != text[at]:
                     yield Printed(f"{text[:at]}{digit}{text[at + 1 :]}")
+
+    def slips(self) -> Iterator[Printed]:
+        """The number as it may have been meant if it is misprinted by one slip.
+
+        `one_digit_off`; ten times more or less, or the point put where none is printed; the other
+        sign.
+        """
+        yield from self.one_digit_off()
+        if "e" in self.text.lower() or not self.decimal:
+            return
+        digits = len(self.decimal.as_tuple().digits)
+        for places in (1, -1) if "." in self.text else (1, *range(-1, -digits, -1)):
+            yield Printed(f"{self.decimal.scaleb(places):f}")
+        yield Printed(f"{-self.decimal:f}")
 
     def __str__(self) -> str:
         return self.text

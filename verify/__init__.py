@@ -5,6 +5,7 @@ does the same as ``python -I FOLDER FILE...``, with the standard library only; p
 quintic splines need numpy. Format and mathematics are in docs/explanation/certificates.md.
 """
 
+from .bounds import shown_bound
 from .problem import CHORD, read_problem
 from .ranges import (
     MIX_DIGITS,
@@ -63,5 +64,6 @@ __all__ = [
     "read_problem",
     "seal",
     "shown",
+    "shown_bound",
     "verify_certificate",
 ]

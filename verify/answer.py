@@ -24,8 +24,9 @@ def check_durations(
 def check_answer(problem: StatedProblem, h: Sequence[Fraction], clock: Clock) -> None:
     """Refuse durations of other ratios, or whose trajectory does not keep every limit at all times.
 
-    A limit on a derivative asks for a continuous derivative one order below, but where each
-    segment is stretched in time by itself: there the limits are those inside the segments.
+    The velocity does not jump, nor does the acceleration of a joint whose jerk is limited, but
+    where each segment is stretched in time by itself: there the limits are those inside the
+    segments.
 
     Parameters
     ----------
@@ -52,12 +53,10 @@ def check_answer(problem: StatedProblem, h: Sequence[Fraction], clock: Clock) ->
                 _keeps(problem, j, k, piece, Fraction(1), h[k], clock)
         return
     for j, curve in enumerate(pieces(problem, h, clock)):
-        for order in (2, 3):
-            if all(side[j][order - 1] is None for side in problem.sides):
-                continue
-            what = "velocity" if order == 2 else "acceleration"
-            below = [derivative(piece, order - 1) for piece in curve]
-            for k, (left, right) in enumerate(pairwise(below)):
+        jerk = any(side[j][2] is not None for side in problem.sides)
+        for order, what in ((1, "velocity"), (2, "acceleration"))[: 2 if jerk else 1]:
+            slopes = [derivative(piece, order) for piece in curve]
+            for k, (left, right) in enumerate(pairwise(slopes)):
                 clock.check()
                 need(value_at(left, h[k]) == right[0], f"answer: the {what} jumps")
         for k, piece in enumerate(curve):

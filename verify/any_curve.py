@@ -198,11 +198,12 @@ class AnyCurve(ProofKind[Sides]):
         """
         asked, result = self._asked, Zero
         slope: dict[tuple[int, int], Fraction] = {}
+        fastest: dict[int, Fraction] = {}
         times = [Fraction(1)] * len(box)
         for row, weight in weighted:
             self.clock.check()
             k, joint = row.span, row.joint
-            v_max = required(self._speeds[joint], _NO_LIMIT)
+            v_max = fastest[joint] = required(self._speeds[joint], _NO_LIMIT)
             bend = required(asked.acceleration[joint], _NO_LIMIT)[1]
             need(v_max > 0 and bend > 0, "a row leans on a limit of 0")
             time, first, last, right = row.terms(asked.steps[k][joint], v_max, bend, box[k])
@@ -216,8 +217,7 @@ class AnyCurve(ProofKind[Sides]):
             self.clock.check()
             side = 0 if at == 0 else 1 if at == len(box) else None
             end = None if side is None else asked.ends[side][joint]
-            v_max = required(self._speeds[joint], _NO_LIMIT)
-            result += c * end if end is not None else -abs(c) * v_max
+            result += c * end if end is not None else -abs(c) * fastest[joint]
         return result
 
 

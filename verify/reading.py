@@ -198,7 +198,6 @@ def _read(path: str | Path, clock: Clock | None) -> bytes:
     number_ = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     with open(number_, "rb") as file:
         about = os.fstat(number_)
-        need(not stat.S_ISDIR(about.st_mode), "cannot be read (Is a directory); check the path")
         need(stat.S_ISREG(about.st_mode), "no regular file; name a certificate")
         need(about.st_size <= MOST_BYTES, f"larger than {MOST_BYTES} bytes; name a certificate")
         if clock is not None:

@@ -370,8 +370,9 @@ def _monomial(i: int, j: int) -> Poly:
 
 def _covers(poly: Poly, box: Square, clock: Clock) -> bool:
     """Whether all Bernstein coefficients on a box are ≥ 0."""
-    need(all(max(key) < SIZE for key in poly), "a row has too high a degree")
-    table = [[poly.get((i, j), 0) for j in range(SIZE)] for i in range(SIZE)]
+    table = [[0] * SIZE for _ in range(SIZE)]
+    for (i, j), x in poly.items():
+        table[i][j] = x
     for low, high in (box[2:], box[:2]):
         blossom = _blossom(low, high)
         table = [[sum(map(mul, line, row)) for row in blossom] for line in clock.each(table)]

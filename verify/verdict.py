@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import json
 from dataclasses import dataclass
-from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from fractions import Fraction
 from importlib import import_module
 from pathlib import Path
@@ -13,6 +12,7 @@ from typing import Any
 
 from . import any_curve
 from .answer import check_answer
+from .bounds import shown_bound
 from .problem import StatedProblem, read_problem
 from .ranges import MOST_SEGMENTS
 from .reading import (
@@ -331,13 +331,7 @@ def _read_proof(
 def _said(subject: Subject, lower: Fraction, upper: Fraction | None, infeasible: bool) -> str:
     if infeasible:
         return "no durations within their bounds keep the limits: infeasible"
-    said = f"the least total of {subject} is at least {_rounded(lower, ROUND_FLOOR)} s"
+    said = f"the least total of {subject} is at least {shown_bound(lower, 'lower', digits=12)} s"
     if upper is not None:
-        said += f" and at most {_rounded(upper, ROUND_CEILING)} s"
+        said += f" and at most {shown_bound(upper, 'upper', digits=12)} s"
     return said
-
-
-def _rounded(value: Fraction, side: str) -> str:
-    """Twelve digits on the safe side."""
-    quotient = Context(12, side).divide(Decimal(value.numerator), Decimal(value.denominator))
-    return f"{quotient.normalize():f}"

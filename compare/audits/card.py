@@ -4,44 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from ...problem import Verdict
-from ...problem.cases import (
-    AnyClaim,
-    DurationsClaim,
-    ImprovementClaim,
-    MaximumClaim,
-    TimeClaim,
-    TotalTimeClaim,
-)
+from ...problem.cases import ImprovementClaim
 from ..documents import (
     CARD_WORDS,
     Cause,
     CaveatKind,
     ClaimVerdict,
     Judgement,
-    Keeping,
-    Rounding,
     Severity,
     VerdictCard,
     Waterfall,
     Why,
-    among,
     count_words,
-    implausibly,
     known,
     more_errors,
-    noted,
-    quoted,
 )
 from .card_errors import plainly
-from .card_optimum import limited, on_doubted_points, optimum_line
+from .card_limits import limits_line
+from .card_optimum import on_doubted_points, optimum_line
 from .plausibility import implausible
-from .rules import blended, judge_row, said_to_keep
-from .stated import place
 from .study import Study
-
-_FEW = 2
-"""Readings or places that a sentence names; more are counted."""
 
 
 def verdict_card(
@@ -66,7 +48,7 @@ def verdict_card(
         Of at most `CARD_WORDS` words: errors that do not fit are counted.
     """
     words = {judgement.claim: judgement for judgement in judgements}
-    limits, judged = _limits(study, words)
+    limits, judged = limits_line(study, words)
     before = any(on_doubted_points(words[one]) for one in judged if one in words)
     if before:
         limits = f"On doubted way-points, {limits[:1].lower()}{limits[1:]}"
@@ -153,171 +135,6 @@ def _explanation(causes: Sequence[Cause], room: int) -> str | None:
             said = [f"{one} {effect}" for effect in effects for one in (called, plain)]
             return next((e for e in (*said, called, plain) if count_words(e) <= room), None)
     return None
-
-
-# --- limits ---------------------------------------------------------------------------------------
-
-
-_TELLING = 1.01
-"""Ratio to a limit at the printed digits from which on a card gives it: below, digits end there."""
-
-
-def _within(study: Study, sets: Sequence[DurationsClaim | MaximumClaim]) -> str:
-    """Whether it takes the rounding of the digits to keep the limits, and of how much."""
-    judged = [
-        (found, study.claim_rounding(one, *pair).verdict)
-        for one in sets
-        if study.has_durations(one)
-        for pair in study.claim_pairs(one)
-        for found in (study.motion_check(one, *pair),)
-        if found is not None
-    ]
-    found = [one for one, _ in judged]
-    if all(one.limits is Verdict.PASS for one in found):
-        return ""
-    cut = any(verdict is Rounding.BREAKS for _, verdict in judged)
-    how = "if digits were cut off" if cut else "within rounding"
-    peaks = [one.worst for one in found if one.worst is not None]
-    worst = max(peaks, key=lambda peak: peak.ratio, default=None)
-    if worst is None or worst.ratio < _TELLING or worst.joint is None:
-        return f" {how}"
-    share = 100 * (worst.ratio - 1)
-    return (
-        f" only {how}: as printed, the {worst.quantity} of joint {worst.joint} exceeds "
-        f"its limit by {share:.1f} %"
-    )
-
-
-def _limits(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[str]]:
-    """Whether printed durations keep their limits, and the claims that the sentence speaks of."""
-    case = study.case
-    if not study.has_problems:
-        unread = "the text that was read has no way-points"
-        return f"Whether the limits are kept is not checkable: {unread}.", set()
-    about = [c for c in case.claims if getattr(c, "checks", "") == "within_limits"]
-    sets = [
-        c
-        for c in case.claims
-        if isinstance(c, DurationsClaim | MaximumClaim) and said_to_keep(study, c)
-    ]
-    elsewhere = [c for c in sets if c.other_curve is not None and not blended(c)]
-    sets = [c for c in sets if c not in elsewhere]
-    asked = [c.id for c in about or sets if c.id in words]
-    timed = [c for c in case.claims if isinstance(c, TimeClaim) and c.other_curve is None]
-    bare = timed and all(isinstance(c, TotalTimeClaim) for c in timed)
-    if bare and not about and not any(study.has_durations(c) for c in case.claims):
-        return (
-            "Whether the limits are kept is not checkable: totals are printed, durations are not.",
-            set(),
-        )
-    if not asked and elsewhere:
-        return (
-            "Whether the limits are kept is not checkable: printed durations are of another curve.",
-            set(),
-        )
-    if not asked:
-        return "No printed durations are said to keep limits.", set()
-    held = {c.id: _of_limits(study, c) for c in sets}
-    stated = {c.id: words[c.id].readings for c in about if c.id in words}
-    found = {**held, **stated}
-    under = {
-        reading: {found[one].get(reading, ClaimVerdict.NOT_CHECKABLE) for one in asked}
-        for reading in study.readings
-    }
-    broken = sum(ClaimVerdict.REFUTED in each for each in under.values())
-    kept = sum(each == {ClaimVerdict.SUPPORTED} for each in under.values())
-    jump = _jumping(words[one] for one in asked)
-    spoken = {*asked, *(c.id for c in sets)}
-    if kept == len(under) and not any(limited(study, *pair) for pair in study.pairs):
-        return f"No limits are stated, so that none can be broken{jump}.", set()
-    if kept == len(under):
-        return f"The printed durations keep the limits{_within(study, sets)}{jump}.", spoken
-    if broken == len(under):
-        wrong = _broken(study, sets, held)
-        return f"{wrong} for every value that rounds to the printed digits.", spoken
-    if not broken and not kept:
-        return "Whether the limits are kept is not decided by the printed digits.", spoken
-    return f"{_differing(study, under, _in_doubt(sets, held))}{jump}.", spoken
-
-
-def _differing(study: Study, found: Mapping[str, set[ClaimVerdict]], where: str) -> str:
-    """Under which readings limits are kept, broken or neither; an implausible one stands last."""
-    open_ = str(ClaimVerdict.NOT_CHECKABLE)
-    groups: dict[str, list[str]] = {"kept": [], "broken": [], open_: []}
-    for reading, words in found.items():
-        broken, kept = ClaimVerdict.REFUTED in words, words == {ClaimVerdict.SUPPORTED}
-        groups["broken" if broken else "kept" if kept else open_].append(reading)
-    far = implausible(study)
-    said = {word: own for word, own in groups.items() if own}
-    if len(found) > _FEW:
-        (first, own), *others = said.items()
-        shares = [f"{first} under {among(own, len(found), far)}"]
-        shares += [
-            noted(f"{word} under {len(those)}", implausibly(those, far)) for word, those in others
-        ]
-        return f"Limits{where} are {', '.join(shares)}"
-    ordered = sorted(said.items(), key=lambda item: all(one in far for one in item[1]))
-    parts = []
-    for word, own in ordered:
-        mark = "the implausible " if all(one in far for one in own) else ""
-        which = " and ".join(quoted(one, study.case.labels) for one in own)
-        parts.append(f"{word} under {mark}{which}")
-    return f"Limits{where} are {', '.join(parts)}"
-
-
-_Held = Mapping[str, Mapping[str, ClaimVerdict]]
-"""What is known of the limits of printed durations, by claim and reading."""
-
-
-def _of_limits(study: Study, claim: AnyClaim) -> dict[str, ClaimVerdict]:
-    """Whether printed durations keep the limits, by reading, whatever else is said of the claim.
-
-    A sum that is wrong refutes the claim too, and breaks no limit.
-    """
-    each: dict[str, set[ClaimVerdict]] = {}
-    for row in judge_row(study, claim):
-        if row.reading is not None and row.verdict is not None:
-            each.setdefault(row.reading, set()).add(row.verdict)
-    for pid, rid in study.claim_pairs(claim):
-        unknown = study.unmoved(claim, pid, rid) is not None
-        keeping = Keeping.UNDECIDED if unknown else study.claim_keeping(claim, pid, rid)
-        each.setdefault(rid, set()).add(_MEANS.get(keeping, ClaimVerdict.NOT_CHECKABLE))
-    worst = (ClaimVerdict.REFUTED, ClaimVerdict.NOT_CHECKABLE, ClaimVerdict.SUPPORTED)
-    return {rid: next(word for word in worst if word in found) for rid, found in each.items()}
-
-
-_MEANS = {
-    Keeping.KEEPS: ClaimVerdict.SUPPORTED,
-    Keeping.CONSISTENT: ClaimVerdict.SUPPORTED,
-    Keeping.BREAKS: ClaimVerdict.REFUTED,
-}
-"""What a word for the limits is as a verdict; anything else is not checkable."""
-
-
-def _in_doubt(sets: Sequence[AnyClaim], held: _Held) -> str:
-    """Where the durations stand that may break a limit, unless that is everywhere."""
-    doubtful = [c for c in sets if set(held[c.id].values()) != {ClaimVerdict.SUPPORTED}]
-    places = list(dict.fromkeys(place(c) for c in doubtful))
-    if len(doubtful) == len(sets) or not 0 < len(places) <= _FEW:
-        return ""
-    return f" in {' and '.join(places)}"
-
-
-def _jumping(judgements: Iterable[Judgement]) -> str:
-    said = any(c.kind is CaveatKind.JUMPING for j in judgements for c in j.caveats)
-    return ", on curves whose velocity jumps" if said else ""
-
-
-def _broken(study: Study, sets: Sequence[AnyClaim], held: _Held) -> str:
-    """Which of the printed sets of durations break a limit; the only one needs no name."""
-    every = sum(isinstance(c, DurationsClaim | MaximumClaim) for c in study.case.claims)
-    wrong = [c for c in sets if set(held[c.id].values()) == {ClaimVerdict.REFUTED}]
-    places = list(dict.fromkeys(place(c) for c in wrong))
-    if not places or (len(wrong) == len(sets) and (every == len(sets) or len(places) > _FEW)):
-        return "The printed durations break a limit"
-    if len(places) <= _FEW:
-        return f"The durations in {' and '.join(places)} break a limit"
-    return f"{len(wrong)} of {len(sets)} printed sets of durations break a limit"
 
 
 # --- improvement ----------------------------------------------------------------------------------

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Collection, Sequence
 
 from ...problem import Case
@@ -12,13 +11,13 @@ from ...problem.cases import (
     ImprovementClaim,
     MaximumClaim,
     StatementClaim,
+    TotalTimeClaim,
 )
+from ...verify import shown_bound
 from ..documents import Cause, ClaimVerdict, Finding, Gap, Severity, among, first_sentence, quoted
-from .explanations import TABLES
+from .card_optimum import at_least_percent
+from .roots import TABLES
 from .stated import place, spoken
-
-_LONGEST = 24
-"""Words of a claim's text that a sentence may quote; a longer one is called by its place."""
 
 _UNDER = "under "
 """How a sentence says under how many readings it holds."""
@@ -84,11 +83,15 @@ def _plain(
         "TG101": f"In {where} the parts add up to {computed}, not {printed}",
         "TG102": f"The longest durations in {where} are not those of its rows",
         "TG103": f"From the printed totals {_claimed(claim)} would be {computed}, not {printed}",
-        "TG105": f"{place(claim)} prints {printed} for the total that a table gives as {computed}",
+        "TG105": f"{place(claim)} prints {printed} for a total that {_other(case, head)} gives as "
+        f"{computed}",
         "TG107": f"The conditions in {where} cannot all hold: "
         # They have been called conditions.
         f"{computed.replace(' conditions', '', 1)}",
-        "TG201": f"The durations in {where} break a limit"
+        "TG109": f"{where} prints {printed}, and the curve has {computed}",
+        "TG201": f"The total in {where} is shorter than any motion within the limits"
+        if isinstance(claim, TotalTimeClaim)
+        else f"The durations in {where} break a limit"
         + (", unless digits were cut off" if head.verdict is ClaimVerdict.SUPPORTED else ""),
         "TG202": f"The motion of {where} is not continuous",
         "TG203": f"A printed peak is not that of the printed durations ({where})",
@@ -97,15 +100,17 @@ def _plain(
         "TG210": f"The durations in {where} break a limit",
         "TG211": f"A printed value is not that of the printed durations ({where})",
         "TG205": f"Control vertices in {where} do not follow from the way-points",
-        "TG301": "Under velocity limits alone, times scale inversely with them: the printed two "
+        "TG301": "Under velocity limits alone, times scale inversely: the printed two "
         "cannot both be shortest",
         "TG302": f"Called optimal in {where}, but {_not_optimal(case, head, cause, far)}",
-        "TG304": f"The total in {where} is not the shortest of its profile",
+        "TG304": f"The total in {where} is not that of the shortest profile",
         "TG601": "Printed joint angles and positions do not fit the printed robot",
     }.get(cause.rule)
     if cause.rule == "TG103" and not computed:
         sentence = f"Of {printed}, {where} calls the longer total the better one"
-    return f"{_capital(sentence or _contradicted(claim))}."
+    if sentence is None:
+        return spoken(case, first_sentence(cause.says) + ".")
+    return f"{_capital(sentence)}."
 
 
 def _not_optimal(case: Case, head: Finding, cause: Cause, far: Collection[str]) -> str:
@@ -119,17 +124,10 @@ def _not_optimal(case: Case, head: Finding, cause: Cause, far: Collection[str]) 
         where = f"{_UNDER}{among(readings, every, far)} " if 0 < len(readings) < every else ""
         return f"{where}the same curve is faster within the limits"
     # Rounded down, for it is a bound: way-points that round to the digits allow other optima.
-    percent = 100 * head.gap.lowest
-    share = f"{_down(percent, 1)} % longer than" if percent >= 1 else f"{percent:.2g} % longer than"
+    share = f"{at_least_percent(head.gap.lowest)} longer than"
     if head.gap.many_times:
-        share = f"{_down(1 + percent / 100, 1)} times as long as"
+        share = f"{shown_bound(1 + head.gap.lowest, 'lower', places=1)} times as long as"
     return f"{_whose(case, head)}at least {share} a motion within the limits"
-
-
-def _down(number: float, places: int) -> str:
-    """A number rounded down to some decimals."""
-    unit = 10**places
-    return f"{math.floor(number * unit) / unit:.{places}f}"
 
 
 def _whose(case: Case, head: Finding) -> str:
@@ -173,11 +171,10 @@ def _claimed(claim: AnyClaim) -> str:
     return "the saving"
 
 
-def _contradicted(claim: AnyClaim) -> str:
-    text = claim.text.rstrip(".")
-    if text and len(text.split()) <= _LONGEST:
-        return f"A proof contradicts “{text}” ({place(claim)})"
-    return f"A proof contradicts {place(claim)}"
+def _other(case: Case, head: Finding) -> str:
+    """The other place of a contradiction."""
+    places = [place(case.claim(one)) for one in head.between if one != head.claim]
+    return places[0] if places else "another place"
 
 
 def _capital(text: str) -> str:

@@ -16,10 +16,13 @@ from ...problem.cases import (
     TimeClaim,
     TotalTimeClaim,
 )
+from ...verify import shown_bound
 from ..documents import CaveatKind, ClaimVerdict, Judgement, Keeping, Waterfall, count_words
+from .digit_ranges import all_exact, optimum_range
 from .fixed_ratios import at_ratios, off_ratios, planned_apart
 from .own_result import own_result
 from .stated import other_objective
+from .stated_totals import contradicts_its_parts, other_totals
 from .study import Study
 
 _FEW = 2
@@ -59,7 +62,7 @@ def optimum_line(
     if not study.has_problems:
         return "The optimum is not checkable either."
     main = [w for w in waterfalls if w.reading == study.main_reading]
-    beside = [found for found in (_beside(study, w) for w in main) if found is not None]
+    beside = [found for w in main for found in _beside(study, w)]
     if not beside:
         return _without_totals(study, words)
     where = ["under the default reading"] if len(study.readings) > 1 else []
@@ -84,6 +87,8 @@ def _side_by_side(parts: Sequence[_Part]) -> str:
     others = [part for part in parts if part not in agreeing and part not in unknown]
     differing = list(dict.fromkeys(map(str, others)))
     said = differing[:_FEW]
+    # What may explain several distances is said once, of the last of them.
+    said = [one.removesuffix(_MAY) for one in said[:-1]] + said[-1:]
     if len(differing) > _FEW:
         said.append(f"{len(differing) - _FEW} more below")
     said += [_agreement(agreeing, bool(others), len(parts))] if agreeing else []
@@ -153,12 +158,12 @@ class _Above:
 
     shown: str
     remark: str
-    percent: str
+    far: str
     name: str
     best: str
 
     def __str__(self) -> str:
-        return f"{_named(self)} is {self.percent} above the {self.name} {self.best}"
+        return f"{_named(self)} is {self.far} the {self.name} {self.best}"
 
 
 @dataclass(frozen=True)
@@ -190,17 +195,26 @@ def _remarked(shown: str, remark: str) -> str:
 
 def _together(parts: Sequence[_Above]) -> str:
     """Several printed totals beside their optima in one phrase."""
-    shown, percents, bests = (
-        " and ".join(one)
-        for one in zip(
-            *(
-                (f"{p.shown} ({p.remark})" if p.remark else p.shown, p.percent, p.best)
-                for p in parts
-            ),
-            strict=True,
+    # Distances that print alike are said once.
+    shown, shares, bests = (
+        " and ".join(dict.fromkeys(one) if k == 1 else one)
+        for k, one in enumerate(
+            zip(
+                *(
+                    (
+                        f"{p.shown} ({p.remark})" if p.remark else p.shown,
+                        p.far.removesuffix(" above"),
+                        p.best,
+                    )
+                    for p in parts
+                ),
+                strict=True,
+            )
         )
     )
-    return f"{shown} are {percents} above the {_PLURALS[parts[0].name]} {bests}"
+    if all(p.far.startswith("at least ") for p in parts):
+        shares = f"at least {shares.replace('at least ', '')}"
+    return f"{shown} are {shares} above the {_PLURALS[parts[0].name]} {bests}"
 
 
 def limited(study: Study, pid: str, rid: str) -> bool:
@@ -209,24 +223,34 @@ def limited(study: Study, pid: str, rid: str) -> bool:
     return limits.limits_position or bool(np.isfinite(limits.sides).any())
 
 
-def _beside(study: Study, waterfall: Waterfall) -> _Part | None:
-    """A printed total beside its optimum; None where none is printed."""
+def _beside(study: Study, waterfall: Waterfall) -> list[_Part]:
+    """A printed total beside its optimum, and others that are printed of it; none where none is."""
     rid, pid = waterfall.reading, waterfall.problem
     solution = study.optimum(pid, rid)
     why = _unknown(solution)
     if why and not limited(study, pid, rid):
         why = "without limits no motion is the shortest: there is no optimum to compare with"
     if why:
-        return _Unknown(why)
+        return [_Unknown(why)]
+    claim = _totalled(study, waterfall)
+    if not isinstance(claim, TimeClaim):
+        return []
+    others = other_totals(study, claim, pid, rid)
+    found = [_one_beside(study, one, pid, rid, solution) for one in (claim, *others)]
+    return [part for part in found if part is not None]
+
+
+def _one_beside(
+    study: Study, claim: TimeClaim, pid: str, rid: str, solution: Solution
+) -> _Part | None:
     certified = solution.evidence is Evidence.CERTIFIED
     name = "proven optimum" if certified else "best known total"
     span = _span(solution)
     shown_best = f"{span}{_together_where_apart(study, pid, rid)}"
     shown_best += at_ratios(solution.problem)
     best = f"{name} {shown_best}"
-    claim = _totalled(study, waterfall)
-    total = None if claim is None else study.claim_total(claim, rid)
-    if total is None or not isinstance(claim, TimeClaim):
+    total = study.claim_total(claim, rid)
+    if total is None:
         return None
     shown, (low, high) = total
     shown = shown.split(" (")[0]
@@ -247,7 +271,7 @@ def _beside(study: Study, waterfall: Waterfall) -> _Part | None:
     said = _remarked(shown, remark)
     joints = _joint_by_joint(study, claim, pid, rid, seconds)
     if joints is not None:
-        return f"{said} {joints}"
+        return f"{said} {joints}{'' if all_exact(study, claim, pid, rid) else ', as printed'}"
     floor = solution.lower_bound
     if floor is not None and " to " in span and low <= solution.best and floor <= high:
         return f"{said} lies in the interval that is proven to hold the optimum, {shown_best}"
@@ -258,13 +282,56 @@ def _beside(study: Study, waterfall: Waterfall) -> _Part | None:
         return f"{said} agrees with the {best} if digits were cut off"
     if loose := study.case.statement(pid, rid).declaration.loose:
         return f"{said} is not compared: {loose[0].lower()}{loose[1:]} are rounded numbers"
-    if share >= _MANY_TIMES:
-        return f"{said} is {1 + share:.1f} times the {best}"
+    ends = optimum_range(study, claim, pid, rid)
     if share > 0:
-        # Above an interval it is above its upper end by that, and above the optimum by more.
-        least = "at least " if " to " in span else ""
-        return _Above(shown, remark, f"{least}{_percent(share)}", name, shown_best)
-    return f"{said} is {_percent(-share)} below the {best}"
+        if ends.upper is None or not low > ends.upper:
+            may = "" if ends.upper is None else _MAY
+            return f"{said} is {_far(share, 'above')} the {best}{_AT_PRINT}{may}"
+        most = None if ends.lower is None else high / ends.lower - 1
+        far = _bounded(low / ends.upper - 1, share, most, "above")
+        many = share >= _MANY_TIMES
+        return (
+            f"{said} is {far} the {best}" if many else _Above(shown, remark, far, name, shown_best)
+        )
+    if ends.lower is not None and high < ends.lower:
+        least = None if ends.upper is None else 1 - low / ends.upper
+        return f"{said} is {_bounded(1 - high / ends.lower, -share, least, 'below')} the {best}"
+    # To first order the digits shorten the optimum by no more than they are proved to lengthen it.
+    reach = 0.0 if ends.upper is None else ends.upper / solution.best - 1
+    may = _MAY if high >= solution.best * (1 - reach) and reach > 0 else ""
+    return f"{said} is {_far(-share, 'below')} the {best}{_AT_PRINT}{may}"
+
+
+_AT_PRINT = " at the printed digits"
+"""What is said of a distance that rounding of way-points and limits may change."""
+_MAY = ", whose rounding may explain it"
+"""What is added where it may be none."""
+
+
+def _far(share: float, side: str) -> str:
+    """A distance at the printed digits."""
+    return f"{1 + share:.1f} times" if share >= _MANY_TIMES else f"{_percent(share)} {side}"
+
+
+def _bounded(least: float, share: float, most: float | None, side: str) -> str:
+    """A distance that holds for every value that rounds to the digits.
+
+    Where all of these print alike it is that number, else the least of them.
+    """
+    alike = most is not None and _far(least, side) == _far(share, side) == _far(most, side)
+    if alike:
+        return _far(share, side)
+    if share >= _MANY_TIMES:
+        return f"at least {shown_bound(1 + least, 'lower', places=1)} times"
+    return f"at least {at_least_percent(least)} {side}"
+
+
+def at_least_percent(share: float) -> str:
+    """A share as a percentage that is not larger: a decimal, or two digits below 1 %."""
+    percent = 100 * share
+    if percent >= 1:
+        return f"{shown_bound(percent, 'lower', places=1)} %"
+    return f"{shown_bound(percent, 'lower', digits=2)} %"
 
 
 def _printed_range(
@@ -282,16 +349,21 @@ def _printed_range(
 def _span(solution: Solution) -> str:
     """An optimum, or the interval that is proved to hold it where its ends print differently."""
     low = solution.best if solution.lower_bound is None else solution.lower_bound
-    return f"{' to '.join(dict.fromkeys(f'{one:.4f}' for one in (low, solution.best)))} s"
+    if f"{low:.4f}" == f"{solution.best:.4f}":
+        return f"{low:.4f} s"
+    ends = shown_bound(low, "lower", places=4), shown_bound(solution.best, "upper", places=4)
+    return f"{' to '.join(ends)} s"
 
 
-def _kept_there(study: Study, claim: AnyClaim, pid: str, rid: str) -> str:
+def _kept_there(study: Study, claim: TimeClaim, pid: str, rid: str) -> str:
     """What the durations behind a total do to the limits, unless they are shown to keep them.
 
     A distance from the optimum is one of a motion only where that motion keeps its limits.
     """
     if not study.has_durations(claim) or study.unmoved(claim, pid, rid) is not None:
         return ""
+    if contradicts_its_parts(study, claim, rid):
+        return ""  # the total is of other durations than those beside it
     return _REMARKS.get(study.claim_keeping(claim, pid, rid), "")
 
 
@@ -306,7 +378,7 @@ def _together_where_apart(study: Study, pid: str, rid: str) -> str:
 
 
 def _joint_by_joint(
-    study: Study, claim: AnyClaim, pid: str, rid: str, seconds: float
+    study: Study, claim: TimeClaim, pid: str, rid: str, seconds: float
 ) -> str | None:
     """A total beside what the joints' own optima give, where each is planned by itself."""
     if not _apart(study, pid, rid) or claim.joint is not None:
@@ -350,7 +422,7 @@ def _percent(share: float) -> str:
 def _unknown(solution: Solution) -> str:
     """Why there is no optimum to compare with; empty where there is one."""
     if solution.infimum is not None or solution.status is Status.NOT_ATTAINED:
-        return "no shortest motion exists: the total only approaches its infimum"
+        return "no shortest motion was found: the total falls as a duration goes to 0"
     if solution.status is Status.INFEASIBLE:
         where = "through the printed way-points" + at_ratios(solution.problem)
         return f"no motion {where} keeps the limits: proved"

@@ -21,6 +21,7 @@ from ..documents import (
     Basis,
     Cause,
     ClaimVerdict,
+    Edit,
     Finding,
     Judgement,
     Named,
@@ -36,11 +37,11 @@ from .causes import find_causes, with_caveats
 from .chosen_case import SEEDS, Pair
 from .draft import advise
 from .instances import examined_entry
-from .intervals import CERTIFY_SECONDS
-from .judging import judge, weigh
+from .judging import judge, rested, weigh
 from .plausibility import implausible
 from .provenance import provenance
 from .readings import readings_summary
+from .revision import revise
 from .rules import GROUPS, NOT_COMPUTED
 from .stated import spoken, stated_claims, stated_source
 from .study import Study
@@ -105,7 +106,18 @@ class CaseAudit:
         """What to change before submitting; none unless the case is a draft."""
         if not self.draft:
             return ()
-        return advise(self.study, self.causes, self.judgements)
+        return advise(self.study, self.causes, self.judgements, self.edits)
+
+    @cached_property
+    def edits(self) -> tuple[Edit, ...]:
+        """What to change in the draft, all of it together."""
+
+        def again(study: Study) -> tuple[Sequence[Finding], Sequence[Judgement]]:
+            found = audit_case(study)
+            return found.findings, found.judgements
+
+        with kept_processes(), kept_calls():
+            return revise(self.study, (self.findings, self.judgements), again)
 
     @property
     def errors(self) -> int:
@@ -179,7 +191,7 @@ def audit(
     problem: str | None = None,
     reading: str | None = None,
     progress: Callable[[str], None] | None = None,
-    certify_seconds: float = CERTIFY_SECONDS,
+    certify_seconds: float | None = None,
     certificates: Sequence[dict[str, Any]] = (),
     certificates_folder: str | None = None,
     draft: bool = False,
@@ -199,9 +211,10 @@ def audit(
         Keep to one problem or reading.
     progress : callable, optional
         Called with a short text before anything that takes a while.
-    certify_seconds : float
+    certify_seconds : float, optional
         For each case: time for certifying optima that no certificate proves; 0 turns it off. What
-        is certified in it depends on the machine, and what was left out is said.
+        is certified in it depends on the machine. Without it boxes are counted, and nothing depends
+        on the machine. What was left out is said.
     certificates : sequence of dict
         Certificates beside the shipped ones; each is proved again before it counts.
     certificates_folder : str, optional
@@ -271,6 +284,7 @@ def audit_case(study: Study) -> CaseAudit:
         for claim in study.case.claims
     )
     ordered = sorted(weigh(by_rule, judgements, admissible), key=_weight)
+    judgements = rested(study.case, judgements)
     judgements = with_caveats(study, judgements, ordered)
     behind = find_causes(study, ordered)
     return CaseAudit(study.case, study, tuple(ordered), judgements, behind)
@@ -298,7 +312,9 @@ def _alone(group: _Group, study: Study, claim: AnyClaim) -> list[Finding]:
         raise
     except TrajgapError:
         pairs = study.claim_pairs(claim)
-        found = [f for pair in pairs for f in _under(group, study.only(claim, pair), claim, pair)]
+        found = [
+            f for pair in pairs for f in _under(group, study.only(claim, pair=pair), claim, pair)
+        ]
         return [f for at, f in enumerate(found) if f not in found[:at]]
 
 

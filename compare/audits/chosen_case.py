@@ -9,7 +9,7 @@ from typing import Any, Self, TypeVar, cast
 
 from ...problem import Case, Problem, TrajgapError
 from ...problem.cases import AnyClaim
-from .intervals import CERTIFY_SECONDS, Intervals
+from .intervals import Intervals
 
 T = TypeVar("T")
 Pair = tuple[str, str]
@@ -33,8 +33,9 @@ class ChosenCase:
         Keep to one problem or reading of the case.
     progress : callable, optional
         Called with a short text before anything that takes a while.
-    certify_seconds : float
-        For certifying optima that no certificate proves; 0 turns it off.
+    certify_seconds : float, optional
+        For certifying optima that no certificate proves; 0 turns it off. Without it boxes are
+        counted, so that no verdict depends on the machine.
     certificates : sequence of dict
         Certificates beside the shipped ones; each is proved again before it counts.
     certificates_folder : str, optional
@@ -51,7 +52,7 @@ class ChosenCase:
         problem: str | None = None,
         reading: str | None = None,
         progress: Callable[[str], None] | None = None,
-        certify_seconds: float = CERTIFY_SECONDS,
+        certify_seconds: float | None = None,
         certificates: Sequence[dict[str, Any]] = (),
         certificates_folder: str | None = None,
         cache: bool | Path = False,
@@ -90,10 +91,10 @@ class ChosenCase:
             raise found
         return cast(T, found)
 
-    def only(self, claim: AnyClaim, pair: Pair | None = None) -> Self:
-        """The same study, asked about one claim alone, and about one problem and reading."""
+    def only(self, *claims: AnyClaim, pair: Pair | None = None) -> Self:
+        """The same study, asked about some claims alone, and about one problem and reading."""
         view = copy(self)
-        view.claims = (claim,)
+        view.claims = claims
         if pair is not None:
             view.selected = view.pairs = (pair,)
             view.readings = pair[1:]

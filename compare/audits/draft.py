@@ -3,53 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from decimal import ROUND_CEILING, Decimal
+from decimal import Decimal
 
-from ...problem import Array, Check, Problem, Verdict, check, from_si
-from ...problem.cases import (
-    AnyClaim,
-    DurationsClaim,
-    MaximumClaim,
-    StatementClaim,
-    TotalTimeClaim,
-)
-from ..documents import Advice, Cause, ClaimVerdict, Finding, Judgement, Severity, Urgency
+from ...problem.cases import AnyClaim, MaximumClaim, StatementClaim
+from ..documents import Advice, Cause, ClaimVerdict, Edit, Judgement, Severity, Urgency
 from .card_errors import plainly
-from .chosen_case import Pair
-from .fixed_ratios import optimum_called
-from .stated import spoken
+from .edits import CLAIM
+from .stated import claim_text, spoken
 from .study import Study
 
-_DECIMALS = 4
-"""Decimals of proposed durations where the draft prints none to follow."""
-_UNITS_UP = 20
-"""Units of the last digit by which rounded durations are lengthened at most until they keep the
-limits: rounding up alone nearly always does, since longer segments are slower ones."""
-
-
 _FIXES = {
-    "TG102": "Print the longest duration of each segment over the rows.",
     "TG104": "Two of your tables are alike: put the right numbers into one of them.",
     "TG107": "Drop conditions or raise a degree until they are as many as the coefficients.",
     "TG109": "Print one duration for each segment.",
     "TG202": "Name a curve that is continuous, or say that its velocity jumps.",
-    "TG205": "Print the control vertices that follow from your way-points.",
     "TG601": "Compare joint angles and positions with your model of the robot.",
 }
-"""How to fix what a rule finds, where no number is needed."""
-_COMPUTED = {
-    "TG103": "Print {computed}, or correct the totals that it compares.",
-    "TG105": "Print one total in both places: {printed} or {computed}.",
-    "TG203": "Print {computed} as the largest value, taken at the true extremum.",
-    "TG208": "Print {computed}, or say how it was sampled.",
-}
-"""The same with the number that was computed."""
+"""How to fix what a rule finds, where no number mends it."""
+_UNKNOWN = "Compare the numbers with those of your program, and correct the text."
+"""How to fix what no rule and no number mends."""
+_FOLLOWS = "Rests on numbers that change above."
+"""What is found of a number that is wrong only once others are corrected."""
 
 
 def advise(
     study: Study,
     causes: Sequence[Cause],
     judgements: Sequence[Judgement],
+    edits: Sequence[Edit],
 ) -> tuple[Advice, ...]:
     """What an author can change before submitting, the gravest first.
 
@@ -59,21 +40,36 @@ def advise(
     causes : sequence of Cause
     judgements : sequence of Judgement
         Of the same audit.
+    edits : sequence of Edit
+        What to change in the draft, of all causes together.
 
     Returns
     -------
     tuple of Advice
-        One for each cause, for each claim whose answer depends on the reading, for each that cannot
-        be checked, and for what is left open.
+        One for each cause, for each claim whose answer depends on the reading, for each claim that
+        changes because others do, for each that cannot be checked, and for what is left open.
+        Every edit belongs to one of them at least.
     """
-    found = [_of_cause(study, cause) for cause in causes]
+    left = list(edits)
+
+    def taken(claim: str | None, *more: str | None) -> tuple[Edit, ...]:
+        """The edits that claims ask for, for whoever asks first, or those of the first itself."""
+        asks = {claim, *more} - {None}
+        own = [one for one in left if one.trigger in asks]
+        left[:] = [one for one in left if one not in own]
+        return tuple(own or [one for one in edits if one.claim == claim is not None])
+
+    found = [
+        _of_cause(study, cause, taken(cause.claim, *(c.claim for c in cause.consequences)))
+        for cause in causes
+    ]
     said = {one.claim for one in found}
     for judgement in judgements:
         claim = study.case.claim(judgement.claim)
         if claim.id in said:
             continue
         if judgement.verdict is ClaimVerdict.DEPENDS:
-            found.append(_of_readings(study, claim, judgement))
+            found.append(_of_readings(study, claim, judgement, taken(claim.id)))
         elif judgement.verdict is ClaimVerdict.NOT_CHECKABLE:
             why = spoken(study.case, judgement.why).removeprefix(f"{claim.where}: ")
             found.append(
@@ -83,133 +79,110 @@ def advise(
                     claim=claim.id,
                     says=f"A reader cannot check this: {why}",
                     change="Print what is missing, or say less.",
+                    edits=(),
                 )
             )
+    found += _following(study, left)
     found += _left_open(study)
     return tuple(sorted(found, key=lambda one: list(Urgency).index(one.urgency)))
 
 
-def _of_cause(study: Study, cause: Cause) -> Advice:
+def _of_cause(study: Study, cause: Cause, edits: tuple[Edit, ...]) -> Advice:
     claim = study.case.claim(cause.claim) if cause.claim else None
     where = claim.where if claim is not None else "the whole draft"
-    change = "" if cause.head is None else _change(study, claim, cause.head)
+    rule = "" if cause.head is None else cause.head.rule
+    mended = any(one.key != CLAIM for one in edits)
+    fix = "" if mended else _FIXES.get(rule, "")
+    change = " ".join(one for one in (fix, _told(study, claim, edits)) if one)
     against = cause.severity is Severity.ERROR
     return Advice(
         urgency=Urgency.CONTRADICTED if against else Urgency.DOUBTFUL,
         where=where,
         claim=cause.claim,
         says=plainly(study.case, cause),
-        change=change or "Compare the numbers with those of your program, and correct the text.",
+        change=change or _UNKNOWN,
+        edits=edits,
     )
 
 
-def _change(study: Study, claim: AnyClaim | None, head: Finding) -> str:
-    """How to fix what a finding is about; empty where there is nothing special to say."""
-    if head.rule in _FIXES:
-        return _FIXES[head.rule]
-    if head.rule == "TG101" and isinstance(claim, DurationsClaim | MaximumClaim):
-        return f"Print {_sum_of(study, claim)} as the total, or correct the parts."
-    if head.rule in _COMPUTED and head.computed is not None:
-        return _COMPUTED[head.rule].format(computed=head.computed, printed=head.printed)
-    if claim is None or head.rule not in ("TG201", "TG301", "TG302"):
-        return ""
-    for pid, rid in _pairs(study, head):
-        timed = _timed(study, claim, pid, rid)
-        if head.rule == "TG201":
-            said = "" if timed is None else _longer(study, timed, pid, rid)
-        else:
-            said = _shorter(study, timed or claim, pid, rid)
-        if said:
-            return said
-    return ""
+def _following(study: Study, edits: Sequence[Edit]) -> Iterator[Advice]:
+    """Claims that change because others do, each with all its edits."""
+    for claim in study.case.claims:
+        own = tuple(one for one in edits if one.claim == claim.id)
+        if own:
+            yield Advice(
+                urgency=Urgency.FOLLOWS,
+                where=claim.where,
+                claim=claim.id,
+                says=_FOLLOWS,
+                change=_told(study, claim, own),
+                edits=own,
+            )
 
 
-def _sum_of(study: Study, claim: DurationsClaim | MaximumClaim) -> str:
-    """The sum of printed parts to the last of their digits, which a paper can print."""
-    return f"{sum(one.decimal for one in claim.durations)} {study.time_unit}"
+# --- sentences ------------------------------------------------------------------------------------
 
 
-def _pairs(study: Study, head: Finding) -> Iterator[Pair]:
-    """Problems and readings that a finding speaks of, the default reading first."""
-    for pid, rid in sorted(study.pairs, key=lambda pair: pair[1] != study.main_reading):
-        if head.problem in (None, pid) and head.reading in (None, rid):
-            yield pid, rid
+def _told(study: Study, about: AnyClaim | None, edits: Sequence[Edit]) -> str:
+    """Edits as sentences; those of another claim than is spoken of name their place."""
+    groups: dict[str | None, dict[str, Edit]] = {}
+    for one in edits:
+        groups.setdefault(one.claim, {})[one.key] = one
+    said = []
+    for claim_id, keys in groups.items():
+        if claim_id is None:
+            (meant,) = next(iter(keys.values())).becomes
+            said.append(f"The numbers here take {_why(study, meant)}.")
+            continue
+        claim = study.case.claim(claim_id)
+        sentence = _sentence(study, claim, keys)
+        elsewhere = about is not None and claim.id != about.id and claim.where != about.where
+        where = f"{claim.where[:1].upper()}{claim.where[1:]}"
+        said.append(f"{where}: {sentence}" if elsewhere else sentence)
+    return " ".join(said)
 
 
-def _timed(study: Study, claim: AnyClaim, pid: str, rid: str) -> AnyClaim | None:
-    """The claim of durations that a claim is or speaks about, under one problem and reading."""
-    about = claim.of if isinstance(claim, StatementClaim) else ()
-    for one in (claim, *(study.case.claim(name) for name in about)):
-        if study.has_durations(one) and study.fits(one, pid, rid):
-            return one
-    return None
+def _why(study: Study, reading: str) -> str:
+    why = next(one.why for one in study.case.readings if one.id == reading)
+    return f"“{why.removesuffix('.')}”"
 
 
-def _longer(study: Study, claim: AnyClaim, pid: str, rid: str) -> str:
-    """Durations that keep the limits as printed: those of the draft, stretched and rounded up."""
-    if study.unmoved(claim, pid, rid) is not None:
-        return ""
-    found = study.claim_check(claim, pid, rid)
-    if found.feasible_time is None:
-        return ""
-    durations = study.case.claim_durations(claim, rid).value * max(found.stretch, 1.0)
-    problem = study.claim_problem(claim, pid, rid)
-    shown = _printable(study, claim, problem, durations, pid, rid)
-    if shown is None:
-        return f"Multiply all durations by {found.stretch:.6g}, and print enough digits."
-    return (
-        f"Multiply all durations by {found.stretch:.6g}, which reaches the limits exactly, and "
-        f"round up: {shown} keep every limit as printed."
-    )
+def _sentence(study: Study, claim: AnyClaim, keys: dict[str, Edit]) -> str:
+    unit = study.time_unit
+    if CLAIM in keys:
+        words = claim_text(study.case, claim).removesuffix(".")
+        return f"Leave out “{words}”, or correct what it rests on."
+    if "durations" in keys:
+        edit = keys["durations"]
+        total = f"(total {sum(map(Decimal, edit.becomes))} {unit})"
+        shown = f"{', '.join(edit.becomes)} {unit} {total}"
+        if isinstance(claim, MaximumClaim):
+            return f"Print {shown}, the longest of each segment over the rows."
+        trigger = None if edit.trigger is None else study.case.claim(edit.trigger)
+        if isinstance(trigger, StatementClaim) and trigger.checks == "optimal":
+            return (
+                f"Print the shortest motion, rounded up: {shown} keep every limit as printed. Or "
+                "say how far yours is from it instead of calling it optimal."
+            )
+        return f"Lengthen the durations and round up: {shown} keep every limit as printed."
+    ((key, edit),) = keys.items() if len(keys) == 1 else [("", next(iter(keys.values())))]
+    shown = ", ".join(edit.becomes)
+    if key == "total":
+        return f"Print {shown} {unit} as the total, or correct the parts."
+    if key == "value" and claim.quantity == "total_time":
+        return f"Print {shown} {unit}."
+    if "percent" in keys:
+        seconds = f" and {keys['seconds'].becomes[0]} {unit}" if "seconds" in keys else ""
+        return f"Print {keys['percent'].becomes[0]} %{seconds}."
+    if key == "seconds":
+        return f"Print {shown} {unit}."
+    pairs = zip(edit.printed, edit.becomes, strict=True)
+    return f"Print {', '.join(f'{new} in place of {old}' for old, new in pairs if old != new)}."
 
 
-def _shorter(study: Study, claim: AnyClaim, pid: str, rid: str) -> str:
-    """Do not call it optimal, and a motion that is shorter."""
-    if not isinstance(claim, DurationsClaim | MaximumClaim | TotalTimeClaim):
-        return "Say “near-optimal” with the distance instead of “optimal”."
-    found = study.claim_optimum(claim, pid, rid)
-    if found.durations is None:
-        return "Say “near-optimal” with the distance instead of “optimal”."
-    problem = study.claim_problem(claim, pid, rid)
-    shown = _printable(study, claim, problem, found.durations, pid, rid)
-    shorter = f": {shown} keep every limit as printed" if shown else ""
-    return (
-        f"Say how far it is from the {optimum_called(found.problem, found.evidence)}, "
-        f"{found.best:.6g} s, instead of "
-        f"calling it optimal; or print the shorter motion{shorter}."
-    )
-
-
-def _printable(
-    study: Study, claim: AnyClaim, problem: Problem, durations: Array, pid: str, rid: str
-) -> str | None:
-    """Durations rounded up to the draft's decimals that `check` passes; None if none is found."""
-    unit = study.case.statement(pid, rid).units.time or "s"
-    digits = [
-        -int(exponent)
-        for number in study.case.printed_durations(claim)
-        if isinstance(exponent := number.decimal.as_tuple().exponent, int)
-    ]
-    step = Decimal(1).scaleb(-(max(digits, default=_DECIMALS)))
-    in_unit = [Decimal(from_si(float(h), unit)) for h in durations]
-    rounded = [value.quantize(step, rounding=ROUND_CEILING) for value in in_unit]
-    for up in range(_UNITS_UP):
-        tried = [value + up * step for value in rounded]
-        if _checked(problem, tried, durations, unit).verdict is Verdict.PASS:
-            total = sum(tried)
-            return f"{', '.join(map(str, tried))} {unit} (total {total} {unit})"
-    return None
-
-
-def _checked(problem: Problem, tried: Sequence[Decimal], like: Array, unit: str) -> Check:
-    seconds = like.copy()
-    scale = from_si(1.0, unit)
-    for k, value in enumerate(tried):
-        seconds[k] = float(value) / scale
-    return check(problem, seconds)
-
-
-def _of_readings(study: Study, claim: AnyClaim, judgement: Judgement) -> Advice:
+def _of_readings(
+    study: Study, claim: AnyClaim, judgement: Judgement, edits: tuple[Edit, ...]
+) -> Advice:
     whys = {r.id: r.why.removesuffix(".") for r in study.case.readings}
     groups: dict[ClaimVerdict, list[str]] = {}
     for rid, word in judgement.readings.items():
@@ -221,7 +194,9 @@ def _of_readings(study: Study, claim: AnyClaim, judgement: Judgement) -> Advice:
         claim=claim.id,
         says=f"Your text can be read in {len(judgement.readings)} ways, and this is "
         f"{'; '.join(parts)}.",
-        change="Say in the text which is meant: units, curve, knots and ends.",
+        change="Say in the text which is meant: units, curve, knots and ends."
+        + (f" {_told(study, claim, edits)}" if edits else ""),
+        edits=edits,
     )
 
 
@@ -240,6 +215,7 @@ def _left_open(study: Study) -> Iterator[Advice]:
             claim=None,
             says=f"Left open: {assumption.text}",
             change=f"Say which holds. Assumed here: {assumption.choice}",
+            edits=(),
         )
     for block in study.case.algorithms:
         for line in block.open:
@@ -249,4 +225,5 @@ def _left_open(study: Study) -> Iterator[Advice]:
                 claim=None,
                 says=f"Left open for {block.name}: {line}",
                 change="Print it, so that others can run the algorithm again.",
+                edits=(),
             )

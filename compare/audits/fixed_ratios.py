@@ -22,8 +22,6 @@ BELOW_AT_RATIOS = (
     "another reading or other digits explain that."
 )
 """What is said of a printed total below the shortest one at fixed ratios: it accuses nobody."""
-FREED_SECONDS = 60.0
-"""After which no start of the search with each duration chosen is begun, as for other optima."""
 _SLACK = 1e-9
 """Relative difference of two totals that rounding of float64 explains, with room to spare."""
 
@@ -99,7 +97,7 @@ def freed(study: Study, pid: str, rid: str) -> Solution:
             known = np.vstack([known, own.durations])
         one = replace(problem, ratios=None)
         try:
-            return solve(one, known=known, seconds=FREED_SECONDS)
+            return solve(one, known=known)
         except TrajgapError as error:
             return Solution(one, Status.FAILED, str(error))
 

@@ -2,26 +2,29 @@
 
 from __future__ import annotations
 
+import math
 import time
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 from ...nlp import ExactProblem, Outcome, ProvedInterval, certificate, certify, proved
-from ...nlp.proofs import covered, interval_of
+from ...nlp.proofs import allowance, covered, interval_of
 from ...problem import TrajgapError
 from ...verify import Subject
 
-CERTIFY_SECONDS = 20.0
-"""For all problems of a case: most three-piece and short spline problems are certified in it, and
-a usual audit still ends in about a minute."""
+ALLOWANCES = 3.0
+"""For all problems of a case, in what one problem is allowed: most three-piece and short spline
+problems are certified in it, and a usual audit still ends in about a minute. Boxes are counted and
+not seconds, so that no verdict depends on how busy the machine is."""
 _GAP = 1e-4
 """Relative width that is asked for: far below the digits that papers print, and cheap to reach."""
 _SHARE = 1 / 3
 """Of what is left of the budget, for one problem: later ones get their turn too."""
-_LEAST = 0.5
-"""Seconds below which no further search is begun: it would prove nothing."""
+_LEAST = 0.1
+"""Allowances below which no further search is begun: it would prove nothing."""
+_LEAST_SECONDS = 0.5
+"""The same of a budget in seconds."""
 
 
 class Intervals:
@@ -31,8 +34,8 @@ class Intervals:
     ----------
     documents : sequence of dict
         Certificates of any origin: each is proved again before it counts.
-    seconds : float
-        For certifying what no certificate proves; 0 turns it off.
+    seconds : float or None
+        For certifying what no certificate proves; 0 turns it off. Without it boxes are counted.
     progress : callable
         Called with a short text before a search.
     cache : bool or Path
@@ -42,13 +45,14 @@ class Intervals:
     def __init__(
         self,
         documents: Sequence[dict[str, Any]],
-        seconds: float,
+        seconds: float | None,
         progress: Callable[[str], None],
         cache: bool | Path = False,
     ) -> None:
         self._documents = tuple(documents)
         self._made: list[dict[str, Any]] = []
-        self._left = seconds
+        self._counted = seconds is None
+        self._left = ALLOWANCES if seconds is None else seconds
         self._progress = progress
         self._cache = cache
         self.kept = 0
@@ -56,7 +60,7 @@ class Intervals:
         self._found: dict[ExactProblem, ProvedInterval | None] = {}
         self.left_out: list[str] = []
         """Problems that are covered and were not certified, and totals that were not excluded for
-        want of time, in words."""
+        want of boxes, in words."""
 
     @property
     def documents(self) -> tuple[dict[str, Any], ...]:
@@ -90,32 +94,28 @@ class Intervals:
             problem, subject
         )
 
-    @contextmanager
-    def lent(self) -> Iterator[float]:
-        """Seconds of the budget that another proof may take; what it takes is gone."""
-        began = time.monotonic()
-        try:
-            yield max(0.0, self._left * _SHARE)
-        finally:
-            self._left -= time.monotonic() - began
-
     def _sought(self, problem: ExactProblem, called: str) -> ProvedInterval | None:
         found = self._by_document(problem, Subject.DECLARED)
         if found is not None or covered(problem) is not None:
             return found
-        seconds = self._left * _SHARE
-        if seconds < _LEAST:
+        share = self._left * _SHARE
+        if share < (_LEAST if self._counted else _LEAST_SECONDS):
             if self._left > 0:
-                self.left_out.append(f"{called}: no time was left")
+                left = "no boxes were" if self._counted else "no time was"
+                self.left_out.append(f"{called}: {left} left")
             return None
-        self._progress(f"certifying {called}, at most {seconds:.0f} s")
+        most = allowance(problem)
+        boxes = max(1.0, round(share * most)) if self._counted else math.inf
+        seconds = math.inf if self._counted else share
+        amount = f"{boxes:.0f} boxes" if self._counted else f"{seconds:.0f} s"
+        self._progress(f"certifying {called}, at most {amount}")
         began = time.monotonic()
         try:
-            answer = certify(problem, gap=_GAP, seconds=seconds, cache=self._cache)
+            answer = certify(problem, gap=_GAP, seconds=seconds, boxes=boxes, cache=self._cache)
         except TrajgapError:
             return None  # nothing limits its total
-        finally:
-            self._left -= time.monotonic() - began
+        # What was proved with kept proofs costs nothing, and counts as if it had been searched.
+        self._left -= answer.nodes / most if self._counted else time.monotonic() - began
         if answer.proof is not None and answer.outcome is not Outcome.OPEN:
             document = certificate(answer)
             found = interval_of(document, problem, verdict=answer.verdict)
@@ -123,5 +123,6 @@ class Intervals:
                 self._made.append(document)
                 self.kept += answer.kept
         if found is None:
-            self.left_out.append(f"{called}, tried for {seconds:.0f} s")
+            tried = "with" if self._counted else "for"
+            self.left_out.append(f"{called}, tried {tried} {amount}")
         return found

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from ...nlp import Evidence
+from ...problem import Case
+from ...problem.cases import ImprovementClaim, TotalTimeClaim
 from ..documents import (
     DECIDING,
     NAMELESS,
@@ -90,6 +92,55 @@ def judge(
         why=why,
         readings=each,
         informs=informs,
+    )
+
+
+def rested(case: Case, judgements: Iterable[Judgement]) -> tuple[Judgement, ...]:
+    """Judgements in which no improvement is supported by a total that is refuted.
+
+    A percentage follows from two printed totals; where one of them is refuted, so many per cent are
+    those of no motion, and whether the true ones are as many cannot be said.
+
+    Parameters
+    ----------
+    case : Case
+    judgements : iterable of Judgement
+        One for each claim.
+
+    Returns
+    -------
+    tuple of Judgement
+        In their order.
+    """
+    given = list(judgements)
+    refuted = {one.claim for one in given if one.verdict is ClaimVerdict.REFUTED}
+
+    def fallen(claim: str) -> bool:
+        one = case.claim(claim)
+        return claim in refuted or (isinstance(one, TotalTimeClaim) and one.of in refuted)
+
+    found = []
+    for one in given:
+        claim = case.claim(one.claim)
+        if isinstance(claim, ImprovementClaim) and one.verdict is ClaimVerdict.SUPPORTED:
+            lost = [case.claim(i).where for i in (claim.slower, claim.faster) if fallen(i)]
+            if lost:
+                one = _open(one, " and ".join(dict.fromkeys(lost)))
+        found.append(one)
+    return tuple(found)
+
+
+def _open(judgement: Judgement, where: str) -> Judgement:
+    """A judgement taken back, for what it rests on is refuted at some place."""
+    return judgement.model_copy(
+        update={
+            "verdict": ClaimVerdict.NOT_CHECKABLE,
+            "scope": Scope.NO,
+            "evidence": Evidence.NONE,
+            "confidence": UNDECIDED,
+            "why": f"It rests on what {where} prints, which is refuted. {judgement.why}",
+            "readings": dict.fromkeys(judgement.readings, ClaimVerdict.NOT_CHECKABLE),
+        }
     )
 
 

@@ -16,6 +16,7 @@ from ...heuristics import (
     run_many_per_joint,
 )
 from ...problem import Coupling, TrajgapError
+from ..documents import capital
 from .chosen_case import ChosenCase
 from .replay_settings import LISTED, spread_settings
 from .stated import in_words
@@ -58,17 +59,23 @@ class ReplayedCase(ChosenCase):
                     found.append(f"{block.name}: {error}")
         return tuple(found)
 
+    def called(self, algorithm_id: str) -> str:
+        """An algorithm as a sentence calls it, by its name."""
+        return f"the {next(a.name for a in self.case.algorithms if a.id == algorithm_id)}"
+
     def unreplayed(self, algorithm_id: str, pid: str, rid: str) -> str | None:
         """Why an algorithm is not replayed on a problem, as a sentence; None if it is."""
         algorithm = self.algorithm(algorithm_id)
         if algorithm is None:
-            return f"The algorithm {algorithm_id} is of a kind that is not implemented here."
+            return (
+                f"{capital(self.called(algorithm_id))} is of a kind that is not implemented here."
+            )
         problem = self.problem(pid, rid)
         try:
             # What judges the positions of every run says whether it can.
             DeathPenalty(problem, algorithm.penalty)
         except TrajgapError as error:
-            return f"The algorithm {algorithm_id} is not replayed: {error}."
+            return f"{capital(self.called(algorithm_id))} is not replayed: {error}."
         return None
 
     def runs(self, algorithm_id: str, pid: str, rid: str) -> Replays:

@@ -53,13 +53,7 @@ from .instances import InstancesResult, examined, readings_of
 from .replayed_case import ReplayedCase, Replays
 from .rounding import RoundingBox, RoundingVerdict, judge_rounding
 from .stated import in_words, in_words_among, place
-from .total_bound import excludes_total
-
-RELAXED_SECONDS = 15.0
-"""After which no step of the search over the relaxed family is begun: it is information beside the
-claims, and one problem in some must not take most of an audit."""
-OPTIMUM_SECONDS = 60.0
-"""After which no start of the search for an optimum is begun; usual problems take a second."""
+from .total_bound import BOXES, excludes_total
 
 
 class Study(ReplayedCase):
@@ -80,9 +74,7 @@ class Study(ReplayedCase):
             index = None if joint is None else problem.joints.index(joint)
             one = problem if index is None else problem.joint(index)
             try:
-                found = solve(
-                    one, known=self.known_motions(pid, rid, joint), seconds=OPTIMUM_SECONDS
-                )
+                found = solve(one, known=self.known_motions(pid, rid, joint))
             except TrajgapError as error:
                 return Solution(one, Status.FAILED, str(error))
             exact = printed_problem_or_none(self.case.statement(pid, rid), index)
@@ -186,12 +178,10 @@ class Study(ReplayedCase):
                 return Solution(relaxed, Status.FAILED, why)
             member = freed(self, pid, rid)
             if member.durations is None or given.free:
-                return solve(relaxed, start_seconds=RELAXED_SECONDS)
+                return solve(relaxed)
             curve = fit(given, problem.waypoints, member.durations)
             nodal = free_values(family, curve)[None]
-            return solve(
-                relaxed, known=member.durations, known_nodal=nodal, start_seconds=RELAXED_SECONDS
-            )
+            return solve(relaxed, known=member.durations, known_nodal=nodal)
 
         return self.once(("relaxed", pid, rid), compute)
 
@@ -369,13 +359,12 @@ class Study(ReplayedCase):
             )
             problem = self.claim_problem(claim, pid, rid, Digits.LOOSEST_CUT)
             waypoints = self.waypoint_box(problem, pid, rid).or_cut_off()
-            with self.intervals.lent() as seconds:
-                excluded = excludes_total(problem, longest, waypoints, seconds=seconds)
+            excluded = excludes_total(problem, longest, waypoints)
             if excluded is None:
                 asked = in_words_among(self.case, pid, rid)
                 self.intervals.left_out.append(
                     noted(f"whether any motion takes {total[0]} or less", asked)
-                    + f", tried for {seconds:.0f} s"
+                    + f", tried with {BOXES} boxes"
                 )
             return excluded is True
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-
 import numpy as np
 
 from ...nlp.enclosure import Ball, bound_ratio
@@ -14,9 +12,9 @@ _MOST_SPLIT = 8
 """Segments above which splitting boxes of durations cannot come to an end in time."""
 _FLOAT_SLACK = 1e-12
 """Relative margin that outweighs the few roundings of sums and quotients of floats."""
-_BOXES = 400
-"""Boxes of durations that are always looked at, each in milliseconds: what is decided by them does
-not depend on the machine. More take time, of which the caller says how much there is."""
+BOXES = 1000
+"""Boxes of durations that are looked at, each in milliseconds: some seconds at most, and what they
+decide does not depend on the machine."""
 
 
 def excludes_total(
@@ -24,7 +22,7 @@ def excludes_total(
     total: float,
     waypoints: RoundingBox | None = None,
     tolerance: float = TOLERANCE,
-    seconds: float = 0.0,
+    boxes: int = BOXES,
 ) -> bool | None:
     """Prove that no durations of a total or less keep the limits, for all way-points of a box.
 
@@ -38,13 +36,13 @@ def excludes_total(
         rad; those of the problem, exactly, by default.
     tolerance : float
         Relative excess over a limit that still counts as keeping it, as in `check`.
-    seconds : float
-        After which no further box is looked at; the first few hundred always are.
+    boxes : int
+        Most boxes of durations that are looked at.
 
     Returns
     -------
     bool or None
-        True if it is proved; False says nothing; None if the time was too short to say.
+        True if it is proved; False says nothing; None if it would take more boxes to say.
 
     Notes
     -----
@@ -64,11 +62,10 @@ def excludes_total(
     if problem.curve.free or not (low > 0.0).all() or problem.segments > _MOST_SPLIT:
         return False
     todo = [(low, np.minimum(total - (low.sum() - low), problem.duration_upper * target))]
-    until = time.monotonic() + seconds
     looked = 0
     while todo:
         looked += 1
-        if looked > _BOXES and time.monotonic() > until:
+        if looked > boxes:
             return None
         least, most = todo.pop()
         # No duration is longer than what the total leaves beside the least of all others.

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from decimal import ROUND_FLOOR, Context, Decimal, localcontext
-from fractions import Fraction
 
 from ...nlp import Evidence, Solution, Status, printed_problem_or_none
 from ...nlp.proofs.any_curve import estimate_any_curve
@@ -16,6 +14,7 @@ from ...problem.cases import (
     MaximumClaim,
     TimeClaim,
 )
+from ...verify import shown_bound
 from ..documents import (
     EXACT,
     FREED_OPTIMUM,
@@ -235,7 +234,8 @@ def _free(study: Study, pid: str, rid: str) -> Step:
     if bound is None or not 0 < bound.lower <= answer.total_time * (1 + _ROUNDING):
         return Step(name=name, time=answer.total_time, evidence=answer.evidence, note=note)
     low = down(bound.lower)
-    shown = f"no motion within the limits is shorter than {_below(bound.lower)} s: certified"
+    least = shown_bound(bound.lower, "lower")
+    shown = f"no motion within the limits is shorter than {least} s: certified"
     if bound.upper is not None:
         high = up(bound.upper)
         note = f"{shown}, gap {(high - low) / high:.1e}" + (f"; {answer.why}" if answer.why else "")
@@ -245,12 +245,6 @@ def _free(study: Study, pid: str, rid: str) -> Step:
     high = max(low, answer.total_time)
     known = Evidence.BEST_KNOWN
     return Step(name=name, time=high, low=low, high=high, evidence=known, note=note)
-
-
-def _below(value: Fraction) -> str:
-    """Six significant digits, rounded down."""
-    with localcontext(Context(prec=6, rounding=ROUND_FLOOR)):
-        return str(Decimal(value.numerator) / Decimal(value.denominator))
 
 
 def _and(numbers: Sequence[int]) -> str:

@@ -255,13 +255,14 @@ def audit(
     seeds: Annotated[int, typer.Option(min=2, max=MOST, help="Seeds of each replay.")] = 100,
     workers: Workers = None,
     certify_seconds: Annotated[
-        float,
+        float | None,
         typer.Option(
             metavar="SECONDS",
             min=0.0,
-            help="For each case: time to certify optima that no certificate proves; 0 for none.",
+            help="For each case: time to certify optima that no certificate proves; 0 for none. "
+            "By default boxes are counted, so that no verdict depends on the machine.",
         ),
-    ] = 20.0,
+    ] = None,
     certificates: Annotated[
         Path | None,
         typer.Option(
@@ -391,12 +392,14 @@ def _command() -> Any:
 
 def _run(arguments: Sequence[str]) -> int:
     from ...problem import TrajgapError, check_name
+    from .input import check_numbers
 
     command = _command()
     try:
         for argument in arguments:
             # Nothing that is printed or written could state such a name.
             check_name(argument)
+        check_numbers(arguments)
         with command.make_context("trajgap", list(arguments)) as context:
             result = command.invoke(context)
             return result if isinstance(result, int) else 0

@@ -49,7 +49,7 @@ def audit_cases(
     reading: str | None,
     seeds: int,
     workers: int | None,
-    certify_seconds: float,
+    certify_seconds: float | None,
     certificates: Path | None,
     draft: bool,
     strict: bool,

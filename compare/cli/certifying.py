@@ -44,6 +44,7 @@ from ...verify import (
     Subject,
     number,
     read_document,
+    shown_bound,
     verify_certificate,
 )
 from ..audits import in_words
@@ -375,10 +376,10 @@ class _Stop:
         def report(now: Progress) -> None:
             if self.asked:
                 raise KeyboardInterrupt
-            step.tell(
-                f"{name}: {now.lower:.6f} to {now.upper:.6f} s, gap {now.gap:.1e}, "
-                f"{now.open_boxes} open, {now.rate:.0f} nodes/s"
-            )
+            low = shown_bound(now.lower, "lower", places=6)
+            high = shown_bound(now.upper, "upper", places=6)
+            rest = f"gap {now.gap:.1e}, {now.open_boxes} open, {now.rate:.0f} nodes/s"
+            step.tell(f"{name}: {low} to {high} s, {rest}")
 
         return report
 

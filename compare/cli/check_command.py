@@ -18,6 +18,7 @@ from .motion_options import (
     MotionUnits,
     Noise,
     PositionLimit,
+    TimeNoise,
     Tolerance,
     Topic,
     UrdfFile,
@@ -57,12 +58,16 @@ def check(
     urdf: UrdfFile = None,
     interpolation: Between = None,
     noise: Noise = None,
+    time_noise: TimeNoise = None,
     units: MotionUnits = None,
     joints: JointNames = None,
     topic: Topic = None,
     tolerance: Tolerance = 1e-6,
     strict: Annotated[
-        bool, typer.Option("--strict", help="Of a motion: exit with 1 unless it passes.")
+        bool,
+        typer.Option(
+            "--strict", help="Of a motion: exit with 1 unless it passes and all of it is judged."
+        ),
     ] = False,
     as_json: AsJson = False,
     out: Out = None,
@@ -89,6 +94,7 @@ def check(
         urdf,
         interpolation,
         noise,
+        time_noise,
         units,
         joints,
         topic,

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+import numpy as np
 from rich.console import RenderableType
 
-from ...problem import CaseError, Verdict, from_si
+from ...problem import CaseError, TrajgapError, Verdict, from_si, read_float
 from ...problem.limit_files import StatedLimits, limits_of_flags, merge, read_limits, read_urdf
 from ...problem.motions import (
     Floor,
@@ -25,7 +26,9 @@ from ...problem.motions import (
     factors_of,
     interpolated,
     read_motion,
+    unstated_words,
 )
+from ...verify import shown_bound
 from ..documents import (
     CheckedMotion,
     MotionCheckDocument,
@@ -33,6 +36,7 @@ from ..documents import (
     MotionJumpShown,
     MotionPeakShown,
     MotionQuantity,
+    NotJudged,
     Why,
     json_text,
     known,
@@ -52,6 +56,7 @@ class MotionOptions:
     urdf: Path | None = None
     interpolation: str | None = None
     noise: str | None = None
+    time_noise: float | None = None
     units: str | None = None
     joints: str | None = None
     topic: str | None = None
@@ -67,6 +72,7 @@ class MotionOptions:
             "urdf": self.urdf,
             "interpolation": self.interpolation,
             "noise": self.noise,
+            "time-noise": self.time_noise,
             "units": self.units,
             "joints": self.joints,
             "topic": self.topic,
@@ -76,14 +82,15 @@ class MotionOptions:
 
 
 def check_file(source: str, options: MotionOptions, as_json: bool, out: Path | None) -> int:
-    """Judge the motion of a file; 1 with ``strict`` unless it passes."""
+    """Judge the motion of a file; 1 with ``strict`` unless it passes and all of it is judged."""
     how = _interpolation(options.interpolation)
     read = read_motion(
         Path(source),
-        _words(options.units) or ("rad",),
+        _words(options.units),
         _numbers(options.noise),
         _words(options.joints),
         options.topic,
+        options.time_noise,
     )
     limits = _limits(read, options)
     with new_output(out) as write, naming(source):
@@ -91,7 +98,8 @@ def check_file(source: str, options: MotionOptions, as_json: bool, out: Path | N
         document = motion_document(source, read, how, found)
         write(json_text(document))
     emit(document, _shown, as_json)
-    return 1 if options.strict and found.verdict is not Verdict.PASS else 0
+    passes = found.verdict is Verdict.PASS and not found.not_judged
+    return 1 if options.strict and not passes else 0
 
 
 def judged(
@@ -107,7 +115,23 @@ def judged(
         how = Interpolation.CONTROLLER if read.controller else Interpolation.NONE
     if how is Interpolation.NONE:
         return how, check_samples(content, limits, tolerance)
-    return how, check_motion(interpolated(content, how), limits, tolerance)
+    found = check_motion(interpolated(content, how), limits, tolerance)
+    rounding = content.rounding
+    if found.verdict is Verdict.UNDECIDED and rounding.time and how is not Interpolation.CONTROLLER:
+        exact = replace(content, rounding=replace(rounding, time=0.0))
+        told = _of_exact_times(check_motion(interpolated(exact, how), limits, tolerance).verdict)
+        found = replace(found, open=(*told, *found.open))
+    return how, found
+
+
+def _of_exact_times(verdict: Verdict) -> tuple[str, ...]:
+    """The verdict on the same samples with times that nothing was rounded off, if there is one."""
+    if verdict is Verdict.UNDECIDED:
+        return ()
+    return (
+        "If the times are exact, as those of a planner's grid are, the verdict is "
+        f"{verdict}: state --time-noise 0.",
+    )
 
 
 def motion_document(
@@ -125,6 +149,7 @@ def motion_document(
         rows=rows,
         interpolation=known(how, "polynomials need none"),
         noise=tuple(samples.margin.tolist()) if samples else (0.0,) * len(read.joints),
+        time_noise=samples.clock if samples else 0.0,
         result=checked_motion(found),
     )
 
@@ -134,6 +159,10 @@ def checked_motion(found: MotionCheck) -> CheckedMotion:
     return CheckedMotion(
         verdict=found.verdict,
         limits_verdict=found.limits,
+        not_judged=tuple(
+            NotJudged(joint=joint, quantity=MotionQuantity(quantity))
+            for joint, quantity in found.not_judged
+        ),
         tolerance=found.tolerance,
         total_time=found.total_time,
         worst=Why("nothing is limited") if found.worst is None else _peak(found.worst),
@@ -188,7 +217,11 @@ def _limits(read: ForeignFile, options: MotionOptions) -> JointLimits:
         raise CaseError(
             "limits", "", "none are given; add --velocity, --acceleration, ..., --limits or --urdf"
         )
-    return merge(read.joints, sources)
+    limits = merge(read.joints, sources)
+    ends = (limits.lower, limits.upper, limits.deceleration)
+    if all(np.isinf(one).all() for one in ends):
+        raise CaseError("limits", "", "none is finite, so that nothing is judged; give one")
+    return limits
 
 
 def _interpolation(text: str | None) -> Interpolation | None:
@@ -205,13 +238,15 @@ def _words(text: str | None) -> tuple[str, ...]:
     return tuple(x.strip() for x in (text or "").split(",") if x.strip())
 
 
-def _numbers(text: str | None) -> tuple[float, ...]:
+def _numbers(text: str | None) -> tuple[float, ...] | None:
+    if text is None:
+        return None
     found = []
     for word in _words(text) or ("0",):
         try:
-            found.append(float(word))
-        except ValueError:
-            raise CaseError("--noise", "", f"{word!r} is no number; give a length") from None
+            found.append(read_float(word))
+        except TrajgapError as error:
+            raise CaseError("--noise", "", f"{error}; give a length") from None
     return tuple(found)
 
 
@@ -236,6 +271,8 @@ def _shown(document: MotionCheckDocument) -> list[RenderableType]:
         f"{result.total_time:.6g} s"
     )
     parts: list[RenderableType] = [line(head, "bold"), *_verdict(result, units)]
+    if result.not_judged:
+        parts.append(line(_STATE_IT, "dim"))
     rows = [
         (
             one.joint,
@@ -243,7 +280,7 @@ def _shown(document: MotionCheckDocument) -> list[RenderableType]:
             _number(one.value, units[one.joint]),
             _number(one.limit, units[one.joint]),
             units[one.joint] + _POWERS[one.quantity],
-            f"{one.ratio:.6f}" if math.isfinite(one.ratio) else "unbounded",
+            _ratio(one, how is Interpolation.NONE),
             f"{one.time:.6g}",
             one.source,
         )
@@ -253,9 +290,22 @@ def _shown(document: MotionCheckDocument) -> list[RenderableType]:
     return [*parts, Columns(columns, rows)] if rows else parts
 
 
+def _ratio(one: MotionPeakShown, samples_alone: bool) -> str:
+    """The ratio with the digits that it is known to; its bounds where noise leaves it open."""
+    low, high = max(0.0, one.ratio_at_least), one.ratio_at_most
+    if not math.isfinite(one.ratio):
+        return "unbounded"
+    least = shown_bound(low, "lower", digits=4)
+    if samples_alone or not math.isfinite(high):
+        return f"{least} or more"
+    if high - low <= 1e-6 * max(1.0, high):
+        return f"{one.ratio:.6f}"
+    return f"{least} to {shown_bound(high, 'upper', digits=4)}"
+
+
 def _verdict(result: CheckedMotion, units: Mapping[str, str]) -> list[RenderableType]:
     parts: list[RenderableType] = [
-        line(f"{result.verdict}: {_sentence(result)}", "bold"),
+        line(f"{result.verdict}: {_sentence(result, tuple(units))}", "bold"),
     ]
     worst = value_or_none(result.worst)
     if worst is not None:
@@ -281,17 +331,20 @@ def _verdict(result: CheckedMotion, units: Mapping[str, str]) -> list[Renderable
     if repaired is None:
         parts.append(line(f"repair: none, {result.feasible_time}"))
     elif result.slow_down > 1 + result.tolerance:
-        parts.append(
-            line(f"repair: {result.slow_down:.6f} times slower keeps the limits, {repaired:.6f} s")
-        )
+        slower = shown_bound(result.slow_down, "upper", places=6)
+        whole = shown_bound(repaired, "upper", places=6)
+        parts.append(line(f"repair: {slower} times slower keeps the limits, {whole} s"))
     floor = value_or_none(result.floor)
     if floor is None:
         parts.append(line(f"floor: none, {result.floor}", "dim"))
     else:
+        least = shown_bound(floor.time, "lower", places=6)
+        above = shown_bound(100 * floor.above, "upper", places=1)
         parts.append(
             line(
                 f"floor: no motion between the same {floor.standstills} standstills takes less "
-                f"than {floor.time:.6f} s; this one is {100 * floor.above:.1f} % above"
+                f"than {least} s; this one is at most {above} % above "
+                "(way-points that it passes without stopping do not count)"
             )
         )
     parts += [line(text, "dim") for text in (*result.concluded, *result.open)]
@@ -315,11 +368,18 @@ _SENTENCES = {
 """What a verdict means, in a few words."""
 
 
-def _sentence(result: CheckedMotion) -> str:
+_STATE_IT = "What is not judged: state its limit, or inf where it has none. --strict refuses it."
+"""How the verdict comes to speak of everything."""
+
+
+def _sentence(result: CheckedMotion, joints: Sequence[str]) -> str:
     sentence = _SENTENCES[result.verdict]
     if result.verdict is Verdict.DISCONTINUOUS:
         kept = "kept" if result.limits_verdict is Verdict.PASS else "not decided"
         sentence += f"; limits, jumps apart: {kept}"
+    silent = unstated_words([(one.joint, one.quantity) for one in result.not_judged], joints)
+    if silent:
+        sentence = f"{sentence.replace('every limit', 'every stated limit')}; not judged: {silent}"
     return f"{sentence} (relative tolerance {result.tolerance:g})"
 
 

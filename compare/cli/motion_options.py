@@ -47,7 +47,21 @@ Between = Annotated[
 ]
 Noise = Annotated[
     str | None,
-    typer.Option(metavar="N", help="What positions may be off by: one number, or one a joint."),
+    typer.Option(
+        metavar="N",
+        help="What positions may be off by: one number, or one a joint; 0 if all are exact.",
+        show_default="half a unit of the last digit in the file",
+    ),
+]
+TimeNoise = Annotated[
+    float | None,
+    typer.Option(
+        "--time-noise",
+        metavar="S",
+        min=0.0,
+        help="What times may be off by, s; 0 if they are exact.",
+        show_default="half a unit of the last digit in the file",
+    ),
 ]
 MotionUnits = Annotated[
     str | None,

@@ -13,7 +13,8 @@ ENDS = """\b
 Exit codes:
   0    done
   1    audit --strict, and a finding has severity error; verify, and a file is refused;
-       case diff, and the files differ; check --strict, and a motion does not pass;
+       case diff, and the files differ; check --strict, and a motion does not pass or
+       something of it has no stated limit;
        bench and study, and every run of an optimiser on a problem failed
   2    bad input; one line on standard error says how to fix it
   3    solve --certify, and an interval is wider than asked for or nothing is proved

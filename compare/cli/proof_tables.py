@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
-from decimal import Decimal
 from fractions import Fraction
 
 from rich.console import RenderableType
 
 from ...nlp import Outcome
 from ...problem import Case
+from ...verify import shown_bound
 from ..audits import asked_as, in_words
 from ..documents import (
     UNNAMED,
@@ -53,8 +52,8 @@ def _cells(result: CertifiedResult) -> tuple[object, ...]:
     gap, seconds = result.gap, result.seconds
     bounded = result.outcome == Outcome.OPEN and Fraction(result.lower_exact or 0) > 0
     return (
-        _bound(result.lower_exact, -1),
-        _bound(result.upper_exact, 1),
+        _bound(result.lower_exact, "lower"),
+        _bound(result.upper_exact, "upper"),
         "" if isinstance(gap, Why) else f"{gap:.1e}",
         *("" if isinstance(n, Why) else n for n in (result.nodes, result.open_nodes)),
         "" if isinstance(seconds, Why) else f"{seconds:.1f}",
@@ -62,12 +61,9 @@ def _cells(result: CertifiedResult) -> tuple[object, ...]:
     )
 
 
-def _bound(exact: str | None, side: int) -> str:
+def _bound(exact: str | None, side: str) -> str:
     """Nine decimals, rounded outwards."""
-    if exact is None:
-        return "none"
-    steps = Fraction(exact) * 10**9
-    return f"{Decimal(math.floor(steps) if side < 0 else math.ceil(steps)).scaleb(-9):.9f}"
+    return "none" if exact is None else shown_bound(Fraction(exact), side, places=9)
 
 
 def verified(document: VerifyDocument, case: Case | None) -> str:

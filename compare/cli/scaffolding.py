@@ -7,7 +7,7 @@ import sys
 from collections.abc import Mapping
 from pathlib import Path
 
-from ...problem import CHOICES, CaseError, scaffold
+from ...problem import CHOICES, CaseError, scaffold, visible
 from ...problem.cases import identity_of
 from .output import new_output, say
 
@@ -58,8 +58,11 @@ def new_case(
                 durations=durations,
                 total=total,
                 where=where or "",
+                warn=doubts.append,
                 **limits,
             )
+
+        doubts: list[str] = []
 
         faults: list[tuple[str, str]] = []
         file = ""
@@ -82,12 +85,11 @@ def new_case(
                 faults.append((f"--{name}-unit", f"{said}; give one of {', '.join(CHOICES[name])}"))
         if faults:
             raise CaseError(file, *faults[0], faults[1:])
+        doubts.clear()
         write(written(given))
-    then = "judges what is claimed"
-    if not (durations or total):
-        then = "once claims are filled in"
-    elif not where:
-        then = 'once where = "" says where the claim is printed, such as "Table 2"'
+    for doubt in doubts:
+        sys.stderr.write(f"trajgap: {visible(doubt)}\n")
+    then = "judges what is claimed" if durations or total else "once claims are filled in"
     say(f"written: {out}\nnext: trajgap audit {shlex.quote(str(out))}  # {then}\n")
 
 

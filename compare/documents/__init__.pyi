@@ -1,4 +1,4 @@
-from .advice import Advice
+from .advice import Advice, Edit
 from .audited import AuditDocument, AuditedCase
 from .benched import (
     BENCH_COLUMNS,
@@ -46,7 +46,17 @@ from .entry import (
 )
 from .explain_shown import ExplainDocument, ExplainedRule, ExplainedWord
 from .export import DOCUMENTS, filled, output_schema, schema_text, write_docs
-from .finding import UNCERTIFIED, UNDECIDED, Caveat, CaveatKind, Finding, Gap, Judgement, Reference
+from .finding import (
+    UNCERTIFIED,
+    UNDECIDED,
+    Caveat,
+    CaveatKind,
+    Finding,
+    Gap,
+    Judgement,
+    Reference,
+    percent_ends,
+)
 from .instances import (
     ExaminedInstances,
     Instance,
@@ -63,6 +73,7 @@ from .motion_checked import (
     MotionFloor,
     MotionJumpShown,
     MotionPeakShown,
+    NotJudged,
     WrittenMotion,
 )
 from .provenance import Provenance, UsedCertificate
@@ -157,6 +168,7 @@ from .why_judged import (
     in_full,
     noted,
     quoted,
+    ranged,
     under,
     with_readings,
 )
@@ -212,6 +224,7 @@ __all__ = [
     "Consequence",
     "DifferingField",
     "Document",
+    "Edit",
     "Effect",
     "Entry",
     "ExaminedInstances",
@@ -241,6 +254,7 @@ __all__ = [
     "MotionPeakShown",
     "MotionQuantity",
     "Named",
+    "NotJudged",
     "OrWhy",
     "OverallStanding",
     "OverallTarget",
@@ -318,8 +332,10 @@ __all__ = [
     "output_schema",
     "overall_cells",
     "percent",
+    "percent_ends",
     "qualified",
     "quoted",
+    "ranged",
     "reason",
     "said_beside",
     "same_reason",

@@ -6,6 +6,22 @@ from .entry import Entry
 from .vocabulary import Urgency
 
 
+class Edit(Entry):
+    """One printed thing that is to read otherwise; all edits of a draft hold together."""
+
+    claim: str | None
+    """Id of the claim; null where the text as a whole is to say something."""
+    key: str
+    """Key of the claim in the case file; `claim` where it is to be left out as a whole, `readings`
+    where the text is to say which reading is meant."""
+    printed: tuple[str, ...]
+    """What stands there."""
+    becomes: tuple[str, ...]
+    """What is to stand there; empty where nothing is."""
+    trigger: str | None
+    """Id of the claim that is wrong without it; null where it follows from other edits alone."""
+
+
 class Advice(Entry):
     """One thing to change in a draft, in the second person."""
 
@@ -18,3 +34,6 @@ class Advice(Entry):
     """What was found."""
     change: str
     """How to fix it; numbers that it names were computed and checked."""
+    edits: tuple[Edit, ...]
+    """The same as facts; empty where no number mends it. After all edits of the draft, an audit
+    finds nothing but what has none."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from enum import Enum, auto
 from typing import Annotated, Any
@@ -9,6 +10,7 @@ from typing import Annotated, Any
 from pydantic import Field, PlainSerializer, WithJsonSchema
 
 from ...nlp import Evidence
+from ...verify import shown_bound
 from .entry import Entry, OrWhy, Real, Why
 from .vocabulary import Basis, ClaimVerdict, Confidence, GapKind, Scope, Severity
 
@@ -55,6 +57,16 @@ class Reference(Entry):
     """Certified if there is a lower bound, else best known; of a solution, that of its search."""
 
 
+def percent_ends(low: float, high: float) -> tuple[str, str]:
+    """Both ends of a range of percentages, rounded outwards to decimals that both share.
+
+    These give the end that lies further from 0 three digits.
+    """
+    far = max(abs(low), abs(high))
+    places = max(0, 2 - math.floor(math.log10(far))) if far else 0
+    return shown_bound(low, "lower", places=places), shown_bound(high, "upper", places=places)
+
+
 class Gap(Entry):
     """Relative distance of a time from the optimum, never clipped."""
 
@@ -74,11 +86,14 @@ class Gap(Entry):
     def percent(self) -> str:
         """The interval in percent; a factor instead where the time is many times the reference."""
         if self.many_times:
-            return f"{1 + self.lowest:.4g} times the reference"
+            return f"{shown_bound(1 + self.lowest, 'lower', digits=4)} times the reference"
         low, high = 100 * self.lowest, 100 * self.highest
         narrow = high - low < max(0.005 * abs(low), 5e-4)
         middle = (low + high) / 2
-        return f"{middle:+.3g} %" if narrow else f"{low:+.3g} to {high:+.3g} %"
+        if narrow:
+            return f"{middle:+.3g} %"
+        ends = percent_ends(low, high)
+        return f"{' to '.join(one if one.startswith('-') else f'+{one}' for one in ends)} %"
 
     def __str__(self) -> str:
         return f"{self.percent} ({self.kind}, reference {self.reference.evidence})"

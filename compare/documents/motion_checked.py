@@ -51,12 +51,21 @@ class MotionFloor(Entry):
     """(total time − time)/time."""
 
 
+class NotJudged(Entry):
+    """A quantity of a joint that the verdict is silent about: no limit is stated."""
+
+    joint: str
+    quantity: MotionQuantity
+
+
 class CheckedMotion(Entry):
     """What is true of a motion, or of every motion through its samples."""
 
     verdict: Verdict
     limits_verdict: Verdict
     """Jumps apart."""
+    not_judged: tuple[NotJudged, ...]
+    """What no limit is stated for: the verdict is about the others."""
     tolerance: Real
     """Relative excess that counts as kept."""
     total_time: Real
@@ -86,7 +95,9 @@ class MotionCheckDocument(Document):
     """Samples, or breaks of polynomials."""
     interpolation: OrWhy[Interpolation]
     noise: tuple[float, ...]
-    """What each joint's positions may be off by, rad or m."""
+    """What each joint's positions may be off by, rad or m: as stated, or by their digits."""
+    time_noise: Real
+    """What times may be off by, s."""
     result: CheckedMotion
 
 

@@ -64,7 +64,7 @@ class Answer(Entry):
     segment_durations: OrWhy[tuple[float, ...]]
     """s"""
     infimum: OrWhy[float]
-    """Value approached where none is attained, s."""
+    """Value that the totals found approach where no shortest motion was found, s."""
     lower_bound: OrWhy[float]
     """Certified, s."""
     evidence: Evidence

@@ -37,6 +37,8 @@ class Urgency(StrEnum):
     """A reader can prove it wrong from the draft alone."""
     DOUBTFUL = "doubtful"
     """Wrong under some reading, or it does not fit what stands beside it."""
+    FOLLOWS = "follows"
+    """Right as it is, and wrong once the other changes are made."""
     OPEN = "open"
     """Nobody can check it, or check it in one way only, from what is printed."""
 

@@ -290,6 +290,11 @@ def quoted(reading: str, labels: Mapping[str, str]) -> str:
     return f"“{labels.get(reading, reading)}”"
 
 
+def ranged(low: float, high: float, spec: str) -> str:
+    """Both ends of an interval in a format; one number where they print alike."""
+    return " to ".join(dict.fromkeys(format(end, spec) for end in (low, high)))
+
+
 def capital(text: str) -> str:
     """A text that begins a sentence."""
     return text[:1].upper() + text[1:]

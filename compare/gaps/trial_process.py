@@ -21,6 +21,7 @@ from dataclasses import dataclass, replace
 from typing import IO
 
 from ...problem import Problem, ProcessError
+from . import descendants
 from .rows import Row, Trial, failed
 from .trials import run_trial
 
@@ -35,8 +36,9 @@ _ONE_THREAD = dict.fromkeys(
 )
 """Each process computes on one core: there are as many processes as cores, and sums of several
 threads may round otherwise."""
-_PROGRAM = f"from {__name__} import main; main()"
-"""What a process runs; not as ``-m``, under which its rows would be of another class than ours."""
+_PROGRAM = f"from {descendants.__name__} import keep; keep(); from {__name__} import main; main()"
+"""What a process runs; not as ``-m``, under which its rows would be of another class than ours.
+It forks before it imports what takes memory."""
 _PROBLEMS = 64
 """Problems that a process remembers: what is compiled for a curve belongs to its object."""
 
@@ -79,7 +81,7 @@ class _Child:
                 stdout=subprocess.PIPE,
                 stderr=subprocess.DEVNULL,
                 env={**os.environ, **_ONE_THREAD, "PYTHONPATH": paths},
-                # A group of its own, so that what an optimiser starts ends with it.
+                # A group of its own, which can be ended as a whole where there is no keeper.
                 start_new_session=True,
             )
         except OSError as error:
@@ -121,12 +123,16 @@ class _Child:
 
     def end(self) -> None:
         """End the process and whatever it started."""
-        if hasattr(os, "killpg"):
+        if descendants.KEEPS:
+            self._process.terminate()
+            with suppress(subprocess.TimeoutExpired):
+                self._process.wait(_GRACE)
+        elif hasattr(os, "killpg"):
             with suppress(ProcessLookupError, PermissionError):
                 os.killpg(self._process.pid, signal.SIGKILL)
         self._process.kill()
         self._process.wait()
-        # One that left the group may still hold the other end: its pipe is then left open, since
+        # One that outlives it may still hold the other end: its pipe is then left open, since
         # closing it would wait for the thread that reads.
         self._listener.join(_GRACE)
         pipes = [self._process.stdin]

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from ...problem import Array, CaseError, file_name, recover_folder, replace_folder
+from ...verify import shown_bound
 from ..audits import package_version
 from ..documents import (
     BENCH_COLUMNS,
@@ -308,7 +309,8 @@ def optimum_said(optimum: Reference) -> str:
     width = percent(1 - lower / optimum.upper)
     far = width.replace("<", "less than") if width.startswith("<") else f"up to {width}"
     return (
-        f"Optimum: {lower:.7f} to {optimum.upper:.7f} s, {optimum.evidence}; it may lie {far} "
+        f"Optimum: {shown_bound(lower, 'lower', places=7)} to "
+        f"{shown_bound(optimum.upper, 'upper', places=7)} s, {optimum.evidence}; it may lie {far} "
         "below the value that gaps are set against."
     )
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import groupby
 
 from ...nlp import Evidence
 from ...problem import file_name
@@ -215,7 +216,10 @@ def _behind(one: CaseAudit, cause: Cause) -> Behind:
     return Behind(
         weight=word(cause.severity),
         says=says,
-        explanations=tuple(f"{e.change} {e.effect}".replace(known, "") for e in cause.explanations),
+        explanations=tuple(
+            f"{' Or: '.join(e.change for e in alike)} {effect}".replace(known, "")
+            for effect, alike in groupby(cause.explanations, lambda e: e.effect)
+        ),
         follows=tuple(_to(one, claim) for claim in hit),
     )
 

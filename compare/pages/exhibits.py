@@ -11,6 +11,7 @@ from ...heuristics.algorithms import ImprovedWOA, InitialRule, TentRule
 from ...problem import Array, TrajgapError, file_name, forward_kinematics, to_si
 from ...problem.cases import ControlVerticesClaim, DurationsClaim, MaximumClaim
 from ...problem.robots import Chain, DhTable, proximity, sample_workspace
+from ...verify import shown_bound
 from ..audits import Study, place
 from ..audits.rules import has_vertices, vertices
 from ..pictures import (
@@ -216,7 +217,7 @@ def _printed_path(study: Study, dh: DhTable, chain: Chain) -> _Path | None:
     names = tuple(place.label or place.id for place in places)
     missed = tuple(bool(n.lower > s) for n, s in zip(near, slack, strict=True))
     far = [
-        f"{name} by {np.floor(1000 * n.lower) / 1000:.3f} m"
+        f"{name} by {shown_bound(n.lower, 'lower', places=3)} m"
         for name, n, misses in zip(names, near, missed, strict=True)
         if misses
     ]

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
-from decimal import ROUND_FLOOR, Decimal
 
 import numpy as np
 
 from ...nlp import Evidence, PerJointSolution, Solution
 from ...problem import Case, Coupling, file_name
 from ...problem.cases import DurationsClaim
+from ...verify import shown_bound
 from ..audits import CaseAudit, Study, at_ratios, place
-from ..documents import Gap, Step, Waterfall, Why
+from ..documents import Gap, Step, Waterfall, Why, ranged
 from ..gaps import gap, reference_of, spread
 from ..pictures import seconds as interval
 from ..pictures import svg, waterfall_picture
@@ -180,7 +180,7 @@ def _steps(waterfall: Waterfall) -> Grid:
 
 _OPTIMA = "Optimum of each formulation"
 """Title of the section."""
-NINE = Decimal("1e-9")
+NINE = 9
 """Nine decimals of a proved bound, as the certificates' tables have them."""
 _KEPT = ("keeps", "consistent")
 """Verdicts over the rounding box under which durations may keep the limits."""
@@ -202,11 +202,10 @@ def _answer(solution: Solution) -> tuple[Cell, ...]:
     residual = solution.kkt_residual
     total = None if solution.durations is None else seconds(solution.total_time)
     if solution.infimum is not None:
-        total = f"{solution.infimum:.6f} s (infimum)"
+        called = "infimum" if solution.approach_proved else "approached"
+        total = f"{solution.infimum:.6f} s ({called})"
     if total is not None and solution.lower_bound is not None:
-        total += (
-            f"\nat least {Decimal(solution.lower_bound).quantize(NINE, ROUND_FLOOR)} s,\nproved"
-        )
+        total += f"\nat least {shown_bound(solution.lower_bound, 'lower', places=NINE)} s,\nproved"
     return (
         text(solution.status + (f"\n{solution.why}" if solution.why else "")),
         number(total),
@@ -314,8 +313,8 @@ def _procedure(answer: PerJointSolution) -> str:
     ]
     for r in answer.ranges:
         parts.append(
-            f"While every joint stays within {r.slack:g} s of its own optimum it ranges from "
-            f"{r.lowest:.6f} to {r.highest:.6f} s."
+            f"While every joint stays within {r.slack:g} s of its own optimum it takes "
+            f"{ranged(r.lowest, r.highest, '.6f')} s."
         )
     return " ".join(parts)
 

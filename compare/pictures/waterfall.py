@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Patch
 
 from ...nlp import Evidence
+from ...verify import shown_bound
 from ..documents import Step, Waterfall, Why, value_or_none
 from .drawing import (
     BLUE,
@@ -134,7 +135,11 @@ def seconds(step: Step) -> str:
         width = high - low
         if width > 1e-9:
             digits = min(9, max(digits, math.ceil(1 - math.log10(width))))
-            text += f" ({low:.{digits}f} to {high:.{digits}f})"
+            ends = (
+                shown_bound(low, "lower", places=digits),
+                shown_bound(high, "upper", places=digits),
+            )
+            text += f" ({' to '.join(ends)})"
     return text
 
 

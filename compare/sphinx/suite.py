@@ -13,6 +13,7 @@ from sphinx.util.docutils import SphinxDirective
 
 from ...problem import TrajgapError
 from ...problem.suite import BenchmarkInstance, list_instances, load_instance, select_curve
+from ...verify import shown_bound
 from ..documents import worth
 from .parts import badge, paragraph, table
 from .proofs import proved_again
@@ -72,8 +73,8 @@ class SuiteTable(SphinxDirective):
             str(one.segments),
             str(one.joints),
             ", ".join(one.tight),
-            f"{one.lower:.9g}",
-            f"{one.upper:.9g}",
+            shown_bound(one.lower, "lower", digits=9),
+            shown_bound(one.upper, "upper", digits=9),
             f"{one.width:.1e}",
             badge(str(one.evidence)),
             "" if hard is None else str(hard.basins),

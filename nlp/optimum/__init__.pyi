@@ -1,4 +1,5 @@
 from .clock import call_cap, seconds_left, stopping_after, time_up
+from .feasibility import apart
 from .formulation import Form, Formulation, Structure, build
 from .ipopt import structure_of
 from .judgement import KKT_TOLERANCE, SAME
@@ -26,6 +27,7 @@ __all__ = [
     "Solution",
     "Status",
     "Structure",
+    "apart",
     "build",
     "ca",
     "call_cap",

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...problem import Array, Problem, TrajgapError
+from ...problem import Array, Problem, TrajgapError, evaluate
 from .formulation import Form
+from .starts import stretching
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,10 +20,9 @@ class Ask:
     seed: int
     initial: Array | None
     known: Array
+    """Durations that somebody has, and after them the same stretched to be tight, s."""
     known_nodal: Array | None
     form: Form | None
-    until: float
-    """Reading of the monotonic clock after which no further start is begun."""
     lower: float = 0.0
     """A proved lower bound of the total, s."""
 
@@ -35,7 +35,6 @@ def asked(
     known: ArrayLike | None,
     known_nodal: ArrayLike | None,
     form: Form | None,
-    until: float,
     lower: float,
 ) -> Ask:
     """The arguments of `solve`, read; a clear refusal of what has the wrong shape."""
@@ -46,8 +45,32 @@ def asked(
     wanted = (len(points), problem.curve.free, len(problem.joints))
     if nodal is not None and nodal.shape != wanted:
         raise TrajgapError(f"known_nodal: expected shape {wanted}, got {nodal.shape}")
+    points, nodal = _with_tight(problem, points, nodal)
     first = None if initial is None else vectors(problem, "initial", initial)
-    return Ask(starts, seed, first, points, nodal, form, until, lower)
+    return Ask(starts, seed, first, points, nodal, form, lower)
+
+
+def _with_tight(problem: Problem, known: Array, nodal: Array | None) -> tuple[Array, Array | None]:
+    """Known motions, and after them each one stretched so that it just keeps its limits.
+
+    A printed motion that exceeds a limit by its last digit is worth what its repair is worth.
+    """
+    if not len(known) or not problem.curve.homogeneous or (problem.curve.free and nodal is None):
+        return known, nodal
+    problem = stretching(problem)
+    if nodal is None:
+        stretch = evaluate(problem, known).stretch
+    else:
+        each = zip(known, nodal, strict=True)
+        stretch = np.array([evaluate(problem, h[None], v).stretch[0] for h, v in each])
+    usable = np.isfinite(stretch) & (stretch > 0) & (stretch != 1.0)
+    factor = stretch[usable, None]
+    inside = np.clip(known[usable] * factor, problem.duration_lower, problem.duration_upper)
+    if nodal is not None:
+        orders = np.array([r for _, r in problem.piecewise.free_derivatives])
+        values = nodal[usable] / (factor**orders)[:, :, None]
+        nodal = np.concatenate([nodal, values])
+    return np.vstack([known, inside]), nodal
 
 
 def vectors(problem: Problem, name: str, given: ArrayLike) -> Array:

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import math
-import time
-
 import numpy as np
 
 from ...problem import Array, Problem, Verdict, check, evaluate
@@ -113,13 +110,13 @@ def curve_track(
 
 
 def curve_multistart(
-    problem: Problem, built: CompiledCurve, points: Array, floor: float, until: float = math.inf
+    problem: Problem, built: CompiledCurve, points: Array, floor: float
 ) -> list[Local]:
     """Local optima of all starts; the same coarse solution is tracked only once."""
     tracked: list[tuple[Array, Local]] = []
     found: list[Local] = []
     for start in points:
-        if found and (time.monotonic() > until or time_up()):
+        if found and time_up():
             break
         coarse, scaled, success, iterations = curve_coarse(problem, built, start, floor)
         usable = success and np.isfinite(coarse).all()

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...problem import QUANTITIES, Array, Check, Problem, Verdict, check
+from ...problem import QUANTITIES, Array, Check, Problem, Verdict, check, half_range
 from .descent import LogBox, descend
 from .tracking import Local
 
@@ -16,6 +16,9 @@ AIM = 5e-10
 """Relative excess, rounding included, that a stretch aims at: half the checker's tolerance."""
 NARROWINGS = 3
 """Descents within narrower limits: a shorter motion has larger rounding errors."""
+LONGER, LENGTHENINGS = 2.0, 30
+"""By how much the shortest durations are lengthened where rounding hides the limits, and how often:
+a jerk's error falls to an eighth each time, and over nine decades in all."""
 DEEPER_INSIDE = 2.0
 """By how many bounds on rounding errors limits are narrowed where no stretch is possible."""
 
@@ -25,6 +28,27 @@ def kept(problem: Problem, verdict: Check) -> bool:
     if problem.curve.piecewise is not None:
         return verdict.verdict is Verdict.PASS
     return verdict.limits is Verdict.PASS
+
+
+def tolerated(problem: Problem) -> Problem:
+    """The problem with limits wider by half of what `check` tolerates beyond them.
+
+    Parameters
+    ----------
+    problem : Problem
+
+    Returns
+    -------
+    Problem
+        With the same duration bounds. A side of 0, and a range of no width, stay as they are.
+    """
+    limits = problem.limits
+    low, high = limits.position_lower, limits.position_upper
+    half = np.array([[half_range(a, b, x) for x in (a, b)] for a, b in zip(low, high, strict=True)])
+    room = np.where(np.isfinite(half), AIM * half, 0.0)
+    inside = limits.with_sides(limits.sides * (1.0 + AIM))
+    wider = inside.with_positions(low - room[:, 0], high + room[:, 1])
+    return replace(problem, limits=wider)
 
 
 def decided(problem: Problem, h: Array, nodal: Array | None = None) -> Local | None:
@@ -46,10 +70,10 @@ def decided(problem: Problem, h: Array, nodal: Array | None = None) -> Local | N
     Local or None
         With what was given as ``tight``.
     """
-    found = _stretched(problem, h, nodal)
+    found = stretched(problem, h, nodal)
     # A descent changes each duration by itself, which fixed ratios do not allow.
     if found is None and not problem.curve.free and problem.ratios is None:
-        found = _narrowed(problem, h)
+        found = _narrowed(problem, h) or _lengthened(problem, h)
     if found is None:
         return None
     durations, values = found
@@ -66,10 +90,20 @@ def _blur(problem: Problem, verdict: Check) -> Array:
     return blur
 
 
-def _stretched(
-    problem: Problem, h: Array, nodal: Array | None
-) -> tuple[Array, Array | None] | None:
-    """The motion stretched until it passes, if the duration bounds leave room."""
+def stretched(problem: Problem, h: Array, nodal: Array | None) -> tuple[Array, Array | None] | None:
+    """The motion stretched until it passes, or None where the duration bounds leave no room.
+
+    Parameters
+    ----------
+    problem : Problem
+    h : ndarray, shape (segments,)
+        s.
+    nodal : ndarray, shape (free, joints), or None
+
+    Returns
+    -------
+    (durations, free derivatives) or None
+    """
     for _ in range(ROUNDS):
         verdict = check(problem, h, nodal)
         if kept(problem, verdict):
@@ -109,6 +143,30 @@ def _narrowed(problem: Problem, h: Array) -> tuple[Array, None] | None:
         h = np.clip(end, problem.duration_lower, problem.duration_upper)
         if kept(problem, check(problem, h)):
             return h, None
+    return None
+
+
+def _lengthened(problem: Problem, h: Array) -> tuple[Array, Array | None] | None:
+    """The end of a descent whose shortest durations are longer, by as much as it takes.
+
+    A segment that is far shorter than the others blurs what is known of all derivatives in it. The
+    total often hardly depends on it.
+    """
+    if check(problem, h).limits is not Verdict.UNDECIDED:
+        return None
+    top = np.minimum(problem.duration_upper, LONGER * h.sum())
+    for _ in range(LENGTHENINGS):
+        floor = LONGER * float(h.min())
+        if floor > h.sum():
+            break
+        bottom = np.minimum(np.maximum(problem.duration_lower, floor), top)
+        end = descend(problem, np.maximum(h, bottom), LogBox(np.log(bottom), np.log(top)))
+        if not end.feasible:
+            break
+        h = np.clip(end.durations, problem.duration_lower, problem.duration_upper)
+        found = stretched(problem, h, None) or _narrowed(problem, h)
+        if found is not None:
+            return found
     return None
 
 

@@ -52,19 +52,20 @@ def least_point(
 ) -> tuple[Array, Array] | None:
     """Least ½dᵀHd + gᵀd with Ad ≤ b, and the multipliers; None if no d keeps the rows.
 
+    None too where rounding has left H without a Cholesky factor.
+
     With H = LLᵀ, y = Lᵀd + L⁻¹g makes it the shortest y with Gy ≥ w, G = −AL⁻ᵀ, w = −b − AH⁻¹g,
     which non-negative least squares solve (Lawson and Hanson, Solving Least Squares Problems,
     chapter 23): of u ≥ 0 with least |[Gᵀ; wᵀ]u − e|, e the last unit vector, the residual ρ gives
     y = −ρ_{1..n}/ρ_{n+1}, and −u/ρ_{n+1} are the multipliers.
     """
-    from scipy.linalg import LinAlgError  # a quarter of a second, and few need it
-    from scipy.linalg.lapack import dpotrf, dtrtrs
+    from scipy.linalg.lapack import dpotrf, dtrtrs  # a quarter of a second, and few need it
     from scipy.optimize import nnls
 
     # Programs are so small that `cholesky` and `solve_triangular` cost more than what they call.
     lower, failed = dpotrf(hessian, lower=1)
     if failed:
-        raise LinAlgError(f"curvature: no positive definite matrix, row {failed}")
+        return None
     shift, _ = dtrtrs(lower, slope, lower=1)
     turned = dtrtrs(lower, rows.T, lower=1)[0].T
     facing, needed = -turned, -room - turned @ shift
@@ -137,9 +138,8 @@ def _onto_limits(problem: Problem, h: Array, box: LogBox) -> ExactRows:
         if not np.isfinite(rows.worst):
             break
         z = np.log(rows.durations)
-        derivatives = [e.order > 0 for e in rows.points]
-        stretch = float(rows.excess[derivatives].max(initial=-np.inf))
-        outside = rows.excess[np.logical_not(derivatives)].max(initial=-np.inf) > KEPT
+        stretch = float(rows.excess[rows.stretched].max(initial=-np.inf))
+        outside = rows.excess[~rows.stretched].max(initial=-np.inf) > KEPT
         free = np.isfinite(stretch) and not outside and problem.curve.homogeneous
         if rows.worst <= KEPT:
             if not (free and stretch < -KEPT and (z + stretch >= box.low).all()):

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import math
-import time
 from dataclasses import replace
 
 import numpy as np
 
 from ...problem import Array, Problem, TrajgapError, check
 from .clock import time_up
-from .decided import kept
+from .decided import kept, tolerated
 from .descent import Descent, LogBox, descend
 from .starts import SETTLED_SEGMENTS, equal_start
 from .tracking import Local
@@ -59,18 +57,30 @@ def least_durations(problem: Problem) -> Array:
     return least
 
 
-def made_up(problem: Problem, floor: float) -> Array:
-    """The floor of each segment, s, where neither a bound nor a velocity limit gives a higher one.
+def made_up(problem: Problem, share: float) -> Array:
+    """A least duration of each segment, s, that a search makes up; 0 where a higher one is given.
 
-    0 for the other segments.
+    Parameters
+    ----------
+    problem : Problem
+    share : float
+        Of the mean of the usual durations, or of an upper bound where that is shorter: a floor
+        above an upper bound would leave nothing to search.
+
+    Returns
+    -------
+    ndarray, shape (segments,)
+        0 where a bound or a velocity limit is higher.
     """
-    return np.where(least_durations(problem) < floor, floor, 0.0)
+    usual = np.minimum(equal_start(problem).mean(), problem.duration_upper)
+    return np.where(least_durations(problem) < share * usual, share * usual, 0.0)
 
 
 def box_above(problem: Problem, floor: Array) -> LogBox:
     """Bounds on log durations: the problem's own, the least durations, and the floors."""
     usual = float(equal_start(problem).mean())
-    low = np.maximum(np.maximum(least_durations(problem), floor), LEAST_SHARE * usual)
+    least = LEAST_SHARE * np.minimum(usual, problem.duration_upper)
+    low = np.maximum(np.maximum(least_durations(problem), floor), least)
     # A least duration above an upper bound leaves no motion; the box stays one for the search.
     high = np.maximum(np.minimum(problem.duration_upper, MOST_TIMES * usual), low)
     return LogBox(np.log(low), np.log(high))
@@ -113,25 +123,20 @@ def as_local(problem: Problem, found: Descent) -> Local | None:
     return Local(h, None, float(h.sum()), found.converged, kept(problem, verdict), found.steps)
 
 
-def exact_search(
-    problem: Problem, points: Array, floor: Array, until: float = math.inf
-) -> list[Local]:
-    """Local optima of all starts, above the floors; starts that end together are kept apart.
-
-    After the reading ``until`` of the monotonic clock no further descent is begun, but one is.
-    """
+def exact_search(problem: Problem, points: Array, floor: Array) -> list[Local]:
+    """Local optima of all starts, above the floors; starts that end together are kept apart."""
     box = box_above(problem, floor)
     found: list[Local] = []
     for start in points:
-        if found and (time.monotonic() > until or time_up()):
+        if found and time_up():
             break
         local = as_local(problem, descend(problem, start, box))
         if local is not None:
             found.append(local)
-    return _resumed(problem, found, box, until)
+    return _resumed(problem, found, box)
 
 
-def _resumed(problem: Problem, found: list[Local], box: LogBox, until: float) -> list[Local]:
+def _resumed(problem: Problem, found: list[Local], box: LogBox) -> list[Local]:
     """The ends of descents, the best one descended from again for as long as that gains.
 
     A descent may stop short where its Hessian, made along a bent valley, fits no longer; from its
@@ -143,7 +148,7 @@ def _resumed(problem: Problem, found: list[Local], box: LogBox, until: float) ->
             key=lambda i: found[i].total,
             default=None,
         )
-        if best is None or found[best].converged or time.monotonic() > until or time_up():
+        if best is None or found[best].converged or time_up():
             break
         before = found[best]
         after = as_local(problem, descend(problem, before.durations, box))
@@ -168,3 +173,15 @@ def anywhere(problem: Problem, count: int, seed: int, floor: Array) -> Array:
     high = np.minimum(box.high, np.maximum(base, box.low) + WIDTH)
     spread = np.random.default_rng(seed).uniform(0.0, 1.0, (count, problem.segments))
     return np.asarray(np.exp(low + spread * (high - low)))
+
+
+def tolerated_search(problem: Problem, count: int, seed: int, share: float) -> list[Local]:
+    """Searches where limits leave no room inside them, only the tolerance of the checker.
+
+    So it is where a position range ends at the way-points, or bounds leave one duration vector. A
+    descent needs room to move in: it is given half the tolerance, and `check` judges its end.
+    """
+    wide, floor = tolerated(problem), made_up(problem, share)
+    points = [basin.durations for basin in exact_starts(wide, count, seed, floor)]
+    ends = exact_search(wide, np.array(points), floor)
+    return [replace(end, feasible=kept(problem, check(problem, end.durations))) for end in ends]

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ...problem import QUANTITIES, Array, Problem, Verdict, check
+from ...verify import shown_bound
 
 SURE = 1.0 + 1e-6
 """What a need must exceed to be a proof: far above the checker's tolerance and rounding."""
@@ -83,8 +84,9 @@ def _too_little_time(problem: Problem) -> str | None:
         j = int(np.argmax(needed))
         if needed[j] > room * (1 + 1e-12):
             return (
-                f"joint {problem.joints[j]} needs at least {needed[j]:.6g} s between way-points "
-                f"{w} and {w + 1} at its velocity limit; the duration bounds allow {room:.6g} s"
+                f"joint {problem.joints[j]} needs at least {shown_bound(needed[j], 'lower')} s "
+                f"between way-points {w} and {w + 1} at its velocity limit; "
+                f"the duration bounds allow {room:.6g} s"
             )
     return None
 
@@ -133,8 +135,9 @@ def _too_far_from_rest(problem: Problem) -> str | None:
             point = len(q) - 2 - w if last else w + 1
             where = f"from way-point {point} to rest" if last else f"from rest to way-point {point}"
             return (
-                f"joint {problem.joints[j]} needs at least {needed[w, j]:.6g} s {where} at its "
-                f"{QUANTITIES[order - 1]} limit; the duration bounds allow {room[w]:.6g} s"
+                f"joint {problem.joints[j]} needs at least {shown_bound(needed[w, j], 'lower')} s "
+                f"{where} at its {QUANTITIES[order - 1]} limit; "
+                f"the duration bounds allow {room[w]:.6g} s"
             )
     return None
 

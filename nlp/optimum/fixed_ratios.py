@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...problem import QUANTITIES, TOLERANCE, Array, Check, Problem, TrajgapError, Verdict, check
+from ...verify import shown_bound
 from .decided import decided, kept
 from .judgement import BLURRED, KKT_TOLERANCE, longer_than_tight, unmet
 from .optimality import kkt
@@ -90,8 +91,8 @@ def _at_upper_bounds(problem: Problem, shares: Array, least: float, most: float)
     if verdict.limits is Verdict.PASS:
         return _judged(problem, h)
     said = (
-        f"at these ratios limits and least durations ask for {least:.6g} s in total, and the "
-        f"upper bounds on durations end at {most:.6g} s"
+        f"at these ratios limits and least durations ask for {shown_bound(least, 'lower')} s "
+        f"in total, and the upper bounds on durations end at {shown_bound(most, 'upper')} s"
     )
     if verdict.limits is Verdict.VIOLATED:
         return Solution(problem, Status.INFEASIBLE, said)

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...problem import Array, Problem, extrema
+from ...verify import shown_bound
 from .feasibility import SURE, apart
 
 AGREE = 1e-9
@@ -59,9 +60,10 @@ def joined(problem: Problem) -> Array | str | None:
     late = np.flatnonzero(_least(low, wide) > high + slack)
     if late.size:
         k = int(late[0])
+        least = shown_bound(np.exp(_least(low, wide)[k]), "lower")
         return (
             f"without a jump of {_first(wide, k)} segment {k + 1} takes at least "
-            f"{np.exp(_least(low, wide)[k]):.6g} s within the limits and the duration bounds; "
+            f"{least} s within the limits and the duration bounds; "
             f"its upper bound is {problem.duration_upper[k]:.6g} s"
         )
     close = _ratios(problem, WITHIN)

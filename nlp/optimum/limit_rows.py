@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...problem import Array, CurveError, Extremum, Problem, extrema, fit, peak_gradients
 
 NEAR = 0.3
 """Extrema below this share of their limit are left out: no step of a trust region reaches it."""
+STILL = 1e-13
+"""Share of a joint's mean rate below which a derivative whose side is 0 counts as 0: rounding."""
+INSIDE = 1e-11
+"""Share of it by which a motion stays inside such a side: the checker allows no tolerance there,
+and a descent keeps its rows to 1e-12."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -18,7 +25,8 @@ class ExactRows:
 
     A stretch by c divides v, a, j by c, c², c³, so a derivative's excess is log(|value|/limit)/r:
     its gradient is −1 along a stretch, whatever the order and the units. A position's excess is
-    counted in spans of the joint's way-points.
+    counted in spans of the joint's way-points; that of a derivative whose side is 0, in shares of
+    the joint's mean rate.
 
     Attributes
     ----------
@@ -31,6 +39,8 @@ class ExactRows:
     points : tuple of Extremum
     signs : ndarray, shape (rows,)
         Which side of its range a value is at.
+    stretched : ndarray of bool, shape (rows,)
+        Whether a stretch of all durations repairs the excess.
     """
 
     durations: Array
@@ -38,6 +48,7 @@ class ExactRows:
     gradient: Array
     points: tuple[Extremum, ...]
     signs: Array
+    stretched: NDArray[np.bool_]
 
     @property
     def worst(self) -> float:
@@ -45,25 +56,42 @@ class ExactRows:
         return float(self.excess.max(initial=-np.inf))
 
 
-def _limited(problem: Problem, h: Array) -> list[tuple[Extremum, float, float]]:
-    """Extrema near a limit, with the side and the excess."""
+@dataclass(frozen=True)
+class Near:
+    """An extremum near its limit."""
+
+    extremum: Extremum
+    sign: float
+    excess: float
+    size: float
+    """What a change of the value is set beside, so that it is a change of the excess."""
+    stretched: bool
+    """Whether a stretch of all durations repairs it."""
+
+
+def _limited(problem: Problem, h: Array) -> list[Near]:
+    """Extrema near a limit."""
     curve, limits, sizes = problem.curve, problem.limits, problem.limits.sides
     trajectory = fit(curve, problem.waypoints, h)
     every_break = len(curve.waypoint_breaks) == curve.segments + 1
     span = np.ptp(problem.waypoints, axis=0)
-    found: list[tuple[Extremum, float, float]] = []
+    found: list[Near] = []
     for j in range(len(problem.joints)):
         for r in (1, 2, 3):
             if not np.isfinite(sizes[:, j, r - 1]).any():
                 continue
             for e in extrema(trajectory, j, r):
+                repeated = e.s == 0.0 and e.segment > 0 and curve.smooth_order(e.segment) >= r
+                if repeated:
+                    continue
+                found += beyond_nothing(e, sizes[:, j, r - 1], float(span[j]) / h.sum() ** r)
                 limit = float(sizes[int(e.value > 0.0), j, r - 1])
                 if not np.isfinite(limit) or limit == 0.0:
                     continue
                 size = abs(e.value) / limit
-                repeated = e.s == 0.0 and e.segment > 0 and curve.smooth_order(e.segment) >= r
-                if size > NEAR and not repeated:
-                    found.append((e, float(np.sign(e.value)), float(np.log(size)) / r))
+                if size > NEAR:
+                    excess = float(np.log(size)) / r
+                    found.append(Near(e, float(np.sign(e.value)), excess, r * abs(e.value), True))
         sides = ((float(limits.position_lower[j]), -1.0), (float(limits.position_upper[j]), 1.0))
         if not any(np.isfinite(limit) for limit, _ in sides):
             continue
@@ -74,8 +102,28 @@ def _limited(problem: Problem, h: Array) -> list[tuple[Extremum, float, float]]:
             for limit, sign in sides:
                 excess = sign * (e.value - limit) / size
                 if np.isfinite(limit) and excess > NEAR - 1.0:
-                    found.append((e, sign, excess))
+                    found.append(Near(e, sign, excess, size, False))
     return found
+
+
+def beyond_nothing(e: Extremum, sides: Array, rate: float) -> Iterator[Near]:
+    """The extremum of a derivative that must not leave 0 to one side, in shares of a mean rate.
+
+    Parameters
+    ----------
+    e : Extremum
+    sides : ndarray, shape (2,)
+        Sizes of the limits below and above 0.
+    rate : float
+        What the derivative's excess is set beside: way over time to its order; 0 of a joint that
+        stands still.
+    """
+    if rate == 0.0 or abs(e.value) <= STILL * rate:
+        return
+    for side, sign in ((0, -1.0), (1, 1.0)):
+        excess = sign * e.value / rate + (INSIDE if sides[1 - side] > 0.0 else 0.0)
+        if sides[side] == 0.0 and excess > NEAR - 1.0:
+            yield Near(e, sign, excess, rate, False)
 
 
 def exact_rows(problem: Problem, h: Array) -> ExactRows:
@@ -94,14 +142,16 @@ def exact_rows(problem: Problem, h: Array) -> ExactRows:
     """
     try:
         found = _limited(problem, h)
+        points = [near.extremum for near in found]
+        slope = np.zeros((0, h.size))
+        if points:
+            slope = peak_gradients(problem, h, points).durations * h
     except CurveError:
         nothing = np.zeros((1, h.size))
-        return ExactRows(h, np.array([np.inf]), nothing, (), np.ones(1))
-    points = [e for e, _, _ in found]
-    signs = np.array([sign for _, sign, _ in found])
-    excess = np.array([value for _, _, value in found])
-    slope = peak_gradients(problem, h, points).durations * h if points else np.zeros((0, h.size))
-    span = np.ptp(problem.waypoints, axis=0)
-    sizes = [e.order * abs(e.value) if e.order else float(span[e.joint]) or 1.0 for e in points]
-    scale = signs / np.array(sizes)
-    return ExactRows(h, excess, slope * scale[:, None], tuple(points), signs)
+        none = np.zeros(1, dtype=bool)
+        return ExactRows(h, np.array([np.inf]), nothing, (), np.ones(1), none)
+    signs = np.array([near.sign for near in found])
+    excess = np.array([near.excess for near in found])
+    scale = signs / np.array([near.size for near in found])
+    stretched = np.array([near.stretched for near in found], dtype=bool)
+    return ExactRows(h, excess, slope * scale[:, None], tuple(points), signs, stretched)

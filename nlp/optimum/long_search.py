@@ -66,7 +66,7 @@ class LongLocal:
     build_seconds: float
 
 
-def long_search(problem: Problem, start: Array, floor: Array, until: float) -> LongLocal | None:
+def long_search(problem: Problem, start: Array, floor: Array) -> LongLocal | None:
     """A local optimum from a start, or how far the rounds came; None where they came nowhere.
 
     Parameters
@@ -77,8 +77,6 @@ def long_search(problem: Problem, start: Array, floor: Array, until: float) -> L
         s.
     floor : ndarray, shape (segments,)
         Least durations, s.
-    until : float
-        Reading of the monotonic clock after which no further round is begun.
 
     Returns
     -------
@@ -95,7 +93,7 @@ def long_search(problem: Problem, start: Array, floor: Array, until: float) -> L
     turn = failures = done = 0
     flat = FLAT
     if problem.segments >= FEWEST:
-        joined = joined_windows(program, trajectory, floor, until)
+        joined = joined_windows(program, trajectory, floor)
         if joined is not None:
             state, turn = joined.state, JOINED
             h = state.x[: problem.segments] * program.unit
@@ -104,7 +102,7 @@ def long_search(problem: Problem, start: Array, floor: Array, until: float) -> L
             state.rows = carried(joined.rows, joined.duals, rows)
             iterations, build = joined.iterations, build + joined.build_seconds
     while done < ROUNDS:
-        if iterations and (time_up() or time.monotonic() > until):
+        if iterations and time_up():
             break
         done += 1
         before = state.x[: problem.segments] * program.unit

@@ -10,13 +10,13 @@ import numpy as np
 from ...problem import Array, Check, Problem, check
 from .asked import Ask
 from .clock import time_up
-from .decided import decided, kept
+from .decided import decided, kept, stretched
 from .exact_multistart import made_up
 from .judgement import BLURRED, KKT_TOLERANCE, SAME, still_falling, unmet
 from .long_search import LongLocal, long_search
 from .long_start import way_start
 from .solution import Solution, Status
-from .starts import SETTLED_SEGMENTS, equal_start
+from .starts import SETTLED_SEGMENTS
 
 LEAST_DURATION = 1e-4
 """Least duration that is searched where no bound is higher, in shares of the mean of equal ones."""
@@ -65,7 +65,7 @@ def solve_long(problem: Problem, ask: Ask) -> Solution | None:
     Solution or None
     """
     began = time.perf_counter()
-    floor = made_up(problem, LEAST_DURATION * float(equal_start(problem).mean()))
+    floor = made_up(problem, LEAST_DURATION)
     starts = way_start(problem)[None] if ask.initial is None else ask.initial
     found = [_searched(problem, start, floor, ask, k) for k, start in enumerate(starts)]
     best = _best(found)
@@ -101,19 +101,20 @@ def _shortest_known(problem: Problem, ask: Ask, best: Solution | None) -> Array 
     """The shortest known motion that passes, if it is shorter than the answer."""
     bar = np.inf if best is None else best.total_time * (1 - SHORTER)
     shorter = sorted((h for h in ask.known if h.sum() < bar), key=lambda h: float(h.sum()))
-    return next((h for h in shorter if kept(problem, check(problem, h))), None)
+    repaired = (stretched(problem, h, None) for h in shorter)
+    return next((one[0] for one in repaired if one is not None and one[0].sum() < bar), None)
 
 
 def _searched(
     problem: Problem, start: Array, floor: Array, ask: Ask, number: int
 ) -> Solution | None:
     """The judged end of one search; later ones are not begun once the time is up."""
-    if number and (time.monotonic() > ask.until or time_up()):
+    if number and time_up():
         return None
-    local = long_search(problem, start, floor, ask.until)
+    local = long_search(problem, start, floor)
     if local is None:
         return None
-    stopped = time_up() or time.monotonic() > ask.until
+    stopped = time_up()
     if local.kkt is None and not stopped and problem.segments <= TRIED_ANEW:
         return None
     return _judged(problem, local, floor)

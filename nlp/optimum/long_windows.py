@@ -88,9 +88,7 @@ def _at_waypoints(breaks: Indices, wanted: Array) -> Indices:
     return np.asarray(breaks[np.abs(breaks - np.asarray(wanted)[:, None]).argmin(axis=1)])
 
 
-def joined_windows(
-    program: LongProgram, trajectory: Trajectory, floor: Array, until: float
-) -> Joined | None:
+def joined_windows(program: LongProgram, trajectory: Trajectory, floor: Array) -> Joined | None:
     """Windows solved and put together; None where time is up before, or one is not solved.
 
     Parameters
@@ -101,8 +99,6 @@ def joined_windows(
         Near which windows start.
     floor : ndarray, shape (segments,)
         Least durations, s.
-    until : float
-        Reading of the monotonic clock after which no further window is begun.
 
     Returns
     -------
@@ -119,7 +115,7 @@ def joined_windows(
     for span, own in spans(program.problem):
         keeps = max(1.0, float(worst[slice(*span)].max()))
         for more in SLOWER:
-            if time_up() or time.monotonic() > until:
+            if time_up():
                 return None
             began = time.perf_counter()
             slower = replace(trajectory, durations=trajectory.durations * keeps * more)

@@ -6,7 +6,6 @@ every other answer, goes to them.
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -137,14 +136,11 @@ class Descents:
             np.empty(size, dtype=np.int64),
         )
 
-    def run(
-        self, starts: Array, low: Array, high: Array, steps: int, until: float = np.inf
-    ) -> tuple[Array, Array]:
+    def run(self, starts: Array, low: Array, high: Array, steps: int) -> tuple[Array, Array]:
         """Ends of descents from log durations, and how they ended: see `newton_kernel.descents`.
 
         They are called in parts, so that the clock is looked at, and a kernel that proves worth
-        compiling is compiled, between them. What was not begun by ``until``, or would not end
-        within the time limit, has no end.
+        compiling is compiled, between them. What would not end within the time limit has no end.
         """
         ends, found = starts.copy(), np.full((len(starts), 4), np.inf)
         found[:, 0] = kernel.STALLED
@@ -152,7 +148,7 @@ class Descents:
         stop, longest = 0, DESCENT * self.place_seconds if steps > 0 else 0.0
         while stop < len(starts):
             left = seconds_left() if limited else np.inf
-            if (stop > 0 and (time.monotonic() > until or left <= 0.0)) or left < longest:
+            if (stop > 0 and left <= 0.0) or left < longest:
                 break
             # Interpreted, a place costs milliseconds, and the clock is looked at after each.
             slow = steps > 0 or (limited and not _descents.compiled)
@@ -221,7 +217,6 @@ def settled_quickly(
     starts: int,
     seed: int,
     share: float,
-    until: float = np.inf,
     lower: float = 0.0,
 ) -> Solution | None:
     """The answer of a small problem if every sign says that it is one, or None.
@@ -234,8 +229,6 @@ def settled_quickly(
     seed : int
     share : float
         Floor of the durations, relative to the mean of the usual ones.
-    until : float
-        Reading of the monotonic clock after which no further start is begun.
     lower : float
         A proved lower bound of the total, s.
 
@@ -255,8 +248,9 @@ def settled_quickly(
     if not 0.0 < mean < np.inf:
         return None
     least = least_durations(problem)
-    made = np.where(least < share * mean, share * mean, 0.0)
-    bottom = np.maximum(np.maximum(least, made), LEAST_SHARE * mean)
+    scale = np.minimum(mean, problem.duration_upper)
+    made = np.where(least < share * scale, share * scale, 0.0)
+    bottom = np.maximum(np.maximum(least, made), LEAST_SHARE * scale)
     if not (bottom <= problem.duration_upper).all():
         return None
     low = np.log(bottom)
@@ -270,11 +264,11 @@ def settled_quickly(
     )
     ends, found = descents.run(places, low, high, 0)
     points = _chosen(usual, ends, found, DESCENTS * starts)
-    ends, found = descents.run(points[:starts], low, high, kernel.STEPS, until)
+    ends, found = descents.run(points[:starts], low, high, kernel.STEPS)
     totals, converged = _totals(found)
     if len(points) > starts and not totals.min() <= lower * (1.0 + PROVEN):
         # The further descents challenge those that were asked for.
-        more = descents.run(points[starts:], low, high, kernel.STEPS, until)
+        more = descents.run(points[starts:], low, high, kernel.STEPS)
         ends, found = np.vstack([ends, more[0]]), np.vstack([found, more[1]])
         totals, converged = _totals(found)
     if not (np.isfinite(totals) & converged).any():

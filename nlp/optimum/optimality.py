@@ -6,7 +6,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...problem import QUANTITIES, Array, Extremum, Problem, extrema, fit, peak_gradients
+from ...problem import (
+    QUANTITIES,
+    Array,
+    CurveError,
+    Extremum,
+    Problem,
+    extrema,
+    fit,
+    peak_gradients,
+)
+from .limit_rows import beyond_nothing
 
 ACTIVE = 1e-7
 """Relative distance to a limit within which a peak counts as active."""
@@ -56,6 +66,10 @@ class KKT:
     active: tuple[Active, ...]
 
 
+UNKNOWN = KKT(np.inf, ())
+"""Of durations at which rounding hides the curve or its gradients: no condition is met."""
+
+
 @dataclass(frozen=True)
 class _Constraint:
     extremum: Extremum | None
@@ -74,20 +88,27 @@ def _peaks_near_limit(
     limits, sides = problem.limits, problem.limits.sides
     curve = problem.curve
     every_break = len(curve.waypoint_breaks) == curve.segments + 1
+    span = np.ptp(problem.waypoints, axis=0)
     found: list[_Constraint] = []
     for j, name in enumerate(problem.joints):
         for r, quantity in enumerate(QUANTITIES, start=1):
             if not np.isfinite(sides[:, j, r - 1]).any():
                 continue
             for e in extrema(trajectory, j, r):
+                repeated = e.s == 0.0 and e.segment > 0 and curve.smooth_order(e.segment) >= r
+                if repeated:
+                    continue
+                label = (name, quantity, curve.segment_of(durations, e), e.time)
+                rate = float(span[j]) / float(durations.sum()) ** r
+                for at in beyond_nothing(e, sides[:, j, r - 1], rate):
+                    if at.excess >= -near:
+                        found.append(_Constraint(e, label, at.excess, at.sign, at.size, 0.0))
                 limit = float(sides[int(e.value > 0.0), j, r - 1])
                 if not np.isfinite(limit) or limit == 0:
                     continue
-                repeated = e.s == 0.0 and e.segment > 0 and curve.smooth_order(e.segment) >= r
                 excess = abs(e.value) / limit - 1
-                if excess >= -near and not repeated:
+                if excess >= -near:
                     sign = float(np.sign(e.value))
-                    label = (name, quantity, curve.segment_of(durations, e), e.time)
                     found.append(_Constraint(e, label, excess, sign, limit, 1.0))
         low, high = float(limits.position_lower[j]), float(limits.position_upper[j])
         if np.isfinite(low) or np.isfinite(high):
@@ -124,7 +145,8 @@ def kkt(
     Returns
     -------
     KKT
-        Multipliers by non-negative least squares on the envelope gradients.
+        Multipliers by non-negative least squares on the envelope gradients; an infinite residual
+        where rounding hides the curve.
 
     Notes
     -----
@@ -141,9 +163,12 @@ def kkt(
     n, total = problem.segments, float(durations.sum())
     joints = problem.waypoints.shape[1]
     free = problem.curve.free
-    rows = _peaks_near_limit(problem, durations, nodal, active)
-    points = [c.extremum for c in rows if c.extremum is not None]
-    gradients = peak_gradients(problem, durations, points, nodal)
+    try:
+        rows = _peaks_near_limit(problem, durations, nodal, active)
+        points = [c.extremum for c in rows if c.extremum is not None]
+        gradients = peak_gradients(problem, durations, points, nodal)
+    except CurveError:
+        return UNKNOWN
     columns = np.zeros((n + free * joints, len(rows)))
     nodal_scale = np.ones((free, joints))
     for i, (_, order) in enumerate(problem.piecewise.free_derivatives if free else ()):
@@ -173,7 +198,10 @@ def kkt(
     if matrix.shape[1]:
         from scipy.optimize import nnls  # a quarter of a second; a check does without
 
-        weights, _ = nnls(matrix, -objective, maxiter=30 * matrix.shape[1] + 100)
+        try:
+            weights, _ = nnls(matrix, -objective, maxiter=30 * matrix.shape[1] + 100)
+        except RuntimeError:  # too many iterations: rounding hides which limits hold the motion
+            return UNKNOWN
     else:
         weights = np.zeros(0)
     stationarity = float(np.abs(matrix @ weights + objective).max())

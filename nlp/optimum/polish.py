@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...problem import Array, Extremum, Problem, check, extrema, fit, peak_gradients
+from ...problem import Array, CurveError, Extremum, Problem, check, extrema, fit, peak_gradients
 from .clock import time_up
 from .optimality import KKT, Active, kkt
 
@@ -36,8 +36,21 @@ def polish(problem: Problem, durations: Array, report: KKT) -> tuple[Array, KKT]
     """
     limited = [a for a in report.active if a.quantity in _ORDERS]
     pinned = [a.segment for a in report.active if a.quantity == "duration"]
-    if problem.curve.free or len(limited) < len(report.active) - len(pinned):
+    # A side of 0 has no size that an excess could be set beside.
+    moves = np.ptp(problem.waypoints, axis=0) > 0
+    odd = problem.curve.free or not (problem.limits.sides[:, moves] > 0).all()
+    if odd or len(limited) < len(report.active) - len(pinned):
         return durations, report
+    try:
+        return _sharpened(problem, durations, report, limited, pinned)
+    except (CurveError, np.linalg.LinAlgError):
+        return durations, report  # beside the answer, rounding hides the curve or its curvature
+
+
+def _sharpened(
+    problem: Problem, durations: Array, report: KKT, limited: list[Active], pinned: list[int]
+) -> tuple[Array, KKT]:
+    """`polish` on these limits and bounds."""
     moving = np.setdiff1d(np.arange(problem.segments), pinned)
     active = [_nearest(problem, durations, a) for a in limited]
     weights = np.array([a.multiplier for a in limited])

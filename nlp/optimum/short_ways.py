@@ -126,7 +126,9 @@ def _boxes(whole: LogBox, segment: int, top: float, most: float) -> list[LogBox]
 
 
 def moving_at_floor(problem: Problem, durations: Array, floor: Array) -> bool:
-    """Whether a joint moves in a segment at its floor: the total rises again further down.
+    """Whether a segment at its floor has something below it: a motion, or a bound.
+
+    Where a joint moves the total rises again further down; a bound that is given ends it.
 
     Parameters
     ----------
@@ -139,6 +141,8 @@ def moving_at_floor(problem: Problem, durations: Array, floor: Array) -> bool:
     bool
     """
     at = (floor > 0) & (durations <= 1.01 * floor)
+    if (at & (problem.duration_lower > 0)).any():
+        return True
     breaks = problem.curve.waypoint_breaks
     return any(
         at[b] and (problem.waypoints[w] != problem.waypoints[w + 1]).any()

@@ -10,11 +10,16 @@ import numpy as np
 
 from ...problem import Array, Check, Problem, Trajectory, TrajgapError, fit
 from ...problem.motions import Samples, sampled
+from ...verify import shown_bound
 from .optimality import Active
 
 _VANISHING = 1e-3
 """Share of a motion's total below which its infimum is 0: the motion found stands a floor of the
 search above it, and an infimum above 0 is nearly reached there."""
+
+
+_MET = 1e-9
+"""Relative distance of a proved bound at which it meets a value: what rounding explains."""
 
 
 class Status(StrEnum):
@@ -29,7 +34,7 @@ class Status(StrEnum):
     NONE_FOUND = "none found"
     """No feasible duration vector found, and no proof that there is none; `why` says how near."""
     NOT_ATTAINED = "not_attained"
-    """The total only approaches its infimum as a duration goes to 0."""
+    """No shortest motion was found: the totals found fall as a duration goes to 0."""
     LIMIT = "limit"
     """The iteration limit was reached before a feasible point."""
     FAILED = "failed"
@@ -74,7 +79,8 @@ class Solution:
     check : Check or None
         The checker's verdict on the durations.
     infimum : float or None
-        For `not_attained`: the value approached, s.
+        For `not_attained`: the value that the totals found approach, s. It is the infimum where
+        `approach_proved` says so, and otherwise the best known estimate of it.
     lower_bound : float or None
         A certified lower bound, s; only `with_certificate` sets it.
     kkt_residual : float or None
@@ -119,6 +125,13 @@ class Solution:
         if self.boundless is not None:
             return 0.0
         return self.infimum if self.infimum is not None else self.total_time
+
+    @property
+    def approach_proved(self) -> bool:
+        """Whether nothing lies below the value approached: it is 0, or a proved bound meets it."""
+        if self.infimum is None:
+            return False
+        return self.best == 0.0 or (self.lower_bound or 0.0) >= self.infimum * (1.0 - _MET)
 
     @property
     def boundless(self) -> str | None:
@@ -182,9 +195,15 @@ class Solution:
             ]
         if self.lower_bound is not None:
             width = (self.best - self.lower_bound) / self.best
-            lines.append(f"lower bound     {self.lower_bound:.9f} s, proved; gap {width:.1e}")
+            low = shown_bound(self.lower_bound, "lower", places=9)
+            lines.append(f"lower bound     {low} s, proved; gap {width:.1e}")
         if self.infimum is not None:
-            lines.append(f"infimum         {self.infimum:.9f} s, approached but not attained")
+            if self.approach_proved:
+                lines.append(f"infimum         {self.infimum:.9f} s, approached but not attained")
+            else:
+                lines.append(
+                    f"approached      {self.infimum:.9f} s as a duration goes to 0: an estimate"
+                )
         if self.kkt_residual is not None:
             lines.append(f"KKT residual    {self.kkt_residual:.1e}")
         if self.starts:

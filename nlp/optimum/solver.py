@@ -13,7 +13,7 @@ from ...problem import Array, Problem, check
 from .asked import Ask, asked
 from .better import BETTER, better_of, settled
 from .clock import TooLong, stopping_after, time_up
-from .decided import decided, kept
+from .decided import decided, kept, stretched
 from .descent import restored
 from .exact_multistart import (
     UNEQUAL,
@@ -24,6 +24,7 @@ from .exact_multistart import (
     made_up,
     ordinary,
     searchable,
+    tolerated_search,
 )
 from .feasibility import apart
 from .fixed_ratios import at_ratios
@@ -54,6 +55,11 @@ ROUNDED = 2e-9
 """Relative gain of a known motion that counts: twice what the checker's tolerance gives away."""
 RESTORABLE = 200
 """Segments up to which the feasibility phase runs: its gradients are dense, (segments)² each."""
+ONLY_TOLERANCE = "the limits leave no room: they are kept within the tolerance of the check alone"
+"""Beside an answer that exact limits would not let pass."""
+APPROACHED = 1e-6
+"""Share of a total that is still to fall at which the value that it approaches is near enough: an
+extrapolation over more than this may be off by more than totals that count as the same."""
 ANYWHERE = 8
 """Further starts all over the box before nothing is said to be found."""
 
@@ -68,7 +74,6 @@ def solve(
     known_nodal: ArrayLike | None = None,
     form: Form | None = None,
     seconds: float = math.inf,
-    start_seconds: float = math.inf,
     lower: float = 0.0,
 ) -> Solution:
     """Best known total time of a problem with shared durations, from an exact NLP.
@@ -90,7 +95,8 @@ def solve(
         Starts to use instead, s.
     known : array_like, shape (motions, segments), optional
         Durations, s, that somebody already has: printed ones, replays, a certificate's. Each that
-        `check` passes is an incumbent: the answer is never worse. The others do no harm.
+        `check` passes, as it is or stretched uniformly, is an incumbent: the answer is never worse.
+        The others do no harm.
     known_nodal : array_like, shape (motions, free, joints), optional
         Their free derivatives, where the curve leaves some open; without them those motions are
         not determined, and not used.
@@ -99,9 +105,6 @@ def solve(
     seconds : float
         Time limit, kept to within a step of the search: the best motion so far is the answer, and
         `why` says that the time ran out. What is found then depends on the machine.
-    start_seconds : float
-        After so long no further start is begun; one that has begun is finished, and on splines of
-        9 segments and more the round that it is in.
     lower : float
         A proved lower bound of the total, s. It saves searches, and is no part of the answer: no
         further descents challenge a total that it leaves no room below.
@@ -116,8 +119,7 @@ def solve(
     TrajgapError
         If ``initial`` or ``known`` has the wrong shape, or there is no formula for fixed ratios.
     """
-    until = time.monotonic() + start_seconds
-    ask = asked(problem, starts, seed, initial, known, known_nodal, form, until, lower)
+    ask = asked(problem, starts, seed, initial, known, known_nodal, form, lower)
     if problem.ratios is not None:
         return at_ratios(problem)
     with stopping_after(seconds):
@@ -158,7 +160,6 @@ def _solve_smoother(problem: Problem, smooth: Problem, ask: Ask) -> Solution:
         known=known,
         known_nodal=values,
         form=ask.form,
-        start_seconds=ask.until - time.monotonic(),
     )
 
 
@@ -187,12 +188,12 @@ def _quickly(problem: Problem, ask: Ask) -> Solution | None:
     """The answer of Newton descents, where they settle."""
     if ask.form is not None or time_up():
         return None
-    return settled_quickly(problem, ask.starts, ask.seed, FLOORS[-1], ask.until, ask.lower)
+    return settled_quickly(problem, ask.starts, ask.seed, FLOORS[-1], ask.lower)
 
 
 def _widely(problem: Problem, ask: Ask) -> Solution:
     """The answer from the basins of a wide search: of sparse searches, else of the tracked NLP."""
-    wide = exact_starts(problem, ask.starts, ask.seed, _floor(problem, FLOORS[-1]))
+    wide = exact_starts(problem, ask.starts, ask.seed, made_up(problem, FLOORS[-1]))
     found, stands = searched_sparsely(problem, ask, wide)
     if found is not None and stands:
         return found
@@ -201,10 +202,6 @@ def _widely(problem: Problem, ask: Ask) -> Solution:
     else:
         answer = _searched(problem, ask)
     return answer if found is None else better_of(answer, found)
-
-
-def _floor(problem: Problem, share: float) -> Array:
-    return made_up(problem, share * float(equal_start(problem).mean()))
 
 
 def _tracked(problem: Problem, ask: Ask) -> Solution:
@@ -228,7 +225,7 @@ def _tracked(problem: Problem, ask: Ask) -> Solution:
         if solution.status is Status.FEASIBLE and eliminating(problem, ask.form) and not time_up():
             # Eliminating across very unequal durations loses digits; the lifted form does not.
             lifted = compiled(structure_of(problem, Form.LIFTED))
-            found += tracked_multistart(problem, lifted, points, floor, ask.until)
+            found += tracked_multistart(problem, lifted, points, floor)
             solution = judged(problem, found, made, len(points))
         if solution.status is not Status.NOT_ATTAINED:
             break
@@ -243,11 +240,11 @@ def _tracked(problem: Problem, ask: Ask) -> Solution:
 
 def _descended(problem: Problem, ask: Ask) -> Solution:
     """An exact descent from equal durations, or from the first start that was given."""
-    floor = _floor(problem, FLOORS[-1])
+    floor = made_up(problem, FLOORS[-1])
     start = equal_start(problem) if ask.initial is None else ask.initial[0]
     if problem.segments > RESTORABLE:
         return judged(problem, [], floor, 0)
-    return judged(problem, exact_search(problem, start[None], floor, ask.until), floor, 1)
+    return judged(problem, exact_search(problem, start[None], floor), floor, 1)
 
 
 def _searched(
@@ -264,33 +261,42 @@ def _searched(
     carried = np.empty((0, problem.segments)) if durations is None else durations[None]
     coarse: Solution | None = None
     for k, share in enumerate(shares):
-        floor = _floor(problem, share)
+        floor = made_up(problem, share)
         if ask.initial is None:
             wide = exact_starts(problem, ask.starts, ask.seed, floor)
             points = np.array([basin.durations for basin in wide])
         else:
             points = ask.initial
         points = np.vstack([points, carried])
-        found = exact_search(problem, points, floor, ask.until)
+        found = exact_search(problem, points, floor)
         solution = judged(problem, found, floor, len(points))
         if solution.durations is None and coarse is not None:
             return coarse  # further down, rounding hides the limits
         if solution.durations is None and ask.initial is None:
             more = anywhere(problem, ANYWHERE, ask.seed, floor)
-            found += exact_search(problem, more, floor, ask.until)
+            found += exact_search(problem, more, floor)
             solution = judged(problem, found, floor, len(found))
+            if solution.durations is None:
+                found += tolerated_search(problem, ask.starts, ask.seed, DEEPER[0])
+                least = judged(problem, found, made_up(problem, DEEPER[0]), len(found))
+                none = least.durations is None
+                why = ONLY_TOLERANCE
+                return solution if none else replace(least, status=Status.FEASIBLE, why=why)
         if coarse is not None and solution.total_time > coarse.total_time * (1 + BETTER):
             return coarse  # rounding costs more than the lower floor gains
         if solution.status is not Status.NOT_ATTAINED:
             h, stopped = solution.durations, solution.status is Status.FEASIBLE
             if coarse is None or h is None or not stopped:
                 return solution
+            if solution.total_time < coarse.best * (1 - BETTER):
+                return solution  # what was approached above is undercut: it is no infimum
             # Unconverged below the floor that an answer lay on, it shows no less that totals fall.
-            return coarse if (h < _floor(problem, shares[k - 1])).any() else solution
+            return coarse if (h < made_up(problem, shares[k - 1])).any() else solution
         if coarse is not None:
             solution = _approached(problem, coarse, solution, shares[k - 1], share)
             assert solution.durations is not None
-            if share == FLOORS[-1] and not moving_at_floor(problem, solution.durations, floor):
+            near = solution.total_time - solution.best <= APPROACHED * solution.total_time
+            if near and not moving_at_floor(problem, solution.durations, floor):
                 return solution
         assert solution.durations is not None
         coarse, carried = solution, solution.durations[None]
@@ -311,7 +317,7 @@ def _after_restoration(problem: Problem, ask: Ask, solution: Solution) -> Soluti
         )
     if problem.segments > RESTORABLE:
         return solution
-    floor = _floor(problem, FLOORS[-1])
+    floor = made_up(problem, FLOORS[-1])
     starts = np.vstack([equal_start(problem), anywhere(problem, ask.starts, ask.seed, floor)])
     box = box_above(problem, floor)
     ends = [restored(problem, start, box).durations for start in starts]
@@ -337,7 +343,7 @@ def _stretched_start(problem: Problem, solution: Solution) -> Solution:
     found = decided(problem, equal_start(problem), first_nodal(problem))
     if found is None:
         return solution
-    answer = judged(problem, [found], _floor(problem, FLOORS[-1]), solution.starts)
+    answer = judged(problem, [found], made_up(problem, FLOORS[-1]), solution.starts)
     return replace(answer, iterations=solution.iterations, build_seconds=solution.build_seconds)
 
 
@@ -349,31 +355,27 @@ def _challenged(problem: Problem, solution: Solution, wide: list[Basin], ask: As
     points = np.array([basin.durations for basin in wide if basin.total < bar])
     if points.size == 0 or time_up():
         return solution
-    floor = _floor(problem, FLOORS[-1])
-    found = judged(problem, exact_search(problem, points, floor, ask.until), floor, solution.starts)
+    floor = made_up(problem, FLOORS[-1])
+    found = judged(problem, exact_search(problem, points, floor), floor, solution.starts)
     return better_of(solution, found)
 
 
 def _shortened(problem: Problem, solution: Solution, ask: Ask) -> Solution:
     """The answer, or a better one in which a segment between close way-points is much shorter."""
-    if solution.status is not Status.OPTIMAL or apart(problem) or _late(ask):
+    if solution.status is not Status.OPTIMAL or apart(problem) or time_up():
         return solution
     if not short_ways(problem):
         return solution
     assert solution.durations is not None
-    floor = _floor(problem, DEEPER[-1])
+    floor = made_up(problem, DEEPER[-1])
     for point in shortened(problem, solution.durations, floor, ask.seed):
-        if _late(ask):
+        if time_up():
             break
         # One by one: a start that ends above a floor says nothing of one that ends at it.
         found = _searched(problem, replace(ask, initial=point[None]), shares=DEEPER)
         starts = solution.starts + found.starts
         solution = replace(better_of(solution, found), starts=starts)
     return solution
-
-
-def _late(ask: Ask) -> bool:
-    return time.monotonic() > ask.until or time_up()
 
 
 def _with_known(problem: Problem, solution: Solution, ask: Ask) -> Solution:
@@ -383,27 +385,29 @@ def _with_known(problem: Problem, solution: Solution, ask: Ask) -> Solution:
         if ask.known_nodal is None:
             return solution
         nodal = list(ask.known_nodal)
-    passed = [
-        (h, v)
-        for h, v in zip(ask.known, nodal, strict=True)
-        if h.sum() < solution.best * (1 - ROUNDED) and kept(problem, check(problem, h, v))
-    ]
-    if not passed:
+    bar = solution.best * (1 - ROUNDED)
+    shorter = sorted(
+        ((h, v) for h, v in zip(ask.known, nodal, strict=True) if h.sum() < bar),
+        key=lambda motion: float(motion[0].sum()),
+    )
+    repaired = (stretched(problem, h, v) for h, v in shorter)
+    passed = next((one for one in repaired if one is not None and one[0].sum() < bar), None)
+    if passed is None:
         return solution
-    best, values = min(passed, key=lambda motion: float(motion[0].sum()))
+    best, values = passed
     incumbent = Local(best, values, float(best.sum()), False, True, 0)
-    floor = np.minimum(_floor(problem, FLOORS[-1]), best / 2.0)
+    floor = np.minimum(made_up(problem, FLOORS[-1]), best / 2.0)
     found = [incumbent]
     if searchable(problem):
-        found += exact_search(problem, best[None], floor, ask.until)
+        found += exact_search(problem, best[None], floor)
     else:
         try:
             search, _ = tracked_search(problem, ask)
             found += search(best[None], FLOORS[-1] * float(best.mean()))
         except TooLong:
             pass  # the known motion is the answer
-    shorter = judged(problem, found, floor, solution.starts)
-    return shorter if shorter.best < solution.best else solution
+    answer = judged(problem, found, floor, solution.starts)
+    return answer if answer.best < solution.best else solution
 
 
 def _with_idle(problem: Problem, idle: list[int], ask: Ask) -> Solution:
@@ -431,7 +435,7 @@ def _approached(
     assert finer.durations is not None
     totals = [coarser.total_time]
     if searchable(problem):
-        again = exact_search(problem, finer.durations[None], _floor(problem, wide))
+        again = exact_search(problem, finer.durations[None], made_up(problem, wide))
         totals += [local.total for local in again if local.feasible]
     ratio = narrow / wide
     slope = max(0.0, min(totals) - finer.total_time) / (1.0 - ratio)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -32,12 +33,19 @@ def first_nodal(problem: Problem) -> Array | None:
     return nodal
 
 
+@lru_cache(maxsize=16)
+def stretching(problem: Problem) -> Problem:
+    """The problem without the limits that no stretch repairs: sides of 0."""
+    sides = problem.limits.sides
+    if (sides > 0).all():
+        return problem
+    return replace(problem, limits=problem.limits.with_sides(np.where(sides > 0, sides, np.inf)))
+
+
 def equal_start(problem: Problem) -> Array:
     """Equal durations, rescaled uniformly to be tight and put within the bounds, s."""
     h = np.ones((1, problem.segments))
-    sides = problem.limits.sides
-    usable = replace(problem, limits=problem.limits.with_sides(np.where(sides > 0, sides, np.inf)))
-    stretch = float(evaluate(usable, h, first_nodal(problem)).stretch[0])
+    stretch = float(evaluate(stretching(problem), h, first_nodal(problem)).stretch[0])
     if not (np.isfinite(stretch) and stretch > 0):
         stretch = 1.0
     return np.asarray(np.clip(h[0] * stretch, problem.duration_lower, problem.duration_upper))

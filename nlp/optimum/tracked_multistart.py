@@ -30,10 +30,10 @@ def tracked_search(
     began = time.perf_counter()
     if problem.curve.piecewise is not None:
         build_ = compiled(structure_of(problem, ask.form))
-        search = partial(tracked_multistart, problem, build_, until=ask.until)
+        search = partial(tracked_multistart, problem, build_)
         return search, time.perf_counter() - began
     built = compiled_curve(curve_structure(problem))
-    return partial(curve_multistart, problem, built, until=ask.until), time.perf_counter() - began
+    return partial(curve_multistart, problem, built), time.perf_counter() - began
 
 
 def eliminating(problem: Problem, form: Form | None) -> bool:
@@ -44,13 +44,13 @@ def eliminating(problem: Problem, form: Form | None) -> bool:
 
 
 def tracked_multistart(
-    problem: Problem, build_: Compiled, points: Array, floor: float, until: float
+    problem: Problem, build_: Compiled, points: Array, floor: float
 ) -> list[Local]:
     """Local optima of all starts; the same coarse solution is tracked only once."""
     tracked: list[tuple[Array, Local]] = []
     found: list[Local] = []
     for start in points:
-        if found and (time.monotonic() > until or time_up()):
+        if found and time_up():
             break
         near = settled(problem, start)
         x, scaled, success, iterations = solve_coarse(problem, build_, near, floor)
@@ -60,14 +60,14 @@ def tracked_multistart(
             for h, local in tracked
             if np.abs(h - coarse).max() <= 1e-6 * coarse.sum() and local.feasible
         ]
-        local = known[0] if known else track(problem, build_, x, scaled, floor, until)
+        local = known[0] if known else track(problem, build_, x, scaled, floor)
         if success and not known:
             tracked.append((coarse, local))
         bar, _, _ = merit(problem, start, first_nodal(problem))
         if bar < local.total:
             # The coarse solve left the start's basin for a worse one: descend from the start.
             first = pack(problem, build_.formulation, scaled, start, first_nodal(problem))
-            direct = track(problem, build_, first, scaled, floor, until)
+            direct = track(problem, build_, first, scaled, floor)
             local = min(local, direct, key=lambda one: one.total)
         found.append(replace(local, iterations=local.iterations + iterations))
     return found

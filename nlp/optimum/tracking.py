@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
@@ -283,12 +282,8 @@ def merit(problem: Problem, h: Array, nodal: Array | None) -> tuple[float, Array
     return verdict.feasible_time, h * factor, nodal
 
 
-def track(
-    problem: Problem, build_: Compiled, x: Array, scaled: Scaled, floor: float, until: float
-) -> Local:
+def track(problem: Problem, build_: Compiled, x: Array, scaled: Scaled, floor: float) -> Local:
     """Put the slots on the true extrema and solve again, inside a trust region, until they stay.
-
-    After the reading ``until`` of the monotonic clock no further step is begun.
 
     Every step is judged by the exact repaired total, so that a slot that lost its extremum costs
     a smaller step and never a worse answer; all extrema are found anew before each solve.
@@ -302,7 +297,7 @@ def track(
     radius, step, iterations, converged, duals = 0.5, np.inf, 0, False, None
     stale = 0
     for _ in range(_PASSES):
-        if time.monotonic() > until or time_up():
+        if time_up():
             break
         trajectory = fit(problem.curve, problem.waypoints, h, nodal)
         c = trajectory.scaled / scaled.angle_unit

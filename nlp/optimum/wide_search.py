@@ -10,6 +10,7 @@ from ...problem import Array, CurveError, Problem, evaluate, fit
 from ...problem.curves import batch_coefficients
 from .clock import seconds_left, time_up
 from .descent import LogBox
+from .starts import stretching
 
 MEMBERS, MOST_MEMBERS = 16, 128
 """Members of a population for each segment, and at most."""
@@ -59,11 +60,23 @@ def _outside(problem: Problem, h: Array) -> Array:
     return np.asarray(np.where(np.isfinite(worst), worst, HOPELESS))
 
 
+def _beyond_nothing(problem: Problem, h: Array) -> Array:
+    """Excess over sides of 0 of each vector, in shares of a joint's mean rate."""
+    span = np.ptp(problem.waypoints, axis=0)
+    wanted = (problem.limits.sides == 0.0) & (span > 0)[:, None]
+    peaks = problem.curve.batch_sides(problem.waypoints, h, wanted)
+    times = h.sum(axis=1)[:, None] ** np.arange(1, 4)
+    rates = np.where(span > 0, span, 1.0)[:, None] / times[:, None]
+    worst = np.where(wanted[:, None], peaks / rates, 0.0).max(axis=(0, 2, 3))
+    return np.asarray(np.where(np.isfinite(worst), worst, HOPELESS))
+
+
 def excess_and_total(problem: Problem, h: Array, box: LogBox) -> tuple[Array, Array, Array]:
     """Vectors stretched towards the limits within the box: log durations, excess and total."""
     low, high = np.exp(box.low), np.exp(box.high)
     h = np.clip(h, low, high)
-    stretch = evaluate(problem, h).stretch
+    usable = stretching(problem)
+    stretch = evaluate(usable, h).stretch
     excess = np.where(np.isfinite(stretch), 0.0, HOPELESS)
     left = np.flatnonzero(np.isfinite(stretch) & (stretch > 0))
     for _ in range(REPAIRS):
@@ -74,13 +87,15 @@ def excess_and_total(problem: Problem, h: Array, box: LogBox) -> tuple[Array, Ar
         left = left[bent]
         if left.size == 0:
             break
-        stretch[left] = evaluate(problem, h[left]).stretch
+        stretch[left] = evaluate(usable, h[left]).stretch
         lost = ~(np.isfinite(stretch[left]) & (stretch[left] > 0))
         excess[left[lost]] = HOPELESS
         left = left[~lost]
         excess[left] = np.log(stretch[left])
     if problem.limits.limits_position:
         excess = np.maximum(excess, _outside(problem, h))
+    if usable is not problem:
+        excess = np.maximum(excess, _beyond_nothing(problem, h))
     return np.log(h), np.maximum(excess, 0.0), h.sum(axis=1)
 
 

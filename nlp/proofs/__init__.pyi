@@ -1,4 +1,4 @@
-from .certifiers import certify, covered
+from .certifiers import allowance, certify, covered
 from .document import (
     certificate,
     certificate_text,
@@ -33,6 +33,7 @@ __all__ = [
     "Progress",
     "ProvedInterval",
     "StateFile",
+    "allowance",
     "cache_folder",
     "certificate",
     "certificate_text",

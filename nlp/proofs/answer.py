@@ -182,7 +182,7 @@ def never_above(coefficients: Sequence[Fraction], bound: Fraction) -> bool:
 
 
 def _smooth(pieces: list[list[Fraction]], durations: Sequence[Fraction], order: int) -> bool:
-    """Whether a derivative is continuous: no limit on the next one survives a jump of it."""
+    """Whether a derivative is continuous."""
     scaled = [
         ([math.perm(p, order) * c / h**order for p, c in enumerate(piece)][order:])
         for piece, h in zip(pieces, durations, strict=True)
@@ -201,8 +201,8 @@ def keeps_limits(
 
     ``clock`` is called between the steps, and ends it by raising.
 
-    A limit on a derivative asks for a continuous one below it; only a curve that is stretched
-    segment by segment is judged inside its segments alone.
+    The velocity must not jump, nor the acceleration of a joint whose jerk is limited, as `check`
+    has it; only a curve that is stretched segment by segment is judged inside its segments alone.
     """
     for h, low, high in zip(durations, problem.duration_lower, problem.duration_upper, strict=True):
         if h <= 0 or h < low or (high is not None and h > high):
@@ -215,8 +215,8 @@ def keeps_limits(
     if curve is None:
         return False
     for j, pieces in enumerate(curve):
-        limited = [order for order in (2, 3) if problem.sides(j, order) != (None, None)]
-        if not stretched and not all(_smooth(pieces, durations, r - 1) for r in limited):
+        orders = (1,) if problem.sides(j, 3) == (None, None) else (1, 2)
+        if not stretched and not all(_smooth(pieces, durations, order) for order in orders):
             return False
         floor, roof = problem.position_lower[j], problem.position_upper[j]
         for piece, h in zip(pieces, durations, strict=True):

@@ -37,6 +37,9 @@ class Certifier:
         What its interval speaks about.
     instant : bool
         Whether it is a closed form.
+    boxes : int
+        Boxes that an audit allows one problem by default: some ten seconds' worth, measured where
+        nothing else ran.
     sided : bool
         Whether its bounds know lower and upper limits that differ in size. If not, they are proved
         within the larger of both, which is sound and wider.
@@ -48,6 +51,7 @@ class Certifier:
     prove: Callable[[Session], bool]
     subject: Subject = Subject.DECLARED
     instant: bool = False
+    boxes: int = 1
     sided: bool = False
 
     def run(self, exact: ExactProblem, request: Request) -> Certified:

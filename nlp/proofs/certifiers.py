@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 import time
 from collections.abc import Callable
 from concurrent.futures import Executor
@@ -77,12 +78,29 @@ def instant(problem: ExactProblem) -> bool:
     return certifier is not None and certifier.instant
 
 
+def allowance(problem: ExactProblem) -> int:
+    """Boxes that an audit allows a covered problem by default.
+
+    Parameters
+    ----------
+    problem : ExactProblem
+
+    Returns
+    -------
+    int
+    """
+    certifier = _certifier(problem, Subject.DECLARED)
+    assert certifier is not None
+    return certifier.boxes
+
+
 def certify(
     problem: Problem | ExactProblem,
     *,
     subject: Subject = Subject.DECLARED,
     gap: float = GAP,
     seconds: float = 60.0,
+    boxes: float = math.inf,
     seed: int = 0,
     resume: Certified | dict[str, Any] | None = None,
     report: Callable[[Progress], None] | None = None,
@@ -110,6 +128,9 @@ def certify(
         interval proved so far is returned; a proof that could not be verified in time is left in
         the state alone. It is kept to within a second and one step: a box, or a step of the local
         solver. An answer whose exact proof was cut short is none; `Certified.left_out` says so.
+    boxes : float
+        Boxes after which the search ends. With infinite ``seconds`` they alone limit it, and the
+        result does not depend on how busy the machine is.
     seed : int
         Of the starts of the local solver that finds the answer.
     resume : Certified or dict, optional
@@ -164,7 +185,9 @@ def certify(
             request = Request(gap, 0.0, seed, taken_up)
             before = Session(exact, request).result(False, subject)
             before = replace(before, verdict=taken_up.verdict)
-        request = Request(gap, deadline.left, seed, taken_up, report, workers, executor, crew)
+        request = Request(
+            gap, deadline.left, seed, taken_up, report, workers, executor, crew, boxes
+        )
         found = judged(certifier.run(exact, request), deadline, before, crew)
     kept.keep(found, gap, seed)
     return found

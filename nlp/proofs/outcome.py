@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
@@ -9,7 +10,7 @@ from enum import StrEnum
 from fractions import Fraction
 from typing import Any, Protocol
 
-from ...verify import CertificateVerdict, Subject
+from ...verify import CertificateVerdict, Subject, shown_bound
 from .crew import ProofCrew
 from .exact import ExactProblem
 
@@ -97,6 +98,8 @@ class Request:
         Relative width of the interval to reach.
     seconds : float
         Time limit of search and judging; the session ends the search early enough.
+    boxes : float
+        Boxes after which the search ends, whatever the time.
     seed : int
         Of the starts of a local solver.
     resume : Resumed or None
@@ -119,6 +122,7 @@ class Request:
     workers: int = 1
     executor: Executor | None = None
     crew: ProofCrew = field(default_factory=ProofCrew)
+    boxes: float = math.inf
 
 
 @dataclass(frozen=True, eq=False)
@@ -189,10 +193,11 @@ class Certified:
         elif self.upper is None and not self.lower:
             head = "nothing proved"
         elif self.upper is None:
-            head = f"optimum at least {float(self.lower):.9f} s, no answer"
+            head = f"optimum at least {shown_bound(self.lower, 'lower', places=9)} s, no answer"
         else:
             head = (
-                f"optimum in [{float(self.lower):.9f}, {float(self.upper):.9f}] s, "
+                f"optimum in [{shown_bound(self.lower, 'lower', places=9)}, "
+                f"{shown_bound(self.upper, 'upper', places=9)}] s, "
                 f"gap {self.gap:.1e}, {self.outcome}"
             )
         left = "" if self.left_out is None else f"; left out: {self.left_out}"

@@ -48,6 +48,8 @@ UNBOUNDED = "the time ended before a lower bound was proved"
 """What was left out where a search had to end before its first proof."""
 BARE = "the time ended before a bound better than that of the mean velocities was proved"
 """What was left out where all that is proved is what needs no search."""
+BOXED = "the boxes that were allowed ended before a lower bound was proved"
+"""The same where boxes were counted, and no time was limited."""
 UNPROVED = "a motion was found, and the exact proof that it keeps its limits was cut short"
 """What was left out where `ANSWERING` is over."""
 
@@ -203,11 +205,18 @@ class Session:
     def check_clock(self, ahead: float = 0.0) -> None:
         """Raise `OutOfTime` when what is left of the time is needed for judging.
 
+        So it does when as many boxes were visited as are allowed: whether the clock has a say is up
+        to who asks.
+
         Parameters
         ----------
         ahead : float
             Seconds that a stage without steps is estimated to take, which is not begun then.
         """
+        if self.nodes >= self.request.boxes:
+            if self._unsearched and self.left_out is None:
+                self.left_out = BOXED
+            raise OutOfTime
         seconds = self.seconds
         judging = (
             self.judging * seconds if self._judging is None else self._judging * self.judged_boxes

@@ -8,6 +8,8 @@ from collections.abc import Collection, Sequence
 
 _DERIVATIVES = ("acceleration", "velocity", "jerk")
 """Derivatives of which peaks are printed, the most usual first."""
+_UNPLACED = "a place not stated"
+"""Place of a claim for which none is given: it reads as what it is in every message."""
 
 
 def claim_blocks(
@@ -31,7 +33,7 @@ def claim_blocks(
     total : str or None
         Printed total.
     where : str
-        Where they are printed; left to be filled in if empty.
+        Where they are printed; said to be not stated if empty.
     segments : int
         How many durations there are to print.
     units : collection of str
@@ -135,8 +137,8 @@ def claim_blocks(
 
 def _claim_of_options(durations: Sequence[str], total: str | None, where: str) -> list[str]:
     """The claim of what is given on the command line."""
-    place = f"where = {json.dumps(where, ensure_ascii=False)}"
-    place += "" if where else "  # fill in: table, section or figure"
+    place = f"where = {json.dumps(where or _UNPLACED, ensure_ascii=False)}"
+    place += "" if where else "  # say which table, section or figure"
     if durations:
         return [
             "[[claims]]",

@@ -74,6 +74,7 @@ def _check_claim(
         _check_blends(faults, claim, every, at)
     if isinstance(claim, TotalTimeClaim):
         number(claim.value, "time", "value")
+        _check_profile(faults, claim, every, at)
     if isinstance(claim, PeakClaim | MeasureClaim | ValueClaim):
         for position, printed in enumerate(claim.printed):
             if claim.values is not None:
@@ -152,6 +153,32 @@ def _check_curves(document: CaseFile, faults: Faults, claim: MaximumClaim, at: s
                 f"{at}.other_curve",
                 f"is not that of {row.id!r}, whose durations it takes; give other_curve = {named} "
                 "in both, or in neither",
+            )
+            return
+
+
+_BOUNDED_BY = {"trapezoidal": "acceleration", "s-curve": "jerk", "sine-jerk": "jerk"}
+"""The limit without which each profile is another one: its highest derivative would jump."""
+
+
+def _check_profile(
+    faults: Faults, claim: TotalTimeClaim, every: Sequence[Statement], at: str
+) -> None:
+    """Refuse a profile without the limit that makes it the one that is named."""
+    if claim.profile is None:
+        return
+    needed = _BOUNDED_BY[claim.profile]
+    for statement in every:
+        given = getattr(statement.limits, needed)
+        each = given if isinstance(given, tuple) else (given,) * len(statement.labels)
+        joints = [j for j in statement.joints if claim.joint in (None, statement.labels[j])]
+        free = [statement.labels[j] for j in joints if j < len(each) and each[j] is None]
+        if free:
+            which = "" if len(free) == len(joints) else f" for joint {', '.join(free)}"
+            faults.add(
+                f"{at}.profile",
+                f'"{claim.profile}" needs limits.{needed}, and none is stated{which}; add it, or '
+                f"leave profile out{statement.selected}",
             )
             return
 

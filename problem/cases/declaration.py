@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
@@ -251,20 +251,33 @@ class InterpolantBlock(Strict):
         return self.finish_derivatives if own else self.end_derivatives
 
     @property
+    def _ends(self) -> Values:
+        """The values prescribed at both ends."""
+        return (*(self.end_derivatives or ()), *(self.finish_derivatives or ()))
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether no derivative other than 0 is prescribed at the ends."""
+        return all(number.fraction == 0 for number in _each(self._ends))
+
+    @property
     def loose(self) -> str:
         """What of the curve is a printed number, as the subject of a sentence; empty if nothing."""
-        ends = (*(self.end_derivatives or ()), *(self.finish_derivatives or ()))
         parts = (
-            ("derivatives at the ends", ends),
+            ("derivatives at the ends", self._ends),
             ("knots", self.knot_vector or ()),
             ("parameters of way-points", self.parameter_values or ()),
         )
         found = []
         for name, every in parts:
-            each = (n for one in every for n in (one if isinstance(one, tuple) else (one,)))
-            if any(not number.exact for number in each):
+            if any(not number.exact for number in _each(every)):
                 found.append(name)
         return " and ".join(found).capitalize()
+
+
+def _each(values: Values) -> Iterator[Printed]:
+    """Every number, those of single joints too."""
+    return (n for one in values for n in (one if isinstance(one, tuple) else (one,)))
 
 
 def _check_rising(key: str, numbers: tuple[Printed, ...], repeats: bool) -> None:

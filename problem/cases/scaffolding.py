@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import cast
 
@@ -18,16 +17,11 @@ from .declaration import FAMILIES
 from .faults import Faults
 from .literature import meant_by, unknown
 from .load import parse_case
-
-_LABEL_HEADERS = ("", "waypoint", "way-point", "point", "label", "name")
-"""Headers, in lower case, of a first column that holds names and not angles."""
-
+from .waypoint_table import add_digits, read_waypoint_table
 
 _ROUND = 5
 """Degrees of which angles that are settings are multiples: what is rounded to whole degrees seldom
 is, and hardly ever all of a table."""
-_UNPLACED = "to be filled in"
-"""Stands for a place that is not given while the rest is checked."""
 
 
 def scaffold(
@@ -43,14 +37,16 @@ def scaffold(
     durations: str | None = None,
     total: str | None = None,
     where: str = "",
+    warn: Callable[[str], None] | None = None,
 ) -> str:
     """Write a case file for a table of way-points.
 
     Parameters
     ----------
     csv_path : str or Path
-        Table separated by commas, semicolons or tabs. The header names the joints, each further
-        row is a way-point; a first column headed "waypoint", "point" or "label" names them.
+        Table separated by commas, semicolons, tabs or spaces. The header names the joints, each
+        further row is a way-point; a first column headed "point", "label" or the like, or without
+        any number, names them. Where the first column is headed "joint", each row is a joint.
     units : mapping
         Unit of "position", and of "velocity", "acceleration" and "jerk" where a limit is given or
         a peak is printed, or one for each joint, with commas between; "time" is "s" if left out.
@@ -69,14 +65,16 @@ def scaffold(
         Printed durations of the segments, with commas between, and printed total time: each
         becomes a claim, with its digits as given.
     where : str, optional
-        Table, section or figure that prints them. If it is empty the claim has a blank that is
-        refused until it is filled in.
+        Table, section or figure that prints them. If it is empty the claim says that its place is
+        not stated.
+    warn : callable, optional
+        Called with a sentence on what may not be meant as it was taken.
 
     Returns
     -------
     str
-        TOML with every number as it stands in the table, and comments on what to add. It loads,
-        but for a blank place of a claim. Angles with decimals are in quotes, which stand for all
+        TOML with every number as it stands in the table, and comments on what to add. It loads.
+        Angles with decimals are in quotes, which stand for all
         that rounds to them; whole radians, and whole degrees where all are multiples of 5, are
         settings and meant exactly.
 
@@ -95,35 +93,46 @@ def scaffold(
     checked = _units(options, units, given)
     for key, each in (given | claimed).items():
         for number in each:
-            _digits(options, key, number)
-    header, rows = _table(table, read_text(path))
-    labelled = header[0].strip().lower() in _LABEL_HEADERS
-    joints = header[1:] if labelled else header
-    labels = [row[0] for row in rows] if labelled else [str(k + 1) for k in range(len(rows))]
-    numbers = [row[1:] if labelled else row for row in rows]
+            add_digits(options, key, number)
+    found = read_waypoint_table(table, read_text(path))
+    joints = found.joints
     for key, each in given.items():
         if len(each) not in (1, len(joints)):
             many = f"lists {len(each)} numbers for {len(joints)} joints"
             options.add(key, f"{many}; give one for all, or one each")
-    curve = _curve(options, family, degree, len(rows), "jerk" in given)
+    curve = _curve(options, family, degree, len(found.rows), "jerk" in given)
     _refuse(table, options)
     identity = case_id if case_id is not None else identity_of(path.stem)
 
-    def text(place: str, segments: int) -> str:
-        total = next(iter(claimed["total"]), None)
-        claims = claim_blocks(claimed["durations"], total, place, segments, checked, joints[0])
-        angles = _angles(numbers, checked["position"])
+    def text(segments: int) -> str:
+        printed = next(iter(claimed["total"]), None)
+        claims = claim_blocks(claimed["durations"], printed, where, segments, checked, joints[0])
+        angles = _angles(found.rows, checked["position"])
+        labels = found.labels
         return _text(identity, path.name, joints, labels, angles, checked, given, curve, claims)
 
     try:
-        case = parse_case(text(where or _UNPLACED, len(rows) - 1), name)
+        segments = parse_case(text(len(found.rows) - 1), name).problem().segments
     except CaseError as error:
         for field, reason in error.faults:
             meant = _argument(field)
             (table if meant is None else options).add(meant or field, reason)
         _refuse(table, options)
         raise
-    return text(where, case.problem().segments)
+    count = len(claimed["durations"])
+    if count not in (0, segments):
+        options.add(
+            "durations",
+            f"lists {count} number{'' if count == 1 else 's'}, and the curve has {segments} "
+            f"segment{'' if segments == 1 else 's'}; give one for each, or change the family",
+        )
+        _refuse(table, options)
+    if found.counted and warn is not None:
+        warn(
+            f"{name}: line 1 is taken for the names of the joints, {', '.join(joints)}; if these "
+            "are a way-point, put a header above it"
+        )
+    return text(segments)
 
 
 def _refuse(table: Faults, options: Faults) -> None:
@@ -200,59 +209,6 @@ def _units(
         except TrajgapError as error:
             faults.add(f"units.{key}", str(error))
     return checked
-
-
-def _table(faults: Faults, text: str) -> tuple[list[str], list[list[str]]]:
-    """Header and rows; what does not keep the rows from being read is refused with the options."""
-    delimiter = max(",;\t", key=text.split("\n", 1)[0].count)
-    reader = csv.reader(text.splitlines(), delimiter=delimiter, strict=True)
-    lines: list[tuple[int, list[str]]] = []
-    try:
-        for row in reader:
-            if any(cell.strip() for cell in row):
-                lines.append((reader.line_num, [cell.strip() for cell in row]))
-    except csv.Error as error:
-        why = f"not valid CSV, {error}; fix it"
-        raise CaseError(faults.file, f"line {reader.line_num}", why) from None
-    _, header = lines[0]
-    first = 1 if header[0].lower() in _LABEL_HEADERS else 0
-    if len(header) == first:
-        faults.add("line 1", "names no joint; head one column per joint")
-    for column, label in enumerate(header[first:], first + 1):
-        where = f"line 1, column {column}"
-        if not label:
-            faults.add(where, "the joint has no name; head every column")
-        elif label in header[first : column - 1]:
-            faults.add(where, f"joint {label!r} is named twice; rename one")
-    if _is_number(header[first:]):
-        faults.add(
-            "line 1", "holds numbers; the first line names the joints, put a header above it"
-        )
-    rows = [row for _, row in lines[1:]]
-    for line, row in lines[1:]:
-        if len(row) != len(header):
-            many = f"has {len(row)} cells, the header {len(header)}"
-            faults.add(f"line {line}", f"{many}; fill or remove cells")
-        for column, cell in enumerate(row[first:], first + 1):
-            _digits(faults, f"line {line}, column {column}", cell)
-    if len(rows) < 2:
-        faults.add("", f"holds {len(rows)} way-points; give at least two rows of numbers")
-    return header, rows
-
-
-def _is_number(cells: Sequence[str]) -> bool:
-    # Joints are often named 1, 2, 3: only signs and decimals give a row of angles away.
-    return any(re.fullmatch(r"[-−+]?[0-9]*\.[0-9]+|[-−][0-9.]+", cell) for cell in cells)
-
-
-def _digits(faults: Faults, field: str, text: str) -> None:
-    try:
-        Printed(text)
-    except TrajgapError as error:
-        fix = str(error)
-        if re.fullmatch(r"\s*[-+−]?[0-9]+,[0-9]+\s*", text):
-            fix = f"{text!r} has a decimal comma; write a decimal point"
-        faults.add(field, fix)
 
 
 def identity_of(stem: str) -> str:

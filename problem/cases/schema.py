@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from decimal import Decimal
+from math import isfinite
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, StrictBool, StrictInt, WithJsonSchema, model_validator
@@ -284,8 +285,8 @@ def _setting(raw: object) -> object:
     if isinstance(raw, list):
         return [_setting(item) for item in raw]
     if isinstance(raw, Decimal):
-        if not raw.is_finite():
-            raise TrajgapError(f"{raw} is not a finite number; give a finite one")
+        if not isfinite(float(raw)):
+            raise TrajgapError(f"{raw} is not a finite number of float64; give a finite one")
         return float(raw)
     if isinstance(raw, bool | int | float | str):
         return raw

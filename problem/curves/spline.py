@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array
-from ..errors import TrajgapError
+from ..errors import SingularError, TrajgapError
 from . import kernel, lanes, leading_kernel, range_kernel
 from .compilation import Deferred
 from .condition import ConditionKind
@@ -186,9 +186,10 @@ def coefficients(
     return out
 
 
-def singular(interpolant: Interpolant, durations: Array) -> TrajgapError:
+def singular(interpolant: Interpolant, durations: Array) -> SingularError:
     """The error of a system that these durations make singular."""
-    return TrajgapError(f"interpolant {interpolant.name}: singular for durations {durations} s")
+    why = f"interpolant {interpolant.name}: singular for durations {durations} s"
+    return SingularError(why, int(np.argmin(durations)))
 
 
 def as_durations(durations: ArrayLike, segments: int) -> Array:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Mapping, Sequence
 
 from ..arrays import Array
-from ..errors import CaseError
+from ..errors import CaseError, TrajgapError
 from ..motions import BRAKING
+from ..printed import read_float
 from .precedence import Range, StatedLimits
 
 
@@ -55,10 +55,10 @@ def limits_of_flags(
 def _range(flag: str, word: str, quantity: str) -> Range:
     parts = word.split(":")
     try:
-        numbers = [float(x) for x in parts]
-    except ValueError:
-        raise CaseError(flag, "", f"{word[:40]!r} is no limit; give 6, or -1:2") from None
-    if any(map(math.isnan, numbers)) or len(numbers) > 2:
+        numbers = [read_float(x) for x in parts]
+    except TrajgapError as error:
+        raise CaseError(flag, "", f"{error}; give 6, or -1:2") from None
+    if len(numbers) > 2:
         raise CaseError(flag, "", f"{word[:40]!r} is no limit; give 6, or -1:2")
     if len(numbers) == 1:
         if numbers[0] < 0:

@@ -8,11 +8,22 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import CaseError
+from ..fields import spelt_like
 from ..motions import BRAKING, read_yaml
 from .precedence import Range, StatedLimits
 
 _SIZES = ("velocity", "acceleration", BRAKING, "jerk")
 """Quantities with ``has_X_limits`` and ``max_X``; the smallest value is minus the largest."""
+_READ = (
+    *(key for one in _SIZES for key in (f"has_{one}_limits", f"max_{one}")),
+    *("has_position_limits", "min_position", "max_position"),
+)
+"""Keys that state limits."""
+_OTHERS = (
+    *("has_effort_limits", "max_effort", "angle_wraparound", "has_soft_limits"),
+    *("k_position", "k_velocity", "soft_lower_limit", "soft_upper_limit"),
+)
+"""Keys of ros2_control that state no limit of a motion; they are left aside."""
 
 
 def read_moveit(path: Path) -> StatedLimits:
@@ -38,6 +49,8 @@ def read_moveit(path: Path) -> StatedLimits:
     """
     name = str(path)
     documents = read_yaml(path)
+    if len(documents) > 1:
+        raise CaseError(name, "", f"holds {len(documents)} documents; keep one")
     found = documents[0] if documents else None
     # As a file of ROS parameters it is wrapped: node, ros__parameters, robot_description_planning.
     for _ in range(4):
@@ -57,6 +70,10 @@ def read_moveit(path: Path) -> StatedLimits:
 
 def _ranges(name: str, field: str, block: Mapping[Any, Any]) -> dict[str, Range]:
     ranges: dict[str, Range] = {}
+    for key in block:
+        near = None if key in (*_READ, *_OTHERS) else spelt_like(str(key), _READ)
+        if near:
+            raise CaseError(name, f"{field}.{str(key)[:40]}", f"did you mean {near!r}?")
     for quantity in _SIZES:
         top = _number(name, field, block, f"max_{quantity}")
         if _has(name, field, block, f"has_{quantity}_limits", top is not None):

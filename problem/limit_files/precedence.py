@@ -9,11 +9,14 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import CaseError, TrajgapError
-from ..fields import spelling_hint
+from ..fields import spelling_hint, spelt_like
 from ..motions import BRAKING, ORDERS, JointLimits, check_range
 
 Range = tuple[float, float]
 """Lower and upper limit, rad and s; infinite where that side has none."""
+
+_UNKNOWN = "is no joint with limits there; rename it or add it;"
+"""What is said of a joint that a file does not know, before the nearest name."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +51,7 @@ class StatedLimits:
         Raises
         ------
         CaseError
-            If none of them is known here.
+            If one of them is not known here.
         """
         return merge(joints, [self])
 
@@ -83,16 +86,15 @@ def merge(joints: Sequence[str], sources: Sequence[StatedLimits]) -> JointLimits
     Raises
     ------
     CaseError
-        If a source names joints, and none of these.
+        If no file knows a joint, or one has a joint of nearly its name instead; or if a file knows
+        none of the joints.
     """
+    _check_names(joints, sources)
     count = len(joints)
     lower, upper = np.full((count, 4), -np.inf), np.full((count, 4), np.inf)
     braking = np.full(count, np.inf)
     said: dict[tuple[str, str], str] = {}
     for one in sources:
-        if one.named and not set(joints) & set(one.ranges):
-            known = spelling_hint(joints[0], one.ranges)
-            raise CaseError(one.source, "", f"names none of the joints {_few(joints)}; {known}")
         for j, joint in enumerate(joints):
             stated = one.ranges.get(joint, {})
             # Acceleration alone is meant of braking too, whatever a later source says of that.
@@ -116,5 +118,18 @@ def merge(joints: Sequence[str], sources: Sequence[StatedLimits]) -> JointLimits
     return JointLimits(tuple(joints), lower, upper, braking, said)
 
 
-def _few(words: Sequence[str]) -> str:
-    return ", ".join(words[:3]) + (", ..." if len(words) > 3 else "")
+def _check_names(joints: Sequence[str], sources: Sequence[StatedLimits]) -> None:
+    """Refuse joints whose limits nobody states under their name: they would be free, unnoticed."""
+    files = [one for one in sources if one.named]
+    for one in files:
+        others = [name for name in one.ranges if name not in joints]
+        unknown = [joint for joint in joints if joint not in one.ranges]
+        faults = [
+            (joint, f"{_UNKNOWN} {spelling_hint(joint, others or one.ranges)}")
+            for joint in unknown
+            if len(unknown) == len(joints)
+            or spelt_like(joint, others)
+            or not any(joint in file.ranges for file in files)
+        ]
+        if faults:
+            raise CaseError(one.source, *faults[0], faults[1:])

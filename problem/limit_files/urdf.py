@@ -7,9 +7,10 @@ from collections.abc import Callable
 from pathlib import Path
 from xml.parsers import expat
 
-from ..errors import CaseError
+from ..errors import CaseError, TrajgapError
 from ..files import read_regular
 from ..motions import BRAKING
+from ..printed import read_float
 from .precedence import Range, StatedLimits
 
 LARGEST_URDF = 20_000_000
@@ -28,8 +29,8 @@ def read_urdf(path: Path) -> StatedLimits:
     path : Path
         Of ``<limit lower upper velocity acceleration deceleration jerk>`` each attribute that is
         there counts; ``lower`` or ``upper`` alone leaves the other at 0, as the format says. A
-        continuous joint has no range. Fixed, floating and planar joints and those that mimic
-        another are left aside.
+        continuous joint with limits is stated to have no range. Fixed, floating and planar joints
+        and those that mimic another are left aside.
 
     Returns
     -------
@@ -98,6 +99,8 @@ class _Reader:
             if self.joint in self.ranges:
                 raise self.fault(self.joint, "occurs twice; name each joint once")
         elif self.path == ["robot", "joint", "limit"]:
+            if self.limit is not None:
+                raise self.fault(self.joint, "has two limits; keep one")
             self.limit = attributes
         elif self.path == ["robot", "joint", "mimic"]:
             self.mimics = True
@@ -124,15 +127,13 @@ class _Reader:
                 raise self.fault(
                     f"{self.joint}: limit", "has no lower and upper; give both, in rad or m"
                 )
+        elif limit:
+            ranges["position"] = (-math.inf, math.inf)
         return ranges
 
     def _number(self, limit: dict[str, str], key: str) -> float:
-        text = limit[key].strip()
         try:
-            value = float(text)
-        except ValueError:
-            value = math.nan
-        if math.isnan(value):
-            fix = "run xacro first" if "$" in text else "fix it"
-            raise self.fault(f"{self.joint}: {key}", f"{text[:40]!r} is no number; {fix}")
-        return value
+            return read_float(limit[key])
+        except TrajgapError as error:
+            fix = "run xacro first" if "$" in limit[key] else "fix it"
+            raise self.fault(f"{self.joint}: {key}", f"{error}; {fix}") from None

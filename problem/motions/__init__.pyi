@@ -1,7 +1,8 @@
 from .between import check_samples
+from .digits import HalfUnits
 from .floor import Floor, shortest
 from .foreign_objects import as_motion
-from .joint_limits import BRAKING, ORDERS, JointLimits, check_range
+from .joint_limits import BRAKING, ORDERS, JointLimits, check_range, unstated_words
 from .judged import MOTION_TOLERANCE, MotionCheck, MotionJump, MotionPeak, check_motion
 from .motion import MOST_VALUES, Motion
 from .plain_data import read_yaml
@@ -18,6 +19,7 @@ __all__ = [
     "Evaluated",
     "Floor",
     "ForeignFile",
+    "HalfUnits",
     "Interpolation",
     "JointLimits",
     "Motion",
@@ -39,4 +41,5 @@ __all__ = [
     "read_yaml",
     "sampled",
     "shortest",
+    "unstated_words",
 ]

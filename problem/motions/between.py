@@ -3,7 +3,8 @@
 By the mean value theorem r! times the divided difference of r + 1 samples is a value that the r-th
 derivative takes between them, or lies between values that it takes where it jumps. So if it leaves
 the limit by more than the noise and the rounding allow, every motion through the samples breaks
-that limit; no such motion is accused otherwise. Wider windows see less noise: strides 1, 2, 4, ...
+that limit; no such motion is accused otherwise. Wider windows see less noise, of times as of
+positions: strides 1, 2, 4, ...
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from .judged import (
     MOTION_TOLERANCE,
     MotionCheck,
     MotionPeak,
+    blurred,
     check_same_joints,
     joined,
     peak,
@@ -27,8 +29,8 @@ from .judged import (
 )
 from .samples import Samples
 
-_EXACTLY = "The numbers are taken exactly: state --noise for what rounding or measuring may change."
-"""Said where no noise is stated: digits may be rounded, and a last digit accuses nobody."""
+_EXACTLY = "The numbers are taken exactly: state --noise for what measuring may change."
+"""Said where nothing is known of noise: a last digit accuses nobody."""
 _STRIDES = 12
 """Doublings of the stride: at 4,096 samples noise is as small as any limit can ask for."""
 
@@ -63,12 +65,18 @@ def check_samples(
                 peaks.append(joined(sides))
     broken = any(p.least_ratio > 1 + tolerance for p in peaks)
     verdict = Verdict.VIOLATED if broken else Verdict.UNDECIDED
-    proven = [replace(p, ratio=max(0.0, p.least_ratio)) for p in peaks]
+    # No motion through the samples is known to be above what they prove.
+    proven = [replace(p, ratio=p.least_ratio, most_ratio=p.least_ratio) for p in peaks]
     stretch, why = slow_down(proven, tolerance)
     total = float(samples.time[-1] - samples.time[0])
     states = "positions" + "".join(
         f", {word}" for word, r in (("velocities", 1), ("accelerations", 2)) if samples.has(r).any()
     )
+    noise = [
+        sentence
+        for sentence in (*blurred(peaks, tolerance), samples.advice)
+        if sentence and not broken and any(p.ratio > 1 + tolerance for p in peaks)
+    ]
     if broken:
         concluded = "Every motion through these samples breaks a limit, whatever lies between them."
     else:
@@ -87,13 +95,15 @@ def check_samples(
         + (f"; slower by {stretch:.6g} is not enough" if stretch > 1 else ""),
         floor=None,
         floor_why="samples alone do not show where the motion stands still",
-        concluded=(concluded,),
+        concluded=(concluded, samples.assumed or _EXACTLY),
         open=(
+            *noise,
             "Between the samples nothing can be checked: state an --interpolation for a verdict "
             "for all t.",
-            *(() if samples.margin.any() else (_EXACTLY,)),
         ),
         tolerance=tolerance,
+        not_judged=limits.unstated,
+        joints=samples.joints,
     )
 
 
@@ -124,13 +134,12 @@ def _proven(samples: Samples, r: int, ranges: list[tuple[float, float]]) -> list
     sizes = [[abs(x) for x in one if np.isfinite(x)] for one in ranges]
     enough = np.array([1e-7 * min(one) if one else np.inf for one in sizes])
     limited = np.array([j for j, one in enumerate(sizes) if one], dtype=np.intp)
-    given = (samples.position, samples.velocity, samples.acceleration)
     for order in range(min(r, 2) + 1):
-        values, rows = given[order], samples.has(order)
+        values, rows = samples.given(order), samples.has(order)
         differences = r - order
         if values is None or rows.sum() <= differences:
             continue
-        noise = samples.margin if order == 0 else np.zeros(len(ranges))
+        noise = samples.doubt(order)
         times = samples.time
         if not rows.all():
             times, values = times[rows], values[rows]
@@ -139,7 +148,9 @@ def _proven(samples: Samples, r: int, ranges: list[tuple[float, float]]) -> list
             if differences * stride >= times.size or not open_joints.size:
                 break
             some = values if open_joints.size == len(ranges) else values[:, open_joints]
-            found, error = divided_extremes(times, some, differences, stride, noise[open_joints])
+            found, error = divided_extremes(
+                times, some, differences, stride, noise[open_joints], samples.clock
+            )
             for j, one in zip(open_joints, found, strict=True):
                 best[j] = _better(best[j], [(float(a), float(b), float(c)) for a, b, c in one])
             if differences == 0:
@@ -173,8 +184,23 @@ def _peaks(
     ):
         source = limits.source(limits.joints[j], BRAKING)
     half = half_range(lower, upper, lower if np.isfinite(lower) else upper) if r == 0 else None
+    # Towards a lower limit what is surely reached lies above the value, by its error.
     return [
-        replace(peak(limits, j, quantity, time, value, limit, error, side, half), source=source)
+        replace(
+            peak(
+                limits,
+                j,
+                quantity,
+                time,
+                (value, value - error, value + error)
+                if side
+                else (value, value + error, value - error),
+                limit,
+                side,
+                half,
+            ),
+            source=source,
+        )
         for side, (limit, (value, error, time)) in enumerate(
             zip((lower, upper), proven, strict=False)
         )

@@ -10,15 +10,29 @@ _EPS = 2.0**-52
 """Spacing of float64 at 1."""
 _TOGETHER = 1 << 14
 """Windows that are looked at together: a dozen arrays of that length stay in a core's own cache."""
+_UP = 1.0 + 16 * _EPS
+"""Covers the rounding of a bound's own sums and quotients."""
 
 
 def divided_extremes(
-    times: Array, values: Array, order: int, stride: int, noise: Array
+    times: Array, values: Array, order: int, stride: int, noise: Array, clock: float = 0.0
 ) -> tuple[Array, Array]:
     """The windows of samples that prove most of a derivative of each joint.
 
     A window is ``order`` + 1 samples, ``stride`` apart. By plain array operations, one after the
     other as they stand: compiled loops have the same bits, and take longer to load than this runs.
+
+    **Bounds.** The true samples are at times t* and have values q* with |t* − t| ≤ τ and
+    |q* − q| ≤ ε, where τ and ε hold the stated noise and the rounding to float64. With
+    D = (b − a)/H for the difference of two divided differences over the time H between their
+    outer samples, and Δa, Δb, ΔH = τ + τ' what these may be off by, D* H* = b* − a* gives
+
+        (D* − D) H* = (b* − b) − (a* − a) − D (H* − H),
+        |D* − D| ≤ (Δa + Δb + |D| ΔH) / (H − ΔH),
+
+    level by level, from Δ = ε. Where ΔH reaches H, the order of two samples is not known, and
+    nothing is bounded. For exact times the bound is the sum of the weights of the divided
+    difference times ε, for their signs alternate: noise can do no less.
 
     Parameters
     ----------
@@ -28,6 +42,8 @@ def divided_extremes(
     order, stride : int
     noise : ndarray, shape (joints,)
         What the values of each joint may be off by.
+    clock : float
+        What the times may be off by, s.
 
     Returns
     -------
@@ -45,12 +61,10 @@ def divided_extremes(
         for first in range(0, count, _TOGETHER):
             last = min(first + _TOGETHER, count)
             sites = [slice(first + m * stride, last + m * stride) for m in range(order + 1)]
-            weights, factor = _weights([times[at] for at in sites])
+            spans = _spans([times[at] for at in sites], clock)
             middle = 0.5 * (times[sites[0]] + times[sites[-1]])
             for j in range(joints):
-                value, error = _differences(
-                    [values[at, j] for at in sites], weights, factor, float(noise[j])
-                )
+                value, error = _differences([values[at, j] for at in sites], spans, float(noise[j]))
                 widest[j] = np.fmax(widest[j], np.fmax.reduce(error))
                 for side, proof in enumerate((value + error, value - error)):
                     # The first of several; what is no number proves nothing.
@@ -64,37 +78,38 @@ def divided_extremes(
     return found, widest
 
 
-def _weights(times: list[Array]) -> tuple[list[Array], Array]:
-    """Weights of each sample in ``order``! times the divided difference, and of its rounding."""
-    order = len(times) - 1
+Span = tuple[Array, Array, Array]
+"""Time between two samples, what it may be off by, and the least that it can be."""
+
+
+def _spans(times: list[Array], clock: float) -> list[list[Span]]:
+    """For each level of the divided differences the times that they are divided by."""
+    off = [clock + _EPS * np.abs(t) for t in times]
+    levels = []
+    for level in range(1, len(times)):
+        spans = []
+        for m in range(len(times) - level):
+            span = times[m + level] - times[m]
+            # A product and a quotient round the difference too, by less than this.
+            error = off[m] + off[m + level] + 4 * _EPS * span
+            least = span - error
+            # Where the order of two samples is not known nothing is bounded.
+            spans.append((span, error, np.where(least > 0.0, least, 0.0)))
+        levels.append(spans)
+    return levels
+
+
+def _differences(values: list[Array], spans: list[list[Span]], noise: float) -> tuple[Array, Array]:
+    """Divided differences of one joint times the factorial of their order, and their errors."""
+    found = values
+    errors = [noise + _EPS * np.abs(one) for one in values]
     factorial = 1.0
-    for m in range(2, order + 1):
-        factorial *= m
-    clock = np.zeros(times[0].size)
-    weights = []
-    for m, here in enumerate(times):
-        weight = np.full(here.size, factorial)
-        for n, other in enumerate(times):
-            if n != m:
-                step = here - other
-                weight /= step
-                # Both times carry the rounding of their digits.
-                np.fmax(clock, _EPS * (np.abs(here) + np.abs(other)) / np.abs(step), out=clock)
-        weights.append(weight)
-    return weights, 16 * _EPS + 1.25 * order * clock
-
-
-def _differences(
-    values: list[Array], weights: list[Array], factor: Array, noise: float
-) -> tuple[Array, Array]:
-    """The divided differences of one joint, and bounds of their errors."""
-    first, order = values[0], len(values) - 1
-    value, error, sizes = (np.zeros(first.size) for _ in range(3))
-    for there, weight in zip(values, weights, strict=True):
-        # Differences from the first value: the weights of a divided difference sum to 0.
-        term = weight * (there - first) if order else there
-        value += term
-        sizes += np.abs(term)
-        error += np.abs(weight) * (noise + _EPS * np.abs(there))
-    error += factor * sizes
-    return value, error
+    for level, spans_here in enumerate(spans, 1):
+        factorial *= level
+        differences, bounds = [], []
+        for m, (span, off, least) in enumerate(spans_here):
+            one = (found[m + 1] - found[m]) / span
+            differences.append(one)
+            bounds.append(_UP * (errors[m] + errors[m + 1] + np.abs(one) * off) / least)
+        found, errors = differences, bounds
+    return factorial * found[0], _UP * factorial * errors[0]

@@ -39,8 +39,8 @@ class Floor:
 
     def __str__(self) -> str:
         return (
-            f"{self.time:.6f} s over any motion between the {self.stops} standstills "
-            f"({100 * self.above:.1f} % above it)"
+            f"{self.time:.6f} s over any motion between the {self.stops} standstills, whatever "
+            f"it passes in between ({100 * self.above:.1f} % above it)"
         )
 
 
@@ -128,9 +128,11 @@ def least_time(
     begun, ended = motion.at_ends(2)
     at = np.nonzero(still)[0]
     places = np.vstack([motion.scaled[:, 0], motion.scaled[-1:].sum(axis=1)])
+    doubt = np.vstack([motion.error[:, 0], motion.error[-1:, 0]])
     total, waiting = 0.0, 0.0
     for a, b in pairwise(at):
-        ways = places[b] - places[a]
+        # What noise may take off the way lowers the floor.
+        ways = np.maximum(np.abs(places[b] - places[a]) - doubt[b] - doubt[a], 0.0)
         calm = _calm(begun[a], sizes[:, 1]) and _calm(ended[b - 1], sizes[:, 1])
         # With acceleration at a standstill the profile with jerk limits is not the shortest.
         jerks = sizes[:, 2] if calm else np.full(len(ways), np.inf)

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from ..arrays import Array
 from ..errors import TrajgapError
 from ..limits import QUANTITIES, Limits
+from .motion import LARGEST
 
 ORDERS = ("position", *QUANTITIES)
 """Words for derivatives 0 to 3."""
@@ -33,12 +34,13 @@ class JointLimits:
         Largest |acceleration| while the joint's speed falls, rad/s²; where it is given,
         ``acceleration`` holds while the speed grows. inf where it is not.
     sources : mapping
-        (joint, quantity) to where the limit is stated.
+        (joint, quantity) to where the limit is stated, also where it is stated that there is none.
 
     Raises
     ------
     TrajgapError
-        If a limit is NaN, a range is empty, or a range of a derivative leaves out 0.
+        If a limit is NaN or out of range, a range is empty, or a range of a derivative leaves out
+        0.
     """
 
     joints: tuple[str, ...]
@@ -53,43 +55,71 @@ class JointLimits:
                 check_range(self.lower[j, r], self.upper[j, r], quantity, joint)
             if not self.deceleration[j] >= 0:
                 raise TrajgapError(f"deceleration of joint {joint}: give 0 or more")
+            check_range(-self.deceleration[j], self.deceleration[j], BRAKING, joint)
 
     @classmethod
     def of(cls, limits: Limits, joints: Sequence[str]) -> JointLimits:
-        """The limits of a `Problem` for these joints."""
+        """The limits of a `Problem` for these joints: it states all of them, inf for none."""
         below, above = limits.sides
         lower = np.column_stack([limits.position_lower, -below])
         upper = np.column_stack([limits.position_upper, above])
         free = np.full(len(joints), np.inf)
-        return cls(tuple(joints), lower, upper, free)
+        said = {(joint, quantity): GIVEN for joint in joints for quantity in ORDERS}
+        return cls(tuple(joints), lower, upper, free, said)
 
     @classmethod
     def from_values(
         cls,
         joints: Sequence[str],
-        velocity: ArrayLike = np.inf,
-        acceleration: ArrayLike = np.inf,
-        jerk: ArrayLike = np.inf,
-        position: tuple[ArrayLike, ArrayLike] = (-np.inf, np.inf),
-        deceleration: ArrayLike = np.inf,
+        velocity: ArrayLike | None = None,
+        acceleration: ArrayLike | None = None,
+        jerk: ArrayLike | None = None,
+        position: tuple[ArrayLike, ArrayLike] | None = None,
+        deceleration: ArrayLike | None = None,
     ) -> JointLimits:
-        """Symmetric limits, one value or one per joint, rad and s."""
+        """Symmetric limits, one value or one per joint, rad and s.
+
+        None states nothing, and what is not stated is not judged; inf states that there is no
+        limit.
+        """
         count = len(joints)
 
-        def each(values: ArrayLike) -> Array:
-            return np.array(np.broadcast_to(np.asarray(values, dtype=np.float64), (count,)))
+        def each(values: ArrayLike | None) -> Array:
+            given = np.asarray(np.inf if values is None else values, dtype=np.float64)
+            return np.array(np.broadcast_to(given, (count,)))
 
         sizes = [each(v) for v in (velocity, acceleration, jerk)]
-        lower = np.column_stack([each(position[0]), *(-s for s in sizes)])
-        upper = np.column_stack([each(position[1]), *sizes])
-        return cls(tuple(joints), lower, upper, each(deceleration))
+        low, high = (-np.inf, np.inf) if position is None else position
+        lower = np.column_stack([each(low), *(-s for s in sizes)])
+        upper = np.column_stack([each(high), *sizes])
+        given = zip(ORDERS, (position, velocity, acceleration, jerk), strict=True)
+        stated = [quantity for quantity, values in given if values is not None]
+        said = {(joint, quantity): GIVEN for joint in joints for quantity in stated}
+        return cls(tuple(joints), lower, upper, each(deceleration), said)
+
+    @property
+    def unstated(self) -> tuple[tuple[str, str], ...]:
+        """Joint and quantity wherever neither a limit nor its absence is stated."""
+        free = np.isinf(self.lower) & np.isinf(self.upper)
+        return tuple(
+            (joint, quantity)
+            for j, joint in enumerate(self.joints)
+            for r, quantity in enumerate(ORDERS)
+            if free[j, r] and (joint, quantity) not in self.sources
+        )
 
     @property
     def symmetric(self) -> Limits:
         """Limits of the same size to both sides that imply these: for `Problem` and `solve`.
 
         The smaller side counts, and of acceleration and deceleration the smaller one.
+
+        Raises
+        ------
+        TrajgapError
+            If a quantity has limits, and one of the joints states none.
         """
+        self._check_alike()
         sizes = np.minimum(-self.lower[:, 1:], self.upper[:, 1:])
         sizes[:, 1] = np.minimum(sizes[:, 1], self.deceleration)
         return Limits(
@@ -106,7 +136,13 @@ class JointLimits:
 
         A deceleration has no place there: where it is given, the smallest of it and of both sides
         of the acceleration counts on both.
+
+        Raises
+        ------
+        TrajgapError
+            If a quantity has limits, and one of the joints states none.
         """
+        self._check_alike()
         sides = np.stack([-self.lower[:, 1:], self.upper[:, 1:]])
         braking = np.isfinite(self.deceleration)
         least = np.minimum(sides[:, :, 1].min(axis=0), self.deceleration)
@@ -117,6 +153,42 @@ class JointLimits:
     def source(self, joint: str, quantity: str) -> str:
         """Where a limit is stated, in words."""
         return self.sources.get((joint, quantity), GIVEN)
+
+    def _check_alike(self) -> None:
+        """Refuse a joint that would be free in a problem because nobody states its limit."""
+        unstated = self.unstated
+        for joint, quantity in unstated:
+            lacking = sum(quantity == other for _, other in unstated)
+            if quantity != ORDERS[0] and lacking < len(self.joints):
+                raise TrajgapError(
+                    f"{quantity} of joint {joint}: no limit is stated, and other joints have one; "
+                    "state it, or inf where there is none"
+                )
+
+
+def unstated_words(unstated: Sequence[tuple[str, str]], joints: Sequence[str]) -> str:
+    """What is not judged, in words; empty if all is: whole joints, whole quantities, the rest."""
+    lacks = {one: [q for q in ORDERS if (one, q) in set(unstated)] for one in joints}
+    free = [one for one in joints if len(lacks[one]) == len(ORDERS)]
+    others = [one for one in joints if one not in free]
+    by_joints: dict[tuple[str, ...], list[str]] = {}
+    for quantity in ORDERS:
+        of = tuple(one for one in others if quantity in lacks[one])
+        if of:
+            by_joints.setdefault(of, []).append(quantity)
+    parts = [_joints_in_words(free)] if free else []
+    for of, quantities in sorted(by_joints.items(), key=lambda one: len(one[0]), reverse=True):
+        whole = "" if len(of) == len(others) else f" of {_joints_in_words(of)}"
+        parts.append(_listed(quantities) + whole)
+    return f"{'; '.join(parts)}, no limit stated" if parts else ""
+
+
+def _joints_in_words(names: Sequence[str]) -> str:
+    return f"joint{'s' * (len(names) > 1)} {_listed(names)}"
+
+
+def _listed(words: Sequence[str]) -> str:
+    return " and ".join(part for part in (", ".join(words[:-1]), words[-1]) if part)
 
 
 def check_range(low: float, high: float, quantity: str, joint: str) -> None:
@@ -133,5 +205,9 @@ def check_range(low: float, high: float, quantity: str, joint: str) -> None:
         raise TrajgapError(f"{name}: the lower limit {low:g} lies above the upper one {high:g}")
     if quantity != "position" and not low <= 0.0 <= high:
         raise TrajgapError(f"{name}: {low:g} to {high:g} leaves out 0; a range includes standing")
+    if any(np.isfinite(end) and abs(end) > LARGEST for end in (low, high)):
+        raise TrajgapError(f"{name}: is beyond {LARGEST:g}; write inf where there is no limit")
+    if any(0 < abs(end) < 1 / LARGEST for end in (low, high)):
+        raise TrajgapError(f"{name}: is below {1 / LARGEST:g}; write 0 where nothing may move")
     if low == np.inf or high == -np.inf:
         raise TrajgapError(f"{name}: leaves nothing; leave it out where there is no limit")

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,8 +14,8 @@ from ..curves import PERM, one_sided_extreme, piece_extremes
 from ..errors import TrajgapError
 from ..limits import half_range
 from .floor import Floor, least_time
-from .joint_limits import BRAKING, ORDERS, JointLimits
-from .motion import Motion
+from .joint_limits import BRAKING, ORDERS, JointLimits, unstated_words
+from .motion import Motion, derivative_terms
 
 MOTION_TOLERANCE = 1e-6
 """Relative excess over a limit that still counts as keeping it: files carry printed digits."""
@@ -22,8 +23,8 @@ _STANDING = 1e-9
 """Share of a joint's largest speed below which it stands: rounding of planners is below it."""
 _JUMP = 1e-9
 """Relative to the terms of a derivative: what differs less at a break is rounding."""
-_BLURRED = "Noise or the digits of the file are as large as what is left to a limit."
-"""Why a motion that is known for all t is not decided."""
+_BLURRED = "What rounding may change is as large as what is left to a limit."
+"""Why a motion is not decided whose numbers are taken exactly."""
 _EPS = 2.0**-52
 """Spacing of float64 at 1."""
 
@@ -107,6 +108,9 @@ class MotionCheck:
     concluded, open : tuple of str
         What follows from the file, and what does not.
     tolerance : float
+    not_judged : tuple of (str, str)
+        Joint and quantity wherever no limit is stated: the verdict is silent about them.
+    joints : tuple of str
     """
 
     verdict: Verdict
@@ -123,9 +127,13 @@ class MotionCheck:
     concluded: tuple[str, ...]
     open: tuple[str, ...]
     tolerance: float
+    not_judged: tuple[tuple[str, str], ...]
+    joints: tuple[str, ...]
 
     def __str__(self) -> str:
-        lines = [f"{self.verdict} (relative tolerance {self.tolerance:g})"]
+        silent = unstated_words(self.not_judged, self.joints)
+        beside = f"; not judged: {silent}" if silent else ""
+        lines = [f"{self.verdict} (relative tolerance {self.tolerance:g}){beside}"]
         lines.append(f"total time      {self.total_time:.6f} s")
         if self.worst is not None:
             w = self.worst
@@ -169,24 +177,37 @@ def check_motion(
     check_same_joints(motion.joints, limits)
     peaks, standing = _peaks(motion, limits)
     about_limits = judged(peaks, tolerance)
-    jumps = _jumps(motion)
-    serious = [
-        jump
-        for jump in jumps
-        if ORDERS.index(jump.quantity) < 2
-        or np.isfinite([side[motion.joints.index(jump.joint), 3] for side in _sides(limits)]).any()
-    ]
+    jumps, hidden = _jumps(motion)
+    jerks = np.isfinite(limits.lower[:, 3]) | np.isfinite(limits.upper[:, 3])
+
+    def serious(joint: str, quantity: str) -> bool:
+        return ORDERS.index(quantity) < 2 or bool(jerks[motion.joints.index(joint)])
+
     verdict = about_limits
-    if serious and verdict is not Verdict.VIOLATED:
+    jumping = any(serious(one.joint, one.quantity) for one in jumps)
+    may_jump = [one for one in hidden if serious(*one)]
+    if jumping and verdict is not Verdict.VIOLATED:
         verdict = Verdict.DISCONTINUOUS
+    elif may_jump and verdict is Verdict.PASS:
+        verdict = Verdict.UNDECIDED
     stretch, why = slow_down(peaks, tolerance)
-    if serious:
+    if jumping:
         why = "the motion jumps; going slower does not repair that"
+    elif may_jump and why is None:
+        why = "the motion may jump; going slower would not repair that"
     floor, floor_why = least_time(motion, limits, standing)
+    concluded = f"The verdict holds for every instant: {motion.between}."
+    undecided: list[str] = []
+    if Verdict.UNDECIDED in (verdict, about_limits):
+        undecided += blurred(peaks, tolerance)
+        if may_jump and not jumping:
+            joint, quantity = may_jump[0]
+            undecided.append(f"The {quantity} of joint {joint} may jump by less than the noise.")
+        undecided.append(motion.advice or _BLURRED)
     return MotionCheck(
         verdict=verdict,
         limits=about_limits,
-        worst=max(peaks, key=lambda p: p.ratio, default=None),
+        worst=worst_of(peaks, about_limits),
         peaks=peaks,
         jumps=jumps,
         total_time=motion.total_time,
@@ -195,10 +216,34 @@ def check_motion(
         feasible_why=why,
         floor=floor,
         floor_why=floor_why,
-        concluded=(f"The verdict holds for every instant: {motion.between}.",),
-        open=(_BLURRED,) if Verdict.UNDECIDED in (verdict, about_limits) else (),
+        concluded=(concluded, *((motion.assumed,) if motion.assumed else ())),
+        open=tuple(undecided),
         tolerance=tolerance,
+        not_judged=limits.unstated,
+        joints=motion.joints,
     )
+
+
+def worst_of(peaks: Sequence[MotionPeak], verdict: Verdict) -> MotionPeak | None:
+    """The peak that the verdict stands on: a violation is shown by what is sure of it."""
+    if verdict is Verdict.VIOLATED:
+        return max(peaks, key=lambda p: p.least_ratio)
+    return max(peaks, key=lambda p: p.ratio, default=None)
+
+
+def blurred(peaks: Sequence[MotionPeak], tolerance: float) -> list[str]:
+    """What is known of the quantity of which least is known: at most one sentence."""
+    open_peaks = [p for p in peaks if p.least_ratio <= 1 + tolerance < p.most_ratio]
+    if not open_peaks:
+        return []
+    one = max(open_peaks, key=lambda p: p.most_ratio)
+    least = math.floor(1e4 * max(0.0, one.least_ratio)) / 1e4
+    most = one.most_ratio
+    reach = f"{math.ceil(1e4 * most) / 1e4:g}" if most < 1e6 else "more than a million"
+    return [
+        f"The {one.quantity} of joint {one.joint} may be anything from {least:g} to {reach} times "
+        "its limit; the numbers of the file do not say more."
+    ]
 
 
 def check_same_joints(joints: Sequence[str], limits: JointLimits) -> None:
@@ -215,10 +260,6 @@ def check_same_joints(joints: Sequence[str], limits: JointLimits) -> None:
         )
 
 
-def _sides(limits: JointLimits) -> tuple[Array, Array]:
-    return limits.lower, limits.upper
-
-
 def judged(peaks: Sequence[MotionPeak], tolerance: float) -> Verdict:
     """The verdict that bounds of ratios allow."""
     if any(p.least_ratio > 1 + tolerance for p in peaks):
@@ -229,24 +270,40 @@ def judged(peaks: Sequence[MotionPeak], tolerance: float) -> Verdict:
 
 
 def slow_down(peaks: Sequence[MotionPeak], tolerance: float) -> tuple[float, str | None]:
-    """Smallest uniform slow-down that brings every ratio to 1, or why there is none."""
+    """Smallest uniform slow-down that brings every ratio to 1, or why there is none.
+
+    Where the noise leaves open which factor that is, the factor is one below which none can be.
+    """
     if any(p.quantity == "position" and p.least_ratio > 1 + tolerance for p in peaks):
         return 1.0, "a position limit is exceeded; going slower does not move the path"
+    if any(p.quantity == "position" and p.most_ratio > 1 + tolerance for p in peaks):
+        return 1.0, "a position limit may be exceeded; going slower does not move the path"
     powers = {"velocity": 1, "acceleration": 2, BRAKING: 2, "jerk": 3}
-    factors = [p.ratio ** (1 / powers[p.quantity]) for p in peaks if p.quantity in powers]
-    stretch = max([1.0, *factors])
-    if not np.isfinite(stretch):
-        return stretch, "a joint that must stand still moves; going slower does not repair that"
-    return stretch, None
+
+    def factor(ratio: Callable[[MotionPeak], float]) -> float:
+        held = [p for p in peaks if p.quantity in powers]
+        return float(max([1.0, *(max(0.0, ratio(p)) ** (1 / powers[p.quantity]) for p in held)]))
+
+    least = factor(lambda p: p.least_ratio)
+    if not np.isfinite(least):
+        return least, "a joint that must stand still moves; going slower does not repair that"
+    most = factor(lambda p: p.most_ratio)
+    if most > least * (1 + max(tolerance, MOTION_TOLERANCE)):
+        needed = f"{math.floor(1e6 * least) / 1e6:.6f} times slower or more is needed, but "
+        return least, (
+            f"{needed if least > 1 + tolerance else ''}what the numbers may be off by leaves open "
+            "which slow-down is enough"
+        )
+    return factor(lambda p: p.ratio), None
 
 
 def _peaks(motion: Motion, limits: JointLimits) -> tuple[tuple[MotionPeak, ...], Array]:
     """Peaks of all joints, and the speed below which each stands."""
     count = len(motion.joints)
-    found, outer = np.zeros((count, 4, 2)), np.zeros((count, 4, 2))
+    found, inner, outer = (np.zeros((count, 4, 2)) for _ in range(3))
     place = np.zeros((count, 4, 2, 2))
-    data = (motion.scaled, motion.durations, motion.noise, motion.clock, PERM)
-    piece_extremes(*data, found, place, outer)
+    data = (motion.scaled, motion.durations, motion.error, PERM)
+    piece_extremes(*data, found, place, inner, outer)
     standing = _STANDING * np.abs(found[:, 1]).max(axis=1)
     peaks: list[MotionPeak] = []
     for j in range(count):
@@ -261,10 +318,8 @@ def _peaks(motion: Motion, limits: JointLimits) -> tuple[tuple[MotionPeak, ...],
                 k, s = place[j, r, side]
                 time = float(motion.breaks[int(k)] + s * motion.durations[int(k)])
                 half = half_range(limits.lower[j, 0], limits.upper[j, 0], limit) if r == 0 else None
-                error = abs(outer[j, r, side] - found[j, r, side])
-                sides.append(
-                    peak(limits, j, ORDERS[r], time, found[j, r, side], limit, error, side, half)
-                )
+                values = (found[j, r, side], inner[j, r, side], outer[j, r, side])
+                sides.append(peak(limits, j, ORDERS[r], time, values, limit, side, half))
             if sides:
                 peaks.append(joined(sides))
     return tuple(peaks), standing
@@ -272,7 +327,7 @@ def _peaks(motion: Motion, limits: JointLimits) -> tuple[tuple[MotionPeak, ...],
 
 def _one_sided(motion: Motion, limits: JointLimits, j: int, standing: float) -> list[MotionPeak]:
     """Acceleration while the speed grows, deceleration while it falls."""
-    data = (motion.scaled, motion.durations, motion.noise, motion.clock, PERM)
+    data = (motion.scaled, motion.durations, motion.error, PERM)
     peaks = []
     for sign, quantity, limit in (
         (1.0, "acceleration", limits.upper[j, 2]),
@@ -281,9 +336,10 @@ def _one_sided(motion: Motion, limits: JointLimits, j: int, standing: float) -> 
         if not np.isfinite(limit):
             continue
         place = np.zeros(3)
-        best, most = one_sided_extreme(*data, j, sign, standing, place)
+        best, sure, most = one_sided_extreme(*data, j, sign, standing, place)
         time = float(motion.breaks[int(place[0])] + place[1] * motion.durations[int(place[0])])
-        one = peak(limits, j, quantity, time, best, limit, max(0.0, most - best), 1, None)
+        values = (best, sure, max(best, most))
+        one = peak(limits, j, quantity, time, values, limit, 1, None)
         sign_of = -1.0 if place[2] < 0 else 1.0
         peaks.append(replace(one, value=sign_of * one.value, limit=sign_of * one.limit))
     return peaks
@@ -294,18 +350,20 @@ def peak(
     joint: int,
     quantity: str,
     time: float,
-    value: float,
+    values: tuple[float, float, float],
     limit: float,
-    error: float,
     side: int,
     half: float | None,
 ) -> MotionPeak:
     """A value beside its limit; ``side`` is 0 for a lower limit, 1 for an upper one.
 
+    ``values`` are the one found, one that is surely reached, and one that nothing is beyond;
     ``half`` is given for positions alone.
     """
 
     def ratio(of: float) -> float:
+        if np.isnan(of):
+            return np.inf
         if half is not None:
             beyond = of - limit if side else limit - of
             return 1.0 + beyond / half if half > 0 else (1.0 if beyond <= 0 else np.inf)
@@ -315,7 +373,10 @@ def peak(
         return float(reach / abs(limit))
 
     name = limits.joints[joint]
-    low, high = sorted((value - error, value + error), key=ratio)
+    value, inner, outer = values
+    least, most = ratio(inner), ratio(outer)
+    if not np.isfinite(values).all():
+        least, most = 0.0, np.inf  # what is no number shows nothing, neither kept nor broken
     return MotionPeak(
         name,
         quantity,
@@ -323,8 +384,8 @@ def peak(
         float(value),
         float(limit),
         ratio(value),
-        ratio(low),
-        ratio(high),
+        least,
+        most,
         limits.source(name, quantity),
     )
 
@@ -339,22 +400,31 @@ def joined(sides: Sequence[MotionPeak]) -> MotionPeak:
     )
 
 
-def _jumps(motion: Motion) -> tuple[MotionJump, ...]:
-    """Jumps of position, velocity and acceleration at inner breaks, the gravest first."""
-    if motion.pieces < 2:
-        return ()
-    found = []
-    sizes = np.abs(motion.scaled)
-    whole = sizes.sum(axis=1) + motion.noise
-    for r in range(3):
+def _jumps(motion: Motion) -> tuple[tuple[MotionJump, ...], list[tuple[str, str]]]:
+    """Jumps of position, velocity and acceleration at inner breaks, the gravest first.
+
+    Beside them joint and quantity of those that noise may hide. What is continuous by construction
+    does not jump, whatever its coefficients were rounded to.
+    """
+    found: list[MotionJump] = []
+    hidden: list[tuple[str, str]] = []
+    if motion.pieces < 2 or motion.smooth >= 2:
+        return (), hidden
+    whole = np.abs(motion.scaled).sum(axis=1)
+    terms = derivative_terms(motion.scaled, motion.durations)
+    for r in range(motion.smooth + 1, 3):
         start, end = motion.at_ends(r)
-        weights = PERM[: motion.scaled.shape[1], r]
         shown = (motion.durations**-r)[:, None]
-        terms = np.einsum("p,kpj->kj", weights, sizes) * shown
         # A jump that the digits of the positions explain is none.
-        slack = _JUMP * terms + (64 * _EPS * whole + weights.sum() * motion.noise) * shown
+        digits = _JUMP * terms[:, r] + 64 * _EPS * whole * shown
         size = start[1:] - end[:-1]
-        jumps = np.abs(size) > slack[1:] + slack[:-1]
+        noise = motion.error[1:, r] + motion.error[:-1, r]
+        jumps = np.abs(size) > digits[1:] + digits[:-1] + noise
+        if motion.assumed:
+            # Beside a jump that is sure, one that is hidden says nothing more.
+            may = (np.abs(size) + noise > digits[1:] + digits[:-1]).any(axis=0)
+            may &= ~jumps.any(axis=0)
+            hidden += [(motion.joints[j], ORDERS[r]) for j in np.nonzero(may)[0]]
         for j in np.nonzero(jumps.any(axis=0))[0]:
             worst = int(np.argmax(np.where(jumps[:, j], np.abs(size[:, j]), 0.0)))
             found.append(
@@ -366,4 +436,4 @@ def _jumps(motion: Motion) -> tuple[MotionJump, ...]:
                     int(jumps[:, j].sum()),
                 )
             )
-    return tuple(found)
+    return tuple(found), hidden

@@ -20,6 +20,10 @@ if TYPE_CHECKING:
 
 MOST_VALUES = 10_000_000
 """Samples times joints of one motion: 10⁵ samples of 100 joints, about half a gigabyte at work."""
+LARGEST = 1e100
+"""Size of a position, derivative, coefficient or limit, rad and s; a limit above 0 is at least its
+inverse. Divided by the cube of the shortest step, 1e-30 s, and by a limit, it is still within
+float64, which would overflow to inf and NaN."""
 _EPS = 2.0**-52
 """Spacing of float64 at 1."""
 
@@ -36,41 +40,54 @@ class Motion:
         Times at which the pieces meet, s, ascending.
     scaled : ndarray, shape (pieces, powers, joints)
         Ascending coefficients in s = (t − t_k)/h_k, rad (m for sliding joints).
-    noise : ndarray, shape (pieces, joints)
-        Bound on the error of each scaled coefficient; 0 where they are the motion itself.
-    clock : ndarray, shape (pieces,)
-        Bound on the relative error of each duration.
+    error : ndarray, shape (pieces, 4, joints)
+        Bound on what derivatives 0 to 3 may be off by anywhere on a piece, rad/sᵒʳᵈᵉʳ, apart from
+        the rounding of evaluating the polynomial; inf where nothing is known.
     between : str
         What is taken to happen between the points of the file, in words.
+    smooth : int
+        Derivatives up to this one are continuous by construction; −1 where nothing says so.
+    assumed : str
+        What the numbers of the file may be off by, in words; empty where they are the motion.
+    advice : str
+        What to do where that leaves the verdict open.
 
     Raises
     ------
     TrajgapError
-        If shapes disagree, a number is not finite, times do not increase, or the degree is above 9.
+        If shapes disagree, a number is not finite or out of range, times do not increase, the
+        degree is above 9, or a derivative is beyond float64.
     """
 
     joints: tuple[str, ...]
     breaks: Array
     scaled: Array
-    noise: Array
-    clock: Array
+    error: Array
     between: str
+    smooth: int = -1
+    assumed: str = ""
+    advice: str = ""
 
     def __post_init__(self) -> None:
         pieces, powers, joints = self.scaled.shape
         check_joints(self.joints, joints)
-        if powers > MAX_COEFFICIENTS:
+        _check_degree(powers - 1)
+        # NaN compares as neither larger nor smaller: in a search for peaks it would be skipped.
+        if not (np.abs(self.scaled) <= LARGEST).all():
             raise TrajgapError(
-                f"polynomials: degree {powers - 1}, at most {MAX_COEFFICIENTS - 1} is judged; "
-                "split them into pieces of a lower degree"
+                f"polynomials: a coefficient is not finite, or moves a joint by more than "
+                f"{LARGEST:g}; give finite numbers, rad and s"
             )
-        if not np.isfinite(self.scaled).all():
-            raise TrajgapError("polynomials: a coefficient is not finite; give finite numbers")
         if self.breaks.shape != (pieces + 1,):
             raise TrajgapError(
                 f"breaks: {self.breaks.size} for {pieces} pieces; give one more than pieces"
             )
         check_times(self.breaks, "breaks")
+        with np.errstate(over="ignore"):
+            if not np.isfinite(derivative_terms(self.scaled, self.durations)).all():
+                raise TrajgapError(
+                    "polynomials: a derivative is beyond the range of float64; give rad and s"
+                )
 
     @classmethod
     def of_polynomial(
@@ -108,20 +125,20 @@ class Motion:
         c = np.asarray(c, dtype=np.float64)
         while c.shape[0] > MAX_COEFFICIENTS and not c[0].any():
             c = c[1:]
+        _check_degree(c.shape[0] - 1)
         check_times(breaks, "breaks")
         h = np.diff(breaks)
         powers = np.arange(c.shape[0])
-        scaled = (
-            np.ascontiguousarray(np.moveaxis(c[::-1], 0, 1)) * (h[:, None] ** powers)[:, :, None]
-        )
-        return cls(
-            tuple(joints) or numbered(c.shape[2]),
-            breaks,
-            scaled,
-            np.zeros((h.size, c.shape[2])),
-            clock_error(breaks),
-            between,
-        )
+        with np.errstate(over="ignore", invalid="ignore"):  # refused by the class
+            scaled = (
+                np.ascontiguousarray(np.moveaxis(c[::-1], 0, 1))
+                * (h[:, None] ** powers)[:, :, None]
+            )
+            # The breaks are rounded to float64: (1 − c)⁻ʳ ≤ 1 + 1.25 r c for c up to 1e-3.
+            clock = 1.25 * clock_error(breaks)[:, None] * np.arange(4)
+            error = clock[:, :, None] * derivative_terms(scaled, h)
+        labels = tuple(joints) or numbered(c.shape[2])
+        return cls(labels, breaks, scaled, error, between)
 
     @property
     def durations(self) -> Array:
@@ -160,6 +177,25 @@ class Motion:
             return none, none
         first = weights[order] * self.scaled[:, order] * shown
         return first, np.einsum("p,kpj->kj", weights, self.scaled) * shown
+
+
+def _check_degree(degree: int) -> None:
+    if degree >= MAX_COEFFICIENTS:
+        raise TrajgapError(
+            f"polynomials: degree {degree}, at most {MAX_COEFFICIENTS - 1} is judged; "
+            "split them into pieces of a lower degree"
+        )
+
+
+def derivative_terms(scaled: Array, durations: Array) -> Array:
+    """What no term-by-term sum of a derivative exceeds on a piece, shape (pieces, 4, joints)."""
+    sizes = np.abs(scaled)
+    weights = PERM[: scaled.shape[1], :4]
+    terms = np.empty((scaled.shape[0], 4, scaled.shape[2]))
+    for order in range(4):
+        terms[:, order] = np.tensordot(sizes, weights[:, order], axes=(1, 0))
+        terms[:, order] *= (durations**-order)[:, None]
+    return terms
 
 
 def numbered(count: int) -> tuple[str, ...]:

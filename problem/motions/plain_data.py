@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import math
+from collections.abc import Hashable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -30,7 +32,7 @@ def read_json(path: Path) -> Any:
 
 
 def parse_json(data: bytes, name: str) -> Any:
-    """Parse JSON; NaN and infinities are refused.
+    """Parse JSON; NaN, infinities and keys that occur twice are refused.
 
     Raises
     ------
@@ -40,8 +42,14 @@ def parse_json(data: bytes, name: str) -> Any:
     def refuse(word: str) -> float:
         raise CaseError(name, "", f"holds {word}; give finite numbers")
 
+    def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        found = dict(pairs)
+        if len(found) < len(pairs):
+            raise _twice(name, "", [key for key, _ in pairs])
+        return found
+
     try:
-        return json.loads(data.decode("utf-8-sig"), parse_constant=refuse)
+        return json.loads(data.decode("utf-8-sig"), parse_constant=refuse, object_pairs_hook=once)
     except CaseError:
         raise
     except UnicodeDecodeError:
@@ -56,6 +64,9 @@ def parse_json(data: bytes, name: str) -> Any:
 
 def read_yaml(path: Path) -> list[Any]:
     """Read the documents of a YAML file: plain values, no merge keys, no tags of programs.
+
+    What YAML 1.1 reads in a way that nobody expects of a number is refused: ``010`` (octal),
+    ``1:30`` (to base 60), ``1.0e+400`` (infinite); and keys that occur twice.
 
     Raises
     ------
@@ -77,6 +88,28 @@ def read_yaml(path: Path) -> list[Any]:
             if any(key.tag == "tag:yaml.org,2002:merge" for key, _ in node.value):
                 raise CaseError(name, _place(node.start_mark), "a merge key <<; write it out")
 
+        def construct_mapping(self, node: Any, deep: bool = False) -> Any:
+            found = super().construct_mapping(node, deep)
+            if len(found) < len(node.value):
+                keys = [self.construct_object(key, True) for key, _ in node.value]
+                raise _twice(name, _place(node.start_mark), keys)
+            return found
+
+        def construct_yaml_int(self, node: Any) -> int:
+            digits = self.construct_scalar(node).lstrip("+-").replace("_", "")
+            if ":" in digits or (digits[:1] == "0" and digits[1:2].isdigit()):
+                raise _odd_number(name, node)
+            return int(super().construct_yaml_int(node))
+
+        def construct_yaml_float(self, node: Any) -> float:
+            found = float(super().construct_yaml_float(node))
+            digits = self.construct_scalar(node)
+            if ":" in digits or (math.isinf(found) and "inf" not in digits.lower()):
+                raise _odd_number(name, node)
+            return found
+
+    for tag, read in (("int", Plain.construct_yaml_int), ("float", Plain.construct_yaml_float)):
+        Plain.add_constructor(f"tag:yaml.org,2002:{tag}", read)
     _check_depth(text, name)
     try:
         return [one for one in yaml.load_all(text, Loader=Plain) if one is not None]
@@ -92,6 +125,19 @@ def read_yaml(path: Path) -> list[Any]:
         raise CaseError(name, "", f"not valid YAML, {what}; correct the syntax") from None
     except (RecursionError, ValueError, OverflowError, TypeError, AttributeError):
         raise CaseError(name, "", "is nested too deeply or holds odd values; fix it") from None
+
+
+def _twice(name: str, field: str, keys: Sequence[Hashable]) -> CaseError:
+    key = next(key for k, key in enumerate(keys) if key in keys[:k])
+    return CaseError(name, field, f"the key {str(key)[:40]!r} occurs twice; keep one")
+
+
+def _odd_number(name: str, node: Any) -> CaseError:
+    return CaseError(
+        name,
+        _place(node.start_mark),
+        f"{node.value[:40]!r} is another number in YAML than it seems; write plain decimal digits",
+    )
 
 
 def _place(mark: Any) -> str:

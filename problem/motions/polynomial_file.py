@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -41,6 +42,11 @@ def motion_of_json(found: Any, name: str, factors: Array | float = 1.0) -> Motio
     """
     from scipy.interpolate import PPoly
 
+    form = found.get("format", POLYNOMIAL_FORMAT)
+    if isinstance(form, str) and form.startswith("trajgap-motion/") and form != POLYNOMIAL_FORMAT:
+        raise CaseError(
+            name, "format", f"{form!r} is not known here; {POLYNOMIAL_FORMAT!r} is read"
+        )
     if "coefficients" in found:
         key, axes = "coefficients", (1, 0, 2)
     else:
@@ -60,7 +66,8 @@ def motion_of_json(found: Any, name: str, factors: Array | float = 1.0) -> Motio
     if c.shape[0] > MAX_COEFFICIENTS and c[: c.shape[0] - MAX_COEFFICIENTS].any():
         raise CaseError(name, key, f"degree {c.shape[0] - 1}; at most 9 is judged")
     try:
-        return Motion.of_polynomial(PPoly(c * factors, breaks), tuple(labels))
+        with np.errstate(over="ignore"):  # refused by the motion
+            return Motion.of_polynomial(PPoly(c * factors, breaks), tuple(labels))
     except (TrajgapError, ValueError) as error:
         raise CaseError(name, "", str(error)) from None
 
@@ -69,14 +76,19 @@ def _array(name: str, key: str, found: Any, axes: int) -> Array:
     value = found.get(key)
     if value is None:
         raise CaseError(name, key, "is missing; give breaks and coefficients")
+    level = [value]
+    for depth in range(axes):
+        if not all(isinstance(one, list) for one in level):
+            raise CaseError(name, key, f"{depth} levels of lists, {axes} are needed; see the guide")
+        level = list(chain.from_iterable(level))
+    # numpy would read "1" and true as numbers.
+    for kind in set(map(type, level)) - {int, float}:
+        odd = next(one for one in level if type(one) is kind)
+        raise CaseError(name, key, f"holds {str(odd)[:40]!r}, which is no number; give numbers")
     try:
         array = np.array(value, dtype=np.float64)
-    except (TypeError, ValueError, OverflowError):
-        raise CaseError(name, key, "is ragged or holds no numbers; give a full table") from None
-    if array.ndim != axes:
-        raise CaseError(
-            name, key, f"{array.ndim} levels of lists, {axes} are needed; see the guide"
-        )
+    except (ValueError, OverflowError):
+        raise CaseError(name, key, "is ragged or out of range; give a full table") from None
     if not np.isfinite(array).all():
         raise CaseError(name, key, "holds a number that is not finite; give finite ones")
     return array

@@ -12,15 +12,25 @@ import numpy as np
 from ..arrays import Array
 from ..errors import CaseError, TrajgapError
 from ..units import scale
+from .digits import HalfUnits
 from .motion import Motion
+from .parquet_file import read_parquet
 from .plain_data import read_json, read_yaml
 from .polynomial_file import motion_of_json
 from .ros import samples_of_message, trajectories
 from .samples import Samples
-from .tables import read_csv, read_parquet
+from .tables import read_csv
 
 UNITS = ("rad", "deg", "m", "cm", "mm")
 """Units of positions in a file without units of its own."""
+
+
+@dataclass(frozen=True)
+class Stated:
+    """What is said of the noise of a file's numbers; None where their digits say it."""
+
+    noise: Sequence[float] | None
+    time_noise: float | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,10 +62,11 @@ class ForeignFile:
 
 def read_motion(
     path: Path,
-    units: Sequence[str] = ("rad",),
-    noise: Sequence[float] = (0.0,),
+    units: Sequence[str] = (),
+    noise: Sequence[float] | None = None,
     joints: Sequence[str] = (),
     topic: str | None = None,
+    time_noise: float | None = None,
 ) -> ForeignFile:
     """Read a motion from a file.
 
@@ -65,13 +76,17 @@ def read_motion(
         CSV or text, ``.parquet``, ``.json`` (polynomials, or a JointTrajectory), ``.yaml``
         (JointTrajectory), ``.bag``, ``.mcap``, ``.db3`` or the folder of a rosbag.
     units : sequence of str
-        One for all joints, or one each: of tables and polynomials. ROS has rad and m.
-    noise : sequence of float
-        What positions may be off by, in those units; one, or one each.
+        One for all joints, or one each: of tables, and of polynomials that state none; rad by
+        default. ROS has rad and m.
+    noise : sequence of float, optional
+        What positions may be off by, in those units; one, or one each. 0 says that positions,
+        velocities and accelerations are exact; without it their digits say what they may be off by.
     joints : sequence of str, optional
         Names, for a table without a header.
     topic : str, optional
         Of a rosbag with several trajectories.
+    time_noise : float, optional
+        What times may be off by, s; without it their digits say so.
 
     Returns
     -------
@@ -83,28 +98,30 @@ def read_motion(
         If it cannot be read as a motion.
     """
     name, ending = str(path), path.suffix.lower()
+    stated = Stated(noise, time_noise)
     for one in units:
         if one not in UNITS:
             raise CaseError("--units", "", f"{one!r} is unknown; use {', '.join(UNITS)}")
+    given, units = units, tuple(units) or ("rad",)
     if ending in (".bag", ".mcap", ".db3") or path.is_dir():
         from .rosbag import read_rosbag
 
-        return _ros(name, read_rosbag(path, topic), units, noise, "ROS bag")
+        return _ros(name, read_rosbag(path, topic), units, stated, "ROS bag")
     if ending in (".yaml", ".yml"):
-        return _message(name, read_yaml(path), units, noise, "ROS JointTrajectory, YAML")
+        return _message(name, read_yaml(path), units, stated, "ROS JointTrajectory, YAML")
     if ending == ".json":
         found = read_json(path)
         if isinstance(found, Mapping) and (
             "coefficients" in found or ("c" in found and "x" in found)
         ):
-            return _polynomials(name, found, units, noise)
-        return _message(name, found, units, noise, "ROS JointTrajectory, JSON")
+            return _polynomials(name, found, given, stated)
+        return _message(name, found, units, stated, "ROS JointTrajectory, JSON")
     parquet = ending in (".parquet", ".pq")
     samples = (read_parquet if parquet else read_csv)(path, joints)
     factors = factors_of(units, len(samples.joints), name)
     return ForeignFile(
         "Parquet" if parquet else "CSV",
-        _scaled(name, samples, factors, noise),
+        _scaled(name, samples, factors, stated),
         _each(units, len(samples.joints)),
     )
 
@@ -128,48 +145,69 @@ def _each(units: Sequence[str], count: int) -> tuple[str, ...]:
     return tuple(units) * (count if len(units) == 1 else 1)
 
 
-def _scaled(name: str, samples: Samples, factors: Array, noise: Sequence[float]) -> Samples:
+def _scaled(name: str, samples: Samples, factors: Array, stated: Stated) -> Samples:
     count = len(samples.joints)
-    if len(noise) not in (1, count):
+    noise = np.array((0.0,) if stated.noise is None else stated.noise, dtype=np.float64)
+    if noise.size not in (1, count):
         raise CaseError(
-            name, "--noise", f"{len(noise)} numbers for {count} joints; give 1 or {count}"
+            name, "--noise", f"{noise.size} numbers for {count} joints; give 1 or {count}"
         )
     given = (samples.position, samples.velocity, samples.acceleration)
     position, velocity, acceleration = (x if x is None else x * factors for x in given)
     assert position is not None
+    rounded = np.array([samples.rounding.of(order, count) * factors for order in range(3)])
+    if stated.noise is not None:
+        rounded[0] = 0.0
+        rounded[:, np.broadcast_to(noise == 0.0, (count,))] = 0.0
+    clock = samples.rounding.time if stated.time_noise is None else 0.0
     try:
         return replace(
             samples,
             position=position,
             velocity=velocity,
             acceleration=acceleration,
-            noise=np.asarray(noise, dtype=np.float64) * factors,
+            noise=noise * factors,
+            time_noise=stated.time_noise or 0.0,
+            rounding=HalfUnits(clock, rounded),
         )
     except TrajgapError as error:
         raise CaseError(name, "", str(error)) from None
 
 
 def _polynomials(
-    name: str, found: Mapping[str, Any], units: Sequence[str], noise: Sequence[float]
+    name: str, found: Mapping[str, Any], units: Sequence[str], stated: Stated
 ) -> ForeignFile:
-    if any(noise):
-        raise CaseError(name, "--noise", "is of samples; polynomials are the motion itself")
-    stated = found.get("units", {})
-    position = stated.get("position") if isinstance(stated, Mapping) else None
-    each: list[Any] = position if isinstance(position, list) else [position]
-    if each and all(one in UNITS for one in each):
-        units = tuple(each)
+    if any(stated.noise or ()) or stated.time_noise:
+        option = "--noise" if any(stated.noise or ()) else "--time-noise"
+        raise CaseError(name, option, "is of samples; polynomials are the motion itself")
     motion = motion_of_json(found, name)
-    factors = factors_of(units, len(motion.joints), name)
+    in_file, count = _stated_units(name, found.get("units", {})), len(motion.joints)
+    if in_file and units and _each(in_file, count) != _each(units, count):
+        raise CaseError(
+            name, "--units", f"the file itself states {', '.join(in_file)}; leave it out"
+        )
+    units = in_file or tuple(units) or ("rad",)
+    factors = factors_of(units, count, name)
     return ForeignFile(
         "piecewise polynomials",
-        replace(motion, scaled=motion.scaled * factors),
+        replace(motion, scaled=motion.scaled * factors, error=motion.error * factors),
         _each(units, len(motion.joints)),
     )
 
 
+def _stated_units(name: str, stated: Any) -> tuple[str, ...]:
+    """Units of positions that a file of polynomials states itself."""
+    if not isinstance(stated, Mapping) or stated.get("time", "s") != "s":
+        raise CaseError(name, "units", 'time is in s; give {"time": "s", "position": ...}')
+    position = stated.get("position", [])
+    each = position if isinstance(position, list) else [position]
+    if not all(isinstance(one, str) and one in UNITS for one in each):
+        raise CaseError(name, "units.position", f"is unknown; use {', '.join(UNITS)}")
+    return tuple(each)
+
+
 def _message(
-    name: str, found: Any, units: Sequence[str], noise: Sequence[float], words: str
+    name: str, found: Any, units: Sequence[str], stated: Stated, words: str
 ) -> ForeignFile:
     held = list(trajectories(found))
     if not held:
@@ -178,18 +216,18 @@ def _message(
         )
     if len(held) > 1:
         raise CaseError(name, "", f"holds {len(held)} trajectories; keep one")
-    return _ros(name, samples_of_message(held[0], name), units, noise, words)
+    return _ros(name, samples_of_message(held[0], name), units, stated, words)
 
 
 def _ros(
-    name: str, samples: Samples, units: Sequence[str], noise: Sequence[float], words: str
+    name: str, samples: Samples, units: Sequence[str], stated: Stated, words: str
 ) -> ForeignFile:
     if any(one in ("deg", "cm", "mm") for one in units):
         raise CaseError(name, "--units", "a ROS trajectory is in rad and m; leave --units out")
     count = len(samples.joints)
     return ForeignFile(
         words,
-        _scaled(name, samples, factors_of(units, count, name), noise),
+        _scaled(name, samples, factors_of(units, count, name), stated),
         _each(units, count),
         True,
     )

@@ -10,7 +10,8 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import CaseError, TrajgapError
-from ..fields import MOST_JOINTS
+from ..fields import MOST_JOINTS, spelt_like
+from .digits import Digits, HalfUnits, digits_of_values, rounding_of
 from .motion import MOST_VALUES
 from .samples import Samples
 
@@ -19,6 +20,16 @@ _INSIDE = ("joint_trajectory", "trajectory", "goal", "request", "action_goal", "
 DisplayTrajectory, and the results of planning."""
 _DERIVATIVES = ("positions", "velocities", "accelerations")
 """Fields of a JointTrajectoryPoint for derivatives 0 to 2."""
+_POINT = (*_DERIVATIVES, "effort", "time_from_start")
+"""Fields of a JointTrajectoryPoint."""
+_CLOCKS = (("sec", "nanosec"), ("secs", "nsecs"), ("sec", "nsec"))
+"""Fields of a Duration in ROS 2, in ROS 1, and as Foxglove writes both."""
+_LATEST = 2**31 - 1
+"""Largest whole second of a Duration, whose field has 32 bits; nanoseconds are below 10⁹."""
+
+
+_PLACES = 9
+"""Decimal places of a time: messages have whole nanoseconds."""
 
 
 def trajectories(found: Any, depth: int = 6) -> Iterator[Mapping[str, Any]]:
@@ -36,7 +47,7 @@ def trajectories(found: Any, depth: int = 6) -> Iterator[Mapping[str, Any]]:
 
 
 def samples_of_message(
-    message: Mapping[str, Any], name: str, noise: float | Array = 0.0
+    message: Mapping[str, Any], name: str, noise: float | Array = 0.0, text: bool = True
 ) -> Samples:
     """Samples of a JointTrajectory, derivatives where points have them.
 
@@ -50,6 +61,8 @@ def samples_of_message(
         The file, for messages.
     noise : float or ndarray
         See `Samples`.
+    text : bool
+        Whether the message was written as text, so that its digits say what was rounded.
 
     Returns
     -------
@@ -75,6 +88,10 @@ def samples_of_message(
         field = f"points[{k}]"
         if not isinstance(point, Mapping):
             raise CaseError(name, field, "is no point; give positions and time_from_start")
+        for key in point:
+            near = None if key in _POINT else spelt_like(str(key), _POINT)
+            if near:
+                raise CaseError(name, f"{field}.{str(key)[:40]}", f"did you mean {near!r}?")
         times[k] = _seconds(point.get("time_from_start"), name, f"{field}.time_from_start")
         for order, key in enumerate(_DERIVATIVES):
             given = point.get(key)
@@ -96,9 +113,20 @@ def samples_of_message(
             for j, value in enumerate(given):
                 values[order, k, j] = _number(value, name, f"{field}.{key}[{j}]")
     try:
-        return Samples(tuple(joints), times, values[0], values[1], values[2], noise)
+        rounding = _rounding(times, values, text)
+        q, v, a = values
+        return Samples(tuple(joints), times, q, v, a, noise, rounding=rounding)
     except TrajgapError as error:
         raise CaseError(name, "points", str(error)) from None
+
+
+def _rounding(times: Array, values: Array, text: bool) -> HalfUnits:
+    """Whole nanoseconds, and the digits of numbers that were written as text."""
+    nanoseconds = np.array([[_PLACES, 0]])
+    shown: list[Digits | None] = [
+        digits_of_values(one) if text and not np.isnan(one).all() else None for one in values
+    ]
+    return rounding_of(times, list(values), [nanoseconds, *shown])
 
 
 def _number(value: Any, name: str, field: str) -> float:
@@ -115,14 +143,23 @@ def _number(value: Any, name: str, field: str) -> float:
 
 def _seconds(given: Any, name: str, field: str) -> float:
     if isinstance(given, Mapping):
-        for whole, part in (("sec", "nanosec"), ("secs", "nsecs")):
-            if whole in given:
-                seconds = _number(given[whole], name, f"{field}.{whole}")
-                return seconds + 1e-9 * _number(given.get(part, 0), name, f"{field}.{part}")
-        raise CaseError(name, field, "has no sec; give sec and nanosec")
+        for whole, part in _CLOCKS:
+            if whole in given and set(given) <= {whole, part}:
+                part_of = _whole(given.get(part, 0), name, f"{field}.{part}", 10**9 - 1)
+                return _whole(given[whole], name, f"{field}.{whole}", _LATEST) + 1e-9 * part_of
+        raise CaseError(name, field, "has no sec or other fields; give sec and nanosec alone")
     if given is None:
         raise CaseError(name, field, "is missing; give sec and nanosec")
-    return _number(given, name, field)
+    seconds = _number(given, name, field)
+    if not 0 <= seconds <= _LATEST:
+        raise CaseError(name, field, f"is {seconds:g}; give seconds from 0 to {_LATEST}")
+    return seconds
+
+
+def _whole(value: Any, name: str, field: str, most: int) -> int:
+    if type(value) is not int or not 0 <= value <= most:
+        raise CaseError(name, field, f"is {str(value)[:40]}; give a whole number from 0 to {most}")
+    return value
 
 
 def message_of_samples(samples: Samples) -> dict[str, Any]:

@@ -92,7 +92,7 @@ def read_rosbag(path: Path, topic: str | None = None) -> Samples:
         raise CaseError(
             name, "--topic", f"the bag holds {number}; name a topic with one trajectory"
         )
-    return samples_of_message(held[0], name)
+    return samples_of_message(held[0], name, text=False)
 
 
 def _plain(value: Any) -> Any:

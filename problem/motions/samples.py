@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..errors import TrajgapError
-from .motion import MOST_VALUES, Motion, check_joints, check_times, clock_error, numbered
+from .digits import HalfUnits
+from .hermite import hermite
+from .motion import LARGEST, MOST_VALUES, Motion, check_joints, check_times, numbered
+from .through_spline import not_a_knot_spline
 
 _EPS = 2.0**-52
 """Spacing of float64 at 1."""
@@ -49,7 +51,11 @@ class Samples:
     velocity, acceleration : ndarray, shape (rows, joints), or None
         Where given; NaN in rows without them.
     noise : float or ndarray, shape (joints,)
-        Each position is known to within this, rad.
+        Each position is measured to within this, rad.
+    time_noise : float
+        Each time is measured to within this, s.
+    rounding : HalfUnits
+        What all numbers may be off by because they were rounded when written; beside the noise.
 
     Raises
     ------
@@ -63,6 +69,8 @@ class Samples:
     velocity: Array | None = None
     acceleration: Array | None = None
     noise: float | Array = 0.0
+    time_noise: float = 0.0
+    rounding: HalfUnits = field(default_factory=HalfUnits)
 
     def __post_init__(self) -> None:
         for name in ("time", "position", "velocity", "acceleration"):
@@ -100,33 +108,106 @@ class Samples:
             if not there.any():
                 object.__setattr__(self, name, None)
         noise = np.broadcast_to(np.asarray(self.noise, dtype=np.float64), (count,))
-        if not np.isfinite(noise).all() or (noise < 0).any():
+        if not ((noise >= 0) & (noise <= LARGEST)).all():
             raise TrajgapError("noise: is not a length; give what positions may be off by, or 0")
         object.__setattr__(self, "noise", np.array(noise))
+        for clock in (self.time_noise, self.rounding.time):
+            if not (np.isfinite(clock) and clock >= 0):
+                raise TrajgapError("time noise: is no time; give what times may be off by, or 0")
 
     def _check_finite(
         self, name: str, values: Array, rows: NDArray[np.bool_] | None = None
     ) -> None:
-        bad = ~np.isfinite(values)
+        bad = ~(np.abs(values) <= LARGEST)
         if rows is not None:
             bad &= rows[:, None]
         if bad.any():
             k, j = (int(x) for x in np.argwhere(bad)[0])
             raise TrajgapError(
-                f"{name}: of joint {self.joints[j]} in sample {k + 1} is not finite; give a number"
+                f"{name}: of joint {self.joints[j]} in sample {k + 1} is not finite, or beyond "
+                f"{LARGEST:g}; give a number"
             )
 
     @property
     def margin(self) -> Array:
         """What each joint's positions may be off by, shape (joints,), rad."""
-        return np.asarray(self.noise)
+        return np.asarray(self.noise + self.rounding.of(0, len(self.joints)))
+
+    @property
+    def clock(self) -> float:
+        """What each time may be off by, s."""
+        return self.time_noise + self.rounding.time
+
+    @property
+    def time_error(self) -> Array:
+        """The same with the rounding of each time to float64, shape (rows,)."""
+        return np.asarray(self.clock + _EPS * np.abs(self.time))
+
+    def error(self, order: int) -> Array:
+        """What stated values may be off by, rounding to float64 included, (rows, joints)."""
+        given = self.given(order)
+        assert given is not None
+        return np.asarray(self.doubt(order) + _EPS * np.abs(given))
+
+    def doubt(self, order: int) -> Array:
+        """What the values of derivative ``order`` may be off by, shape (joints,)."""
+        return self.margin if order == 0 else self.rounding.of(order, len(self.joints))
+
+    def given(self, order: int) -> Array | None:
+        """Positions, velocities or accelerations, shape (rows, joints), if there are any."""
+        return (self.position, self.velocity, self.acceleration)[order]
 
     def has(self, order: int) -> NDArray[np.bool_]:
         """Rows that state a derivative, shape (rows,)."""
-        given = (self.position, self.velocity, self.acceleration)[order]
+        given = self.given(order)
         if given is None:
             return np.zeros(self.time.size, dtype=bool)
         return np.asarray(~np.isnan(given).any(axis=1))
+
+    @property
+    def as_given(self) -> Samples:
+        """The same samples with their digits taken exactly, stated noise apart."""
+        return replace(self, rounding=HalfUnits())
+
+    @property
+    def assumed(self) -> str:
+        """What the numbers may be off by, in a sentence; empty where they are taken exactly."""
+        parts = []
+        if self.clock:
+            parts.append(f"times to {self.clock:.3g} s")
+        for order, word in enumerate(("positions", "velocities", "accelerations")):
+            doubt = self.doubt(order)
+            if self.given(order) is not None and doubt.any():
+                low, high = f"{doubt.min():.3g}", f"{doubt.max():.3g}"
+                power = ("", "/s", "/s²")[order]
+                span = high if low == high else f"{low} to {high}"
+                parts.append(f"{word} to {span} rad{power}")
+        if not parts:
+            return ""
+        stated = bool(np.any(self.noise)) or self.time_noise > 0
+        rounded = bool(np.any(self.rounding.values)) or self.rounding.time > 0
+        why = " and ".join(
+            word
+            for word, holds in (
+                ("as stated", stated),
+                ("half a unit of the last digit in the file", rounded),
+            )
+            if holds
+        )
+        return f"Numbers are known only so far: {', '.join(parts)} ({why})."
+
+    @property
+    def advice(self) -> str:
+        """What to do where that leaves a verdict open."""
+        rounded = bool(np.any(self.rounding.values)) or self.rounding.time > 0
+        return (
+            "Write more digits, of the times too; or state --noise 0 and --time-noise 0 if the "
+            "numbers of the file are exact."
+            if rounded
+            else "State a smaller noise if the numbers are known better."
+            if self.assumed
+            else ""
+        )
 
     def natural(self) -> Interpolation:
         """The smoothest Hermite interpolation that the columns allow for every sample."""
@@ -157,7 +238,7 @@ def interpolated(samples: Samples, how: Interpolation) -> Motion:
     if how is Interpolation.NONE:
         raise TrajgapError("interpolation: 'none' is no motion; check_samples judges samples")
     if how is Interpolation.SPLINE:
-        return _spline(samples)
+        return not_a_knot_spline(samples)
     velocities, accelerations = samples.has(1), samples.has(2)
     pairs = samples.time.size - 1
     both = [velocities[1:] & velocities[:-1], accelerations[1:] & accelerations[:-1]]
@@ -168,6 +249,8 @@ def interpolated(samples: Samples, how: Interpolation) -> Motion:
                 f"points {k + 1} and {k + 2}: accelerations without velocities; give velocities too"
             )
         degree = np.where(both[0], np.where(both[1], 5, 3), 1)
+        # The controller is given these very numbers, however they were rounded before.
+        samples = samples.as_given
     else:
         degree = np.full(pairs, {"linear": 1, "cubic": 3, "quintic": 5}[how])
         for order, word, least in ((1, "velocity", 3), (2, "acceleration", 5)):
@@ -177,7 +260,7 @@ def interpolated(samples: Samples, how: Interpolation) -> Motion:
                     f"interpolation {how}: sample {_first_without(samples, order)} has no {word}; "
                     "give it, or state another --interpolation"
                 )
-    return _hermite(samples, degree, _words(how, degree))
+    return hermite(samples, degree, _words(how, degree))
 
 
 def _first_without(samples: Samples, order: int) -> int:
@@ -189,63 +272,3 @@ def _words(how: Interpolation, degree: NDArray[np.int64]) -> str:
     used = [names[d] for d in (1, 3, 5) if (degree == d).any()]
     said = " and ".join(used) + " between samples"
     return f"{said}, as joint_trajectory_controller" if how is Interpolation.CONTROLLER else said
-
-
-_WEIGHT = {1: 2.0, 3: 6.0, 5: 30.0}
-"""How far a coefficient moves at most when both positions move by 1: 2·1, 2·3, 2·15."""
-
-
-def _hermite(samples: Samples, degree: NDArray[np.int64], between: str) -> Motion:
-    """Hermite polynomials between rows; ``degree`` 1, 3 or 5 for each pair."""
-    h = np.diff(samples.time)[:, None]
-    q = samples.position
-    pairs, count = q.shape[0] - 1, q.shape[1]
-    step = q[1:] - q[:-1]
-    scaled = np.zeros((pairs, int(degree.max()) + 1, count))
-
-    def rows(of: int) -> Any:
-        # A slice where all pairs are alike: nothing is copied.
-        return slice(None) if (degree == of).all() else degree == of
-
-    scaled[:, 0] = q[:-1]
-    size = np.abs(q[1:]) + np.abs(q[:-1])
-    rounding = 4 * _EPS * size
-    scaled[rows(1), 1] = step[rows(1)]
-    if (degree > 1).any():
-        assert samples.velocity is not None
-        v0, v1 = h * samples.velocity[:-1], h * samples.velocity[1:]
-        moves = np.abs(v0) + np.abs(v1)
-    if (degree == 3).any():
-        at = rows(3)
-        scaled[at, 1] = v0[at]
-        scaled[at, 2] = 3 * step[at] - 2 * v0[at] - v1[at]
-        scaled[at, 3] = -2 * step[at] + v0[at] + v1[at]
-        rounding[at] = 16 * _EPS * (size + moves)[at]
-    if (degree == 5).any():
-        assert samples.acceleration is not None
-        a0, a1 = h * h * samples.acceleration[:-1], h * h * samples.acceleration[1:]
-        at = rows(5)
-        scaled[at, 1] = v0[at]
-        scaled[at, 2] = a0[at] / 2
-        scaled[at, 3] = (10 * step - 6 * v0 - 4 * v1 - 1.5 * a0 + 0.5 * a1)[at]
-        scaled[at, 4] = (-15 * step + 8 * v0 + 7 * v1 + 1.5 * a0 - a1)[at]
-        scaled[at, 5] = (6 * step - 3 * v0 - 3 * v1 - 0.5 * a0 + 0.5 * a1)[at]
-        rounding[at] = 64 * _EPS * (size + moves + np.abs(a0) + np.abs(a1))[at]
-    weights = np.select([degree == 1, degree == 3], [_WEIGHT[1], _WEIGHT[3]], _WEIGHT[5])
-    noise = rounding + weights[:, None] * samples.margin
-    return Motion(samples.joints, samples.time, scaled, noise, clock_error(samples.time), between)
-
-
-def _spline(samples: Samples) -> Motion:
-    from scipy.interpolate import CubicSpline
-
-    if samples.margin.any():
-        raise TrajgapError(
-            "noise: a spline carries the noise of one sample to all; state another --interpolation"
-        )
-    if samples.time.size < 4:
-        raise TrajgapError("interpolation spline: needs 4 samples or more; state another")
-    spline = CubicSpline(samples.time, samples.position)
-    return Motion.of_polynomial(
-        spline, samples.joints, "the C2 cubic spline through the samples (not-a-knot ends)"
-    )

@@ -1,4 +1,4 @@
-"""Samples from tables: CSV and Parquet, one row per time, columns known by their names."""
+"""Samples from tables: one row per time, columns known by their names; CSV is read here."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ import numpy as np
 from ..arrays import Array
 from ..errors import CaseError, TrajgapError
 from ..fields import MOST_JOINTS
-from ..files import check_regular, read_regular
+from ..files import read_regular
+from .digits import Digits, HalfUnits, digits_of_text, rounding_of
 from .motion import MOST_VALUES, numbered
 from .samples import Samples
 
@@ -25,10 +26,17 @@ _TIME = re.compile(
 """Names of the column of times, lower case."""
 _WORDS = {
     "position": 0, "pos": 0, "q": 0,
-    "velocity": 1, "vel": 1, "qd": 1,
-    "acceleration": 2, "acc": 2, "accel": 2, "qdd": 2,
+    "velocity": 1, "vel": 1, "qd": 1, "dq": 1, "qdot": 1,
+    "acceleration": 2, "acc": 2, "accel": 2, "qdd": 2, "ddq": 2, "qddot": 2,
 }  # fmt: skip
 """What a column holds, said before or after the joint's name."""
+_SYMBOLS = _WORDS | {"v": 1, "a": 2}
+"""The same where a number alone follows, as in q1, qd1: one letter may be a joint's name too, so
+that these count only beside a column of positions with that number."""
+_UNIT = re.compile(r".*(?:[\[(][^\])]*[\])]|[ _./-](?P<unit>deg|degrees?|mm|cm))", re.IGNORECASE)
+"""A name that ends in a unit: any in brackets, or one that is not the default."""
+_LATEST = 253_402_300_800
+"""Seconds from 1970 to the year 10000: later times are milliseconds or less, not seconds."""
 _GAP = r"[ ._:/-]"
 """What stands between a joint's name and such a word."""
 
@@ -84,38 +92,8 @@ def parse_csv(
     cells = [x.strip().strip("\"'") for x in first.split(separator)]
     header = not all(_is_number(x) for x in cells)
     table = _numbers(text, name, separator, skip=header, columns=len(cells))
-    return _samples(name, table, cells if header else (), joints, noise)
-
-
-def read_parquet(path: Path, joints: Sequence[str] = (), noise: float | Array = 0.0) -> Samples:
-    """Read samples from a Parquet file; columns are named as in `read_csv`.
-
-    Raises
-    ------
-    CaseError
-        If it is no such table, or pyarrow is not installed.
-    """
-    name = str(path)
-    check_regular(path)
-    try:
-        from pyarrow import lib, parquet
-    except ImportError:
-        raise CaseError(
-            name, "", "Parquet needs pyarrow; pip install trajgap[parquet], or export CSV"
-        ) from None
-    data = read_regular(path, LARGEST_FILE, "split it, or keep fewer rows")
-    try:
-        file = parquet.ParquetFile(io.BytesIO(data))
-        names, rows = list(file.schema_arrow.names), file.metadata.num_rows
-        _check_size(name, rows, len(names))
-        table = file.read()
-        columns = [np.asarray(c.to_numpy(), dtype=np.float64) for c in table.itercolumns()]
-    except (lib.ArrowException, OSError, ValueError, TypeError, MemoryError) as error:
-        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
-        raise CaseError(name, "", f"no Parquet table ({reason}); export it again") from None
-    if not columns or rows == 0:
-        raise CaseError(name, "", "holds no rows; give one row per sample")
-    return _samples(name, np.column_stack(columns), names, joints, noise)
+    digits = digits_of_text(text, separator, len(cells))
+    return samples_of_columns(name, table, cells if header else (), joints, noise, digits)
 
 
 def _lines(text: str) -> list[str]:
@@ -130,7 +108,13 @@ def _is_number(word: str) -> bool:
     return True
 
 
-def _check_size(name: str, rows: int, columns: int) -> None:
+def check_size(name: str, rows: int, columns: int) -> None:
+    """Refuse tables that are too large to be read.
+
+    Raises
+    ------
+    CaseError
+    """
     if rows * columns > 4 * MOST_VALUES or columns > 3 * MOST_JOINTS + 1:
         raise CaseError(
             name, "", f"{rows} rows of {columns} columns are more than is read; keep fewer"
@@ -138,7 +122,7 @@ def _check_size(name: str, rows: int, columns: int) -> None:
 
 
 def _numbers(text: str, name: str, separator: str | None, skip: bool, columns: int) -> Array:
-    _check_size(name, text.count("\n"), columns)
+    check_size(name, text.count("\n"), columns)
     stream = io.StringIO(text)
     if skip:
         for line in stream:
@@ -185,18 +169,37 @@ def _bad_row(text: str, name: str, separator: str | None, skip: bool, columns: i
     return CaseError(name, "", "is no table of numbers; give one row per sample")
 
 
-def _samples(
-    name: str, table: Array, header: Sequence[str], joints: Sequence[str], noise: float | Array
+def samples_of_columns(
+    name: str,
+    table: Array,
+    header: Sequence[str],
+    joints: Sequence[str],
+    noise: float | Array,
+    digits: Digits | None = None,
 ) -> Samples:
+    """Samples of a table of numbers, times in s; without a header time comes first.
+
+    ``digits`` are those of its columns where it is text.
+
+    Raises
+    ------
+    CaseError
+    """
     if table.shape[1] < 2:
         raise CaseError(name, "", "has one column; give time and a position per joint")
     try:
         if not header:
+            _check_seconds(name, table[:, 0])
             labels = tuple(joints) or numbered(table.shape[1] - 1)
-            return Samples(labels, table[:, 0], table[:, 1:], noise=noise)
-        time, columns = _meaning(name, header)
+            rounding = HalfUnits()
+            if digits is not None:
+                rounding = rounding_of(table[:, 0], [table[:, 1:]], [digits[:1], digits[1:]])
+            return Samples(labels, table[:, 0], table[:, 1:], noise=noise, rounding=rounding)
+        time, columns = column_meaning(name, header)
+        _check_seconds(name, table[:, time])
         labels = tuple(dict.fromkeys(joint for joint, _ in columns))
         parts: list[Array | None] = []
+        shown: list[Digits | None] = [None if digits is None else digits[[time]]]
         for order in range(3):
             places = [columns.get((joint, order)) for joint in labels]
             missing = [one for one, k in zip(labels, places, strict=True) if k is None]
@@ -205,18 +208,32 @@ def _samples(
                 raise CaseError(
                     name, "line 1", f"no {word} of joint {missing[0]}; give it for every joint"
                 )
-            parts.append(None if missing else table[:, [k for k in places if k is not None]])
+            at = [k for k in places if k is not None]
+            parts.append(None if missing else table[:, at])
+            shown.append(None if missing or digits is None else digits[at])
         assert parts[0] is not None
         named = tuple(joints) or labels
-        return Samples(named, table[:, time], parts[0], parts[1], parts[2], noise)
+        rounding = rounding_of(table[:, time], parts, shown)
+        return Samples(named, table[:, time], parts[0], parts[1], parts[2], noise, 0.0, rounding)
     except CaseError:
         raise
     except TrajgapError as error:
         raise CaseError(name, "", str(error)) from None
 
 
-def _meaning(name: str, header: Sequence[str]) -> tuple[int, dict[tuple[str, int], int]]:
-    """Column of times, and of each joint and order."""
+def _check_seconds(name: str, times: Array) -> None:
+    latest = float(np.abs(times).max())
+    if _LATEST < latest < np.inf:
+        raise CaseError(name, "time", f"is {latest:g}, no time in seconds; convert it to seconds")
+
+
+def column_meaning(name: str, header: Sequence[str]) -> tuple[int, dict[tuple[str, int], int]]:
+    """Column of times, and of each joint and order.
+
+    Raises
+    ------
+    CaseError
+    """
     times = [k for k, one in enumerate(header) if _TIME.fullmatch(one.strip().lower())]
     if len(times) != 1:
         columns_are = "no column is" if not times else "several columns are"
@@ -227,13 +244,29 @@ def _meaning(name: str, header: Sequence[str]) -> tuple[int, dict[tuple[str, int
     for k, one in enumerate(header):
         if k == times[0]:
             continue
-        joint, order = _joint(one.strip())
+        joint, order = _numbered(one.strip(), header) or _joint(one.strip())
         if not joint:
             raise CaseError(name, "line 1", f"column {k + 1} has no name; name it after its joint")
+        if _UNIT.fullmatch(joint):
+            raise CaseError(
+                name,
+                "line 1",
+                f"the name {one.strip()!r} ends in a unit; leave it out there, and state --units",
+            )
         if (joint, order) in columns:
             raise CaseError(name, "line 1", f"two columns are named {one.strip()!r}; rename one")
         columns[joint, order] = k
     return times[0], columns
+
+
+def _numbered(column: str, header: Sequence[str]) -> tuple[str, int] | None:
+    """Joint and order of a column such as qd1, where q1 is another column."""
+    found = re.fullmatch(r"([a-z]+)(\d+)", column, re.IGNORECASE)
+    order = 0 if found is None else _SYMBOLS.get(found[1].lower(), 0)
+    if found is None or order == 0:
+        return None
+    places = {word + found[2] for word, held in _WORDS.items() if held == 0}
+    return next(((x.strip(), order) for x in header if x.strip().lower() in places), None)
 
 
 def _joint(column: str) -> tuple[str, int]:

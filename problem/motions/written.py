@@ -94,7 +94,7 @@ def sampled(
         raise TrajgapError(f"step: {times.size} samples are too many; take a longer step")
     named = getattr(motion, "joints", ())
     labels = joints or (named if isinstance(named, tuple) else ())
-    return Samples(labels, times, *values)
+    return Samples(labels, times, values[0], values[1], values[2])
 
 
 def _rows(breaks: Array, step: float, all_breaks: bool) -> Array:
@@ -112,7 +112,10 @@ def _rows(breaks: Array, step: float, all_breaks: bool) -> Array:
 
 
 def csv_text(samples: Samples) -> str:
-    """Samples as CSV, rad or m and s, every digit of float64."""
+    """Samples as CSV, rad or m and s, with the 17 digits that determine a float64.
+
+    Zeros at the end are written too: the digits of a file say how far its numbers are known.
+    """
     given = [("", samples.position), (" velocity", samples.velocity)]
     given.append((" acceleration", samples.acceleration))
     there = [(word, values) for word, values in given if values is not None]
@@ -123,7 +126,7 @@ def csv_text(samples: Samples) -> str:
     stream = io.StringIO()
     stream.write(",".join(head) + "\n")
     for row in table.tolist():
-        stream.write(",".join(map(repr, row)) + "\n")
+        stream.write(",".join(f"{x:.16e}" for x in row) + "\n")
     return stream.getvalue()
 
 

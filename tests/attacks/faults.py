@@ -53,7 +53,7 @@ algorithm = "pso"
 durations = ["0.91", "1.02", "0.93"]
 """
 """A case with a replay, so that an audit has something to lose."""
-_TABLE = "1,2\n0.10,1.0\n0.90,0.2\n-0.30,0.3\n0.40,-0.5\n"
+_TABLE = "a,b\n0.10,1.0\n0.90,0.2\n-0.30,0.3\n0.40,-0.5\n"
 """The way-points of that case as a table."""
 _DRAFTS = (".trajgap", ".tmp", ".old")
 """How names of drafts begin or end."""

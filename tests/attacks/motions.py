@@ -9,18 +9,11 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from trajgap.problem.motions import (
-    Interpolation,
-    JointLimits,
-    Motion,
-    Samples,
-    check_motion,
-    check_samples,
-    interpolated,
-)
+from trajgap.problem.motions import JointLimits, Samples, check_samples
 
 from attacks.attack import Attack, demand, keep
 from attacks.cases import Rng
+from attacks.exact_verdicts import verdicts
 from attacks.reading import strict_json, well_ended
 from attacks.sandbox import command
 
@@ -233,66 +226,6 @@ def motion_files(rng: Rng, folder: Path) -> str:
 
 # --- verdicts -------------------------------------------------------------------------------------
 
-_POINTS = 60
-"""Chebyshev points a piece: degree 5 exceeds its largest sample by at most 0.9 %."""
-
-
-def _sampled_peaks(motion: Motion) -> tuple[Floats, Floats]:
-    """Largest |derivative| of each joint that was seen, and that cannot be exceeded, orders 0-3.
-
-    By plain powers of s, not by the code under attack (Ehlich and Zeller, 1964, for the bound).
-    """
-    s = 0.5 - 0.5 * np.cos(np.pi * (np.arange(_POINTS) + 0.5) / _POINTS)
-    s = np.concatenate([[0.0], s, [1.0]])
-    seen = np.zeros((4, len(motion.joints)))
-    most = np.zeros_like(seen)
-    for k, h in enumerate(motion.durations):
-        c = motion.scaled[k]
-        for order in range(4):
-            degree = max(0, c.shape[0] - 1 - order)
-            scale = float(h) ** order
-            value = np.abs(np.polynomial.polynomial.polyval(s, c) / scale)
-            seen[order] = np.maximum(seen[order], value.max(axis=1))
-            factor = 1.0 / np.cos(degree * np.pi / (2 * _POINTS))
-            most[order] = np.maximum(most[order], factor * value.max(axis=1))
-            c = c[1:] * np.arange(1, c.shape[0])[:, None] if c.shape[0] > 1 else np.zeros_like(c)
-    return seen, most
-
-
-def motion_verdicts(rng: Rng, folder: Path) -> str:
-    """Random motions with limits near their peaks, against samples from the inside."""
-    count, rows = int(rng.integers(1, 4)), int(rng.integers(2, 12))
-    size = 10.0 ** float(rng.integers(-3, 4))
-    time = np.cumsum(rng.uniform(0.02, 1.0, rows)) + float(rng.choice([0.0, 50.0]))
-    values = size * rng.normal(size=(3, rows, count))
-    samples = Samples((), time, *values)
-    how = Interpolation(str(rng.choice(["linear", "cubic", "quintic", "controller"])))
-    motion = interpolated(samples, how)
-    seen, most = _sampled_peaks(motion)
-    factors = rng.choice([0.9, 0.999, 1.02, 2.0], (4, count), p=[0.03, 0.03, 0.47, 0.47])
-    near = np.where(rng.random((4, count)) < 0.3, np.inf, seen * factors)
-    near = np.where(near == 0.0, np.inf, near)
-    limits = JointLimits.from_values(
-        motion.joints, near[1], near[2], near[3], (-near[0] - 1e-12, near[0] + 1e-12)
-    )
-    keep(folder, case=f"{how} {time.tolist()} {values.tolist()} {near.tolist()}")
-    found = check_motion(motion, limits)
-    tolerance = found.tolerance
-    wide = near[1:] * (1 + 2 * tolerance)
-    position = near[0] * (1 + 2 * tolerance) + 1e-9 * size
-    over = bool((seen[1:] > wide).any() or (seen[0] > position).any())
-    below = bool((most <= near).all())
-    demand(not (over and found.limits == "pass"), "pass, and a sample exceeds")
-    demand(not (below and found.limits == "violated"), "violated, and samples bound it below")
-    demand(not (found.verdict == "pass" and how == "linear" and rows > 2), "a zigzag passes")
-    if found.feasible_time is not None:
-        slower = Motion(
-            motion.joints, time[0] + (time - time[0]) * found.stretch * (1 + 1e-9), motion.scaled,
-            motion.noise, motion.clock, "",
-        )  # fmt: skip
-        demand(check_motion(slower, limits).limits != "violated", "the repair does not repair")
-    return str(found.verdict)
-
 
 def true_samples(rng: Rng, folder: Path) -> str:
     """Samples of motions whose derivatives are bounded by hand, without interpolation."""
@@ -344,12 +277,14 @@ ATTACKS = (
     ),
     Attack(
         "verdicts on motions",
-        "random motions of every interpolation, limits near their peaks, scales 1e±3",
-        "never *pass* where a sample exceeds, never *violated* where samples bound it below; the "
-        "repair repairs",
-        motion_verdicts,
-        share=0.5,
-        quick=25,
+        "motions through every reader and interpolation, written exactly, rounded, scaled or "
+        "measured, at even and uneven times; one limit from 1e-12 to 0.5 beside its peak, others "
+        "one-sided, absent or of braking",
+        "never *pass* where a peak in rational arithmetic exceeds or the speed jumps, never "
+        "*violated* where every peak keeps; the repair repairs",
+        verdicts,
+        share=2.0,
+        quick=60,
     ),
     Attack(
         "samples of true motions",

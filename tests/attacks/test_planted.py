@@ -19,6 +19,8 @@ import trajgap.problem
 from trajgap.compare.cli import output
 from trajgap.nlp.optimum import Status
 from trajgap.problem import Verdict
+from trajgap.problem.motions import HalfUnits
+from trajgap.problem.motions.judged import slow_down
 from trajgap.verify import verify_certificate
 
 from attacks import faults, true_proofs
@@ -35,6 +37,7 @@ CHECK = trajgap.problem.check
 EVALUATE = trajgap.problem.evaluate
 PARSE = trajgap.problem.parse_case
 SOLVE = trajgap.nlp.solve
+SLOW_DOWN = slow_down
 
 
 @pytest.fixture(autouse=True)
@@ -245,6 +248,23 @@ def the_clock_stands(patch: Patch) -> None:
     patch.setattr("trajgap.verify.verdict.walk", slowly)
 
 
+def digits_say_nothing(patch: Patch) -> None:
+    for reader in ("tables", "ros"):
+        patch.setattr(f"trajgap.problem.motions.{reader}.rounding_of", lambda *_: HalfUnits())
+
+
+def jumps_are_rounding(patch: Patch) -> None:
+    patch.setattr("trajgap.problem.motions.judged._JUMP", 1e3)
+
+
+def repairs_fall_short(patch: Patch) -> None:
+    def slow_down(*given: Any) -> tuple[float, str | None]:
+        stretch, why = SLOW_DOWN(*given)
+        return max(1.0, 0.9999 * stretch), why
+
+    patch.setattr("trajgap.problem.motions.judged.slow_down", slow_down)
+
+
 PLANTED: list[tuple[str, Callable[[Patch], None], int]] = [
     ("verdicts", check_passes, 20),
     ("verdicts", check_violates, 20),
@@ -252,6 +272,9 @@ PLANTED: list[tuple[str, Callable[[Patch], None], int]] = [
     ("peaks", the_finish_is_the_start, 80),
     ("peaks", positions_at_way_points, 10),
     ("peaks", nothing_is_penalised, 10),
+    ("verdicts on motions", digits_say_nothing, 200),
+    ("verdicts on motions", jumps_are_rounding, 120),
+    ("verdicts on motions", repairs_fall_short, 30),
     ("readings", sides_are_one_size, 20),
     ("readings", the_finish_is_the_start, 80),
     ("identities", joint_one_by_a_second, 20),

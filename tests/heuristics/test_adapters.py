@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy import optimize
+from support.two_joints import OPEN, PROBLEM, two_joints
 from trajgap.heuristics import (
     DeathPenalty,
     External,
@@ -11,25 +12,16 @@ from trajgap.heuristics import (
     dual_annealing,
     one_by_one,
     run,
-    run_many,
-    run_per_joint,
     shgo,
 )
 from trajgap.heuristics.budget import Budgeted, BudgetSpent
 from trajgap.problem import (
     Limits,
-    Problem,
     TrajgapError,
     Verdict,
     check,
-    three_five_three,
 )
 
-WAYPOINTS = np.array([[0.19, -1.63], [0.82, -2.01], [0.13, -1.07], [-0.88, -1.31]])
-PROBLEM = Problem(
-    WAYPOINTS, Limits([6.0, 5.0], [8.0, 9.0]), three_five_three(), 0.1, 3.0, name="two joints"
-)
-OPEN = Problem(WAYPOINTS, Limits([6.0, 5.0], [8.0, 9.0]), three_five_three())
 SCIPY = (differential_evolution(), dual_annealing(iterations=40), shgo())
 each_scipy = pytest.mark.parametrize("search", SCIPY, ids=lambda s: s.kind)
 
@@ -126,20 +118,10 @@ def test_a_search_cannot_swallow_the_end_of_its_budget() -> None:
 
 
 def test_nothing_feasible() -> None:
-    stuck = Problem(WAYPOINTS, Limits([6.0, 0.0]), three_five_three(), 0.1, 3.0)
+    stuck = two_joints(Limits([6.0, 0.0]), duration_lower=0.1, duration_upper=3.0)
     found = run(External("random", drawing, iterations=3), stuck, 0)
     assert not found.feasible
     assert np.isinf(found.trace).all()
-
-
-def test_joints_by_themselves_and_workers() -> None:
-    search = differential_evolution(iterations=5)
-    found = run_per_joint(search, PROBLEM, 3)
-    assert len(found.runs) == 2
-    one = run_many(search, PROBLEM, range(2), 1)
-    two = run_many(search, PROBLEM, range(2), 2)
-    for a, b in zip(one, two, strict=True):
-        assert a.trace.tobytes() == b.trace.tobytes()
 
 
 def test_one_by_one() -> None:

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from support.two_joints import WITH_JERK, two_joints
 from trajgap.heuristics import (
     PSO,
-    Bounds,
     Counted,
     DeathPenalty,
     Stretch,
@@ -19,60 +19,15 @@ from trajgap.problem import (
     check,
     cubic_spline,
     evaluate,
-    fit,
     piecewise,
     three_five_three,
 )
 from trajgap.problem.checker import TOLERANCE
 
-WAYPOINTS = np.array([[0.19, -1.63], [0.82, -2.01], [0.13, -1.07], [-0.88, -1.31]])
-LIMITS = Limits([5.0, 3.0], [8.0, 11.0], [np.inf, 90.0])
-
 
 def problem_with(**changes: object) -> Problem:
-    given = {
-        "waypoints": WAYPOINTS,
-        "limits": LIMITS,
-        "curve": three_five_three(),
-        "duration_lower": [0.2, 0.3, 0.1],
-        "duration_upper": [2.0, 3.0, 2.5],
-    }
-    return Problem(**{**given, **changes})
-
-
-def sampled_ratio(problem: Problem, durations: np.ndarray) -> float:
-    """Largest |derivative|/limit at 4,000 points: what an author's program would look at."""
-    curve = fit(problem.curve, problem.waypoints, durations)
-    worst = 0.0
-    t = np.linspace(0.0, durations.sum(), 4000)
-    for j in range(len(problem.joints)):
-        for order in (1, 2, 3):
-            limit = problem.limits.derivatives[j, order - 1]
-            if np.isfinite(limit):
-                worst = max(worst, float(np.abs(curve(t, order)[:, j]).max()) / limit)
-    return worst
-
-
-def test_agrees_with_dense_sampling() -> None:
-    problem = problem_with()
-    rng = np.random.default_rng(5)
-    batch = rng.uniform(0.35, 1.9, (300, 3))
-    fitness = DeathPenalty(problem)(batch)
-    worst = np.array([sampled_ratio(problem, h) for h in batch])
-    clear = abs(worst - 1) > 2e-3
-    assert 30 < np.isfinite(fitness).sum() < 270
-    np.testing.assert_array_equal(np.isfinite(fitness)[clear], (worst <= 1)[clear])
-    kept = np.isfinite(fitness)
-    np.testing.assert_allclose(fitness[kept], batch[kept] @ np.ones(3), rtol=1e-15)
-
-
-def test_stretch_to_the_limit_is_the_edge() -> None:
-    problem = problem_with()
-    h = np.array([[0.9, 1.2, 0.7]])
-    tight = h * evaluate(problem, h).stretch[0]
-    objective = DeathPenalty(problem)
-    assert objective(tight)[0] == tight.sum()
-    assert objective(tight * (1 - 1e-8))[0] == np.inf
+    bounds = {"duration_lower": [0.2, 0.3, 0.1], "duration_upper": [2.0, 3.0, 2.5]}
+    return two_joints(**{"limits": WITH_JERK, **bounds, **changes})
 
 
 def test_an_answer_at_the_edge_of_the_tolerance_passes_the_checker() -> None:
@@ -125,12 +80,6 @@ def test_a_batch_is_its_members() -> None:
     assert 0 < np.isfinite(alone).sum() < 40
 
 
-def test_bounds_of_a_problem() -> None:
-    bounds = Bounds.of(problem_with())
-    np.testing.assert_array_equal(bounds.lower, [0.2, 0.3, 0.1])
-    np.testing.assert_array_equal(bounds.upper, [2.0, 3.0, 2.5])
-
-
 def test_counts_every_position() -> None:
     counted = Counted(DeathPenalty(problem_with()))
     counted(np.full((7, 3), 1.5))
@@ -138,28 +87,23 @@ def test_counts_every_position() -> None:
     assert counted.evaluations == 9
 
 
-@pytest.mark.parametrize("penalty", [0.0, -1.0, np.nan])
-def test_penalty_must_be_positive(penalty: float) -> None:
-    with pytest.raises(TrajgapError, match=r"penalty: must be positive, got .*inf is allowed"):
-        DeathPenalty(problem_with(), penalty)
-
-
-def test_penalty_must_exceed_every_admissible_total() -> None:
-    with pytest.raises(TrajgapError, match=r"penalty: 7.5 does not exceed .* of 7.5 s; raise it"):
-        DeathPenalty(problem_with(), 7.5)
-    DeathPenalty(problem_with(), 7.6)
-
-
-def test_free_derivatives_are_not_searched() -> None:
+@pytest.mark.parametrize("judge", [DeathPenalty, Stretch])
+@pytest.mark.parametrize(
+    ("penalty", "said"),
+    [
+        (0.0, r"penalty: must be positive, got .*inf is allowed"),
+        (-1.0, r"penalty: must be positive, got .*inf is allowed"),
+        (np.nan, r"penalty: must be positive, got .*inf is allowed"),
+        (7.5, r"penalty: 7.5 does not exceed .* of 7.5 s; raise it"),
+    ],
+)
+def test_a_penalty_is_above_every_admissible_total(judge: type, penalty: float, said: str) -> None:
+    with pytest.raises(TrajgapError, match=said):
+        judge(problem_with(), penalty)
+    judge(problem_with(), 7.6)
     free = piecewise((5, 5, 5), 2, ((1, 0.0), (2, 0.0)))
     with pytest.raises(TrajgapError, match=r"leaves 4 derivatives per joint free.*prescribe them"):
-        DeathPenalty(problem_with(curve=free))
-
-
-def test_other_interpolants() -> None:
-    problem = Problem(np.array([[0.2], [1.0], [0.7], [1.9], [1.1]]), Limits(2.0), cubic_spline(4))
-    fitness = DeathPenalty(problem)(np.array([[1.0, 1.0, 1.0, 1.0], [0.2, 0.2, 0.2, 0.2]]))
-    np.testing.assert_array_equal(fitness, [4.0, np.inf])
+        judge(problem_with(curve=free))
 
 
 @pytest.mark.parametrize(("values", "shape"), [([1.0], r"\(1,\)"), ([[1.0], [2.0]], r"\(2, 1\)")])

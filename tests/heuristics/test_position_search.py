@@ -5,6 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from support.positions import CURVES, WAYPOINTS, limited
+from support.uneven import CURVES as UNEVEN
+from support.uneven import uneven_problem
 from trajgap.heuristics import (
     PSO,
     DeathPenalty,
@@ -53,14 +55,21 @@ def drawn(problem: Problem, count: int) -> Array:
     return np.random.default_rng(5).uniform(0.3, 4.0, (count, problem.segments))
 
 
-@pytest.mark.parametrize("name", CURVES)
+QUESTIONS = {name: limited(curve, 0.1) for name, curve in CURVES.items()} | {
+    f"{curve}, sides that differ": replace(uneven_problem(curve), duration_upper=np.full(3, 5.0))
+    for curve in UNEVEN
+}
+
+
+@pytest.mark.parametrize("name", QUESTIONS)
 @pytest.mark.parametrize("penalty", [np.inf, 1e6])
 def test_the_penalty_falls_where_the_checker_finds_a_violation(name: str, penalty: float) -> None:
-    problem = limited(CURVES[name], 0.1)
-    h = drawn(problem, 8)
-    for one, fitness in zip(h, DeathPenalty(problem, penalty)(h), strict=True):
-        kept = check(problem, one).limits is Verdict.PASS
-        assert fitness == (one.sum() if kept else penalty)
+    problem = QUESTIONS[name]
+    h = drawn(problem, 24)
+    fitness = DeathPenalty(problem, penalty)(h)
+    kept = [check(problem, one).limits is Verdict.PASS for one in h]
+    np.testing.assert_array_equal(fitness, np.where(kept, h.sum(axis=1), penalty))
+    assert name in CURVES or 0 < sum(kept) < len(h)
 
 
 @pytest.mark.parametrize("shorten", [False, True])
@@ -121,6 +130,7 @@ def test_each_joint_keeps_its_own_range() -> None:
     problem = SWINGING
     found = run_per_joint(SWARM, problem, 3, objective="rescale")
     for j, one in enumerate(found.runs):
+        assert one.objective == "rescale"
         assert check(problem.joint(j), one.durations).verdict is Verdict.PASS
 
 

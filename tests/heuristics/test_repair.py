@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from support.two_joints import WITH_JERK, two_joints
 from trajgap.heuristics import (
     GA,
     MNAMPSO,
     PSO,
     WOA,
-    Bounds,
     ConstrainedPSO,
     DeathPenalty,
     Handling,
@@ -18,8 +18,6 @@ from trajgap.heuristics import (
     Stretch,
     run,
     run_many,
-    run_per_joint,
-    states,
 )
 from trajgap.heuristics.repair import judge_of
 from trajgap.problem import (
@@ -29,13 +27,9 @@ from trajgap.problem import (
     Verdict,
     check,
     cubic_spline,
-    piecewise,
     quintic_spline,
-    three_five_three,
 )
 
-WAYPOINTS = np.array([[0.19, -1.63], [0.82, -2.01], [0.13, -1.07], [-0.88, -1.31]])
-LIMITS = Limits([5.0, 3.0], [8.0, 11.0], [np.inf, 90.0])
 LONG = Problem(
     np.random.default_rng(31).uniform(-2, 2, (10, 3)),
     Limits([2.0, 3.0, 2.5], [6.0, 5.0, 9.0]),
@@ -47,14 +41,8 @@ LONG = Problem(
 
 
 def problem_with(**changes: object) -> Problem:
-    given = {
-        "waypoints": WAYPOINTS,
-        "limits": LIMITS,
-        "curve": three_five_three(),
-        "duration_lower": 0.1,
-        "duration_upper": 9.0,
-    }
-    return Problem(**{**given, **changes})
+    bounds = {"duration_lower": 0.1, "duration_upper": 9.0}
+    return two_joints(**{"limits": WITH_JERK, **bounds, **changes})
 
 
 def test_fitness_is_what_the_checker_calls_feasible_and_tight_time() -> None:
@@ -87,18 +75,6 @@ def test_what_keeps_the_limits_is_not_touched() -> None:
     np.testing.assert_array_equal(DeathPenalty(problem).decode(batch), batch)
 
 
-def test_proportions_are_kept() -> None:
-    batch = np.random.default_rng(8).uniform(0.15, 0.6, (20, 3))
-    decoded = Stretch(problem_with()).decode(batch)
-    np.testing.assert_allclose(decoded / decoded[:, :1], batch / batch[:, :1], rtol=1e-14)
-
-
-def test_rescaling_knows_no_scale() -> None:
-    objective = Stretch(problem_with(), shorten=True)
-    batch = np.random.default_rng(9).uniform(0.5, 1.0, (20, 3))
-    np.testing.assert_allclose(objective(batch), objective(3.7 * batch), rtol=1e-12)
-
-
 @pytest.mark.parametrize("penalty", [np.inf, 1e6])
 @pytest.mark.parametrize(
     "durations",
@@ -129,13 +105,10 @@ def test_a_stretch_may_lift_a_duration_over_its_lower_bound() -> None:
     assert Stretch(problem)(h)[0] == decoded.sum()
 
 
-def test_a_joint_with_limit_zero() -> None:
-    objective = Stretch(problem_with(limits=Limits([5.0, 0.0])))
-    assert objective(np.full((1, 3), 1.5))[0] == np.inf
-
-
-def test_rescaling_where_nothing_is_limited() -> None:
-    objective = Stretch(problem_with(limits=Limits(joints=2), duration_lower=0.0), shorten=True)
+@pytest.mark.parametrize(("limits", "shorten"), [([5.0, 0.0], False), ([np.inf, np.inf], True)])
+def test_what_has_no_scale(limits: list[float], shorten: bool) -> None:
+    """A joint that moves with limit 0 has none that is long enough, no limit none that is short."""
+    objective = Stretch(problem_with(limits=Limits(limits), duration_lower=0.0), shorten=shorten)
     assert objective(np.full((1, 3), 1.5))[0] == np.inf
 
 
@@ -144,14 +117,6 @@ def test_a_prescribed_derivative_cannot_be_stretched() -> None:
     DeathPenalty(problem)
     with pytest.raises(TrajgapError, match=r"^stretch: a prescribed .* use the death penalty"):
         Stretch(problem)
-
-
-def test_it_refuses_what_the_death_penalty_refuses() -> None:
-    with pytest.raises(TrajgapError, match=r"^penalty: must be positive"):
-        Stretch(problem_with(), 0.0)
-    free = piecewise((5, 5, 5), 2, ((1, 0.0), (2, 0.0)))
-    with pytest.raises(TrajgapError, match=r"leaves 4 derivatives per joint free"):
-        Stretch(problem_with(curve=free))
 
 
 def test_handlings_by_name() -> None:
@@ -192,38 +157,6 @@ def test_the_account_is_that_of_the_decoded_durations(
     assert found.evaluations == penal.evaluations
     assert penal.objective is Handling.DEATH_PENALTY
     np.testing.assert_array_equal(penal.position, penal.durations)
-
-
-def test_the_trace_is_that_of_decoded_totals() -> None:
-    problem = problem_with()
-    rng = np.random.Generator(np.random.PCG64(6))
-    judge = Stretch(problem)
-    totals = [
-        DeathPenalty(problem)(judge.decode(s.positions)).min()
-        for s in states(WOA(), judge, Bounds.of(problem), rng)
-    ]
-    trace = run(WOA(), problem, 6, objective="stretch").trace
-    np.testing.assert_array_equal(trace, np.minimum.accumulate(totals))
-
-
-def test_joints_by_themselves() -> None:
-    found = run_per_joint(PSO(), problem_with(), 12, 30, objective="stretch")
-    for j, one in enumerate(found.runs):
-        assert check(problem_with().joint(j), one.durations).verdict is Verdict.PASS
-        assert one.reported_time == one.durations.sum()
-    np.testing.assert_array_equal(
-        found.durations, np.maximum(found.runs[0].durations, found.runs[1].durations)
-    )
-
-
-@pytest.mark.slow
-def test_same_bits_for_any_number_of_workers() -> None:
-    one = run_many(WOA(), problem_with(), range(3), 1, 10, objective="stretch")
-    two = run_many(WOA(), problem_with(), range(3), 2, 10, objective="stretch")
-    for a, b in zip(one, two, strict=True):
-        assert a.durations.tobytes() == b.durations.tobytes()
-        assert a.position.tobytes() == b.position.tobytes()
-        assert not b.position.flags.writeable
 
 
 @pytest.mark.parametrize(

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass, replace
 
-import numpy as np
 import pytest
+from support.two_joints import WAYPOINTS, two_joints
 from trajgap.heuristics import (
     KINDS,
     MNAMPSO,
@@ -17,10 +17,9 @@ from trajgap.heuristics import (
     run_per_joint,
 )
 from trajgap.heuristics.side_by_side import TOGETHER, moves_together
-from trajgap.problem import Limits, Problem, quintic_spline, rest_to_rest, three_five_three
+from trajgap.problem import Limits, Problem, quintic_spline, rest_to_rest
 
-WAYPOINTS = np.array([[0.19, -1.63], [0.82, -2.01], [0.13, -1.07], [-0.88, -1.31]])
-PROBLEM = Problem(WAYPOINTS, Limits([6.0, 5.0], [8.0, 9.0]), three_five_three(), 0.3, 3.0)
+PROBLEM = two_joints(duration_lower=0.3, duration_upper=3.0)
 SLOWER = Problem(WAYPOINTS, Limits([2.0, 1.5], [8.0, 3.0]), quintic_spline(3), 0.1, 4.0)
 STOPPING = Problem(WAYPOINTS, Limits([2.0, 1.5], [8.0, 3.0]), rest_to_rest(3, 5), 0.1, 4.0)
 HANDLINGS = ("death-penalty", "stretch", "rescale")

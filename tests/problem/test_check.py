@@ -1,6 +1,5 @@
 """The checker and the batched evaluation: identities, known answers, every verdict and reason."""
 
-import dataclasses
 import os
 from fractions import Fraction
 
@@ -13,7 +12,6 @@ from support.checked import one_joint, table
 from support.samples import DECLARATIONS, FREE, sample_problem
 from trajgap.problem import (
     QUANTITIES,
-    Interpolant,
     Limits,
     Problem,
     TrajgapError,
@@ -102,17 +100,6 @@ def test_values_lie_within_the_stated_error(name: str) -> None:
 # --- identities ----------------------------------------------------------------------------------
 
 
-@given(NAMES, SEEDS, st.floats(0.05, 20.0))
-def test_stretching_time(name: str, seed: int, c: float) -> None:
-    problem, h = sample_problem(DECLARATIONS[name], seed)
-    before, after = check(problem, h), check(problem, c * h)
-    expected = table(before, problem.joints) / [c, c**2, c**3]
-    np.testing.assert_allclose(table(after, problem.joints), expected, rtol=1e-10, atol=1e-12)
-    assert after.stretch == pytest.approx(before.stretch / c, rel=1e-10)
-    if after.tight_time is not None:
-        assert after.tight_time == pytest.approx(before.tight_time, rel=1e-10)
-
-
 @given(NAMES, SEEDS)
 def test_stretch_makes_it_tight(name: str, seed: int) -> None:
     problem, h = sample_problem(DECLARATIONS[name], seed)
@@ -127,93 +114,6 @@ def test_stretch_makes_it_tight(name: str, seed: int) -> None:
     if loose.tight_time is not None:
         assert loose.tight_time == pytest.approx(tight.total_time, rel=1e-14)
         assert loose.feasible_time == max(loose.tight_time, loose.total_time)
-
-
-@given(st.sampled_from(list(DECLARATIONS)), SEEDS)
-def test_permuted_joints(name: str, seed: int) -> None:
-    problem, h = sample_problem(DECLARATIONS[name], seed)
-    order = np.random.default_rng(seed).permutation(3)
-    other = Problem(
-        problem.waypoints[:, order],
-        Limits(*problem.limits.derivatives[order].T),
-        problem.curve,
-        joints=tuple(problem.joints[i] for i in order),
-    )
-    mine, theirs = check(problem, h), check(other, h)
-    np.testing.assert_array_equal(table(mine, problem.joints), table(theirs, problem.joints))
-    assert mine.stretch == theirs.stretch
-    np.testing.assert_array_equal(
-        evaluate(other, [h]).ratios, evaluate(problem, [h]).ratios[:, order]
-    )
-
-
-@given(NAMES, SEEDS, st.floats(-50, 50))
-def test_mirror_and_shift(name: str, seed: int, shift: float) -> None:
-    problem, h = sample_problem(DECLARATIONS[name], seed)
-    mirrored = dataclasses.replace(problem, waypoints=shift - problem.waypoints)
-    np.testing.assert_allclose(
-        table(check(mirrored, h), problem.joints),
-        table(check(problem, h), problem.joints),
-        rtol=1e-9,
-        atol=1e-9,
-    )
-
-
-def backwards(interpolant: Interpolant) -> Interpolant:
-    n = interpolant.segments
-    return Interpolant(
-        interpolant.degrees[::-1],
-        interpolant.continuity[::-1],
-        tuple(
-            tuple((order, (-1) ** order * value) for order, value in entries)
-            for entries in interpolant.prescribed[::-1]
-        ),
-        tuple(n - b for b in interpolant.virtual),
-    )
-
-
-@given(st.sampled_from(list(DECLARATIONS)), SEEDS)
-def test_time_reversal(name: str, seed: int) -> None:
-    problem, h = sample_problem(DECLARATIONS[name], seed)
-    other = Problem(problem.waypoints[::-1], problem.limits, backwards(problem.curve))
-    forth, back = check(problem, h), check(other, h[::-1])
-    np.testing.assert_allclose(
-        table(back, problem.joints), table(forth, problem.joints), rtol=1e-9, atol=1e-12
-    )
-    np.testing.assert_allclose(
-        evaluate(other, [h[::-1]]).ratios, evaluate(problem, [h]).ratios, rtol=1e-9, atol=1e-12
-    )
-
-
-@given(st.sampled_from(list(DECLARATIONS)), SEEDS)
-def test_degrees_or_radians(name: str, seed: int) -> None:
-    if not DECLARATIONS[name].homogeneous:
-        return
-    problem, h = sample_problem(DECLARATIONS[name], seed)
-    in_degrees = Problem(
-        np.degrees(problem.waypoints),
-        Limits(*np.degrees(problem.limits.derivatives).T),
-        problem.curve,
-    )
-    np.testing.assert_allclose(
-        table(check(in_degrees, h), problem.joints),
-        table(check(problem, h), problem.joints),
-        rtol=1e-10,
-        atol=1e-13,
-    )
-
-
-@given(SEEDS, st.floats(0.2, 5.0))
-def test_limits_enter_as_ratios(seed: int, factor: float) -> None:
-    problem, h = sample_problem(three_five_three(), seed)
-    wider = dataclasses.replace(
-        problem, limits=problem.limits.with_derivatives(factor * problem.limits.derivatives)
-    )
-    np.testing.assert_allclose(
-        table(check(wider, h), problem.joints) * factor,
-        table(check(problem, h), problem.joints),
-        rtol=1e-12,
-    )
 
 
 # --- the batched evaluation beside the checker ---------------------------------------------------

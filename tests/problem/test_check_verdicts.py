@@ -188,34 +188,6 @@ def test_prescribed_velocity_has_no_repair() -> None:
     assert kept.tight_time is None
 
 
-def test_position_limits() -> None:
-    # q overshoots its way-points: a clamped cubic with a turning point inside
-    q = np.array([[0.2], [1.0], [0.9]])
-    wide = Problem(q, Limits(9, position_lower=0.0, position_upper=1.2), cubic_spline(2))
-    result = check(wide, [1.0, 0.5])
-    top = next(p for p in result.peaks if p.quantity == "position" and p.limit == 1.2)
-    pieces = exact_route.fitted(wide.curve, q[:, 0], [1.0, 0.5])
-    peak = float(exact_route.peak(pieces, [1.0, 0.5], 0))
-    assert top.value == pytest.approx(peak, rel=1e-13)
-    assert 1.0 < peak < 1.2
-    assert top.ratio == pytest.approx(1 + (peak - 1.2) / 0.6, rel=1e-12)
-    assert result.verdict is Verdict.PASS
-    assert result.feasible_time == pytest.approx(1.5)
-    low = next(p for p in result.peaks if p.quantity == "position" and p.limit == 0.0)
-    assert low.value == pytest.approx(0.2)
-    tight = Problem(q, Limits(9, position_lower=0.0, position_upper=1.0), cubic_spline(2))
-    broken = check(tight, [1.0, 0.5])
-    assert broken.verdict is Verdict.VIOLATED
-    assert broken.worst is not None
-    assert (broken.worst.quantity, broken.worst.limit) == ("position", 1.0)
-    assert broken.feasible_time is broken.tight_time is None
-    assert broken.feasible_why == "a position limit is exceeded; stretching does not move the path"
-    one_sided = Problem(q, Limits(9, position_lower=0.21), cubic_spline(2))
-    assert check(one_sided, [1.0, 0.5]).verdict is Verdict.VIOLATED
-    # the derivative limits alone make c*
-    assert broken.stretch == pytest.approx(result.stretch)
-
-
 def test_what_rounding_hides_has_no_repair() -> None:
     # A straight line at constant speed, 3 rad in 6 ns: its acceleration is 0, and nobody sees it.
     line = uniform_cubic_b_spline(2, "timed")
@@ -229,14 +201,6 @@ def test_what_rounding_hides_has_no_repair() -> None:
     seen = check(one_joint([13.8194, 10.6226], line, acceleration=126.6), [5.6e-3])
     assert seen.verdict is Verdict.PASS
     assert seen.feasible_time == pytest.approx(5.6e-3)
-
-
-def test_joint_fixed_in_place() -> None:
-    limits = Limits(9, position_lower=[-9, 0.7], position_upper=[9, 0.7])
-    q = np.array([[0.2, 0.7], [1.0, 0.7], [0.9, 0.7]])
-    assert check(Problem(q, limits, cubic_spline(2)), [1.0, 1.0]).verdict is Verdict.PASS
-    moved = q + np.array([[0, 0], [0, 1e-3], [0, 0]])
-    assert check(Problem(moved, limits, cubic_spline(2)), [1.0, 1.0]).verdict is Verdict.VIOLATED
 
 
 def test_position_within_one_ulp_of_its_limit_is_undecided() -> None:

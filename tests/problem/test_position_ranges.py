@@ -4,8 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.interpolate import CubicSpline
-from support.positions import CURVES, WAYPOINTS, limited, sampled_range
+from support.positions import CURVES, limited, sampled_range
 from trajgap.problem import (
     Array,
     Limits,
@@ -16,10 +15,8 @@ from trajgap.problem import (
     evaluate,
     keeps_limits,
     piecewise,
-    quintic_spline,
     three_five_three,
 )
-from trajgap.problem.curves.kind import Curve
 
 UNLIMITED = Limits(joints=3)
 
@@ -76,18 +73,6 @@ def test_ratios_are_those_of_dense_samples(name: str) -> None:
         assert evaluate(problem, one[None]).positions[0] == pytest.approx(dense, abs=2e-4)
 
 
-def test_a_spline_swings_as_far_as_scipys() -> None:
-    problem = limited(cubic_spline(3), 0.2)
-    high = problem.limits.position_upper[0]
-    for one in drawn(problem, 20):
-        times = np.concatenate([[0.0], np.cumsum(one)])
-        theirs = CubicSpline(times, WAYPOINTS[:, 0], bc_type="clamped")
-        turns = theirs.derivative().roots(extrapolate=False)
-        top = float(theirs(np.concatenate([times, turns])).max())
-        mine = evaluate(problem, one[None]).positions[0, 0]
-        assert mine == pytest.approx(1 + (top - high) / max(1.0, abs(high)), abs=1e-12)
-
-
 @pytest.mark.parametrize("name", [n for n, c in CURVES.items() if c.homogeneous])
 def test_a_uniform_stretch_moves_no_path(name: str) -> None:
     problem = limited(CURVES[name], 0.1)
@@ -96,22 +81,6 @@ def test_a_uniform_stretch_moves_no_path(name: str) -> None:
     np.testing.assert_allclose(other.positions, one.positions, rtol=1e-8, atol=1e-9)
     finite = np.isfinite(one.stretch)
     assert (other.stretch[finite] < one.stretch[finite]).all()
-
-
-@pytest.mark.parametrize("curve", [cubic_spline(3), three_five_three(), quintic_spline(3)])
-def test_reversal_mirror_and_order_of_joints(curve: Curve) -> None:
-    problem = limited(curve, 0.1)
-    limits, h = problem.limits, drawn(problem, 20)
-    found = evaluate(problem, h).positions
-    back = replace(problem, waypoints=WAYPOINTS[::-1])
-    np.testing.assert_allclose(evaluate(back, h[:, ::-1]).positions, found, rtol=1e-9)
-    swapped = limits.with_positions(-limits.position_upper, -limits.position_lower)
-    mirrored = replace(problem, waypoints=-WAYPOINTS, limits=swapped)
-    np.testing.assert_allclose(evaluate(mirrored, h).positions, found, rtol=1e-12)
-    order = [2, 0, 1]
-    turned = limits.with_positions(limits.position_lower[order], limits.position_upper[order])
-    other = replace(problem, waypoints=WAYPOINTS[:, order], limits=turned)
-    np.testing.assert_array_equal(evaluate(other, h).positions, found[:, order])
 
 
 @pytest.mark.parametrize("name", CURVES)
@@ -146,28 +115,6 @@ def test_ratios_of_derivatives_do_not_depend_on_position_limits() -> None:
         np.flatnonzero(keeps_limits(free, h, 1e-9) & ~keeps_limits(problem, h, 1e-9)),
         np.flatnonzero(keeps_limits(free, h, 1e-9) & np.isin(np.arange(50), beyond)),
     )
-
-
-def test_limits_with_unequal_sides_stand_beside_those_of_position() -> None:
-    pairs = Limits([[-1.5, 2.0], [-1.8, 1.1], [-2.4, 3.0]])
-    problem = limited(cubic_spline(3), 0.05, pairs)
-    h = 2.0 * drawn(problem, 60, spread=0.7)
-    kept = keeps_limits(problem, h, 5e-10)
-    assert 0 < kept.sum() < 60
-    for one, inside in zip(h, kept, strict=True):
-        assert inside == (check(replace(problem, duration_upper=99.0), one).limits is Verdict.PASS)
-
-
-def test_a_joint_held_in_a_range_of_no_width() -> None:
-    limits = Limits(9, position_lower=[-9, 0.7], position_upper=[9, 0.7])
-    q = np.array([[0.2, 0.7], [1.0, 0.7], [0.9, 0.7]])
-    h = np.array([[1.0, 0.6]])
-    still = Problem(q, limits, cubic_spline(2))
-    assert keeps_limits(still, h, 1e-9).all()
-    assert evaluate(still, h).positions[0, 1] == 0.0
-    moved = replace(still, waypoints=q + np.array([[0, 0], [0, 1e-3], [0, 0]]))
-    assert evaluate(moved, h).positions[0, 1] == np.inf
-    assert not keeps_limits(moved, h, 1e-9).any()
 
 
 def test_free_derivatives_move_the_path() -> None:

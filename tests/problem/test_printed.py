@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from trajgap.problem.errors import CaseError, TrajgapError
-from trajgap.problem.printed import Printed, down, up
+from trajgap.problem.printed import Printed, down, read_float, up
 
 numbers = st.decimals(
     min_value=-1000, max_value=1000, allow_nan=False, allow_infinity=False, places=9
@@ -120,3 +120,46 @@ def test_a_case_error_is_one_line_with_its_evidence():
     assert str(CaseError("a.toml", "", "is empty")) == "a.toml: is empty"
     assert isinstance(error, TrajgapError)
     assert isinstance(error, ValueError)
+
+
+@pytest.mark.parametrize(
+    ("text", "wanted"),
+    [
+        ("1.5", 1.5),
+        (" -2e3 ", -2000.0),
+        ("\u22121.25", -1.25),
+        (".5", 0.5),
+        ("1e-400", 0.0),
+        ("Inf", math.inf),
+        ("-infinity", -math.inf),
+        ("1e400", "'1e400' is beyond the range of float64"),
+        ("-1e309", "beyond the range"),
+        ("9" * 65, "a number of 65 characters"),
+        *(
+            (text, "is no number")
+            for text in ("", "nan", "1_000", "0x10", "1,5", "\u0663", "1e", "+")
+        ),
+    ],
+)
+def test_a_float_is_what_its_digits_say(text: str, wanted: float | str) -> None:
+    if isinstance(wanted, float):
+        assert read_float(text) == wanted
+        return
+    with pytest.raises(TrajgapError, match=wanted):
+        read_float(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "more"),
+    [
+        ("1258", {"12580", "125.8", "12.58", "1.258", "-1258"}),
+        ("0.854", {"8.54", "0.0854", "-0.854"}),
+        ("-12.50", {"-125.0", "-1.250", "12.50"}),
+        ("0.00", set()),
+        ("1e3", set()),
+    ],
+)
+def test_a_slip_is_a_digit_the_point_or_the_sign(text, more):
+    number = Printed(text)
+    one_off = {other.text for other in number.one_digit_off()}
+    assert {other.text for other in number.slips()} - one_off == more

@@ -14,9 +14,8 @@ from functools import cache
 from typing import Any
 
 import numpy as np
+from support.forgeries.forgery import document as committed
 from support.three_pieces import dense_best
-from trajgap.nlp.proofs.certifiers import certify
-from trajgap.nlp.proofs.document import certificate
 from trajgap.problem import (
     Limits,
     Problem,
@@ -140,8 +139,8 @@ KINDS = {
 
 @cache
 def text(kind: str) -> str:
-    """The small certificate of a kind, as JSON; its tree is a list of nodes."""
-    document = certificate(certify(KINDS[kind].make(), gap=KINDS[kind].gap))
+    """The committed certificate of a kind, as JSON; its tree is a list of nodes."""
+    document = committed(kind)
     nodes = document["proof"]["tree"]
     if isinstance(nodes, str):
         # As a list of nodes each number can be altered by itself.

@@ -1,10 +1,33 @@
 """What is drawn: durations, a waterfall, and its steps."""
 
+import xml.etree.ElementTree as ElementTree
+from collections.abc import Callable
+
 import numpy as np
 from trajgap.compare.documents import Step, Waterfall
+from trajgap.compare.pictures.drawing import Picture, svg
 from trajgap.nlp import Evidence
 
 DURATIONS = np.array([0.7, 0.5, 0.6])
+
+
+LARGEST = 250_000
+"""Characters of a picture."""
+
+
+def sound(make: Callable[[], Picture]) -> str:
+    """The document of a picture: accessible, small, without a raster, the same each time."""
+    picture = make()
+    document = svg(picture)
+    assert document == svg(make())
+    space = "{http://www.w3.org/2000/svg}"
+    root = ElementTree.fromstring(document)
+    assert (root.tag, root.get("role")) == (f"{space}svg", "img")
+    assert root.findtext(f"{space}title") == picture.title
+    assert root.findtext(f"{space}desc") == picture.description != ""
+    assert "<image" not in document  # a page may fetch none, not even one of its own
+    assert len(document) < LARGEST
+    return document
 
 
 def fall(*steps: Step) -> Waterfall:

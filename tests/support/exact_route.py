@@ -10,6 +10,7 @@ import math
 from collections.abc import Sequence
 from decimal import Decimal, localcontext
 from fractions import Fraction
+from itertools import pairwise
 
 import numpy as np
 from trajgap.problem import Interpolant
@@ -94,30 +95,64 @@ def value(polynomial: Polynomial, time: Decimal) -> Decimal:
     return total
 
 
-def peak(pieces: list[Polynomial], durations: Sequence[float], order: int) -> Decimal:
-    """Largest absolute derivative: companion-matrix roots, polished by Newton to 50 digits."""
+def _turns(polynomial: Polynomial, end: Decimal) -> list[Decimal]:
+    """Roots inside (0, ``end``): companion-matrix roots, polished by Newton to 50 digits."""
+    slope = derived(polynomial, 1)
+    scaled = np.array([float(c * Fraction(end) ** i) for i, c in enumerate(polynomial)])
+    found: list[Decimal] = []
+    if not scaled.any():
+        return found
+    scaled = scaled / np.abs(scaled).max()
+    roots = np.roots(np.trim_zeros(scaled[::-1], "f"))
+    near = roots.real[(np.abs(roots.imag) < 1e-4) & (np.abs(roots.real - 0.5) < 0.51)]
+    for start in near:
+        t = Decimal(float(start)) * end
+        for _ in range(60):
+            steep = value(slope, t)
+            step = value(polynomial, t) / steep if steep else Decimal(0)
+            t -= step
+            if abs(step) < Decimal(10) ** -50:
+                break
+        if 0 < t < end:
+            found.append(t)
+    return found
+
+
+def extremes(
+    pieces: list[Polynomial], durations: Sequence[float], order: int
+) -> tuple[Decimal, Decimal]:
+    """Least and largest value of a derivative over all pieces, both ends of each included."""
     with localcontext() as context:
         context.prec = 60
-        best = Decimal(0)
+        values = []
         for polynomial, h in zip(pieces, durations, strict=True):
-            p = derived(polynomial, order)
-            slope, bend = derived(p, 1), derived(p, 2)
+            p, end = derived(polynomial, order), Decimal(float(h))
+            values += [value(p, t) for t in (Decimal(0), end, *_turns(derived(p, 1), end))]
+        return +min(values), +max(values)
+
+
+def peak(pieces: list[Polynomial], durations: Sequence[float], order: int) -> Decimal:
+    """Largest absolute derivative."""
+    least, most = extremes(pieces, durations, order)
+    return max(-least, most)
+
+
+def braking(pieces: list[Polynomial], durations: Sequence[float]) -> tuple[Decimal, Decimal]:
+    """Largest |acceleration| while the speed grows, and while it falls.
+
+    Between the roots of velocity, acceleration and jerk all three keep their sign, so that the
+    middle tells which of both it is, and |acceleration| is largest at an end.
+    """
+    with localcontext() as context:
+        context.prec = 60
+        most = [Decimal(0), Decimal(0)]
+        for polynomial, h in zip(pieces, durations, strict=True):
             end = Decimal(float(h))
-            places = [Decimal(0), end]
-            scaled = np.array([float(c * Fraction(float(h)) ** i) for i, c in enumerate(slope)])
-            if scaled.any():
-                scaled = scaled / np.abs(scaled).max()
-                roots = np.roots(np.trim_zeros(scaled[::-1], "f"))
-                near = roots.real[(np.abs(roots.imag) < 1e-4) & (np.abs(roots.real - 0.5) < 0.51)]
-                for start in near:
-                    t = Decimal(float(start)) * end
-                    for _ in range(60):
-                        curvature = value(bend, t)
-                        step = value(slope, t) / curvature if curvature else Decimal(0)
-                        t -= step
-                        if abs(step) < Decimal(10) ** -50:
-                            break
-                    if 0 < t < end:
-                        places.append(t)
-            best = max([best, *(abs(value(p, t)) for t in places)])
-        return +best
+            v, a = derived(polynomial, 1), derived(polynomial, 2)
+            inner = [t for p in (v, a, derived(a, 1)) for t in _turns(p, end)]
+            for left, right in pairwise(sorted([Decimal(0), end, *inner])):
+                middle = (left + right) / 2
+                falls = value(v, middle) * value(a, middle) < 0
+                sizes = [abs(value(a, t)) for t in (left, right)]
+                most[falls] = max(most[falls], *sizes)
+        return +most[0], +most[1]

@@ -15,12 +15,6 @@ def fair(fun: Any, bounds: Any, budget: int, rng: Any, members: int = 20) -> obj
     return fun(upper)
 
 
-def careless(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
-    """Draws from the generator that belongs to nobody."""
-    for _ in range(budget):
-        fun(np.random.uniform(*bounds.T))  # noqa: NPY002 - what it is here for
-
-
 def asks_nan(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
     fun(bounds[:, 1])
     fun(np.full(len(bounds), np.nan))

@@ -1,6 +1,5 @@
 """A case whose texts attack the page that shows them."""
 
-import html.parser
 import tomllib
 from decimal import Decimal
 from importlib.resources import files
@@ -48,31 +47,3 @@ def hostile_case(case_id: str = ID) -> Case:
     raw["algorithms"][0]["open"].append(SCRIPT + LINK)
     raw["algorithms"][0]["settings"]["iterations"] = 6
     return check_case(raw, "hostile.toml")
-
-
-class Seen(html.parser.HTMLParser):
-    """Tags and attributes of a page, and its text outside pictures and styles."""
-
-    def __init__(self, page: str) -> None:
-        super().__init__()
-        self.tags: list[tuple[str, dict[str, str | None]]] = []
-        self.text: list[str] = []
-        self.inside: list[str] = []
-        self.feed(page)
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.tags.append((tag, dict(attrs)))
-        if tag in ("svg", "style"):
-            self.inside.append(tag)
-
-    def handle_endtag(self, tag: str) -> None:
-        if tag in ("svg", "style"):
-            self.inside.pop()
-
-    def handle_data(self, data: str) -> None:
-        if not self.inside:
-            self.text.append(data)
-
-    @property
-    def words(self) -> str:
-        return " ".join(" ".join(self.text).split())

@@ -31,40 +31,9 @@ def raises(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
     raise ZeroDivisionError("one\nover nothing" + "!" * 1000)
 
 
-def exits(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
-    sys.exit(7)
-
-
-def returns_nan(fun: Any, bounds: Any, budget: int, rng: Any) -> Any:
-    fun(bounds.mean(axis=1))
-    return np.full(len(bounds), np.nan)
-
-
-def asks_nan(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
-    fun(np.full(len(bounds), np.nan))
-
-
-def leaves_bounds(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
-    fun(bounds[:, 1] * 2)
-
-
 def overspends(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
     while True:
         fun(rng.uniform(bounds[:, 0], bounds[:, 1]))
-
-
-def swallows(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
-    """Goes on after its budget is spent, five times."""
-    spent = 0
-    while spent < 5:
-        try:
-            fun(rng.uniform(bounds[:, 0], bounds[:, 1]))
-        except BaseException:
-            spent += 1
-
-
-def judges_nothing(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
-    pass
 
 
 def warns(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
@@ -120,6 +89,26 @@ def forks_and_leaves(fun: Any, bounds: Any, budget: int, rng: Any, mark: str) ->
             time.sleep(3600)
     Path(mark).write_text(str(found), encoding="utf-8")
     os.kill(os.getpid(), signal.SIGKILL)
+
+
+def leaves_a_grandchild(
+    fun: Any, bounds: Any, budget: int, rng: Any, mark: str, dies: bool
+) -> None:
+    """Leaves a process behind in a session of its own, whose parent is gone."""
+    told, tells = os.pipe()
+    if not os.fork():
+        os.setsid()
+        if not os.fork():
+            with Path(mark).open("a", encoding="utf-8") as file:
+                print(os.getpid(), file=file)
+            os.write(tells, b"!")
+            while True:
+                time.sleep(3600)
+        os._exit(0)
+    os.read(told, 1)
+    if dies:
+        os.kill(os.getpid(), signal.SIGKILL)
+    fun(bounds.mean(axis=1))
 
 
 def scribbles(fun: Any, bounds: Any, budget: int, rng: Any) -> None:

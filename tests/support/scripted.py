@@ -3,6 +3,9 @@
 import numpy as np
 from trajgap.heuristics import Bounds
 
+R1 = np.array([[0.25, 0.5], [0.75, 0.125]])
+R2 = np.array([[0.5, 0.25], [0.125, 1.0]])
+"""Random numbers of a step of two particles in the plane."""
 OPEN = Bounds(np.full(2, -np.inf), np.full(2, np.inf))
 
 

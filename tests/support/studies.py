@@ -4,7 +4,6 @@ A study is a cache of what is computed: tests may share one, none may alter it. 
 computing twice builds its own with `Study`.
 """
 
-import pickle
 import tomllib
 from dataclasses import replace
 from decimal import Decimal
@@ -13,43 +12,15 @@ from importlib.resources import files
 
 import pytest
 from trajgap.compare.audits.case_audit import CaseAudit, audit_case
+from trajgap.compare.audits.reworded import Reworded
 from trajgap.compare.audits.study import Study
 from trajgap.compare.pages.blocks import Page
 from trajgap.compare.pages.writer import case_page
-from trajgap.nlp import PerJointSolution, Solution, printed_problem_or_none
 from trajgap.problem import Case, parse_case, published_ids
 from trajgap.problem.cases.load import check_case
 
 # A spread needs two seeds; more show nothing further in a test.
 SEEDS = 2
-
-
-class Reworded(Study):
-    """A case whose claims were changed: what its problems alone decide is that of the original."""
-
-    def __init__(self, case: Case, original: Study) -> None:
-        super().__init__(case, seeds=original.seeds)
-        self.original = original
-
-    def _alike(self, pid: str, rid: str) -> bool:
-        """Whether the changed case poses the very same problem, digit by digit."""
-        if (pid, rid) not in self.original.pairs:
-            return False
-        one, other = (s.case.statement(pid, rid) for s in (self, self.original))
-        exact = printed_problem_or_none(one, None) == printed_problem_or_none(other, None)
-        return exact and pickle.dumps(one.problem()) == pickle.dumps(other.problem())
-
-    def optimum(self, pid: str, rid: str, joint: str | None = None) -> Solution:
-        """The original's, where it is the same question."""
-        study = self.original if self._alike(pid, rid) else super()
-        return study.optimum(pid, rid, joint)
-
-    def per_joint(self, pid: str, rid: str) -> PerJointSolution:
-        """The original's, where it is the same question to the same digits."""
-        same = self._alike(pid, rid) and self.half_digits(pid, rid) == self.original.half_digits(
-            pid, rid
-        )
-        return (self.original if same else super()).per_joint(pid, rid)
 
 
 def source(case_id: str) -> str:

@@ -2,29 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterable, Iterator
-from functools import cache
 from itertools import islice
 from typing import Any
 
-import numpy as np
 import pytest
-from support.certificate_kinds import text
-from trajgap.nlp import certificate, certify
-from trajgap.problem import Limits, Problem, cubic_spline
+from support.forgeries.forgery import document
 from trajgap.verify import verify_certificate
-
-
-@cache
-def certified(kind: str) -> str:
-    """A certificate with parts enough, as JSON."""
-    if kind == "quintic-spline":
-        return text(kind)
-    way = np.array([[0.0, 0.3], [0.7, -0.4], [0.1, 0.9], [0.8, 0.2]])
-    problem = Problem(way, Limits(1.0, 2.0, 9.0, joints=2), cubic_spline(3))
-    return json.dumps(certificate(certify(problem, gap=1e-3)))
-
 
 Parts = Iterable[tuple[Any, ...]]
 Work = Callable[..., Any]
@@ -55,11 +39,11 @@ def lost(work: Work, common: Any, parts: Parts) -> Iterator[Any]:
     return iter([work(common, *part) for part in parts][:-1])
 
 
-@pytest.mark.parametrize("kind", ["cubic-spline", "quintic-spline"])
+@pytest.mark.parametrize("kind", ["cubic-virtual", "quintic-spline"])
 @pytest.mark.parametrize("spread", [here, backwards])
 def test_parts_prove_what_the_whole_does(kind: str, spread: Any) -> None:
-    whole = verify_certificate(json.loads(certified(kind)))
-    parts = verify_certificate(json.loads(certified(kind)), spread=spread)
+    whole = verify_certificate(document(kind))
+    parts = verify_certificate(document(kind), spread=spread)
     assert whole.proves
     assert parts == whole
 
@@ -67,14 +51,14 @@ def test_parts_prove_what_the_whole_does(kind: str, spread: Any) -> None:
 @pytest.mark.parametrize(
     ("kind", "spread"),
     [
-        ("cubic-spline", none_begun),
-        ("cubic-spline", lost),
+        ("cubic-virtual", none_begun),
+        ("cubic-virtual", lost),
         ("quintic-spline", none_begun),
-        ("quintic-spline", first_alone),  # the cubic tree is small enough to be one part
+        ("quintic-spline", first_alone),  # the cubic tree is one part below a chain of steps
         ("quintic-spline", lost),
     ],
 )
 def test_a_part_that_nobody_judges_proves_nothing(kind: str, spread: Any) -> None:
-    verdict = verify_certificate(json.loads(certified(kind)), spread=spread)
+    verdict = verify_certificate(document(kind), spread=spread)
     assert not verdict.proves
     assert "a part of the tree was not judged" in verdict.reason

@@ -1,8 +1,10 @@
 from .clues import held_otherwise, reading_clues
 from .condition_count import count_conditions
-from .kept_limits import said_to_keep
+from .following_numbers import in_digits, recomputed, repeated_total, summed
+from .kept_limits import meant_to_keep, said_to_keep
 from .linear_blends import blended, judge_row
 from .on_instances import HANDLED, attributed, placed
+from .peaks import box_reach, largest
 from .plain_words import EXPLAINED, Explained
 from .printed_vertices import Vertex, has_vertices, vertices
 from .registry import GROUPS, NOT_COMPUTED, RULES
@@ -17,12 +19,19 @@ __all__ = [
     "Vertex",
     "attributed",
     "blended",
+    "box_reach",
     "count_conditions",
     "has_vertices",
     "held_otherwise",
+    "in_digits",
     "judge_row",
+    "largest",
+    "meant_to_keep",
     "placed",
     "reading_clues",
+    "recomputed",
+    "repeated_total",
     "said_to_keep",
+    "summed",
     "vertices",
 ]

@@ -9,12 +9,16 @@ from math import pi
 import numpy as np
 
 from ....problem import (
+    QUANTITIES,
     Array,
     LimitPair,
     Measured,
+    Problem,
+    Trajectory,
     control_vertices,
     fit,
     from_si,
+    half_range,
     is_linear,
     shown_unit,
     to_si,
@@ -42,6 +46,11 @@ _ORDERS = {"velocity": 1, "acceleration": 2, "jerk": 3}
 """Orders of the derivatives that clues name."""
 _STEPS = 10
 """Steps a segment on which limits held at samples only are tried: a coarse figure's."""
+
+
+_TINY = 1e-12
+"""rad or m, and their derivatives: what rounding of float64 leaves of a value that a limit of no
+width holds."""
 
 
 def reading_clues(study: Study) -> tuple[ReadingClue, ...]:
@@ -225,28 +234,41 @@ def held_otherwise(study: Study, claim: AnyClaim, pid: str, rid: str) -> HeldOth
     problem = study.claim_problem(claim, pid, rid)
     durations = study.case.claim_durations(claim, rid).value
     trajectory = fit(problem.curve, problem.waypoints, durations)
-    limits = problem.limits.sides
-    places = np.linspace(0.0, 1.0, _STEPS + 1)
-    pieces = len(trajectory.breaks) - 1
-    sampled = 0.0
-    for joint in range(len(problem.joints)):
-        for order in (1, 2, 3):
-            for side, sign in ((0, -1.0), (1, 1.0)):
-                limit = float(limits[side, joint, order - 1])
-                if not np.isfinite(limit) or limit <= 0:
-                    continue
-                for piece in range(pieces):
-                    there = sign * trajectory.values(piece, joint, order, places)
-                    sampled = max(sampled, float(there.max()) / limit)
+    sampled = _at_samples(problem, durations, trajectory)
     vertices: float | Why = Why("the curve has no control vertices in time")
     declared = study.case.statement(pid, rid).declaration
     if problem.limits.uneven:
         vertices = Why("lower and upper limits differ, and vertices are set beside equal ones")
     elif (declared.family, declared.time) == ("uniform-cubic-b-spline", "stretched"):
-        vertices = _on_vertices(problem.waypoints, durations, limits[1])
+        vertices = _on_vertices(problem.waypoints, durations, problem.limits.sides[1])
     return HeldOtherwise(
         everywhere=float(worst.ratio), steps=_STEPS, sampled=sampled, vertices=vertices
     )
+
+
+def _at_samples(problem: Problem, durations: Array, trajectory: Trajectory) -> float:
+    """Largest ratio to any limit at sampled places of each piece, as `check` counts it for all t.
+
+    Bounds on positions and durations count like limits on derivatives: "none is broken" means all.
+    """
+    limits = problem.limits
+    bounds = (problem.duration_lower / durations, durations / problem.duration_upper)
+    ratios = [float(one.max()) for one in bounds]
+    places = np.linspace(0.0, 1.0, _STEPS + 1)
+    pieces = range(len(trajectory.breaks) - 1)
+    for joint in range(len(problem.joints)):
+        low, high = float(limits.position_lower[joint]), float(limits.position_upper[joint])
+        for order in range(len(QUANTITIES) + 1):
+            found = np.array([trajectory.values(piece, joint, order, places) for piece in pieces])
+            sides = limits.sides[:, joint, order - 1] if order else np.array([-low, high])
+            for most, limit in zip((-found.min(), found.max()), sides, strict=True):
+                if not np.isfinite(limit):
+                    continue
+                width = limit if order else half_range(low, high, limit)
+                over = most - limit
+                ratio = 1.0 + over / width if width > 0 else np.inf if over > _TINY else 0.0
+                ratios.append(float(ratio))
+    return max(ratios)
 
 
 def _on_vertices(waypoints: Array, durations: Array, limits: Array) -> float:

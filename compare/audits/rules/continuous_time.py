@@ -16,10 +16,11 @@ from ....problem.cases import (
     TimeClaim,
     TotalTimeClaim,
 )
+from ....verify import shown_bound
 from ...documents import Basis, ClaimVerdict, Finding, Rounding, Severity
-from ..explanations import LIMITS
+from ..roots import LIMITS
 from ..study import Study
-from .kept_limits import said_to_keep
+from .kept_limits import UNSAID, meant_to_keep, said_of, said_to_keep
 from .linear_blends import BLENDS, blended, judge_row
 from .peaks import box_reach, has_curve, largest
 from .wording import (
@@ -117,7 +118,8 @@ def _judged(study: Study, claim: AnyClaim, pid: str, rid: str) -> _Judged:
     bound = rounding.lower_bound_of_worst
     if rounding.verdict is Rounding.BREAKS and bound is not None:
         message += (
-            f" Whatever the rounding, a limit is exceeded by a factor of at least {bound:.6g}."
+            f" Whatever the rounding, a limit is exceeded by a factor of at least "
+            f"{shown_bound(bound, 'lower')}."
         )
     if rounding.verdict is Rounding.BREAKS:
         cut = study.claim_cut(claim, pid, rid).verdict
@@ -160,22 +162,22 @@ def broken(study: Study, claim: AnyClaim, pid: str, rid: str) -> str | None:
 
 
 def _limits(study: Study, claim: AnyClaim) -> Iterator[Finding]:
-    said = said_to_keep(study, claim)
+    unsaid = "" if said_to_keep(study, claim) else UNSAID
     for pid, rid in study.claim_pairs(claim):
         judged = _judged(study, claim, pid, rid)
-        unsaid = "" if said else " Nothing printed says that these durations keep the limits."
+        verdict, severity = said_of(study, claim, judged.verdict, judged.severity)
         yield Finding(
             rule="TG201",
-            severity=judged.severity if said else Severity.INFO,
-            verdict=judged.verdict if said else ClaimVerdict.NOT_CHECKABLE,
+            severity=severity,
+            verdict=verdict,
             basis=Basis.ENCLOSURE,
             claim=claim.id,
             problem=pid,
             reading=rid,
             printed=durations_text(study, claim),
             computed=_ratio(study, claim, pid, rid),
-            message=judged.message + unsaid,
-            decides=said,
+            message=judged.message + ("" if verdict is ClaimVerdict.SUPPORTED else unsaid),
+            decides=meant_to_keep(study, claim),
             kind=judged.kind,
             root=f"{LIMITS} {claim.id}" if judged.verdict is ClaimVerdict.REFUTED else "",
         )

@@ -10,13 +10,13 @@ import numpy as np
 from ....nlp import Evidence, Solution, Status, weakest
 from ....problem.cases import (
     AnyClaim,
-    Digits,
     DurationsClaim,
     MaximumClaim,
     StatementClaim,
     TimeClaim,
     TotalTimeClaim,
 )
+from ....verify import shown_bound
 from ...documents import (
     Basis,
     ClaimVerdict,
@@ -27,9 +27,10 @@ from ...documents import (
     Severity,
     Why,
     known,
+    percent_ends,
 )
 from ...gaps import gap, reference_of
-from ..explanations import LIMITS, OPTIMAL
+from ..digit_ranges import all_exact
 from ..fixed_ratios import (
     BELOW_AT_RATIOS,
     at_ratios,
@@ -38,20 +39,18 @@ from ..fixed_ratios import (
     optimum_called,
     planned_apart,
 )
-from ..rounding import same_limits
+from ..roots import LIMITS, OPTIMAL
 from ..stated import other_objective
+from ..stated_totals import contradicting_lows, is_sum, rounded_up_low, total_excludes, what_agrees
 from ..study import Study
 from .continuous_time import broken
 from .wording import called, called_under, left_out
 
-_BELOW = (
-    " The whole printed interval lies below the best known total. That value is not a proven "
-    "bound; the limits, the reading or the printed digits differ, or a better optimum exists."
-)
+_BELOW = " All of it is below the best known total: a misprint or a better optimum may explain it."
 """What is said of a printed total below a best known one."""
 _BELOW_BOUND = (
     " The whole printed interval lies below the proved lower bound of this problem as printed: "
-    "the limits, the reading or the digits of the way-points differ."
+    "a misprinted total, limit or way-point, or another reading, may explain it."
 )
 """What is said of a printed total below a proved bound."""
 
@@ -181,7 +180,7 @@ def _below(
     if share is not None and interval[1] >= solution.best * (1.0 - share):
         return (
             " To first order the rounding of way-points and limits explains it: they move the "
-            f"optimum by up to {100 * share:.2g} %."
+            f"optimum by up to {shown_bound(100 * share, 'upper', digits=2)} %."
         )
     return None
 
@@ -208,11 +207,13 @@ def set_beside(distance: Gap) -> str:
     """How a printed total lies beside a reference, as the verb of a sentence."""
     low, high = 100 * distance.lowest, 100 * distance.highest
     if distance.many_times:
-        return f"is {1 + distance.lowest:.4g} times"
+        return f"is {shown_bound(1 + distance.lowest, 'lower', digits=4)} times"
     if low <= 0 <= high:
         return "agrees within its rounding with"
-    ends = [f"{x:.3g}" for x in sorted((abs(low), abs(high)))]
-    share = ends[1] if ends[0] == ends[1] else f"{ends[0]} to {ends[1]}"
+    least, most = sorted((abs(low), abs(high)))
+    share = f"{most:.3g}"
+    if f"{least:.3g}" != share:
+        share = " to ".join(percent_ends(least, most))
     return f"is {share} % {'longer' if low > 0 else 'shorter'} than"
 
 
@@ -258,6 +259,7 @@ class _Sides:
     breaking: list[str] = field(default_factory=list)
     roots: list[str] = field(default_factory=list)
     agreeing: list[str] = field(default_factory=list)
+    summed: int = 0
     rounded_up: bool = False
     open: list[str] = field(default_factory=list)
     solutions: list[Solution] = field(default_factory=list)
@@ -276,7 +278,10 @@ def _weigh(study: Study, claim: AnyClaim, pid: str, rid: str, sides: _Sides) -> 
         return
     solution = study.claim_optimum(claim, pid, rid)
     shorter = _shorter(study, claim, pid, rid, solution, total)
-    if shorter is not None:
+    apart = contradicting_lows(study, claim, pid, rid)
+    reached = 0.0 if shorter is None else shorter[1].reference.upper
+    contradicted = bool(apart) and min(apart.values()) <= reached
+    if shorter is not None and not contradicted:
         said, distance = shorter
         sides.longer.append(said)
         if sides.most is None or distance.highest > sides.most.highest:
@@ -286,17 +291,25 @@ def _weigh(study: Study, claim: AnyClaim, pid: str, rid: str, sides: _Sides) -> 
     # Whether a bare total is too short takes a proof, which is tried only where it may succeed.
     bare = isinstance(claim, TotalTimeClaim) and found and interval[1] >= solution.best
     proof = None if bare else broken(study, claim, pid, rid)
-    below = _below_certified(study, claim, pid, rid, solution)
+    below = None if apart else below_certified(study, claim, pid, rid, solution)
     if proof is not None or below is not None:
         sides.breaking.append(f"{name}: {proof or below}")
         sides.roots.append(f"{LIMITS} {claim.id}")
+        return
+    if apart:
+        sides.open.append(
+            f"{name}: printed {shown}, and also {' and '.join(apart)}; these contradict each "
+            "other, and neither is taken"
+        )
         return
     if not found:
         sides.open.append(f"{name}: {_no_optimum(solution)}")
         return
     sides.solutions.append(solution)
-    if _rounded_up(study, claim, rid, interval) <= solution.best <= interval[1]:
+    inside = rounded_up_low(study, claim, rid, interval) <= solution.best <= interval[1]
+    if inside and not total_excludes(study, claim, rid, solution.best):
         sides.agreeing.append(name)
+        sides.summed += is_sum(claim)
         sides.rounded_up |= not interval[0] <= solution.best
         return
     distance = gap(interval, _reference(solution), feasible=False)
@@ -306,19 +319,6 @@ def _weigh(study: Study, claim: AnyClaim, pid: str, rid: str, sides: _Sides) -> 
         "and no proof for all values that round to the printed digits "
         "decides whether that is more than rounding explains"
     )
-
-
-def _rounded_up(study: Study, claim: AnyClaim, rid: str, interval: tuple[float, float]) -> float:
-    """Low end of a printed total whose digits were rounded up, as durations are to keep a limit.
-
-    Rounding up moves the low end of each number down by another half of its last place; a total
-    beside durations is then the sum of what was rounded up.
-    """
-    low, high = interval
-    if isinstance(claim, TotalTimeClaim) or not study.has_durations(claim):
-        return low - (high - low) / 2
-    box = study.case.claim_durations(claim, rid)
-    return min(low, float((box.lower - (box.upper - box.lower) / 2).sum()))
 
 
 def _reference(solution: Solution) -> Reference:
@@ -334,15 +334,15 @@ def _no_optimum(solution: Solution) -> str:
     if solution.status is Status.NOT_ATTAINED:
         limits = solution.problem.limits
         free = not np.isfinite(limits.sides).any()
-        reason = "no limit is printed, and " if free else ""
-        return f"{reason}no motion is the shortest, the total only approaches an infimum{why}"
+        said = "no limit is printed, and no motion is the shortest"
+        return (said if free else "no shortest motion was found") + why
     if solution.status is Status.INFEASIBLE:
         of = at_ratios(solution.problem)
         return f"at the printed way-points no durations{of} keep the limits{why}"
     return f"no optimum was found ({solution.status}{why})"
 
 
-def _below_certified(
+def below_certified(
     study: Study,
     claim: AnyClaim,
     pid: str,
@@ -353,14 +353,10 @@ def _below_certified(
     bound = solution.lower_bound
     if bound is None or study.longest_total(claim, rid) >= bound:
         return None
-    problem = study.claim_problem(claim, pid, rid)
-    box = study.waypoint_box(problem, pid, rid)
-    if study.case.statement(pid, rid).loose_ratios:
+    if not all_exact(study, claim, pid, rid):
         return None
-    exact = same_limits(problem, study.claim_problem(claim, pid, rid, Digits.LOOSEST))
-    if not (exact and np.array_equal(box.lower, box.upper)):
-        return None
-    return f"The printed total lies below the certified lower bound {bound:.6f} s."
+    shown = shown_bound(bound, "lower", places=6)
+    return f"The printed total lies below the certified lower bound {shown} s."
 
 
 def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Finding]:
@@ -403,7 +399,8 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
             called_so = {optimum_called(one.problem, evidence) for one in sides.solutions}
             rounded = ", digits rounded up so that the limits are kept" if sides.rounded_up else ""
             which = " or the ".join(sorted(called_so))
-            message = f"Every printed total agrees with the {which}{rounded}."
+            whose = what_agrees(len(sides.agreeing), sides.summed)
+            message = f"{whose} the {which}{rounded}."
         yield Finding(
             rule="TG302",
             severity=severity,
@@ -438,13 +435,14 @@ def _shorter(
         return None
     shown, interval = total
     reached = study.reachable(claim, solution.durations, pid, rid)
-    if reached is None or _rounded_up(study, claim, rid, interval) <= reached:
+    if reached is None or rounded_up_low(study, claim, rid, interval) <= reached:
         return None
     distance = gap(interval, Reference(upper=reached), feasible=_kept(study, claim, pid, rid))
     jumps = solution.check is not None and any(j.order == 1 for j in solution.check.jumps)
     kind = "a checked motion whose velocity may jump at the via-points under this reading"
     said = (
         f"{called(claim)} prints {shown}, and {kind if jumps else 'a checked motion'}"
-        f"{at_ratios(solution.problem)} takes {reached:.6f} s"
+        f"{at_ratios(solution.problem)} takes at most "
+        f"{shown_bound(reached, 'upper', places=6)} s"
     )
     return said, distance

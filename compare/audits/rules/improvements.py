@@ -78,7 +78,7 @@ def _share(slower: Interval, faster: Interval, base: str) -> Interval:
     return Interval(low, 100 * (slower.upper / faster.lower - 1))
 
 
-def _bases(claim: ImprovementClaim) -> tuple[str, ...]:
+def allowed_bases(claim: ImprovementClaim) -> tuple[str, ...]:
     """What the percentage may be a share of: as stated, or both where the text leaves it open."""
     return tuple(_SHARE_OF) if claim.base is None else (claim.base,)
 
@@ -98,7 +98,7 @@ def _meets(
 ) -> bool:
     """Whether the claim's own two totals give its percentage."""
     allowed = _allowed(study, claim, slower, faster)
-    return any(meet(hull(percent), _share(*allowed, base)) for base in _bases(claim))
+    return any(meet(hull(percent), _share(*allowed, base)) for base in allowed_bases(claim))
 
 
 def _percentage(
@@ -112,7 +112,7 @@ def _percentage(
 ) -> Finding:
     """The percentage under each base that is admissible; the first that fits is taken."""
     zero = Fraction(0)
-    bases = [b for b in _bases(claim) if b == "slower" or faster.truncated.lower > zero]
+    bases = [b for b in allowed_bases(claim) if b == "slower" or faster.truncated.lower > zero]
     tried = []
     # A total may be the sum of digits cut off, and the percentage that of the whole numbers.
     wide = _allowed(study, claim, slower, faster)
@@ -121,18 +121,39 @@ def _percentage(
         rounded = _share(slower.interval, faster.interval, base)
         cut = _share(slower.truncated, faster.truncated, base)
         mixed = _share(*wide, base)
-        tried.append(compared("TG103", claim, percent, rounded, cut, share, "%", root, mixed=mixed))
+        found = compared("TG103", claim, percent, rounded, cut, share, "%", root, mixed=mixed)
+        tried.append(found.model_copy(update={"computed": f"{_as_printed(rounded, percent)} %"}))
     weights = list(Severity)
-    best = max(tried, key=lambda f: weights.index(f.severity))
-    others = [f for f in tried if f is not best]
-    if not others or (best is tried[0] and best.severity is Severity.INFO):
-        return best
-    if best.verdict is ClaimVerdict.REFUTED:
-        rest = f" As a share of {_SHARE_OF['faster']} it would be {others[0].computed}."
-    else:
-        rest = f" As a share of {_SHARE_OF['slower']} it would be {tried[0].computed}."
+    best = max(range(len(tried)), key=lambda k: weights.index(tried[k].severity))
+    found = tried[best]
+    if len(tried) < 2 or (best == 0 and found.severity is Severity.INFO):
+        return found if found.severity is not Severity.ERROR else _of_the_other(found, claim, wide)
+    other = 1 - best
+    rest = f" As a share of {_SHARE_OF[bases[other]]} it would be {tried[other].computed}."
+    if found.verdict is not ClaimVerdict.REFUTED:
         rest += " The text leaves open which is meant."
-    return best.model_copy(update={"message": best.message + rest})
+    return found.model_copy(update={"message": found.message + rest})
+
+
+def _of_the_other(
+    found: Finding, claim: ImprovementClaim, totals: tuple[Interval, Interval]
+) -> Finding:
+    """A finding on a percentage, with the base that the file does not state where that one fits."""
+    for base, words in _SHARE_OF.items():
+        fits = claim.percent is not None and meet(hull(claim.percent), _share(*totals, base))
+        if base not in allowed_bases(claim) and fits:
+            fits_there = f" As a share of {words} it would be {claim.percent} %."
+            return found.model_copy(update={"message": found.message + fits_there})
+    return found
+
+
+def _as_printed(share: Interval, percent: Printed) -> str:
+    """A share with the decimals of a printed one: one number where both ends round to it."""
+    step = Fraction(10) ** -max(percent.places, 0)
+    ends = dict.fromkeys(
+        f"{float(round(end / step) * step):.{max(percent.places, 0)}f}" for end in share
+    )
+    return " to ".join(ends)
 
 
 def _unquantified(
@@ -195,7 +216,7 @@ def _against_tables(
     assert faster is not None
     longer, shorter = (total_allowed(study, t) for t in tables if t is not None)
     positive = min(longer.lower, shorter.lower) > 0
-    found = [_share(longer, shorter, base) for base in _bases(claim) if positive]
+    found = [_share(longer, shorter, base) for base in allowed_bases(claim) if positive]
     if not found or any(meet(hull(percent), allowed) for allowed in found):
         return
     allowed = found[0]

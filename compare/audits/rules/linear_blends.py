@@ -14,7 +14,7 @@ from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..parabolic_blends import Blended, EndBlends, by_blend_accelerations, by_blend_times
 from ..rounding import RoundingBox
 from ..study import Study
-from .kept_limits import said_to_keep
+from .kept_limits import UNSAID, meant_to_keep, said_of
 from .wording import durations_text, in_units, unit_shown
 
 BLENDS = "blends"
@@ -58,7 +58,7 @@ def _beside(study: Study, claim: DurationsClaim, pid: str, rid: str) -> Finding:
     problem = study.claim_problem(claim, pid, rid)
     segments = len(problem.waypoints) - 1
     verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
-    said, computed = said_to_keep(study, claim), ""
+    computed = ""
     if len(claim.durations) != segments:
         message = (
             f"{len(claim.durations)} durations are printed, and {segments} straight segments join "
@@ -103,9 +103,10 @@ def _beside(study: Study, claim: DurationsClaim, pid: str, rid: str) -> Finding:
             " Such a motion passes via-points at a distance, so that no optimum of a curve through "
             "them is set beside it, and its acceleration steps, so that its jerk is not judged."
         )
-    if not said and verdict is not ClaimVerdict.NOT_CHECKABLE:
-        verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
-        message += " Nothing printed says that these durations keep the limits."
+    found_verdict = verdict
+    verdict, severity = said_of(study, claim, verdict, severity)
+    if verdict is not found_verdict:
+        message += UNSAID
     return Finding(
         rule="TG210",
         severity=severity,
@@ -117,7 +118,8 @@ def _beside(study: Study, claim: DurationsClaim, pid: str, rid: str) -> Finding:
         printed=durations_text(study, claim),
         computed=computed,
         message=message,
-        decides=said,
+        decides=meant_to_keep(study, claim),
+        kind=str(found_verdict),
         root=f"{BLENDS} {claim.id}" if verdict is ClaimVerdict.REFUTED else "",
     )
 

@@ -143,7 +143,7 @@ def _measures(study: Study, claim: MeasureClaim, motion: AnyClaim) -> Iterator[F
         if not pairs:
             continue
         found = [
-            (joint, _beside(study, claim, number, motion, joint, pid, rid))
+            (joint, measure_beside(study, claim, number, motion, joint, pid, rid))
             for joint, number in pairs
         ]
 
@@ -164,7 +164,7 @@ def _unit(study: Study, claim: MeasureClaim, joint: str | None, pid: str, rid: s
     return f"{shown}·{study.time_unit}" if by_time else shown
 
 
-def _beside(
+def measure_beside(
     study: Study,
     claim: MeasureClaim,
     printed: Printed,

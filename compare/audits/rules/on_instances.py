@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ....problem.cases import ConvergenceClaim
-from ...documents import Basis, Effect, Finding, Procedure, quoted
+from ...documents import Basis, Effect, Finding, Procedure, quoted, ranged
 from ...gaps import SETTLED
 from ..instances import (
     MIDDLE,
@@ -199,7 +199,7 @@ def _totals(result: InstancesResult, reading: str) -> Iterator[str]:
         which = "compared with the paper's" if route == 0 else "of the paper"
         yield (
             f"Where {printed} is printed, the procedure {which} takes {middle:.3g} s at the median "
-            f"({low:.3g} to {high:.3g} s)."
+            f"({ranged(low, high, '.3g')} s)."
         )
 
 
@@ -215,7 +215,7 @@ def _convergence(result: InstancesResult, claim: ConvergenceClaim) -> Finding:
     )
     message = (
         f"By iteration {claim.iterations} of {result.iterations} the search has converged in "
-        f"{low:.3g} to {high:.3g} % of the runs on {result.instances} drawn instances: its best "
+        f"{ranged(low, high, '.3g')} % of the runs on {result.instances} drawn instances: its best "
         f"total is then within {100 * SETTLED:g} % of the final one ({each}). The instances are "
         "not the paper's."
     )
@@ -225,6 +225,6 @@ def _convergence(result: InstancesResult, claim: ConvergenceClaim) -> Finding:
         decides=False,
         claim=claim.id,
         printed=f"{claim.iterations} iterations",
-        computed=f"{low:.3g} to {high:.3g} % of the runs",
+        computed=f"{ranged(low, high, '.3g')} % of the runs",
         message=message,
     )

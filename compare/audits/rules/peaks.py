@@ -37,9 +37,6 @@ _PHASES = 8
 _ROOTS = (2, 3, 5)
 """Numbers whose square roots closed forms of peaks hold, such as 10/√3 of degree 5 and 84√5/25 of
 degree 7: one that is lost in print is named as an explanation."""
-_TELLING = 3
-"""Digits that a printed peak has at least if one that is changed explains anything: of two, one in
-five numbers is a slip away."""
 _WIDE = 0.05
 """Share of a peak above which the room that digits leave is said: what then fits tells little."""
 _NO_MOTION = "No durations are printed whose motion could have this peak."
@@ -403,23 +400,9 @@ def described(
             Class.NORM: f" ({away}), {norm}",
             Class.UNIT: f" ({away}); their ratio is near {one.factor}",
             Class.ROOT: f" ({away}); a factor √{one.root} may have been lost in print",
-            Class.OFF: f" ({away}), {_slipped(study, claim, joint, one, pid, rid) or UNEXPLAINED}",
+            Class.OFF: f" ({away}), {UNEXPLAINED}",
         }[one.kind]
     )
-
-
-def _slipped(
-    study: Study, claim: PeakClaim, joint: str | None, one: Beside, pid: str, rid: str
-) -> str:
-    """With which digit changed a printed peak would agree; empty where it would not."""
-    if sum(character.isdigit() for character in one.printed.text.lstrip("-0.")) < _TELLING:
-        return ""
-    for other in one.printed.one_digit_off():
-        meant = study.case.measured(other, claim.derivative, pid, rid, joint)
-        if meant.lower <= one.exact + one.reach and one.exact - one.reach <= meant.upper:
-            which = "one digit, or the order of two, may be misprinted"
-            return f"which {other.text} would agree with: {which}"
-    return ""
 
 
 def _of_norm(study: Study, claim: PeakClaim, one: Beside, pid: str, rid: str) -> str:

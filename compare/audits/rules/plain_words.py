@@ -67,7 +67,9 @@ EXPLAINED = {
     ),
     "TG105": Explained(
         "Where one total is printed in two places, do the two agree?",
-        "Inconsistent if no value rounds to both; neither place is taken to be the right one.",
+        "Inconsistent if no value rounds to both; neither place is taken to be the right one. "
+        "Totals that the file keeps apart, by method, curve, table or improvement, are not "
+        "compared.",
         "The abstract prints 3.9 s and the table 3.52 s for the same motion.",
     ),
     "TG106": Explained(
@@ -216,7 +218,8 @@ EXPLAINED = {
     "TG304": Explained(
         "Is the printed total of a trapezoidal, S-curve or sine-jerk profile the shortest that the "
         "limits allow, from rest to rest in every segment?",
-        "Supported within rounding, else inconsistent: the paper may have meant another profile.",
+        "Supported within rounding, else inconsistent: the paper may have meant another profile. "
+        "Not checkable where derivatives at the ends of the motion are not 0.",
         "140° within 150 °/s, 70 °/s² and 70 °/s³ take 4 s with a jerk that is constant in phases.",
     ),
     "TG401": Explained(

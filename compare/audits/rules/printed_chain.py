@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import combinations, product
@@ -12,6 +11,7 @@ import numpy as np
 from ....problem import Array, Measured, is_linear, to_si
 from ....problem.cases import Cartesian, Column, Statement, StatementClaim
 from ....problem.robots import Chain, Convention, DhTable, JointKind, Proximity, proximity
+from ....verify import shown_bound
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..study import Study
 
@@ -382,11 +382,13 @@ def _listed(parts: list[str]) -> str:
 
 def _down(metres: float) -> str:
     """Three decimals that do not say more than the number."""
-    return f"{math.floor(1000 * metres) / 1000:.3f}"
+    return shown_bound(metres, "lower", places=3)
 
 
 def _up(metres: float) -> str:
-    return f"{math.ceil(1000 * metres) / 1000:.3f}" if metres > 5e-4 else f"{metres:.1g}"
+    if metres > 5e-4:
+        return shown_bound(metres, "upper", places=3)
+    return shown_bound(metres, "upper", digits=1)
 
 
 def _not_checkable(rid: str | None, message: str) -> Finding:

@@ -11,8 +11,8 @@ from ....problem.cases import (
     DurationsClaim,
     MaximumClaim,
 )
-from ...documents import Basis, ClaimVerdict, Finding, Severity
-from ..explanations import SUM
+from ...documents import Basis, ClaimVerdict, Finding, Severity, ranged
+from ..roots import SUM
 from ..study import Study
 
 _FEWEST = 4
@@ -67,8 +67,8 @@ def shown(x: Fraction | float, places: int = 6) -> str:
 
 
 def span(interval: Interval, places: int = 6) -> str:
-    """Both ends of an interval, with so many significant digits."""
-    return f"{shown(interval.lower, places)} to {shown(interval.upper, places)}"
+    """Both ends of an interval, with so many significant digits; one number if they print alike."""
+    return ranged(float(interval.lower), float(interval.upper), f".{places}g")
 
 
 def compared(
@@ -227,7 +227,7 @@ def _lengths(study: Study) -> Iterator[Finding]:
                 claim=claim.id,
                 reading=rid,
                 printed=f"{count} durations",
-                computed=f"{segments} segments",
+                computed=f"{segments} segment{'s' * (segments > 1)}",
                 message=f"{claim.where} prints {count} durations, and the curve through the "
                 f"way-points has {segments} segments, so no motion can be built from them. If the "
                 "paper prints another number, correct the case file.",

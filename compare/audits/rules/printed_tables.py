@@ -16,10 +16,12 @@ from ....problem.cases import (
     TotalTimeClaim,
 )
 from ...documents import Basis, ClaimVerdict, Finding, Severity
-from ..explanations import TABLES
+from ..roots import TABLES
 from ..study import Study
 from .printed_digits import end_blends, hull, meet
 
+_Timed = DurationsClaim | MaximumClaim | TotalTimeClaim
+"""Claims that state a total, or durations of which it is the sum."""
 _FEWEST = 4
 """Numbers that a table needs before two tables alike are worth a word."""
 
@@ -185,29 +187,74 @@ def _whose(study: Study, claim: AnyClaim) -> str | None:
     return claim.joint if len(study.case.robot.joints) > 1 else None
 
 
-def _printed_alike(study: Study, claim: TotalTimeClaim) -> tuple[Sequence[AnyClaim], bool]:
-    """Claims that print the same total, and whether the file says that they do."""
-    if claim.of is not None:
-        return [study.case.claim(claim.of)], True
-    about = claim.problem, claim.other_curve, claim.state, claim.objective
+def _named(claim: AnyClaim) -> str:
+    """The claim whose total a claim states: its own id unless it repeats another's."""
+    return (claim.of if isinstance(claim, TotalTimeClaim) else None) or claim.id
+
+
+def _kept_apart(study: Study, claim: TotalTimeClaim, other: _Timed) -> bool:
+    """Whether the file itself says that two totals are of two motions.
+
+    They are of different problems, joints, curves, states, objectives, methods or tables, or an
+    improvement leads from one to the other. What repeats another claim's total has that claim's
+    curve, state and objective where it names none.
+    """
+    case = study.case
+    only = case.problems[0].id
+    pairs = [
+        (claim.problem or only, other.problem or only),
+        (_whose(study, claim), _whose(study, other)),
+        *((getattr(claim, key), getattr(other, key)) for key in _MOTION),
+    ]
+    repeats = claim.of == other.id
+    if any(a != b and not (repeats and a is None) for a, b in pairs):
+        return True
+    both = [(claim.algorithm, other.algorithm), (claim.coupling, other.coupling)]
+    if not repeats and other.table not in claim.printed_tables:
+        both.append((claim.table, other.table))
+    if any(None not in pair and pair[0] != pair[1] for pair in both):
+        return True
+    ends = {_named(claim), _named(other)}
+    return len(ends) > 1 and any(
+        {_named(case.claim(c.slower)), _named(case.claim(c.faster))} == ends
+        for c in case.claims
+        if isinstance(c, ImprovementClaim)
+    )
+
+
+_MOTION = ("other_curve", "state", "objective")
+"""What tells the motions of two totals apart, beside problem, joint and method."""
+
+
+def printed_alike(
+    study: Study, claim: TotalTimeClaim
+) -> tuple[Sequence[AnyClaim], Severity | None]:
+    """Claims that print the same total, and what it weighs if they differ.
+
+    An error where the file says that they are one total, a warning where nothing else is printed
+    that it could be; None where the text leaves open whether they are one.
+    """
     alike: list[AnyClaim] = [
         c
         for c in study.case.claims
-        if isinstance(c, DurationsClaim | MaximumClaim | TotalTimeClaim)
-        and c.id != claim.id
-        and (c.problem, c.other_curve, c.state, c.objective) == about
-        and _whose(study, c) == _whose(study, claim)
+        if isinstance(c, _Timed) and c.id != claim.id and not _kept_apart(study, claim, c)
     ]
+    if claim.of is not None:
+        return [c for c in alike if c.id == claim.of], Severity.ERROR
+    said = [c for c in alike if c.table is not None and c.table in claim.printed_tables]
     named = [c for c in alike if claim.algorithm is not None and c.algorithm == claim.algorithm]
-    longest = [c for c in named if isinstance(c, MaximumClaim)]
-    if longest:
-        return longest, True
-    if named:
-        return [c for c in named if not isinstance(c, TotalTimeClaim)] or named, False
-    # Where no algorithm tells, one set of durations is meant if there is only one; a total of a
-    # named method is another one than that of durations that name none.
+    for meant, weight in ((said, Severity.ERROR), (named, Severity.WARNING)):
+        for kind in (MaximumClaim, DurationsClaim, TotalTimeClaim):
+            found = [c for c in meant if isinstance(c, kind)]
+            if found:
+                return found, weight
+    # Where no method tells, one set of durations is meant if there is only one; a total of a
+    # named method is another one than that of durations that name none, and may be the other
+    # way round.
     tables = [c for c in alike if not isinstance(c, TotalTimeClaim)]
-    return (tables if len(tables) == 1 and claim.algorithm is None else []), False
+    if len(tables) != 1 or claim.algorithm is not None:
+        return [], None
+    return tables, Severity.WARNING if tables[0].algorithm is None else None
 
 
 def total_allowed(study: Study, claim: AnyClaim) -> Interval:
@@ -268,7 +315,7 @@ def _same_total(study: Study) -> Iterator[Finding]:
     for claim in study.claims:
         if not isinstance(claim, TotalTimeClaim):
             continue
-        found, said = _printed_alike(study, claim)
+        found, weight = printed_alike(study, claim)
         agreeing = [c for c in found if meet(hull(claim.value), _total_shown(study, c)[1])]
         # A total may count end blends by half, and how long they take is not always printed.
         others = agreeing or [c for c in found if end_blends(study, c) is not None]
@@ -279,21 +326,21 @@ def _same_total(study: Study) -> Iterator[Finding]:
         other = others[0]
         shown, _ = _total_shown(study, other)
         printed = f"{claim.value} {study.time_unit}"
-        whose = "" if claim.algorithm is None else f" ({claim.algorithm})"
+        whose = "" if claim.algorithm is None else f" ({study.called(claim.algorithm)})"
         message = f"{claim.where} prints {printed} and {other.where} prints {shown} for the same "
         message += f"total{whose}."
         verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
         # Two totals by themselves may be a mean and a best: nothing says that they are one.
-        if not agreeing and (len(others) > 1 or isinstance(other, TotalTimeClaim)):
+        alone = isinstance(other, TotalTimeClaim) or weight is None
+        if not agreeing and (len(others) > 1 or alone):
             verdict = ClaimVerdict.NOT_CHECKABLE
             places = "; ".join(f"{c.where}: {_total_shown(study, c)[0]}" for c in others)
             message = (
                 f"{claim.where} prints {printed}, which is none of the totals printed elsewhere "
                 f"({places}); the text does not say that it is one of them."
             )
-        elif not agreeing:
-            verdict = ClaimVerdict.INCONSISTENT
-            severity = Severity.ERROR if said else Severity.WARNING
+        elif not agreeing and weight is not None:
+            verdict, severity = ClaimVerdict.INCONSISTENT, weight
         clash = verdict is ClaimVerdict.INCONSISTENT
         yield Finding(
             rule="TG105",

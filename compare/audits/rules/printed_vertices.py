@@ -9,7 +9,8 @@ from fractions import Fraction
 from ....problem import Interval, Printed
 from ....problem.cases import ControlVerticesClaim, Statement
 from ....problem.curves import vertex_matrix
-from ...documents import Basis, ClaimVerdict, Finding, Severity
+from ....verify import shown_bound
+from ...documents import Basis, ClaimVerdict, Finding, Severity, ranged
 from ..study import Study
 from .printed_digits import hull, meet
 
@@ -119,13 +120,14 @@ def _judged(claim: ControlVerticesClaim, found: tuple[Vertex, ...], apart: bool)
     """The finding; joints whose units lie ``apart`` have no widest interval in common."""
     outside = [v for v in found if not v.inside]
     beyond = [v for v in outside if not v.inside_cut]
-    widest = f", at most {float(max(v.width for v in found)):.2g} either side of the value"
+    most = shown_bound(float(max(v.width for v in found)), "upper", digits=2)
+    widest = f", at most {most} either side of the value"
     widest = "" if apart else widest + " computed from the digits"
     if beyond:
         verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
         shown = "; ".join(
             f"V{v.index} of joint {v.joint} printed {v.printed}, allowed "
-            f"{float(v.allowed_cut.lower):.6f} to {float(v.allowed_cut.upper):.6f}"
+            f"{ranged(float(v.allowed_cut.lower), float(v.allowed_cut.upper), '.6f')}"
             for v in beyond[:5]
         )
         message = (

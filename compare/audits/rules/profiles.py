@@ -184,8 +184,8 @@ def _ways(problem: Problem, study: Study, pid: str, rid: str) -> tuple[Array, Ar
 
 
 def _beside(study: Study, claim: TotalTimeClaim, profile: str, pid: str, rid: str) -> Finding:
-    problem = study.claim_problem(claim, pid, rid)
-    if problem.limits.uneven:
+    why = _not_computed(study, claim, profile, pid, rid)
+    if why:
         return Finding(
             rule="TG304",
             severity=Severity.INFO,
@@ -194,8 +194,7 @@ def _beside(study: Study, claim: TotalTimeClaim, profile: str, pid: str, rid: st
             claim=claim.id,
             problem=pid,
             reading=rid,
-            message=f"The lower and upper limits differ; the {profile} profile is computed within "
-            "limits of equal size only.",
+            message=why,
         )
     straight = claim.path == "straight"
     plain, fits = _fitted(study, claim, profile, pid, rid, straight)
@@ -203,7 +202,7 @@ def _beside(study: Study, claim: TotalTimeClaim, profile: str, pid: str, rid: st
     verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
     said = "which fits"
     if plain == 0.0:
-        verdict, said = ClaimVerdict.NOT_CHECKABLE, "and no limit that the profile uses is stated"
+        verdict, said = ClaimVerdict.NOT_CHECKABLE, "and no joint moves"
     elif plain == inf:
         verdict, said = ClaimVerdict.NOT_CHECKABLE, "and a joint moves whose limit is 0"
     elif not fits and not straight and _fitted(study, claim, profile, pid, rid, True)[1]:
@@ -211,7 +210,7 @@ def _beside(study: Study, claim: TotalTimeClaim, profile: str, pid: str, rid: st
         said = 'which fits where the joints stay on a straight line: path = "straight" if they do'
     elif not fits:
         verdict, severity = ClaimVerdict.INCONSISTENT, Severity.WARNING
-        said = f"which is {abs(number.value / plain - 1):.2%} "
+        said = f"which is {100 * abs(number.value / plain - 1):.2f} % "
         said += "shorter" if number.value < plain else "longer"
     return Finding(
         rule="TG304",
@@ -226,6 +225,24 @@ def _beside(study: Study, claim: TotalTimeClaim, profile: str, pid: str, rid: st
         message=f"The shortest {profile} profile from rest to rest, {_PATHS[straight]}, takes "
         f"{plain:.6g} s; printed is {claim.value} {study.time_unit}, {said}.",
     )
+
+
+def _not_computed(
+    study: Study, claim: TotalTimeClaim, profile: str, pid: str, rid: str
+) -> str | None:
+    """Why the profile of a problem is none of those computed here, as a sentence; None if it is."""
+    problem = study.claim_problem(claim, pid, rid)
+    if problem.limits.uneven:
+        return (
+            f"The lower and upper limits differ; the {profile} profile is computed within limits "
+            "of equal size only."
+        )
+    if not study.case.statement(pid, rid).declaration.at_rest:
+        return (
+            "The case file gives derivatives other than 0 at the ends of the motion; the "
+            f"{profile} profile is computed from rest to rest only."
+        )
+    return None
 
 
 _PATHS = {

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from ...documents import Finding, Rule
 from ..study import Study
+from .bare_totals import judge_bare_totals
 from .compared_before import cite_comparisons
 from .condition_count import judge_counts
 from .continuous_time import judge_motions
@@ -97,6 +98,7 @@ GROUPS = (
             "TG206": "Acceleration jumps where it is said to",
         },
     ),
+    RuleGroup(judge_bare_totals, {}),  # finds what TG201 finds
     RuleGroup(judge_peaks, {"TG203": "Printed peaks are those of the printed durations"}),
     RuleGroup(judge_peak_limits, {"TG209": "Printed peaks lie within the limits that they keep"}),
     RuleGroup(

@@ -20,7 +20,7 @@ from ....problem.cases import (
     StatementClaim,
     TotalTimeClaim,
 )
-from ...documents import Basis, Finding
+from ...documents import Basis, Finding, capital, ranged
 from ...gaps import (
     SETTLED,
     Spread,
@@ -89,7 +89,8 @@ def _improvement(study: Study, claim: ImprovementClaim) -> Iterator[Finding]:
         spreads = [study.spread_runs(str(name), pid, rid) for name in names]
         if not spreads[0] or not spreads[1]:
             continue
-        totals = [{name: _totals(runs) for name, runs in one.items()} for one in spreads]
+        one, other = (study.called(str(name)) for name in names)
+        totals = [{name: _totals(runs) for name, runs in each.items()} for each in spreads]
         slower, faster = (t[LISTED] for t in totals)
         shows = share_of_pairs(slower, faster, least)
         low, high = share_interval(slower, faster, least)
@@ -104,17 +105,17 @@ def _improvement(study: Study, claim: ImprovementClaim) -> Iterator[Finding]:
         }
         most = max(each, key=lambda pair: -1.0 if np.isnan(each[pair]) else each[pair])
         message = (
-            f"In {study.seeds} independent runs each, {names[0]} reaches {spread(slower)} and "
-            f"{names[1]} {spread(faster)} under the listed choices. One run of {names[1]} is "
-            f"shorter than one of {names[0]} by at least {100 * least:.4g} % with probability "
-            f"{_percent(shows)} ({sure}); one run of {names[0]} than another of its own with "
+            f"In {study.seeds} independent runs each, {one} reaches {spread(slower)} and "
+            f"{other} {spread(faster)} under the listed choices. One run of {other} is "
+            f"shorter than one of {one} by at least {100 * least:.4g} % with probability "
+            f"{_percent(shows)} ({sure}); one run of {one} than another of its own with "
             f"{_percent(luck)}."
         )
         if len(each) > 1:
             message += (
                 f" With all that the text leaves open varied together ({len(totals[0])} and "
                 f"{len(totals[1])} settings), the probability is at most {_percent(each[most])}: "
-                f"at {_at(names[0], most[0])}; {_at(names[1], most[1])}."
+                f"at {_at(one, most[0])}; {_at(other, most[1])}."
             )
         median = 1 - spread(faster).median / spread(slower).median
         found = _found(study, "TG401", claim, pid, f"{claim.percent} %")
@@ -128,17 +129,18 @@ def interval_words(low: float, high: float) -> str:
     return f"95 % interval {_percent(low)} to {_percent(high)}"
 
 
-def _at(name: str | None, setting: str) -> str:
+def _at(name: str, setting: str) -> str:
     return f"{name} {setting}" if setting == LISTED else f"{name} with {setting}"
 
 
-def _compared(study: Study, claim: StatementClaim, other: str) -> Iterator[Finding]:
+def _compared(study: Study, claim: StatementClaim, against: str) -> Iterator[Finding]:
     """Two algorithms that a sentence compares: totals, and how soon a run has settled."""
-    rid, own = study.main_reading, str(claim.algorithm)
+    rid, own, other = study.main_reading, study.called(str(claim.algorithm)), study.called(against)
     for pid in study.problems:
         if claim.problem not in (None, pid):
             continue
-        runs = {name: study.runs(name, pid, rid) for name in (own, other)}
+        each = (str(claim.algorithm), against)
+        runs = {study.called(one): study.runs(one, pid, rid) for one in each}
         if not all(runs.values()):
             continue
         totals = {name: _totals(found) for name, found in runs.items()}
@@ -194,10 +196,11 @@ def _total(study: Study, claim: AnyClaim) -> Iterator[Finding]:
         spreads = {name: spread(_totals(one)) for name, one in runs.items()}
         listed = spreads[LISTED]
         yield found(
-            computed=f"{listed.lowest:.6f} to {listed.highest:.6f} s",
+            computed=f"{ranged(listed.lowest, listed.highest, '.6f')} s",
             message=(
-                f"{claim.algorithm} under the listed choices reaches {listed} in {listed.runs} "
-                f"independent runs; printed is {shown}.{_typical(spreads, low, high)}"
+                f"{capital(study.called(claim.algorithm))} under the listed choices reaches "
+                f"{listed} in {listed.runs} independent runs; printed is {shown}."
+                f"{_typical(spreads, low, high)}"
             ),
         )
 
@@ -212,7 +215,7 @@ def _typical(spreads: dict[str, Spread], low: float, high: float) -> str:
     inside = [n for n, s in spreads.items() if s.lowest <= high and s.highest >= low]
     said = (
         f" With all that the text leaves open varied together ({len(medians)} settings), medians "
-        f"run from {min(medians.values()):.4f} to {max(medians.values()):.4f} s; nearest to the "
+        f"are {ranged(min(medians.values()), max(medians.values()), '.4f')} s; nearest to the "
         f"printed total is {medians[nearest]:.4f} s with {nearest}."
     )
     if inside:

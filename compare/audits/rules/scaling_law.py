@@ -10,8 +10,8 @@ import numpy as np
 from ....problem import CaseError, Problem
 from ....problem.cases import AnyClaim, Digits, DurationsClaim, MaximumClaim, StatementClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
-from ..explanations import OPTIMAL
 from ..fixed_ratios import off_ratios
+from ..roots import OPTIMAL
 from ..stated import other_objective
 from ..study import Study
 from .wording import called_under

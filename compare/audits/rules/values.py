@@ -36,7 +36,7 @@ def _values(study: Study, claim: ValueClaim, motion: AnyClaim) -> Iterator[Findi
         sole = joints[0] if len(joints) == 1 else None
         pairs = [(sole if j is None else j, n) for j, n in peak_numbers(study, claim)]
         found = [
-            (joint, _beside(study, claim, number, motion, joint, pid, rid))
+            (joint, value_beside(study, claim, number, motion, joint, pid, rid))
             for joint, number in pairs
             if joint in joints
         ]
@@ -54,7 +54,7 @@ def _values(study: Study, claim: ValueClaim, motion: AnyClaim) -> Iterator[Findi
         yield finding_of_numbers(study, "TG211", claim, motion, (pid, rid), found, unit, name)
 
 
-def _beside(
+def value_beside(
     study: Study,
     claim: ValueClaim,
     printed: Printed,

@@ -180,5 +180,7 @@ def _missing(problem: ExactProblem) -> str | None:
     return None if any(problem.duration_lower) else "nothing limits the total from below"
 
 
-CUBIC = Certifier("C2 cubic splines (clamped, natural, virtual)", _declares, _missing, _prove)
+CUBIC = Certifier(
+    "C2 cubic splines (clamped, natural, virtual)", _declares, _missing, _prove, boxes=16
+)
 """The ends that `kind_of_ends` knows: only for them are the equations derived."""

@@ -278,5 +278,6 @@ QUINTIC = Certifier(
     _declares,
     _missing,
     _prove,
+    boxes=20_000,
 )
 """At rest alone: the windows and the nodal equations are derived for it."""

@@ -194,6 +194,11 @@ def _positions_alone(exact: ExactProblem) -> ExactProblem:
 
 
 THREE_PIECE = Certifier(
-    "C2 3-5-3 and 4-3-4 polynomials at rest at the ends", _declares, _missing, _prove, sided=True
+    "C2 3-5-3 and 4-3-4 polynomials at rest at the ends",
+    _declares,
+    _missing,
+    _prove,
+    boxes=2_000,
+    sided=True,
 )
 """At rest alone: the pieces are quotients of polynomials in two ratios only then."""

@@ -26,17 +26,18 @@ def test_the_palletisers_card():
         "On doubted way-points, limits in Table 4, column 110 °/s are broken under “way-points in "
         "radians”, kept under the implausible “way-points in degrees”."
     )
-    # 1.869/1.817473 and 1.6041/1.321799 by hand; the second is no time of a motion within limits.
+    # 1.869/1.817473 and 1.6041/1.321799 are 2.8 and 21.4 % at the printed digits, by hand; the
+    # second is no time of a motion within limits.
     assert card.optimum == (
-        "Through them, under the default reading, 1.8690 s and 1.6041 s (breaks a limit) are 2.8 % "
-        "and 21.4 % above the proven optima 1.8175 s and 1.3218 s."
+        "Through them, under the default reading, 1.8690 s and 1.6041 s (breaks a limit) are at "
+        "least 2.6 % and 21.1 % above the proven optima 1.8175 s and 1.3218 s."
     )
     assert card.improvement == Why("no improvement is claimed")
     assert card.errors[0] == (
         "The conditions in section 4.2 cannot all hold: 18 on 14 coefficients."
     )
     assert card.errors[1] == (
-        "Under velocity limits alone, times scale inversely with them: the printed two cannot "
+        "Under velocity limits alone, times scale inversely: the printed two cannot "
         "both be shortest."
     )
     assert card.more == 0
@@ -53,7 +54,7 @@ def test_tables_alike_stand_on_the_card_with_the_claim_they_refute():
     # 3.528/3.4128 and 3.528/3.3324, the ends of what the joints' own optima add up to.
     assert card.optimum == (
         "Under the default reading, 3.528 s is 3.4 to 5.9 % above 3.3324 to 3.4128 s, found at the "
-        "joints' own proven optima."
+        "joints' own proven optima, as printed."
     )
     # One slip is said once: what refutes the claimed percentage stands with the two tables.
     assert card.improvement == Why("an error says it")
@@ -90,7 +91,7 @@ def test_the_polishing_robots_card():
     )
     assert card.explanation == (
         "Durations 1 and 2 may have been exchanged in print. Then the default reading keeps every "
-        "limit within rounding."
+        "limit within rounding and one is reached."
     )
 
 
@@ -170,7 +171,7 @@ checks = "optimal"
 of = ["total"]
 """
     card = audit_case(Study(parse_case(LONG + total, "x"))).card
-    assert card.errors == ("Called optimal in the conclusion, but no answer within the limits.",)
+    assert card.errors == ("The total in Table 2 is shorter than any motion within the limits.",)
 
 
 def test_many_errors_are_counted_where_the_words_end():
@@ -292,7 +293,7 @@ total = "{k}.99"
     )
     one = audit_case(Study(parse_case(LONG + claims, "long.toml"), seeds=2, certify_seconds=0))
     card = one.card
-    assert sum(c.severity is Severity.ERROR for c in one.causes) >= 9
+    assert sum(c.severity is Severity.ERROR for c in one.causes) == 8
     assert card.words <= CARD_WORDS
     assert card.limits.startswith("The printed durations break a limit")
     assert card.more > 0

@@ -58,12 +58,13 @@ def test_a_motion_and_a_scaling_law_that_refute_one_claim_are_one_error() -> Non
     assert error.consequences == ()
     (broken,) = [c for c in one.causes if c.claim == "durations-110" and c.rule == "TG201"]
     assert [c.claim for c in broken.consequences] == ["limits-kept"]
-    changes = [e.change for e in broken.explanations]
-    assert changes[0] == "Durations 1 and 3 may have been exchanged in print."
-    assert broken.explanations[0].effect == (
-        "Then every limit is kept, under “way-points in radians”."
-    )
-    assert "0.4854 in place of 0.3854" in changes[1]
+    effects = {e.change: e.effect for e in broken.explanations}
+    # Joint 5 reaches 119.07 °/s; the exchange keeps 110 °/s and does not reach it.
+    first, *others = effects
+    assert first == "The limit of velocity may be misprinted: 119 in place of 110."
+    kept = "Then every limit is kept within rounding and one is reached"
+    assert effects[first] == f"{kept}, under “way-points in radians”."
+    assert "Durations 1 and 3 may have been exchanged in print." in others
 
 
 def test_what_was_judged_on_doubted_way_points_says_so() -> None:
@@ -144,6 +145,40 @@ def test_one_claim_under_many_readings_is_one_error() -> None:
     assert [(c.rule, c.claim) for c in cause.consequences] == [("TG201", "s")]
 
 
+def test_a_longest_duration_of_another_row_is_named() -> None:
+    """Joints that need 2, 1, 2 s and 1, 2, 1 s; the last row takes 1 s in place of 2 s."""
+    rows = {"a": ("2.000", "1.000", "2.000"), "b": ("1.000", "2.000", "1.000")}
+    text = """format = 1
+id = "rows"
+title = "Two joints"
+coupling = "per-joint"
+source = { note = "Made up." }
+robot = { name = "two joints", joints = ["a", "b"] }
+units = { position = "rad", velocity = "rad/s", time = "s" }
+waypoints = { joint_rows = [[0, 2, 3, 5], [0, 1, 3, 4]] }
+limits = { velocity = 1.5 }
+interpolant = { family = "rest-to-rest", degree = 3 }
+"""
+    claim = '[[claims]]\nid = "{}"\nwhere = "row {}"\n{}\n'
+    for joint, times in rows.items():
+        told = f'quantity = "durations"\njoint = "{joint}"\ndurations = {list(times)}'
+        text += claim.format(joint, joint, told)
+    text += claim.format(
+        "m",
+        "m",
+        'quantity = "maximum"\nof = ["a", "b"]\n'
+        'durations = ["2.000", "1.000", "2.000"]\ntotal = "6.000"',
+    ) + claim.format("k", "text", 'quantity = "statement"\nchecks = "within_limits"\nof = ["m"]')
+    one = audit(parse_case(text, "made-up.toml"), seeds=2).cases[0]
+    errors = [c for c in one.causes if c.severity is Severity.ERROR]
+    assert {c.rule for c in errors} == {"TG101", "TG102", "TG201"}
+    for error in errors:
+        assert error.explanations[0].change == (
+            "The duration of segment 2 may have been taken from another row: 2.000 in place of "
+            "1.000."
+        )
+
+
 def test_exchanged_durations_are_the_first_explanation() -> None:
     """Rest to rest by quintics, 1.875 |Δq|/h: 3 rad in 3 s and 1 rad in 1 s keep 1.9 rad/s."""
     one = judged("0, 3, 4", "1.9", '"1.000", "3.000"', '"4.000"', "within_limits")
@@ -159,17 +194,110 @@ def test_an_angle_is_tried_modulo_a_full_turn() -> None:
     """From 0.1 to 6.3 rad is 6.2 rad; from 0.1 to 6.3 − 2π it is 0.083 rad."""
     one = judged("0.1, 6.3", "1.9", '"1.00"', '"1.00"', "within_limits")
     said = [e for e in one.causes[0].explanations if "modulo a full turn" in e.change]
-    assert len(said) == 1
-    assert "6.38319 rad in place of 0.1 rad" in said[0].change
-    assert said[0].effect == "Then every limit is kept."
+    assert [e.effect for e in said] == ["Then every limit is kept."] * 2
+    assert {e.change.split(": ")[1] for e in said} == {
+        "6.38319 rad in place of 0.1 rad.",
+        "0.0168147 rad in place of 6.3 rad.",
+    }
 
 
 def test_a_misprinted_digit_explains_a_sum() -> None:
     one = judged("0, 3, 4", "1.9", '"3.000", "1.000"', '"4.100"', "within_limits")
     (cause,) = one.causes
     assert cause.rule == "TG101"
-    (said,) = cause.explanations
-    assert "4.000 in place of 4.100" in said.change
+    said = {e.change.split(": ")[1].split(" ")[0] for e in cause.explanations}
+    assert said == {"4.000", "3.100", "1.100"}
+    effects = {e.effect for e in cause.explanations}
+    assert effects == {"Then the printed total is the sum of its parts."}
+
+
+SECOND = """
+[[claims]]
+id = "e"
+quantity = "durations"
+where = "Table 3"
+durations = ["2.350", "1.210"]
+total = "3.560"
+"""
+
+
+def test_what_explains_one_row_does_not_speak_for_another() -> None:
+    """A quintic over 3 rad keeps 1.9 rad/s in 2.9605 s: 2.350 s exceed it by 26 %."""
+    text = TWO_SEGMENTS.replace('of = ["d"]', 'of = ["d", "e"]') + SECOND
+    times = {"time": '"2.062", "1.190"', "total": '"4.152"', "checks": "within_limits"}
+    case = parse_case(text.format(points="0, 3, 4.2", limit="1.9", **times), "made-up.toml")
+    by = {(c.rule, c.claim): c for c in audit(case, seeds=2, certify_seconds=0).cases[0].causes}
+    (first, *_) = by["TG201", "d"].explanations
+    assert first.change.endswith("misprinted: 2.962 in place of 2.062.")
+    assert first.effect == (
+        "Then the durations in Table 2 keep every limit, one is reached and the printed total is "
+        "the sum of its parts; those in Table 3 still break one."
+    )
+    assert not any("every limit is kept" in e.effect for c in by.values() for e in c.explanations)
+
+
+LAYERS = """
+format = 1
+id = "layers"
+title = "limits in a problem, way-points in a reading"
+[source]
+year = 2024
+[robot]
+name = "arm"
+joints = ["1", "2"]
+[units]
+position = "rad"
+velocity = "rad/s"
+time = "s"
+[waypoints]
+waypoint_rows = [["0.10", "0.30"], ["1.10", "0.90"]]
+[interpolant]
+family = "rest-to-rest"
+degree = 5
+[[problems]]
+id = "slow"
+limits = {{ velocity = [{limit}, 3] }}
+[[readings]]
+id = "plain"
+why = "as printed"
+[[readings]]
+id = "other"
+why = "another column"
+waypoints = {{ labels = ["A", "B"], joint_rows = [["0.20", "{end}"], ["0.30", "0.90"]] }}
+[[claims]]
+id = "d"
+quantity = "durations"
+where = "Table 2"
+problem = "slow"
+durations = ["1.500"]
+[[claims]]
+id = "s"
+quantity = "statement"
+where = "abstract"
+checks = "within_limits"
+of = ["d"]
+"""
+
+
+@pytest.mark.parametrize(
+    ("limit", "end", "named"),
+    [
+        # 15/8 of 1 rad in 1.5 s is 1.25 rad/s; of 1.4 rad it would be 1.75 rad/s.
+        ("0.125", "1.20", "The limit of velocity of joint 1 may be misprinted: 1.25 in place"),
+        ("1.25", "2.20", "Way-point B of joint 1 may be misprinted: 1.20 in place of 2.20."),
+        ("1.25", "120", "Way-point B of joint 1 may be misprinted: 1.20 in place of 120."),
+        ("1.25", "-1.20", "Way-point B of joint 1 may be misprinted: 1.20 in place of -1.20."),
+    ],
+)
+def test_a_misprint_is_found_where_the_reading_takes_the_number(
+    limit: str, end: str, named: str
+) -> None:
+    case = parse_case(LAYERS.format(limit=limit, end=end), "made-up.toml")
+    found = audit(case, seeds=2, certify_seconds=0, reading="other").cases[0]
+    (cause,) = (c for c in found.causes if c.rule == "TG201")
+    said = [e.effect for e in cause.explanations if e.change.startswith(named)]
+    assert len(said) == 1
+    assert "and one is reached" in said[0]
 
 
 def test_what_no_small_change_explains_has_no_explanation() -> None:

@@ -68,6 +68,21 @@ def test_durations_of_which_nothing_is_said_break_nothing() -> None:
     assert {j.claim: j.verdict for j in one.judgements}["other"] is ClaimVerdict.REFUTED
 
 
+def test_a_percentage_of_a_refuted_total_says_why_it_is_not_checkable() -> None:
+    """0.962 s beside a total of 0.99 s; 1.2 s is 17.5 % longer than that."""
+    text = HEAD.format(points="0, 1", limit="1.9496", time="0.962", checks="within_limits")
+    text = text.replace('["0.962"]', '["0.962"]\ntotal = "0.990"') + (
+        '[[claims]]\nid = "old"\nquantity = "total_time"\nwhere = "Table 3"\n'
+        'other_curve = "straight lines"\nvalue = "1.200"\n'
+        '[[claims]]\nid = "gain"\nquantity = "improvement"\nwhere = "abstract"\n'
+        'slower = "old"\nfaster = "d"\npercent = "17.5"\n'
+    )
+    one = audit(parse_case(text, "fair.toml"), seeds=2).cases[0]
+    (gain,) = [j for j in one.judgements if j.claim == "gain"]
+    assert gain.verdict is ClaimVerdict.NOT_CHECKABLE
+    assert gain.why.startswith("It rests on what Table 2 prints, which is refuted. ")
+
+
 @pytest.mark.parametrize(
     ("time", "severity", "scope"),
     [("0.962", Severity.WARNING, Scope.SOME), ("0.95", Severity.ERROR, Scope.ALL)],

@@ -7,8 +7,11 @@ from datetime import date
 from pathlib import Path
 
 import numpy as np
+import pytest
 from trajgap.compare import audit
+from trajgap.compare.audits import intervals
 from trajgap.compare.audits.case_audit import CaseAudit
+from trajgap.compare.audits.intervals import Intervals
 from trajgap.compare.audits.study import Study
 from trajgap.compare.audits.waterfall import waterfalls
 from trajgap.compare.cli.auditing import audited
@@ -84,6 +87,18 @@ def test_what_the_budget_leaves_out_is_said() -> None:
     assert f"not certified: {said}" in map(
         str, audited(AuditDocument(cases=(one.document,)), [stated()])
     )
+
+
+def test_boxes_are_counted_unless_seconds_are_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    """At a gap that takes 100 boxes: the budget, and not the clock, says what is certified."""
+    exact = printed_problem(stated().statement())
+    certified = Intervals((), None, lambda _: None)
+    assert certified.interval(exact) is not None
+    assert certified.left_out == []
+    monkeypatch.setattr(intervals, "ALLOWANCES", 0.2)
+    none = Intervals((), None, lambda _: None)
+    assert none.interval(exact) is None
+    assert none.left_out == ["the optimum: no boxes were left"]
 
 
 def test_a_given_certificate_counts_once_it_is_proved_again() -> None:

@@ -100,7 +100,7 @@ def test_an_algorithm_is_replayed_under_position_limits(tmp_path: Path) -> None:
 def test_an_algorithm_that_cannot_judge_a_curve_is_not_replayed(tmp_path: Path) -> None:
     one = audited(tmp_path, FREE)
     said = {f.rule: f.message for f in one.findings if f.rule in ("TG402", "TG403")}
-    why = "The algorithm pso is not replayed: interpolant 5-5-5 polynomials, C2: leaves 4"
+    why = "The PSO is not replayed: interpolant 5-5-5 polynomials, C2: leaves 4"
     assert said
     assert all(message.startswith(why) for message in said.values())
     assert verdict(one, "by") is ClaimVerdict.NOT_CHECKABLE
@@ -120,7 +120,7 @@ def test_durations_of_a_curve_that_leaves_coefficients_free_define_no_motion(
     assert verdict(one, "d") is ClaimVerdict.SUPPORTED, "its total is the sum of its durations"
     distance = next(f for f in one.findings if f.rule == "TG302" and f.claim == "d")
     assert distance.message.startswith(
-        "Printed 2.86 s is 19.2 to 19.6 % longer than the best known"
+        "Printed 2.86 s is 19.2 to 19.7 % longer than the best known"
     )
     page = (tmp_path / "pages" / "partly.html").read_text("utf-8")
     assert "are not drawn: the curve (5-5-5 polynomials, C2) leaves 4" in page

@@ -6,23 +6,34 @@ The rates, over many more, are those of docs/measurements/auditor-errors.md.
 from __future__ import annotations
 
 import importlib.util
+import re
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 import pytest
+from _pytest.mark import ParameterSet
 from scipy.stats import binomtest
+from support.papers.apart import apart, moving
 from support.papers.claims import draw
 from support.papers.drafts import fitted, keeps
 from support.papers.motions import FAMILIES
 from support.papers.planted import FAULTS, planted
-from trajgap.compare import ClaimVerdict, audit
+from support.papers.rows import FAULTY, HONEST, row_paper
+from support.papers.slipped import SLIPS, named, slipped
+from trajgap.compare import ClaimVerdict, Severity, audit
 from trajgap.compare.audits import CaseAudit
 from trajgap.problem import extrema, fit, parse_case
 
 BENCHMARK = Path(__file__).parents[3] / "benchmarks" / "auditor_errors.py"
 AGAINST = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT)
+
+
+def slow(seeds: range) -> list[ParameterSet]:
+    """Seeds that the quick suite leaves out."""
+    return [pytest.param(seed, marks=pytest.mark.slow) for seed in seeds]
 
 
 def audited(text: str) -> CaseAudit:
@@ -78,6 +89,101 @@ def test_a_fault_beyond_what_digits_hide_is_seen(fault: str) -> None:
     found = (planted(fault, seed) for seed in range(50))
     one = next(p for p in found if p.size > p.room)
     assert any(j.verdict in AGAINST for j in audited(one.draft.text()).judgements)
+
+
+@pytest.mark.parametrize(
+    "seed", [1, 5, *(pytest.param(k, marks=pytest.mark.slow) for k in range(6, 28))]
+)
+@pytest.mark.parametrize("paper", [apart, moving])
+def test_no_card_accuses_a_paper_whose_totals_are_kept_apart(
+    paper: Callable[[int], str], seed: int
+) -> None:
+    one = audited(paper(seed))
+    assert (one.errors, one.card.errors, one.card.more) == (0, (), 0)
+    assert {j.claim: j.why for j in one.judgements if j.verdict in AGAINST} == {}
+
+
+@pytest.mark.parametrize(
+    "seed", [0, *(pytest.param(k, marks=pytest.mark.slow) for k in range(1, 6))]
+)
+@pytest.mark.parametrize("kind", SLIPS)
+def test_a_misprint_is_named(kind: str, seed: int) -> None:
+    one = slipped(kind, seed)
+    assert named(one, audited(one.draft.text()))
+
+
+_DISTANCE = re.compile(r"(at least )?([\d.]+) % (above|below) the")
+"""A distance on a card."""
+
+
+def holds(said: str, true: float) -> bool:
+    """Whether the distances on a card hold for the problem before anything was rounded.
+
+    One of the printed digits says so, and one that is no bound holds to its own digits.
+    """
+    for least, percent, side in _DISTANCE.findall(said):
+        own = 100 * (true if side == "above" else -true)
+        last = 10.0 ** -len(percent.partition(".")[2])
+        slack = 1e-6 if least else last / 2 + 1e-6
+        held = own >= float(percent) - slack
+        held &= bool(least) or own <= float(percent) + slack
+        if not held and "at the printed digits" not in said:
+            return False
+    return True
+
+
+def honest_and_true(kind: str, seed: int) -> None:
+    """No accusation, and no sentence on the card that is false of what the paper computed."""
+    paper = row_paper(kind, seed)
+    one = audited(paper.draft.text())
+    assert one.errors == 0
+    assert {j.claim: j.why for j in one.judgements if j.verdict in AGAINST} == {}
+    if paper.true is not None:
+        assert holds(one.card.optimum, paper.true), one.card.optimum
+    if kind == "a row nobody vouches for":
+        assert one.card.limits.startswith("The durations in Table 4 keep the limits")
+        assert not any("Table 3" in said for said in one.card.sentences)
+    if kind == "no sentence on limits" and "break a limit" in one.card.limits:
+        assert one.card.limits.endswith("; nothing printed says that they keep it.")
+
+
+def found_and_named(kind: str, seed: int) -> None:
+    """The fault is found, and its rule and row are named."""
+    paper = row_paper(kind, seed)
+    one = audited(paper.draft.text())
+    (cause,) = [c for c in one.causes if c.severity is Severity.ERROR]
+    assert (cause.rule, cause.claim) == (paper.cause, paper.claim)
+    said = " ".join(one.card.sentences)
+    where = {"fast": "Table 4", "slow": "Table 3", "abstract": "abstract"}[paper.claim]
+    # Where other rows break a limit too, the first line speaks of all printed durations.
+    assert where in said or said.startswith("The printed durations break a limit")
+    for j in one.judgements:
+        assert "Every printed total agrees" not in j.why or kind != "another total in the abstract"
+
+
+@pytest.mark.parametrize("kind", HONEST)
+@pytest.mark.parametrize("seed", range(2))
+def test_honest_rows_are_accused_of_nothing(kind: str, seed: int) -> None:
+    honest_and_true(kind, seed)
+
+
+@pytest.mark.parametrize("kind", FAULTY)
+def test_the_fault_of_a_row_is_named(kind: str) -> None:
+    found_and_named(kind, 0)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", HONEST)
+@pytest.mark.parametrize("seed", range(2, 14))
+def test_many_honest_rows_are_accused_of_nothing(kind: str, seed: int) -> None:
+    honest_and_true(kind, seed)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", FAULTY)
+@pytest.mark.parametrize("seed", range(1, 8))
+def test_many_faults_of_rows_are_named(kind: str, seed: int) -> None:
+    found_and_named(kind, seed)
 
 
 @pytest.mark.slow

@@ -109,7 +109,7 @@ def test_a_total_alone_is_excluded_by_speed_alone() -> None:
     limits = Limits([1.1, 1.7], [3.0, 2.2], [20.0, 15.0])
     # Every duration has a lower bound, so that a search over them would start.
     problem = Problem(q, limits, quintic_spline(4, virtual=(2,)), duration_lower=0.3)
-    assert excludes_total(problem, 2.0, seconds=1.0) is False
+    assert excludes_total(problem, 2.0) is False
     # 0.6 rad at 1.1 rad/s, 0.3 s twice, 0.65 rad at 1.1 rad/s: 1.736 s.
     assert excludes_total(problem, 1.73) is True
 

@@ -88,6 +88,19 @@ def test_the_terminal_speaks_in_the_units_of_the_file(files, capsys):
     assert peaks == {"j1": pytest.approx(0.9375 * np.pi / 180), "j2": pytest.approx(-0.001875)}
 
 
+@pytest.mark.parametrize(("limit", "word"), [(1.1, "pass"), (0.9, "violated")])
+def test_a_grid_of_few_digits_says_what_follows_if_it_is_exact(files, capsys, limit, word):
+    """Two rows 0.02 s apart, with times to 0.005 s: nearly any speed fits the digits."""
+    table = np.loadtxt("m.csv", delimiter=",", skiprows=1)[:, :3]
+    np.savetxt("g.csv", table, "%.2f,%.6f,%.6f", header="time,j1,j2", comments="")
+    given = ("check", "g.csv", "--velocity", f"{limit * 15 / 16},{4 * limit}")
+    told = run(capsys, *given, "--interpolation", "spline")
+    assert "\nundecided: " in told
+    assert f"the verdict is {word}: state --time-noise 0" in " ".join(told.split())
+    again = run(capsys, *given, "--interpolation", "spline", "--time-noise", "0")
+    assert f"\n{word}: " in again
+
+
 def test_flag_file_urdf_in_this_order(files, capsys):
     (files / "l.yaml").write_text("joint_limits: {j2: {max_velocity: 3.0, max_jerk: 500}}\n")
     sources = ["--urdf", "arm.urdf", "--limits", "l.yaml", "--jerk", "400"]
@@ -102,10 +115,34 @@ def test_flag_file_urdf_in_this_order(files, capsys):
 
 
 def test_strict_is_for_scripts(files, capsys):
-    flags = ["check", "m.csv", "--interpolation", "quintic", "--strict", "--velocity"]
-    assert main([*flags, "2"]) == 0
-    assert main([*flags, "1"]) == 1
-    capsys.readouterr()
+    flags = ["check", "m.csv", "--interpolation", "quintic", "--velocity", "2"]
+    said = run(capsys, *flags)
+    assert (
+        "pass: every stated limit is kept at every instant; not judged: position, acceleration and "
+        "jerk, no limit stated (relative"
+    ) in " ".join(said.split())
+    rest = ["--position", "inf", "--acceleration", "inf", "--jerk", "inf"]
+    for more, code in (([], 1), (rest, 0), (rest[:4], 1), ([*rest, "--velocity", "1"], 1)):
+        found = document(capsys, *flags, *more, "--strict", code=code, kind="motion_check")
+        assert found["result"]["verdict"] == ("violated" if "1" in more else "pass")
+        lacking = {one["quantity"] for one in found["result"]["not_judged"]}
+        assert lacking == {"position", "acceleration", "jerk"} - {x[2:] for x in more}
+    assert "not judged" not in run(capsys, *flags, *rest)
+
+
+@pytest.mark.parametrize("misspelt", ["csv", "urdf", "yaml"])
+def test_a_misspelt_joint_is_not_passed_over(files, capsys, misspelt):
+    """Whichever file has the other name, the joint's limits are never dropped unnoticed."""
+    (files / "l.yaml").write_text("joint_limits: {j1: {max_velocity: 9}, j2: {max_velocity: 9}}\n")
+    changed = {"csv": "m.csv", "urdf": "arm.urdf", "yaml": "l.yaml"}[misspelt]
+    text = (files / changed).read_text()
+    (files / changed).write_text(text.replace("j2", "j_2"))
+    sources = ["--limits", "l.yaml", "--urdf", "arm.urdf", "--velocity", "2"]
+    said = run(capsys, "check", "m.csv", *sources, "--interpolation", "quintic", code=2)
+    wanted = ("j_2", "j2") if misspelt == "csv" else ("j2", "j_2")
+    file = "l.yaml" if misspelt == "csv" else changed
+    assert f"{file}: {wanted[0]}: is no joint with limits there; rename it or add it;" in said
+    assert f"did you mean {wanted[1]!r}" in said
 
 
 @pytest.mark.slow
@@ -130,10 +167,16 @@ def test_a_hundred_thousand_samples_of_seven_joints(files, capsys):
     np.savetxt("long.csv", np.column_stack([t, q, v]), "%.12g", ",", header=header, comments="")
     command = ["check", "long.csv", "--velocity", "2.1", "--interpolation", "cubic", "--json"]
     begun = time.process_time()
-    assert main(command) == 0
+    # %.12g writes 0.001 s with three places, as a clock of milliseconds does.
+    assert main([*command, "--time-noise", "0"]) == 0
     taken = time.process_time() - begun
     found = json.loads(capsys.readouterr().out)["result"]
     assert found["verdict"] == "pass"
+    assert main(command) == 0
+    said = json.loads(capsys.readouterr().out)
+    assert said["time_noise"] > 5e-4
+    assert said["result"]["verdict"] == "undecided"
+    assert "--time-noise 0" in said["result"]["open"][-1]
     sizes = [abs(p["value"]) for p in found["peaks"]]
     np.testing.assert_allclose(sizes, speed, rtol=1e-6)
     assert taken < 10.0  # 1 s; the rest is for a loaded machine
@@ -149,7 +192,14 @@ def test_a_hundred_thousand_samples_of_seven_joints(files, capsys):
         (["m.csv", "--velocity", "1,2,3"], "3 limits for 2 joints"),
         (["m.csv", "--urdf", "m.csv"], "m.csv: line 1: not valid XML"),
         (["m.csv", "--limits", "arm.urdf", "--urdf", "m.csv"], "line 1: not valid XML"),
-        (["m.csv", "--joints", "a,b", "--urdf", "arm.urdf"], "names none of the joints a, b"),
+        (["m.csv", "--joints", "a,b", "--urdf", "arm.urdf"], "a: is no joint with limits there"),
+        (["m.csv", "--velocity", "inf"], "none is finite, so that nothing is judged"),
+        (["m.csv", "--velocity", "1e400"], "--velocity: '1e400' is beyond the range of float64"),
+        (["m.csv", "--velocity=2,.3e+999"], "--velocity: '.3e+999' is beyond the range"),
+        (["m.csv", "--velocity", "9" * 400], "--velocity: a number of 400 characters"),
+        (["1e999/m.csv", "--velocity", "1"], "1e999/m.csv: no such file"),
+        (["m.csv", "--velocity", "1", "--noise", "1e400"], "--noise: '1e400' is beyond"),
+        (["m.csv", "--velocity", "1e101"], "is beyond 1e+100; write inf where there is no limit"),
         (["m.csv", "--durations", "1,1,1"], "m.csv: "),
         (["m.csv", "--problem", "x", "--velocity", "1"], "--problem is of a case"),
         (["puma560-mnam-pso-353"], "Missing option '--durations'"),
@@ -198,6 +248,7 @@ def test_the_motion_of_an_answer_is_written_and_read_back(tmp_path, monkeypatch,
         (["--samples", "x", "--certify"], "leave --certify out"),
         (["--samples", "x", "--format", "mp3"], "'mp3' is unknown; use csv, ros, ppoly"),
         (["--samples", "x"], "add --problem"),
+        (["--certify", "--time", "1e400"], "--time: '1e400' is beyond the range of float64; give"),
     ],
 )
 def test_what_cannot_be_written_is_said(tmp_path, monkeypatch, capsys, arguments, wanted):

@@ -83,7 +83,7 @@ WRITING = (
 
 
 def refused(run: Run, arguments: tuple[str, ...], name: str, *words: str) -> None:
-    Path("table.csv").write_text("1,2\n0,1\n1,2\n2,0\n3,1\n")
+    Path("table.csv").write_text("a,b\n0,1\n1,2\n2,0\n3,1\n")
     before = sorted(path.name for path in Path().iterdir())
     assert_refused(run(*(one.format(name) for one in arguments)), *words)
     assert sorted(path.name for path in Path().iterdir()) == before
@@ -139,7 +139,7 @@ def test_a_draft_that_a_killed_command_left_stands_in_nobodys_way(run: Run, tmp_
         stdin=subprocess.PIPE,
         cwd=tmp_path,
     )
-    (tmp_path / "table.csv").write_text("1,2\n0,1\n1,2\n2,0\n3,1\n")
+    (tmp_path / "table.csv").write_text("a,b\n0,1\n1,2\n2,0\n3,1\n")
     # It waits for the unit of position, the new file reserved.
     while not list(tmp_path.glob(".trajgap-*-*.tmp")):
         assert process.poll() is None

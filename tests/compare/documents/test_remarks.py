@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import pytest
 from trajgap.compare.documents import (
     DOUBTED,
-    POINTS,
     Caveat,
     CaveatKind,
     ClaimVerdict,
@@ -14,7 +12,6 @@ from trajgap.compare.documents import (
     Scope,
     built_remark,
     nature_caveat,
-    qualified,
     said_beside,
     tally,
     worth_little,
@@ -23,11 +20,7 @@ from trajgap.nlp import Evidence
 from trajgap.problem.cases import Nature
 
 S, R, N = ClaimVerdict.SUPPORTED, ClaimVerdict.REFUTED, ClaimVerdict.NOT_CHECKABLE
-D = ClaimVerdict.DEPENDS
 DOUBT = Caveat(CaveatKind.DOUBTED, f"{DOUBTED}: two tables are alike.")
-PLACES = Caveat(CaveatKind.POINTS, f"{POINTS}: they repeat the digits of another table.")
-SOME = Caveat(CaveatKind.SOME_POINTS, f"partly {POINTS}: digits repeat.")
-JUMPS = Caveat(CaveatKind.JUMPING, "the velocity of the curve jumps")
 BUILT = Caveat(CaveatKind.BUILT, built_remark())
 
 
@@ -44,34 +37,6 @@ def judged(verdict: ClaimVerdict, *caveats: Caveat) -> Judgement:
         readings={},
         **decided,
     )
-
-
-@pytest.mark.parametrize(
-    ("verdict", "caveats", "wanted"),
-    [
-        (S, (), "supported"),
-        (S, (DOUBT,), "supported, but on doubted numbers"),
-        (S, (BUILT,), "supported, by construction"),
-        # What holds by construction rests on no printed number, doubted or not.
-        (S, (BUILT, DOUBT), "supported, by construction"),
-        # What is refuted is so, whatever the numbers are worth.
-        (R, (DOUBT,), "refuted"),
-        # Way-points in doubt are so for what speaks against a claim as for what speaks for it.
-        (S, (PLACES,), "supported, but on doubted way-points"),
-        (R, (PLACES,), "refuted, but on doubted way-points"),
-        (D, (PLACES,), "depends on the reading, and on doubted way-points"),
-        (N, (PLACES,), "not checkable"),
-        (S, (DOUBT, PLACES), "supported, but on doubted numbers and way-points"),
-        (R, (SOME,), "refuted"),
-        (N, (nature_caveat(Nature.DEFINITION),), "not checkable, a definition"),
-        (N, (nature_caveat(Nature.IDENTITY),), "not checkable, a mathematical identity"),
-        (N, (nature_caveat(Nature.AIM),), "not checkable, an aim"),
-        (N, (nature_caveat(Nature.JUDGEMENT),), "not checkable, a judgement"),
-        (S, (JUMPS,), "supported"),
-    ],
-)
-def test_a_word_has_what_it_is_worth_beside_it(verdict, caveats, wanted) -> None:
-    assert qualified(verdict, said_beside(verdict, caveats)) == wanted
 
 
 def test_what_holds_by_construction_is_counted_as_no_evidence() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pytest
 from trajgap.compare.documents import Named, Said, grouped, in_full, under, with_readings
 
 READINGS = tuple("abcdef")
@@ -12,21 +11,6 @@ NAMED = Named(LABELS, {}, "c")
 
 def said(readings: str, message: str, verdict: str = "refuted", rule: str = "TG201") -> list[Said]:
     return [Said(verdict, message, rule, one) for one in readings]
-
-
-@pytest.mark.parametrize(
-    ("readings", "wanted"),
-    [
-        ("a", "under “first”"),
-        ("ab", "under “first” and “second”"),
-        ("abc", "under 3 of 6 readings"),
-        ("abcd", "under 4 of 6 readings (not under “fifth” and “sixth”)"),
-        ("abcde", "under 5 of 6 readings (not under “sixth”)"),
-        ("abcdef", "under every reading"),
-    ],
-)
-def test_readings_are_named_where_few_hold_or_few_are_left(readings: str, wanted: str) -> None:
-    assert under(tuple(readings), READINGS, NAMED) == wanted
 
 
 def test_of_two_readings_both_are_called_both() -> None:

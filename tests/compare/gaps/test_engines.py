@@ -20,16 +20,6 @@ from trajgap.compare.gaps import (
 from trajgap.problem import ProcessError
 
 
-@pytest.mark.slow
-def test_outcomes_are_the_rows_whatever_the_number_of_processes() -> None:
-    trials = [small_trial(seed=seed) for seed in range(7)]
-    wanted = {trial.key: run_trial(trial) for trial in trials}
-    for workers in (1, 3):
-        with on_this_machine(workers) as engine:
-            found = {one.row.key: one.row for one in outcomes(iter(trials), engine)}
-        assert found == wanted
-
-
 def test_trials_are_read_as_they_are_needed() -> None:
     read = 0
 
@@ -69,37 +59,24 @@ def test_a_run_at_which_workers_of_dask_die_is_reported() -> None:
     assert outcome.row.message == "support.optimizers:draws: workers died at it, several times"
 
 
+CLOSED = ThreadPoolExecutor(1)
+CLOSED.shutdown()
+
+
 @pytest.mark.parametrize(
-    ("end", "said"),
+    ("executor", "said"),
     [
-        (lambda f: f.cancel() and f.set_running_or_notify_cancel(), "cancelled"),
-        (lambda f: f.set_exception(OSError("gone")), "OSError: gone"),
-        (lambda f: f.set_exception(KeyError("odd")), "KeyError: 'odd'"),
+        (Failing(lambda f: f.cancel() and f.set_running_or_notify_cancel()), r"\(.*cancelled.*\)"),
+        (Failing(lambda f: f.set_exception(OSError("gone"))), r"\(OSError: gone\)"),
+        (Failing(lambda f: f.set_exception(KeyError("odd"))), r"\(KeyError: 'odd'\)"),
+        (CLOSED, r"\(RuntimeError: cannot schedule.*\)"),
+        (Failing(lambda f: f.set_exception(ProcessError("none"))), "^none$"),  # cannot start one
     ],
 )
-def test_an_engine_that_is_lost_ends_the_session(
-    end: Callable[[Future[Any]], object], said: str
-) -> None:
-    engine = Engine(Failing(end), lambda: 1, "far")
-    with pytest.raises(
-        ProcessError, match=r"far: lost \(.*\); what is finished is stored"
-    ) as caught:
-        list(outcomes([small_trial()], engine))
-    assert said in str(caught.value)
-
-
-def test_an_executor_that_takes_no_more_ends_the_session() -> None:
-    pool = ThreadPoolExecutor(1)
-    pool.shutdown()
-    with pytest.raises(ProcessError, match=r"far: lost \(RuntimeError: cannot schedule"):
-        list(outcomes([small_trial()], Engine(pool, lambda: 1, "far")))
-
-
-def test_a_process_that_cannot_start_ends_the_session() -> None:
-    error = ProcessError("workers: none")
-    engine = Engine(Failing(lambda f: f.set_exception(error)), lambda: 1, "far")
-    with pytest.raises(ProcessError, match=r"^workers: none$"):
-        list(outcomes([small_trial()], engine))
+def test_an_engine_that_is_lost_ends_the_session(executor: Executor, said: str) -> None:
+    said = said if said == "^none$" else f"far: lost {said}; what is finished is stored"
+    with pytest.raises(ProcessError, match=said):
+        list(outcomes([small_trial()], Engine(executor, lambda: 1, "far")))
 
 
 def test_dask_that_does_not_answer_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -81,9 +81,32 @@ def test_what_a_run_leaves_behind_holds_nothing_up(going_on: Crew, tmp_path: Pat
     assert is_gone(left)
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems know no subreaper")
+@pytest.mark.parametrize("how", ["the crew ends", "the trial dies", "the parent is gone"])
+def test_a_grandchild_in_a_session_of_its_own_ends_too(
+    crew: Crew, tmp_path: Path, how: str
+) -> None:
+    mark = tmp_path / "mark"
+    settings = canonical({"mark": str(mark), "dies": how == "the trial dies"})
+    trial = small_trial("support.optimizers:leaves_a_grandchild", settings=settings, seconds=60)
+    row = crew.run(trial).row
+    left = [int(line) for line in mark.read_text(encoding="utf-8").split()]
+    if how == "the trial dies":
+        assert row.message.endswith("its process ended 2 times (SIGKILL)")
+        assert len(left) == 2
+    else:
+        assert row.status is RowStatus.FINISHED
+        os.kill(left[0], 0)  # it lives as long as the process that ran the trial
+        if how == "the crew ends":
+            crew.end()
+        else:
+            crew._own.child._process.stdin.close()
+    assert all(map(is_gone, left))
+
+
 def is_gone(pid: int) -> bool:
-    """Whether a process ends within a minute; one that nobody waited for counts as ended."""
-    for _ in range(600):
+    """Whether a process ends within ten seconds; one that nobody waited for counts as ended."""
+    for _ in range(100):
         try:
             os.kill(pid, 0)
             status = Path(f"/proc/{pid}/stat")

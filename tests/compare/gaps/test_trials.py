@@ -34,32 +34,24 @@ def test_the_same_trial_gives_the_same_row() -> None:
     assert run_trial(small_trial()).durations != run_trial(small_trial(stream=(1,))).durations
 
 
-def test_an_optimiser_that_draws_globally_is_seeded_and_nobody_else_is() -> None:
-    random.seed(1)
-    np.random.seed(1)  # noqa: NPY002
-    trial = small_trial("support.optimizers:draws_globally", budget=30)
-    row = run_trial(trial)
+def everybodys_numbers(seed: int) -> tuple[float, float]:
+    """The first draws of the generators that everybody shares, which begin again."""
+    random.seed(seed)
+    np.random.seed(seed)  # noqa: NPY002
     drawn = random.random(), np.random.random()  # noqa: NPY002
-    random.seed(1)
-    np.random.seed(1)  # noqa: NPY002
-    assert drawn == (random.random(), np.random.random())  # noqa: NPY002
-    assert run_trial(trial) == row
+    random.seed(seed)
+    np.random.seed(seed)  # noqa: NPY002
+    return drawn
+
+
+@pytest.mark.parametrize("name", ["support.optimizers:draws_globally", *KINDS])
+def test_a_row_depends_on_no_generator_that_everybody_shares_and_moves_none(name: str) -> None:
+    first = everybodys_numbers(1)
+    row = run_trial(small_trial(name, budget=90))
+    assert first == (random.random(), np.random.random())  # noqa: NPY002
+    everybodys_numbers(2)
+    assert run_trial(small_trial(name, budget=90)) == row
     assert row.status is RowStatus.FINISHED
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_the_papers_algorithms_draw_from_nothing_but_their_own_generator(kind: str) -> None:
-    # Their runs may thus skip seeding the generators that everybody shares.
-    random.seed(1)
-    np.random.seed(1)  # noqa: NPY002
-    row = run_trial(small_trial(kind, budget=90))
-    drawn = random.random(), np.random.random()  # noqa: NPY002
-    random.seed(1)
-    np.random.seed(1)  # noqa: NPY002
-    assert drawn == (random.random(), np.random.random())  # noqa: NPY002
-    random.seed(2)
-    np.random.seed(2)  # noqa: NPY002
-    assert run_trial(small_trial(kind, budget=90)) == row
     assert row.evaluations > 0
 
 
@@ -75,12 +67,12 @@ def test_settings_of_one_trial_are_not_those_of_the_next() -> None:
     ("name", "message"),
     [
         ("support.optimizers:raises", "ZeroDivisionError: one over nothing!!!"),
-        ("support.optimizers:exits", "SystemExit: 7"),
-        ("support.optimizers:returns_nan", "returned NaN"),
-        ("support.optimizers:asks_nan", "asked for the fitness of NaN"),
-        ("support.optimizers:leaves_bounds", "outside its bounds"),
-        ("support.optimizers:swallows", "went on after its budget of 200 evaluations was spent"),
-        ("support.optimizers:judges_nothing", "judged no position"),
+        ("support.faulty:exits", "SystemExit: 3"),
+        ("support.faulty:returns_nan", "returned NaN"),
+        ("support.faulty:asks_nan", "asked for the fitness of NaN"),
+        ("support.faulty:leaves_bounds", "outside its bounds"),
+        ("support.faulty:swallows", "went on after its budget of 200 evaluations was spent"),
+        ("support.faulty:judges_nothing", "judged no position"),
         ("support.optimizers:moves_bounds", "asked for the fitness of 7 s for duration 1, outside"),
         ("support.optimizers:raises_unprintable", "ValueError: half of a pair: <U+DC80>, a cursor"),
         ("support.optimizers:raises_mute", "Mute"),

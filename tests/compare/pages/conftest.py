@@ -3,7 +3,8 @@
 from pathlib import Path
 
 import pytest
-from support.hostile import ID, Seen, hostile_case
+from support.hostile import ID, hostile_case
+from support.page_tree import Tree
 from trajgap.compare import AuditReport, audit, write_report
 
 
@@ -20,5 +21,5 @@ def folder(report: AuditReport, tmp_path_factory: pytest.TempPathFactory) -> Pat
 
 
 @pytest.fixture(scope="session")
-def page(folder: Path) -> Seen:
-    return Seen((folder / f"{ID}.html").read_text(encoding="utf-8"))
+def page(folder: Path) -> Tree:
+    return Tree((folder / f"{ID}.html").read_text(encoding="utf-8"))

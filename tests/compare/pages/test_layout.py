@@ -1,53 +1,14 @@
 """What a page must have on a phone, for a keyboard and for a screen reader, read from its HTML."""
 
-import html.parser
-import re
 from pathlib import Path
 
 import pytest
-from support.studies import EVERY, audited_alone, page_alone
+from support.page_tree import Tree
+from support.studies import EVERY, page_alone
 from trajgap.compare.pages.environment import _TEMPLATES, environment, style
 
 MOST_PICTURE = 300_000
 """Bytes of one picture: more points than a screen shows."""
-VOID = {"meta", "img", "link", "br"}
-"""Elements without an end tag."""
-
-
-class Tree(html.parser.HTMLParser):
-    """Elements of a page with their attributes, their parents and their text."""
-
-    def __init__(self, page: str) -> None:
-        super().__init__()
-        self.found: list[dict[str, str]] = []
-        self.open: list[int] = []
-        self.feed(page)
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        above = " ".join(self.found[i]["tag"] for i in self.open)
-        classes = " ".join(self.found[i].get("class", "") for i in self.open)
-        own = {name: value or "" for name, value in attrs}
-        self.found.append({**own, "tag": tag, "above": above, "classes": classes, "text": ""})
-        if tag not in VOID:
-            self.open.append(len(self.found) - 1)
-
-    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.handle_starttag(tag, attrs)
-        if tag not in VOID:
-            self.open.pop()
-
-    def handle_endtag(self, tag: str) -> None:
-        while self.open and self.found[self.open[-1]]["tag"] != tag:
-            self.open.pop()
-        if self.open:
-            self.open.pop()
-
-    def handle_data(self, data: str) -> None:
-        for i in self.open:
-            self.found[i]["text"] += data
-
-    def every(self, *tags: str) -> list[dict[str, str]]:
-        return [one for one in self.found if one["tag"] in tags]
 
 
 @pytest.fixture(scope="module", params=EVERY)
@@ -103,26 +64,6 @@ def test_no_section_is_empty_and_each_has_a_heading(page: tuple[str, Tree]) -> N
         assert len(section["text"].split()) > 3, section
     assert all(one["text"].strip() for one in tree.every("h1", "h2", "h3", "summary"))
     assert len(tree.every("h1")) == 1
-
-
-def test_no_id_of_the_case_file_stands_for_a_claim_or_an_algorithm(page: tuple[str, Tree]) -> None:
-    case_id, tree = page
-    case = audited_alone(case_id).case
-    # "time-optimal" is an id, and a word of the papers.
-    words = " ".join(
-        ["time-optimal", case.title, case.source.title, *(claim.text for claim in case.claims)]
-    )
-    named = (*case.claims, *case.algorithms)
-    ids = [one.id for one in named if "-" in one.id and one.id not in words]
-    assert len(ids) >= 5
-    # Findings rule by rule, and the list of what was chosen, name the keys of the case file.
-    (body,) = tree.every("main")
-    text = body["text"]
-    for section in tree.every("section"):
-        if section["id"] in ("findings", "assumptions", "reproducibility", "instances"):
-            text = text.replace(section["text"], "")
-    heard = [one for one in ids if re.search(rf"(?<![\w-]){re.escape(one)}(?![\w-])", text)]
-    assert not heard
 
 
 def test_pictures_hold_no_more_than_can_be_seen(page: tuple[str, Tree]) -> None:

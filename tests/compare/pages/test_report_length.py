@@ -1,10 +1,10 @@
 """What a page does with many readings, with none complete, and with sections that hold nothing."""
 
-import html.parser
 import re
 from dataclasses import replace
 
 import pytest
+from support.page_tree import Tree
 from support.studies import EVERY, page_alone
 from trajgap.compare.audits.case_audit import CaseAudit, audit
 from trajgap.compare.audits.study import Study
@@ -79,40 +79,10 @@ MOST_WORDS = 1_000
 """Of one page before anything is unfolded."""
 
 
-class Open(html.parser.HTMLParser):
-    """Words of a page outside everything that is folded, styled or drawn."""
-
-    def __init__(self, page: str) -> None:
-        super().__init__()
-        self.text: list[str] = []
-        self.hidden: list[str] = []
-        self.feed(page)
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        if tag in ("svg", "style", "details", "title"):
-            self.hidden.append(tag)
-        if tag == "summary" and self.hidden.count("details") == 1:
-            self.hidden.remove("details")
-
-    def handle_endtag(self, tag: str) -> None:
-        if tag == "summary" and "details" not in self.hidden:
-            self.hidden.append("details")
-        elif tag in self.hidden:
-            self.hidden.remove(tag)
-
-    def handle_data(self, data: str) -> None:
-        if not self.hidden:
-            self.text.append(data)
-
-
 def test_what_is_folded_is_not_counted() -> None:
     page = "<p>one two</p><details><summary>three</summary>four<details><summary>five</summary>"
-    assert " ".join(Open(f"{page}six</details></details>seven").text).split() == [
-        "one",
-        "two",
-        "three",
-        "seven",
-    ]
+    page += "six</details></details>seven"
+    assert Tree(page).unfolded == ["one", "two", "three", "seven"]
 
 
 @pytest.mark.parametrize("case_id", EVERY)
@@ -122,7 +92,7 @@ def test_pages_of_the_papers_are_short_before_anything_is_unfolded(case_id: str)
     sheet = style()
     text = shapes.get_template("case.html").render(page=page, style=sheet)
     assert len(text.encode()) <= MOST_BYTES
-    words = " ".join(Open(text).text).split()
+    words = Tree(text).unfolded
     assert 150 < len(words) <= MOST_WORDS
     assert "None." not in words
     assert not re.search(r"<tbody>\s*</tbody>", text)

@@ -1,19 +1,19 @@
 """The further pictures of a page: jumps, control polygon, tent map, workspace, and their hooks."""
 
 import re
-import xml.etree.ElementTree as ElementTree
 from fractions import Fraction
 from itertools import combinations
 
 import numpy as np
 import pytest
 from matplotlib.text import Annotation
+from support.drawn import sound
 from support.studies import shipped
 from trajgap.compare.audits.rules.printed_vertices import Vertex, vertices
 from trajgap.compare.audits.study import Study
 from trajgap.compare.pages.blocks import Drawn, Folded, Grid
 from trajgap.compare.pages.exhibits import exhibits_of_motion, exhibits_of_search
-from trajgap.compare.pictures.drawing import Picture, drawing, svg
+from trajgap.compare.pictures.drawing import Picture, drawing
 from trajgap.compare.pictures.jumps import jump_picture, velocity_jumps
 from trajgap.compare.pictures.labels import place_labels
 from trajgap.compare.pictures.polygon import polygon_picture
@@ -301,17 +301,7 @@ def test_the_palletiser_names_positions_out_of_reach() -> None:
     assert "Some joint values reach each of them within rounding" in full.caption
 
 
-def test_pictures_are_accessible_small_and_the_same_each_time(
-    stretched: Problem, scatter: TentScatter
-) -> None:
-    for make in (
-        lambda: jump_picture(stretched, DURATIONS, title="Jumps"),
-        lambda: polygon_picture(WAYPOINTS, printed_vertices(), title="Polygon"),
-        lambda: tent_picture(scatter, unit="s", title="Tent"),
-    ):
-        document = svg(make())
-        assert document == svg(make())
-        root = ElementTree.fromstring(document)
-        assert root.findtext("{http://www.w3.org/2000/svg}desc")
-        assert "<image" not in document
-        assert len(document) < 250_000
+def test_exhibits_are_sound(stretched: Problem, scatter: TentScatter) -> None:
+    sound(lambda: jump_picture(stretched, DURATIONS, title="Jumps"))
+    sound(lambda: polygon_picture(WAYPOINTS, printed_vertices(), title="Polygon"))
+    sound(lambda: tent_picture(scatter, unit="s", title="Tent"))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 from trajgap.compare.documents import ClaimVerdict
-from trajgap.compare.sphinx.claim_words import none_said, wanted_words
+from trajgap.compare.sphinx.claim_words import wanted_words
 from trajgap.problem import TrajgapError
 
 
@@ -35,18 +35,3 @@ def test_a_word_that_no_claim_can_have_is_an_error(option: str, wrong: str) -> N
     ) as caught:
         wanted_words(option)
     assert all(str(word) in str(caught.value) for word in ClaimVerdict)
-
-
-@pytest.mark.parametrize(
-    ("wanted", "said"),
-    [
-        ([], "No claim was audited."),
-        (["refuted"], "No claim has the verdict “refuted”."),
-        (
-            ["refuted", "inconsistent", "depends on the reading"],
-            "No claim has the verdict “refuted”, “inconsistent” or “depends on the reading”.",
-        ),
-    ],
-)
-def test_an_empty_list_says_what_there_is_none_of(wanted: list[str], said: str) -> None:
-    assert none_said(wanted) == said

@@ -4,10 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from support.scripted import OPEN, Script
+from support.scripted import OPEN, R1, R2, Script
 from trajgap.heuristics import Bounds, ConstrainedPSO
 from trajgap.heuristics.algorithms.swarm import Swarm
-from trajgap.problem import TrajgapError
 
 C = 1e6
 WIDE = ConstrainedPSO(
@@ -18,8 +17,6 @@ WIDE = ConstrainedPSO(
     velocity_max=50.0,
     ties="keep",
 )
-R1 = np.array([[0.25, 0.5], [0.75, 0.125]])
-R2 = np.array([[0.5, 0.25], [0.125, 1.0]])
 
 
 def total(x: np.ndarray) -> np.ndarray:
@@ -140,26 +137,12 @@ def test_inertia_by_fitness_in_a_step() -> None:
     np.testing.assert_array_equal(after.velocities, [[0.25, -0.5], [0.25, 0.5]])
 
 
-@pytest.mark.parametrize("value", [3.0, C, np.inf])
-def test_inertia_of_equal_particles(value: float) -> None:
-    assert ConstrainedPSO().inertia(1, np.full(4, value)) == 0.9
-
-
-def test_inertia_with_infinite_penalty() -> None:
-    assert ConstrainedPSO().inertia(1, np.array([3.0, np.inf])) == 0.9
+@pytest.mark.parametrize("fitness", [[3.0, 3.0], [C, C], [np.inf, np.inf], [3.0, np.inf]])
+def test_inertia_without_a_finite_spread(fitness: list[float]) -> None:
+    assert ConstrainedPSO().inertia(1, np.array(fitness)) == 0.9
 
 
 def test_inertia_falls_linearly() -> None:
     record = ConstrainedPSO(inertia_rule="linear")
     ends = [record.inertia(n, np.ones(2)) for n in (1, 50, 100)]
     np.testing.assert_allclose(ends, [0.895, 0.65, 0.4], rtol=1e-15)
-
-
-def test_printed_defaults() -> None:
-    assert ConstrainedPSO().iterations == 100
-    assert np.isfinite(ConstrainedPSO().penalty)
-
-
-def test_inertia_range_in_order() -> None:
-    with pytest.raises(TrajgapError, match=r"^constrained-pso: inertia_min: exceeds inertia_max"):
-        ConstrainedPSO(inertia_max=0.4, inertia_min=0.9)

@@ -8,7 +8,6 @@ from support.scripted import OPEN, Script, off_centre
 from trajgap.heuristics import WOA, Bounds, ImprovedWOA
 from trajgap.heuristics.algorithms.improved_woa import inertia_weight
 from trajgap.heuristics.algorithms.population import Population
-from trajgap.problem import TrajgapError
 
 # At I = 250 of 500, δ = 1 and, with s = 0, w = 0.5.
 HALF = ImprovedWOA(whales=3, position_rule="free")
@@ -124,24 +123,3 @@ def test_shared_choices_act_as_in_the_plain_algorithm(changes: dict[str, object]
     for record in (WOA(whales=3, **changes), ImprovedWOA(whales=3, **changes)):
         found.append(record.step(pod, bounds, np.random.default_rng(8), off_centre).positions)
     np.testing.assert_array_equal(*found)
-
-
-def test_printed_defaults() -> None:
-    record = ImprovedWOA()
-    assert (record.whales, record.iterations, record.position_initial) == (30, 500, (0.0, 5.0))
-    assert (record.initial, record.beta) == ("tent", 0.5)
-
-
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"s": -1.0}, r"^improved-woa: s: expected a number above -1, got -1.0"),
-        ({"s": np.inf}, r"^improved-woa: s: expected a number above -1, got inf"),
-        ({"beta": 0.0}, r"^improved-woa: beta: expected a number between 0 and 1, got 0.0"),
-        ({"beta": 1.0}, r"^improved-woa: beta: expected a number between 0 and 1, got 1.0"),
-        ({"beta": "half"}, r"^improved-woa: beta: expected a number between 0 and 1, got 'half'"),
-    ],
-)
-def test_settings_out_of_range(changes: dict[str, object], message: str) -> None:
-    with pytest.raises(TrajgapError, match=message):
-        ImprovedWOA(**changes)

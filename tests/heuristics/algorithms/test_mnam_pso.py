@@ -5,13 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from support.scripted import OPEN, Script
+from support.scripted import OPEN, R1, R2, Script
 from trajgap.heuristics import MNAMPSO, PSO
 from trajgap.heuristics.algorithms.swarm import Swarm
-from trajgap.problem import TrajgapError
 
-R1 = np.array([[0.25, 0.5], [0.75, 0.125]])
-R2 = np.array([[0.5, 0.25], [0.125, 1.0]])
 NO_MOVE = np.array([0.5, 0.5])
 
 
@@ -46,16 +43,6 @@ def test_inertia_12(n: int, falling: float) -> None:
     assert MNAMPSO().inertia(n) == pytest.approx(falling, rel=1e-15)
     rising = replace(MNAMPSO(), inertia_reading="rises")
     assert rising.inertia(n) == pytest.approx(0.9 + 0.4 - falling, rel=1e-15)
-
-
-def test_inertia_readings_run_between_their_ends() -> None:
-    n = np.arange(1, 201)
-    falling = np.array([MNAMPSO().inertia(i) for i in n])
-    rising = np.array([MNAMPSO(inertia_reading="rises").inertia(i) for i in n])
-    assert (np.diff(falling) < 0).all()
-    assert (np.diff(rising) > 0).all()
-    assert falling[0] == pytest.approx(0.9, abs=1e-4)
-    assert falling[-1] == pytest.approx(0.4, abs=0.01)
 
 
 def test_budget_is_the_length_of_the_inertia_schedule() -> None:
@@ -101,15 +88,6 @@ def test_mutation_of_one_coordinate() -> None:
         expected = best.copy()
         expected[index] -= 0.5
         np.testing.assert_array_equal(mutant, expected)
-
-
-def test_mutants_of_positive_durations_are_not_negative() -> None:
-    rng = np.random.default_rng(3)
-    best = np.array([0.31, 1.7, 0.9])
-    mutants = np.array([MNAMPSO().mutant(best, rng) for _ in range(2000)])
-    assert (mutants >= 0).all()
-    assert (abs(mutants - best) <= 0.31).all()
-    assert (abs(mutants - best).max(axis=0) > 0.3).all()
 
 
 @pytest.mark.parametrize(
@@ -197,20 +175,3 @@ def test_without_its_three_changes_it_is_standard_pso() -> None:
         np.testing.assert_array_equal(a.best, b.best)
         a, b = record.step(a, OPEN, rng, total), plain.step(b, OPEN, same, total)
         same.random(2)
-
-
-def test_printed_defaults() -> None:
-    record = MNAMPSO()
-    assert (record.particles, record.niches, record.iterations) == (30, 3, 200)
-    assert (record.c1, record.c2, record.inertia_max, record.inertia_min) == (2.0, 2.0, 0.9, 0.4)
-    assert (record.position_initial, record.velocity_initial) == ((0.3, 3.0), (-2.0, 2.0))
-
-
-def test_more_niches_than_particles() -> None:
-    with pytest.raises(TrajgapError, match=r"^mnam-pso: niches: 4 niches for 3 particles"):
-        MNAMPSO(particles=3, niches=4)
-
-
-def test_inertia_range_in_order() -> None:
-    with pytest.raises(TrajgapError, match=r"^mnam-pso: inertia_min: exceeds inertia_max"):
-        MNAMPSO(inertia_max=0.4, inertia_min=0.9)

@@ -4,14 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from support.scripted import OPEN, Script, off_centre
+from support.scripted import OPEN, R1, R2, Script, off_centre
 from trajgap.heuristics import PSO, Bounds
 from trajgap.heuristics.algorithms.swarm import Swarm
 
 FREE = PSO(particles=2, inertia=0.5, velocity_rule="free", position_rule="free")
-
-R1 = np.array([[0.25, 0.5], [0.75, 0.125]])
-R2 = np.array([[0.5, 0.25], [0.125, 1.0]])
 
 
 def swarm() -> Swarm:
@@ -141,11 +138,3 @@ def test_a_step_leaves_the_state_before_it_alone() -> None:
     FREE.step(before, OPEN, Script(R1, R2), off_centre)
     for name, copy in copies.items():
         np.testing.assert_array_equal(getattr(before, name), copy)
-
-
-def test_printed_defaults() -> None:
-    record = PSO()
-    assert (record.particles, record.iterations, record.c1, record.c2) == (30, 200, 2.0, 2.0)
-    assert record.position_initial == (0.3, 3.0)
-    assert record.velocity_initial == (-2.0, 2.0)
-    assert record.penalty == np.inf

@@ -7,7 +7,6 @@ import pytest
 from support.scripted import OPEN, Script, off_centre, sphere
 from trajgap.heuristics import PSO, WOA, Bounds, states
 from trajgap.heuristics.algorithms.population import Population
-from trajgap.heuristics.algorithms.swarm import Swarm
 from trajgap.heuristics.algorithms.woa import delta, encircled, spiralled
 
 # At I = 250 of 500, δ = 1: then A = 2 r − 1.
@@ -66,14 +65,9 @@ def test_delta_falls_linearly() -> None:
     for counter, expected in (("zero", [0.0, 0.5, 1.0, 1.5]), ("one", [0.5, 1.0, 1.5, 2.0])):
         record = replace(one, counter=counter)
         for n in range(4):
-            before = replace_pod(pod(n), X[:1])
+            before = replace(pod(n), positions=X[:1], fitness=off_centre(X[:1]))
             after = record.step(before, OPEN, Script(1.0, 0.5, 0.5, 0.0, 0.0), off_centre)
             np.testing.assert_array_equal(after.positions, [[expected[n], 1.0]])
-
-
-def replace_pod(before: Population, positions: np.ndarray) -> Population:
-    fitness = off_centre(positions)
-    return Population(before.iteration, positions, fitness, before.best, before.best_fitness)
 
 
 def test_one_r_for_a_and_c() -> None:
@@ -109,18 +103,14 @@ def test_vector_coefficients(rule: str, threshold: float, expected: list[float])
 
 def test_a_random_whale_is_any_whale() -> None:
     always = replace(HALF, threshold=0.0)
-    for number, target in ((0.0, 0), (0.249, 0), (0.25, 1), (0.999, 3)):
-        numbers = Script([0.5] * 4, [0.5] * 4, [0.5] * 4, [0.0] * 4, [number] * 4)
+    # The second reads where the first was, not where it went.
+    for members, targets in (
+        ([0.0, 0.249, 0.25, 0.999], [0, 0, 1, 3]),
+        ([0.75, 0, 0, 0], [3, 0, 0, 0]),
+    ):
+        numbers = Script([0.5] * 4, [0.5] * 4, [0.5] * 4, [0.0] * 4, members)
         after = always.step(pod(), OPEN, numbers, off_centre)  # A = 0: X' = X_r
-        np.testing.assert_array_equal(after.positions, X[[target] * 4])
-
-
-def test_the_swarm_moves_from_where_it_was() -> None:
-    """X_r of a later whale is the old position of an earlier one."""
-    always = replace(HALF, threshold=0.0)
-    numbers = Script([0.5] * 4, [0.5] * 4, [0.5] * 4, [0.0] * 4, [0.75, 0.0, 0.0, 0.0])
-    after = always.step(pod(), OPEN, numbers, off_centre)
-    np.testing.assert_array_equal(after.positions, X[[3, 0, 0, 0]])
+        np.testing.assert_array_equal(after.positions, X[targets])
 
 
 def test_the_best_is_replaced_by_what_is_strictly_better() -> None:
@@ -185,11 +175,6 @@ def test_a_step_leaves_the_state_before_it_alone() -> None:
         np.testing.assert_array_equal(getattr(before, name), copy)
 
 
-def test_printed_defaults() -> None:
-    record = WOA()
-    assert (record.whales, record.iterations, record.position_initial) == (30, 500, (0.0, 5.0))
-
-
 # --- not shift-invariant --------------------------------------------------------------------------
 
 SHIFT = np.array([4.0, -2.0])
@@ -210,27 +195,6 @@ def test_encircling_is_shift_invariant_only_without_c() -> None:
     best = np.array([2.0, 1.0])
     spiral = spiralled(X + SHIFT, best + SHIFT, g, 1.0) - SHIFT
     np.testing.assert_allclose(spiral, spiralled(X, best, g, 1.0), atol=1e-15)
-
-
-def test_pso_is_shift_invariant() -> None:
-    """The control: the same shift changes nothing in (10)(11) of the PSO."""
-    record = PSO(velocity_rule="free", position_rule="free")
-
-    def steps(shift: np.ndarray) -> np.ndarray:
-        def shifted(x: np.ndarray) -> np.ndarray:
-            return off_centre(x - shift)
-
-        fitness = off_centre(X)
-        start = Swarm(
-            0, X + shift, np.zeros((4, 2)), fitness, X + shift, fitness, X[0] + shift, fitness[0]
-        )
-        rng = np.random.default_rng(5)
-        state = start
-        for _ in range(4):
-            state = record.step(state, OPEN, rng, shifted)
-        return state.positions - shift
-
-    np.testing.assert_allclose(steps(SHIFT), steps(np.zeros(2)), rtol=1e-12)
 
 
 def finals(record: WOA | PSO, shift: float) -> np.ndarray:

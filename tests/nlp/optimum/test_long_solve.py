@@ -131,7 +131,7 @@ def test_a_plateau_at_the_velocity_limit_keeps_no_search_from_its_end(
     curve: Interpolant, seed: int
 ) -> None:
     problem = one_joint(curve, seed)
-    answer = long_search(problem, way_start(problem), np.full(curve.segments, 1e-5), np.inf)
+    answer = long_search(problem, way_start(problem), np.full(curve.segments, 1e-5))
     assert answer is not None
     assert answer.kkt is not None
     assert answer.kkt.residual <= 1e-8
@@ -278,7 +278,7 @@ def test_expressions_are_those_of_the_fitted_curve(name: str) -> None:
         truth = along(trajectory, places, 0) / rate / limit
         np.testing.assert_allclose(found, truth, rtol=1e-7, atol=1e-9)
     assert rows.places.s.size > 10
-    local = long_search(problem, way_start(problem), np.full(SEGMENTS, 1e-4), np.inf)
+    local = long_search(problem, way_start(problem), np.full(SEGMENTS, 1e-4))
     assert local is not None
     assert check(problem, local.durations).max_violation <= 1e-9
 

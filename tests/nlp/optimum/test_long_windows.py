@@ -54,10 +54,8 @@ def small_windows(monkeypatch: pytest.MonkeyPatch) -> list[Joined | None]:
     monkeypatch.setattr(long_windows, "OVERLAP", 4)
     seen: list[Joined | None] = []
 
-    def watched(
-        program: LongProgram, trajectory: Trajectory, floor: np.ndarray, until: float
-    ) -> Joined | None:
-        seen.append(joined_windows(program, trajectory, floor, until))
+    def watched(program: LongProgram, trajectory: Trajectory, floor: np.ndarray) -> Joined | None:
+        seen.append(joined_windows(program, trajectory, floor))
         return seen[-1]
 
     monkeypatch.setattr(long_search_module, "joined_windows", watched)
@@ -74,7 +72,7 @@ def test_joined_windows_end_at_the_optimum_of_the_whole(
     floor = np.full(problem.segments, 1e-4)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(long_search_module, "FEWEST", SEGMENTS + 1)
-        whole = long_search(problem, way_start(problem), floor, np.inf)
+        whole = long_search(problem, way_start(problem), floor)
     assert len(small_windows) == 1
     assert whole is not None
     assert answer.status is Status.OPTIMAL
@@ -180,10 +178,12 @@ def test_time_that_ends_between_windows_and_after_them(
 ) -> None:
     problem = problem_of(CURVES["quintic"])
     start, floor = way_start(problem), np.full(SEGMENTS, 1e-4)
-    assert long_search(problem, start, floor, -np.inf) is not None
+    with monkeypatch.context() as early:
+        early.setattr(long_windows, "time_up", lambda: True)
+        assert long_search(problem, start, floor) is not None
     assert small_windows == [None]
     monkeypatch.setattr(long_search_module, "time_up", lambda: True)
-    late = long_search(problem, start, floor, np.inf)
+    late = long_search(problem, start, floor)
     assert small_windows[-1] is not None
     assert late is not None
     assert late.kkt is None

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 from support.path_nlp import path_nlp_duration
-from support.puma import PUMA, PUMA_LIMITS
+from support.puma import PUMA_LIMITS
 from support.retimed import PUMA_353, close, hermite, puma, rest_to_rest_time, trajectory
 from toppra.algorithm import TOPPRA
 from toppra.constraint import (
@@ -15,7 +15,6 @@ from toppra.constraint import (
     JointAccelerationConstraint,
     JointVelocityConstraint,
 )
-from trajgap.nlp import solve
 from trajgap.nlp.retiming.toppra_check import extrapolate, retime
 from trajgap.problem import (
     Interpolant,
@@ -37,17 +36,36 @@ Array = NDArray[np.float64]
 # --- paths of known answers -----------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("velocity", "acceleration"), [(9.0, 8.0), (0.7, 8.0), (1.1, 2.5)])
+THERE_AND_BACK = [[0.3], [1.7], [0.9]], [1.5, 1.2]
+STRAIGHT = [[0.2, -1.0, 3.0], [1.1, 1.5, 2.3]], [2.0]
+CORNERS = [[0.1, 0.9, -0.3], [0.8, 0.2, -0.3], [0.9, -1.4, 0.5], [-0.2, -1.1, 0.1]], [1.0, 1.6, 1.3]
+A_STOP = [[0.0, 0.3], [1.0, 0.5], [1.0, 0.5], [0.2, -1.0]], [1.0, 0.4, 1.5]
+
+
 @pytest.mark.parametrize("degree", [3, 5, 7])
-def test_one_joint_there_and_back(velocity: float, acceleration: float, degree: int) -> None:
-    q = np.array([[0.3], [1.7], [0.9]])
-    found = retime(
-        fit(rest_to_rest(2, degree), q, [1.5, 1.2]),
-        Limits(velocity, acceleration, joints=1),
-    )
-    expected = sum(rest_to_rest_time([d], [velocity], [acceleration]) for d in (1.4, 0.8))
-    assert close(found, expected)
-    assert np.allclose(found.cuts, [0.0, 1.5, 2.7], atol=1e-9)
+@pytest.mark.parametrize(
+    ("path", "velocity", "acceleration"),
+    [
+        (THERE_AND_BACK, [9.0], [8.0]),
+        (THERE_AND_BACK, [0.7], [8.0]),
+        (THERE_AND_BACK, [1.1], [2.5]),
+        (STRAIGHT, [3.0, 9.0, 2.0], [4.0, 9.0, 6.0]),
+        (STRAIGHT, [0.5, 9.0, 0.4], [4.0, 9.0, 6.0]),
+        (CORNERS, [1.5, 1.9, 1.1], [4.0, 3.0, 5.0]),
+        (A_STOP, [2.0, 3.0], [8.0, 5.0]),  # a segment in which nothing moves is left out
+    ],
+)
+def test_straight_segments_from_rest_to_rest(
+    path: tuple[list[list[float]], list[float]],
+    velocity: list[float],
+    acceleration: list[float],
+    degree: int,
+) -> None:
+    q, h = path
+    found = retime(fit(rest_to_rest(len(h), degree), q, h), Limits(velocity, acceleration))
+    steps = [np.where(step == 0, 1e-300, step) for step in np.diff(q, axis=0) if step.any()]
+    assert close(found, sum(rest_to_rest_time(step, velocity, acceleration) for step in steps))
+    assert found.cuts == pytest.approx((0.0, *np.cumsum(h)), abs=1e-9)
 
 
 def test_a_reversal_inside_a_segment_is_a_standstill_and_not_a_smooth_point() -> None:
@@ -113,15 +131,6 @@ def test_parabola_at_the_acceleration_limit_cannot_be_done_faster(start: float) 
     found = retime(curve, Limits([np.inf, 50.0], [np.inf, 2 * k * c**2]))
     assert close(found, end - t0)
     assert found.inequality_holds
-
-
-def test_rest_to_rest_quintic_through_corners() -> None:
-    q = np.array([[0.1, 0.9, -0.3], [0.8, 0.2, -0.3], [0.9, -1.4, 0.5], [-0.2, -1.1, 0.1]])
-    velocity, acceleration = [1.5, 1.9, 1.1], [4.0, 3.0, 5.0]
-    found = retime(fit(rest_to_rest(3, 5), q, [1.0, 1.6, 1.3]), Limits(velocity, acceleration))
-    steps = [np.where(step == 0, 1e-300, step) for step in np.diff(q, axis=0)]
-    assert close(found, sum(rest_to_rest_time(d, velocity, acceleration) for d in steps))
-    assert found.cuts == pytest.approx((0.0, 1.0, 2.6, 3.9), abs=1e-9)
 
 
 def test_toppra_cpp_cubic_path() -> None:
@@ -244,17 +253,6 @@ def test_retiming_never_takes_longer_than_a_feasible_trajectory(seed: int) -> No
     assert found.applicable, found.why
     assert found.inequality_holds
     assert found.extrapolated <= found.trajectory_time + found.error
-
-
-def test_solved_trajectories_keep_the_inequality() -> None:
-    for interpolant in (three_five_three(), piecewise((5, 5, 5), 2)):
-        problem = Problem(PUMA, PUMA_LIMITS, interpolant)
-        solution = solve(problem)
-        assert solution.durations is not None
-        curve = fit(interpolant, PUMA, solution.durations, solution.nodal)
-        found = retime(curve, PUMA_LIMITS)
-        assert found.inequality_holds
-        assert found.extrapolated < solution.total_time
 
 
 def test_no_inequality_for_a_trajectory_that_breaks_its_limits() -> None:

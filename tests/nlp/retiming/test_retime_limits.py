@@ -17,7 +17,6 @@ from trajgap.problem import (
     extrema,
     fit,
     quintic_spline,
-    rest_to_rest,
     three_five_three,
 )
 
@@ -51,18 +50,6 @@ def test_each_joint_on_its_own_path() -> None:
 
 
 # --- cutting, sampling ----------------------------------------------------------------------------
-
-
-def test_segments_in_which_nothing_moves_are_left_out() -> None:
-    q = np.array([[0.0, 0.3], [1.0, 0.5], [1.0, 0.5], [0.2, -1.0]])
-    limits = Limits([2.0, 3.0], [8.0, 5.0])
-    for degree in (3, 5, 7):
-        found = retime(fit(rest_to_rest(3, degree), q, [1.0, 0.4, 1.5]), limits)
-        expected = sum(
-            rest_to_rest_time(q[k + 1] - q[k], limits.velocity, limits.acceleration) for k in (0, 2)
-        )
-        assert close(found, expected)
-        assert found.cuts == pytest.approx((0.0, 1.0, 1.4, 2.9), abs=1e-9)
 
 
 def test_a_standstill_without_reversal_is_a_cut_too() -> None:

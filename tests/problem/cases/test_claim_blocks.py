@@ -100,15 +100,10 @@ def test_a_blank_that_is_left_is_refused_in_its_place(table, printed):
             parse_case(text.replace(block, uncommented(block)), "x")
 
 
-def test_a_place_that_is_not_given_is_left_to_be_filled_in(table):
+def test_a_place_that_is_not_given_is_said_to_be_none(table):
     for printed in ({"durations": "1.0,2.0,3.0"}, {"total": "6.0"}):
-        text = scaffold(table, RAD, **printed)
-        with pytest.raises(CaseError) as caught:
-            parse_case(text, "x")
-        assert caught.value.faults == (
-            ("claims[0].where", 'is empty; say where it is printed, such as "Table 2"'),
-        )
-        parse_case(text.replace('where = ""  # fill in', 'where = "Table 9"  #'), "x")
+        (claim,) = parse_case(scaffold(table, RAD, **printed), "x").claims
+        assert claim.where == "a place not stated"
 
 
 def test_a_row_is_as_long_as_the_curve_has_segments(table):
@@ -125,6 +120,6 @@ def test_a_blank_number_is_called_one(table):
 
 def test_no_place_and_no_number_is_made_up(table):
     text = scaffold(table, RAD, durations="1.0,2.0,3.0", total="6.0")
-    assert not re.search(r'^#? ?where = "[^"]', text, re.M)
+    assert re.findall(r'^#? ?where = "([^"]+)"', text, re.M) == ["a place not stated"]
     for block in blocks(text):
         assert not re.search(r"[0-9]\.[0-9]", block), block

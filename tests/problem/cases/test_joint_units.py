@@ -216,7 +216,7 @@ def test_transcriptions_differ_where_a_unit_does():
 def test_new_takes_a_unit_for_each_joint(tmp_path):
     table = tmp_path / "t.csv"
     stream = io.StringIO()
-    csv.writer(stream).writerows([["1", "2", "d3"], ["10.5", "-20", "12"], ["60.1", "15", "85"]])
+    csv.writer(stream).writerows([["q1", "q2", "d3"], ["10.5", "-20", "12"], ["60.1", "15", "85"]])
     table.write_text(stream.getvalue())
     units = {"position": "deg,rad,mm", "velocity": "rpm, rad/s, m/min"}
     text = scaffold(table, units, velocity="30,2,7.2", family="cubic-spline")

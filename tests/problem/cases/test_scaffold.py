@@ -59,6 +59,38 @@ def test_a_gap_in_the_last_line_end_does_not_matter(table):
     assert scaffold(table("a,b\r\n1,2\r\n3,4"), RAD) == scaffold(table("a,b\n1,2\n3,4\n"), RAD)
 
 
+HOLDS_NUMBERS = "line 1: holds numbers; the first line names the joints, put a header above it"
+
+
+@pytest.mark.parametrize(
+    ("text", "joints", "labels"),
+    [
+        ("q1 q2\n10 20\n30  40\n", ("q1", "q2"), ("1", "2")),
+        ("q1\tq2\n10\t20\n30\t40\n", ("q1", "q2"), ("1", "2")),
+        ("where;q1;q2\nA;10;20\nB;30;40\n", ("q1", "q2"), ("A", "B")),
+        ("P q1 q2\nP1 10 20\nP2 30 40\n", ("q1", "q2"), ("P1", "P2")),
+        ("No.,q1,q2\n1,10,20\n2,30,40\n", ("q1", "q2"), ("1", "2")),
+        ("joint,A,B\nq1,10,30\nq2,20,40\n", ("q1", "q2"), ("A", "B")),
+        ("Joint 1 2\nq1 10 30\nq2 20 40\n", ("q1", "q2"), ("1", "2")),
+        ("point,1,2\nA,10,20\nB,30,40\n", ("1", "2"), ("A", "B")),
+        ("1,2\n10,20\n30,40\n", ("1", "2"), ("1", "2")),
+    ],
+)
+def test_tables_of_many_forms_hold_the_same_way_points(table, text, joints, labels):
+    said = []
+    path = table(text)
+    case = parse_case(scaffold(path, {"position": "deg"}, warn=said.append), "x")
+    assert (case.robot.joints, case.document.waypoints.labels) == (joints, labels)
+    np.testing.assert_array_equal(
+        np.rad2deg(case.problem().waypoints).round(9), [[10, 20], [30, 40]]
+    )
+    # Numbers in their order are names, or a way-point whose header is missing.
+    warned = (
+        f"{path}: line 1 is taken for the names of the joints, 1, 2; if these are a way-point, "
+    )
+    assert said == ([warned + "put a header above it"] if text.startswith("1") else [])
+
+
 names = st.text(st.characters(codec="utf-8", exclude_characters=",;\t\r\n"), min_size=1)
 numbers = st.decimals(-999, 999, places=3).map(str)
 
@@ -88,9 +120,37 @@ def test_what_is_written_loads_or_the_table_is_refused(tmp_path_factory, joints,
         ("a,a\n1,2\n3,4\n", "line 1, column 2: joint 'a' is named twice; rename one"),
         ("a,\n1,2\n3,4\n", "line 1, column 2: the joint has no name; head every column"),
         ("point\nA\nB\n", "line 1: names no joint; head one column per joint"),
+        ("0.1,-2\n1,2\n3,4\n", HOLDS_NUMBERS),
+        # The first line is a way-point, and the next one must not be taken for the start.
+        ("10,20\n55,35\n60,20\n", HOLDS_NUMBERS),
+        ("2,1\n55,35\n60,20\n", HOLDS_NUMBERS),
+        ("10 20\n55 35\n60 20\n", HOLDS_NUMBERS),
+        ("A,10,20\nB,55,35\nC,60,20\n", HOLDS_NUMBERS),
+        ("P1,1e1,7\nP2,55,35\nP3,5,3\n", HOLDS_NUMBERS),
         (
-            "0.1,-2\n1,2\n3,4\n",
-            "line 1: holds numbers; the first line names the joints, put a header above it",
+            "joint 1;joint 2\n10 20\n30 40\n",
+            "line 2: holds 2 numbers with spaces between, in one cell; put commas between, "
+            "in every line",
+        ),
+        (
+            "name,A,B,C\nJ1,1,2,3\nJ2,4,5,6\n",
+            "column 1: names joints, J1 first; give a row for each way-point, or head this column "
+            '"joint" if each row is a joint',
+        ),
+        (
+            "joint,A,B\n10,1,2\n20,4,5\n",
+            "column 1: holds numbers; name each joint there, such as J1",
+        ),
+        ("joint,A\nJ1,1\nJ2,4\n", "holds 1 way-points; give at least two rows of numbers"),
+        ("joint,A,B\nJ1,1,2\nJ1,4,5\n", "line 3, column 1: joint 'J1' is named twice; rename one"),
+        (
+            "i,a,b\n1,5,2\n2,5,3\n3,9,7\n",
+            "column 1: numbers the rows; head it \"point\" in place of 'i', or write 1.0 if it is "
+            "a joint's",
+        ),
+        (
+            "time (s),a\n0.5,2\n1.0,3\n",
+            "line 1, column 1: 'time (s)' is no joint; leave instants out, and print durations",
         ),
         (
             "a;b\n1;2\n3;0,5\n",
@@ -238,6 +298,14 @@ def test_limits_of_each_joint_and_printed_times_are_taken_as_given(table):
             {"family": "clamped"},
             "family: 'clamped' is not known; did you mean clamped-b-spline or "
             "clamped-cubic? All: 3-5-3",
+        ),
+        (
+            {"durations": "1,2"},
+            "durations: lists 2 numbers, and the curve has 3 segments; give one for each",
+        ),
+        (
+            {"durations": "1,2,3,4", "family": "rest-to-rest", "degree": 5, "where": "x"},
+            "durations: lists 4 numbers, and the curve has 3 segments; give one for each",
         ),
         ({"family": "bezier"}, "family: 'bezier' is not known; use one of 3-5-3"),
         ({"family": "rest-to-rest"}, "degree: is missing"),

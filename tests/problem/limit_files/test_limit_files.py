@@ -4,8 +4,9 @@ import math
 
 import numpy as np
 import pytest
-from trajgap.problem import CaseError
+from trajgap.problem import CaseError, TrajgapError
 from trajgap.problem.limit_files import limits_of_flags, merge, read_limits
+from trajgap.problem.motions import JointLimits, unstated_words
 
 ARM = """<?xml version="1.0"?>
 <robot name="arm" version="1.2">
@@ -53,7 +54,10 @@ def test_a_urdf(tmp_path):
         "deceleration": (-12.0, 12.0),
         "jerk": (-90.0, 90.0),
     }
-    assert stated.ranges["wheel"] == {"velocity": (-4.0, 4.0)}
+    assert stated.ranges["wheel"] == {
+        "velocity": (-4.0, 4.0),
+        "position": (-math.inf, math.inf),  # the format says that it has none
+    }
     assert stated.ranges["slide"] == {"position": (0.0, 0.4), "velocity": (-0.5, 0.5)}
 
 
@@ -137,6 +141,16 @@ FAULTS = {
     "less.yaml": ("joint_limits: {a: {max_velocity: -1}}\n", "is negative"),
     "nan.yaml": ("joint_limits: {a: {max_velocity: .nan}}\n", "is NaN"),
     "lacks.yaml": ("joint_limits: {a: {has_velocity_limits: true}}\n", "max_velocity: is missing"),
+    "limits.urdf": (ARM.replace("<limit", "<limit velocity='1'/><limit", 1), "has two limits"),
+    "two.yaml": ("joint_limits: {a: {}}\n---\njoint_limits: {b: {}}\n", "holds 2 documents"),
+    "large.urdf": (ARM.replace('velocity="3"', 'velocity="1e400"'), "beyond the range of float64"),
+    "wide.urdf": (ARM.replace('velocity="3"', 'velocity="1e101"'), "is beyond 1e+100"),
+    "large.yaml": ("joint_limits: {a: {max_velocity: 1.0e+400}}\n", "is another number in YAML"),
+    "octal.yaml": ("joint_limits: {a: {max_velocity: 010}}\n", "is another number in YAML"),
+    "sixty.yaml": ("joint_limits: {a: {max_velocity: 1:30}}\n", "is another number in YAML"),
+    "hours.yaml": ("joint_limits: {a: {max_velocity: 1:30.5}}\n", "is another number in YAML"),
+    "twice.yaml": ("joint_limits: {a: {}, b: {}, a: {}}\n", "line 1: the key 'a' occurs twice"),
+    "spelt.yaml": ("joint_limits: {a: {max_velocty: 1}}\n", "did you mean 'max_velocity'?"),
     "range.yaml": (
         "joint_limits: {a: {has_position_limits: true, min_position: 1}}\n",
         "needs min_position and max_position",
@@ -156,8 +170,10 @@ def test_one_clear_line(tmp_path, name):
 
 def test_a_source_of_another_robot_is_refused(tmp_path):
     stated = read_limits(write(tmp_path, "arm.urdf", ARM))
-    with pytest.raises(CaseError, match=r"names none of the joints turm; did you mean 'turn'\?"):
-        stated.for_joints(("turm",))
+    with pytest.raises(
+        CaseError, match=r"joint with limits there; rename it or add it; known: turn, wheel, slide"
+    ):
+        stated.for_joints(("x", "y"))
     ranges = limits_of_flags({"acceleration": "-1:2"}, ("turn",), np.ones(1))
     only = limits_of_flags({"deceleration": "3"}, ("turn",), np.ones(1))
     with pytest.raises(CaseError, match="two-sided"):
@@ -169,8 +185,11 @@ def test_a_source_of_another_robot_is_refused(tmp_path):
     [
         ({"velocity": "1,2,3"}, "3 limits for 2 joints"),
         ({"velocity": ""}, "0 limits for 2"),
-        ({"jerk": "fast"}, "'fast' is no limit"),
-        ({"jerk": "nan"}, "'nan' is no limit"),
+        ({"jerk": "fast"}, "'fast' is no number; give 6, or -1:2"),
+        ({"jerk": "nan"}, "'nan' is no number"),
+        ({"jerk": "1_000"}, "'1_000' is no number"),
+        ({"jerk": "1e400"}, "'1e400' is beyond the range of float64"),
+        ({"jerk": "1e101"}, "is beyond 1e.100"),
         ({"jerk": "1:2:3"}, "is no limit"),
         ({"velocity": "-1"}, "is negative"),
         ({"deceleration": "-1:1"}, "is a range"),
@@ -180,3 +199,91 @@ def test_a_source_of_another_robot_is_refused(tmp_path):
 def test_flags_that_are_none(given, wanted):
     with pytest.raises(CaseError, match=wanted):
         limits_of_flags(given, ("a", "b"), np.ones(2))
+
+
+TWO_ARMS = "joint_limits: {left_1: {max_velocity: 1}, right_1: {}}\n"
+
+
+@pytest.mark.parametrize(
+    ("files", "joints", "wanted"),
+    [
+        # A name that no file knows.
+        (["arm.urdf"], ("turn", "wheel_"), r"arm.urdf: wheel_: .*did you mean 'wheel'\?"),
+        (
+            ["arm.urdf"],
+            ("turn", "x"),
+            "x: is no joint with limits there; rename it or add it; known: wheel, slide",
+        ),
+        (["arm.urdf"], ("turm", "slyde"), "turm: .*'turn'.*; also slyde: .*'slide'"),
+        (["arm.urdf"], ("turn", "finger"), "finger: is no joint with limits there"),  # it mimics
+        (["flags", "arm.urdf"], ("turn", "wheel_"), "did you mean 'wheel'"),
+        # The file that counts first misspells what the other one knows.
+        (["misspelt.yaml", "arm.urdf"], ("turn", "wheel"), r"misspelt.yaml: turn: .*'turm'"),
+        (["two_arms.yaml", "arm.urdf"], ("turn", "wheel"), "two_arms.yaml: turn: is no joint"),
+        (["l.yaml", "arm.urdf"], ("turn", "wheel", "slide"), None),  # it need not name all
+        (["two_arms.yaml"], ("right_1",), None),
+        (["flags"], ("whatever",), None),
+    ],
+)
+def test_a_joint_whose_limits_stand_under_another_name(tmp_path, files, joints, wanted):
+    texts = {
+        "arm.urdf": ARM,
+        "l.yaml": YAML,
+        "misspelt.yaml": YAML.replace("turn:", "turm:"),
+        "two_arms.yaml": TWO_ARMS,
+    }
+    sources = [
+        limits_of_flags({"velocity": "1"}, joints, np.ones(len(joints)))
+        if name == "flags"
+        else read_limits(write(tmp_path, name, texts[name]))
+        for name in files
+    ]
+    if wanted is None:
+        assert merge(joints, sources).joints == joints
+        return
+    with pytest.raises(CaseError, match=wanted):
+        merge(joints, sources)
+
+
+def test_what_is_unstated_is_known_and_goes_into_no_problem(tmp_path):
+    joints = ("wheel", "turn")
+    urdf = read_limits(write(tmp_path, "arm.urdf", ARM))
+    found = urdf.for_joints(joints)
+    assert found.unstated == (("wheel", "acceleration"), ("wheel", "jerk"))
+    words = "acceleration and jerk of joint wheel, no limit stated"
+    assert unstated_words(found.unstated, joints) == words
+    for name in ("symmetric", "two_sided"):
+        with pytest.raises(TrajgapError, match="acceleration of joint wheel: no limit is stated"):
+            getattr(found, name)
+    said = limits_of_flags({"acceleration": "inf,8", "jerk": "inf"}, joints, np.ones(2))
+    full = merge(joints, [said, urdf])
+    assert full.unstated == ()
+    np.testing.assert_array_equal(full.symmetric.acceleration, [math.inf, 8.0])
+    # A quantity that no joint has is no part of the problem.
+    one = merge(joints, [limits_of_flags({"velocity": "2,3"}, joints, np.ones(2))])
+    np.testing.assert_array_equal(one.two_sided.velocity, [2.0, 3.0])
+    both = JointLimits.from_values(joints, velocity=2.0, jerk=math.inf)
+    assert {quantity for _, quantity in both.unstated} == {"position", "acceleration"}
+    assert JointLimits.of(full.symmetric, joints).unstated == ()
+
+
+@pytest.mark.parametrize(
+    ("lacking", "wanted"),
+    [
+        ({}, ""),
+        ({"a": "pvaj"}, "joint a, no limit stated"),
+        ({"a": "pvaj", "b": "aj", "c": "aj"}, "joint a; acceleration and jerk, no limit stated"),
+        ({"a": "j", "b": "j", "c": "j"}, "jerk, no limit stated"),
+        ({"a": "pvaj", "c": "pvaj", "b": "p"}, "joints a and c; position, no limit stated"),
+        (
+            {"a": "paj", "b": "j", "c": "j"},
+            "jerk; position and acceleration of joint a, no limit stated",
+        ),
+        ({"a": "v", "c": "v"}, "velocity of joints a and c, no limit stated"),
+        ({"a": "pvaj", "b": "pvaj", "c": "pvaj"}, "joints a, b and c, no limit stated"),
+    ],
+)
+def test_what_is_unstated_in_words(lacking, wanted):
+    words = {"p": "position", "v": "velocity", "a": "acceleration", "j": "jerk"}
+    unstated = [(joint, words[sign]) for joint, signs in lacking.items() for sign in signs]
+    assert unstated_words(unstated, ("a", "b", "c")) == wanted

@@ -80,3 +80,33 @@ def test_what_overflows_proves_nothing() -> None:
     found, _ = divided_extremes(times, values, 1, 1, np.zeros(1))
     assert found[0, 0, 0] == pytest.approx(-1e307)
     assert np.isnan(found).sum() == 0
+
+
+@pytest.mark.parametrize("order", range(1, 4))
+def test_shaken_times_and_values_are_within_the_error(order: int) -> None:
+    """Each at one end of its noise or the other, window by window in rationals."""
+    rng = np.random.default_rng(order)
+    clock, noise = 2e-4, np.array([0.0, 1e-5])
+    for seed in range(20):
+        times, values = samples(seed, order + 1)
+        found, _ = divided_extremes(times, values, order, 1, noise, clock)
+        for j in range(2):
+            shifts = [rng.choice([-1.0, 1.0], order + 1) * x for x in (clock, noise[j])]
+            t, q = (
+                [Fraction(float(x)) + Fraction(float(d)) for x, d in zip(one, by, strict=True)]
+                for one, by in zip((times, values[:, j]), shifts, strict=True)
+            )
+            truth = sum(
+                x * factorial(order) / prod((a - b for b in t if b != a), start=Fraction(1))
+                for a, x in zip(t, q, strict=True)
+            )
+            value, error, _ = found[j, 0]
+            assert abs(truth - Fraction(float(value))) <= Fraction(float(error))
+            assert error < 30 * np.abs(value) + 1
+
+
+def test_samples_whose_order_is_not_known_prove_nothing() -> None:
+    times, values = np.array([0.0, 1.0, 1.5]), np.array([[0.0], [1.0], [9.0]])
+    found, widest = divided_extremes(times, values, 1, 1, np.zeros(1), 0.3)
+    np.testing.assert_array_equal(found[0, 1, :1], [1.0])
+    assert widest[0] == np.inf

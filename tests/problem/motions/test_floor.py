@@ -104,13 +104,31 @@ def test_the_floor_sums_over_standstills_and_waits_nowhere():
     assert paused.above == pytest.approx(2.6 / by_hand - 1)
 
 
-def test_the_larger_side_counts():
-    uneven = JointLimits.from_values(("1", "2"), 2.0, 8.0)
-    lower = uneven.lower.copy()
-    lower[:, 1] = -4.0
-    wide = JointLimits(("1", "2"), lower, uneven.upper, uneven.deceleration)
+@pytest.mark.parametrize("side", ["lower", "upper"])
+@pytest.mark.parametrize("order", [1, 2, 3])
+def test_the_larger_side_counts(order, side):
+    """A motion may be planned to the larger side: nothing shorter than the floor exists."""
+    sizes = [2.0, 8.0, 60.0]
+    even = JointLimits.from_values(("1", "2"), *sizes)
+    lower, upper = even.lower.copy(), even.upper.copy()
+    {"lower": lower, "upper": upper}[side][:, order] *= 1.7
+    sizes[order - 1] *= 1.7
     stops = np.array([[0.0, 1.0], [1.0, 0.5]])
-    assert check_motion(trip(stops), wide).floor.time == pytest.approx(shortest(1.0, 4, 8, INF))
+    found = check_motion(trip(stops), JointLimits(("1", "2"), lower, upper, even.deceleration))
+    assert found.floor.time == pytest.approx(shortest(1.0, *sizes))
+
+
+@pytest.mark.parametrize(("speeding", "braking"), [(3.0, 8.0), (8.0, 3.0), (8.0, INF)])
+def test_the_floor_lies_below_the_trapezoid_with_braking_of_its_own(speeding, braking):
+    """d/V + V/2A + V/2D (Biagiotti and Melchiorri, 2008, trapezoid with unequal ramps)."""
+    limits = JointLimits.from_values(
+        ("1", "2"), 2.0, acceleration=speeding, deceleration=braking, jerk=INF
+    )
+    stops = np.array([[0.0, 4.0], [4.0, 3.5]])
+    floor = check_motion(trip(stops), limits).floor.time
+    ramps = [a if np.isfinite(a) else speeding for a in (speeding, braking)]
+    assert floor == pytest.approx(shortest(4.0, 2.0, max(ramps), INF))
+    assert floor <= 4.0 / 2.0 + sum(2.0 / (2 * a) for a in ramps) + 1e-12
 
 
 @pytest.mark.parametrize(

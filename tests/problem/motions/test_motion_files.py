@@ -41,6 +41,18 @@ def test_tables(tmp_path, name, text):
     assert read.format == "CSV"
 
 
+@pytest.mark.parametrize("header", ["q1,qd1,q2,qd2", "q1,dq1,q2,dQ2", "pos1,v1,pos2,vel2"])
+def test_numbered_columns_of_velocities_are_no_joints(tmp_path, header):
+    """As logs of q1, qd1 have them; A1 and E1 beside each other stay two joints."""
+    rows = "0,1,9,2,8\n1,3,7,4,6\n"
+    samples = read_motion(write(tmp_path, "a.csv", f"time,{header}\n{rows}")).content
+    assert samples.joints == tuple(header.split(",")[::2])
+    assert samples.position.tolist() == [[1.0, 2.0], [3.0, 4.0]]
+    assert samples.velocity.tolist() == [[9.0, 8.0], [7.0, 6.0]]
+    axes = read_motion(write(tmp_path, "b.csv", f"time,A1,A2,E1,V1\n{rows}")).content
+    assert axes.joints == ("A1", "A2", "E1", "V1")
+
+
 def test_a_table_without_header_in_units_of_its_own(tmp_path):
     path = write(tmp_path, "a.csv", "0 180 1000\n1 90 500\n")
     samples = read_motion(path, ("deg", "mm"), (1.8, 2.0), ("turn", "slide")).content
@@ -48,23 +60,6 @@ def test_a_table_without_header_in_units_of_its_own(tmp_path):
     np.testing.assert_allclose(samples.position, [[np.pi, 1.0], [np.pi / 2, 0.5]])
     np.testing.assert_allclose(samples.margin, [np.pi / 100, 0.002])
     assert read_motion(path).joints == ("1", "2")
-
-
-def test_parquet(tmp_path):
-    pyarrow = pytest.importorskip("pyarrow")
-    from pyarrow import parquet
-
-    columns = {"time": [0.0, 0.5], "a": [1, 2], "a velocity": [0.5, 0.25]}
-    parquet.write_table(pyarrow.table(columns), tmp_path / "a.parquet")
-    read = read_motion(tmp_path / "a.parquet")
-    assert read.format == "Parquet"
-    assert read.content.velocity.tolist() == [[0.5], [0.25]]
-    write(tmp_path, "b.parquet", b"PAR1 no")
-    with pytest.raises(CaseError, match="no Parquet table"):
-        read_motion(tmp_path / "b.parquet")
-    parquet.write_table(pyarrow.table({"time": ["x"], "a": [1]}), tmp_path / "c.parquet")
-    with pytest.raises(CaseError, match="no Parquet table"):
-        read_motion(tmp_path / "c.parquet")
 
 
 def spline():
@@ -100,6 +95,7 @@ def message(stamp):
 STAMPS = {
     "ROS 2": lambda s, n: {"sec": s, "nanosec": n},
     "ROS 1": lambda s, n: {"secs": s, "nsecs": n},
+    "Foxglove": lambda s, n: {"sec": s, "nsec": n},
     "seconds": lambda s, n: s + n * 1e-9,
 }
 WRAPPED = {
@@ -199,6 +195,8 @@ FAULTS = {
     "same.csv": ("time,a\n0,1\n0,2\n", "times must increase"),
     "notime.csv": ("a,b\n0,1\n1,2\n", "no column is named time"),
     "times.csv": ("time,t\n0,1\n1,2\n", "several columns are named time"),
+    "deg.csv": ("time,a_deg\n0,1\n1,2\n", "the name 'a_deg' ends in a unit"),
+    "unit.csv": ("time,a,a vel [rad/s]\n0,1,2\n1,2,3\n", "the name 'a vel [rad/s]' ends in"),
     "twice.csv": ("time,a,a\n0,1,2\n1,2,3\n", "two columns are named 'a'"),
     "partial.csv": ("time,a,b,a velocity\n0,1,2,3\n1,2,3,4\n", "no velocity of joint b"),
     "orphan.csv": ("time,a velocity\n0,1\n1,2\n", "no position of joint a"),
@@ -206,6 +204,9 @@ FAULTS = {
     "binary.csv": (b"time,a\n0,\0\n", "binary"),
     "latin.csv": (b"time,gelenk-\xe4\n0,1\n", "not UTF-8"),
     "huge.csv": ("0,1e999\n1,2\n", "not finite"),
+    "epoch.csv": ("timestamp,a\n1767225600000,1\n1767225600010,2\n", "is 1.76723e+12, no time in"),
+    "nanos.csv": ("1767225600000000000,1\n1767225600010000000,2\n", "convert it to seconds"),
+    "large.csv": ("0,1e101\n1,2\n", "beyond 1e+100"),
     "wide.csv": (",".join(["1"] * 500) + "\n", "more than is read"),
     "broken.json": ("{", "not valid JSON"),
     "nan.json": ('{"x": [0, NaN], "c": []}', "holds NaN"),
@@ -213,7 +214,35 @@ FAULTS = {
     "list.json": ("[1, 2]", "holds no trajectory"),
     "number.json": ("7", "holds no trajectory"),
     "ragged.json": ('{"breaks": [0, 1], "coefficients": [[[1], [1, 2]]]}', "ragged"),
-    "flat.json": ('{"breaks": [0, 1], "coefficients": [1, 2]}', "3 are needed"),
+    "flat.json": ('{"breaks": [0, 1], "coefficients": [1, 2]}', "1 levels of lists, 3 are needed"),
+    "twice.json": ('{"breaks": [0, 1], "breaks": [0, 9], "coefficients": [[[1]]]}', "occurs twice"),
+    "inner.json": ('{"joints": [], "units": {"time": "s", "time": "ms"}}', "'time' occurs twice"),
+    "text.json": ('{"breaks": [0, 1], "coefficients": [[["1"]]]}', "holds '1', which is no number"),
+    "true.json": ('{"breaks": [0, true], "coefficients": [[[1]]]}', "breaks: holds 'True'"),
+    "null.json": ('{"breaks": [0, 1], "coefficients": [[[null]]]}', "holds 'None'"),
+    "most.json": (
+        '{"breaks": [0, 1, 2], "coefficients": [[[1e308], [1e308]], [[-1e308], [0]]]}',
+        "moves a joint by more than 1e+100",
+    ),
+    "power.json": (
+        '{"breaks": [0, 1e25], "coefficients": [[[1]] * 9]}'.replace(
+            "[[1]] * 9", "[" + ", ".join(["[1]"] * 9) + "]"
+        ),
+        "a coefficient is not finite",
+    ),
+    "over.json": ('{"breaks": [0, 1e400], "coefficients": [[[1]]]}', "not finite"),
+    "ms.json": (
+        '{"breaks": [0, 1], "coefficients": [[[1]]], "units": {"time": "ms"}}',
+        "units: time is in s",
+    ),
+    "grad.json": (
+        '{"breaks": [0, 1], "coefficients": [[[1]]], "units": {"position": "grad"}}',
+        "units.position: is unknown",
+    ),
+    "form.json": (
+        '{"format": "trajgap-motion/2", "breaks": [0, 1], "coefficients": [[[1]]]}',
+        "format: 'trajgap-motion/2' is not known",
+    ),
     "pieces.json": ('{"breaks": [0, 1, 2], "coefficients": [[[1]]]}', "1 pieces for 3 breaks"),
     "nobreaks.json": ('{"coefficients": [[[1]]]}', "x: is missing"),
     "labels.json": ('{"breaks": [0, 1], "coefficients": [[[1]]], "joints": "ab"}', "list of names"),
@@ -232,6 +261,34 @@ FAULTS = {
     "sec.yaml": (
         "joint_names: [a]\npoints: [{positions: [1], time_from_start: {s: 1}}, {}]\n",
         "has no sec",
+    ),
+    **{
+        f"clock{k}.yaml": (
+            f"joint_names: [a]\npoints: [{{positions: [1], time_from_start: {stamp}}}, {{}}]\n",
+            wanted,
+        )
+        for k, (stamp, wanted) in enumerate(
+            (
+                ("{sec: 0, nanosec: 4294967296}", "nanosec: is 4294967296; give a whole number"),
+                ("{sec: 0, nanosec: 1000000000}", "from 0 to 999999999"),
+                ("{sec: 0, nanosec: -1}", "nanosec: is -1"),
+                ("{sec: 0, nanosec: 0.5}", "nanosec: is 0.5"),
+                ("{sec: 2147483648}", "sec: is 2147483648"),
+                ("{sec: -1}", "sec: is -1"),
+                ("{sec: true}", "sec: is True"),
+                ("{sec: 1.5}", "sec: is 1.5"),
+                ("{secs: '1'}", "secs: is 1;"),
+                ("{sec: 1, nsecs: 5}", "other fields; give sec and nanosec alone"),
+                ("{sec: 1, nanosec: 010}", "is another number in YAML"),
+                ("-0.5", "is -0.5; give seconds"),
+                ("1.0e+300", "is 1e+300; give seconds"),
+            )
+        )
+    },
+    "twice.yaml": ("joint_names: [a]\njoint_names: [b]\n", "line 1: the key 'joint_names'"),
+    "velocity.yaml": (
+        "joint_names: [a]\npoints: [{positions: [1], velocity: [0], time_from_start: 0}, {}]\n",
+        "points[0].velocity: did you mean 'velocities'?",
     ),
     "text.yaml": (
         "joint_names: [a]\npoints: [{positions: [x], time_from_start: 0}, {}]\n",
@@ -292,6 +349,8 @@ def test_units_and_noise_are_checked(tmp_path):
     path = write(tmp_path, "a.csv", "0,1,2\n1,2,3\n")
     ros = write(tmp_path, "m.json", json.dumps(message(STAMPS["ROS 2"])))
     poly = write(tmp_path, "p.json", '{"breaks": [0, 1], "coefficients": [[[1]]]}')
+    stated = write(tmp_path, "s.json", poly.read_text()[:-1] + ', "units": {"position": "deg"}}')
+    assert read_motion(stated, ("deg",)).units == read_motion(stated).units == ("deg",)
     for given, wanted in (
         ((path, ("turn",)), "--units: 'turn' is unknown"),
         ((path, ("deg", "deg", "mm")), "3 units for 2 joints"),
@@ -299,6 +358,7 @@ def test_units_and_noise_are_checked(tmp_path):
         ((path, ("deg",), (-1.0,)), "noise"),
         ((ros, ("deg",)), "in rad and m"),
         ((poly, ("deg",), (0.1,)), "is of samples"),
+        ((stated, ("rad",)), "--units: the file itself states deg; leave it out"),
     ):
         with pytest.raises(CaseError, match=wanted):
             read_motion(*given)

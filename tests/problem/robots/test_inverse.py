@@ -142,32 +142,24 @@ def test_turns_are_taken_off_towards_the_guess():
 # Nothing there
 
 
-def test_out_of_reach_is_proved_by_the_lengths():
-    found = inverse_kinematics(PLANAR, [1.2, 0, 0], 0)
-    assert found.status is IkStatus.OUT_OF_REACH
-    assert not found.solved
-    assert found.solved_starts == 0
-    # The nearest it gets is stretched out.
-    assert found.position_error == pytest.approx(0.1, abs=1e-6)
-    assert np.abs(found.joints).max() < 1e-2
-
-
-def test_a_hole_in_the_workspace_is_not_found():
-    found = inverse_kinematics(PLANAR, [0.2, 0, 0], 0)
-    assert found.status is IkStatus.NOT_FOUND
-    # Joint 2 stops at 3 rad, short of folding back.
-    nearest = np.sqrt(0.7**2 + 0.4**2 + 2 * 0.7 * 0.4 * np.cos(3.0)) - 0.2
-    assert found.position_error == pytest.approx(nearest, abs=1e-6)
-    assert abs(found.joints[1]) == 3.0
-
-
-def test_a_solution_beyond_a_bound_is_not_one():
-    chain = PLANAR.with_bounds([-0.2, -3], [0.2, 3])
-    target = [-0.5, -0.6, 0]
-    assert inverse_kinematics(PLANAR, target, 0).solved
-    found = inverse_kinematics(chain, target, 0)
-    assert found.status is IkStatus.NOT_FOUND
-    assert abs(found.joints[0]) == 0.2
+@pytest.mark.parametrize(
+    ("chain", "x", "y", "status", "joint", "value", "error"),
+    [
+        # Proved by the lengths: the nearest it gets is stretched out.
+        (PLANAR, 1.2, 0.0, IkStatus.OUT_OF_REACH, 1, 0.0, 0.1),
+        # A hole in the workspace: joint 2 stops at 3 rad, short of folding back.
+        (PLANAR, 0.2, 0.0, IkStatus.NOT_FOUND, 1, 3.0, np.hypot(0.7 + 0.4 * np.cos(3.0),
+                                                                0.4 * np.sin(3.0)) - 0.2),
+        # Reached by joint 1 beyond its bound alone.
+        (PLANAR.with_bounds([-0.2, -3], [0.2, 3]), -0.5, -0.6, IkStatus.NOT_FOUND, 0, 0.2, None),
+    ],
+)  # fmt: skip
+def test_where_there_is_nothing_the_nearest_is_given(chain, x, y, status, joint, value, error):
+    found = inverse_kinematics(chain, [x, y, 0], 0)
+    assert (found.status, found.solved, found.solved_starts) == (status, False, 0)
+    assert abs(found.joints[joint]) == pytest.approx(value, abs=1e-2 if value == 0 else 0)
+    assert error is None or found.position_error == pytest.approx(error, abs=1e-6)
+    assert inverse_kinematics(PLANAR, [-0.5, -0.6, 0], 0).solved
 
 
 def test_joints_held_by_equal_bounds_stay():

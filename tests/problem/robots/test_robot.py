@@ -32,32 +32,6 @@ def some(chain: Chain, count: int, seed: int = 3) -> np.ndarray:
 # Hand-derived transforms
 
 
-def test_planar_arm_by_hand():
-    arm = Chain(S, a=[0.7, 0.4], alpha=[0, 0], d=[0, 0.1])
-    q1, q2 = 0.3, -1.1
-    expected = rotation("z", q1 + q2)
-    expected[:3, 3] = (
-        0.7 * np.cos(q1) + 0.4 * np.cos(q1 + q2),
-        0.7 * np.sin(q1) + 0.4 * np.sin(q1 + q2),
-        0.1,
-    )
-    np.testing.assert_allclose(forward_kinematics(arm, [q1, q2]), expected, atol=1e-15)
-
-
-def test_scara_by_hand_with_a_sliding_joint():
-    kinds = (JointKind.REVOLUTE, JointKind.REVOLUTE, JointKind.PRISMATIC, JointKind.REVOLUTE)
-    arm = Chain(S, [0.3, 0.25, 0, 0], [0, np.pi, 0, 0], [0.2, 0, 0.05, 0.01], kinds=kinds)
-    q = np.array([0.4, 0.9, 0.12, -0.3])
-    end = forward_kinematics(arm, q)
-    np.testing.assert_allclose(end[2, 3], 0.2 - (0.05 + 0.12) - 0.01, atol=1e-15)
-    np.testing.assert_allclose(
-        end[:2, 3],
-        [0.3 * np.cos(0.4) + 0.25 * np.cos(1.3), 0.3 * np.sin(0.4) + 0.25 * np.sin(1.3)],
-        atol=1e-15,
-    )
-    np.testing.assert_allclose(end[:3, 2], [0, 0, -1], atol=1e-15)
-
-
 @pytest.mark.parametrize("convention", [S, M])
 @pytest.mark.parametrize("seed", range(3))
 def test_positions_alone_are_those_of_the_transforms(convention: Convention, seed: int):
@@ -152,23 +126,6 @@ def test_random_chains_equal_the_toolbox(convention):
 def test_product_of_elementary_transforms(chain, random):
     q = [random.uniform(-3, 3) for _ in range(chain.joints)]
     np.testing.assert_allclose(forward_kinematics(chain, q), elementary(chain, q), atol=1e-13)
-
-
-@settings(max_examples=60, deadline=None)
-@given(chains(fewest=2))
-def test_modified_is_standard_with_rows_moved_on(chain):
-    standard = replace(chain, convention=S)
-    moved = replace(
-        chain,
-        convention=M,
-        a=np.append(0.0, chain.a[:-1]),
-        alpha=np.append(0.0, chain.alpha[:-1]),
-    )
-    q = some(chain, 4)
-    last = translation(x=chain.a[-1]) @ rotation("x", chain.alpha[-1])
-    np.testing.assert_allclose(
-        forward_kinematics(standard, q), forward_kinematics(moved, q) @ last, atol=1e-13
-    )
 
 
 @settings(max_examples=60, deadline=None)

@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import math
 import re
@@ -169,15 +168,6 @@ def test_shipped_robots():
         path = ROBOTS / f"{robot_id}.toml"
         assert robot_file(path) == robot
         assert load_robot(str(path)).labels == load_robot(robot_id).labels
-
-
-def test_z1_is_as_printed():
-    table = ROOT / "tests" / "support" / "published_tables" / "z1-woa-bspline.table-1.csv"
-    with table.open(encoding="utf-8") as file:
-        printed = list(csv.reader(file))[1:]
-    dh = robot_file("z1").dh
-    rows = [[entry.text for entry in row] for row in zip(dh.d, dh.alpha, dh.a, strict=True)]
-    assert rows == [row[1:] for row in printed]
 
 
 # Case files

@@ -260,20 +260,6 @@ def test_every_instance_is_proved_again(name: str) -> None:
     solved_again(name)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", [one.name for one in list_instances() if one.upper_proved])
-def test_random_durations_never_beat_a_bound(name: str) -> None:
-    one = load_instance(name)
-    problem = one.problem()
-    rng = np.random.default_rng(3)
-    near = np.array(one.durations) * np.exp(rng.normal(0, 0.2, (2000, problem.segments)))
-    stretched = near * evaluate(problem, near).stretch[:, None]
-    inside = (stretched >= problem.duration_lower) & (stretched <= problem.duration_upper)
-    totals = stretched.sum(axis=1)[inside.all(axis=1)]
-    assert totals.size > 0
-    assert totals.min() >= one.lower * (1 - 1e-9)
-
-
 def test_a_certificate_of_another_instance_is_no_evidence() -> None:
     one, other = load_instance("353-puma560"), load_instance("353-puma560-joint-1")
     file = other.certificate_file()

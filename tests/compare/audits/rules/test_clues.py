@@ -183,6 +183,26 @@ def test_limits_held_at_samples_or_on_control_vertices() -> None:
     assert 0.97 * held.everywhere < held.sampled < held.everywhere
 
 
+@pytest.mark.parametrize(
+    ("limits", "low"),
+    [
+        # scipy's clamped cubic through 0, 1.2 and 1.1 rad in 1 and 1.5 s rises to 1.40776 rad, and
+        # to 1.40772 rad at ten steps a segment; its speed to 1.60627 and 1.60320 rad/s.
+        ("velocity = 3\nposition_upper = 1.25\nposition_lower = -0.05", 1.0 + 0.15772 / 0.65),
+        ("velocity = 3\nposition_upper = 1.4", 1.0 + 0.00772 / 1.4),
+        ("velocity = 1.605\nposition_upper = 1.5", 1.60320 / 1.605),
+    ],
+)
+def test_every_limit_is_held_at_the_samples(limits: str, low: float) -> None:
+    text = HEAD.format(points="0, 1.2, 1.1", limit="3", time='1.0", "1.5', checks="optimal")
+    text = text.replace("velocity = 3", limits).replace("rest-to-rest", "cubic-spline")
+    text = text.replace("degree = 5\n", "")
+    study = study_of(text)
+    held = held_otherwise(study, study.case.claim("d"), "main", "as-printed")
+    assert isinstance(held, HeldOtherwise)
+    assert held.sampled == pytest.approx(low, abs=1e-4)
+
+
 def test_a_curve_without_control_vertices_says_so() -> None:
     study = study_of(SPLINE)
     held = held_otherwise(study, study.case.claim("d"), "main", "timed")

@@ -328,7 +328,7 @@ def test_the_printed_durations_are_optimal_under_no_reading(every: bool) -> None
     found = {
         f.reading: f
         for reading in readings
-        for f in of(judge_distances(study.only(claim, ("nine-segments", reading))), "TG302")
+        for f in of(judge_distances(study.only(claim, pair=("nine-segments", reading))), "TG302")
     }
     assert set(found) == set(readings)
     assert {f.verdict for f in found.values()} == {ClaimVerdict.REFUTED}

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from support.findings import said_of, study_of
 from support.one_joint import one_joint
+from support.papers.apart import apart, moving
 from trajgap.compare.audits.rules.condition_count import judge_counts
 from trajgap.compare.audits.rules.continuous_time import judge_motions
 from trajgap.compare.audits.rules.distances import judge_distances
@@ -15,6 +16,7 @@ from trajgap.compare.audits.rules.peaks import judge_peaks
 from trajgap.compare.audits.rules.peaks_and_limits import judge_peak_limits
 from trajgap.compare.audits.rules.printed_digits import judge_digits
 from trajgap.compare.audits.rules.printed_tables import judge_tables
+from trajgap.compare.audits.rules.profiles import judge_profiles
 from trajgap.compare.audits.rules.scaling_law import judge_scaling
 from trajgap.compare.documents import ClaimVerdict, Finding, Severity
 
@@ -148,6 +150,25 @@ def test_an_honest_paper_is_accused_of_nothing(seed: int) -> None:
 def test_the_same_paper_with_other_times_is_refuted(factor: float, refuted: set[str]) -> None:
     found = sound(1, factor)
     assert {f.claim for f in found if f.verdict is ClaimVerdict.REFUTED} == refuted
+
+
+@pytest.mark.parametrize("seed", range(28))
+def test_totals_that_are_kept_apart_and_profiles_from_rest_are_accused_of_nothing(
+    seed: int,
+) -> None:
+    study = study_of(apart(seed))
+    rules = (judge_digits, judge_improvements, judge_tables, judge_motions, judge_profiles)
+    found = [f for rule in rules for f in rule(study)]
+    against = [(f.rule, f.claim, f.message) for f in found if f.severity is not Severity.INFO]
+    assert against == []
+    words = {f.claim: f.verdict for f in found if f.decides and f.claim is not None}
+    assert words["profile"] is words["abstract"] is ClaimVerdict.SUPPORTED
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_profile_that_starts_or_ends_at_speed_is_accused_of_nothing(seed: int) -> None:
+    (found,) = said_of(study_of(moving(seed)), judge_profiles, "profile", "TG304")
+    assert found.verdict is ClaimVerdict.NOT_CHECKABLE
 
 
 ENDS = """

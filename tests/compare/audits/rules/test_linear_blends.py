@@ -20,6 +20,12 @@ where = "Table 2, row 1"
 durations = {durations}
 other_curve = "linear segments with parabolic blends"
 {more}
+[[claims]]
+id = "kept"
+quantity = "statement"
+where = "section 4"
+checks = "within_limits"
+of = ["row"]
 """
 
 
@@ -61,6 +67,16 @@ def test_what_rounding_leaves_open_is_refuted_by_nobody() -> None:
     text = made_up('blends = "0.4"', '["2", "1.0", "3"]', "50")
     (found,) = said_of(study_of(text), judge_blends, "row", "TG210")
     assert found.verdict is ClaimVerdict.NOT_CHECKABLE
+
+
+def test_a_row_of_which_nothing_is_said_is_refuted_by_no_limit() -> None:
+    text = made_up('blends = "0.40"').replace('of = ["row"]', "of = []")
+    one = audit_case(study_of(text))
+    (found,) = [f for f in one.findings if f.rule == "TG210"]
+    assert found.verdict is ClaimVerdict.NOT_CHECKABLE
+    assert found.message.endswith("Nothing printed says that these durations keep the limits.")
+    assert one.card.limits.endswith("; nothing printed says that they keep it.")
+    assert one.errors == 0
 
 
 def test_a_total_may_count_half_the_end_blends() -> None:
@@ -233,17 +249,6 @@ def test_a_joint_that_does_not_change_its_speed_needs_no_acceleration() -> None:
 
 def test_what_is_said_of_a_row_follows_from_it() -> None:
     """One cause, and the sentence that the limits are kept as its consequence."""
-    text = (
-        made_up('blends = "0.40"')
-        + """
-[[claims]]
-id = "kept"
-quantity = "statement"
-where = "section 4"
-checks = "within_limits"
-of = ["row"]
-"""
-    )
-    (cause,) = audit_case(study_of(text)).causes
+    (cause,) = audit_case(study_of(made_up('blends = "0.40"'))).causes
     assert cause.claim == "row"
     assert [one.claim for one in cause.consequences] == ["kept"]

@@ -186,9 +186,9 @@ degree = 3
     [
         ("", "2.00", ClaimVerdict.SUPPORTED, "as long as its slowest joint needs, takes 2 s"),
         ('path = "straight"', "2.17", ClaimVerdict.SUPPORTED, "straight line in each segment, tak"),
-        ('path = "straight"', "2.00", ClaimVerdict.INCONSISTENT, "which is 7.69% shorter"),
+        ('path = "straight"', "2.00", ClaimVerdict.INCONSISTENT, "which is 7.69 % shorter"),
         ("", "2.17", ClaimVerdict.NOT_CHECKABLE, "which fits where the joints stay on a straight"),
-        ("", "2.30", ClaimVerdict.INCONSISTENT, "which is 15.00% longer"),
+        ("", "2.30", ClaimVerdict.INCONSISTENT, "which is 15.00 % longer"),
     ],
 )
 def test_how_the_joints_go_together_is_said(
@@ -215,6 +215,56 @@ def test_what_a_profile_goes_with(left_out: str, message: str) -> None:
     claim = CLAIM.format(profile="trapezoidal", value="2.00").replace(left_out, "")
     with pytest.raises(CaseError, match=message):
         parse_case(f'{TWO.format(acceleration=1)}{claim}path = "straight"\n', "two.toml")
+
+
+@pytest.mark.parametrize(
+    ("ends", "verdict"),
+    [
+        ("end_derivatives = [0.4]", ClaimVerdict.NOT_CHECKABLE),
+        ("finish_derivatives = [[0, 0.3]]", ClaimVerdict.NOT_CHECKABLE),
+        ('end_derivatives = ["0.00"]', ClaimVerdict.INCONSISTENT),
+        ("end_derivatives = [0]", ClaimVerdict.INCONSISTENT),
+    ],
+)
+def test_a_profile_between_moving_ends_is_not_set_beside_one_from_rest_to_rest(
+    ends: str, verdict: ClaimVerdict
+) -> None:
+    """From rest 2 s; a motion that starts or ends at speed takes another time, here 1.85 s."""
+    moving = TWO.format(acceleration=1).replace(
+        'family = "rest-to-rest"\ndegree = 3',
+        f'family = "polynomials"\ndegrees = [3]\nend_orders = [1]\n{ends}',
+    )
+    claim = CLAIM.format(profile="trapezoidal", value="1.85")
+    (found,) = said_of(study_of(f"{moving}{claim}"), judge_profiles, "t", "TG304")
+    assert found.verdict is verdict
+    assert ("derivatives other than 0 at the ends" in found.message) == (
+        verdict is ClaimVerdict.NOT_CHECKABLE
+    )
+
+
+@pytest.mark.parametrize(
+    ("profile", "limits", "message"),
+    [
+        ("sine-jerk", "", r'"sine-jerk" needs limits.jerk, and none is stated; add it, or leave '),
+        ("s-curve", "jerk = [9, inf]", r'"s-curve" needs limits.jerk, and none .* for joint b; '),
+        ("trapezoidal", "", None),
+        ("s-curve", "jerk = [9, 7]", None),
+        ("free", "", r'"trapezoidal" needs limits.acceleration, and none is stated; add it'),
+    ],
+)
+def test_a_profile_needs_the_limit_that_makes_it(
+    profile: str, limits: str, message: str | None
+) -> None:
+    claim = CLAIM.format(profile=profile.replace("free", "trapezoidal"), value="2.00")
+    text = TWO.format(acceleration=1).replace("velocity = 2", f"velocity = 2\n{limits}")
+    text = text.replace('time = "s"', 'time = "s"\njerk = "rad/s^3"') + claim
+    if profile == "free":
+        text = text.replace("acceleration = [1, 4]\n", "")
+    if message is None:
+        parse_case(text, "two.toml")
+        return
+    with pytest.raises(CaseError, match=r"two.toml: claims\[0\].profile: " + message):
+        parse_case(text, "two.toml")
 
 
 def test_a_joint_that_must_not_move_and_does_is_no_fault_of_the_total() -> None:

@@ -94,7 +94,7 @@ def test_a_total_beside_spread_settings_names_the_nearest() -> None:
         "inertia = 0.999": spread(np.array([np.inf, np.inf])),
     }
     said = _typical(spreads, 3.5275, 3.5285)
-    assert "(3 settings), medians run from 3.3650 to 3.8850 s" in said
+    assert "(3 settings), medians are 3.3650 to 3.8850 s" in said
     assert "nearest to the printed total is 3.5150 s with inertia = 0.884." in said
     assert "every one of these settings" not in said
     assert _typical(spreads, 4.0, 4.001).endswith("every one of these settings is shorter.")

@@ -9,6 +9,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from trajgap.nlp import Outcome, certificate, certify, exact_problem, solve
+from trajgap.nlp.proofs.answer import keeps_limits
 from trajgap.nlp.proofs.certifiers import covered
 from trajgap.nlp.proofs.closed_form.fixed_ratios import MOST_REBUILT
 from trajgap.nlp.proofs.document import fits
@@ -17,6 +18,8 @@ from trajgap.problem import (
     Limits,
     Problem,
     TrajgapError,
+    Verdict,
+    check,
     cubic_spline,
     parse_case,
     piecewise,
@@ -219,3 +222,38 @@ def test_chord_lengths_of_several_joints_are_not_rational() -> None:
     state = {**free, "format": STATE_FORMAT, "problem": stated, "proof": None, "proposals": None}
     claim = {**free["claim"], "lower": "0"}
     assert "no durations are exactly" in verify_certificate({**state, "claim": claim}).reason
+
+
+JUMPS = {
+    "lines, jerk": (piecewise((1, 1), 0, ()), (np.inf, np.inf, 1.0)),
+    "lines, acceleration": (piecewise((1, 1), 0, ()), (np.inf, 1.0, np.inf)),
+    "lines, velocity": (piecewise((1, 1), 0, ()), (2.0, np.inf, np.inf)),
+    "cubics, jerk": (piecewise((3, 3), 0, ((1, 0.0), (2, 0.0))), (np.inf, np.inf, 40.0)),
+    "rest to rest, jerk": (rest_to_rest(2, 3), (np.inf, np.inf, 40.0)),
+}
+
+
+@pytest.mark.parametrize("sides", ["both", "upper", "lower"])
+@pytest.mark.parametrize("name", JUMPS)
+def test_a_jump_is_no_answer_of_prover_check_or_verifier(name: str, sides: str) -> None:
+    curve, sizes = JUMPS[name]
+    none = np.full((1, 3), np.inf)
+    pair = [none if sides == "upper" else np.array([sizes]),
+            none if sides == "lower" else np.array([sizes])]  # fmt: skip
+    q = [[0.0], [1.0], [-0.5]]
+    problem = Problem(q, Limits(joints=1).with_sides(pair), curve, ratios=[1.0, 1.5])
+    h = np.array([2.0, 3.0])
+    judged = check(problem, h)
+    assert judged.verdict is Verdict.DISCONTINUOUS
+    assert judged.limits is Verdict.PASS
+    assert not keeps_limits(exact_problem(problem), [Fraction(2), Fraction(3)])
+    try:
+        found = certify(problem, seconds=5.0)
+    except TrajgapError:  # nothing bounds the total from below
+        return
+    assert found.upper is None
+    if found.proof is None:
+        return
+    document = certificate(found)
+    document["claim"] |= {"durations": ["2", "3"], "upper": "5"}
+    assert "jumps" in verify_certificate(document).reason

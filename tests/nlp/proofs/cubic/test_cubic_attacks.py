@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import json
 from fractions import Fraction
 from functools import lru_cache
@@ -252,43 +251,6 @@ def test_no_altered_number_proves_a_false_statement() -> None:
 def test_no_altered_number_proves_a_false_statement_many_times() -> None:
     counts = mutate_all(40, 1)
     assert min(counts.values()) > 100
-
-
-def test_alterations_in_favour_of_the_claim_are_refused() -> None:
-    true = json.loads(small())
-    assert verify(true).proves
-    claim, proof = true["claim"], true["proof"]
-    higher = str(Fraction(claim["lower"]) * Fraction(101, 100))
-
-    def refused(change: Any) -> bool:
-        data = copy.deepcopy(true)
-        change(data)
-        return not verify(data).proves
-
-    assert refused(lambda d: d["claim"].update(lower=higher))
-    tick = Fraction(2) ** proof["second"] / TICKS
-    total = Fraction(proof["total"]) + 100_000 * tick
-    more = {"total": str(total), "cap": proof["cap"] + 100_000}
-    assert refused(lambda d: d["proof"].update(more))
-    assert refused(lambda d: d["proof"].update(total=str(total)))
-    assert refused(lambda d: d["proof"].update(tree=[]))
-    assert refused(lambda d: d["proof"].update(tree=[["."]]))
-    assert refused(lambda d: d["proof"].update(tree=[["?"]]))
-    assert refused(lambda d: d["proof"].update(root=[x + 2**24 for x in proof["root"]]))
-    assert refused(lambda d: d["problem"]["limits"][0].__setitem__(1, "2.2"))
-    assert refused(lambda d: d["problem"].update(duration_lower=["0", "0"], virtual=[1]))
-    # Floats would spoil exactness: they are no integers.
-    assert refused(lambda d: d["proof"].update(cap=float(proof["cap"])))
-    for row in proof["rows"]:
-        signed = [[*r[:3], float(r[3]), r[4]] if r is row else r for r in proof["rows"]]
-        assert refused(lambda d, signed=signed: d["proof"].update(rows=signed))
-    moved = [i for i, step in enumerate(proof["tree"]) if step[0] == "t"]
-    assert moved
-    for i in moved:
-        step = proof["tree"][i]
-        inward = [*step[:3], step[3] + step[2] * 50_000, *step[4:]]
-        tree = [inward if k == i else s for k, s in enumerate(proof["tree"])]
-        assert refused(lambda d, tree=tree: d["proof"].update(tree=tree))
 
 
 def test_the_example_s_certificate_is_fresh_and_proves() -> None:

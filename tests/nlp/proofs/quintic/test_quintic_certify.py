@@ -278,68 +278,6 @@ def test_an_altered_state_is_refused(alter: Callable[[Any], Any], match: str) ->
         certify(small(), resume=state)
 
 
-def forged(total: str, low: list[str], **proof: Any) -> dict[str, Any]:
-    """A certificate of durations of at least 0.55 s, whose least total is 1.1 s, with a proof."""
-    q = np.array([[0.0], [0.1], [0.2]])
-    problem = Problem(q, Limits(100.0, 100.0), quintic_spline(2), [0.55, 0.55])
-    document = dict(json.loads(json.dumps(certificate(certify(problem, gap=0.1)))))
-    document["proof"].update(total=total, low=low, **proof)
-    document["claim"].update(lower=total, upper=None, durations=None)
-    return document
-
-
-def test_a_window_below_the_smallest_floats_proves_nothing() -> None:
-    # tau·0.53125 is rounded up to tau, twice, and tau·1.25 down to it.
-    tau = f"0.{'0' * 323}5"
-    nothing = {"tree": [[".", 0, tau]], "windows": [[0] * 6], "rows": []}
-    verdict = verify(forged("1.25", ["0.53125", "0.53125"], **nothing))
-    assert not verdict.proves
-    assert "no number of at most 120 digits" in verdict.reason
-    nothing["tree"] = [[".", 0, "5e-61"]]
-    verdict = verify(forged("1.25", ["0.53125", "0.53125"], **nothing))
-    assert not verdict.proves
-    assert "unusual size" in verdict.reason
-
-
-def test_a_leaf_with_more_rows_than_were_counted_is_refused() -> None:
-    # Each addition is rounded: the margin is for a number of them.
-    leaf = [".", 1] + [0, 1] * 65
-    rows = {"tree": [leaf], "windows": [], "rows": [[0, 0, 1, 1, 512]]}
-    verdict = verify(forged("1.109375", ["0.546875", "0.546875"], **rows))
-    assert not verdict.proves
-    assert "too many rows" in verdict.reason
-
-
-@pytest.mark.parametrize(
-    ("tree", "reason"),
-    [
-        ([], "tree: not 1 to"),
-        ([0, ["."]], "not empty"),
-        ([["."], ["."]], "not empty"),
-        ([0] * 100_000 + [["."]], "too deep"),
-        ({}, "no list"),
-        ([0, ["."], ["."]], "not empty"),
-        ([2, ["."], ["."]], "no integer in 0..1"),
-        ([["/", 0, "0.55"], ["."], ["."]], "is not stated"),
-        ([0, 1, ["."], ["."], ["."]], "not empty"),
-        ([["r"]], "unknown tag"),
-        ([["?"]], "open"),
-    ],
-)
-def test_trees_that_cover_nothing_are_refused(tree: Any, reason: str) -> None:
-    verdict = verify(forged("1.109375", ["0.546875", "0.546875"], tree=tree))
-    assert not verdict.proves
-    assert reason in verdict.reason
-
-
-def test_a_box_that_is_empty_may_be_cut_but_not_left_open() -> None:
-    low = ["0.546875", "0.546875"]
-    assert verify(forged("1", low, tree=[0, ["."], ["."]])).proves
-    assert "open" in verify(forged("1", low, tree=[0, ["."]])).reason
-    assert "open" in verify(forged("1", low, tree=[0, ["."], ["?"]])).reason
-    assert "too many" in verify(forged("1", low, tree=[["."], ["."]])).reason
-
-
 def test_a_proof_that_contradicts_the_answer_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     found = certify(small(), gap=0.1)
     document = certificate(found)

@@ -224,16 +224,6 @@ def test_rest_to_rest_is_certified_in_closed_form(degree: int) -> None:
     assert "exceeds the total" in verify(document).reason
 
 
-def test_a_jump_of_the_acceleration_keeps_no_jerk_limit() -> None:
-    q = [[0.0], [1.0], [1.5]]
-    jumps = Problem(q, Limits(1.0, jerk=100.0), rest_to_rest(2, 3))
-    assert certify(jumps).upper is None
-    document = certificate(certify(Problem(q, Limits(1.0), rest_to_rest(2, 3))))
-    assert verify(document).proves
-    document["problem"]["limits"][0][2] = "1000000"
-    assert "acceleration jumps" in verify(document).reason
-
-
 def test_a_rest_to_rest_segment_that_is_too_short_is_proved_infeasible() -> None:
     problem = Problem([[0.0], [1.0]], Limits(1.0), rest_to_rest(1, 5), 0.1, 1.8)
     found = certify(problem)

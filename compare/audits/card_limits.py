@@ -1,0 +1,225 @@
+"""The first line of a card: whether the paper's own result keeps the limits."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from ...problem import Verdict
+from ...problem.cases import (
+    AnyClaim,
+    DurationsClaim,
+    MaximumClaim,
+    StatementClaim,
+    TimeClaim,
+    TotalTimeClaim,
+)
+from ..documents import (
+    CaveatKind,
+    ClaimVerdict,
+    Judgement,
+    Keeping,
+    Rounding,
+    among,
+    implausibly,
+    noted,
+    quoted,
+)
+from .card_optimum import limited
+from .own_result import own_results
+from .plausibility import implausible
+from .rules import blended, judge_row, meant_to_keep, said_to_keep
+from .stated import place
+from .study import Study
+
+_FEW = 2
+"""Readings or places that a sentence names; more are counted."""
+_TELLING = 1.01
+"""Ratio to a limit at the printed digits from which on a card gives it: below, digits end there."""
+_Row = DurationsClaim | MaximumClaim
+"""What prints durations."""
+_Held = Mapping[str, Mapping[str, ClaimVerdict]]
+"""What is known of the limits of printed durations, by claim and reading."""
+
+
+def limits_line(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[str]]:
+    """Whether the durations that a paper calls its result keep the limits.
+
+    Parameters
+    ----------
+    study : Study
+    words : mapping of str to Judgement
+        Of each claim, by its id.
+
+    Returns
+    -------
+    (str, set of str)
+        The sentence, and the claims that it speaks of: other rows have sentences of their own.
+    """
+    case = study.case
+    unknown = "Whether the limits are kept is not checkable"
+    if not study.has_problems:
+        return f"{unknown}: the text that was read has no way-points.", set()
+    about = [
+        c
+        for c in case.claims
+        if isinstance(c, StatementClaim) and c.checks == "within_limits" and c.id in words
+    ]
+    meant = [c for c in case.claims if isinstance(c, _Row) and meant_to_keep(study, c)]
+    elsewhere = [c for c in meant if c.other_curve is not None and not blended(c)]
+    rows = [c for c in meant if c not in elsewhere and c.id in words]
+    timed = [c for c in case.claims if isinstance(c, TimeClaim) and c.other_curve is None]
+    bare = timed and all(isinstance(c, TotalTimeClaim) for c in timed)
+    if bare and not about and not any(study.has_durations(c) for c in case.claims):
+        return f"{unknown}: totals are printed, durations are not.", set()
+    apart = {c.id for c in elsewhere}
+    if not rows and elsewhere and all(apart.issuperset(c.of) for c in about):
+        return f"{unknown}: printed durations are of another curve.", set()
+    if not rows and not about:
+        return "No printed durations are said to keep limits.", set()
+    own = own_results(case, rows)
+    held = {c.id: _of_limits(study, c) for c in rows}
+    stated = {c.id: words[c.id].readings for c in about}
+    asked = [c.id for c in own or about]
+    found = {**held, **stated}
+    under = {
+        reading: {found[one].get(reading, ClaimVerdict.NOT_CHECKABLE) for one in asked}
+        for reading in study.readings
+    }
+    broken = sum(ClaimVerdict.REFUTED in each for each in under.values())
+    kept = sum(each == {ClaimVerdict.SUPPORTED} for each in under.values())
+    if kept == len(under) and not any(limited(study, *pair) for pair in study.pairs):
+        return f"No limits are stated, so that none can be broken{_jumping(words, asked)}.", set()
+    # A statement that names other rows too has its own sentence where one of those breaks a limit.
+    mine = {c.id for c in own}
+    spoken = {*asked, *(c.id for c in about if not own or mine.issuperset(c.of))}
+    jump = _jumping(words, [c.id for c in about] or asked)
+    if kept == len(under):
+        return f"{_whose(study, own, held)} keep the limits{_within(study, own)}{jump}.", spoken
+    if broken == len(under):
+        return f"{_broken(study, own, held)}.", spoken
+    if not broken and not kept:
+        return "Whether the limits are kept is not decided by the printed digits.", spoken
+    return f"{_differing(study, under, _in_doubt(own, held))}{jump}.", spoken
+
+
+def _places(rows: Sequence[AnyClaim]) -> str:
+    """Where few rows stand; empty where they stand in more places."""
+    found = list(dict.fromkeys(map(place, rows)))
+    return " and ".join(found) if 0 < len(found) <= _FEW else ""
+
+
+def _whose(study: Study, own: Sequence[_Row], held: _Held) -> str:
+    """The durations that a sentence speaks of: named where it does not hold of all others too."""
+    said = [set(held[c.id].values()) for c in own]
+    others = [
+        c
+        for c in study.case.claims
+        if isinstance(c, _Row) and c not in own and set(_of_limits(study, c).values()) not in said
+    ]
+    where = _places(own)
+    apart = where and not {place(c) for c in others}.intersection(map(place, own))
+    if not others:
+        return "The printed durations"
+    return f"The durations in {where}" if apart else "The durations of the paper's own result"
+
+
+def _within(study: Study, own: Sequence[_Row]) -> str:
+    """Whether it takes the rounding of the digits to keep the limits, and of which row how much."""
+    found = []
+    for row in own:
+        for pair in study.claim_pairs(row):
+            checked = study.motion_check(row, *pair)
+            if checked is None or checked.limits is Verdict.PASS:
+                continue
+            cut = study.claim_rounding(row, *pair).verdict is Rounding.BREAKS
+            ratio = 0.0 if checked.worst is None else checked.worst.ratio
+            found.append((cut, ratio, row, checked.worst))
+    if not found:
+        return ""
+    cut, ratio, row, worst = max(found, key=lambda one: one[:2])
+    how = "if digits were cut off" if cut else "within rounding"
+    where = "" if len(own) == 1 or not cut else f", those in {place(row)}"
+    if worst is None or ratio < _TELLING or worst.joint is None:
+        return f"{where} {how}"
+    share = 100 * (ratio - 1)
+    return (
+        f"{where} only {how}: as printed, the {worst.quantity} of joint {worst.joint} exceeds "
+        f"its limit by {share:.1f} %"
+    )
+
+
+def _differing(study: Study, found: Mapping[str, set[ClaimVerdict]], where: str) -> str:
+    """Under which readings limits are kept, broken or neither; an implausible one stands last."""
+    open_ = str(ClaimVerdict.NOT_CHECKABLE)
+    groups: dict[str, list[str]] = {"kept": [], "broken": [], open_: []}
+    for reading, words in found.items():
+        broken, kept = ClaimVerdict.REFUTED in words, words == {ClaimVerdict.SUPPORTED}
+        groups["broken" if broken else "kept" if kept else open_].append(reading)
+    far = implausible(study)
+    said = {word: own for word, own in groups.items() if own}
+    if len(found) > _FEW:
+        (first, own), *others = said.items()
+        shares = [f"{first} under {among(own, len(found), far)}"]
+        shares += [
+            noted(f"{word} under {len(those)}", implausibly(those, far)) for word, those in others
+        ]
+        return f"Limits{where} are {', '.join(shares)}"
+    ordered = sorted(said.items(), key=lambda item: all(one in far for one in item[1]))
+    parts = []
+    for word, own in ordered:
+        mark = "the implausible " if all(one in far for one in own) else ""
+        which = " and ".join(quoted(one, study.case.labels) for one in own)
+        parts.append(f"{word} under {mark}{which}")
+    return f"Limits{where} are {', '.join(parts)}"
+
+
+def _of_limits(study: Study, claim: AnyClaim) -> dict[str, ClaimVerdict]:
+    """Whether printed durations keep the limits, by reading, whatever else is said of the claim.
+
+    A sum that is wrong refutes the claim too, and breaks no limit.
+    """
+    each: dict[str, set[ClaimVerdict]] = {}
+    for row in judge_row(study, claim):
+        if row.reading is not None:
+            each.setdefault(row.reading, set()).add(ClaimVerdict(row.kind))
+    for pid, rid in study.claim_pairs(claim):
+        unknown = study.unmoved(claim, pid, rid) is not None
+        keeping = Keeping.UNDECIDED if unknown else study.claim_keeping(claim, pid, rid)
+        each.setdefault(rid, set()).add(_MEANS.get(keeping, ClaimVerdict.NOT_CHECKABLE))
+    worst = (ClaimVerdict.REFUTED, ClaimVerdict.NOT_CHECKABLE, ClaimVerdict.SUPPORTED)
+    return {rid: next(word for word in worst if word in found) for rid, found in each.items()}
+
+
+_MEANS = {
+    Keeping.KEEPS: ClaimVerdict.SUPPORTED,
+    Keeping.CONSISTENT: ClaimVerdict.SUPPORTED,
+    Keeping.BREAKS: ClaimVerdict.REFUTED,
+}
+"""What a word for the limits is as a verdict; anything else is not checkable."""
+
+
+def _in_doubt(own: Sequence[AnyClaim], held: _Held) -> str:
+    """Where the durations stand that may break a limit, unless that is everywhere."""
+    doubtful = [c for c in own if set(held[c.id].values()) != {ClaimVerdict.SUPPORTED}]
+    where = _places(doubtful)
+    return f" in {where}" if where and len(doubtful) < len(own) else ""
+
+
+def _jumping(words: Mapping[str, Judgement], asked: Iterable[str]) -> str:
+    caveats = (c for one in asked for c in words[one].caveats)
+    jumps = any(c.kind is CaveatKind.JUMPING for c in caveats)
+    return ", on curves whose velocity jumps" if jumps else ""
+
+
+def _broken(study: Study, own: Sequence[_Row], held: _Held) -> str:
+    """Which of the durations break a limit, and whether anything printed says that they keep it."""
+    every = "for every value that rounds to the printed digits"
+    if not own:
+        return f"No motion as short as what is said to keep the limits keeps them, {every}"
+    wrong = [c for c in own if set(held[c.id].values()) == {ClaimVerdict.REFUTED}] or list(own)
+    whose = _whose(study, wrong, held)
+    if len(wrong) < len(own) and not _places(wrong):
+        whose = f"{len(wrong)} of {len(own)} printed sets of durations"
+    if any(said_to_keep(study, c) for c in wrong):
+        return f"{whose} break a limit {every}"
+    return f"{whose} break a limit {every}; nothing printed says that they keep it"

@@ -1,0 +1,130 @@
+"""Where an optimum lies for all that rounds to the digits of way-points and limits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...nlp import Evidence, Status
+from ...nlp.optimum import apart
+from ...problem import Array, Problem
+from ...problem.cases import Claim, Digits
+from .rounding import same_limits
+from .study import Study
+
+_ROUNDING = 1e-9
+"""Relative room for the rounding of float64, and for the tolerance that `check` grants: a bound may
+lie this much on the wrong side, and is moved by as much."""
+
+
+@dataclass(frozen=True)
+class OptimumRange:
+    """Bounds on the optimum of every problem whose way-points and limits round to the digits.
+
+    Attributes
+    ----------
+    lower, upper : float or None
+        s; None where no bound is proved. A best known total of numbers that are exact is both.
+    """
+
+    lower: float | None
+    upper: float | None
+
+
+def optimum_range(study: Study, claim: Claim, pid: str, rid: str) -> OptimumRange:
+    """Bounds on the optimum of a claim's problem, whatever its digits stand for.
+
+    Parameters
+    ----------
+    study : Study
+    claim : Claim
+    pid, rid : str
+        Of the problem and the reading.
+
+    Returns
+    -------
+    OptimumRange
+
+    Notes
+    -----
+    Upper: the durations found, stretched until they keep the tightest limits at every way-point of
+    the box. Lower: a motion of any problem in the box, slowed down uniformly by c, keeps the limits
+    of the printed one, so that its total is at least the printed problem's over c. Limits of order
+    r that are larger by a factor f ask for a c of f^(1/r); way-points as well where each segment
+    depends on its own two alone, for there every derivative scales with their distance.
+    """
+    solution = study.claim_optimum(claim, pid, rid)
+    if solution.durations is None or solution.status is Status.NOT_ATTAINED:
+        return OptimumRange(None, None)
+    proved = solution.lower_bound
+    if all_exact(study, claim, pid, rid):
+        known = solution.best if solution.evidence is not Evidence.CERTIFIED else proved
+        return OptimumRange(known, solution.best)
+    upper = study.reachable(claim, solution.durations, pid, rid)
+    slower = None if proved is None else _slow_down(study, claim, pid, rid)
+    if proved is None or slower is None:
+        return OptimumRange(None, upper)
+    return OptimumRange(proved / slower * (1.0 - _ROUNDING), upper)
+
+
+def all_exact(study: Study, claim: Claim, pid: str, rid: str) -> bool:
+    """Whether nothing that defines the problem is a rounded number."""
+    statement = study.case.statement(pid, rid)
+    if statement.loose_ends or statement.loose_ratios or statement.declaration.loose:
+        return False
+    problem = study.claim_problem(claim, pid, rid)
+    box = study.waypoint_box(problem, pid, rid)
+    loosest = study.claim_problem(claim, pid, rid, Digits.LOOSEST_CUT)
+    return same_limits(problem, loosest) and np.array_equal(box.lower, box.upper)
+
+
+def _slow_down(study: Study, claim: Claim, pid: str, rid: str) -> float | None:
+    """By what motions of every problem in the box are slowed down to keep the printed limits."""
+    statement = study.case.statement(pid, rid)
+    if statement.loose_ends or statement.loose_ratios or statement.declaration.loose:
+        return None
+    problem = study.claim_problem(claim, pid, rid)
+    loosest = study.claim_problem(claim, pid, rid, Digits.LOOSEST_CUT)
+    # Slowing down leaves the path, and may take a duration beyond its upper bound.
+    if not problem.curve.homogeneous or np.isfinite(problem.duration_upper).any():
+        return None
+    if (loosest.duration_lower < problem.duration_lower).any():
+        return None
+    wider = _farther(study, problem, pid, rid)
+    if wider is None:
+        return None
+    if problem.limits.limits_position and not (
+        (wider == 1.0).all()
+        and np.array_equal(problem.limits.position_lower, loosest.limits.position_lower)
+        and np.array_equal(problem.limits.position_upper, loosest.limits.position_upper)
+    ):
+        return None
+    own, loose = problem.limits.sides, loosest.limits.sides
+    with np.errstate(divide="ignore", invalid="ignore"):
+        larger = np.where(np.isfinite(own) & (loose > 0), loose / own, 1.0)
+    most = (larger.max(axis=0) * wider[:, None]).max(axis=0)
+    factors = [
+        most[r] ** (1.0 / (r + 1)) for r in range(3) if bool(np.isfinite(own[:, :, r]).any())
+    ]
+    slower = max(1.0, *factors) if factors else 1.0
+    return float(slower) if np.isfinite(slower) else None
+
+
+def _farther(study: Study, problem: Problem, pid: str, rid: str) -> Array | None:
+    """By what factor each joint's steps are larger as printed than the least in the box."""
+    box = study.waypoint_box(problem, pid, rid).or_cut_off()
+    joints = problem.waypoints.shape[1]
+    if np.array_equal(box.lower, box.upper):
+        return np.ones(joints)
+    if problem.curve.piecewise is None or problem.ratios is not None or not apart(problem):
+        return None
+    steps = np.abs(np.diff(problem.waypoints, axis=0))
+    down, up = problem.waypoints - box.lower, box.upper - problem.waypoints
+    away = np.where(np.diff(problem.waypoints, axis=0) > 0, up[:-1] + down[1:], down[:-1] + up[1:])
+    least = steps - away
+    if ((least <= 0) & (steps > 0)).any():
+        return None
+    with np.errstate(divide="ignore", invalid="ignore"):
+        factors: Array = np.where(steps > 0, steps / least, 1.0).max(axis=0)
+    return factors

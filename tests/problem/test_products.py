@@ -1,0 +1,327 @@
+"""Every kind of limit × every derivative × every identity, beside exact rational arithmetic.
+
+`support.exact_route` fits the curve in fractions and finds its extremes to 50 digits. A limit a
+millionth above or below such an extreme decides what each judge has to answer: `check`,
+`evaluate`, `keeps_limits`, `check_motion`, and the repairs that they state.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cache
+
+import numpy as np
+import pytest
+from scipy.interpolate import PPoly
+from support import exact_route
+from support.samples import DECLARATIONS, sample_problem
+from trajgap.problem import (
+    QUANTITIES,
+    Array,
+    Limits,
+    Problem,
+    Verdict,
+    check,
+    evaluate,
+    keeps_limits,
+)
+from trajgap.problem.motions import BRAKING, JointLimits, Motion, check_motion
+
+CURVES = ("3-5-3", "cubic", "cubic, moving ends", "cubic, virtual", "quintic", "rest 5", "uneven")
+ORDERS = ("position", *QUANTITIES)
+ROOM = 1e-6
+"""Relative distance of a limit from the exact extreme: far above rounding, below all else."""
+KINDS = ("even", "only below", "only above", "tight below", "tight above")
+JOINT = 1
+"""The limited joint, of three."""
+
+
+@dataclass(frozen=True)
+class Exact:
+    """A motion in fractions: its least and largest values, shape (orders, joints, 2)."""
+
+    problem: Problem
+    durations: Array
+    pieces: tuple[list[list[exact_route.Fraction]], ...]
+    ends: Array
+
+
+@cache
+def exact(curve: str) -> Exact:
+    """One motion of each curve, of three joints with offsets and unequal sizes."""
+    problem, h = sample_problem(DECLARATIONS[curve], 17 + len(curve), limits=Limits(joints=3))
+    lengths = h.tolist()
+    pieces = tuple(
+        exact_route.fitted(problem.piecewise, q.tolist(), lengths) for q in problem.waypoints.T
+    )
+    ends = [[exact_route.extremes(one, lengths, r) for one in pieces] for r in range(4)]
+    return Exact(problem, h, pieces, np.array(ends, dtype=np.float64))
+
+
+def ranges(kind: str, ends: Array, order: int, sign: float) -> tuple[float, float]:
+    """A range that is exceeded by `ROOM` where ``sign`` is −1, and kept with `ROOM` where it is 1.
+
+    Of a position the room is a share of the path's width.
+    """
+    least, most = ends
+    if order == 0:
+        move = ROOM * (most - least)
+        low, high, far = least - sign * move, most + sign * move, 3.0 * (most - least)
+        return {
+            "even": (low, high),
+            "only below": (low, np.inf),
+            "only above": (-np.inf, high),
+            "tight below": (low, most + far),
+            "tight above": (least - far, high),
+        }[kind]
+    low, high = least * (1 + sign * ROOM), most * (1 + sign * ROOM)
+    size = max(-low, high)
+    return {
+        "even": (-size, size),
+        "only below": (min(low, 0.0), np.inf),
+        "only above": (-np.inf, max(high, 0.0)),
+        "tight below": (min(low, 0.0), 3.0 * size),
+        "tight above": (-3.0 * size, max(high, 0.0)),
+    }[kind]
+
+
+def limited(problem: Problem, order: int, low: float, high: float) -> Problem:
+    """The problem with one range of one derivative of one joint."""
+    if order == 0:
+        lower, upper = np.full(3, -np.inf), np.full(3, np.inf)
+        lower[JOINT], upper[JOINT] = low, high
+        return replace(problem, limits=problem.limits.with_positions(lower, upper))
+    sides = np.full((2, 3, 3), np.inf)
+    sides[:, JOINT, order - 1] = -low, high
+    return replace(problem, limits=problem.limits.with_sides(sides))
+
+
+def exact_ratio(ends: Array, order: int, low: float, high: float) -> float:
+    """What `Peak.ratio` and `Evaluation` say by definition."""
+    least, most = ends
+    if order == 0:
+        wide = np.isfinite(high - low)
+        beyond = [(low - least, low), (most - high, high)]
+        halves = [(high - low) / 2 if wide else max(1.0, abs(at)) for _, at in beyond]
+        both = zip(beyond, halves, strict=True)
+        return max(1 + excess / half for (excess, at), half in both if np.isfinite(at))
+    below = max(0.0, -least) / -low if low else 0.0
+    above = max(0.0, most) / high if high else 0.0
+    return max(below, above)
+
+
+def same_question(name: str, problem: Problem, h: Array) -> tuple[Problem, Array, float]:
+    """The same question in another dress, and what its derivative r is multiplied by, to r."""
+    limits, q = problem.limits, problem.waypoints
+    sides, low, high = limits.sides, limits.position_lower, limits.position_upper
+    orders = np.arange(1, 4)
+    if name == "as it is":
+        return problem, h, 1.0
+    if name == "mirror":
+        turned = limits.with_sides(sides[::-1]).with_positions(-high, -low)
+        return replace(problem, waypoints=-q, limits=turned, curve=ends_of(problem, -1, 0)), h, 1.0
+    if name == "reverse":
+        # Derivatives of odd order change their sign.
+        back = sides.copy()
+        back[:, :, ::2] = sides[::-1, :, ::2]
+        curve = ends_of(problem, 1, 1)
+        return (
+            replace(problem, waypoints=q[::-1], limits=limits.with_sides(back), curve=curve),
+            (h[::-1]),
+            1.0,
+        )
+    if name == "slower":
+        slow = limits.with_sides(sides / 2.7**orders)
+        return replace(problem, limits=slow, curve=ends_of(problem, 1, 0, 2.7)), 2.7 * h, 1 / 2.7
+    if name == "permute":
+        order = [2, 1, 0]
+        turned = limits.with_sides(sides[:, order]).with_positions(low[order], high[order])
+        return replace(problem, waypoints=q[:, order], limits=turned), h, 1.0
+    scale = 180.0 / np.pi
+    degrees = limits.with_sides(sides * scale).with_positions(low * scale, high * scale)
+    curve = ends_of(problem, scale, 0)
+    return replace(problem, waypoints=q * scale, limits=degrees, curve=curve), h, 1.0
+
+
+def ends_of(problem: Problem, scale: float, back: int, slower: float = 1.0) -> object:
+    """The curve with its prescribed derivatives scaled, reversed or slower."""
+    curve = problem.piecewise
+    prescribed = [
+        tuple((r, scale * (-1) ** (r * back) * value / slower**r) for r, value in one)
+        for one in curve.prescribed
+    ]
+    if not back:
+        return replace(curve, prescribed=tuple(prescribed))
+    count = len(curve.degrees)
+    return replace(
+        curve,
+        degrees=curve.degrees[::-1],
+        continuity=curve.continuity[::-1],
+        prescribed=tuple(prescribed[::-1]),
+        virtual=tuple(sorted(count - b for b in curve.virtual)),
+    )
+
+
+DRESSES = ("as it is", "mirror", "reverse", "slower", "permute", "degrees")
+
+
+@pytest.mark.parametrize("dress", DRESSES)
+@pytest.mark.parametrize("order", range(4), ids=ORDERS)
+@pytest.mark.parametrize("curve", CURVES)
+def test_every_judge_says_what_exact_arithmetic_says(curve: str, order: int, dress: str) -> None:
+    truth = exact(curve)
+    ends = truth.ends[order, JOINT]
+    for kind in KINDS:
+        for sign, expected in ((1.0, Verdict.PASS), (-1.0, Verdict.VIOLATED)):
+            low, high = ranges(kind, ends, order, sign)
+            # A side on which nothing moves is kept at any size.
+            beyond = ends[0] < low or ends[1] > high
+            assert beyond == (expected is Verdict.VIOLATED) or 0.0 in (low, high)
+            expected = Verdict.VIOLATED if beyond else Verdict.PASS
+            ratio = exact_ratio(ends, order, low, high)
+            plain = limited(truth.problem, order, low, high)
+            problem, h, _ = same_question(dress, plain, truth.durations)
+            found = check(problem, h)
+            assert found.limits is expected, (kind, sign)
+            near = pytest.approx(ratio, rel=1e-9, abs=1e-9)
+            worst = max(p.ratio for p in found.peaks)
+            if order or np.isfinite(high - low) or dress != "degrees":
+                # A position limit on one side is set beside 1 rad, whatever the unit.
+                assert worst == near, (kind, sign)
+            found_batch = evaluate(problem, np.stack([h, 2.0 * h]))
+            batch = found_batch.positions if order == 0 else found_batch.ratios[:, :, order - 1]
+            assert batch[0].max() == pytest.approx(worst, rel=1e-9, abs=1e-9)
+            assert keeps_limits(problem, h[None], 1e-9)[0] == (not beyond)
+            _repair(problem, h, order, ratio, beyond)
+            _as_motion(truth, dress, order, (low, high), ratio, expected)
+
+
+def _repair(problem: Problem, h: Array, order: int, ratio: float, beyond: bool) -> None:
+    """The stretch that exact arithmetic asks for, and no repair where none exists."""
+    found = check(problem, h)
+    if order == 0:
+        assert found.stretch == 0.0
+        assert (found.feasible_time is None) == beyond
+        assert not beyond or "stretching does not move the path" in str(found.feasible_why)
+        return
+    stretch = ratio ** (1.0 / order)
+    assert found.stretch == pytest.approx(stretch, rel=1e-9)
+    assert evaluate(problem, h[None]).stretch[0] == pytest.approx(stretch, rel=1e-9)
+    if not problem.curve.homogeneous:
+        assert (found.feasible_time is None) == beyond
+        assert found.tight_time is None
+    else:
+        assert found.feasible_time == pytest.approx(max(1.0, stretch) * h.sum(), rel=1e-9)
+        if stretch:
+            assert found.tight_time == pytest.approx(stretch * h.sum(), rel=1e-9)
+            tight = check(problem, stretch * (1 + 1e-9) * h)
+            assert tight.verdict in (Verdict.PASS, Verdict.DISCONTINUOUS)
+
+
+def polynomials(truth: Exact) -> PPoly:
+    """The motion in fractions, rounded once."""
+    powers = max(len(p) for one in truth.pieces for p in one)
+    c = np.zeros((powers, len(truth.durations), 3))
+    for j, one in enumerate(truth.pieces):
+        for k, p in enumerate(one):
+            c[powers - len(p) :, k, j] = [float(x) for x in reversed(p)]
+    return PPoly(c, np.concatenate([[0.0], np.cumsum(truth.durations)]))
+
+
+def _as_motion(
+    truth: Exact,
+    dress: str,
+    order: int,
+    ends: tuple[float, float],
+    ratio: float,
+    expected: Verdict,
+) -> None:
+    """The judge of motions from elsewhere, about the same polynomials."""
+    if dress not in ("as it is", "mirror"):
+        return
+    lower, upper = np.full((3, 4), -np.inf), np.full((3, 4), np.inf)
+    lower[JOINT, order], upper[JOINT, order] = ends
+    motion = polynomials(truth)
+    if dress == "mirror":
+        motion, (lower, upper) = PPoly(-motion.c, motion.x), (-upper, -lower)
+    limits = JointLimits(("1", "2", "3"), lower, upper, np.full(3, np.inf))
+    found = check_motion(Motion.of_polynomial(motion), limits, 1e-9)
+    assert found.limits is expected
+    (peak,) = found.peaks
+    assert peak.ratio == pytest.approx(ratio, rel=1e-8, abs=1e-8)
+    assert peak.least_ratio <= peak.ratio <= peak.most_ratio
+    if not order:
+        assert (found.feasible_time is None) == (expected is Verdict.VIOLATED)
+    elif ratio > 1.0:
+        assert found.stretch == pytest.approx(ratio ** (1.0 / order), rel=1e-8)
+
+
+@pytest.mark.parametrize("mirror", [1.0, -1.0])
+@pytest.mark.parametrize("curve", [c for c in CURVES if c != "uneven"])
+def test_braking_and_speeding_up_are_told_apart(curve: str, mirror: float) -> None:
+    truth = exact(curve)
+    sizes = [float(x) for x in exact_route.braking(truth.pieces[JOINT], truth.durations.tolist())]
+    polynomial = polynomials(truth)
+    motion = Motion.of_polynomial(PPoly(mirror * polynomial.c, polynomial.x))
+    assert sizes[0] != pytest.approx(sizes[1], rel=1e-3) or "rest" in curve or "virtual" in curve
+    for which, word in enumerate(("acceleration", BRAKING)):
+        for sign in (1.0, -1.0):
+            given = [np.full(3, np.inf), np.full(3, np.inf)]
+            given[which][JOINT] = sizes[which] * (1 + sign * ROOM)
+            given[1 - which][JOINT] = 3.0 * max(sizes)
+            names = ("1", "2", "3")
+            limits = JointLimits.from_values(names, acceleration=given[0], deceleration=given[1])
+            found = check_motion(motion, limits, 1e-9)
+            assert found.limits is (Verdict.PASS if sign > 0 else Verdict.VIOLATED)
+            peaks = {p.quantity: p for p in found.peaks}
+            assert peaks[word].ratio == pytest.approx(1 / (1 + sign * ROOM), rel=1e-8)
+            if sign < 0:
+                assert found.stretch == pytest.approx((1 - ROOM) ** -0.5, rel=1e-8)
+            # Reversed in time, braking is speeding up.
+            back = PPoly(_reversed(motion.polynomial), np.cumsum([0.0, *truth.durations[::-1]]))
+            turned = JointLimits.from_values(names, acceleration=given[1], deceleration=given[0])
+            again = check_motion(Motion.of_polynomial(back), turned, 1e-9)
+            assert again.limits is found.limits
+
+
+def _reversed(polynomial: PPoly) -> Array:
+    """Coefficients of the same motion from its end to its start."""
+    h, c = np.diff(polynomial.x), np.zeros_like(polynomial.c)
+    n = len(c) - 1
+    for k, step in enumerate(h):
+        for j in range(c.shape[2]):
+            own = np.polynomial.Polynomial(polynomial.c[::-1, k, j])
+            turned = own(np.polynomial.Polynomial([step, -1.0])).coef
+            c[n + 1 - len(turned) :, len(h) - 1 - k, j] = turned[::-1]
+    return c
+
+
+@pytest.mark.parametrize("order", range(4), ids=ORDERS)
+@pytest.mark.parametrize("moves", [False, True])
+def test_a_range_of_no_width_is_kept_by_standing_alone(order: int, moves: bool) -> None:
+    for curve in ("3-5-3", "cubic", "quintic", "rest 5"):
+        truth = exact(curve)
+        q = truth.problem.waypoints.copy()
+        place = 61.7
+        q[:, JOINT] = place + (1e-3 * np.arange(len(q)) if moves else 0.0)
+        low = high = place if order == 0 else 0.0
+        still = limited(replace(truth.problem, waypoints=q), order, low, high)
+        found, h = check(still, truth.durations), truth.durations[None]
+        assert found.limits is (Verdict.VIOLATED if moves else Verdict.PASS)
+        assert keeps_limits(still, h, 1e-9)[0] == (not moves)
+        worst = np.inf if moves else 0.0
+        batch = evaluate(still, h)
+        assert (batch.positions if order == 0 else batch.ratios[:, :, order - 1]).max() == worst
+        assert (found.feasible_time is None) == moves
+        lower, upper = np.full((3, 4), -np.inf), np.full((3, 4), np.inf)
+        lower[JOINT, order], upper[JOINT, order] = low, high
+        limits = JointLimits(("1", "2", "3"), lower, upper, np.full(3, np.inf))
+        pieces = [
+            exact_route.fitted(still.piecewise, one.tolist(), truth.durations.tolist())
+            for one in q.T
+        ]
+        motion = polynomials(Exact(still, truth.durations, tuple(pieces), truth.ends))
+        judged = check_motion(Motion.of_polynomial(motion), limits).limits
+        # Rounding of a foreign motion's positions is never below a range of no width.
+        kept = Verdict.UNDECIDED if order == 0 else Verdict.PASS
+        assert judged is (Verdict.VIOLATED if moves else kept)

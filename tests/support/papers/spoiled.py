@@ -1,0 +1,122 @@
+"""A paper drawn at random with several of its numbers and sentences wrong: a first draft."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from support.papers.claims import draw
+from support.papers.drafts import Draft
+from support.papers.printing import moved, printed
+
+Spoil = Callable[[np.random.Generator, Draft], bool]
+"""Makes one thing wrong; whether the paper has it."""
+
+
+def spoiled(seed: int) -> tuple[Draft, tuple[str, ...]]:
+    """A draft with two to four faults, and their names."""
+    rng = np.random.default_rng([20261123, seed])
+    while True:
+        draft = draw(int(rng.integers(2**40)))
+        draft.seed = seed
+        names = rng.permutation(list(FAULTS))[: int(rng.integers(2, 5))]
+        done = tuple(str(name) for name in names if FAULTS[str(name)](rng, draft))
+        if len(done) >= 2:
+            return draft, done
+
+
+def _row(rng: np.random.Generator, draft: Draft) -> dict | None:
+    rows = [c for c in draft.claims if c["quantity"] == "durations"]
+    return rows[int(rng.integers(len(rows)))] if rows else None
+
+
+def _shortened(rng: np.random.Generator, draft: Draft) -> bool:
+    """Durations of a row that are too short, with their sum, and said to keep the limits."""
+    row = _row(rng, draft)
+    if row is None:
+        return False
+    factor = float(rng.uniform(0.7, 0.98))
+    row["durations"] = [_scaled(text, factor) for text in row["durations"]]
+    if "total" in row:
+        places = len(row["total"].partition(".")[2])
+        row["total"] = printed(sum(map(float, row["durations"])), places)
+    if not draft.has("said-kept"):
+        said = {"id": "said-kept", "quantity": "statement", "checks": "within_limits"}
+        draft.claims.append(said | {"of": [row["id"]]})
+    return True
+
+
+def _scaled(text: str, factor: float) -> str:
+    places = len(text.partition(".")[2])
+    new = printed(float(text) * factor, places)
+    return new if float(new) else text
+
+
+def _total(rng: np.random.Generator, draft: Draft) -> bool:
+    row = _row(rng, draft)
+    if row is None or "total" not in row:
+        return False
+    row["total"] = _moved(rng, row["total"])
+    return True
+
+
+def _abstract(rng: np.random.Generator, draft: Draft) -> bool:
+    if not draft.has("abstract"):
+        return False
+    claim = draft.claim("abstract")
+    claim["value"] = _moved(rng, claim["value"])
+    return True
+
+
+def _percentage(rng: np.random.Generator, draft: Draft) -> bool:
+    if not draft.has("gain"):
+        return False
+    claim = draft.claim("gain")
+    key = "percent" if "percent" in claim else "seconds"
+    if key not in claim:
+        return False
+    claim[key] = _moved(rng, claim[key])
+    return True
+
+
+def _peak(rng: np.random.Generator, draft: Draft) -> bool:
+    peaks = [c for c in draft.claims if c["quantity"] == "peak"]
+    if not peaks:
+        return False
+    claim = peaks[int(rng.integers(len(peaks)))]
+    if "value" in claim:
+        claim["value"] = _moved(rng, claim["value"])
+    else:
+        claim["values"] = [_moved(rng, text) for text in claim["values"]]
+    return True
+
+
+def _called_optimal(rng: np.random.Generator, draft: Draft) -> bool:
+    """A motion longer than it need be, called the shortest."""
+    row = _row(rng, draft)
+    if row is None or draft.has("optimal"):
+        return False
+    if rng.random() < 0.5:
+        row["durations"] = [_scaled(text, 1.3) for text in row["durations"]]
+    draft.claims.append(
+        {"id": "optimal", "quantity": "statement", "checks": "optimal", "of": [row["id"]]}
+    )
+    return True
+
+
+def _moved(rng: np.random.Generator, text: str) -> str:
+    """Other digits, not further away than by about a quarter."""
+    units = abs(float(text)) * 10 ** len(text.partition(".")[2])
+    steps = max(int(units * rng.uniform(0.02, 0.25)), 2)
+    return moved(text, steps * int(rng.choice([-1, 1])) if units > 2 * steps else steps)
+
+
+FAULTS: dict[str, Spoil] = {
+    "durations too short": _shortened,
+    "total": _total,
+    "abstract": _abstract,
+    "percentage": _percentage,
+    "peak": _peak,
+    "called optimal": _called_optimal,
+}
+"""What is made wrong, in words."""

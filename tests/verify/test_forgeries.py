@@ -1,0 +1,36 @@
+"""A forged document for every check of the verifier: that check refuses it, and none before it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from support.forgeries import of_bounds, of_claims, of_files, of_quintics
+from support.forgeries.forgery import Forgery, checks, judged, recorded
+
+FORGERIES = [
+    *of_files.FORGERIES,
+    *of_claims.FORGERIES,
+    *of_bounds.FORGERIES,
+    *of_quintics.FORGERIES,
+]
+
+
+def test_every_check_of_the_verifier_has_a_forgery() -> None:
+    assert len(checks()) > 160
+    assert {forgery.check for forgery in FORGERIES} == set(checks().values())
+
+
+@pytest.mark.parametrize("forgery", FORGERIES, ids=lambda forgery: forgery.check[:70])
+def test_a_forgery_is_refused_by_its_check(
+    forgery: Forgery, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with recorded(monkeypatch) as fired:
+        verdict = judged(forgery, tmp_path, monkeypatch)
+    assert not verdict.proves
+    assert not verdict.out_of_time
+    assert verdict.lower is None
+    # A leaf passes on what refuses it, and so does a part of a tree.
+    passes_on = forgery.check.startswith(("tree._below: leaf", "tree._walk_parts: why"))
+    assert fired, verdict
+    assert fired[-1 if passes_on else 0] == forgery.check, verdict

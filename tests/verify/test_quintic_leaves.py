@@ -1,0 +1,137 @@
+"""What a leaf of a quintic proof bounds, against splines by scipy and sums by sampling."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.interpolate import make_interp_spline
+from scipy.optimize import minimize
+from support.forgeries.forgery import NO_ANSWER, altered
+from trajgap.verify import read_problem
+from trajgap.verify.quintic import QuinticSpline
+from trajgap.verify.quintic_bound import Bound, Task
+from trajgap.verify.quintic_parts import Cubic, Part
+from trajgap.verify.reading import Clock
+
+CLOCK = Clock(1e9)
+SPLINE_ENDS = [(1, 0.0), (2, 0.0)]
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_a_leaf_is_below_every_sampled_quintic(seed: int) -> None:
+    rng = np.random.default_rng([seed, 11])
+    n, joints, count = int(rng.integers(2, 6)), 2, 6
+    h0, width = np.exp(rng.uniform(-0.5, 0.5, n)), [0.0, 0.02, 0.08, 0.15][seed % 4]
+    q = rng.uniform(-1.0, 1.0, (n + 1, joints))
+    limits = rng.uniform(0.5, 3.0, (joints, 3))
+    tops = (n, joints, 1, 2, 1025)
+    rows = [[int(x) for x in rng.integers(0, tops)] for _ in range(count)]
+    rows = [[k, j, 1 + i % 3, 2 * sign - 1, at] for i, (k, j, _, sign, at) in enumerate(rows)]
+    weights = [int(w) for w in rng.integers(1, 10, count)]
+    tau, total = int(rng.integers(-9, 10)), float(h0.sum())
+
+    def value(h: np.ndarray) -> float:
+        t = np.concatenate([[0.0], np.cumsum(h)])
+        found = tau * (h.sum() - total)
+        for (k, j, order, sign, place), w in zip(rows, weights, strict=True):
+            curve = make_interp_spline(t, q[:, j], k=5, bc_type=(SPLINE_ENDS, SPLINE_ENDS))
+            reached = sign * float(curve(t[k] + place / 1024 * h[k], order))
+            found += w * (reached - limits[j, order - 1]) * h[k] ** (order - 2)
+        return float(found)
+
+    task = Task(np.diff(q, axis=0), limits, total, rows, CLOCK)
+    leaf = [tau, *(x for pair in enumerate(weights) for x in pair)]
+    low, high = h0 * np.exp(-width), h0 * np.exp(width)
+    proved = float(Bound(task, low[None], high[None], [leaf]).least()[0])
+    spread = [np.exp(width * rng.uniform(-1, 1, n)) for _ in range(25)]
+    corners = (np.ones(n), np.exp([-width] * n), np.exp([width] * n))
+    found = [h0 * x for x in (*corners, *spread)]
+    values = [value(h) for h in found]
+    lowest = found[int(np.argmin(values))]
+    within = list(zip(low, high, strict=True))
+    assert proved <= min(*values, minimize(value, lowest, bounds=within).fun) + 1e-9
+    if width == 0.0:
+        assert proved == pytest.approx(values[0], abs=1e-5 * (1 + abs(values[0])))
+    else:
+        # Of second order in the width.
+        assert values[0] - proved < 400 * width * (1 + np.ptp(values))
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_a_window_is_below_every_sampled_motion(seed: int) -> None:
+    """Σ cΔ/h − A Σ m h − V Σ|c + ψ'h| + τ(Σh − T), m the mean of |ψ|, is what a window bounds."""
+    rng = np.random.default_rng([seed, 12])
+    data = altered("quintic-spline", {**NO_ANSWER, "proof.rows": []})
+    proof = data["proof"] | {"tree": [["."]]}
+    kind = QuinticSpline(read_problem(data["problem"]), proof, Fraction(proof["total"]), CLOCK)
+    n, j = 3, int(rng.integers(0, 2))
+    numbers = [int(x) for x in rng.integers(-(2**16), 2**16, 2 * n + 1)]
+    psi, c = np.array(numbers[: n + 1]) / 2**16, np.array(numbers[n + 1 :]) / 2**16
+    tau = float(rng.choice([0.0, rng.uniform(-1, 1), rng.uniform(0, 3)]))
+    low = rng.uniform(0.2, 1.0, n)
+    high = low * rng.uniform(1.0, 3.0, n)
+    step, (v, a) = kind._task.steps[:, j], kind._task.limits[j, :2]
+    with np.errstate(all="ignore"):
+        found = kind._over_window([j, *numbers], tau, low, high)
+
+    def value(h: np.ndarray) -> float:
+        mean = [np.abs(np.linspace(x, y, 4001)).mean() for x, y in pairwise(psi)]
+        left = np.abs(c + np.diff(psi)).sum()
+        return float((c * step / h).sum() - a * (mean * h).sum() - v * left
+                     + tau * (h.sum() - kind._task.total))  # fmt: skip
+
+    lowest = [np.linspace(x, y, 400) for x, y in zip(low, high, strict=True)]
+    values = [value(rng.uniform(low, high)) for _ in range(50)]
+    # Each term hangs on one duration: the least is found side by side.
+    base = value(low)
+    best = base + sum(
+        min(value(np.where(np.arange(n) == k, x, low)) for x in lowest[k]) - base for k in range(n)
+    )
+    assert found <= min(values) + 1e-9
+    assert found == pytest.approx(best, abs=2e-3 * (1 + abs(best)))
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_products_of_parts_hold_for_all_factors(seed: int) -> None:
+    """‖x‖ and |xᵀy| beyond both lowest orders, for factors in [−1, 1] and remainders at random."""
+    rng = np.random.default_rng([seed, 13])
+
+    def drawn() -> tuple[Part, list[np.ndarray]]:
+        leading, following = rng.normal(size=(1, 3, 4)), rng.normal(size=(1, 2, 4))
+        part = Part(leading, following, rng.uniform(0.1, 2.0, 1))
+        rest = rng.normal(size=4)
+        rest *= part.later[0] / np.linalg.norm(rest)
+        low = rng.choice([-1.0, 1.0], 3) @ leading[0]
+        high = rng.choice([-1.0, 1.0], 2) @ following[0]
+        return part, [low, high, rest]
+
+    for _ in range(60):
+        (one, x), (other, y) = drawn(), drawn()
+        assert np.linalg.norm(sum(x)) <= one.most[0]
+        beyond = sum(x) @ sum(y) - x[0] @ y[0]
+        assert abs(beyond) <= one.beyond(other)[0]
+    aligned = np.ones((1, 2, 1))
+    both = [Part(c * aligned, d * aligned, np.array([e])) for c, d, e in ((1, 2, 3), (5, 7, 11))]
+    # (2c + 2d + e)(2c′ + 2d′ + e′) − 2c·2c′
+    assert both[0].beyond(both[1])[0] == pytest.approx(9 * 35 - 2 * 10)
+    assert both[0].most[0] == pytest.approx(9)
+
+
+@pytest.mark.parametrize("n", [1, 2, 4])
+def test_products_of_three_variables_have_one_number_each(n: int) -> None:
+    thrice, x = Cubic(n), np.random.default_rng(n).normal(size=n)
+    value = np.full(thrice.size, np.nan)
+    pairs = [x[k] ** 2 for k in range(n)]
+    pairs += [x[k] * x[m] for k in range(n) for m in range(k + 1, n)]
+    for a, row in enumerate(thrice.products):
+        for at, pair in zip(row, pairs, strict=True):
+            assert np.isnan(value[at]) or value[at] == pytest.approx(x[a] * pair)
+            value[at] = x[a] * pair
+    assert np.isfinite(value).all()
+    for k in range(n):
+        assert value[thrice.cubes[k]] == pytest.approx(x[k] ** 3)
+        for m in range(n):
+            assert value[thrice.squares[k, m]] == pytest.approx(x[k] ** 2 * x[m])
