@@ -98,7 +98,8 @@ def limits_line(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[
     if broken == len(under):
         return f"{_broken(study, own, held)}.", spoken
     if not broken and not kept:
-        return "Whether the limits are kept is not decided by the printed digits.", spoken
+        where = _in_doubt(own, held)
+        return f"Whether the limits{where} are kept is not decided by the printed digits.", spoken
     return f"{_differing(study, under, _in_doubt(own, held))}{jump}.", spoken
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ...problem import counts_in_words
 from ...problem.cases import ConditionsClaim, DurationsClaim, MaximumClaim
 from ..documents import Explanation, Finding, HeldOtherwise, quoted
 from .roots import LIMITS, TABLES
@@ -83,5 +84,5 @@ def _at_the_ends(study: Study, claim: ConditionsClaim) -> Iterator[Explanation]:
     where = place(claim)
     yield Explanation(
         change=f"{where[:1].upper()}{where[1:]} may mean rest at the two ends only.",
-        effect=f"Then there are {meant} conditions on {available} coefficients{counted}.",
+        effect=f"Then there are {counts_in_words(meant, available)}{counted}.",
     )

@@ -265,8 +265,9 @@ def _shown(document: MotionCheckDocument) -> list[RenderableType]:
     units = dict(zip(document.joints, document.units, strict=True))
     how = value_or_none(document.interpolation)
     between = "" if how is None else f", interpolation {how}"
+    joints = len(document.joints)
     head = (
-        f"{document.file}: {document.format}, {len(document.joints)} joints, "
+        f"{document.file}: {document.format}, {joints} joint{'s' * (joints > 1)}, "
         f"{document.rows:,} {'breaks' if how is None else 'samples'}{between}, "
         f"{result.total_time:.6g} s"
     )
@@ -360,10 +361,10 @@ def _gravest(result: CheckedMotion) -> Sequence[MotionJumpShown]:
 
 
 _SENTENCES = {
-    Verdict.PASS: "every limit is kept at every instant",
+    Verdict.PASS: "every {limit} is kept at every instant",
     Verdict.VIOLATED: "a limit is exceeded",
     Verdict.DISCONTINUOUS: "the motion jumps",
-    Verdict.UNDECIDED: "it is not shown whether every limit is kept",
+    Verdict.UNDECIDED: "it is not shown whether every {limit} is kept",
 }
 """What a verdict means, in a few words."""
 
@@ -373,13 +374,14 @@ _STATE_IT = "What is not judged: state its limit, or inf where it has none. --st
 
 
 def _sentence(result: CheckedMotion, joints: Sequence[str]) -> str:
-    sentence = _SENTENCES[result.verdict]
+    silent = unstated_words([(one.joint, one.quantity) for one in result.not_judged], joints)
+    limit = "stated limit" if silent else "limit"
+    sentence = _SENTENCES[result.verdict].format(limit=limit)
     if result.verdict is Verdict.DISCONTINUOUS:
         kept = "kept" if result.limits_verdict is Verdict.PASS else "not decided"
         sentence += f"; limits, jumps apart: {kept}"
-    silent = unstated_words([(one.joint, one.quantity) for one in result.not_judged], joints)
     if silent:
-        sentence = f"{sentence.replace('every limit', 'every stated limit')}; not judged: {silent}"
+        sentence += f"; not judged: {silent}"
     return f"{sentence} (relative tolerance {result.tolerance:g})"
 
 

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from ..arrays import Array
-from ..curves import MOST_OPEN, Curve, Derivatives
+from ..curves import MOST_OPEN, Curve, Derivatives, counts_in_words
 from ..duration_ratios import ratio_word
 from ..errors import CaseError, RatiosError, TrajgapError
 from ..fields import LimitPair
@@ -256,10 +256,10 @@ class Statement:
         if polynomials is not None and polynomials.free != block.free:
             raise self.fail(
                 "interpolant",
-                f"under-determined, {polynomials.conditions} conditions on "
-                f"{polynomials.coefficients} coefficients leave {polynomials.free} free, "
-                f"not {block.free}; add conditions, lower a degree, or state "
-                f"free = {polynomials.free}",
+                "under-determined, "
+                f"{counts_in_words(polynomials.conditions, polynomials.coefficients)} leave "
+                f"{polynomials.free} free, not {block.free}; add conditions, "
+                f"lower a degree, or state free = {polynomials.free}",
             )
         return curve
 

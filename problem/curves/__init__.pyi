@@ -12,7 +12,7 @@ from .compilation import (
     compiling_until,
     interpreted,
 )
-from .condition import Condition, ConditionKind
+from .condition import Condition, ConditionKind, counts_in_words
 from .families import (
     cubic_spline,
     cubic_spline_virtual,
@@ -86,6 +86,7 @@ __all__ = [
     "compiling_at_once",
     "compiling_until",
     "control_vertices",
+    "counts_in_words",
     "critical_points",
     "cubic_spline",
     "cubic_spline_virtual",

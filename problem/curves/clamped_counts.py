@@ -9,6 +9,7 @@ from itertools import product
 from ..errors import TrajgapError
 from .clamped import ClampedBSpline
 from .clamped_knots import RULES, Knots, Parameters, count_inner_knots, nearest_reading
+from .condition import counts_in_words
 from .stretched import Timing
 
 DEGREES = (3, 4, 5, 6, 7)
@@ -113,7 +114,7 @@ def _read(
     conditions = waypoints + 2 * len(end_orders)
     inner = count_inner_knots(knots, waypoints, degree, end_orders)
     points = inner + degree + 1
-    counted = f"{conditions} conditions on {points} control points"
+    counted = counts_in_words(conditions, points, "control points")
     if inner >= 0 and points == conditions:
         curve = ClampedBSpline(waypoints, degree, knots, parameters, time, end_orders)
         note = "" if parameters is Parameters.TIMES else _CHORDS[time]

@@ -48,6 +48,12 @@ class ConditionTable:
         )
 
 
+def counts_in_words(conditions: int, unknowns: int, of: str = "coefficients") -> str:
+    """Both counts, such as "18 conditions, but only 14 coefficients"."""
+    but = ", but only" if conditions > unknowns else " for"
+    return f"{conditions} conditions{but} {unknowns} {of}"
+
+
 def condition_table(given: Sequence[frozenset[int]], continuity: Sequence[int]) -> ConditionTable:
     """The conditions of a declaration, ordered by break: left values, right values, matches.
 

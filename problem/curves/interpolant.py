@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..errors import TrajgapError
 from . import kernel, refined, spline
-from .condition import Condition, ConditionKind, ConditionTable, condition_table
+from .condition import Condition, ConditionKind, ConditionTable, condition_table, counts_in_words
 from .kind import (
     Curve,
     Derivatives,
@@ -117,14 +117,15 @@ class Interpolant(Curve):
                 raise TrajgapError(f"interpolant.prescribed[{b}]: values must be finite")
         if self.conditions > self.coefficients:
             raise TrajgapError(
-                f"interpolant {self.name}: over-determined, {self.conditions} conditions on "
-                f"{self.coefficients} coefficients; {self._room()}"
+                f"interpolant {self.name}: over-determined, "
+                f"{counts_in_words(self.conditions, self.coefficients)}; {self._room()}"
             )
         checked = self.conditions == self.coefficients or self.coefficients <= MOST_OPEN
         if checked and self.rank < self.conditions:
             raise TrajgapError(
-                f"interpolant {self.name}: {self.conditions} conditions on {self.coefficients} "
-                f"coefficients contradict each other (rank {self.rank}); spread the degrees"
+                f"interpolant {self.name}: "
+                f"{counts_in_words(self.conditions, self.coefficients)} contradict each other "
+                f"(rank {self.rank}); spread the degrees"
                 f"{' or the virtual breaks' if self.virtual else ''}"
             )
 

@@ -17,7 +17,7 @@ from ..arrays import Array
 from ..errors import SingularError, TrajgapError
 from . import kernel, lanes, leading_kernel, range_kernel
 from .compilation import Deferred
-from .condition import ConditionKind
+from .condition import ConditionKind, counts_in_words
 
 if TYPE_CHECKING:
     from .interpolant import Interpolant
@@ -128,9 +128,9 @@ def right_hand_sides(interpolant: Interpolant, waypoints: Array, nodal: Array | 
         )
     if interpolant.free and (nodal is None or nodal.shape != (interpolant.free, joints)):
         raise TrajgapError(
-            f"interpolant {interpolant.name}: {interpolant.conditions} conditions on "
-            f"{interpolant.coefficients} coefficients; give nodal derivatives of shape "
-            f"({interpolant.free}, {joints}) or add conditions"
+            f"interpolant {interpolant.name}: "
+            f"{counts_in_words(interpolant.conditions, interpolant.coefficients)}; give nodal "
+            f"derivatives of shape ({interpolant.free}, {joints}) or add conditions"
         )
     if interpolant.prescribed_joints not in (None, joints):
         raise TrajgapError(

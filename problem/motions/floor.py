@@ -118,8 +118,8 @@ def least_time(
     speed[1:-1] = np.maximum(speed[1:-1], np.abs(ends[:-1]))
     still = np.asarray((speed <= standing).all(axis=1))
     if not (still[0] and still[-1]):
-        which = "starts" if not still[0] else "ends"
-        return None, f"the motion {which} moving, so its ends alone set no floor"
+        which = "start" if not still[0] else "end"
+        return None, f"that the motion {which}s at rest is not shown, so its ends set no floor"
     sizes = np.maximum(np.abs(limits.lower[:, 1:]), np.abs(limits.upper[:, 1:]))
     braking = np.isfinite(limits.deceleration)
     sizes[braking, 1] = np.maximum(sizes[braking, 1], limits.deceleration[braking])

@@ -196,7 +196,8 @@ def check_motion(
     elif may_jump and why is None:
         why = "the motion may jump; going slower would not repair that"
     floor, floor_why = least_time(motion, limits, standing)
-    concluded = f"The verdict holds for every instant: {motion.between}."
+    every = "The bounds hold for" if verdict is Verdict.UNDECIDED else "The verdict holds for"
+    concluded = f"{every} every instant: {motion.between}."
     undecided: list[str] = []
     if Verdict.UNDECIDED in (verdict, about_limits):
         undecided += blurred(peaks, tolerance)

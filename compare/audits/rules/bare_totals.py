@@ -4,24 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ....problem.cases import StatementClaim, TotalTimeClaim
+from ....problem.cases import TotalTimeClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..roots import LIMITS
 from ..study import Study
 from .continuous_time import broken
 from .distances import below_certified
+from .kept_limits import said_to_keep
 
 
 def judge_bare_totals(study: Study) -> Iterator[Finding]:
     """Refute totals that no motion within the limits takes, and that a statement says one does."""
-    said = {
-        one
-        for claim in study.case.claims
-        if isinstance(claim, StatementClaim) and claim.checks in ("within_limits", "optimal")
-        for one in claim.of
-    }
     for claim in study.claims:
-        if not isinstance(claim, TotalTimeClaim) or claim.id not in said:
+        if not (isinstance(claim, TotalTimeClaim) and said_to_keep(study, claim)):
             continue
         for pid, rid in study.claim_pairs(claim):
             solution = study.claim_optimum(claim, pid, rid)

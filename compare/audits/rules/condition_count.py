@@ -8,7 +8,7 @@ from math import perm
 
 import numpy as np
 
-from ....problem import QUANTITIES, Curve, fit
+from ....problem import QUANTITIES, Curve, counts_in_words, fit
 from ....problem.cases import AnyClaim, ConditionsClaim, StatementClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..study import Study
@@ -63,7 +63,7 @@ def _counted(study: Study, claim: ConditionsClaim) -> Finding:
     wanted = count_conditions(study, claim)
     available = sum(d + 1 for d in claim.degrees)
     degrees = "-".join(map(str, claim.degrees))
-    computed = f"{wanted} conditions on {available} coefficients"
+    computed = counts_in_words(wanted, available)
     printed = None if claim.count is None else str(claim.count)
     verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
     message = f"{degrees} polynomials: {computed} per joint."

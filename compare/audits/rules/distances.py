@@ -28,6 +28,7 @@ from ...documents import (
     Why,
     known,
     percent_ends,
+    ranged,
 )
 from ...gaps import gap, reference_of
 from ..digit_ranges import all_exact
@@ -229,7 +230,7 @@ def _beside_procedure(
     tight = answer.check.tight_time
     message = (
         f"Each joint at its own {answer.joint_evidence} optimum, then the longest per segment, "
-        f"gives {wide.lowest:.4f} to {wide.highest:.4f} s while every joint stays within "
+        f"gives {ranged(wide.lowest, wide.highest, '.4f')} s while every joint stays within "
         f"{wide.slack:g} s of its optimum, and {answer.total_time:.4f} s at the optima found"
         + (f" (free rescaling of that motion: {tight:.4f} s)" if tight is not None else "")
         + f"; printed is {shown}, {'inside' if inside else 'outside'} that range."
@@ -243,7 +244,7 @@ def _beside_procedure(
         problem=pid,
         reading=rid,
         printed=shown,
-        computed=f"{wide.lowest:.6f} to {wide.highest:.6f} s",
+        computed=f"{ranged(wide.lowest, wide.highest, '.6f')} s",
         message=message,
         decides=False,
     )
