@@ -6,7 +6,7 @@
 Way-points are random walks of 1 to 4 joints, every fifth walk monotonic, so that some joints run at
 their velocity limit over several segments. Every fifth problem has no limits on jerk, every fifth
 has position limits near its way-points, every fifth a least duration. Seconds are processor seconds
-of one process, everything compiled. An answer that is not *optimal* is printed with its problem.
+of one process, everything compiled. An answer that is not *converged* is printed with its problem.
 """
 
 from __future__ import annotations
@@ -63,20 +63,20 @@ def main() -> None:
     with compiling_at_once():
         for curve in CURVES:
             solve(random_problem(curve, SIZES[0], 0))
-    print("| spline | segments | problems | optimal | median s | longest s |")
+    print("| spline | segments | problems | converged | median s | longest s |")
     print("|---|---|---|---|---|---|")
     for curve in CURVES:
         for sizes in SIZES:
-            optimal, seconds, others = 0, [], []
+            converged, seconds, others = 0, [], []
             for seed in range(count):
                 problem = random_problem(curve, sizes, seed)
                 answer, took = timed(problem)
                 seconds.append(took)
-                if answer.status is Status.OPTIMAL and took < SECONDS:
-                    optimal += 1
+                if answer.status is Status.CONVERGED and took < SECONDS:
+                    converged += 1
                 else:
                     others.append(f"seed {seed}: {answer.status}, {answer.why}")
-            cells = (curve, f"{sizes[0]} to {sizes[1] - 1}", count, optimal)
+            cells = (curve, f"{sizes[0]} to {sizes[1] - 1}", count, converged)
             times = (f"{statistics.median(seconds):.2f}", f"{max(seconds):.2f}")
             print("|", " | ".join(map(str, (*cells, *times))), "|", flush=True)
             print(*others, sep="\n", end="\n" if others else "", flush=True)

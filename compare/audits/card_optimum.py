@@ -17,7 +17,7 @@ from ...problem.cases import (
     TotalTimeClaim,
 )
 from ...verify import shown_bound
-from ..documents import CaveatKind, ClaimVerdict, Judgement, Keeping, Waterfall, count_words
+from ..documents import CaveatKind, ClaimVerdict, Judgement, Keeping, Waterfall, count_words, ranged
 from .digit_ranges import all_exact, optimum_range
 from .fixed_ratios import at_ratios, off_ratios, planned_apart
 from .own_result import own_result
@@ -393,8 +393,7 @@ def _joint_by_joint(
     proven = answer.joint_evidence is Evidence.CERTIFIED
     # The joints' optima may be proven; the range that they leave is the widest that is found.
     own = f"found at the joints' own {'proven' if proven else 'best known'} optima"
-    ends = list(dict.fromkeys(f"{one:.4f}" for one in (wide.lowest, wide.highest)))
-    span = f"{' to '.join(ends)} s"
+    span = f"{ranged(wide.lowest, wide.highest, '.4f')} s"
     low, high = total[1]
     if low <= wide.highest and high >= wide.lowest:
         return f"agrees with {span}, {own}"
@@ -430,7 +429,7 @@ def _unknown(solution: Solution) -> str:
         return "the shortest total at these ratios is not checkable: it is no formula of this curve"
     if solution.durations is None:
         return "the optimum is not checkable: the solver found no motion within the limits"
-    if solution.status is not Status.OPTIMAL and solution.evidence is not Evidence.CERTIFIED:
+    if solution.evidence not in (Evidence.CERTIFIED, Evidence.BEST_KNOWN):
         return "the optimum is not checkable: the solver did not converge"
     return ""
 

@@ -21,6 +21,7 @@ from ...nlp import (
 from ...nlp.optimum import OPTIMUM_SLACK, stopping_after
 from ...nlp.retiming import Retiming, retime
 from ...problem import Case, Coupling, fit
+from ...verify import shown_bound
 from ..audits import Study, in_words
 from ..documents import (
     Answer,
@@ -114,7 +115,7 @@ def _retimed(answer: Solution, known: _Retimings) -> Retiming | str:
     return known[key]
 
 
-_COLUMNS = ("status", ">total s", "evidence", "durations s", "starts", "KKT", ">TOPPRA s")
+_COLUMNS = ("status", ">total s", ">proved ≥ s", "evidence", "durations s", "KKT", ">TOPPRA s")
 """What the table says of each result, or of each of its joints."""
 
 
@@ -147,12 +148,13 @@ def _cells(result: Answer) -> tuple[object, ...]:
     durations = value_or_none((longest or result).segment_durations) or ()
     residual, retimed = result.kkt_residual, result.toppra_extrapolated
     known = retimed is not None and not isinstance(retimed.duration, Why)
+    bound = value_or_none(result.lower_bound)
     return (
         result.status,
         seconds(result.total_time),
+        "" if bound is None else shown_bound(bound, "lower", places=6),
         result.evidence,
         " ".join(f"{d:.4f}" for d in durations),
-        f"{result.starts_at_best} of {result.starts}",
         "" if reason(residual) else f"{residual:.0e}",
         seconds(retimed.duration) if retimed is not None and known else "",
     )

@@ -23,6 +23,7 @@ _STYLES = {
     "keeps": "green",
     "consistent": "green",
     "optimal": "green",
+    "converged": "green",
     "supported": "green",
     "violated": "yellow",
     "discontinuous": "yellow",

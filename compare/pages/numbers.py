@@ -184,7 +184,7 @@ NINE = 9
 """Nine decimals of a proved bound, as the certificates' tables have them."""
 _KEPT = ("keeps", "consistent")
 """Verdicts over the rounding box under which durations may keep the limits."""
-_ANSWER = ("status", "total", "evidence", "durations, s", "check", "KKT residual", "starts at best")
+_ANSWER = ("status", "total", "evidence", "durations, s", "check", "KKT residual")
 """Columns that say how a solve ended."""
 
 
@@ -213,7 +213,6 @@ def _answer(solution: Solution) -> tuple[Cell, ...]:
         number(None if solution.durations is None else _durations(list(solution.durations))),
         word(check.verdict) if check is not None else text(None),
         number(None if residual is None else f"{residual:.1e}"),
-        number(f"{solution.starts_at_best} of {solution.starts}" if solution.starts else None),
     )
 
 

@@ -30,4 +30,4 @@ def better_of(one: Solution, other: Solution) -> Solution:
 
 def settled(solution: Solution) -> bool:
     """Whether an answer meets the conditions of an optimum, or of a total that is not attained."""
-    return solution.status in (Status.OPTIMAL, Status.NOT_ATTAINED)
+    return solution.status in (Status.CONVERGED, Status.OPTIMAL, Status.NOT_ATTAINED)

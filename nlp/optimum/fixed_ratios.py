@@ -118,7 +118,7 @@ def _judged(problem: Problem, h: Array) -> Solution:
         notes.append(longer_than_tight(beyond))
     return Solution(
         problem,
-        Status.OPTIMAL if optimal else Status.FEASIBLE,
+        Status.CONVERGED if optimal else Status.FEASIBLE,
         "; ".join(notes),
         durations=passing,
         check=check(problem, passing),

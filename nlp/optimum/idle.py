@@ -69,7 +69,7 @@ def with_least_idle(problem: Problem, idle: list[int], held: Array, solution: So
     answer = replace(solution, problem=problem, durations=h, check=check(problem, h))
     if not vanishing:
         report = kkt(problem, h)
-        if solution.status is Status.OPTIMAL and report.residual > KKT_TOLERANCE:
+        if solution.status is Status.CONVERGED and report.residual > KKT_TOLERANCE:
             return answer  # rounding blurs its limits: the conditions hold at the tight motion
         return replace(answer, kkt_residual=report.residual, active=report.active)
     names = ", ".join(str(k + 1) for k in vanishing)

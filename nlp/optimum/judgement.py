@@ -16,7 +16,7 @@ from .tracking import Local
 SAME = 1e-6
 """Relative difference below which two totals count as the same."""
 KKT_TOLERANCE = 1e-8
-"""Scaled KKT residual up to which an answer is called optimal: IPOPT's own usual tolerance."""
+"""Scaled KKT residual up to which an answer is called converged: IPOPT's own usual tolerance."""
 POLISHED = 1e-11
 """KKT residual above which an answer is sharpened by Newton steps on its active set."""
 BLURRED = 1e-6
@@ -27,7 +27,7 @@ and floors lie orders of magnitude below durations that any limit asks for."""
 
 
 def unmet(residual: float) -> str:
-    """Why an answer is not called optimal, of its KKT residual."""
+    """Why an answer is not called converged, of its KKT residual."""
     return f"KKT residual {residual:.1e}, above {KKT_TOLERANCE:g}"
 
 
@@ -74,8 +74,8 @@ def judged(problem: Problem, found: list[Local], floor: Array, starts: int) -> S
         passing = (inside.durations, inside.nodal)
         beyond = max(0.0, inside.total / float(durations.sum()) - 1.0)
     durations, nodal = passing
-    status = Status.OPTIMAL if report.residual <= KKT_TOLERANCE else Status.FEASIBLE
-    why = None if status is Status.OPTIMAL else unmet(report.residual)
+    status = Status.CONVERGED if report.residual <= KKT_TOLERANCE else Status.FEASIBLE
+    why = None if status is Status.CONVERGED else unmet(report.residual)
     if beyond > BLURRED:
         status = Status.FEASIBLE
     if beyond > KKT_TOLERANCE:

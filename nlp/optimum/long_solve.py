@@ -131,7 +131,7 @@ def _judged(problem: Problem, local: LongLocal, floor: Array) -> Solution | None
         beyond = float(moved.sum() / h.sum()) - 1.0
         h, verdict = moved, check(problem, moved)
     residual = np.inf if local.kkt is None else local.kkt.residual
-    status, why = Status.OPTIMAL, None
+    status, why = Status.CONVERGED, None
     if residual > KKT_TOLERANCE:
         stopped = "the search ended before it met the conditions of an optimum"
         why = stopped if local.kkt is None else unmet(residual)

@@ -36,7 +36,7 @@ def searched_sparsely(
     Returns
     -------
     answer : Solution or None
-        *Optimal* or *feasible*; None where there is none, or this search does not apply.
+        *Converged* or *feasible*; None where there is none, or this search does not apply.
     settled : bool
         Whether it is an optimum, and no basin has a shorter motion that keeps the limits.
     """
@@ -44,8 +44,8 @@ def searched_sparsely(
         return None, False
     points = np.array([way_start(problem), *(basin.durations for basin in wide)])
     found = solve_long(problem, replace(ask, initial=points))
-    if found is None or found.status not in (Status.OPTIMAL, Status.FEASIBLE):
+    if found is None or found.status not in (Status.CONVERGED, Status.FEASIBLE):
         return None, False
     shortest = min((basin.total for basin in wide if basin.excess <= 0.0), default=np.inf)
     missed = shortest < found.total_time * (1 - BETTER)
-    return found, found.status is Status.OPTIMAL and not missed
+    return found, found.status is Status.CONVERGED and not missed

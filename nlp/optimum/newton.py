@@ -289,7 +289,7 @@ def settled_quickly(
     totals = totals[:starts] if first else totals
     return Solution(
         problem,
-        Status.OPTIMAL,
+        Status.CONVERGED,
         durations=h,
         check=verdict,
         kkt_residual=report.residual,

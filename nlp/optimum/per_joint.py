@@ -61,9 +61,10 @@ class PerJointSolution:
 
     @property
     def status(self) -> Status:
-        """The worst status among the joints."""
+        """The worst status among the joints; *converged* at best, for the output is no optimum."""
         order = [
             Status.OPTIMAL,
+            Status.CONVERGED,
             Status.FEASIBLE,
             Status.NOT_ATTAINED,
             Status.LIMIT,
@@ -71,7 +72,8 @@ class PerJointSolution:
             Status.NONE_FOUND,
             Status.INFEASIBLE,
         ]
-        return max((s.status for s in self.joints), key=order.index)
+        worst = max((s.status for s in self.joints), key=order.index)
+        return Status.CONVERGED if worst is Status.OPTIMAL else worst
 
     @property
     def total_time(self) -> float:
@@ -168,7 +170,7 @@ def solve_per_joint(
         durations = np.max(answers, axis=0)
         verdict = check(problem, durations)
         why = None
-        settled = all(s.status is Status.OPTIMAL for s in solutions)
+        settled = all(s.status is Status.CONVERGED for s in solutions)
         shares = problem.shares
         if shares is not None and settled:
             # The longest of totals at the same ratios is the total: each may be as much longer.

@@ -26,7 +26,10 @@ class Status(StrEnum):
     """How a solve ended."""
 
     OPTIMAL = "optimal"
-    """Feasible for all t, and the optimality conditions hold: a local optimum."""
+    """Proved: feasible for all t, and no motion of the question is shorter by more than a millionth
+    of its total."""
+    CONVERGED = "converged"
+    """Feasible for all t, and the optimality conditions hold: a local optimum, the best known."""
     FEASIBLE = "feasible"
     """Feasible for all t; the optimality conditions were not reached."""
     INFEASIBLE = "infeasible"
@@ -149,7 +152,8 @@ class Solution:
             return Evidence.NONE
         if self.lower_bound is not None:
             return Evidence.CERTIFIED
-        return Evidence.UNCONVERGED if self.status is Status.FEASIBLE else Evidence.BEST_KNOWN
+        ended = self.status in (Status.CONVERGED, Status.NOT_ATTAINED)
+        return Evidence.BEST_KNOWN if ended else Evidence.UNCONVERGED
 
     @property
     def trajectory(self) -> Trajectory:
@@ -206,8 +210,6 @@ class Solution:
                 )
         if self.kkt_residual is not None:
             lines.append(f"KKT residual    {self.kkt_residual:.1e}")
-        if self.starts:
-            lines.append(f"starts          {self.starts_at_best} of {self.starts} reached the best")
         for a in self.active:
             where = f"joint {a.joint}" if a.joint else f"segment {a.segment + 1}"
             at = f" at t = {a.time:.4f} s" if a.time is not None else ""

@@ -349,7 +349,7 @@ def _stretched_start(problem: Problem, solution: Solution) -> Solution:
 
 def _challenged(problem: Problem, solution: Solution, wide: list[Basin], ask: Ask) -> Solution:
     """The answer, or a better one from a basin that the tracked NLP did not reach."""
-    if solution.status not in (Status.OPTIMAL, Status.FEASIBLE) and not time_up():
+    if solution.status not in (Status.CONVERGED, Status.FEASIBLE) and not time_up():
         return better_of(solution, _searched(problem, ask, solution.durations))
     bar = solution.best * (1 - BETTER) if settled(solution) else np.inf
     points = np.array([basin.durations for basin in wide if basin.total < bar])
@@ -362,7 +362,7 @@ def _challenged(problem: Problem, solution: Solution, wide: list[Basin], ask: As
 
 def _shortened(problem: Problem, solution: Solution, ask: Ask) -> Solution:
     """The answer, or a better one in which a segment between close way-points is much shorter."""
-    if solution.status is not Status.OPTIMAL or apart(problem) or time_up():
+    if solution.status is not Status.CONVERGED or apart(problem) or time_up():
         return solution
     if not short_ways(problem):
         return solution
@@ -416,7 +416,7 @@ def _with_idle(problem: Problem, idle: list[int], ask: Ask) -> Solution:
     low, high = problem.duration_lower.copy(), problem.duration_upper.copy()
     low[idle] = high[idle] = held[idle]
     if len(idle) == problem.segments:
-        h, solution = low.copy(), Solution(problem, Status.OPTIMAL)
+        h, solution = low.copy(), Solution(problem, Status.CONVERGED)
     else:
         core = replace(problem, duration_lower=low, duration_upper=high)
         known = ask.known.copy()

@@ -35,7 +35,7 @@ def unsearched(problem: Problem) -> Solution | None:
     if smooth is not None and (answer := decided(problem, smooth)) is not None:
         return Solution(
             problem,
-            Status.OPTIMAL,
+            Status.CONVERGED,
             "the least durations without a jump, in closed form",
             durations=answer.durations,
             check=check(problem, answer.durations),

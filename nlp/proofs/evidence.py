@@ -14,7 +14,7 @@ import numpy as np
 from ...problem import Problem, TrajgapError, Verdict, check
 from ...problem.cases import Statement
 from ...verify import CertificateVerdict, Subject, verify_certificate
-from ..optimum import PerJointSolution, Solution, solve
+from ..optimum import PerJointSolution, Solution, Status, solve
 from .certifiers import certify, covered, instant
 from .document import certificate, fits, shipped
 from .exact import ExactProblem, printed_problem
@@ -24,6 +24,9 @@ WIDEST = Fraction(1, 100)
 """Relative width from which an interval is too wide to call the optimum certified."""
 _SAME = 1e-9
 """Relative excess within which a solver's total is the certificate's: what its tolerance is."""
+_OPTIMAL = 1e-6
+"""Relative width up to which a proved interval makes its upper end an optimum: five digits beyond
+those that papers print, and what proofs reach by default."""
 _BELOW = 1e-12
 """Relative distance below the bound that rounding explains: `newton_kernel.KEPT`, the excess over a
 limit that a search in floats takes for kept."""
@@ -141,7 +144,8 @@ def with_certificate(solution: Solution, problem: ExactProblem | None) -> Soluti
     -------
     Solution
         Solved once more from the certificate's durations if these are shorter; at these durations
-        if the answer lies below the bound by rounding alone. Unchanged if nothing is proved, or if
+        if the answer lies below the bound by rounding alone. It is *optimal* where the bound comes
+        within a millionth of its total. Unchanged if nothing is proved, or if
         the answer lies farther below the bound: then one of the two is wrong.
     """
     return with_interval(solution, None if problem is None else proved(problem))
@@ -171,7 +175,11 @@ def with_interval(solution: Solution, found: ProvedInterval | None) -> Solution:
         lower = math.nextafter(lower, -math.inf)
     if solution.infimum is None and lower * (1.0 - _BELOW) <= solution.best < lower:
         solution = _proved_answer(solution, found.durations)
-    return replace(solution, lower_bound=lower) if lower <= solution.best < math.inf else solution
+    if not lower <= solution.best < math.inf:
+        return solution
+    shortest = solution.infimum is None and lower >= solution.best * (1.0 - _OPTIMAL)
+    status = Status.OPTIMAL if shortest else solution.status
+    return replace(solution, lower_bound=lower, status=status)
 
 
 def _proved_answer(solution: Solution, durations: tuple[Fraction, ...]) -> Solution:

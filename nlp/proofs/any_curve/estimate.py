@@ -65,10 +65,6 @@ class AnyCurveEstimate:
         ]
         if not self.attained:
             lines.append(f"not attained           {self.why}")
-        if self.starts:
-            lines.append(
-                f"starts                 {self.starts_at_best} of {self.starts} at the best"
-            )
         return "\n".join(lines)
 
 
