@@ -242,7 +242,7 @@ _LIMIT_SCHEMA = {
 Number = Annotated[
     Printed, PlainValidator(read_number), PlainSerializer(_plain), WithJsonSchema(_NUMBER_SCHEMA)
 ]
-"""A string stands for every value that rounds to its digits, a bare number is exact."""
+"""A string is a number rounded to its digits, a bare number is exact."""
 
 Length = Annotated[
     Printed,

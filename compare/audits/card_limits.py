@@ -214,7 +214,7 @@ def _jumping(words: Mapping[str, Judgement], asked: Iterable[str]) -> str:
 
 def _broken(study: Study, own: Sequence[_Row], held: _Held) -> str:
     """Which of the durations break a limit, and whether anything printed says that they keep it."""
-    every = "for every value that rounds to the printed digits"
+    every = "however the digits were rounded"
     if not own:
         return f"No motion as short as what is said to keep the limits keeps them, {every}"
     wrong = [c for c in own if set(held[c.id].values()) == {ClaimVerdict.REFUTED}] or list(own)

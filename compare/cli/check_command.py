@@ -43,7 +43,7 @@ def check(
         typer.Option(
             metavar="0.961,1.258,1.078",
             help="Of a case: segment durations as printed, in the case's unit of time (s if it "
-            "states none). Each number stands for every value that rounds to its digits.",
+            "states none). Each number is taken as rounded to its digits.",
         ),
     ] = None,
     problem: ProblemId = None,
@@ -77,8 +77,8 @@ def check(
     A motion is judged for all t: samples (CSV, Parquet), piecewise polynomials (JSON), a ROS
     JointTrajectory (YAML, JSON, rosbag). Flags count before --limits, and that before --urdf.
 
-    Durations of a case are judged for all t, as printed and for every value that rounds to the
-    printed digits. Under per-joint coupling each joint is judged by itself as well.
+    Durations of a case are judged for all t, as printed and however the digits were rounded.
+    Under per-joint coupling each joint is judged by itself as well.
     """
     from .motion_checking import MotionOptions, check_file
 

@@ -175,8 +175,8 @@ def _tables(document: CheckDocument, case: Case) -> list[RenderableType]:
     results = document.results
     shown = " ".join(f"{d:.6g}" for d in results[0].segment_durations)
     note = (
-        "verdict: the printed numbers themselves, for all t. rounding: every value that rounds to "
-        "the printed digits."
+        "verdict: the printed numbers themselves, for all t. rounding: however the digits were "
+        "rounded."
     )
     return [
         line(f"{results[0].case}: durations {shown} s", "bold"),

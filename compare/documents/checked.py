@@ -54,7 +54,7 @@ class Judged(Entry):
     verdict: Verdict
     """Of the printed point."""
     rounding_verdict: Rounding
-    """For every value that rounds to the printed digits."""
+    """However the printed digits were rounded."""
     total_time: Real
     """s"""
     worst: OrWhy[WorstPeak]

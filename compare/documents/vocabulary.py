@@ -50,7 +50,7 @@ class ClaimVerdict(StrEnum):
     """The computation agrees with the claim."""
     REFUTED = "refuted"
     """A proof contradicts the claim: interval arithmetic on the printed digits, a count of
-    conditions, an enclosure for every value that rounds to the printed digits, a scaling law, or a
+    conditions, an enclosure that holds however the digits were rounded, a scaling law, or a
     checked motion that is shorter than one called optimal."""
     NOT_CHECKABLE = "not checkable"
     """Nothing that the text carries decides it, and the reason is given."""
@@ -79,7 +79,7 @@ class Basis(StrEnum):
     COUNT = "count"
     """Conditions counted against coefficients."""
     ENCLOSURE = "rounding box"
-    """True peaks for every value that rounds to the printed digits."""
+    """True peaks, however the printed digits were rounded."""
     CHECK = "check"
     """True peaks at the printed point."""
     COMPUTED = "computed"
@@ -119,14 +119,14 @@ class Confidence(StrEnum):
 
 
 class Rounding(StrEnum):
-    """What holds of printed durations, for every value that rounds to the printed digits."""
+    """What holds of printed durations, however their digits were rounded."""
 
     KEEPS = "keeps"
     """The printed point itself keeps every limit for all t."""
     CONSISTENT = "consistent"
     """Some values that round to the printed digits keep every limit, and they are exhibited."""
     BREAKS = "breaks"
-    """A limit is broken for every value that rounds to the printed digits: a rigorous lower bound
+    """A limit is broken however the digits were rounded: a rigorous lower bound
     of the worst ratio over the whole rounding box exceeds 1."""
     UNDECIDED = "undecided"
     """Neither was shown."""

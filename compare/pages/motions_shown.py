@@ -83,7 +83,7 @@ def _printed_motions(study: Study, pid: str, rid: str) -> Iterator[Block]:
             study.case.claim_durations(first, rid).value,
             title=title,
             check=study.claim_check(first, pid, rid),
-            note=f"for every value that rounds to the digits: {rounding}",
+            note=f"however the digits were rounded: {rounding}",
             units=paper_units(study.case.statement(pid, rid)),
         )
         where = "; ".join(c.where for c in claims)
@@ -129,14 +129,13 @@ def _joint_by_joint(
         problem,
         durations,
         title=f"Printed durations of each joint by itself: {_tables_called(study, tables)}",
-        note=f"for every value that rounds to the digits: {words}",
+        note=f"however the digits were rounded: {words}",
         units=paper_units(study.case.statement(pid, rid)),
     )
     each = "; ".join(f"joint {c.joint}: {v}" for c, v in zip(claims, verdicts, strict=True))
     caption = (
-        "Each joint with its own durations, at the printed digits. For every value that rounds to "
-        "the printed digits: "
-        f"{each}.{noted(study, rid)}"
+        "Each joint with its own durations, at the printed digits. However the digits were "
+        f"rounded: {each}.{noted(study, rid)}"
     )
     return _drawn(file_name("motion", pid, "joints", str(claims[0].table)), picture, caption)
 

@@ -127,7 +127,7 @@ def _outcomes(one: CaseAudit, summary: ReadingsSummary) -> list[Block]:
         where = place(one.case.claim(claim)) if claim else problem_cell(one.case, problem)
         grids.append(Grid(names, rows, where).filled)
     note = (
-        "Limits are judged for every value that rounds, or is cut off, to the printed digits; "
+        "Limits are judged for all the ways in which the digits may have been rounded or cut off; "
         "jumps and the segments over a limit are those of the printed point. × to limits: all "
         "durations times this just reach the limits, jumps apart. The printed total is "
         "beside the optimum."

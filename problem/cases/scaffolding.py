@@ -242,7 +242,7 @@ def _text(
         for key in ("velocity", "acceleration", "jerk")
     ]
     parts = [
-        "# A number in quotes stands for every value that rounds to its digits.",
+        "# A number in quotes is taken as rounded to its digits.",
         "# A bare number is exact.",
         "# Take the first mark off each line of what the paper prints, and fill in empty quotes.",
         "",

@@ -98,7 +98,7 @@ def _judged(study: Study, claim: AnyClaim, pid: str, rid: str) -> _Judged:
         Rounding.KEEPS: "The printed numbers keep every limit for all t",
         Rounding.CONSISTENT: "Some values that round to the printed digits keep every limit for "
         "all t",
-        Rounding.BREAKS: "A limit is broken for every value that rounds to the printed digits",
+        Rounding.BREAKS: "A limit is broken however the digits were rounded",
         Rounding.UNDECIDED: "The printed digits do not decide whether the limits are kept",
     }[rounding.verdict]
     kind = str(rounding.verdict)
@@ -114,7 +114,7 @@ def _judged(study: Study, claim: AnyClaim, pid: str, rid: str) -> _Judged:
     message = f"{explained}. At the printed numbers {at_print}."
     loose = study.case.statement(pid, rid).declaration.loose
     if rounding.verdict is Rounding.UNDECIDED and loose:
-        message += f" {loose} are printed numbers, and no proof covers all that rounds to them."
+        message += f" {loose} are printed numbers, and no proof covers their rounding."
     bound = rounding.lower_bound_of_worst
     if rounding.verdict is Rounding.BREAKS and bound is not None:
         message += (
@@ -137,8 +137,8 @@ def _judged_total(study: Study, claim: TotalTimeClaim, pid: str, rid: str) -> _J
     printed = f"{claim.value} {study.time_unit}"
     if study.excluded_total(claim, pid, rid):
         message = (
-            f"No motion within the limits takes {printed} or less, for every value that rounds to "
-            "the printed digits or is cut off to them."
+            f"No motion within the limits takes {printed} or less, however the digits were rounded "
+            "or cut off."
         )
         return _Judged(ClaimVerdict.REFUTED, Severity.ERROR, message, "total excluded")
     message = (

@@ -317,8 +317,7 @@ def _weigh(study: Study, claim: AnyClaim, pid: str, rid: str, sides: _Sides) -> 
     sides.open.append(
         f"{name}: printed {shown} {set_beside(distance)} the "
         f"{optimum_called(solution.problem, solution.evidence)} {solution.best:.6f} s, "
-        "and no proof for all values that round to the printed digits "
-        "decides whether that is more than rounding explains"
+        "and no proof decides whether that is more than the rounding of the digits explains"
     )
 
 
@@ -388,7 +387,7 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
         if longer or breaking:
             # What refutes is a motion or a broken limit: no optimum, known or certified, is needed.
             evidence, verdict, severity = Evidence.NONE, ClaimVerdict.REFUTED, Severity.ERROR
-            every = "for every value that rounds to the printed digits"
+            every = "however the digits were rounded"
             said = [f"Not the shortest, {every}: {'; '.join(longer)}."] if longer else []
             said += [f"Not an answer within the limits. {' '.join(breaking)}"] if breaking else []
             message = " ".join(said)

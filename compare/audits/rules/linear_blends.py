@@ -80,8 +80,7 @@ def _beside(study: Study, claim: DurationsClaim, pid: str, rid: str) -> Finding:
             verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
             message = (
                 "Linear segments with parabolic blends break a limit with these durations"
-                f"{wherever}, for every value that rounds to the printed digits or is cut off to "
-                f"them. {at_print}"
+                f"{wherever}, however the digits were rounded or cut off. {at_print}"
             )
         elif all(one.keeps for one in found):
             verdict = ClaimVerdict.SUPPORTED

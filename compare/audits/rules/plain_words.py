@@ -34,9 +34,9 @@ _INFORMS = "It informs. No claim is supported or refuted by it."
 EXPLAINED = {
     "TG101": Explained(
         "Do the printed durations of the segments add up to the printed total? Every printed "
-        "number stands for all values that round to its digits.",
-        "Supported if some of these values add up; refuted, with severity error, if none do. "
-        + _DIGITS,
+        "number is taken as rounded to its digits.",
+        "Supported if some values that round to the digits add up; refuted, with severity error, "
+        "if none do. " + _DIGITS,
         "The durations 1.20, 0.85 and 1.10 s add up to between 3.135 and 3.165 s. A printed "
         "total of 3.15 s is supported, 3.51 s is refuted, and the report says that two "
         "exchanged digits would explain it.",
@@ -105,8 +105,8 @@ EXPLAINED = {
         "Does a joint go through the range that the text speaks of? Its largest and smallest "
         "printed angles are set beside those of the other printed joints.",
         "Where the joint is said to vary most: supported if all joints are printed and no range "
-        "is larger; inconsistent, with a warning, if one is larger for every value that rounds to "
-        "the printed digits. Where it is only said to vary much, nothing is decided: no text "
+        "is larger; inconsistent, with a warning, if one is larger however the digits were "
+        "rounded. Where it is only said to vary much, nothing is decided: no text "
         "says how much that is.",
         "Joint 3 is said to vary most. Its printed angles lie within 0.6 rad, those of joint 1 "
         "within 4.6 rad.",
@@ -115,8 +115,8 @@ EXPLAINED = {
         "Do the printed durations keep the printed limits at every instant? The motion is "
         "built again from the printed durations and way-points, and its extrema are exact.",
         "Supported if the limits are kept by the printed numbers, or by some values that "
-        "round to them. Refuted only if a limit is broken by every value that rounds to the "
-        "printed digits, and by every value that is cut off to them.",
+        "round to them. Refuted only if a limit is broken however the digits were rounded, and "
+        "however they were cut off.",
         "A velocity of 2.0004 rad/s against a limit of 2 rad/s is no fault if durations "
         "printed with two decimals explain it; 2.6 rad/s is one.",
     ),
@@ -177,8 +177,8 @@ EXPLAINED = {
     "TG210": Explained(
         "Do linear segments with parabolic blends keep the limits with the printed durations and "
         "blends?",
-        "Refuted if a speed or an acceleration exceeds its limit, or blends overlap, for every "
-        "value that rounds to the printed digits, wherever the end blends lie. No optimum stands "
+        "Refuted if a speed or an acceleration exceeds its limit, or blends overlap, however the "
+        "digits were rounded and wherever the end blends lie. No optimum stands "
         "beside such a motion: it does not pass its via-points.",
         "Durations of 2, 1 and 3 s and blends of 0.4 s turn joint 1 from 12.5 to -10 °/s at the "
         "first via-point, which takes 56 °/s². The limit is 50 °/s².",
@@ -204,8 +204,7 @@ EXPLAINED = {
         "How far is a printed total from the optimum of the paper's own problem: its curve, "
         "its way-points, its limits?",
         "A distance alone supports and refutes nothing. “Optimal” is refuted by a shorter "
-        "motion that was checked against the limits for every value that rounds to the "
-        "printed digits.",
+        "motion that keeps the limits however the digits were rounded.",
         "3.172 s is printed for joint 3, whose proven optimum is 3.126 s: 1.5 % above it.",
     ),
     "TG303": Explained(
