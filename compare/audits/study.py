@@ -15,11 +15,8 @@ from ...nlp import (
     ProvedInterval,
     Solution,
     Status,
-    lower_bounds,
     printed_problem_or_none,
-    proved_joints,
     solve_per_joint,
-    with_certificates,
     with_interval,
 )
 from ...nlp.optimum import OPTIMUM_SLACK, free_values, solve
@@ -73,12 +70,14 @@ class Study(ReplayedCase):
             self._progress(f"{self.case.id}: optimum of {which}; {in_words(self.case, pid, rid)}")
             index = None if joint is None else problem.joints.index(joint)
             one = problem if index is None else problem.joint(index)
+            exact = printed_problem_or_none(self.case.statement(pid, rid), index)
+            interval = None if exact is None else self._proved(pid, rid)(exact)
+            lower = 0.0 if interval is None else float(interval.lower)
             try:
-                found = solve(one, known=self.known_motions(pid, rid, joint))
+                found = solve(one, known=self.known_motions(pid, rid, joint), lower=lower)
             except TrajgapError as error:
                 return Solution(one, Status.FAILED, str(error))
-            exact = printed_problem_or_none(self.case.statement(pid, rid), index)
-            return with_interval(found, None if exact is None else self._proved(pid, rid)(exact))
+            return with_interval(found, interval)
 
         if joint is not None and len(self.problem(pid, rid).joints) == 1:
             joint = None
@@ -116,15 +115,16 @@ class Study(ReplayedCase):
         def compute() -> PerJointSolution:
             self._progress(f"{self.case.id}: each joint by itself; {in_words(self.case, pid, rid)}")
             slacks = dict.fromkeys((*self.half_digits(pid, rid), OPTIMUM_SLACK))
-            problem, stated = self.problem(pid, rid), self.case.statement(pid, rid)
-            known = {label: self.known_motions(pid, rid, label) for label in problem.joints}
-            bounds = lower_bounds(proved := proved_joints(problem, stated, self._proved(pid, rid)))
+            problem = self.problem(pid, rid)
             try:
-                found = solve_per_joint(problem, slacks=tuple(slacks), known=known, lower=bounds)
+                return solve_per_joint(
+                    problem,
+                    slacks=tuple(slacks),
+                    solver=lambda one: self.optimum(pid, rid, one.joints[0]),
+                )
             except TrajgapError as error:
                 joints = tuple(self.optimum(pid, rid, label) for label in problem.joints)
                 return PerJointSolution(problem, joints, None, None, (), str(error), 0.0)
-            return with_certificates(found, proved)
 
         return self.once(("per joint", pid, rid), compute)
 

@@ -13,7 +13,7 @@ from typing import Any
 from rich.console import RenderableType
 
 from ...heuristics import KINDS
-from ...nlp import Evidence, Solution, printed_problem_or_none, solve, with_certificate
+from ...nlp import Evidence, Solution, printed_problem_or_none, solve
 from ...problem import Case, CaseError, Coupling, TrajgapError
 from ...problem.cases import SUITE_PREFIX
 from ...problem.suite import instance_of, select_instances
@@ -203,9 +203,8 @@ def _optimum(case: Case, one: Selected) -> Solution | Reference:
         lower = known(instance.lower or None, "no lower bound is proved")
         evidence = Evidence(str(instance.evidence))
         return Reference(upper=instance.upper, lower=lower, evidence=evidence)
-    answer = solve(one.problem)
     exact = printed_problem_or_none(case.statement(one.problem_id, one.reading_id))
-    answer = with_certificate(answer, exact)
+    answer = solve(one.problem, exact=exact)
     if not 0 < answer.best < math.inf:
         why = answer.why or str(answer.status)
         raise TrajgapError(

@@ -10,17 +10,13 @@ from rich.console import RenderableType
 
 from ...nlp import (
     Solution,
-    lower_bounds,
     printed_problem_or_none,
-    proved_joints,
     solve,
     solve_per_joint,
-    with_certificate,
-    with_certificates,
 )
 from ...nlp.optimum import OPTIMUM_SLACK, stopping_after
 from ...nlp.retiming import Retiming, retime
-from ...problem import Case, Coupling, fit
+from ...problem import Case, Coupling, Problem, fit
 from ...verify import shown_bound
 from ..audits import Study, in_words
 from ..documents import (
@@ -84,20 +80,22 @@ def _solved(
     case: Case, one: Selected, starts: int, seed: int, retimings: _Retimings
 ) -> tuple[SolveResult, Solution]:
     ids = (case.id, one.problem_id, one.reading_id)
+    statement = case.statement(one.problem_id, one.reading_id)
+
+    def solver(question: Problem) -> Solution:
+        alone = len(question.joints) < len(one.problem.joints)
+        joint = one.problem.joints.index(question.joints[0]) if alone else None
+        exact = printed_problem_or_none(statement, joint)
+        return solve(question, exact=exact, starts=starts, seed=seed)
+
     if one.problem.coupling is Coupling.PER_JOINT:
         halves = Study(case).half_digits(one.problem_id, one.reading_id)
         slacks = tuple(dict.fromkeys((*halves, OPTIMUM_SLACK)))
-        intervals = proved_joints(one.problem, case.statement(one.problem_id, one.reading_id))
-        bounds = lower_bounds(intervals)
-        apart = solve_per_joint(one.problem, starts=starts, seed=seed, slacks=slacks, lower=bounds)
-        apart = with_certificates(apart, intervals)
-        together = solve(one.problem, starts=starts, seed=seed)
+        apart = solve_per_joint(one.problem, slacks=slacks, solver=solver)
+        together = solver(one.problem)
         retimed = [_retimed(s, retimings) for s in apart.joints]
         return solve_result(*ids, apart, retimed, together), together
-    answer = solve(one.problem, starts=starts, seed=seed)
-    answer = with_certificate(
-        answer, printed_problem_or_none(case.statement(one.problem_id, one.reading_id))
-    )
+    answer = solver(one.problem)
     return solve_result(*ids, answer, [_retimed(answer, retimings)]), answer
 
 

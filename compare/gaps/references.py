@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from ...nlp import printed_problem_or_none, solve, with_certificate
+from ...nlp import printed_problem_or_none, solve
 from ...problem import Problem
 from ...problem.cases import Statement
 from .rows import Bracket
@@ -29,9 +29,8 @@ def bracket_of(
     Bracket or None
         None where no positive total is attained.
     """
-    found = solve(problem)
-    if statement is not None:
-        found = with_certificate(found, printed_problem_or_none(statement, joint))
+    exact = None if statement is None else printed_problem_or_none(statement, joint)
+    found = solve(problem, exact=exact)
     if not 0 < found.best < math.inf:
         return None
     return Bracket(found.best, found.lower_bound)

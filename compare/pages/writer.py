@@ -253,7 +253,7 @@ def _reproduced(one: CaseAudit) -> Section:
     pairs = [
         ("transcribed by", str(source.transcribed_by)),
         ("checked by", str(source.checked_by)),
-        ("made again by", made.command),
+        ("reproduce with", made.command),
         ("date", made.date),
         ("trajgap", made.trajgap),
         ("commit", str(made.commit)),

@@ -325,7 +325,7 @@ class SourceShown(FromResults):
         rows = [
             ["audited", f"{made['date']} with trajgap {made['trajgap']}"],
             ["case file, SHA-256", str(made["case_sha256"])],
-            ["made again by", nodes.literal("", made["command"])],
+            ["reproduce with", nodes.literal("", made["command"])],
         ]
         cite = nodes.literal_block(made["citation"], made["citation"], language="bibtex")
         return [said, table(("what", "value"), rows, "trajgap-facts"), *self._proofs(made), cite]

@@ -5,7 +5,7 @@ from .ipopt import structure_of
 from .judgement import KKT_TOLERANCE, SAME
 from .optimality import KKT, Active, kkt
 from .per_joint import OPTIMUM_SLACK, PerJointSolution, Range, solve_per_joint
-from .solution import Evidence, Solution, Status, weakest
+from .solution import Evidence, Solution, Status, close, weakest
 from .solver import STARTS, solve
 from .solver_calls import kept_calls, solved_before
 from .starts import random_starts
@@ -31,6 +31,7 @@ __all__ = [
     "build",
     "ca",
     "call_cap",
+    "close",
     "free_values",
     "kept_calls",
     "kkt",

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ...problem import Array, Check, Problem, check
 from .clock import time_up
 from .near_optimal import longest_per_segment_range
 from .solution import Evidence, Solution, Status, weakest
-from .solver import STARTS, solve
+from .solver import solve
 
 OPTIMUM_SLACK = 1e-6
 """Excess over each joint's own optimum (s) within which the procedure's output is reported."""
@@ -111,11 +110,8 @@ class PerJointSolution:
 def solve_per_joint(
     problem: Problem,
     *,
-    starts: int = STARTS,
-    seed: int = 0,
     slacks: tuple[float, ...] = (OPTIMUM_SLACK,),
-    known: Mapping[str, ArrayLike] | None = None,
-    lower: Mapping[str, float] | None = None,
+    solver: Callable[[Problem], Solution] = solve,
 ) -> PerJointSolution:
     """Optimise each joint by itself and take the longest duration of each segment.
 
@@ -126,13 +122,11 @@ def solve_per_joint(
     ----------
     problem : Problem
         Its coupling is not looked at.
-    starts, seed : int
-        As in `solve`.
     slacks : tuple of float
         Excesses over each joint's own optimum, s, for which the range of the procedure's total
         is reported; none for an empty tuple.
-    known, lower : mapping, optional
-        As in `solve`, by the joint's label.
+    solver : callable
+        Answers the problem of one joint.
 
     Returns
     -------
@@ -140,17 +134,7 @@ def solve_per_joint(
     """
     began = time.perf_counter()
     singles = [problem.joint(j) for j in range(problem.waypoints.shape[1])]
-    given, bounds = known or {}, lower or {}
-    solutions = tuple(
-        solve(
-            p,
-            starts=starts,
-            seed=seed,
-            known=given.get(p.joints[0]),
-            lower=bounds.get(p.joints[0], 0.0),
-        )
-        for p in singles
-    )
+    solutions = tuple(map(solver, singles))
     answers = [s.durations for s in solutions if s.durations is not None]
     ranges: list[Range] = []
     if len(answers) < len(solutions):
@@ -170,7 +154,7 @@ def solve_per_joint(
         durations = np.max(answers, axis=0)
         verdict = check(problem, durations)
         why = None
-        settled = all(s.status is Status.CONVERGED for s in solutions)
+        settled = all(s.status in (Status.CONVERGED, Status.OPTIMAL) for s in solutions)
         shares = problem.shares
         if shares is not None and settled:
             # The longest of totals at the same ratios is the total: each may be as much longer.

@@ -18,8 +18,15 @@ _VANISHING = 1e-3
 search above it, and an infimum above 0 is nearly reached there."""
 
 
+_WIDEST = 0.01
+"""Relative width up to which an interval is narrow enough to call the optimum certified."""
 _MET = 1e-9
 """Relative distance of a proved bound at which it meets a value: what rounding explains."""
+
+
+def close(lower: float, upper: float) -> bool:
+    """Whether a proved interval is narrow enough to call the optimum within it certified."""
+    return upper - lower <= _WIDEST * lower
 
 
 class Status(StrEnum):
@@ -85,7 +92,7 @@ class Solution:
         For `not_attained`: the value that the totals found approach, s. It is the infimum where
         `approach_proved` says so, and otherwise the best known estimate of it.
     lower_bound : float or None
-        A certified lower bound, s; only `with_certificate` sets it.
+        A lower bound that `trajgap.verify` has proved, s.
     kkt_residual : float or None
         Of the reduced problem, scaled, with all active peaks found again.
     active : tuple of Active
@@ -147,10 +154,10 @@ class Solution:
 
     @property
     def evidence(self) -> Evidence:
-        """Certified only with a lower bound; best known only where the search converged."""
+        """Certified with a lower bound within 1 %; best known only where the search converged."""
         if self.durations is None:
             return Evidence.NONE
-        if self.lower_bound is not None:
+        if self.lower_bound is not None and close(self.lower_bound, self.best):
             return Evidence.CERTIFIED
         ended = self.status in (Status.CONVERGED, Status.NOT_ATTAINED)
         return Evidence.BEST_KNOWN if ended else Evidence.UNCONVERGED

@@ -12,12 +12,8 @@ from .document import (
 from .evidence import (
     ProvedInterval,
     interval_of,
-    lower_bounds,
     printed_problem_or_none,
     proved,
-    proved_joints,
-    with_certificate,
-    with_certificates,
     with_interval,
 )
 from .exact import ExactProblem, decimal, exact_problem, printed_problem
@@ -43,20 +39,16 @@ __all__ = [
     "exact_problem",
     "fits",
     "interval_of",
-    "lower_bounds",
     "printed_problem",
     "printed_problem_or_none",
     "problem_seal",
     "proved",
-    "proved_joints",
     "read_state",
     "shipped",
     "shipped_file",
     "solve",
     "state_document",
     "unlike",
-    "with_certificate",
-    "with_certificates",
     "with_interval",
     "write_certificate",
 ]

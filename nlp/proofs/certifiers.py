@@ -12,6 +12,9 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from ...problem import Problem, TrajgapError
 from ...verify import Subject
 from .certifier import Certifier
@@ -107,6 +110,7 @@ def certify(
     workers: int = 1,
     executor: Executor | None = None,
     cache: bool | Path = False,
+    known: ArrayLike | None = None,
 ) -> Certified:
     """Prove an interval of the least total of a problem with shared durations.
 
@@ -150,6 +154,9 @@ def certify(
         run kept is used: in the user's cache folder, or in the folder given. Nothing that is kept
         is trusted: it counts if `trajgap.verify` proves it again, to this question and this gap.
         A run that goes on from a state does neither.
+    known : array_like, shape (segments,), optional
+        Durations that a local search has found already, s: where they are proved feasible, no
+        other search begins.
 
     Returns
     -------
@@ -174,9 +181,9 @@ def certify(
     where = None if resume is not None or cache is False else cache
     kept = KeptProofs(cache_folder() if where is True else where)
     with ProofCrew(workers, executor) as crew:
-        known = kept.taken(exact, subject, gap, seed, deadline, crew)
-        if known is not None:
-            return replace(known, seconds=time.perf_counter() - began)
+        earlier = kept.taken(exact, subject, gap, seed, deadline, crew)
+        if earlier is not None:
+            return replace(earlier, seconds=time.perf_counter() - began)
         certifier = _certifier(exact, subject)
         assert certifier is not None
         taken_up, before = None, None
@@ -188,6 +195,8 @@ def certify(
         request = Request(
             gap, deadline.left, seed, taken_up, report, workers, executor, crew, boxes
         )
+        if known is not None:
+            request = replace(request, known=np.asarray(known, dtype=np.float64))
         found = judged(certifier.run(exact, request), deadline, before, crew)
     kept.keep(found, gap, seed)
     return found

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
@@ -11,22 +10,18 @@ from typing import Any
 
 import numpy as np
 
-from ...problem import Problem, TrajgapError, Verdict, check
+from ...problem import TrajgapError, Verdict, check
 from ...problem.cases import Statement
 from ...verify import CertificateVerdict, Subject, verify_certificate
-from ..optimum import PerJointSolution, Solution, Status, solve
+from ..optimum import Solution, Status, close, solve
 from .certifiers import certify, covered, instant
 from .document import certificate, fits, shipped
 from .exact import ExactProblem, printed_problem
 from .judged import why_too_large
+from .outcome import GAP
 
-WIDEST = Fraction(1, 100)
-"""Relative width from which an interval is too wide to call the optimum certified."""
 _SAME = 1e-9
 """Relative excess within which a solver's total is the certificate's: what its tolerance is."""
-_OPTIMAL = 1e-6
-"""Relative width up to which a proved interval makes its upper end an optimum: five digits beyond
-those that papers print, and what proofs reach by default."""
 _BELOW = 1e-12
 """Relative distance below the bound that rounding explains: `newton_kernel.KEPT`, the excess over a
 limit that a search in floats takes for kept."""
@@ -67,7 +62,7 @@ def proved(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> Proved
     -------
     ProvedInterval or None
         None without a certificate of exactly this problem, or if it does not prove its claim
-        or leaves an interval wider than `WIDEST`.
+        or leaves an interval wider than 1 %.
     """
     if why_too_large(problem) is not None:
         return None
@@ -104,7 +99,7 @@ def interval_of(
     -------
     ProvedInterval or None
         None if it is about another problem, proves nothing, or leaves an interval wider than
-        `WIDEST`.
+        1 %.
     """
     if why_too_large(problem) is not None or not fits(document, problem, subject):
         return None
@@ -112,10 +107,18 @@ def interval_of(
 
 
 def narrow(document: dict[str, Any], verdict: CertificateVerdict) -> ProvedInterval | None:
-    """What a certificate proves; None if that is nothing, or wider than `WIDEST`."""
-    if not verdict.proves or verdict.lower is None:
-        return None
-    if verdict.upper is not None and verdict.upper - verdict.lower > WIDEST * verdict.lower:
+    """What a certificate proves; None if that is nothing, or wider than 1 %."""
+    found = interval_in(document, verdict)
+    if found is None or found.upper is None or close(float(found.lower), float(found.upper)):
+        return found
+    return None
+
+
+def interval_in(
+    document: dict[str, Any], verdict: CertificateVerdict | None
+) -> ProvedInterval | None:
+    """What a certificate proves, however wide; None if that is nothing."""
+    if verdict is None or not verdict.proves or verdict.lower is None:
         return None
     given = document["claim"]["durations"]
     durations = None if given is None else tuple(Fraction(h) for h in given)
@@ -131,28 +134,8 @@ def printed_problem_or_none(statement: Statement, joint: int | None = None) -> E
     return exact if joint is None or len(exact.joints) == 1 else exact.joint(joint)
 
 
-def with_certificate(solution: Solution, problem: ExactProblem | None) -> Solution:
-    """Add the lower bound that is proved for the same problem, if there is one.
-
-    Parameters
-    ----------
-    solution : Solution
-    problem : ExactProblem or None
-        The same problem in exact numbers.
-
-    Returns
-    -------
-    Solution
-        Solved once more from the certificate's durations if these are shorter; at these durations
-        if the answer lies below the bound by rounding alone. It is *optimal* where the bound comes
-        within a millionth of its total. Unchanged if nothing is proved, or if
-        the answer lies farther below the bound: then one of the two is wrong.
-    """
-    return with_interval(solution, None if problem is None else proved(problem))
-
-
 def with_interval(solution: Solution, found: ProvedInterval | None) -> Solution:
-    """Add a proved lower bound of the same problem, as `with_certificate` does.
+    """Add a proved lower bound of the same problem.
 
     Parameters
     ----------
@@ -163,6 +146,10 @@ def with_interval(solution: Solution, found: ProvedInterval | None) -> Solution:
     Returns
     -------
     Solution
+        Solved once more from the certificate's durations if these are shorter; at these durations
+        if the answer lies below the bound by rounding alone. It is *optimal* where the bound comes
+        within a millionth of its total. Unchanged if nothing is proved, or if the answer lies
+        farther below the bound: then one of the two is wrong.
     """
     if found is None or found.upper is None or found.durations is None:
         return solution
@@ -177,7 +164,7 @@ def with_interval(solution: Solution, found: ProvedInterval | None) -> Solution:
         solution = _proved_answer(solution, found.durations)
     if not lower <= solution.best < math.inf:
         return solution
-    shortest = solution.infimum is None and lower >= solution.best * (1.0 - _OPTIMAL)
+    shortest = solution.infimum is None and lower >= solution.best * (1.0 - GAP)
     status = Status.OPTIMAL if shortest else solution.status
     return replace(solution, lower_bound=lower, status=status)
 
@@ -195,59 +182,3 @@ def _proved_answer(solution: Solution, durations: tuple[Fraction, ...]) -> Solut
     if found.verdict is not Verdict.PASS:
         return solution
     return replace(solution, durations=h, check=found)
-
-
-def proved_joints(
-    problem: Problem,
-    statement: Statement,
-    find: Callable[[ExactProblem], ProvedInterval | None] = proved,
-) -> dict[str, ProvedInterval]:
-    """What is proved of the optimum of each joint by itself.
-
-    Parameters
-    ----------
-    problem : Problem
-    statement : Statement
-        Of the same problem.
-    find : callable, optional
-        Where intervals come from: the certificates that are shipped.
-
-    Returns
-    -------
-    dict
-        By the joint's label, of those of which something is proved.
-    """
-    stated = {
-        label: printed_problem_or_none(statement, j) for j, label in enumerate(problem.joints)
-    }
-    found = {label: find(exact) for label, exact in stated.items() if exact is not None}
-    return {label: interval for label, interval in found.items() if interval is not None}
-
-
-def with_certificates(
-    answer: PerJointSolution, intervals: Mapping[str, ProvedInterval]
-) -> PerJointSolution:
-    """`with_interval` for each joint's own optimum; the procedure's output stays what it is.
-
-    Parameters
-    ----------
-    answer : PerJointSolution
-    intervals : mapping
-        As `proved_joints` finds them for the same problem.
-
-    Returns
-    -------
-    PerJointSolution
-    """
-    joints = [
-        with_interval(s, intervals.get(label))
-        for s, label in zip(answer.joints, answer.problem.joints, strict=True)
-    ]
-    same = all(new.best == old.best for new, old in zip(joints, answer.joints, strict=True))
-    # Durations of another answer would not be the ones behind the procedure's output.
-    return replace(answer, joints=tuple(joints)) if same else answer
-
-
-def lower_bounds(intervals: Mapping[str, ProvedInterval]) -> dict[str, float]:
-    """Proved lower bounds by the joint's label, s, as `solve_per_joint` takes them."""
-    return {label: float(interval.lower) for label, interval in intervals.items()}

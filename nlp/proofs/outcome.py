@@ -10,6 +10,7 @@ from enum import StrEnum
 from fractions import Fraction
 from typing import Any, Protocol
 
+from ...problem import Array
 from ...verify import CertificateVerdict, Subject, shown_bound
 from .crew import ProofCrew
 from .exact import ExactProblem
@@ -100,6 +101,8 @@ class Request:
         Time limit of search and judging; the session ends the search early enough.
     boxes : float
         Boxes after which the search ends, whatever the time.
+    known : ndarray, shape (segments,), or None
+        An answer that a local search has found already, s.
     seed : int
         Of the starts of a local solver.
     resume : Resumed or None
@@ -123,6 +126,7 @@ class Request:
     executor: Executor | None = None
     crew: ProofCrew = field(default_factory=ProofCrew)
     boxes: float = math.inf
+    known: Array | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,22 +1,26 @@
-"""The solver's answer with what a shipped certificate proves of the same problem."""
+"""The solver's answer with what is proved of the same problem: by a certificate, or by a search."""
 
 from __future__ import annotations
 
 import math
+import time
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...problem import Array, Problem, scale
+from ...problem import Array, Problem, TrajgapError, scale
 from ...verify import Refused, Subject, verify_certificate
 from .. import optimum
-from ..optimum import STARTS, Form, Solution
-from .document import all_shipped, problem_document, question, suite_documents
-from .evidence import ProvedInterval, narrow, with_interval
-from .exact import exact_problem
+from ..optimum import STARTS, Form, Solution, seconds_left
+from .certifiers import allowance, certify, covered
+from .document import all_shipped, certificate, problem_document, question, suite_documents
+from .evidence import ProvedInterval, interval_in, narrow, proved, with_interval
+from .exact import ExactProblem, exact_problem
 
+PROVING = 0.1
+"""Share of the boxes that an audit allows one problem: about a second's worth."""
 _ROUNDED = 8 * np.finfo(np.float64).eps
 """Relative distance within which floats are those of the printed numbers: a conversion of units
 rounds three times, by half a unit of the last place each."""
@@ -29,6 +33,7 @@ _TIMES = ("duration_lower", "duration_upper", "ratios")
 def solve(
     problem: Problem,
     *,
+    exact: ExactProblem | None = None,
     starts: int = STARTS,
     seed: int = 0,
     initial: ArrayLike | None = None,
@@ -36,19 +41,29 @@ def solve(
     known_nodal: ArrayLike | None = None,
     form: Form | None = None,
     seconds: float = math.inf,
+    prove: float = PROVING,
 ) -> Solution:
     """Shortest total time with shared durations: from an exact NLP, and proved where it can be.
 
-    Where a certificate that ships with the package is about this very problem, it is proved again,
-    and its lower bound stands beside the answer: then the evidence is *certified*.
+    Where a certificate that ships with the package is about this very problem, it is proved again.
+    Else a branch and bound looks for a lower bound, where the curve has one. What `trajgap.verify`
+    proves stands beside the answer: with it the optimum lies between ``lower_bound`` and the total.
+    The answer is *optimal* where both are a millionth apart.
 
     Parameters
     ----------
     problem : Problem
         Its coupling is not looked at: durations are shared by all joints of the problem. See
         `solve_per_joint` for the other procedure.
+    exact : ExactProblem, optional
+        The same problem in the numbers that are printed. Without it the floats are exact, unless a
+        certificate that ships is about the printed numbers that they round.
     starts, seed, initial, known, known_nodal, form, seconds
         As in `trajgap.nlp.optimum.solve`.
+    prove : float
+        Budget of the branch and bound, as a share of what an audit allows one problem; 0 turns it
+        off. Boxes are counted and not seconds, so that no answer depends on how busy the machine
+        is; it ends with ``seconds`` all the same.
 
     Returns
     -------
@@ -61,8 +76,12 @@ def solve(
         If ``initial`` or ``known`` has the wrong shape.
     """
     size = len(problem.waypoints), len(problem.joints)
-    place = _place(problem, *size)
-    interval = None if place is None else _proved(*size, place)
+    if exact is not None:
+        interval = proved(exact)
+    else:
+        place = _place(problem, *size)
+        interval = None if place is None else _proved(*size, place)
+    began = time.perf_counter()
     found = optimum.solve(
         problem,
         starts=starts,
@@ -74,7 +93,27 @@ def solve(
         seconds=seconds,
         lower=0.0 if interval is None else float(interval.lower),
     )
+    if interval is None and prove > 0:
+        left = min(seconds_left(), seconds - (time.perf_counter() - began))
+        interval = _searched(found, exact, prove, left)
     return with_interval(found, interval)
+
+
+def _searched(
+    found: Solution, exact: ExactProblem | None, prove: float, seconds: float
+) -> ProvedInterval | None:
+    """What a branch and bound proves of an answer's problem, within a budget of boxes."""
+    if found.durations is None or found.infimum is not None or seconds <= 0:
+        return None
+    try:
+        exact = exact or exact_problem(found.problem)
+        if covered(exact) is not None:
+            return None
+        boxes = max(1.0, round(prove * allowance(exact)))
+        answer = certify(exact, seconds=seconds, boxes=boxes, known=found.durations)
+    except TrajgapError:  # nothing limits the total from below, or no certificate can state it
+        return None
+    return None if answer.proof is None else interval_in(certificate(answer), answer.verdict)
 
 
 def _place(problem: Problem, waypoints: int, joints: int) -> int | None:

@@ -288,13 +288,17 @@ class Session:
     def seek(self, initial: Array | None = None) -> bool:
         """Look for a shorter answer with the local solver, from given durations or its own starts.
 
-        The solver has a share of the time that is left, and then what it has found is taken.
+        What a local search has found already is taken in place of its starts. The solver has a
+        share of the time that is left, and then what it has found is taken.
 
         Returns
         -------
         bool
             Whether one was found.
         """
+        known = self.request.known
+        if initial is None and known is not None and self.offer(known):
+            return True
         with self.sharing_the_time():
             solution = solve(self.floats, seed=self.request.seed, initial=initial)
         tries = [h for h in (solution.durations, initial) if h is not None]
