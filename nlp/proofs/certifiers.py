@@ -81,6 +81,12 @@ def instant(problem: ExactProblem) -> bool:
     return certifier is not None and certifier.instant
 
 
+def at_once(problem: ExactProblem) -> bool:
+    """Whether a proof can begin at once: the curve is covered, and nothing is to be compiled."""
+    certifier = _certifier(problem, Subject.DECLARED)
+    return covered(problem) is None and certifier is not None and not certifier.compiles
+
+
 def allowance(problem: ExactProblem) -> int:
     """Boxes that an audit allows a covered problem by default.
 

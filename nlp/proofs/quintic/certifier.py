@@ -279,5 +279,6 @@ QUINTIC = Certifier(
     _missing,
     _prove,
     boxes=20_000,
+    compiles=True,
 )
 """At rest alone: the windows and the nodal equations are derived for it."""
