@@ -108,6 +108,15 @@ def solve(
     coupling: Coupled = None,
     starts: Annotated[int, typer.Option(min=1, max=MOST, help="Starts of the solver.")] = 4,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the random starts.")] = 0,
+    prove: Annotated[
+        float,
+        typer.Option(
+            min=0.0,
+            metavar="B",
+            help="Boxes for the proof of each optimum, as a share of what an audit allows: 0 for "
+            "no proof, 1 for some ten seconds.",
+        ),
+    ] = 0.1,
     certify: Annotated[
         bool, typer.Option("--certify", help="Prove an interval of each optimum instead.")
     ] = False,
@@ -187,7 +196,7 @@ def solve(
 
         asked = None if samples is None else asked_samples(samples, rate, form, retimed)
         return solve_case(
-            case, problem, reading, coupling, starts, seed, seconds, as_json, out, asked
+            case, problem, reading, coupling, starts, seed, prove, seconds, as_json, out, asked
         )
     if samples is not None or rate is not None or form is not None or retimed:
         raise typer.BadParameter("--samples is of a solution; leave --certify out")

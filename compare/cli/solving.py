@@ -43,6 +43,7 @@ def solve_case(
     coupling: str | None,
     starts: int,
     seed: int,
+    prove: float,
     limit: float | None,
     as_json: bool,
     out: Path | None,
@@ -61,7 +62,7 @@ def solve_case(
             for one in selected:
                 step(in_words(case, one.problem_id, one.reading_id))
                 with stopping_after(math.inf if limit is None else limit):
-                    result, answer = _solved(case, one, starts, seed, retimings)
+                    result, answer = _solved(case, one, starts, seed, prove, retimings)
                 results.append(result)
                 if asked is not None and written is None:
                     text, written = write_motion(one, answer, asked)
@@ -77,7 +78,7 @@ _Retimings = dict[tuple[object, ...], Retiming]
 
 
 def _solved(
-    case: Case, one: Selected, starts: int, seed: int, retimings: _Retimings
+    case: Case, one: Selected, starts: int, seed: int, prove: float, retimings: _Retimings
 ) -> tuple[SolveResult, Solution]:
     ids = (case.id, one.problem_id, one.reading_id)
     statement = case.statement(one.problem_id, one.reading_id)
@@ -86,7 +87,7 @@ def _solved(
         alone = len(question.joints) < len(one.problem.joints)
         joint = one.problem.joints.index(question.joints[0]) if alone else None
         exact = printed_problem_or_none(statement, joint)
-        return solve(question, exact=exact, starts=starts, seed=seed)
+        return solve(question, exact=exact, starts=starts, seed=seed, prove=prove)
 
     if one.problem.coupling is Coupling.PER_JOINT:
         halves = Study(case).half_digits(one.problem_id, one.reading_id)
