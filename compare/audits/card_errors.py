@@ -85,9 +85,7 @@ def _plain(
         "TG103": f"From the printed totals {_claimed(claim)} would be {computed}, not {printed}",
         "TG105": f"{place(claim)} prints {printed} for a total that {_other(case, head)} gives as "
         f"{computed}",
-        "TG107": f"The conditions in {where} cannot all hold: "
-        # They have been called conditions.
-        f"{computed.replace(' conditions', '', 1)}",
+        "TG107": f"In {where} there are {computed}{f', not {printed}' if printed else ''}",
         "TG109": f"{where} prints {printed}, and the curve has {computed}",
         "TG201": f"The total in {where} is shorter than any motion within the limits"
         if isinstance(claim, TotalTimeClaim)

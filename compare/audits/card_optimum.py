@@ -158,12 +158,14 @@ class _Above:
 
     shown: str
     remark: str
+    least: str
+    """“At least ” where some roundings make the distance larger."""
     far: str
     name: str
     best: str
 
     def __str__(self) -> str:
-        return f"{_named(self)} is {self.far} the {self.name} {self.best}"
+        return f"{_named(self)} is {self.least}{self.far} above the {self.name} {self.best}"
 
 
 @dataclass(frozen=True)
@@ -195,6 +197,7 @@ def _remarked(shown: str, remark: str) -> str:
 
 def _together(parts: Sequence[_Above]) -> str:
     """Several printed totals beside their optima in one phrase."""
+    alike = len({p.least for p in parts}) == 1
     # Distances that print alike are said once.
     shown, shares, bests = (
         " and ".join(dict.fromkeys(one) if k == 1 else one)
@@ -203,7 +206,7 @@ def _together(parts: Sequence[_Above]) -> str:
                 *(
                     (
                         f"{p.shown} ({p.remark})" if p.remark else p.shown,
-                        p.far.removesuffix(" above"),
+                        p.far if alike else f"{p.least}{p.far}",
                         p.best,
                     )
                     for p in parts
@@ -212,9 +215,7 @@ def _together(parts: Sequence[_Above]) -> str:
             )
         )
     )
-    if all(p.far.startswith("at least ") for p in parts):
-        shares = f"at least {shares.replace('at least ', '')}"
-    return f"{shown} are {shares} above the {_PLURALS[parts[0].name]} {bests}"
+    return f"{shown} are {parts[0].least if alike else ''}{shares} above the {_PLURALS[parts[0].name]} {bests}"
 
 
 def limited(study: Study, pid: str, rid: str) -> bool:
@@ -288,14 +289,14 @@ def _one_beside(
             may = "" if ends.upper is None else _MAY
             return f"{said} is {_far(share, 'above')} the {best}{_AT_PRINT}{may}"
         most = None if ends.lower is None else high / ends.lower - 1
-        far = _bounded(low / ends.upper - 1, share, most, "above")
-        many = share >= _MANY_TIMES
-        return (
-            f"{said} is {far} the {best}" if many else _Above(shown, remark, far, name, shown_best)
-        )
+        bound, far = _bounded(low / ends.upper - 1, share, most)
+        if share >= _MANY_TIMES:
+            return f"{said} is {bound}{far} the {best}"
+        return _Above(shown, remark, bound, far, name, shown_best)
     if ends.lower is not None and high < ends.lower:
         least = None if ends.upper is None else 1 - low / ends.upper
-        return f"{said} is {_bounded(1 - high / ends.lower, -share, least, 'below')} the {best}"
+        bound, far = _bounded(1 - high / ends.lower, -share, least)
+        return f"{said} is {bound}{far} below the {best}"
     # To first order the digits shorten the optimum by no more than they are proved to lengthen it.
     reach = 0.0 if ends.upper is None else ends.upper / solution.best - 1
     may = _MAY if high >= solution.best * (1 - reach) and reach > 0 else ""
@@ -308,22 +309,26 @@ _MAY = ", whose rounding may explain it"
 """What is added where it may be none."""
 
 
+def _size(share: float) -> str:
+    """How far a time is from another: as a percentage, or how many times it is."""
+    return f"{1 + share:.1f} times" if share >= _MANY_TIMES else _percent(share)
+
+
 def _far(share: float, side: str) -> str:
     """A distance at the printed digits."""
-    return f"{1 + share:.1f} times" if share >= _MANY_TIMES else f"{_percent(share)} {side}"
+    return _size(share) if share >= _MANY_TIMES else f"{_size(share)} {side}"
 
 
-def _bounded(least: float, share: float, most: float | None, side: str) -> str:
-    """A distance that holds for every value that rounds to the digits.
+def _bounded(least: float, share: float, most: float | None) -> tuple[str, str]:
+    """A distance that holds however the digits were rounded, after “at least ” if need be.
 
-    Where all of these print alike it is that number, else the least of them.
+    Where all roundings print alike it is that number, else the least of them.
     """
-    alike = most is not None and _far(least, side) == _far(share, side) == _far(most, side)
-    if alike:
-        return _far(share, side)
+    if most is not None and _size(least) == _size(share) == _size(most):
+        return "", _size(share)
     if share >= _MANY_TIMES:
-        return f"at least {shown_bound(1 + least, 'lower', places=1)} times"
-    return f"at least {at_least_percent(least)} {side}"
+        return "at least ", f"{shown_bound(1 + least, 'lower', places=1)} times"
+    return "at least ", at_least_percent(least)
 
 
 def at_least_percent(share: float) -> str:

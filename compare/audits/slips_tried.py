@@ -40,9 +40,7 @@ _TRIED = 400
 
 _ALL_KEPT = "every limit is kept"
 """What holds where a change brings all durations within their limits."""
-_KEPT = f"Then {_ALL_KEPT}"
-"""How the effect of such a change begins."""
-_BY_DEFAULT = "Then the default reading keeps every limit"
+_BY_DEFAULT = "the default reading keeps every limit"
 """The same on a card, where the reading has been named."""
 
 _DECIDED_AT_ONCE: tuple[type[AnyClaim], ...] = (
@@ -154,13 +152,13 @@ def explained_by_slips(
     return [
         Explanation(
             change=one.slip.change,
-            effect=f"{effect[:-1]}{under}.{note}",
-            brief=effect.replace(_KEPT, _BY_DEFAULT)
-            if default and _KEPT in effect
-            else f"{effect[:-1]}{under}.",
+            effect=f"{effect}{under}.{note}",
+            brief=f"{on_card}." if default and on_card != effect else f"{effect}{under}.",
         )
         for one, note in named
-        for effect in (_effect(study, one, row or claim),)
+        for effect, on_card in (
+            [_effect(study, one, row or claim, kept) for kept in (_ALL_KEPT, _BY_DEFAULT)],
+        )
     ]
 
 
@@ -275,13 +273,13 @@ def _judge(
     return _Judged(slip, tuple(sorted(settled)), after, rounding, reached)
 
 
-def _effect(study: Study, one: _Judged, row: AnyClaim) -> str:
-    """What a change settles, and which durations still break a limit with it."""
+def _effect(study: Study, one: _Judged, row: AnyClaim, all_kept: str) -> str:
+    """What a change settles, and which durations still break a limit with it, without a stop."""
     parts = []
     broken = [study.case.claim(c) for rule, c in sorted(one.left) if rule == "TG201" and c]
     if "TG201" in one.settled:
         timed = broken and study.has_durations(row)
-        kept = f"the durations in {place(row)} keep every limit" if timed else _ALL_KEPT
+        kept = f"the durations in {place(row)} keep every limit" if timed else all_kept
         parts.append(kept + (" within rounding" if one.rounding is Rounding.CONSISTENT else ""))
         if one.reached:
             parts.append("one is reached")
@@ -291,7 +289,7 @@ def _effect(study: Study, one: _Judged, row: AnyClaim) -> str:
     if broken and row not in broken:
         places = " and ".join(dict.fromkeys(place(c) for c in broken))
         said += f"; those in {places} still break one"
-    return f"{said}."
+    return said
 
 
 # --- changes of digits ----------------------------------------------------------------------------
