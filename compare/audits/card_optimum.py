@@ -215,7 +215,8 @@ def _together(parts: Sequence[_Above]) -> str:
             )
         )
     )
-    return f"{shown} are {parts[0].least if alike else ''}{shares} above the {_PLURALS[parts[0].name]} {bests}"
+    least, name = parts[0].least if alike else "", _PLURALS[parts[0].name]
+    return f"{shown} are {least}{shares} above the {name} {bests}"
 
 
 def limited(study: Study, pid: str, rid: str) -> bool:
