@@ -28,7 +28,8 @@ def read_parquet(path: Path, joints: Sequence[str] = (), noise: float | Array = 
 
     Times are seconds where they are decimal numbers. Durations are converted by their unit;
     timestamps, times of day and dates too, relative to the first row. Whole numbers need a column
-    whose name says seconds, such as ``time_s``.
+    whose name says seconds, such as ``time_s``. What a column's type rounds off, half a unit of its
+    last place, is known of no number in it: of 32-bit floats as of milliseconds.
 
     Raises
     ------
@@ -52,20 +53,23 @@ def read_parquet(path: Path, joints: Sequence[str] = (), noise: float | Array = 
             raise CaseError(name, "", "holds no rows; give one row per sample")
         table = file.read()
         time, _ = column_meaning(name, names)
-        columns = [
+        read = [
             (_times if k == time else _numbers)(name, names[k], column)
             for k, column in enumerate(table.itercolumns())
         ]
+        columns, halves = zip(*read, strict=True)
     except CaseError:
         raise
     except (lib.ArrowException, OSError, ValueError, TypeError, MemoryError) as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise CaseError(name, "", f"no Parquet table ({reason}); export it again") from None
-    return samples_of_columns(name, np.column_stack(columns), names, joints, noise)
+    return samples_of_columns(
+        name, np.column_stack(columns), names, joints, noise, halves=np.array(halves)
+    )
 
 
-def _numbers(name: str, label: str, column: Any) -> Array:
-    """A column of positions or derivatives; NaN where it has no value."""
+def _numbers(name: str, label: str, column: Any) -> tuple[Array, float]:
+    """A column of positions or derivatives, NaN where it has no value, and its half unit."""
     from pyarrow import float64, types
 
     column = _plain(column)
@@ -75,11 +79,17 @@ def _numbers(name: str, label: str, column: Any) -> Array:
     numeric = (types.is_integer, types.is_floating, types.is_decimal, types.is_null)
     if not any(one(kind) for one in numeric):
         raise CaseError(name, label, f"holds {kind}, which is no number; give rad or m")
-    return np.asarray(column.cast(float64()).to_numpy(), dtype=np.float64)
+    found = np.asarray(column.cast(float64()).to_numpy(), dtype=np.float64)
+    if types.is_decimal(kind):
+        return found, 0.5 * 10.0**-kind.scale
+    digits = 24 if types.is_float32(kind) else 11 if types.is_float16(kind) else None
+    if digits is None:
+        return found, 0.0
+    return found, float(np.ldexp(np.nanmax(np.abs(found), initial=0.0), -digits))
 
 
-def _times(name: str, label: str, column: Any) -> Array:
-    """The column of times, s."""
+def _times(name: str, label: str, column: Any) -> tuple[Array, float]:
+    """The column of times and its half unit, s."""
     from pyarrow import int32, int64, types
 
     column = _plain(column)
@@ -98,7 +108,7 @@ def _times(name: str, label: str, column: Any) -> Array:
         start = 0 if types.is_duration(kind) else int(whole[0])
         if max(abs(int(whole.max()) - start), abs(int(whole.min()) - start)) >= 2**63:
             raise CaseError(name, label, "spans more than is read; give seconds")
-        return np.asarray((whole - start) / second, dtype=np.float64)
+        return np.asarray((whole - start) / second, dtype=np.float64), 0.5 / second
     whole_numbers = types.is_integer(kind) or (types.is_decimal(kind) and kind.scale <= 0)
     if whole_numbers and label.strip().lower() in _NO_UNIT:
         raise CaseError(

@@ -176,10 +176,12 @@ def samples_of_columns(
     joints: Sequence[str],
     noise: float | Array,
     digits: Digits | None = None,
+    halves: Array | None = None,
 ) -> Samples:
     """Samples of a table of numbers, times in s; without a header time comes first.
 
-    ``digits`` are those of its columns where it is text.
+    ``digits`` are those of its columns where it is text; ``halves`` is what the type of each column
+    rounds off where it has types.
 
     Raises
     ------
@@ -200,6 +202,7 @@ def samples_of_columns(
         labels = tuple(dict.fromkeys(joint for joint, _ in columns))
         parts: list[Array | None] = []
         shown: list[Digits | None] = [None if digits is None else digits[[time]]]
+        rounded = np.zeros((3, len(labels)))
         for order in range(3):
             places = [columns.get((joint, order)) for joint in labels]
             missing = [one for one, k in zip(labels, places, strict=True) if k is None]
@@ -211,9 +214,13 @@ def samples_of_columns(
             at = [k for k in places if k is not None]
             parts.append(None if missing else table[:, at])
             shown.append(None if missing or digits is None else digits[at])
+            if halves is not None and not missing:
+                rounded[order] = halves[at]
         assert parts[0] is not None
         named = tuple(joints) or labels
         rounding = rounding_of(table[:, time], parts, shown)
+        if halves is not None:
+            rounding = HalfUnits(float(halves[time]), rounded)
         return Samples(named, table[:, time], parts[0], parts[1], parts[2], noise, 0.0, rounding)
     except CaseError:
         raise
