@@ -13,14 +13,17 @@ from attacks.cases import (
     MEASURES,
     PLACES,
     UNITS,
+    Array,
+    Asked,
     Drawn,
+    NoCurve,
     Rng,
     draw_asked,
     ends_in,
     near_limits,
     raw_of,
+    segments_of,
 )
-from attacks.curves import Array, Asked, NoCurve, segments_of
 from attacks.toml_text import Bare
 
 FACTORS = {"rad": 1.0, "deg": math.pi / 180, "s": 1.0, "ms": 1e-3}
@@ -144,7 +147,7 @@ def _problems(
     made: list[dict[str, Any]] = [{"id": "p-1", "title": "first", "where": "s. 1"}]
     second: dict[str, Any] = {"id": "p.2", "why": "slower"}
     second["limits"] = {"velocity": Bare(f"{rng.uniform(20, 90):.3g}")}
-    if len(labels) > 1 and asked.family != "clamped-b-spline" and rng.random() < 0.5:
+    if len(labels) > 1 and asked.block["family"] != "clamped-b-spline" and rng.random() < 0.5:
         second["joints"] = [labels[-1]]
     return [*made, second]
 

@@ -77,7 +77,7 @@ def damaged(rng: Rng, raw: dict[str, Any]) -> tuple[str, str]:
             done.append(_odd_number(rng, document))
         return toml_text(document), ", ".join(done)
     for _ in range(int(rng.integers(1, 4))):
-        done.append(_structural(rng, document))
+        done.append(structural(rng, document))
     try:
         text = toml_text(document)
     except TypeError:
@@ -115,7 +115,7 @@ def _scaled(rng: Rng, text: str) -> str:
     return f"{value:.6g}" if abs(value) < 1e300 else "1e300"
 
 
-def _structural(rng: Rng, document: dict[str, Any]) -> str:
+def structural(rng: Rng, document: dict[str, Any]) -> str:
     every = places(document)
     if not every:
         return "nothing left"

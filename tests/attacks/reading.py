@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 
 from attacks.attack import Attack, demand, keep
-from attacks.cases import Drawn, Rng, near_limits
-from attacks.curves import NoCurve
+from attacks.cases import Drawn, NoCurve, Rng, near_limits
 from attacks.grammar import FACTORS, draw_case
 from attacks.mutations import damaged
 from attacks.sandbox import Ended, Plan, command

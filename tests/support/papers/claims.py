@@ -231,7 +231,7 @@ def _qualities(rng: np.random.Generator, draft: Draft, of: str = "fast") -> None
     elif (
         family.smooth == 1
         and isinstance(motion, Pieces)
-        and motion.jump(2) > 0.01 * float(motion.peaks(2).max())
+        and motion.jumps(2).max() > 0.01 * motion.peaks(2).max()
     ):
         _say(rng, draft, 0.4, "jumps", checks="jumps", of=[of])
     if 1 in family.still:

@@ -32,10 +32,11 @@ class Pieces:
         c = poly.polyder(self.coefficients, order, axis=1) if order else self.coefficients
         return c / self.lengths[:, None, None] ** order
 
-    def peaks(self, order: int) -> Array:
-        """Largest absolute value of a derivative, for each joint."""
+    def ends(self, order: int) -> Array:
+        """Least and largest value of a derivative, shape (2, joints)."""
         c = self.derived(order)
-        found = np.maximum(np.abs(c[:, 0, :]), np.abs(c.sum(axis=1))).max(axis=0)
+        sides = np.concatenate([c[:, 0, :], c.sum(axis=1)])
+        found = np.stack([sides.min(axis=0), sides.max(axis=0)])
         slope = poly.polyder(c, axis=1)
         for piece, joint in np.ndindex(c.shape[0], c.shape[2]):
             own = np.trim_zeros(slope[piece, :, joint], "b")
@@ -45,8 +46,13 @@ class Pieces:
             inside = roots.real[(abs(roots.imag) < 1e-7) & (roots.real > 0) & (roots.real < 1)]
             if inside.size:
                 values = poly.polyval(inside, c[piece, :, joint])
-                found[joint] = max(found[joint], float(np.abs(values).max()))
+                found[0, joint] = min(found[0, joint], float(values.min()))
+                found[1, joint] = max(found[1, joint], float(values.max()))
         return found
+
+    def peaks(self, order: int) -> Array:
+        """Largest absolute value of a derivative, for each joint."""
+        return np.abs(self.ends(order)).max(axis=0)
 
     def at(self, times: Array, order: int) -> Array:
         """Values of a derivative (time, joint)."""
@@ -56,11 +62,10 @@ class Pieces:
         c = self.derived(order)[piece]
         return np.sum(c * share[:, None, None] ** np.arange(c.shape[1])[None, :, None], axis=1)
 
-    def jump(self, order: int) -> float:
-        """Largest difference of a derivative between the sides of a break."""
+    def jumps(self, order: int) -> Array:
+        """Largest difference of a derivative between the sides of a break, for each joint."""
         c = self.derived(order)
-        left, right = c.sum(axis=1)[:-1], c[1:, 0, :]
-        return float(np.abs(left - right).max(initial=0.0))
+        return np.abs(c.sum(axis=1)[:-1] - c[1:, 0, :]).max(axis=0, initial=0.0)
 
     @property
     def total(self) -> float:
@@ -99,18 +104,24 @@ class Timed:
     def _parameters(self, each: int) -> Array:
         return np.linspace(0.0, float(len(self.time.lengths)), each * len(self.time.lengths) + 1)
 
-    def peaks(self, order: int) -> Array:
+    def ends(self, order: int) -> Array:
+        """Least and largest value of a derivative, shape (2, joints)."""
         at = self._parameters(FINE)
-        values = np.abs(self._in_time(at, order))
-        found = values.max(axis=0)
+        values = self._in_time(at, order)
         # The last power jumps at the breaks: both sides count.
-        sides = np.arange(1, len(self.time.lengths)) - 1e-12
-        found = np.maximum(found, np.abs(self._in_time(sides, order)).max(axis=0, initial=0.0))
-        for joint, index in enumerate(values.argmax(axis=0)):
-            low, high = at[max(index - 1, 0)], at[min(index + 1, len(at) - 1)]
-            near = np.abs(self._in_time(np.linspace(low, high, FINE), order)[:, joint])
-            found[joint] = max(found[joint], float(near.max()))
+        sides = self._in_time(np.arange(1, len(self.time.lengths)) - 1e-12, order)
+        both = np.concatenate([values, sides])
+        found = np.stack([both.min(axis=0), both.max(axis=0)])
+        for side, (where, reach) in enumerate(((np.argmin, np.minimum), (np.argmax, np.maximum))):
+            for joint, index in enumerate(where(values, axis=0)):
+                low, high = at[max(index - 1, 0)], at[min(index + 1, len(at) - 1)]
+                near = self._in_time(np.linspace(low, high, FINE), order)[:, joint]
+                found[side, joint] = reach.reduce(near, initial=found[side, joint])
         return found
+
+    def peaks(self, order: int) -> Array:
+        """Largest absolute value of a derivative, for each joint."""
+        return np.abs(self.ends(order)).max(axis=0)
 
     def at(self, times: Array, order: int) -> Array:
         grid = self._parameters(FINE)
@@ -228,17 +239,18 @@ def _chords(points: Array) -> Array:
     return _breaks(lengths) / lengths.sum()
 
 
-def _clamped(degree: int, parameters: str) -> Callable[[Array, Array], Pieces]:
+def clamped(
+    degree: int, parameters: str, stretched: bool = False, knots: str = "averaged-continued"
+) -> Callable[[Array, Array], Pieces]:
+    """A clamped B-spline over the times, or over chords; these in proportion, or stretched."""
+
     def fitted(points: Array, h: Array) -> Pieces:
         at = _breaks(h)
-        if parameters == "times":
-            return _of_spline(_interpolated(at, points, degree, _averaged(at, degree)))
-        if parameters == "chord":
-            inner = at[-1] * _averaged(_chords(points), degree)
-            return _of_spline(_interpolated(at, points, degree, inner))
-        u = _chords(points)
-        curve = _interpolated(u, points, degree, _averaged(u, degree))
-        return _stretched(curve, u, h)
+        own, scale = (at, 1.0) if parameters == "times" else (_chords(points), float(at[-1]))
+        inner = own[1:-1] if knots == "waypoints" else _averaged(own, degree)
+        if stretched:
+            return _stretched(_interpolated(own, points, degree, inner), own, h)
+        return _of_spline(_interpolated(at, points, degree, scale * inner))
 
     return fitted
 
@@ -269,11 +281,11 @@ def _uniform(points: Array) -> Pieces:
     return Pieces(np.ones(len(points) - 1), _taylor(curve, np.arange(float(len(points)))))
 
 
-def _uniform_stretched(points: Array, h: Array) -> Pieces:
+def uniform_stretched(points: Array, h: Array) -> Pieces:
     return Pieces(h, _uniform(points).coefficients)
 
 
-def _uniform_timed(points: Array, h: Array) -> Timed:
+def uniform_timed(points: Array, h: Array) -> Timed:
     time = _uniform(_breaks(h)[:, None])
     c = time.derived(1)[:, :, 0]
     share = np.linspace(0, 1, 21)
@@ -361,21 +373,21 @@ FAMILIES = {
     "jtraj": Family('family = "jtraj"', _rest(5), (2, 3, 4), apart=True, at_all=True),
     "stretched uniform": Family(
         'family = "uniform-cubic-b-spline"\ntime = "stretched"',
-        _uniform_stretched,
+        uniform_stretched,
         (4, 5),
         still=(),
         smooth=0,
         apart=True,
     ),
     "timed uniform": Family(
-        'family = "uniform-cubic-b-spline"\ntime = "timed"', _uniform_timed, (4, 5), still=(2,)
+        'family = "uniform-cubic-b-spline"\ntime = "timed"', uniform_timed, (4, 5), still=(2,)
     ),
     **{
         f"clamped B-spline {degree} {parameters}": Family(
             'family = "clamped-b-spline"\n'
             f'degree = {degree}\nknots = "averaged-continued"\nparameters = "{said}"\n'
             f'time = "{time}"',
-            _clamped(degree, parameters),
+            clamped(degree, said, time == "stretched"),
             (4, 5),
             smooth=0 if time == "stretched" else min(degree - 1, 4),
             apart=time == "stretched",
