@@ -315,7 +315,7 @@ def _bounded(rng: Rng, asked: Asked) -> Asked:
     if rng.random() < 0.5:
         return fenced(rng, asked)
     try:
-        h = near_limits(rng, asked, 1.0)
+        h = near_limits(rng, problem_of(alone(asked)), 1.0)
     except NoCurve:
         return asked
     lower = _rounded(h * rng.uniform(0.2, 1.0, len(h)))
@@ -343,13 +343,12 @@ def problem_of(drawn: Drawn, pair: tuple[str, str] = ("main", "as-printed")) -> 
     return parse_case(drawn.text, "case.toml").problem(*pair)
 
 
-def near_limits(rng: Rng, asked: Asked, spread: float, ratio: float = 1.0) -> Array:
+def near_limits(rng: Rng, problem: Any, spread: float, ratio: float = 1.0) -> Array:
     """Random durations, stretched so that the largest ratio to a limit is about ``ratio``."""
     from trajgap.problem import TrajgapError, evaluate
 
-    problem = problem_of(alone(asked))
     for _ in range(8):
-        h = 2.0 ** rng.uniform(-spread, spread, asked.segments)
+        h = 2.0 ** rng.uniform(-spread, spread, problem.curve.segments)
         try:
             for _ in range(3):
                 stretch = float(evaluate(problem, h[None]).stretch[0])

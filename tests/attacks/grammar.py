@@ -21,6 +21,7 @@ from attacks.cases import (
     draw_asked,
     ends_in,
     near_limits,
+    problem_of,
     raw_of,
     segments_of,
 )
@@ -65,7 +66,7 @@ def draw_case(rng: Rng, small: bool = False) -> Drawn:
     first = problems[0]["id"] if problems else "main"
     default = next((r["id"] for r in readings if r.get("default")), None)
     default = default or (readings[0]["id"] if readings else "as-printed")
-    _claims(rng, raw, asked_of(raw, first, default), first if problems else None)
+    _claims(rng, raw, (first, default), first if problems else None)
     pairs = [
         (p, r)
         for p in [x["id"] for x in problems] or ["main"]
@@ -193,12 +194,13 @@ def _readings(rng: Rng, raw: dict[str, Any], asked: Asked) -> list[dict[str, Any
     return made
 
 
-def _claims(rng: Rng, raw: dict[str, Any], asked: Asked, problem: str | None) -> None:
+def _claims(rng: Rng, raw: dict[str, Any], pair: tuple[str, str], problem: str | None) -> None:
     """One claim of each quantity, some of them; and what they refer to."""
+    posed = problem_of(Drawn(raw, {}), pair)
     try:
-        h = near_limits(rng, asked, 1.0, float(rng.choice([0.7, 1.0, 1.4])))
+        h = near_limits(rng, posed, 1.0, float(rng.choice([0.7, 1.0, 1.4])))
     except NoCurve:
-        h = np.ones(asked.segments)
+        h = np.ones(posed.curve.segments)
     h = h / FACTORS[raw["units"]["time"]]
     raw["algorithms"] = []
     if rng.random() < 0.5:

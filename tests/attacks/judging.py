@@ -38,13 +38,16 @@ _BOX_SAMPLES = 12
 """Random points of a box of inputs that print alike."""
 
 
-def _draw(rng: Rng, bounds: float = 0.3) -> tuple[Asked, Array]:
-    """A question and durations near its limits: just inside, just outside, or far off."""
+def _draw(rng: Rng, folder: Path, bounds: float = 0.3) -> tuple[Asked, Any, Array, Truth]:
+    """A question, and durations near its limits: just inside, just outside, or far off."""
     asked = draw_asked(rng, draw_family(rng), bounds=bounds, scale=float(rng.integers(4)))
     off = float(rng.choice([0.0, 1e-8, 1e-5, 1e-3, 0.1, 1.0])) * rng.choice([-0.5, 1.0])
-    h = near_limits(rng, asked, SPREAD)
+    problem = problem_of(alone(asked))
+    h = near_limits(rng, problem, SPREAD)
     # Which limit is active is not known: all durations by one factor moves every ratio.
-    return asked, h * (1.0 - off / 4)
+    h = h * (1.0 - off / 4)
+    keep(folder, case=alone(asked).text, durations=repr(h.tolist()))
+    return asked, problem, h, truth(asked, problem.curve, h)
 
 
 def agrees(found: Any, true: Truth, asked: Asked, h: Array, what: str = "") -> None:
@@ -75,11 +78,7 @@ def verdict(rng: Rng, folder: Path) -> str | None:
     from trajgap.problem import check
 
     try:
-        asked, h = _draw(rng)
-        drawn = alone(asked)
-        keep(folder, case=drawn.text, durations=repr(h.tolist()))
-        problem = problem_of(drawn)
-        true = truth(asked, problem.curve, h)
+        asked, problem, h, true = _draw(rng, folder)
     except NoCurve:
         return None
     found = check(problem, h)
@@ -92,11 +91,7 @@ def ratios(rng: Rng, folder: Path) -> str | None:
     from trajgap.problem import check, evaluate
 
     try:
-        asked, h = _draw(rng, bounds=0.0)
-        drawn = alone(asked)
-        keep(folder, case=drawn.text, durations=repr(h.tolist()))
-        problem = problem_of(drawn)
-        true = truth(asked, problem.curve, h)
+        asked, problem, h, true = _draw(rng, folder, bounds=0.0)
     except NoCurve:
         return None
     found = check(problem, h)
@@ -172,7 +167,9 @@ def rounding(rng: Rng, folder: Path) -> str | None:
 
     try:
         asked = draw_asked(rng, draw_family(rng), most_points=4, most_joints=2)
-        h = near_limits(rng, asked, 1.0) * float(rng.choice([0.9, 0.995, 1.0, 1.005, 1.2]))
+        h = near_limits(rng, problem_of(alone(asked)), 1.0) * float(
+            rng.choice([0.9, 0.995, 1.0, 1.005, 1.2])
+        )
     except NoCurve:
         return None
     digits = [f"{x:.{int(rng.integers(2, 5))}g}" for x in h]
@@ -245,13 +242,15 @@ def readings(rng: Rng, folder: Path) -> str | None:
         for at, ends in ((0, asked.ends), (-1, asked.finish)) if form is not None else ():
             for r, value in form.prescribed[at]:
                 mine = ends.get(r, np.zeros(len(asked.labels)))
-                compared.append((f"derivative {r} at {at}", mine, np.broadcast_to(value, mine.shape)))
+                compared.append(
+                    (f"derivative {r} at {at}", mine, np.broadcast_to(value, mine.shape))
+                )
         for name, mine, theirs in compared:
             same = mine.shape == theirs.shape and np.allclose(mine, theirs, rtol=1e-14, atol=0)
             demand(bool(same), f"{pair}: {name} {theirs} instead of {mine}")
         demand(problem.coupling == asked.coupling, f"{pair}: coupling")
         try:
-            h = near_limits(rng, asked, 1.0, float(rng.choice([0.8, 1.2])))
+            h = near_limits(rng, problem, 1.0, float(rng.choice([0.8, 1.2])))
             agrees(check(problem, h), truth(asked, problem.curve, h), asked, h, f"{pair}: ")
         except NoCurve:
             continue

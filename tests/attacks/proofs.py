@@ -57,9 +57,10 @@ def claim_more(rng: Rng, document: Document) -> str:
     what = int(rng.integers(6))
     if what > 3 and claim["durations"]:
         claim["durations"] = [str(Fraction(x) / up) for x in claim["durations"]]
-        claim["upper"] = str(Fraction(claim["upper"]) / up)
-        if Fraction(claim["lower"]) > Fraction(claim["upper"]):
-            claim["lower"] = claim["upper"]
+        upper = Fraction(claim["upper"]) / up
+        claim["upper"] = str(upper)
+        # A bound above its answer is refused whatever the answer is.
+        claim["lower"] = proof["total"] = str(min(upper, Fraction(claim["lower"])))
         return f"answer shorter by {float(up)}"
     claim["lower"] = str(Fraction(claim["lower"]) * up)
     if what > 0 and proof:
@@ -273,7 +274,7 @@ def _state(family: str, number: int) -> tuple[str, str] | None:
     while True:
         asked = draw_asked(rng, family, 4, 2, bounds=0.0, odd=0.0)
         limited = np.isfinite(asked.sides[:, :, :2]).all() and not asked.moving
-        if limited and 3 <= len(asked.waypoints) and "finish_orders" not in asked.block:
+        if limited and len(asked.waypoints) >= 3 and "finish_orders" not in asked.block:
             break
     drawn = alone(asked)
 

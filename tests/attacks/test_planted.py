@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -21,14 +20,13 @@ from trajgap.nlp.optimum import Status
 from trajgap.problem import Verdict
 from trajgap.problem.motions import HalfUnits
 from trajgap.problem.motions.judged import slow_down
-from trajgap.verify import verify_certificate
 
-from attacks import faults, true_proofs
+from attacks import faults
 from attacks.attack import Broken
 from attacks.reading import hold_together
 from attacks.registry import ATTACKS
 from attacks.run import Account, tried, warm
-from attacks.sandbox import available, call
+from attacks.sandbox import available
 
 pytestmark = pytest.mark.skipif(not available(), reason="children are forked and watched on Linux")
 
@@ -128,7 +126,8 @@ def positions_at_way_points(patch: Patch) -> None:
     """The reach that searches see is that of the way-points alone."""
 
     def evaluate(problem: Any, h: Any) -> Any:
-        free = problem.limits.with_positions(*np.full((2, 1), np.inf) * [[-1], [1]])
+        none = np.full(problem.waypoints.shape[1], np.inf)
+        free = problem.limits.with_positions(-none, none)
         found = EVALUATE(replace(problem, limits=free), h)
         low, high = problem.limits.position_lower, problem.limits.position_upper
         half = np.where(np.isfinite(high - low), (high - low) / 2, 1.0)
@@ -269,7 +268,7 @@ PLANTED: list[tuple[str, Callable[[Patch], None], int]] = [
     ("verdicts", check_passes, 20),
     ("verdicts", check_violates, 20),
     ("peaks", peaks_one_per_mille_low, 10),
-    ("peaks", the_finish_is_the_start, 80),
+    ("peaks", joint_one_by_a_second, 10),
     ("peaks", positions_at_way_points, 10),
     ("peaks", nothing_is_penalised, 10),
     ("verdicts on motions", digits_say_nothing, 200),
@@ -277,59 +276,26 @@ PLANTED: list[tuple[str, Callable[[Patch], None], int]] = [
     ("verdicts on motions", repairs_fall_short, 30),
     ("readings", sides_are_one_size, 20),
     ("readings", the_finish_is_the_start, 80),
-    ("identities", joint_one_by_a_second, 20),
-    ("units", degrees_a_little_off, 20),
     ("readings", degrees_a_little_off, 20),
     ("rounding boxes", everything_breaks, 20),
+    ("nasty problems", one_per_mille_long, 12),
+    ("nasty problems", all_infeasible, 6),
     ("optima", one_per_mille_long, 6),
-    ("optima", all_infeasible, 6),
-    ("tight duration bounds", all_infeasible, 6),
     ("damaged case files", a_fault, 40),
     ("damaged case files", two_lines, 10),
     ("bytes that are no case file", two_lines, 10),
     ("valid case files", a_fault, 2),
-    ("certificates", trees_are_not_walked, 120),
+    ("certificates", trees_are_not_walked, 40),
     ("certificates", leaves_are_not_proved, 120),
-    ("certificates", answers_are_not_looked_at, 400),
+    ("certificates", answers_are_not_looked_at, 120),
     ("certificates", the_verifier_raises, 20),
     ("certificates", the_clock_stands, 40),
-    ("forged proofs", trees_are_not_walked, 20),
-    ("states", trees_are_not_walked, 300),
     ("killed", files_by_and_by, 12),
     ("interrupted", drafts_stay, 8),
     ("full disk", writing_raises, 6),
     ("no rights", writing_raises, 6),
 ]
-"""Attack, fault, and the trials within which it must be found.
-
-How long a search may take decides which proofs there are to be altered, so that the trial that
-finds a fault is not the same everywhere: it is one in 10 to one in 40 for those of proofs, and the
-bound is about ten times as many.
-"""
-
-
-@contextmanager
-def planted(plant: Callable[[Patch], None], patch: Patch) -> Iterator[None]:
-    """A fault in everything but what makes true proofs: they are kept, and others alter them too.
-
-    A verifier that refuses or raises has no proof made; one trial after another would be undecided.
-    """
-    own, certified = Patch(), true_proofs._certified
-
-    def soundly(*given: Any) -> list[dict[str, Any]]:
-        own.undo()
-        try:
-            return certified(*given)
-        finally:
-            plant(own)
-
-    patch.setattr(true_proofs, "_certified", soundly)
-    plant(own)
-    try:
-        yield
-    finally:
-        own.undo()
-
+"""Attack, fault, and the trials within which it must be found."""
 
 QUICK = 7
 """Trials from which a planted fault is one of the slow tests."""
@@ -351,30 +317,13 @@ def test_a_planted_fault_is_found(
 ) -> None:
     account = Account(next(a for a in ATTACKS if a.name == name))
     monkeypatch.setattr(faults, "WORKS", {k: w for k, w in faults.WORKS.items() if w.quick})
-    if trials < QUICK:
-        monkeypatch.setattr(true_proofs, "MAKE_SECONDS", 1.0)
-        monkeypatch.setattr(true_proofs, "_EACH", 1)
     faults._usual.cache_clear()
-    with planted(plant, monkeypatch):
-        for number in range(trials):
-            tried(account, 11, number)
-            if account.broken:
-                return
+    plant(monkeypatch)
+    for number in range(trials):
+        tried(account, 11, number)
+        if account.broken:
+            return
     raise AssertionError(f"{trials} trials hold: {account.words}, {account.undecided} undecided")
-
-
-def test_a_planted_fault_spoils_no_proof_that_is_altered(monkeypatch: Patch) -> None:
-    """In whatever order faults are planted: proofs are made once, and kept for all of them."""
-    fresh = true_proofs._pool.__wrapped__
-    with planted(the_verifier_raises, monkeypatch):
-        made = fresh("rest-to-rest", 0, 1.0)
-        assert not _verifies(made[0])
-    assert _verifies(made[0])
-
-
-def _verifies(text: str) -> bool:
-    document = json.loads(text)
-    return call(lambda: verify_certificate(document).proves).value is True
 
 
 @pytest.mark.parametrize(
