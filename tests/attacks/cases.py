@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-
-from attacks.toml_text import Bare, toml_text
+from support.toml_text import Bare, toml_text
 
 Rng = np.random.Generator
 Array = NDArray[np.float64]

@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 import numpy as np
+from support.toml_text import Bare
 
 from attacks.cases import (
     CLAIMS,
@@ -25,7 +26,6 @@ from attacks.cases import (
     raw_of,
     segments_of,
 )
-from attacks.toml_text import Bare
 
 FACTORS = {"rad": 1.0, "deg": math.pi / 180, "s": 1.0, "ms": 1e-3}
 """What a unit is in rad and s; units of derivatives begin with one of these."""

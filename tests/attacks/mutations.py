@@ -6,8 +6,9 @@ import copy
 from collections.abc import Callable
 from typing import Any
 
+from support.toml_text import Bare, toml_text
+
 from attacks.cases import Rng
-from attacks.toml_text import Bare, toml_text
 
 Place = tuple[Any, ...]
 """Keys and positions from the top of a document."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import comb, factorial
+from typing import Any
 
 import numpy as np
 from numpy.polynomial import polynomial as poly
@@ -312,7 +313,7 @@ class Family:
     its duration to itself, so that the shortest is found segment by segment.
     """
 
-    block: str
+    block: dict[str, Any]
     fit: Callable[[Array, Array], Motion]
     points: tuple[int, ...] = (3, 4, 5)
     extra: int = 0
@@ -329,37 +330,37 @@ def _degrees(degree: int) -> Callable[[int], tuple[int, ...]]:
 
 FAMILIES = {
     "3-5-3": Family(
-        'family = "3-5-3"',
+        {"family": "3-5-3"},
         lambda w, h: declared((3, 5, 3), h, w, (1, 2), ()),
         (4,),
         degrees=lambda n: (3, 5, 3),
     ),
     "4-3-4": Family(
-        'family = "polynomials"\ndegrees = [4, 3, 4]',
+        {"family": "polynomials", "degrees": [4, 3, 4]},
         lambda w, h: declared((4, 3, 4), h, w, (1, 2), ()),
         (4,),
         degrees=lambda n: (4, 3, 4),
     ),
     "4-3-3-4": Family(
-        'family = "polynomials"\ndegrees = [4, 3, 3, 4]',
+        {"family": "polynomials", "degrees": [4, 3, 3, 4]},
         lambda w, h: declared((4, 3, 3, 4), h, w, (1, 2), ()),
         (5,),
         degrees=lambda n: (4, 3, 3, 4),
     ),
     "clamped cubic": Family(
-        'family = "cubic-spline"', _cubic("clamped"), still=(1,), degrees=_degrees(3)
+        {"family": "cubic-spline"}, _cubic("clamped"), still=(1,), degrees=_degrees(3)
     ),
     "natural cubic": Family(
-        'family = "cubic-spline"\nend_orders = [2]',
+        {"family": "cubic-spline", "end_orders": [2]},
         _cubic("natural"),
         still=(2,),
         degrees=_degrees(3),
     ),
-    "virtual cubic": Family('family = "cubic-spline-virtual"', _virtual, (3, 4), extra=2),
-    "C4 quintic": Family('family = "quintic-spline"', _quintic, smooth=4, degrees=_degrees(5)),
+    "virtual cubic": Family({"family": "cubic-spline-virtual"}, _virtual, (3, 4), extra=2),
+    "C4 quintic": Family({"family": "quintic-spline"}, _quintic, smooth=4, degrees=_degrees(5)),
     **{
         f"rest {degree}": Family(
-            f'family = "rest-to-rest"\ndegree = {degree}',
+            {"family": "rest-to-rest", "degree": degree},
             _rest(degree),
             (2, 3, 4),
             still=tuple(range(1, (degree + 1) // 2)),
@@ -370,9 +371,9 @@ FAMILIES = {
         )
         for degree in (3, 5, 7, 9)
     },
-    "jtraj": Family('family = "jtraj"', _rest(5), (2, 3, 4), apart=True, at_all=True),
+    "jtraj": Family({"family": "jtraj"}, _rest(5), (2, 3, 4), apart=True, at_all=True),
     "stretched uniform": Family(
-        'family = "uniform-cubic-b-spline"\ntime = "stretched"',
+        {"family": "uniform-cubic-b-spline", "time": "stretched"},
         uniform_stretched,
         (4, 5),
         still=(),
@@ -380,13 +381,17 @@ FAMILIES = {
         apart=True,
     ),
     "timed uniform": Family(
-        'family = "uniform-cubic-b-spline"\ntime = "timed"', uniform_timed, (4, 5), still=(2,)
+        {"family": "uniform-cubic-b-spline", "time": "timed"}, uniform_timed, (4, 5), still=(2,)
     ),
     **{
         f"clamped B-spline {degree} {parameters}": Family(
-            'family = "clamped-b-spline"\n'
-            f'degree = {degree}\nknots = "averaged-continued"\nparameters = "{said}"\n'
-            f'time = "{time}"',
+            {
+                "family": "clamped-b-spline",
+                "degree": degree,
+                "knots": "averaged-continued",
+                "parameters": said,
+                "time": time,
+            },
             clamped(degree, said, time == "stretched"),
             (4, 5),
             smooth=0 if time == "stretched" else min(degree - 1, 4),
