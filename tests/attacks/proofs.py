@@ -1,8 +1,8 @@
-"""Attacks on proofs: certificates and states altered, grafted, forged, with right hashes.
+"""Attacks on proofs: certificates altered, grafted, forged, with right hashes.
 
 Each certificate has an answer that is known, so that a bound above it is false, and so is an answer
 below its bound. What an altered number of the problem itself allows is searched by brute force in
-`tests/verify/test_verify.py`.
+`tests/verify/test_verify.py`; altered states are taken up again beside their certifiers.
 """
 
 from __future__ import annotations
@@ -11,20 +11,19 @@ import copy
 import json
 from collections.abc import Callable
 from fractions import Fraction
-from functools import cache, lru_cache
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from support.alterations import changed, get, places, put
 from support.forgeries.forgery import KEPT
 from support.small_certificates import sealed
 
 from attacks.attack import Attack, demand, keep
-from attacks.cases import Rng, alone, draw_asked, problem_of
+from attacks.cases import Rng
 from attacks.mutations import structural
 from attacks.reading import well_ended
-from attacks.sandbox import Ended, call, command
+from attacks.sandbox import call, command
 
 Document = dict[str, Any]
 _BUDGETS = (0.3, 2.0, 8.0)
@@ -196,7 +195,7 @@ def some_proof(rng: Rng) -> Document:
     return dict(json.loads(pool[rng.integers(len(pool))]))
 
 
-def _verified(document: Document, budget: float) -> tuple[Ended, Document]:
+def _verified(document: Document, budget: float) -> Document:
     """What the verifier says, in a child."""
 
     def run() -> Document:
@@ -217,7 +216,7 @@ def _verified(document: Document, budget: float) -> tuple[Ended, Document]:
     demand(ran.value is not None, f"the verifier crashed: {ran.err[-500:]}")
     spent = ran.processor
     demand(spent <= budget + _SLACK, f"{spent:.1f} s of a budget of {budget:g} s")
-    return ran, ran.value
+    return dict(ran.value)
 
 
 def judged(said: Document, known: Document, same: bool = True) -> None:
@@ -248,7 +247,7 @@ def certificates(rng: Rng, folder: Path) -> str | None:
             done.append("nothing to seal")
     budget = float(rng.choice(_BUDGETS))
     keep(folder, proof=json.dumps(document), done="\n".join(done))
-    _, said = _verified(document, budget)
+    said = _verified(document, budget)
     if not said["proves"]:
         return "out of time" if said["late"] else "refused"
     word = "proved, of a problem that was altered"
@@ -261,72 +260,6 @@ def certificates(rng: Rng, folder: Path) -> str | None:
                 judged(said, one, same=False)
                 word = "proved, true"
     return word
-
-
-_STOPPED = ("3-5-3", "cubic-spline", "quintic-spline")
-"""Families whose runs can be cut short."""
-
-
-@cache
-def _state(family: str, number: int) -> tuple[str, str] | None:
-    """A case, and the state of a run on it that was cut short, with an answer."""
-    rng = np.random.default_rng([20261124, number])
-    while True:
-        asked = draw_asked(rng, family, 4, 2, bounds=0.0, odd=0.0)
-        limited = np.isfinite(asked.sides[:, :, :2]).all() and not asked.moving
-        if limited and len(asked.waypoints) >= 3 and "finish_orders" not in asked.block:
-            break
-    drawn = alone(asked)
-
-    def make() -> str | None:
-        from trajgap.nlp import certify
-        from trajgap.nlp.proofs import state_document
-
-        found = certify(problem_of(drawn), gap=1e-9, seconds=1.0)
-        state = state_document(found)
-        return None if state is None or not state["claim"]["durations"] else json.dumps(state)
-
-    made = call(make, 60.0).value
-    return None if made is None else (drawn.text, str(made))
-
-
-def resumed(rng: Rng, folder: Path) -> str | None:
-    """An altered state taken up again: refused, or only what is true comes of it."""
-    made = _state(str(rng.choice(_STOPPED)), int(rng.integers(3)))
-    if made is None:
-        return None
-    text, original = made[0], json.loads(made[1])
-    document = copy.deepcopy(original)
-    # The problem stays: a state of another question is refused before anything is looked at.
-    done = _number(rng, document, *[p for p in ("proposals", "proof", "claim") if document[p]])
-    if rng.random() < 0.5:
-        try:
-            done += "; " + claim_more(rng, document)
-        except _ALREADY_ALTERED:
-            done += "; what is no longer there"
-    document = sealed(document)
-    keep(folder, case=text, proof=json.dumps(document), done=done)
-
-    def run() -> Document | str:
-        from trajgap.nlp import certificate, certify
-        from trajgap.problem import TrajgapError, parse_case
-
-        try:
-            problem = parse_case(text, "case.toml").problem()
-            found = certify(problem, seconds=0.5, resume=document)
-        except TrajgapError as error:
-            return str(error)
-        return certificate(found) if found.proof is not None else "nothing proved"
-
-    ran = call(run, 60.0)
-    demand(not ran.late, f"no end after {ran.seconds:.0f} s")
-    demand(ran.value is not None, f"crashed: {ran.err[-800:]}")
-    if isinstance(ran.value, str):
-        return "refused" if "resume" in ran.value or "state" in ran.value else "nothing proved"
-    _, said = _verified(ran.value, 20.0)
-    demand(said["proves"], f"what comes of it is refused: {said}")
-    judged(said, original)
-    return "true"
 
 
 def files(rng: Rng, folder: Path) -> str | None:
@@ -377,14 +310,6 @@ ATTACKS = (
         certificates,
         share=6.0,
         quick=30,
-    ),
-    Attack(
-        "states taken up again",
-        "altered states given to `certify(resume=...)`",
-        "refused, or an interval that is proved and true",
-        resumed,
-        share=1.0,
-        quick=3,
     ),
     Attack(
         "files to verify",
