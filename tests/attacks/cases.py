@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -83,35 +83,26 @@ class Asked:
     """One question in rad and s, as the attacks understand it.
 
     ``block`` is the interpolant as a case file declares it, its end derivatives in rad and s;
-    limits have shape (joints,), absent ones are inf. ``below`` has the sizes of the lower limits
-    where they differ from the upper ones, shape (joints, 3). ``ends`` and ``finish`` have the
-    derivatives of the first and the last way-point by order, shape (joints,) each.
+    ``sides`` has the sizes of the limits below 0 and above 0, shape (2, joints, 3), absent ones
+    inf. ``ends`` and ``finish`` have the derivatives of the first and the last way-point by order,
+    shape (joints,) each.
     """
 
     block: dict[str, Any]
     waypoints: Array
-    velocity: Array
-    acceleration: Array
-    jerk: Array
+    sides: Array
     position_lower: Array
     position_upper: Array
     duration_lower: Array
     duration_upper: Array
-    labels: tuple[str, ...] = ()
-    coupling: str = "shared"
-    ends: Ends = field(default_factory=dict)
-    finish: Ends = field(default_factory=dict)
-    below: Array | None = None
+    labels: tuple[str, ...]
+    coupling: str
+    ends: Ends
+    finish: Ends
 
     @property
     def segments(self) -> int:
         return len(self.duration_lower)
-
-    @property
-    def sides(self) -> Array:
-        """Sizes of the limits below 0 and above 0, shape (2, joints, 3)."""
-        above = np.stack([self.velocity, self.acceleration, self.jerk], axis=1)
-        return np.stack([above if self.below is None else self.below, above])
 
     @property
     def moving(self) -> bool:
@@ -223,12 +214,12 @@ def draw_asked(
     # A stream of their own: the trials that draw none of it are the ones that they were.
     own = rng.spawn(1)[0]
     _draw_ends(own, block, joints, pace)
-    below = _draw_below(own, np.stack(limits, axis=1))
+    sides = _draw_sides(own, np.stack(limits, axis=1))
     none = np.full(joints, np.inf)
     asked = Asked(
         block,
         way,
-        *limits,
+        sides,
         -none,
         none,
         np.zeros(segments),
@@ -236,7 +227,6 @@ def draw_asked(
         tuple(str(j + 1) for j in range(joints)),
         str(rng.choice(["shared", "per-joint"])),
         *ends_in(block, joints),
-        below,
     )
     if rng.random() < bounds:
         asked = _bounded(rng, asked)
@@ -288,16 +278,16 @@ def ends_in(block: dict[str, Any], joints: int) -> tuple[Ends, Ends]:
     return next(found), next(found)
 
 
-def _draw_below(rng: Rng, limits: Array) -> Array | None:
-    """Sizes of lower limits that differ from the upper ones, sometimes."""
+def _draw_sides(rng: Rng, limits: Array) -> Array:
+    """Sizes of lower limits, which differ from the upper ones sometimes, and of these."""
     if rng.random() > 0.25:
-        return None
+        return np.stack([limits, limits])
     drawn = np.where(np.isfinite(limits), limits, 1.0) * rng.uniform(0.3, 2.0, limits.shape)
     drawn[rng.random(limits.shape) < 0.1] = np.inf
     kept = rng.random(limits.shape) < 0.4
     # No side of a derivative that nothing limits: the file leaves its key out.
     kept |= ~np.isfinite(limits).any(axis=0)
-    return np.where(kept, limits, _rounded(drawn))
+    return np.stack([np.where(kept, limits, _rounded(drawn)), limits])
 
 
 def half_bounded(rng: Rng, asked: Asked) -> Asked:

@@ -324,7 +324,7 @@ def asked_of(raw: dict[str, Any], problem: str, reading: str) -> Asked:
             given = [(x[1], -float(x[0]))[side] if isinstance(x, list) else x for x in given]
         return each(given, len(labels), default, unit)[columns]
 
-    below = np.stack([limit(key, np.inf, 1) for key in DERIVATIVES], axis=1)
+    sides = [[limit(key, np.inf, side) for key in DERIVATIVES] for side in (1, 0)]
     in_si = {r: own[key] for r, key in enumerate(DERIVATIVES, 1)}
     ends, finish = (
         {r: v[columns] * in_si.get(r, 1.0) for r, v in end.items()}
@@ -333,9 +333,7 @@ def asked_of(raw: dict[str, Any], problem: str, reading: str) -> Asked:
     return Asked(
         block,
         points[:, columns],
-        limit("velocity", np.inf),
-        limit("acceleration", np.inf),
-        limit("jerk", np.inf),
+        np.moveaxis(np.array(sides), 1, 2),
         limit("position_lower", -np.inf),
         limit("position_upper", np.inf),
         each(bounds.get("lower"), segments, 0.0, own["time"]),
@@ -344,5 +342,4 @@ def asked_of(raw: dict[str, Any], problem: str, reading: str) -> Asked:
         coupling,
         ends,
         finish,
-        below,
     )
