@@ -82,25 +82,16 @@ class Timed:
 
     @property
     def total(self) -> float:
-        return float(self._values(self.time, np.array([float(len(self.time.lengths))]), 0)[0, 0])
-
-    @staticmethod
-    def _values(of: Pieces, at: Array, order: int) -> Array:
-        return of.at(at, order)
+        return float(self.time.at(np.array([float(len(self.time.lengths))]), 0)[0, 0])
 
     def _in_time(self, at: Array, order: int) -> Array:
-        q = [self.joints.at(at, k) for k in range(4)]
-        t = [self.time.at(at, k) for k in range(4)]
-        if order == 0:
-            return q[0]
-        n = q[1]
-        if order >= 2:
-            n2 = q[2] * t[1] - q[1] * t[2]
-            n = n2
-        if order == 3:
-            slope = q[3] * t[1] - q[1] * t[3]
-            n = slope * t[1] - 3 * n2 * t[2]
-        return n / t[1] ** (2 * order - 1)
+        q, t = ([one.at(at, k) for k in range(4)] for one in (self.joints, self.time))
+        if order < 2:
+            return q[order] / t[1] if order else q[0]
+        turn = q[2] * t[1] - q[1] * t[2]
+        if order == 2:
+            return turn / t[1] ** 3
+        return ((q[3] * t[1] - q[1] * t[3]) * t[1] - 3 * turn * t[2]) / t[1] ** 5
 
     def _parameters(self, each: int) -> Array:
         return np.linspace(0.0, float(len(self.time.lengths)), each * len(self.time.lengths) + 1)
