@@ -84,6 +84,11 @@ class Draft:
     def has(self, name: str) -> bool:
         return any(c["id"] == name for c in self.claims)
 
+    def say(self, name: str, checks: str, *of: str, **more: Any) -> None:
+        """Claim a statement about some of the durations."""
+        about = {"of": list(of)} if of else {}
+        self.claims.append({"id": name, "quantity": "statement", "checks": checks} | about | more)
+
     def si(self, order: int) -> float:
         """A unit of a derivative in SI units; of time if the order is -1."""
         if order < 0:

@@ -41,8 +41,7 @@ def _shortened(rng: np.random.Generator, draft: Draft) -> bool:
         places = len(row["total"].partition(".")[2])
         row["total"] = printed(sum(map(float, row["durations"])), places)
     if not draft.has("said-kept"):
-        said = {"id": "said-kept", "quantity": "statement", "checks": "within_limits"}
-        draft.claims.append(said | {"of": [row["id"]]})
+        draft.say("said-kept", "within_limits", row["id"])
     return True
 
 
@@ -78,9 +77,7 @@ def _called_optimal(rng: np.random.Generator, draft: Draft) -> bool:
         return False
     if rng.random() < 0.5:
         row["durations"] = [_scaled(text, 1.3) for text in row["durations"]]
-    draft.claims.append(
-        {"id": "optimal", "quantity": "statement", "checks": "optimal", "of": [row["id"]]}
-    )
+    draft.say("optimal", "optimal", row["id"])
     return True
 
 
