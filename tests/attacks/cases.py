@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-
-from attacks.curves import Array, Asked, NoCurve, peaks, segments_of
-from attacks.declared import Ends
-from attacks.toml_text import Bare, toml_text
+from numpy.typing import NDArray
+from support.toml_text import Bare, toml_text
 
 Rng = np.random.Generator
+Array = NDArray[np.float64]
+Ends = dict[int, Array]
+"""Derivatives at one end by order, in rad and s, one for each joint."""
 FAMILIES = (
     "3-5-3",
     "polynomials",
@@ -72,6 +72,47 @@ _DETERMINED: tuple[tuple[tuple[int, ...], int, tuple[int, ...]], ...] = (
     ((7,), 2, (1, 2, 3)),
 )
 """Degrees, continuity and end orders; what does not count out right is a drawn bad declaration."""
+
+
+class NoCurve(Exception):
+    """The durations define no curve."""
+
+
+@dataclass(frozen=True)
+class Asked:
+    """One question in rad and s, as the attacks understand it.
+
+    ``block`` is the interpolant as a case file declares it, its end derivatives in rad and s;
+    ``sides`` has the sizes of the limits below 0 and above 0, shape (2, joints, 3), absent ones
+    inf. ``ends`` and ``finish`` have the derivatives of the first and the last way-point by order,
+    shape (joints,) each.
+    """
+
+    block: dict[str, Any]
+    waypoints: Array
+    sides: Array
+    position_lower: Array
+    position_upper: Array
+    duration_lower: Array
+    duration_upper: Array
+    labels: tuple[str, ...]
+    coupling: str
+    ends: Ends
+    finish: Ends
+
+    @property
+    def segments(self) -> int:
+        return len(self.duration_lower)
+
+    @property
+    def moving(self) -> bool:
+        """Whether some joint has a derivative other than 0 at an end."""
+        return any(np.any(v) for v in (*self.ends.values(), *self.finish.values()))
+
+
+def segments_of(block: dict[str, Any], points: int) -> int:
+    """How many durations a family takes for a number of way-points."""
+    return points + 1 if block["family"].endswith("-virtual") else points - 1
 
 
 @dataclass(frozen=True)
@@ -173,12 +214,12 @@ def draw_asked(
     # A stream of their own: the trials that draw none of it are the ones that they were.
     own = rng.spawn(1)[0]
     _draw_ends(own, block, joints, pace)
-    below = _draw_below(own, np.stack(limits, axis=1))
+    sides = _draw_sides(own, np.stack(limits, axis=1))
     none = np.full(joints, np.inf)
     asked = Asked(
         block,
         way,
-        *limits,
+        sides,
         -none,
         none,
         np.zeros(segments),
@@ -186,7 +227,6 @@ def draw_asked(
         tuple(str(j + 1) for j in range(joints)),
         str(rng.choice(["shared", "per-joint"])),
         *ends_in(block, joints),
-        below,
     )
     if rng.random() < bounds:
         asked = _bounded(rng, asked)
@@ -238,26 +278,16 @@ def ends_in(block: dict[str, Any], joints: int) -> tuple[Ends, Ends]:
     return next(found), next(found)
 
 
-def with_ends(asked: Asked, ends: Ends, finish: Ends) -> Asked:
-    """The same question with other derivatives at its ends, of the orders that it prescribes."""
-    block = dict(asked.block)
-    for key, values in (("end_derivatives", ends), ("finish_derivatives", finish)):
-        block.pop(key, None)
-        if values:
-            block[key] = [x.tolist() for x in values.values()]
-    return replace(asked, block=block, ends=ends, finish=finish)
-
-
-def _draw_below(rng: Rng, limits: Array) -> Array | None:
-    """Sizes of lower limits that differ from the upper ones, sometimes."""
+def _draw_sides(rng: Rng, limits: Array) -> Array:
+    """Sizes of lower limits, which differ from the upper ones sometimes, and of these."""
     if rng.random() > 0.25:
-        return None
+        return np.stack([limits, limits])
     drawn = np.where(np.isfinite(limits), limits, 1.0) * rng.uniform(0.3, 2.0, limits.shape)
     drawn[rng.random(limits.shape) < 0.1] = np.inf
     kept = rng.random(limits.shape) < 0.4
     # No side of a derivative that nothing limits: the file leaves its key out.
     kept |= ~np.isfinite(limits).any(axis=0)
-    return np.where(kept, limits, _rounded(drawn))
+    return np.stack([np.where(kept, limits, _rounded(drawn)), limits])
 
 
 def half_bounded(rng: Rng, asked: Asked) -> Asked:
@@ -274,7 +304,7 @@ def _bounded(rng: Rng, asked: Asked) -> Asked:
     if rng.random() < 0.5:
         return fenced(rng, asked)
     try:
-        h = near_limits(rng, asked, 1.0)
+        h = near_limits(rng, problem_of(alone(asked)), 1.0)
     except NoCurve:
         return asked
     lower = _rounded(h * rng.uniform(0.2, 1.0, len(h)))
@@ -295,27 +325,29 @@ def fenced(rng: Rng, asked: Asked) -> Asked:
     )
 
 
-def near_limits(rng: Rng, asked: Asked, spread: float, ratio: float = 1.0) -> Array:
+def problem_of(drawn: Drawn, pair: tuple[str, str] = ("main", "as-printed")) -> Any:
+    """What the case file poses."""
+    from trajgap.problem import parse_case
+
+    return parse_case(drawn.text, "case.toml").problem(*pair)
+
+
+def near_limits(rng: Rng, problem: Any, spread: float, ratio: float = 1.0) -> Array:
     """Random durations, stretched so that the largest ratio to a limit is about ``ratio``."""
+    from trajgap.problem import TrajgapError, evaluate
+
     for _ in range(8):
-        h = 2.0 ** rng.uniform(-spread, spread, asked.segments)
+        h = 2.0 ** rng.uniform(-spread, spread, problem.curve.segments)
         try:
             for _ in range(3):
-                h = h * stretch(asked, h) / ratio ** (1 / 2)
-        except NoCurve:
+                stretch = float(evaluate(problem, h[None]).stretch[0])
+                # Nothing that is limited moves: any duration does.
+                h = h * (stretch or 1.0) / ratio ** (1 / 2)
+        except TrajgapError:
             continue
         if np.isfinite(h).all() and (h > 0).all() and 1e-9 < h.min() <= h.max() < 1e9:
             return _rounded(h)
     raise NoCurve
-
-
-def stretch(asked: Asked, h: Array) -> float:
-    """c*: the factor on all durations that makes the motion tight; 1 if nothing is limited."""
-    low = peaks(asked, h).sided_low
-    with np.errstate(divide="ignore", invalid="ignore"):
-        ratios = np.where(asked.sides > 0, low / asked.sides, 0.0)
-    c = float(np.max(ratios ** (1 / np.array([1, 2, 3])), initial=0.0))
-    return c if c > 0 and math.isfinite(c) else 1.0
 
 
 def _rounded(values: Array) -> Array:

@@ -11,7 +11,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache, partial
 from pathlib import Path
-from typing import Any
 
 from trajgap.nlp.proofs.document import shipped_folder
 
@@ -346,24 +345,12 @@ def closed_pipe(rng: Rng, folder: Path) -> str | None:
     return "left"
 
 
-def _attack(
-    name: str,
-    tries: str,
-    holds: str,
-    trial: Any,
-    share: float,
-    quick: int,
-    parts: dict[str, Trial] | None = None,
-) -> Attack:
-    return Attack(name, tries, holds, trial, share, quick, parts=parts or {})
-
-
 def _each(trial: Callable[..., str | None]) -> dict[str, Trial]:
     return {name: partial(trial, only=name) for name in WORKS}
 
 
 ATTACKS = (
-    _attack(
+    Attack(
         "killed",
         "SIGKILL at a random moment of every command that writes: `audit` and `solve --certify` "
         "(new and over earlier files), `new`, and `--out` of `cases`, `show`, `check`, `solve`, "
@@ -372,18 +359,18 @@ ATTACKS = (
         killed,
         2.0,
         3,
-        _each(killed),
+        parts=_each(killed),
     ),
-    _attack(
+    Attack(
         "interrupted",
         "the same with SIGINT",
         "exit code 130 and one line, no drafts left; the same",
         interrupted,
         2.0,
         3,
-        _each(interrupted),
+        parts=_each(interrupted),
     ),
-    _attack(
+    Attack(
         "full disk",
         "the same with a limit on the size of files",
         "exit code 2 and one line, no drafts left, nothing changed",
@@ -391,7 +378,7 @@ ATTACKS = (
         1.5,
         3,
     ),
-    _attack(
+    Attack(
         "no rights",
         "the same in a folder that cannot be written to",
         "exit code 2 and one line before computing, nothing changed",
@@ -399,7 +386,7 @@ ATTACKS = (
         0.5,
         3,
     ),
-    _attack(
+    Attack(
         "several at once",
         "the same, two or three times at once in one folder",
         "a new file is written by exactly one; every file whole, no drafts left",
@@ -407,7 +394,7 @@ ATTACKS = (
         1.0,
         2,
     ),
-    _attack(
+    Attack(
         "dead worker",
         "SIGKILL to a worker of `audit --workers 2`",
         "a whole report, or one line; no hang",
@@ -415,7 +402,7 @@ ATTACKS = (
         1.0,
         1,
     ),
-    _attack(
+    Attack(
         "closed pipe",
         "nobody reads standard output of any command",
         "exit code 141, nothing on standard error",

@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 import numpy as np
+from support.toml_text import Bare
 
 from attacks.cases import (
     CLAIMS,
@@ -13,15 +14,18 @@ from attacks.cases import (
     MEASURES,
     PLACES,
     UNITS,
+    Array,
+    Asked,
     Drawn,
+    NoCurve,
     Rng,
     draw_asked,
     ends_in,
     near_limits,
+    problem_of,
     raw_of,
+    segments_of,
 )
-from attacks.curves import Array, Asked, NoCurve, segments_of
-from attacks.toml_text import Bare
 
 FACTORS = {"rad": 1.0, "deg": math.pi / 180, "s": 1.0, "ms": 1e-3}
 """What a unit is in rad and s; units of derivatives begin with one of these."""
@@ -62,7 +66,7 @@ def draw_case(rng: Rng, small: bool = False) -> Drawn:
     first = problems[0]["id"] if problems else "main"
     default = next((r["id"] for r in readings if r.get("default")), None)
     default = default or (readings[0]["id"] if readings else "as-printed")
-    _claims(rng, raw, asked_of(raw, first, default), first if problems else None)
+    _claims(rng, raw, (first, default), first if problems else None)
     pairs = [
         (p, r)
         for p in [x["id"] for x in problems] or ["main"]
@@ -144,7 +148,7 @@ def _problems(
     made: list[dict[str, Any]] = [{"id": "p-1", "title": "first", "where": "s. 1"}]
     second: dict[str, Any] = {"id": "p.2", "why": "slower"}
     second["limits"] = {"velocity": Bare(f"{rng.uniform(20, 90):.3g}")}
-    if len(labels) > 1 and asked.family != "clamped-b-spline" and rng.random() < 0.5:
+    if len(labels) > 1 and asked.block["family"] != "clamped-b-spline" and rng.random() < 0.5:
         second["joints"] = [labels[-1]]
     return [*made, second]
 
@@ -190,12 +194,13 @@ def _readings(rng: Rng, raw: dict[str, Any], asked: Asked) -> list[dict[str, Any
     return made
 
 
-def _claims(rng: Rng, raw: dict[str, Any], asked: Asked, problem: str | None) -> None:
+def _claims(rng: Rng, raw: dict[str, Any], pair: tuple[str, str], problem: str | None) -> None:
     """One claim of each quantity, some of them; and what they refer to."""
+    posed = problem_of(Drawn(raw, {}), pair)
     try:
-        h = near_limits(rng, asked, 1.0, float(rng.choice([0.7, 1.0, 1.4])))
+        h = near_limits(rng, posed, 1.0, float(rng.choice([0.7, 1.0, 1.4])))
     except NoCurve:
-        h = np.ones(asked.segments)
+        h = np.ones(posed.curve.segments)
     h = h / FACTORS[raw["units"]["time"]]
     raw["algorithms"] = []
     if rng.random() < 0.5:
@@ -319,7 +324,7 @@ def asked_of(raw: dict[str, Any], problem: str, reading: str) -> Asked:
             given = [(x[1], -float(x[0]))[side] if isinstance(x, list) else x for x in given]
         return each(given, len(labels), default, unit)[columns]
 
-    below = np.stack([limit(key, np.inf, 1) for key in DERIVATIVES], axis=1)
+    sides = [[limit(key, np.inf, side) for key in DERIVATIVES] for side in (1, 0)]
     in_si = {r: own[key] for r, key in enumerate(DERIVATIVES, 1)}
     ends, finish = (
         {r: v[columns] * in_si.get(r, 1.0) for r, v in end.items()}
@@ -328,9 +333,7 @@ def asked_of(raw: dict[str, Any], problem: str, reading: str) -> Asked:
     return Asked(
         block,
         points[:, columns],
-        limit("velocity", np.inf),
-        limit("acceleration", np.inf),
-        limit("jerk", np.inf),
+        np.moveaxis(np.array(sides), 1, 2),
         limit("position_lower", -np.inf),
         limit("position_upper", np.inf),
         each(bounds.get("lower"), segments, 0.0, own["time"]),
@@ -339,5 +342,4 @@ def asked_of(raw: dict[str, Any], problem: str, reading: str) -> Asked:
         coupling,
         ends,
         finish,
-        below,
     )

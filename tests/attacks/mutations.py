@@ -1,4 +1,4 @@
-"""Damage: seeded mutations of the values, the structure and the bytes of a case file."""
+"""Damage: seeded mutations of the values, the structure and the text of files."""
 
 from __future__ import annotations
 
@@ -6,8 +6,9 @@ import copy
 from collections.abc import Callable
 from typing import Any
 
+from support.toml_text import Bare, toml_text
+
 from attacks.cases import Rng
-from attacks.toml_text import Bare, toml_text
 
 Place = tuple[Any, ...]
 """Keys and positions from the top of a document."""
@@ -77,13 +78,13 @@ def damaged(rng: Rng, raw: dict[str, Any]) -> tuple[str, str]:
             done.append(_odd_number(rng, document))
         return toml_text(document), ", ".join(done)
     for _ in range(int(rng.integers(1, 4))):
-        done.append(_structural(rng, document))
+        done.append(structural(rng, document))
     try:
         text = toml_text(document)
     except TypeError:
         text = toml_text(raw)
     if rng.random() < 0.25:
-        text, what = _textual(rng, text)
+        text, what = textual(rng, text)
         done.append(what)
     return text, ", ".join(done)
 
@@ -115,7 +116,8 @@ def _scaled(rng: Rng, text: str) -> str:
     return f"{value:.6g}" if abs(value) < 1e300 else "1e300"
 
 
-def _structural(rng: Rng, document: dict[str, Any]) -> str:
+def structural(rng: Rng, document: dict[str, Any]) -> str:
+    """Something left out, doubled, of another type or from elsewhere; what was done."""
     every = places(document)
     if not every:
         return "nothing left"
@@ -168,17 +170,18 @@ def _bent(rng: Rng, text: str) -> str:
     return Bare(bent) if isinstance(text, Bare) and bent.isascii() and bent.isprintable() else bent
 
 
-def _textual(rng: Rng, text: str) -> tuple[str, str]:
+def textual(rng: Rng, text: str) -> tuple[str, str]:
+    """One fault of the lines, the signs or the nesting of any text, and what it is."""
     lines = text.split("\n")
     where = int(rng.integers(len(lines)))
-    match int(rng.integers(8)):
+    at = int(rng.integers(len(text) + 1))
+    match int(rng.integers(11)):
         case 0:
             return "\n".join(lines[:where] + lines[where + 1 :]), "a line left out"
         case 1:
             return "\n".join([*lines[:where], lines[where], *lines[where:]]), "a line twice"
         case 2:
-            cut = int(rng.integers(len(text) + 1))
-            return text[:cut], "cut off"
+            return text[:at], "cut off"
         case 3:
             depth = int(rng.integers(10, 3000))
             return f"{text}\nz = {'[' * depth}{']' * depth}\n", f"{depth} nested lists"
@@ -188,8 +191,19 @@ def _textual(rng: Rng, text: str) -> tuple[str, str]:
         case 5:
             return "\ufeff" + text.replace("\n", "\r\n"), "another line end"
         case 6:
-            at = int(rng.integers(len(text) + 1))
             return text[:at] + chr(int(rng.integers(1, 0x2FF))) + text[at:], "a character put in"
-    blocks = text.split("\n[")
+        case 7:
+            digits = [k for k, c in enumerate(text) if c.isdigit()] or [0]
+            k, word = int(rng.choice(digits)), (*NUMBERS, *STRINGS)[rng.integers(40)]
+            return text[:k] + word + text[k + 1 :], f"{word[:20]!r} in a number"
+        case 8:
+            sign = str(rng.choice(list(",;:[]{}<>&*!#\"'|%@\t\x07\u202e- ")))
+            return text[:at] + sign + text[at:], f"{sign!r} put in"
+        case 9:
+            deep = str(rng.choice(["[", "{", "<a>", "- ", "(", "&a [*a, "]))
+            depth = int(rng.choice([1, 50, 5000]))
+            return text[:at] + deep * depth + text[at:], f"{depth} times {deep}"
+    sign = "\n[" if "\n[" in text else "\n"
+    blocks = text.split(sign)
     order = rng.permutation(len(blocks) - 1) + 1 if len(blocks) > 1 else []
-    return "\n[".join([blocks[0], *(blocks[i] for i in order)]), "blocks in another order"
+    return sign.join([blocks[0], *(blocks[i] for i in order)]), "parts in another order"

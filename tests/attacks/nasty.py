@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.optimize import differential_evolution
 
-from attacks.attack import demand, keep
-from attacks.cases import Rng
-
-Array = np.ndarray[Any, np.dtype[np.float64]]
+from attacks.attack import Attack, demand, keep
+from attacks.cases import Array, Rng
 
 BEATEN = 1e-4
 """By how much, relative, known durations must beat an answer before that counts."""
 OFFSPRING, ROUNDS = 48, 25
 """Random steps from the durations that are known, and how often, in batches on exact totals."""
+DECADES, GENERATIONS = 3.0, 80
+"""How far around the known durations a global search looks, either way, and for how long."""
 FAMILIES = (
     "3-5-3",
     "4-3-4",
@@ -195,6 +197,39 @@ def shorter(rng: Rng, problem: Any, h: Array) -> Array:
     return best
 
 
+def searched(rng: Rng, problem: Any, h: Array) -> Array:
+    """The shorter of these and of what differential evolution finds and `check` passes."""
+    from trajgap.problem import check, evaluate
+
+    low = np.maximum(problem.duration_lower, h * 10.0**-DECADES)
+    high = np.minimum(problem.duration_upper, h * 10.0**DECADES)
+    box = np.log(np.stack([low, np.maximum(high, low * (1 + 1e-12))], axis=1))
+
+    def stretched(z: Array) -> tuple[Array, Array]:
+        trial = np.clip(np.exp(np.atleast_2d(z.T)), low, high)
+        found = evaluate(problem, trial)
+        c = found.stretch
+        if problem.curve.homogeneous:
+            trial = np.clip(trial * np.where(np.isfinite(c), c, 1.0)[:, None], low, high)
+            found = evaluate(problem, trial)
+        with np.errstate(invalid="ignore"):
+            worst = np.maximum(found.stretch, found.positions.max(axis=1))
+        return trial, np.where(np.isfinite(worst) | (worst < 0), worst, 1e12)
+
+    def objective(z: Array) -> Array:
+        trial, worst = stretched(z)
+        beyond = np.maximum(worst - (1 + 1e-10), 0.0)
+        return np.asarray(np.log(trial.sum(axis=1)) + np.where(beyond > 0, 1e3 + beyond, 0.0))
+
+    best = differential_evolution(
+        objective, box, maxiter=GENERATIONS, popsize=12, tol=1e-10, rng=rng, vectorized=True,
+        updating="deferred", polish=False,
+    )  # fmt: skip
+    found = stretched(best.x)[0][0]
+    passes = (found > 0).all() and check(problem, found).verdict == "pass"
+    return found if passes and found.sum() < h.sum() else h
+
+
 def written(problem: Any, h: Array) -> str:
     """What it takes to build the problem again."""
     curve, limits = problem.curve, problem.limits
@@ -256,11 +291,44 @@ def answered(problem: Any, h: Array) -> str:
 
 def nasty(rng: Rng, folder: Path) -> str | None:
     """`solve` on a nasty problem, against durations that keep every limit."""
+    return _beside(rng, folder, shorter)
+
+
+def optima(rng: Rng, folder: Path) -> str | None:
+    """The same against differential evolution."""
+    return _beside(rng, folder, searched)
+
+
+def _beside(rng: Rng, folder: Path, search: Callable[[Rng, Any, Array], Array]) -> str | None:
     drawn = draw(rng)
     if drawn is None:
         return None
     problem, h = drawn
     keep(folder, problem=written(problem, h))
-    best = shorter(rng, problem, h)
+    best = search(rng, problem, h)
     keep(folder, problem=written(problem, best))
     return answered(problem, best)
+
+
+ATTACKS = (
+    Attack(
+        "nasty problems",
+        "`solve` on problems of every determined curve, scales 1e-5 to 1e7, way-points that "
+        "coincide nearly, exactly or on a line, bounds and ranges without room, limits of one "
+        "side; random steps from known durations",
+        "an answer that passes; no known durations beat it by more than 1e-4; never infeasible",
+        nasty,
+        share=4.0,
+        quick=6,
+        inside=True,
+    ),
+    Attack(
+        "optima",
+        "the same; differential evolution on exact totals",
+        "the same",
+        optima,
+        share=3.0,
+        quick=4,
+        inside=True,
+    ),
+)

@@ -1,256 +1,270 @@
-"""Attacks on proofs: certificates and states altered, grafted, forged, with right hashes."""
+"""Attacks on proofs: certificates altered, grafted, forged, with right hashes.
+
+Each certificate has an answer that is known, so that a bound above it is false, and so is an answer
+below its bound. What an altered number of the problem itself allows is searched by brute force in
+`tests/verify/test_verify.py`; altered states are taken up again beside their certifiers.
+"""
 
 from __future__ import annotations
 
 import copy
 import json
+from collections.abc import Callable
 from fractions import Fraction
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-import numpy as np
+from support.alterations import changed, get, places, put
+from support.forgeries.forgery import KEPT
+from support.small_certificates import sealed
 
 from attacks.attack import Attack, demand, keep
 from attacks.cases import Rng
-from attacks.curves import Asked, NoCurve, excess
-from attacks.forging import altered, as_text, claim_more, forge_tables, one_number, sealed
+from attacks.mutations import structural
 from attacks.reading import well_ended
-from attacks.sandbox import Ended, call, command
-from attacks.stated import asked_in, claimed, least_any, least_declared
-from attacks.true_proofs import some_proof
+from attacks.sandbox import call, command
 
+Document = dict[str, Any]
 _BUDGETS = (0.3, 2.0, 8.0)
 """Time limits that the verifier is given, s."""
 _SLACK = 1.5
 """Seconds that it may take beyond them: reading a file of the largest size."""
 _ALREADY_ALTERED = (
-    TypeError,
-    KeyError,
-    ValueError,
-    AttributeError,
-    IndexError,
-    ZeroDivisionError,
-)
+    TypeError, KeyError, ValueError, AttributeError, IndexError, ZeroDivisionError, OverflowError,
+)  # fmt: skip
 """What an alteration raises where an earlier one left nothing to alter."""
-_MARGIN = 1e-9
-"""Relative excess of a bound over a feasible total that counts as rounding of the samples."""
+_MARGIN = 1e-12
+"""Relative: what a bound as float may be off by."""
 
 
-def _verified(document: dict[str, Any], budget: float) -> tuple[Ended, dict[str, Any] | None]:
+# --- alterations ----------------------------------------------------------------------------------
+
+
+def _number(rng: Rng, document: Document, *parts: str) -> str:
+    """A number of the document, or of some of its parts, is another."""
+    every = [p for p in places(document) if not parts or p[0] in parts]
+    path = every[rng.integers(len(every))]
+    put(document, path, changed(get(document, path), rng))
+    return f"{'.'.join(map(str, path))} is {str(get(document, path))[:40]}"
+
+
+def claim_more(rng: Rng, document: Document) -> str:
+    """More than is proved: bounds raised together, or an answer shortened."""
+    claim, proof = document["claim"], document["proof"]
+    up = 1 + Fraction(int(rng.integers(1, 100)), 10 ** int(rng.integers(2, 7)))
+    what = int(rng.integers(6))
+    if what > 3 and claim["durations"]:
+        claim["durations"] = [str(Fraction(x) / up) for x in claim["durations"]]
+        upper = Fraction(claim["upper"]) / up
+        claim["upper"] = str(upper)
+        # A bound above its answer is refused whatever the answer is.
+        claim["lower"] = proof["total"] = str(min(upper, Fraction(claim["lower"])))
+        return f"answer shorter by {float(up)}"
+    claim["lower"] = str(Fraction(claim["lower"]) * up)
+    if what > 0 and proof:
+        proof["total"] = str(Fraction(proof["total"]) * up)
+        if "cap" in proof:
+            proof["cap"] = str(Fraction(proof["cap"]) * up)
+    if what > 1:
+        _no_answer(document)
+    return f"lower bound higher by {float(up)}"
+
+
+def _no_answer(document: Document) -> None:
+    document["claim"] |= {"upper": None, "durations": None, "speeds": None}
+
+
+def _tree(rng: Rng, document: Document) -> str:
+    """Nodes left out, doubled, exchanged, or a part replaced by a leaf from elsewhere."""
+    tree = document["proof"]["tree"]
+    i, j = (int(x) for x in rng.integers(0, len(tree), 2))
+    match int(rng.integers(4)):
+        case 0:
+            del tree[i]
+        case 1:
+            tree.insert(i, copy.deepcopy(tree[j]))
+        case 2:
+            tree[i], tree[j] = tree[j], tree[i]
+        case _:
+            leaves = [n for n in tree if isinstance(n, list) and n and n[0] == "."]
+            del tree[i : i + int(rng.integers(1, 6))]
+            tree.insert(i, copy.deepcopy(leaves[rng.integers(len(leaves))]) if leaves else ["."])
+    return f"tree at {i}, {j}"
+
+
+def _forged(rng: Rng, document: Document) -> str:
+    """A proof from nothing: its own cuts and leaves in another tree, for any claim."""
+    claim, proof = document["claim"], document["proof"]
+    tree = proof["tree"]
+    leaves = [n for n in tree if isinstance(n, list) and n and n[0] == "."]
+    cuts = [n for n in tree if n not in leaves]
+    grown: list[Any] = []
+
+    def grow(level: int) -> None:
+        if level and cuts and rng.random() < 0.8:
+            grown.append(copy.deepcopy(cuts[rng.integers(len(cuts))]))
+            if isinstance(grown[-1], int) or grown[-1][0] == "/":
+                grow(level - 1)
+            grow(level - 1)
+            return
+        grown.append(copy.deepcopy(leaves[rng.integers(len(leaves))]))
+
+    grow(int(rng.integers(0, 6)))
+    proof["tree"] = grown
+    for _ in range(int(rng.integers(0, 4))):
+        _number(rng, document, "proof")
+    share = rng.uniform(1.002, 2.0) if rng.random() < 0.6 else 10 ** rng.uniform(-2.0, 0.0)
+    total = Fraction(f"{float(claim['lower']) * share:.12g}")
+    claim["lower"] = proof["total"] = str(total)
+    claim["infeasible"] = bool(rng.random() < 0.2)
+    if "cap" in proof:
+        proof["cap"] = str(total * int(rng.integers(1, 4)))
+    _no_answer(document)
+    return "forged"
+
+
+def _easier(rng: Rng, document: Document) -> str:
+    """Limits higher or bounds wider: the known answer still keeps all."""
+    problem = document["problem"]
+    factor = 1 + Fraction(int(rng.integers(1, 100)), 10 ** int(rng.integers(1, 8)))
+
+    def times(value: Any, by: Fraction) -> Any:
+        if isinstance(value, list):
+            return [times(one, by) for one in value]
+        if isinstance(value, dict):
+            return {**value, "value": str(Fraction(value["value"]) * by)}
+        return None if value is None else str(Fraction(value) * by)
+
+    if rng.random() < 0.7:
+        j = int(rng.integers(len(problem["limits"])))
+        problem["limits"][j] = times(problem["limits"][j], factor)
+    else:
+        problem["duration_lower"] = times(problem["duration_lower"], 1 / factor)
+        problem["duration_upper"] = [None] * len(problem["duration_upper"])
+    return f"easier by {float(factor)}"
+
+
+def _infeasible(document: Document) -> str:
+    document["claim"]["infeasible"] = True
+    _no_answer(document)
+    return "called infeasible"
+
+
+def altered(rng: Rng, document: Document, other: Document) -> str:
+    """Alter a certificate in place in one way; what was done."""
+
+    def graft() -> str:
+        key = str(rng.choice(["proof", "problem", "claim"]))
+        document[key] = copy.deepcopy(other[key])
+        return f"{key} of another"
+
+    ways: tuple[Callable[[], str], ...] = (
+        lambda: _number(rng, document),
+        lambda: _number(rng, document, "proof"),
+        lambda: _number(rng, document, "problem"),
+        *[lambda: claim_more(rng, document)] * 3,
+        lambda: structural(rng, document),
+        lambda: _tree(rng, document),
+        lambda: _forged(rng, document),
+        graft,
+        lambda: _easier(rng, document),
+        lambda: _infeasible(document),
+    )
+    return ways[rng.integers(len(ways))]()
+
+
+# --- trials ---------------------------------------------------------------------------------------
+
+
+@lru_cache(maxsize=1)
+def _kept() -> tuple[tuple[str, ...], ...]:
+    """Certificates with an answer: one of each kind of proof, and those that are shipped."""
+    from trajgap.nlp.proofs.document import shipped_folder
+
+    texts = (
+        [p.read_text("utf-8") for p in sorted(folder.glob("*.json"))]
+        for folder in (KEPT, shipped_folder())
+    )
+    return tuple(tuple(x for x in every if json.loads(x)["claim"]["durations"]) for every in texts)
+
+
+def some_proof(rng: Rng) -> Document:
+    """A true certificate."""
+    pool = _kept()[int(rng.random() < 0.2)]
+    return dict(json.loads(pool[rng.integers(len(pool))]))
+
+
+def _verified(document: Document, budget: float) -> Document:
     """What the verifier says, in a child."""
 
-    def run() -> dict[str, Any]:
+    def run() -> Document:
         from trajgap.verify import verify_certificate
 
         said = verify_certificate(document, seconds=budget)
         return {
             "proves": said.proves,
-            "reason": said.reason,
             "late": said.out_of_time,
             "lower": None if said.lower is None else float(said.lower),
             "upper": None if said.upper is None else float(said.upper),
             "infeasible": said.infeasible,
-            "any": str(said.subject) == "any curve",
+            "subject": str(said.subject),
         }
 
     ran = call(run, 60.0)
-    return ran, ran.value
-
-
-def judged(document: dict[str, Any], said: dict[str, Any], original: Any, seed: int) -> None:
-    """Break if brute force refutes what is said to be proved."""
-    asked = asked_in(document)
-    demand(asked is not None, "proved, but the problem cannot be read a second time")
-    assert asked is not None
-    h = claimed(document)
-    known = [x for x in (h, claimed(original)) if x is not None]
-    if said["upper"] is not None and not said["any"]:
-        demand(h is not None, "an upper bound without an answer")
-        assert h is not None
-        try:
-            worst = excess(asked, h)[0]
-        except NoCurve:
-            worst = np.inf
-        demand(worst <= 1 + 1e-6, f"the answer that is proved has the ratio {worst:.9g}")
-        demand(h.sum() <= said["upper"] * (1 + _MARGIN), "the answer exceeds its upper bound")
-    best = _least(document, asked, said["any"], known, seed)
-    if said["infeasible"]:
-        demand(best == np.inf, f"infeasible, but {best:.9g} is feasible")
-        return
-    why = f"a lower bound of {said['lower']:.12g}, but {best:.12g} is feasible"
-    demand(said["lower"] <= best * (1 + _MARGIN), why)
-
-
-def _least(
-    document: dict[str, Any], asked: Asked, any_curve: bool, known: list[Any], seed: int
-) -> float:
-    if not any_curve:
-        return least_declared(asked, seed, known)
-    problem = document["problem"]
-    ends: list[Any] = [None, None]
-    if "prescribed" in problem:
-        form = asked.block["declared"]
-        ends = [dict(form.prescribed[k]).get(1) for k in (0, -1)]
-    elif problem.get("ends"):
-        ends = [None if v is None else float(Fraction(v)) for v in problem["ends"]]
-    try:
-        stated = document["claim"]["speeds"] or []
-        speeds = np.array([[float(Fraction(v)) for v in row] for row in stated])
-    except (TypeError, ValueError, ZeroDivisionError, OverflowError):
-        speeds = np.zeros(0)
-    fits = speeds.shape == asked.waypoints.shape
-    return least_any(asked, (ends[0], ends[1]), speeds if fits else None, seed)
-
-
-def _attacked(rng: Rng, folder: Path, states: bool) -> str | None:
-    original = some_proof(rng, states)
-    if original is None:
-        return None
-    document = copy.deepcopy(original)
-    other, done = some_proof(rng, states), []
-    for _ in range(int(rng.integers(1, 4))):
-        try:
-            done.append(altered(rng, document, other))
-        except _ALREADY_ALTERED:
-            done.append("what is no longer there")
-    if rng.random() < 0.8:
-        document = sealed(document)
-    budget = float(rng.choice(_BUDGETS))
-    keep(folder, proof=json.dumps(document), done="\n".join(done))
-    ran, said = _verified(document, budget)
     demand(not ran.late, f"no end after {ran.seconds:.0f} s")
-    demand(said is not None, f"the verifier crashed: {ran.err[-500:]}")
-    assert said is not None
+    demand(ran.value is not None, f"the verifier crashed: {ran.err[-500:]}")
     spent = ran.processor
     demand(spent <= budget + _SLACK, f"{spent:.1f} s of a budget of {budget:g} s")
-    if not said["proves"]:
-        return "out of time" if said["late"] else "refused"
-    judged(document, said, original, int(rng.integers(1 << 30)))
-    return "proved, true"
+    return dict(ran.value)
+
+
+def judged(said: Document, known: Document, same: bool = True) -> None:
+    """Break if the known answer of a question, or of a harder one, refutes what is proved."""
+    claim = known["claim"]
+    demand(not said["infeasible"], f"infeasible, but {claim['upper']} is an answer")
+    low, high = (float(Fraction(claim[key])) for key in ("lower", "upper"))
+    why = f"a lower bound of {said['lower']!r}, but {high!r} is an answer"
+    demand(said["lower"] <= high * (1 + _MARGIN), why)
+    if same and said["upper"] is not None:
+        why = f"an answer of {said['upper']!r}, but {low!r} is a lower bound"
+        demand(said["upper"] >= low * (1 - _MARGIN), why)
 
 
 def certificates(rng: Rng, folder: Path) -> str | None:
     """Certificates altered in one to three ways."""
-    return _attacked(rng, folder, False)
-
-
-def states(rng: Rng, folder: Path) -> str | None:
-    """States altered in one to three ways."""
-    return _attacked(rng, folder, True)
-
-
-def resumed(rng: Rng, folder: Path) -> str | None:
-    """An altered state taken up again: refused, or only what is true comes of it."""
-    original = some_proof(rng, True)
-    if original is None:
-        return None
-    document = copy.deepcopy(original)
-    # The problem stays: a state of another question is refused before anything is looked at.
-    parts = [p for p in ("proposals", "proof", "claim") if document[p]]
-    done = one_number(rng, document[parts[rng.integers(len(parts))]])
-    if rng.random() < 0.5:
+    known = [some_proof(rng), some_proof(rng)]
+    document, done = copy.deepcopy(known[0]), []
+    for _ in range(int(rng.integers(1, 4))):
         try:
-            done += "; " + claim_more(rng, document)
+            done.append(altered(rng, document, known[1]))
         except _ALREADY_ALTERED:
-            done += "; what is no longer there"
-    document = sealed(document)
-    keep(folder, proof=json.dumps(document), done=done)
-    asked = asked_in(document)
-    assert asked is not None
-    subject = document["claim"]["subject"]
-
-    def run() -> dict[str, Any] | str:
-        from trajgap.nlp import certificate, certify
-        from trajgap.problem import TrajgapError, parse_case
-        from trajgap.verify import Subject
-
-        from attacks.cases import alone as written_case
-
-        problem = parse_case(written_case(_as_written(asked)).text, "case.toml").problem()
-        # A damaged word names no subject: the question is then that of the declared curve.
-        about = Subject(subject) if subject in list(Subject) else Subject.DECLARED
+            done.append("what is no longer there")
+    if rng.random() < 0.8:
         try:
-            found = certify(problem, subject=about, seconds=0.5, resume=document)
-        except TrajgapError as error:
-            return str(error)
-        return certificate(found) if found.proof is not None else "nothing proved"
-
-    ran = call(run, 60.0)
-    demand(not ran.late, f"no end after {ran.seconds:.0f} s")
-    demand(ran.value is not None, f"crashed: {ran.err[-800:]}")
-    if isinstance(ran.value, str):
-        return "refused" if "resume" in ran.value or "state" in ran.value else "nothing proved"
-    _, said = _verified(ran.value, 20.0)
-    demand(said is not None and said["proves"], f"what comes of it is refused: {said}")
-    assert said is not None
-    judged(ran.value, said, original, int(rng.integers(1 << 30)))
-    return "true"
-
-
-def _as_written(asked: Asked) -> Asked:
-    """The question of a state in words of a case file."""
-    from dataclasses import replace
-
-    if asked.family != "stated":
-        labels = tuple(str(j + 1) for j in range(asked.waypoints.shape[1]))
-        return replace(asked, labels=labels)
-    form = asked.block["declared"]
-    ends = [r for r, _ in form.prescribed[0]]
-    if form.virtual:
-        block: dict[str, Any] = {"family": "cubic-spline-virtual"}
-    elif set(form.degrees) == {5} and form.continuity[:1] == (4,):
-        block = {"family": "quintic-spline"}
-    elif form.continuity[:1] == (0,):
-        block = {"family": "rest-to-rest", "degree": form.degrees[0]}
-    else:
-        block = {
-            "family": "polynomials",
-            "degrees": list(form.degrees),
-            "continuity": form.continuity[0] if form.continuity else 2,
-            "end_orders": ends,
-        }
-    labels = tuple(str(j + 1) for j in range(asked.waypoints.shape[1]))
-    return replace(asked, block=block, labels=labels)
-
-
-def forged(rng: Rng, folder: Path) -> str | None:
-    """Proofs made from nothing: rows, weights, trees and bounds at random, for a true problem."""
-    original = some_proof(rng, False)
-    if original is None:
-        return None
-    document = copy.deepcopy(original)
-    proof, claim = document["proof"], document["claim"]
-    claim["upper"] = claim["durations"] = claim["speeds"] = None
-    best = Fraction(original["claim"]["upper"] or original["claim"]["lower"])
-    share = rng.uniform(1.002, 2.0) if rng.random() < 0.6 else 10 ** rng.uniform(-2.0, 0.0)
-    total = Fraction(_short(best * Fraction(float(share))))
-    claim["lower"], proof["total"] = as_text(total), as_text(total)
-    if "cap" in proof:
-        proof["cap"] = as_text(total * int(rng.integers(1, 4)))
-    if rng.random() < 0.2:
-        claim["infeasible"] = True
-    forge_tables(rng, proof)
-    document = sealed(document)
-    keep(folder, proof=json.dumps(document))
-    ran, said = _verified(document, 8.0)
-    demand(not ran.late, f"no end after {ran.seconds:.0f} s")
-    demand(said is not None, f"the verifier crashed: {ran.err[-500:]}")
-    assert said is not None
+            document = sealed(document)
+        except _ALREADY_ALTERED:
+            done.append("nothing to seal")
+    budget = float(rng.choice(_BUDGETS))
+    keep(folder, proof=json.dumps(document), done="\n".join(done))
+    said = _verified(document, budget)
     if not said["proves"]:
         return "out of time" if said["late"] else "refused"
-    judged(document, said, original, int(rng.integers(1 << 30)))
-    return "proved, true"
-
-
-def _short(number: Fraction) -> str:
-    return f"{float(number):.12g}"
+    word = "proved, of a problem that was altered"
+    for one in known:
+        if said["subject"] == one["claim"]["subject"]:
+            if document["problem"] == one["problem"]:
+                judged(said, one)
+                word = "proved, true"
+            elif one is known[0] and all(d.startswith(("easier", "lower", "answer")) for d in done):
+                judged(said, one, same=False)
+                word = "proved, true"
+    return word
 
 
 def files(rng: Rng, folder: Path) -> str | None:
     """Files handed to `trajgap verify`: cut, doubled, nested, binary, with keys twice."""
-    original = some_proof(rng, bool(rng.random() < 0.3))
-    if original is None:
-        return None
+    original = some_proof(rng)
     text = json.dumps(original)
     at = int(rng.integers(len(text)))
     match int(rng.integers(9)):
@@ -289,37 +303,13 @@ def files(rng: Rng, folder: Path) -> str | None:
 ATTACKS = (
     Attack(
         "certificates",
-        "certificates of every kind, shipped and made, with one to three numbers, keys, nodes, "
-        "rows, weights or claims altered or taken from others, hashes made right again",
-        "nothing is proved that brute force refutes; no crash; within the time limit",
+        "certificates of every kind with one to three numbers, keys, nodes, rows, weights or "
+        "claims altered or taken from others, and proofs put together at random, with claims "
+        "from 0.01 to 2 times what is proved, or of infeasibility; hashes made right again",
+        "nothing is proved that the known answer refutes; no crash; within the time limit",
         certificates,
-        share=4.0,
-        quick=4,
-    ),
-    Attack(
-        "forged proofs",
-        "proofs put together at random for true problems, with claims from 0.01 to 2 times the "
-        "optimum, or of infeasibility",
-        "the same",
-        forged,
-        share=2.0,
-        quick=8,
-    ),
-    Attack(
-        "states",
-        "states of stopped runs, altered likewise",
-        "the same",
-        states,
-        share=1.0,
-        quick=4,
-    ),
-    Attack(
-        "states taken up again",
-        "altered states given to `certify(resume=...)`",
-        "refused, or an interval that is proved and true",
-        resumed,
-        share=1.0,
-        quick=3,
+        share=6.0,
+        quick=30,
     ),
     Attack(
         "files to verify",

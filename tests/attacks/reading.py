@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 
 from attacks.attack import Attack, demand, keep
-from attacks.cases import Drawn, Rng, near_limits
-from attacks.curves import NoCurve
+from attacks.cases import Drawn, NoCurve, Rng, near_limits, problem_of
 from attacks.grammar import FACTORS, draw_case
 from attacks.mutations import damaged
 from attacks.sandbox import Ended, Plan, command
@@ -56,11 +55,11 @@ def strict_json(text: str, what: str) -> Any:
 
 def durations_text(rng: Rng, drawn: Drawn) -> str:
     """Durations for the command line, in the case's unit of time."""
-    asked = drawn.first
+    problem = problem_of(drawn, next(iter(drawn.asked)))
     try:
-        h = near_limits(rng, asked, 1.5, float(rng.choice([0.5, 1.0, 2.0])))
+        h = near_limits(rng, problem, 1.5, float(rng.choice([0.5, 1.0, 2.0])))
     except NoCurve:
-        h = np.ones(asked.segments)
+        h = np.ones(drawn.first.segments)
     factor = FACTORS[drawn.raw["units"]["time"]]
     return ",".join(f"{x / factor:.5g}" for x in h)
 

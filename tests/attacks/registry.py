@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from attacks import faults, judging, motions, optima, proofs, reading
+from attacks import faults, judging, motions, nasty, proofs, reading
 from attacks.attack import Attack
 
 ATTACKS: tuple[Attack, ...] = (
     *reading.ATTACKS,
     *judging.ATTACKS,
     *motions.ATTACKS,
-    *optima.ATTACKS,
+    *nasty.ATTACKS,
     *proofs.ATTACKS,
     *faults.ATTACKS,
 )

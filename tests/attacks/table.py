@@ -74,46 +74,45 @@ def read_rows(text: str) -> list[Row]:
 def table(rows: Sequence[Row], attacks: Sequence[Attack]) -> str:
     """The table of the page, the command that made it above."""
     by_name = {attack.name: attack for attack in attacks}
-    seconds, seeds = sum(r.seconds for r in rows), sorted({r.seed for r in rows})
-    lines = [
-        f"`{command_of(seconds, seeds[0])}`, {sum(r.trials for r in rows):,} trials, "
-        f"{sum(r.failures for r in rows)} failures:",
-        "",
+    minutes = max(1, round(sum(r.seconds for r in rows) / 60))
+    return _table(
+        f"--seconds {60 * minutes} --seed {min(r.seed for r in rows)} --write {_name(CSV)}",
         "| attack | what is tried | what must hold | trials | held | not judged | failures |",
-        "|---|---|---|---|---|---|---|",
-    ]
-    for row in rows:
-        attack = by_name[row.attack]
-        cells = (row.attack, attack.tries, attack.holds, *astuple(row)[1:5])
-        lines.append("| " + " | ".join(f"{x:,}" if isinstance(x, int) else x for x in cells) + " |")
-    return "\n".join(lines)
-
-
-def command_of(seconds: int, seed: int) -> str:
-    """The command of a run, its seconds rounded to whole minutes."""
-    minutes = max(1, round(seconds / 60))
-    run = f"python tests/attacks --seconds {60 * minutes} --seed {seed}"
-    return f"{run} --write docs/measurements/attacks.csv"
+        [(r.attack, by_name[r.attack].tries, by_name[r.attack].holds, *counts(r)) for r in rows],
+        rows,
+    )
 
 
 def each_table(rows: Sequence[Row]) -> str:
     """The table of every command by itself, the command that made it above."""
-    attacks = list(dict.fromkeys(row.attack.partition(": ")[0] for row in rows))
+    parts = [row.attack.partition(": ") for row in rows]
+    attacks = ",".join(dict.fromkeys(attack for attack, _, _ in parts))
     most = max(row.trials for row in rows)
-    lines = [
-        f"`python tests/attacks --only {','.join(attacks)} --trials {most} --seed {rows[0].seed} "
-        f"--write docs/measurements/attacks-signals.csv`, {sum(r.trials for r in rows):,} trials, "
-        f"{sum(r.failures for r in rows)} failures:",
-        "",
+    return _table(
+        f"--only {attacks} --trials {most} --seed {rows[0].seed} --write {_name(SIGNALS_CSV)}",
         "| attack | command | trials | held | not judged | failures | what was seen |",
-        "|---|---|---|---|---|---|---|",
-    ]
-    for row in rows:
-        attack, _, part = row.attack.partition(": ")
-        seen = row.outcomes.replace(f"{part}: ", "")
-        cells = (attack, f"`{part}`", *astuple(row)[1:5], seen)
-        lines.append("| " + " | ".join(map(str, cells)) + " |")
-    return "\n".join(lines)
+        [
+            (attack, f"`{part}`", *counts(row), row.outcomes.replace(f"{part}: ", ""))
+            for row, (attack, _, part) in zip(rows, parts, strict=True)
+        ],
+        rows,
+    )
+
+
+def counts(row: Row) -> tuple[str, ...]:
+    """Trials, and what became of them."""
+    return tuple(f"{x:,}" for x in (row.trials, row.held, row.not_judged, row.failures))
+
+
+def _name(path: Path) -> str:
+    return path.relative_to(ROOT).as_posix()
+
+
+def _table(options: str, head: str, cells: Sequence[Sequence[str]], rows: Sequence[Row]) -> str:
+    trials, failures = sum(r.trials for r in rows), sum(r.failures for r in rows)
+    said = f"`python tests/attacks {options}`, {trials:,} trials, {failures} failures:"
+    lines = [said, "", head, "|" + "---|" * (head.count("|") - 1)]
+    return "\n".join([*lines, *("| " + " | ".join(one) + " |" for one in cells)])
 
 
 def page_with(text: str, new: str, name: str = "attacks") -> str:

@@ -17,6 +17,7 @@ import numpy as np
 from support.forgeries.forgery import document as committed
 from support.three_pieces import dense_best
 from trajgap.problem import (
+    Curve,
     Limits,
     Problem,
     evaluate,
@@ -44,37 +45,21 @@ class Kind:
     """An upper estimate of the least total, inf where nothing is feasible."""
 
 
-def three_piece() -> Problem:
-    """Few boxes, and every kind of number."""
-    q = np.array([[0.25, -0.5], [1.0, 0.125], [-0.375, 0.75], [0.5, 0.25]])
-    limits = Limits([1.0, 0.9], [2.0, 1.5], [np.inf, 8.0], [-1.5, -np.inf], [np.inf, 1.75])
-    return Problem(q, limits, three_five_three(), (0.5, 0.1, 0.1), (6.0, 6.0, 7.0))
+WAYPOINTS = np.array([[0.25, -0.5], [1.0, 0.125], [-0.375, 0.75], [0.5, 0.25]])
+SIDES = ([-1.5, -np.inf], [np.inf, 1.75])
+"""Position limits: of each joint on one side."""
 
 
-def four_three_four() -> Problem:
-    q = np.array([[0.25, -0.5], [1.0, 0.125], [-0.375, 0.75], [0.5, 0.25]])
-    limits = Limits([1.0, 0.9], [2.0, 1.5], [np.inf, 8.0], [-1.5, -np.inf], [np.inf, 1.75])
-    return Problem(q, limits, piecewise((4, 3, 4)), (0.5, 0.1, 0.1), (9.0, 9.0, 9.0))
+def posed(curve: Curve, jerk: float, *bounds: Any, positions: Any = SIDES, **more: Any) -> Problem:
+    """Few boxes, and every kind of number: joints that differ in what limits them."""
+    q = WAYPOINTS[: curve.segments + 1]
+    bend = 1.5 if curve.segments > 2 else np.inf
+    limits = Limits([1.0, 0.9], [2.0, bend], [np.inf, jerk], *positions)
+    return Problem(q, limits, curve, *bounds, **more)
 
 
-def rest() -> Problem:
-    q = np.array([[0.25, -0.5], [1.0, 0.125], [-0.375, 0.75]])
-    limits = Limits([1.0, 0.9], [2.0, np.inf], [np.inf, 8.0], [-1.5, -np.inf], [np.inf, 1.75])
-    return Problem(q, limits, rest_to_rest(2, 5), (0.5, 4.0), (6.0, 7.0))
-
-
-def stretched() -> Problem:
-    q = np.array([[0.25, -0.5], [1.0, 0.125], [-0.375, 0.75], [0.5, 0.25]])
-    limits = Limits([1.0, 0.9], [2.0, 1.5], [np.inf, 9.0], [-1.5, -np.inf], [np.inf, 1.75])
-    return Problem(
-        q, limits, uniform_cubic_b_spline(4, "stretched"), (0.5, 4.0, 0.1), (6.0, 7.0, 8.0)
-    )
-
-
-def quintic() -> Problem:
-    q = np.array([[0.25, -0.5], [1.0, 0.125], [-0.375, 0.75], [0.5, 0.25]])
-    limits = Limits([1.0, 0.9], [2.0, 1.5], [np.inf, 9.0])
-    return Problem(q, limits, quintic_spline(3), (0.5, 0.1, 0.1))
+def _by_directions(problem: Problem) -> float:
+    return dense_best(problem, 81)
 
 
 def _alone(needs: np.ndarray, problem: Problem) -> float:
@@ -107,15 +92,6 @@ def stretched_optimum(problem: Problem) -> float:
     return _alone(solve_in_closed_form(problem.curve, problem.waypoints, limits), problem)
 
 
-def at_ratios() -> Problem:
-    """Tight in the second joint, and in no segment at its end."""
-    q = np.array([[0.25, -0.5], [1.0, 0.125], [-0.375, 0.75], [0.5, 0.25]])
-    limits = Limits([1.0, 0.9], [2.0, 1.5], [np.inf, 9.0], [-1.5, -np.inf], [np.inf, 1.75])
-    return Problem(
-        q, limits, quintic_spline(3), (0.5, 0.1, 0.1), (9.0, 9.0, 9.0), ratios=[1.0, 1.75, 1.25]
-    )
-
-
 def ratios_optimum(problem: Problem) -> float:
     """The stretch of any durations of these ratios; positions are left out."""
     shares = problem.shares
@@ -127,13 +103,33 @@ def ratios_optimum(problem: Problem) -> float:
     return float("inf") if beyond else total
 
 
+SHORT = (0.5, 0.1, 0.1)
 KINDS = {
-    "three-piece": Kind(three_piece, 0.03, lambda problem: dense_best(problem, 81)),
-    "four-three-four": Kind(four_three_four, 1e-5, lambda problem: dense_best(problem, 81)),
-    "rest-to-rest": Kind(rest, 1e-6, rest_optimum),
-    "quintic-spline": Kind(quintic, 0.1, lambda problem: dense_best(problem, 81)),
-    "stretched": Kind(stretched, 1e-6, stretched_optimum),
-    "fixed-ratios": Kind(at_ratios, 1e-6, ratios_optimum),
+    "three-piece": Kind(
+        lambda: posed(three_five_three(), 8.0, SHORT, (6.0, 6.0, 7.0)), 0.03, _by_directions
+    ),
+    "four-three-four": Kind(
+        lambda: posed(piecewise((4, 3, 4)), 8.0, SHORT, (9.0, 9.0, 9.0)), 1e-5, _by_directions
+    ),
+    "rest-to-rest": Kind(
+        lambda: posed(rest_to_rest(2, 5), 8.0, (0.5, 4.0), (6.0, 7.0)), 1e-6, rest_optimum
+    ),
+    "quintic-spline": Kind(
+        lambda: posed(quintic_spline(3), 9.0, SHORT, positions=()), 0.1, _by_directions
+    ),
+    "stretched": Kind(
+        lambda: posed(
+            uniform_cubic_b_spline(4, "stretched"), 9.0, (0.5, 4.0, 0.1), (6.0, 7.0, 8.0)
+        ),
+        1e-6,
+        stretched_optimum,
+    ),
+    # Tight in the second joint, and in no segment at its end.
+    "fixed-ratios": Kind(
+        lambda: posed(quintic_spline(3), 9.0, SHORT, (9.0, 9.0, 9.0), ratios=[1.0, 1.75, 1.25]),
+        1e-6,
+        ratios_optimum,
+    ),
 }
 
 

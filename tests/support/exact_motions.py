@@ -14,6 +14,8 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
+from support.exact_route import derived as derived
+from support.exact_route import solved
 
 Exact = list[Fraction]
 """Numbers, or ascending coefficients of a polynomial in the time since the start of its piece."""
@@ -91,12 +93,6 @@ def value(c: Exact, x: Fraction) -> Fraction:
     return found
 
 
-def derived(c: Exact, order: int) -> Exact:
-    for _ in range(order):
-        c = [k * one for k, one in enumerate(c)][1:]
-    return c or [Fraction(0)]
-
-
 def roots(c: Exact, h: Fraction) -> Exact:
     """Places in (0, h) that hold every real root, to the digits of float64; some hold none."""
     scaled = [one * h**k for k, one in enumerate(c)]
@@ -136,19 +132,6 @@ def hermite(rows: Sequence[Row], degree: int) -> Curve:
         ]
         pieces.append([*c, *solved(matrix, left)])
     return Curve([one.time for one in rows], pieces)
-
-
-def solved(matrix: list[Exact], right: Exact) -> Exact:
-    """The solution of a small linear system, by elimination."""
-    rows = [[*row, b] for row, b in zip(matrix, right, strict=True)]
-    for k in range(len(rows)):
-        best = next(i for i in range(k, len(rows)) if rows[i][k] != 0)
-        rows[k], rows[best] = rows[best], rows[k]
-        rows[k] = [x / rows[k][k] for x in rows[k]]
-        for i in range(len(rows)):
-            if i != k and rows[i][k] != 0:
-                rows[i] = [x - rows[i][k] * y for x, y in zip(rows[i], rows[k], strict=True)]
-    return [row[-1] for row in rows]
 
 
 def spline(times: Exact, values: Exact) -> Curve:

@@ -18,7 +18,8 @@ from trajgap.problem import Interpolant
 Polynomial = list[Fraction]
 
 
-def _solve(matrix: list[list[Fraction]], right: list[Fraction]) -> list[Fraction]:
+def solved(matrix: list[list[Fraction]], right: list[Fraction]) -> list[Fraction]:
+    """The solution of a linear system, by elimination."""
     rows = [[*row, b] for row, b in zip(matrix, right, strict=True)]
     n = len(rows)
     for c in range(n):
@@ -76,7 +77,7 @@ def fitted(
                 if order not in given:
                     left = derivative(b - 1, order, h[b - 1])
                     state(left | derivative(b, order, Fraction(0), -1), Fraction(0))
-    solution = _solve(matrix, right)
+    solution = solved(matrix, right)
     return [solution[first[k] : first[k + 1]] for k in range(n)]
 
 

@@ -10,7 +10,8 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from support.papers.printing import block, printed
+from support.papers.printing import printed
+from support.toml_text import toml_text
 
 _APART: tuple[dict[str, str], ...] = (
     {"algorithm": "old"},
@@ -98,20 +99,24 @@ def _written(
     family: str,
     keys: dict[str, Any],
 ) -> str:
-    joints = [str(j + 1) for j in range(len(points))]
-    units = {"position": "deg", "velocity": "deg/s", "acceleration": "deg/s^2", "time": "s"}
-    parts = [
-        block("", {"format": 1, "id": f"apart-{seed}", "title": "totals kept apart"}),
-        block("[source]", {"year": 2021}),
-        block("[robot]", {"name": "arm", "joints": joints}),
-        block("[units]", units),
-        block("[waypoints]", {"where": "Table 1", "joint_rows": points}),
-        block("[limits]", {"where": "Table 1"} | limits),
-        block("[interpolant]", {"family": family} | keys),
-    ]
-    parts += [block("[[algorithms]]", {"id": name, "name": name}) for name in ("old", "new")]
-    for k in (2, 6):
-        parts.append(block("[[tables]]", {"id": f"table-{k}", "where": f"Table {k}", "title": "t"}))
     places = ("Table 2", "Figure 5", "conclusion", "abstract", "Table 6", "section 4")
-    parts += [block("[[claims]]", {"where": w} | c) for w, c in zip(places, claims, strict=False)]
-    return "\n\n".join(parts).strip() + "\n"
+    return toml_text(
+        {
+            "format": 1,
+            "id": f"apart-{seed}",
+            "title": "totals kept apart",
+            "source": {"year": 2021},
+            "robot": {"name": "arm", "joints": [str(j + 1) for j in range(len(points))]},
+            "units": {
+                "position": "deg", "velocity": "deg/s", "acceleration": "deg/s^2", "time": "s",
+            },
+            "waypoints": {"where": "Table 1", "joint_rows": points},
+            "limits": {"where": "Table 1"} | limits,
+            "interpolant": {"family": family} | keys,
+            "algorithms": [{"id": name, "name": name} for name in ("old", "new")],
+            "tables": [
+                {"id": f"table-{k}", "where": f"Table {k}", "title": "t"} for k in (2, 6)
+            ],
+            "claims": [{"where": w} | c for w, c in zip(places, claims, strict=False)],
+        }
+    )  # fmt: skip

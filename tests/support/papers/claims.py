@@ -122,9 +122,9 @@ def _together(rng: np.random.Generator, draft: Draft) -> None:
     named = ["fast"]
     if several and "algorithm" in draft.claim("slow"):
         named.append("slow")
-    _say(rng, draft, 0.7, "kept", checks="within_limits", of=named)
+    _say(rng, draft, 0.7, "kept", "within_limits", *named)
     if best is not None:
-        _say(rng, draft, 1.0, "optimal", checks="optimal", of=["fast"])
+        _say(rng, draft, 1.0, "optimal", "optimal", "fast")
     _peaks(rng, draft)
     _qualities(rng, draft)
 
@@ -176,9 +176,9 @@ def _improvement(rng: np.random.Generator, draft: Draft) -> None:
     draft.claims.append(claim)
 
 
-def _say(rng: np.random.Generator, draft: Draft, chance: float, name: str, **entries: Any) -> None:
+def _say(rng: np.random.Generator, draft: Draft, chance: float, *said: str, **more: Any) -> None:
     if rng.random() < chance:
-        draft.claims.append({"id": name, "quantity": "statement"} | entries)
+        draft.say(*said, **more)
 
 
 def _peaks(rng: np.random.Generator, draft: Draft, of: str = "fast") -> None:
@@ -227,15 +227,15 @@ def _qualities(rng: np.random.Generator, draft: Draft, of: str = "fast") -> None
     """What is said of the curve in words and counts."""
     family, motion = draft.family, draft.answers[of].motion
     if family.smooth >= 2:
-        _say(rng, draft, 0.4, "smooth", checks="continuous", of=[of])
+        _say(rng, draft, 0.4, "smooth", "continuous", of)
     elif (
         family.smooth == 1
         and isinstance(motion, Pieces)
-        and motion.jump(2) > 0.01 * float(motion.peaks(2).max())
+        and motion.jumps(2).max() > 0.01 * motion.peaks(2).max()
     ):
-        _say(rng, draft, 0.4, "jumps", checks="jumps", of=[of])
+        _say(rng, draft, 0.4, "jumps", "jumps", of)
     if 1 in family.still:
-        _say(rng, draft, 0.4, "rest", checks="at_rest", of=[of])
+        _say(rng, draft, 0.4, "rest", "at_rest", of)
     if family.degrees is not None and rng.random() < 0.4:
         draft.claims.append(_conditions(rng, draft, of))
     if "uniform" in draft.name and rng.random() < 0.7:
@@ -243,8 +243,8 @@ def _qualities(rng: np.random.Generator, draft: Draft, of: str = "fast") -> None
     ranges = np.ptp(np.array([[float(t) for t in row] for row in draft.points]), axis=1)
     if len(ranges) > 1 and np.ptp(np.sort(ranges)[-2:]) > 0.05 * ranges.max():
         joint = str(int(ranges.argmax()) + 1)
-        _say(rng, draft, 0.2, "widest", checks="varies_most", joint=joint)
-    _say(rng, draft, 0.2, "wear", checks="none", not_checkable="no measure is defined")
+        _say(rng, draft, 0.2, "widest", "varies_most", joint=joint)
+    _say(rng, draft, 0.2, "wear", "none", not_checkable="no measure is defined")
 
 
 def _conditions(rng: np.random.Generator, draft: Draft, of: str) -> dict[str, Any]:
@@ -296,9 +296,9 @@ def _joint_by_joint(rng: np.random.Generator, draft: Draft) -> None:
         label = {"joint": str(joint + 1), "table": "table-3", "algorithm": "new"}
         state_durations(rng, draft, names[-1], one, **label)
         found.append(draft.answers[names[-1]])
-    _say(rng, draft, 1.0, "kept", checks="within_limits", of=names)
+    _say(rng, draft, 1.0, "kept", "within_limits", *names)
     if best:
-        _say(rng, draft, 1.0, "optimal", checks="optimal", of=names)
+        _say(rng, draft, 1.0, "optimal", "optimal", *names)
     longest = np.max([one.durations for one in found], axis=0)
     how = "round" if draft.how == "up" else draft.how
     texts = [time_text(draft, h, how) for h in longest]

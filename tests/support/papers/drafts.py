@@ -21,12 +21,11 @@ from support.papers.printing import (
     ANGLES,
     ORDERS,
     TIMES,
-    Bare,
-    block,
     last_place,
     places_for,
     printed,
 )
+from support.toml_text import Bare, toml_text
 
 TIGHT = 1e-9
 """Share by which answers that use a limit up stay below it: what floats may be off."""
@@ -85,6 +84,11 @@ class Draft:
     def has(self, name: str) -> bool:
         return any(c["id"] == name for c in self.claims)
 
+    def say(self, name: str, checks: str, *of: str, **more: Any) -> None:
+        """Claim a statement about some of the durations."""
+        about = {"of": list(of)} if of else {}
+        self.claims.append({"id": name, "quantity": "statement", "checks": checks} | about | more)
+
     def si(self, order: int) -> float:
         """A unit of a derivative in SI units; of time if the order is -1."""
         if order < 0:
@@ -93,41 +97,38 @@ class Draft:
 
     def text(self) -> str:
         """The case file."""
-        wrap = (lambda t: Bare(t)) if self.exact_points else str
-        limit = (lambda t: Bare(t)) if self.exact_limits else str
-        parts = [
-            block("", {"format": 1, "id": f"paper-{self.seed}", "title": self.name}),
-            f'coupling = "{self.coupling}"',
-            block("[source]", {"year": 2020}),
-            block("[robot]", {"name": "arm", "joints": [str(j + 1) for j in range(self.joints)]}),
-            block("[units]", self.units),
-            block(
-                "[waypoints]",
-                {"where": "Table 1", "joint_rows": [[wrap(t) for t in row] for row in self.points]},
-            ),
-            block(
-                "[limits]",
-                {"where": "Table 2"}
-                | {ORDERS[o]: [limit(t) for t in row] for o, row in self.limits.items()},
-            ),
-            f"[interpolant]\n{self.family.block}",
-        ]
-        if self.other_reading:
-            first = block("[[readings]]", {"id": "printed", "why": "as printed", "default": True})
-            other = "deg" if self.units["velocity"].startswith("rad") else "rad"
-            units = {"velocity": f"{other}/s"}
-            second = block("[[readings]]", {"id": "other", "why": "a unit", "units": units})
-            parts += [first, second]
-        for name in ("old", "new"):
-            parts.append(block("[[algorithms]]", {"id": name, "name": name}))
+        wrap = Bare if self.exact_points else str
+        limit = Bare if self.exact_limits else str
         tables = {c["table"]: c.get("algorithm") for c in self.claims if "table" in c}
-        for name, algorithm in tables.items():
-            entry = {"id": name, "where": name, "title": name}
-            if algorithm:
-                entry["algorithm"] = algorithm
-            parts.append(block("[[tables]]", entry))
-        parts += [block("[[claims]]", {"where": "text"} | c) for c in self.claims]
-        return "\n\n".join(parts).strip() + "\n"
+        document: dict[str, Any] = {
+            "format": 1,
+            "id": f"paper-{self.seed}",
+            "title": self.name,
+            "coupling": self.coupling,
+            "source": {"year": 2020},
+            "robot": {"name": "arm", "joints": [str(j + 1) for j in range(self.joints)]},
+            "units": self.units,
+            "waypoints": {
+                "where": "Table 1",
+                "joint_rows": [[wrap(t) for t in row] for row in self.points],
+            },
+            "limits": {"where": "Table 2"}
+            | {ORDERS[o]: [limit(t) for t in row] for o, row in self.limits.items()},
+            "interpolant": self.family.block,
+            "algorithms": [{"id": name, "name": name} for name in ("old", "new")],
+            "tables": [
+                {"id": name, "where": name, "title": name, "algorithm": algorithm}
+                for name, algorithm in tables.items()
+            ],
+            "claims": [{"where": "text"} | c for c in self.claims],
+        }
+        if self.other_reading:
+            other = "deg" if self.units["velocity"].startswith("rad") else "rad"
+            document["readings"] = [
+                {"id": "printed", "why": "as printed", "default": True},
+                {"id": "other", "why": "a unit", "units": {"velocity": f"{other}/s"}},
+            ]
+        return toml_text(document)
 
 
 # --- the problem ----------------------------------------------------------------------------------

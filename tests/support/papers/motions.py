@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import comb, factorial
+from typing import Any
 
 import numpy as np
 from numpy.polynomial import polynomial as poly
@@ -32,10 +33,11 @@ class Pieces:
         c = poly.polyder(self.coefficients, order, axis=1) if order else self.coefficients
         return c / self.lengths[:, None, None] ** order
 
-    def peaks(self, order: int) -> Array:
-        """Largest absolute value of a derivative, for each joint."""
+    def ends(self, order: int) -> Array:
+        """Least and largest value of a derivative, shape (2, joints)."""
         c = self.derived(order)
-        found = np.maximum(np.abs(c[:, 0, :]), np.abs(c.sum(axis=1))).max(axis=0)
+        sides = np.concatenate([c[:, 0, :], c.sum(axis=1)])
+        found = np.stack([sides.min(axis=0), sides.max(axis=0)])
         slope = poly.polyder(c, axis=1)
         for piece, joint in np.ndindex(c.shape[0], c.shape[2]):
             own = np.trim_zeros(slope[piece, :, joint], "b")
@@ -45,8 +47,13 @@ class Pieces:
             inside = roots.real[(abs(roots.imag) < 1e-7) & (roots.real > 0) & (roots.real < 1)]
             if inside.size:
                 values = poly.polyval(inside, c[piece, :, joint])
-                found[joint] = max(found[joint], float(np.abs(values).max()))
+                found[0, joint] = min(found[0, joint], float(values.min()))
+                found[1, joint] = max(found[1, joint], float(values.max()))
         return found
+
+    def peaks(self, order: int) -> Array:
+        """Largest absolute value of a derivative, for each joint."""
+        return np.abs(self.ends(order)).max(axis=0)
 
     def at(self, times: Array, order: int) -> Array:
         """Values of a derivative (time, joint)."""
@@ -56,11 +63,10 @@ class Pieces:
         c = self.derived(order)[piece]
         return np.sum(c * share[:, None, None] ** np.arange(c.shape[1])[None, :, None], axis=1)
 
-    def jump(self, order: int) -> float:
-        """Largest difference of a derivative between the sides of a break."""
+    def jumps(self, order: int) -> Array:
+        """Largest difference of a derivative between the sides of a break, for each joint."""
         c = self.derived(order)
-        left, right = c.sum(axis=1)[:-1], c[1:, 0, :]
-        return float(np.abs(left - right).max(initial=0.0))
+        return np.abs(c.sum(axis=1)[:-1] - c[1:, 0, :]).max(axis=0, initial=0.0)
 
     @property
     def total(self) -> float:
@@ -76,41 +82,38 @@ class Timed:
 
     @property
     def total(self) -> float:
-        return float(self._values(self.time, np.array([float(len(self.time.lengths))]), 0)[0, 0])
-
-    @staticmethod
-    def _values(of: Pieces, at: Array, order: int) -> Array:
-        return of.at(at, order)
+        return float(self.time.at(np.array([float(len(self.time.lengths))]), 0)[0, 0])
 
     def _in_time(self, at: Array, order: int) -> Array:
-        q = [self.joints.at(at, k) for k in range(4)]
-        t = [self.time.at(at, k) for k in range(4)]
-        if order == 0:
-            return q[0]
-        n = q[1]
-        if order >= 2:
-            n2 = q[2] * t[1] - q[1] * t[2]
-            n = n2
-        if order == 3:
-            slope = q[3] * t[1] - q[1] * t[3]
-            n = slope * t[1] - 3 * n2 * t[2]
-        return n / t[1] ** (2 * order - 1)
+        q, t = ([one.at(at, k) for k in range(4)] for one in (self.joints, self.time))
+        if order < 2:
+            return q[order] / t[1] if order else q[0]
+        turn = q[2] * t[1] - q[1] * t[2]
+        if order == 2:
+            return turn / t[1] ** 3
+        return ((q[3] * t[1] - q[1] * t[3]) * t[1] - 3 * turn * t[2]) / t[1] ** 5
 
     def _parameters(self, each: int) -> Array:
         return np.linspace(0.0, float(len(self.time.lengths)), each * len(self.time.lengths) + 1)
 
-    def peaks(self, order: int) -> Array:
+    def ends(self, order: int) -> Array:
+        """Least and largest value of a derivative, shape (2, joints)."""
         at = self._parameters(FINE)
-        values = np.abs(self._in_time(at, order))
-        found = values.max(axis=0)
+        values = self._in_time(at, order)
         # The last power jumps at the breaks: both sides count.
-        sides = np.arange(1, len(self.time.lengths)) - 1e-12
-        found = np.maximum(found, np.abs(self._in_time(sides, order)).max(axis=0, initial=0.0))
-        for joint, index in enumerate(values.argmax(axis=0)):
-            low, high = at[max(index - 1, 0)], at[min(index + 1, len(at) - 1)]
-            near = np.abs(self._in_time(np.linspace(low, high, FINE), order)[:, joint])
-            found[joint] = max(found[joint], float(near.max()))
+        sides = self._in_time(np.arange(1, len(self.time.lengths)) - 1e-12, order)
+        both = np.concatenate([values, sides])
+        found = np.stack([both.min(axis=0), both.max(axis=0)])
+        for side, (where, reach) in enumerate(((np.argmin, np.minimum), (np.argmax, np.maximum))):
+            for joint, index in enumerate(where(values, axis=0)):
+                low, high = at[max(index - 1, 0)], at[min(index + 1, len(at) - 1)]
+                near = self._in_time(np.linspace(low, high, FINE), order)[:, joint]
+                found[side, joint] = reach.reduce(near, initial=found[side, joint])
         return found
+
+    def peaks(self, order: int) -> Array:
+        """Largest absolute value of a derivative, for each joint."""
+        return np.abs(self.ends(order)).max(axis=0)
 
     def at(self, times: Array, order: int) -> Array:
         grid = self._parameters(FINE)
@@ -228,17 +231,18 @@ def _chords(points: Array) -> Array:
     return _breaks(lengths) / lengths.sum()
 
 
-def _clamped(degree: int, parameters: str) -> Callable[[Array, Array], Pieces]:
+def clamped(
+    degree: int, parameters: str, stretched: bool = False, knots: str = "averaged-continued"
+) -> Callable[[Array, Array], Pieces]:
+    """A clamped B-spline over the times, or over chords; these in proportion, or stretched."""
+
     def fitted(points: Array, h: Array) -> Pieces:
         at = _breaks(h)
-        if parameters == "times":
-            return _of_spline(_interpolated(at, points, degree, _averaged(at, degree)))
-        if parameters == "chord":
-            inner = at[-1] * _averaged(_chords(points), degree)
-            return _of_spline(_interpolated(at, points, degree, inner))
-        u = _chords(points)
-        curve = _interpolated(u, points, degree, _averaged(u, degree))
-        return _stretched(curve, u, h)
+        own, scale = (at, 1.0) if parameters == "times" else (_chords(points), float(at[-1]))
+        inner = own[1:-1] if knots == "waypoints" else _averaged(own, degree)
+        if stretched:
+            return _stretched(_interpolated(own, points, degree, inner), own, h)
+        return _of_spline(_interpolated(at, points, degree, scale * inner))
 
     return fitted
 
@@ -269,11 +273,11 @@ def _uniform(points: Array) -> Pieces:
     return Pieces(np.ones(len(points) - 1), _taylor(curve, np.arange(float(len(points)))))
 
 
-def _uniform_stretched(points: Array, h: Array) -> Pieces:
+def uniform_stretched(points: Array, h: Array) -> Pieces:
     return Pieces(h, _uniform(points).coefficients)
 
 
-def _uniform_timed(points: Array, h: Array) -> Timed:
+def uniform_timed(points: Array, h: Array) -> Timed:
     time = _uniform(_breaks(h)[:, None])
     c = time.derived(1)[:, :, 0]
     share = np.linspace(0, 1, 21)
@@ -300,7 +304,7 @@ class Family:
     its duration to itself, so that the shortest is found segment by segment.
     """
 
-    block: str
+    block: dict[str, Any]
     fit: Callable[[Array, Array], Motion]
     points: tuple[int, ...] = (3, 4, 5)
     extra: int = 0
@@ -317,37 +321,37 @@ def _degrees(degree: int) -> Callable[[int], tuple[int, ...]]:
 
 FAMILIES = {
     "3-5-3": Family(
-        'family = "3-5-3"',
+        {"family": "3-5-3"},
         lambda w, h: declared((3, 5, 3), h, w, (1, 2), ()),
         (4,),
         degrees=lambda n: (3, 5, 3),
     ),
     "4-3-4": Family(
-        'family = "polynomials"\ndegrees = [4, 3, 4]',
+        {"family": "polynomials", "degrees": [4, 3, 4]},
         lambda w, h: declared((4, 3, 4), h, w, (1, 2), ()),
         (4,),
         degrees=lambda n: (4, 3, 4),
     ),
     "4-3-3-4": Family(
-        'family = "polynomials"\ndegrees = [4, 3, 3, 4]',
+        {"family": "polynomials", "degrees": [4, 3, 3, 4]},
         lambda w, h: declared((4, 3, 3, 4), h, w, (1, 2), ()),
         (5,),
         degrees=lambda n: (4, 3, 3, 4),
     ),
     "clamped cubic": Family(
-        'family = "cubic-spline"', _cubic("clamped"), still=(1,), degrees=_degrees(3)
+        {"family": "cubic-spline"}, _cubic("clamped"), still=(1,), degrees=_degrees(3)
     ),
     "natural cubic": Family(
-        'family = "cubic-spline"\nend_orders = [2]',
+        {"family": "cubic-spline", "end_orders": [2]},
         _cubic("natural"),
         still=(2,),
         degrees=_degrees(3),
     ),
-    "virtual cubic": Family('family = "cubic-spline-virtual"', _virtual, (3, 4), extra=2),
-    "C4 quintic": Family('family = "quintic-spline"', _quintic, smooth=4, degrees=_degrees(5)),
+    "virtual cubic": Family({"family": "cubic-spline-virtual"}, _virtual, (3, 4), extra=2),
+    "C4 quintic": Family({"family": "quintic-spline"}, _quintic, smooth=4, degrees=_degrees(5)),
     **{
         f"rest {degree}": Family(
-            f'family = "rest-to-rest"\ndegree = {degree}',
+            {"family": "rest-to-rest", "degree": degree},
             _rest(degree),
             (2, 3, 4),
             still=tuple(range(1, (degree + 1) // 2)),
@@ -358,24 +362,28 @@ FAMILIES = {
         )
         for degree in (3, 5, 7, 9)
     },
-    "jtraj": Family('family = "jtraj"', _rest(5), (2, 3, 4), apart=True, at_all=True),
+    "jtraj": Family({"family": "jtraj"}, _rest(5), (2, 3, 4), apart=True, at_all=True),
     "stretched uniform": Family(
-        'family = "uniform-cubic-b-spline"\ntime = "stretched"',
-        _uniform_stretched,
+        {"family": "uniform-cubic-b-spline", "time": "stretched"},
+        uniform_stretched,
         (4, 5),
         still=(),
         smooth=0,
         apart=True,
     ),
     "timed uniform": Family(
-        'family = "uniform-cubic-b-spline"\ntime = "timed"', _uniform_timed, (4, 5), still=(2,)
+        {"family": "uniform-cubic-b-spline", "time": "timed"}, uniform_timed, (4, 5), still=(2,)
     ),
     **{
         f"clamped B-spline {degree} {parameters}": Family(
-            'family = "clamped-b-spline"\n'
-            f'degree = {degree}\nknots = "averaged-continued"\nparameters = "{said}"\n'
-            f'time = "{time}"',
-            _clamped(degree, parameters),
+            {
+                "family": "clamped-b-spline",
+                "degree": degree,
+                "knots": "averaged-continued",
+                "parameters": said,
+                "time": time,
+            },
+            clamped(degree, said, time == "stretched"),
             (4, 5),
             smooth=0 if time == "stretched" else min(degree - 1, 4),
             apart=time == "stretched",

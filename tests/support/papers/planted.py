@@ -127,9 +127,7 @@ def restated(rng: np.random.Generator, draft: Draft, found: Answer, peaks: bool 
     draft.claims.clear()
     draft.how = "round" if draft.how == "up" else draft.how
     state_durations(rng, draft, "fast", found, table="table-4", algorithm="new")
-    draft.claims.append(
-        {"id": "kept", "quantity": "statement", "checks": "within_limits", "of": ["fast"]}
-    )
+    draft.say("kept", "within_limits", "fast")
     if peaks:
         for order in (1, 2):
             draft.claims.append(peak_claim(rng, draft, found.motion, order, "exact", "fast"))
@@ -285,9 +283,7 @@ def _discontinuity(rng: np.random.Generator, draft: Draft) -> Planted:
     claim["durations"][k] = moved(claim["durations"][k], abs(_steps(rng, 300)))
     claim.pop("total", None)
     draft.claims = [claim]
-    draft.claims.append(
-        {"id": "smooth", "quantity": "statement", "checks": "continuous", "of": ["fast"]}
-    )
+    draft.say("smooth", "continuous", "fast")
     far = float(claim["durations"][k]) - float(claim["durations"][k - 1])
     own = float(claim["durations"][k])
     return Planted(draft, far / own, last_place(claim["durations"][k]) / own)
@@ -301,9 +297,7 @@ def _suboptimal(rng: np.random.Generator, draft: Draft) -> Planted:
     _, room = excess(draft)
     durations = best.durations * (1 + size)
     restated(rng, draft, Answer(durations, fitted(draft, durations)), peaks=False)
-    draft.claims.append(
-        {"id": "optimal", "quantity": "statement", "checks": "optimal", "of": ["fast"]}
-    )
+    draft.say("optimal", "optimal", "fast")
     claim = draft.claim("fast")
     claim.pop("total", None)
     up = 1.5 * len(durations) * last_place(claim["durations"][0]) * draft.si(-1) / best.total

@@ -1,11 +1,9 @@
-"""Numbers to digits as papers print them, digits back to numbers, and a draft to a case file."""
+"""Numbers to digits as papers print them, and digits back to numbers."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
 from decimal import ROUND_CEILING, ROUND_DOWN, ROUND_HALF_EVEN, Decimal
 from math import floor, log10, pi
-from typing import Any
 
 ROUNDINGS = {"round": ROUND_HALF_EVEN, "cut": ROUND_DOWN, "up": ROUND_CEILING}
 """How a printer may leave digits out."""
@@ -38,35 +36,3 @@ def moved(text: str, steps: int) -> str:
     """The digits so many units of the last place further."""
     number = Decimal(text)
     return format(number + steps * Decimal(1).scaleb(int(number.as_tuple().exponent)), "f")
-
-
-def numbers(texts: Iterable[str]) -> list[float]:
-    """What digits say."""
-    return [float(text) for text in texts]
-
-
-def toml_value(value: Any) -> str:
-    """A value of a case file."""
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, str):
-        return '"' + value.replace('"', "'") + '"'
-    if isinstance(value, Bare):
-        return value.text
-    if isinstance(value, Sequence):
-        return "[" + ", ".join(map(toml_value, value)) + "]"
-    if isinstance(value, dict):
-        return "{ " + ", ".join(f"{k} = {toml_value(v)}" for k, v in value.items()) + " }"
-    return repr(value)
-
-
-class Bare:
-    """A number that is meant exactly: it stands without quotes."""
-
-    def __init__(self, text: str) -> None:
-        self.text = text
-
-
-def block(head: str, entries: dict[str, Any]) -> str:
-    """A table of a case file."""
-    return "\n".join([head, *(f"{k} = {toml_value(v)}" for k, v in entries.items())])

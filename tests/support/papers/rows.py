@@ -65,16 +65,6 @@ def _row(rng: np.random.Generator, draft: Draft, name: str, h: Array, **more: An
     state_durations(rng, draft, name, Answer(h, fitted(draft, h)), table=table, **where, **more)
 
 
-def _kept(draft: Draft, *names: str) -> None:
-    entry = {"id": "kept", "quantity": "statement", "checks": "within_limits", "of": list(names)}
-    draft.claims.append(entry)
-
-
-def _optimal(draft: Draft) -> None:
-    entry = {"id": "optimal", "quantity": "statement", "checks": "optimal", "of": ["fast"]}
-    draft.claims.append(entry)
-
-
 def _too_fast(rng: np.random.Generator, draft: Draft) -> Array:
     """Durations that are far too short, whatever the digits stand for."""
     return answer(draft, some_shape(rng, draft), 0.0).durations * float(rng.uniform(*FASTER))
@@ -120,7 +110,7 @@ def _before(rng: np.random.Generator, seed: int) -> Paper:
     _row(rng, draft, "fast", _kept_durations(rng, draft), algorithm="new")
     if rng.random() < 0.5:
         draft.claims.reverse()
-    _kept(draft, "fast")
+    draft.say("kept", "within_limits", "fast")
     return Paper(draft)
 
 
@@ -137,7 +127,7 @@ def _rounded(rng: np.random.Generator, seed: int) -> Paper:
     draft, best = _coarse(rng, seed)
     draft.places += 2
     _row(rng, draft, "fast", best.durations, algorithm="new")
-    _optimal(draft)
+    draft.say("optimal", "optimal", "fast")
     return Paper(draft, 0.0)
 
 
@@ -148,7 +138,7 @@ def _elsewhere(rng: np.random.Generator, seed: int) -> Paper:
     fast = draft.claim("fast")
     fast.pop("total", None)
     _stated(draft, best.total)
-    _optimal(draft)
+    draft.say("optimal", "optimal", "fast")
     return Paper(draft, 0.0)
 
 
@@ -163,7 +153,7 @@ def _longer(rng: np.random.Generator, seed: int) -> Paper:
     draft, best = _coarse(rng, seed)
     share = float(np.exp(rng.uniform(np.log(1e-3), np.log(0.3))))
     _row(rng, draft, "fast", best.durations * (1 + share), algorithm="new")
-    _kept(draft, "fast")
+    draft.say("kept", "within_limits", "fast")
     return Paper(draft, share)
 
 
@@ -185,7 +175,7 @@ def _said(rng: np.random.Generator, seed: int) -> Paper:
     draft = _plain(rng, seed)
     _row(rng, draft, "slow", _too_fast(rng, draft), state="before")
     _row(rng, draft, "fast", _too_fast(rng, draft), algorithm="new")
-    _kept(draft, "fast")
+    draft.say("kept", "within_limits", "fast")
     return Paper(draft, cause="TG201", claim="fast")
 
 
@@ -194,7 +184,7 @@ def _rival(rng: np.random.Generator, seed: int) -> Paper:
     draft = _plain(rng, seed)
     _row(rng, draft, "slow", _too_fast(rng, draft), algorithm="old")
     _row(rng, draft, "fast", _kept_durations(rng, draft), algorithm="new")
-    _kept(draft, "slow", "fast")
+    draft.say("kept", "within_limits", "slow", "fast")
     return Paper(draft, cause="TG201", claim="slow")
 
 

@@ -41,8 +41,7 @@ def _shortened(rng: np.random.Generator, draft: Draft) -> bool:
         places = len(row["total"].partition(".")[2])
         row["total"] = printed(sum(map(float, row["durations"])), places)
     if not draft.has("said-kept"):
-        said = {"id": "said-kept", "quantity": "statement", "checks": "within_limits"}
-        draft.claims.append(said | {"of": [row["id"]]})
+        draft.say("said-kept", "within_limits", row["id"])
     return True
 
 
@@ -52,42 +51,22 @@ def _scaled(text: str, factor: float) -> str:
     return new if float(new) else text
 
 
-def _total(rng: np.random.Generator, draft: Draft) -> bool:
-    row = _row(rng, draft)
-    if row is None or "total" not in row:
-        return False
-    row["total"] = _moved(rng, row["total"])
-    return True
+def _said(draft: Draft, name: str) -> dict | None:
+    return draft.claim(name) if draft.has(name) else None
 
 
-def _abstract(rng: np.random.Generator, draft: Draft) -> bool:
-    if not draft.has("abstract"):
-        return False
-    claim = draft.claim("abstract")
-    claim["value"] = _moved(rng, claim["value"])
-    return True
-
-
-def _percentage(rng: np.random.Generator, draft: Draft) -> bool:
-    if not draft.has("gain"):
-        return False
-    claim = draft.claim("gain")
-    key = "percent" if "percent" in claim else "seconds"
-    if key not in claim:
-        return False
-    claim[key] = _moved(rng, claim[key])
-    return True
-
-
-def _peak(rng: np.random.Generator, draft: Draft) -> bool:
+def _peak(rng: np.random.Generator, draft: Draft) -> dict | None:
     peaks = [c for c in draft.claims if c["quantity"] == "peak"]
-    if not peaks:
+    return peaks[int(rng.integers(len(peaks)))] if peaks else None
+
+
+def _other(rng: np.random.Generator, claim: dict | None, *keys: str) -> bool:
+    """Other digits under the first of these keys that the claim has."""
+    key = next((key for key in keys if key in (claim or {})), None)
+    if claim is None or key is None:
         return False
-    claim = peaks[int(rng.integers(len(peaks)))]
-    if "value" in claim:
-        claim["value"] = _moved(rng, claim["value"])
-    else:
-        claim["values"] = [_moved(rng, text) for text in claim["values"]]
+    given = claim[key]
+    claim[key] = [_moved(rng, t) for t in given] if isinstance(given, list) else _moved(rng, given)
     return True
 
 
@@ -98,9 +77,7 @@ def _called_optimal(rng: np.random.Generator, draft: Draft) -> bool:
         return False
     if rng.random() < 0.5:
         row["durations"] = [_scaled(text, 1.3) for text in row["durations"]]
-    draft.claims.append(
-        {"id": "optimal", "quantity": "statement", "checks": "optimal", "of": [row["id"]]}
-    )
+    draft.say("optimal", "optimal", row["id"])
     return True
 
 
@@ -113,10 +90,10 @@ def _moved(rng: np.random.Generator, text: str) -> str:
 
 FAULTS: dict[str, Spoil] = {
     "durations too short": _shortened,
-    "total": _total,
-    "abstract": _abstract,
-    "percentage": _percentage,
-    "peak": _peak,
+    "total": lambda rng, draft: _other(rng, _row(rng, draft), "total"),
+    "abstract": lambda rng, draft: _other(rng, _said(draft, "abstract"), "value"),
+    "percentage": lambda rng, draft: _other(rng, _said(draft, "gain"), "percent", "seconds"),
+    "peak": lambda rng, draft: _other(rng, _peak(rng, draft), "value", "values"),
     "called optimal": _called_optimal,
 }
 """What is made wrong, in words."""

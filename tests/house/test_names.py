@@ -1,12 +1,13 @@
-"""Every module-level constant carries a line: what it is, and why it has this value."""
+"""Names: every module-level constant carries a line, and no two classes of ours share one."""
 
 import ast
 import re
+from collections import defaultdict
 
 import pytest
 from support.checkout import ROOT
 
-FOLDERS = ("problem", "heuristics", "nlp", "compare", "verify")
+FOLDERS = {"problem", "heuristics", "nlp", "compare", "verify"}
 NAME = re.compile(r"_?[A-Z][A-Z0-9_]*")
 
 
@@ -36,7 +37,7 @@ def bare_constants(source: str) -> list[str]:
 
 def test_every_constant_is_explained() -> None:
     bare = []
-    for folder in FOLDERS:
+    for folder in sorted(FOLDERS):
         for path in sorted((ROOT / folder).rglob("*.py")):
             name = path.relative_to(ROOT).as_posix()
             bare += [f"{name}: {one}" for one in bare_constants(path.read_text("utf-8"))]
@@ -64,3 +65,21 @@ PASSED = (
 @pytest.mark.parametrize("source", SEEN + PASSED)
 def test_what_the_rule_sees(source: str) -> None:
     assert bool(bare_constants(source)) == (source in SEEN)
+
+
+BY_ROOM = {"Prover", "Search", "Tree"}
+"""What each kind of proof has one of; docs/reference/conventions.md says so."""
+
+
+def test_no_two_classes_share_a_name() -> None:
+    found = defaultdict(list)
+    for folder in sorted(FOLDERS - {"verify"}):  # it shares nothing with them, words included
+        for path in sorted((ROOT / folder).rglob("*.py")):
+            for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+                if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+                    found[node.name].append(path.relative_to(ROOT).as_posix())
+    shared = {name: places for name, places in found.items() if len(places) > 1}
+    assert {name: p for name, p in shared.items() if name not in BY_ROOM} == {}
+    assert shared.keys() >= BY_ROOM, "an exception that nothing needs"
+    words = (ROOT / "docs" / "reference" / "conventions.md").read_text("utf-8")
+    assert all(f"`{name}`" in words for name in BY_ROOM)
