@@ -7,23 +7,12 @@ from math import sqrt
 import numpy as np
 import pytest
 from scipy.integrate import quad
-from support.findings import said_of, study_of
-from support.one_joint import one_joint
+from support.findings import finding
+from support.made_up import claim, paper, row
 from trajgap.compare.audits.rules.measures import NAMES, judge_measures, measured
 from trajgap.compare.documents import ClaimVerdict
 from trajgap.problem import Curve, cubic_spline, fit, uniform_cubic_b_spline
 
-UNITS = 'velocity = "rad/s"\nacceleration = "rad/s^2"\njerk = "rad/s^3"'
-CLAIM = """
-[[claims]]
-id = "m"
-quantity = "measure"
-where = "Table 3"
-derivative = "{derivative}"
-measure = "{measure}"
-of = "d"
-value = "{value}"
-"""
 H = 1.25
 # Of q(s) = 10 s^3 - 15 s^4 + 6 s^5 rad with s = t/h.
 CLOSED = {
@@ -38,11 +27,9 @@ CLOSED = {
 
 
 def verdict_on(derivative: str, measure: str, value: str, time: str = "1.2500") -> ClaimVerdict:
-    tail = CLAIM.format(derivative=derivative, measure=measure, value=value)
-    text = one_joint("0, 1", "9", time, "within_limits", tail)
-    (found,) = said_of(
-        study_of(text.replace('velocity = "rad/s"', UNITS)), judge_measures, "m", "TG208"
-    )
+    keys = {"derivative": derivative, "measure": measure, "of": "d", "value": value}
+    text = paper([[0, 1]], row("d", time), claim("m", "measure", **keys), velocity=9)
+    found = finding(text, judge_measures, "m", "TG208")
     assert NAMES[measure] in found.message
     return found.verdict
 
