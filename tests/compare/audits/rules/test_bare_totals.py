@@ -12,9 +12,6 @@ from trajgap.compare.audits import study as study_module
 from trajgap.compare.audits.card_errors import plainly
 from trajgap.compare.audits.case_audit import audit_case
 from trajgap.compare.audits.rounding import RoundingBox
-from trajgap.compare.audits.rules.continuous_time import judge_motions
-from trajgap.compare.audits.rules.distances import judge_distances
-from trajgap.compare.audits.rules.printed_tables import judge_tables
 from trajgap.compare.audits.study import Study
 from trajgap.compare.audits.total_bound import excludes_total
 from trajgap.compare.documents import ClaimVerdict, Severity
@@ -53,11 +50,8 @@ def bare(value: str, checks: str, points: str = "0, 1") -> Study:
 )
 def test_a_bare_total_is_judged(points: str, value: str, checks: str, verdict: str) -> None:
     study = bare(value, checks, points)
-    rule, id_ = {
-        "optimal": (judge_distances, "TG302"),
-        "within_limits": (judge_motions, "TG201"),
-    }[checks]
-    (found,) = said_of(study, rule, "said", id_)
+    id_ = {"optimal": "TG302", "within_limits": "TG201"}[checks]
+    (found,) = said_of(study, "said", id_)
     assert found.verdict == verdict
     # A total is refuted where no motion is so short, never for being long.
     short = verdict == "refuted" and value == "0.690"
@@ -88,7 +82,7 @@ def test_what_would_take_more_boxes_to_exclude_is_said_and_accuses_nobody(
 ) -> None:
     monkeypatch.setattr(study_module, "excludes_total", lambda *_: None)
     study = bare("0.7", "within_limits")
-    (found,) = said_of(study, judge_motions, "said", "TG201")
+    (found,) = said_of(study, "said", "TG201")
     assert found.verdict == "not checkable"
     (left,) = study.intervals.left_out
     assert left == "whether any motion takes 0.7 s or less, tried with 1000 boxes"
@@ -99,7 +93,7 @@ def test_a_total_that_a_known_motion_takes_is_never_tried(monkeypatch: pytest.Mo
         raise AssertionError("a proof was tried that cannot succeed")
 
     monkeypatch.setattr(study_module, "excludes_total", never)
-    (found,) = said_of(bare("1.2", "within_limits"), judge_motions, "said", "TG201")
+    (found,) = said_of(bare("1.2", "within_limits"), "said", "TG201")
     assert found.verdict == "not checkable"
 
 
@@ -115,7 +109,7 @@ def test_a_total_that_differs_from_the_table_is_noticed(
     value: str, keys: dict[str, str], verdict: ClaimVerdict, severity: Severity
 ) -> None:
     text = one_joint("0, 1", "1.9", "0.990", "optimal", total("t", value, **keys))
-    found = finding(text, judge_tables, "t", "TG105")
+    found = finding(text, "t", "TG105")
     assert (found.verdict, found.severity) == (verdict, severity)
     assert "0.990 s (sum of its durations)" in found.message
 
@@ -123,7 +117,7 @@ def test_a_total_that_differs_from_the_table_is_noticed(
 def test_a_total_that_may_be_either_of_two_is_not_accused() -> None:
     rows = row("d", "0.99", algorithm="x") + row("e", "0.8", algorithm="x")
     text = paper([[0, 1]], rows, total("t", "0.5", algorithm="x"), algorithms("x"), velocity=1.9)
-    found = finding(text, judge_tables, "t", "TG105")
+    found = finding(text, "t", "TG105")
     assert (found.verdict, found.severity) == (ClaimVerdict.NOT_CHECKABLE, Severity.INFO)
 
 
@@ -140,7 +134,7 @@ def test_a_mean_and_a_best_total_contradict_nothing() -> None:
         velocity=1.9,
     )
     for name in ("best", "mean"):
-        found = finding(text, judge_tables, name, "TG105")
+        found = finding(text, name, "TG105")
         assert (found.verdict, found.severity) == (ClaimVerdict.NOT_CHECKABLE, Severity.INFO)
 
 
@@ -176,7 +170,7 @@ def test_two_totals_that_the_file_keeps_apart_contradict_nothing(
     own: dict[str, Any], other: dict[str, Any], more: str, severity: Severity | None
 ) -> None:
     parts = row("d", "0.990", **own), total("t", "1.31", **other), TABLES, more
-    found = said_of(study_of(paper([[0, 1]], *parts, velocity=1.9)), judge_tables, "t", "TG105")
+    found = said_of(study_of(paper([[0, 1]], *parts, velocity=1.9)), "t", "TG105")
     against = [f for f in found if f.severity is not Severity.INFO]
     assert [f.severity for f in against] == ([severity] if severity else [])
     assert all((f.verdict is ClaimVerdict.INCONSISTENT) == (f in against) for f in found)

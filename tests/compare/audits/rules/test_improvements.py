@@ -9,7 +9,6 @@ import pytest
 from support.findings import finding, said_of, study_of
 from support.made_up import algorithms, claim, gain, row, total
 from support.one_joint import one_joint
-from trajgap.compare.audits.rules.improvements import judge_improvements
 from trajgap.compare.audits.rules.printed_digits import span
 from trajgap.compare.documents import ClaimVerdict, Finding, Severity
 from trajgap.problem import Interval
@@ -22,7 +21,7 @@ def judged(slow: str, fast: str, **stated: str) -> Finding:
     """What is found on an improvement between two totals."""
     tail = total("slow", slow) + total("fast", fast) + gain("slow", "fast", **stated)
     text = one_joint("0, 1", "9", "0.99", "optimal", tail)
-    return finding(text, judge_improvements, "gain", "TG103")
+    return finding(text, "gain", "TG103")
 
 
 def alike(text: str) -> list[Fraction]:
@@ -131,12 +130,12 @@ def test_one_table_does_not_say_how_two_totals_differ() -> None:
     share = gain("standard", "improved", percent="10.9")
     text = one_joint("0, 1", "9", "2.5", "within_limits", longest("longest"))
     for other in ("", longest("other")):
-        found = finding(text + other + "".join(said) + share, judge_improvements, "gain", "TG103")
+        found = finding(text + other + "".join(said) + share, "gain", "TG103")
         assert (found.verdict, found.severity) == (ClaimVerdict.SUPPORTED, Severity.INFO)
     # Each total has a table of its own, and these print the same number.
     rival = longest("other", algorithm="rival") + total("standard", "3.961", algorithm="rival")
     apart = text + rival + said[1] + share + algorithms("rival")
-    _, found = said_of(study_of(apart), judge_improvements, "gain", "TG103")
+    _, found = said_of(study_of(apart), "gain", "TG103")
     assert (found.verdict, found.severity) == (ClaimVerdict.INCONSISTENT, Severity.ERROR)
 
 
@@ -155,6 +154,6 @@ def test_a_percentage_of_whole_numbers_beside_totals_of_digits_cut_off_follows(
         + gain("slow", "fast", base="slower", percent=percent)
     )
     text = one_joint("0, 1, 2, 3", "9", "9", "within_limits", tail)
-    found = finding(text, judge_improvements, "gain", "TG103")
+    found = finding(text, "gain", "TG103")
     assert (found.verdict is ClaimVerdict.SUPPORTED) == follows
     assert (found.severity is Severity.ERROR) != follows

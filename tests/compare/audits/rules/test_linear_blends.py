@@ -7,9 +7,6 @@ from typing import Any
 import pytest
 from support.findings import audited_text, finding, said_of, study_of, verdicts
 from support.made_up import Numbers, claim, paper, row, sentence, total
-from trajgap.compare.audits.rules.linear_blends import judge_blends
-from trajgap.compare.audits.rules.printed_digits import judge_digits
-from trajgap.compare.audits.rules.printed_tables import judge_tables
 from trajgap.compare.documents import ClaimVerdict, Finding
 from trajgap.problem import CaseError, parse_case
 
@@ -35,7 +32,7 @@ def made_up(
 
 
 def judged(*more: str, **keys: Any) -> Finding:
-    return finding(made_up(*more, **keys), judge_blends, "row", "TG210")
+    return finding(made_up(*more, **keys), "row", "TG210")
 
 
 @pytest.mark.parametrize(
@@ -89,9 +86,9 @@ def test_a_row_of_which_nothing_is_said_is_refuted_by_no_limit() -> None:
 def test_a_total_may_count_half_the_end_blends() -> None:
     for value, fits in (("6.00", True), ("6.40", True), ("6.80", False)):
         text = made_up(blends="0.40", total=value)
-        assert (finding(text, judge_digits, "row", "TG101").verdict == SUPPORTED) == fits
+        assert (finding(text, "row", "TG101").verdict == SUPPORTED) == fits
     open_ = study_of(made_up(blend_acceleration=50, total="6.40"))
-    assert not said_of(open_, judge_digits, "row", "TG101")
+    assert not said_of(open_, "row", "TG101")
 
 
 @pytest.mark.parametrize("value", ["6.00", "6.40"])
@@ -99,10 +96,10 @@ def test_a_total_elsewhere_may_count_half_the_end_blends_too(value: str) -> None
     """The row prints 6.00 s; the abstract the time that the arm moves, 6.40 s."""
     for keys in ({"blends": "0.40"}, {"blend_acceleration": 50}):
         text = made_up(total("abstract", value, of="row", **CURVE), total="6.00", **keys)
-        found = said_of(study_of(text), judge_tables, "abstract", "TG105")
+        found = said_of(study_of(text), "abstract", "TG105")
         assert all(one.verdict is not ClaimVerdict.INCONSISTENT for one in found)
     wrong = made_up(total("abstract", "6.90", of="row", **CURVE), total="6.00", blends="0.40")
-    assert finding(wrong, judge_tables, "abstract", "TG105").verdict is ClaimVerdict.INCONSISTENT
+    assert finding(wrong, "abstract", "TG105").verdict is ClaimVerdict.INCONSISTENT
 
 
 @pytest.mark.parametrize(

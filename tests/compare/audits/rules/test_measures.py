@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import quad
 from support.findings import finding
 from support.made_up import claim, paper, row
-from trajgap.compare.audits.rules.measures import NAMES, judge_measures, measured
+from trajgap.compare.audits.rules.measures import NAMES, measured
 from trajgap.compare.documents import ClaimVerdict
 from trajgap.problem import Curve, cubic_spline, fit, uniform_cubic_b_spline
 
@@ -29,7 +29,7 @@ CLOSED = {
 def verdict_on(derivative: str, measure: str, value: str, time: str = "1.2500") -> ClaimVerdict:
     keys = {"derivative": derivative, "measure": measure, "of": "d", "value": value}
     text = paper([[0, 1]], row("d", time), claim("m", "measure", **keys), velocity=9)
-    found = finding(text, judge_measures, "m", "TG208")
+    found = finding(text, "m", "TG208")
     assert NAMES[measure] in found.message
     return found.verdict
 

@@ -8,12 +8,8 @@ import pytest
 from support.findings import audited_text, finding, said_of, study_of, verdicts
 from support.made_up import QUINTIC, claim, entry, paper, peak, row, sentence
 from support.one_joint import one_joint
-from trajgap.compare.audits.rules.condition_count import judge_counts, meets
+from trajgap.compare.audits.rules.condition_count import meets
 from trajgap.compare.audits.rules.continuous_time import judge_motions
-from trajgap.compare.audits.rules.distances import judge_distances
-from trajgap.compare.audits.rules.other_places import judge_places
-from trajgap.compare.audits.rules.peaks import judge_peaks
-from trajgap.compare.audits.rules.printed_digits import judge_digits
 from trajgap.compare.documents import ClaimVerdict, Severity
 
 # A quintic from rest to rest over d rad in h s peaks at 15 d/(8 h) rad/s: 0.98684 s under 1.9.
@@ -36,7 +32,7 @@ def test_rest_at_the_ends_is_evaluated(orders: list[int], verdict: str) -> None:
         velocity=120,
     )
     for name in ("rest", "ends"):
-        found = finding(text, judge_counts, name, "TG207")
+        found = finding(text, name, "TG207")
         assert found.verdict == verdict
         assert ("a velocity of 90 °/s" in found.message) == (verdict == "inconsistent")
 
@@ -47,9 +43,7 @@ def test_virtual_points_have_no_position_to_pass(count: str, fits: bool) -> None
     two ends: 4 + 2 + 6 + 4 = 16."""
     ends = at_rest([1, 2], degrees=[3, 3, 3, 3], count=count)
     curve = {"family": "cubic-spline-virtual"}
-    found = finding(
-        paper([[0, 60, 0]], ends, curve=curve, velocity=120), judge_counts, "ends", "TG107"
-    )
+    found = finding(paper([[0, 60, 0]], ends, curve=curve, velocity=120), "ends", "TG107")
     assert found.computed == "16 conditions on 16 coefficients"
     assert found.verdict == ("supported" if fits else "refuted")
 
@@ -78,7 +72,7 @@ def test_ends_that_no_polynomial_meets(
 def test_no_jerk_at_the_end_of_a_cubic_that_moves_is_impossible(points: str, verdict: str) -> None:
     """0.4 and 0.5 may both round from 0.45: there the cubic may stand still."""
     text = paper([points], at_rest([1, 2, 3], degrees=[3], continuity=2), velocity=1.9)
-    assert finding(text, judge_counts, "ends", "TG107").verdict == verdict
+    assert finding(text, "ends", "TG107").verdict == verdict
 
 
 @pytest.mark.parametrize(
@@ -90,13 +84,13 @@ def test_a_broken_limit_refutes_without_an_optimum(points: Any, time: str, verdi
     parts = row("d", time), sentence("s", "optimal", "d")
     study = study_of(paper([points], *parts, bounds={"upper": 0.5}, velocity=1.9))
     assert study.optimum("main", "as-printed").durations is None
-    (found,) = said_of(study, judge_distances, "s", "TG302")
+    (found,) = said_of(study, "s", "TG302")
     assert found.verdict == verdict
 
 
 def test_a_table_of_another_length_loads_and_is_the_finding() -> None:
     study = study_of(one_joint("0, 1, 3", "1.9", "0.99", "optimal"))
-    (found,) = said_of(study, judge_digits, "d", "TG109")
+    (found,) = said_of(study, "d", "TG109")
     assert (found.verdict, found.severity) == (ClaimVerdict.INCONSISTENT, Severity.WARNING)
     assert "1 durations" in found.message
     assert "has 2 segments" in found.message
@@ -116,7 +110,7 @@ def test_a_table_of_another_length_loads_and_is_the_finding() -> None:
 )
 def test_a_sum_at_the_edge_of_its_rounding(total: str, verdict: str, word: str) -> None:
     text = paper([[0, 1, 3]], row("d", "0.9601 1.2601", total=total), velocity=1.9)
-    found = finding(text, judge_digits, "d", "TG101")
+    found = finding(text, "d", "TG101")
     assert found.verdict == verdict
     assert word in found.message
     assert (found.severity is Severity.WARNING) == ("up" in word)
@@ -130,9 +124,9 @@ def test_peaks_exchanged_between_rows_are_found(of: str, value: str, fits: str |
     """2 rad in 3 s peak at 1.25 rad/s, in 2.5 s at 1.5 rad/s."""
     rows = row("d", "3.0000") + row("before", "2.5000", state="before")
     study = study_of(paper([[0, 2]], rows, peak("p", of, "velocity", value), velocity=1.9))
-    (own,) = said_of(study, judge_peaks, "p", "TG203")
+    (own,) = said_of(study, "p", "TG203")
     assert own.verdict is ClaimVerdict.INCONSISTENT
-    found = said_of(study, judge_places, "p", "TG108")
+    found = said_of(study, "p", "TG108")
     assert len(found) == (fits is not None)
     for one in found:
         assert (one.severity, one.decides) == (Severity.INFO, False)
@@ -147,11 +141,11 @@ def test_peaks_of_each_joint_stand_in_one_claim() -> None:
     text = paper(TWO_JOINTS, row("d", "2.0000"), velocity=9)
     values = ["0.9375", "1.8750"]
     right = text + peak("p", "d", "velocity", values)
-    assert finding(right, judge_peaks, "p", "TG203").verdict is ClaimVerdict.SUPPORTED
+    assert finding(right, "p", "TG203").verdict is ClaimVerdict.SUPPORTED
     study = study_of(text + peak("p", "d", "velocity", values[::-1]))
-    (found,) = said_of(study, judge_peaks, "p", "TG203")
+    (found,) = said_of(study, "p", "TG203")
     assert found.verdict is ClaimVerdict.INCONSISTENT
-    (exchanged,) = said_of(study, judge_places, "p", "TG108")
+    (exchanged,) = said_of(study, "p", "TG108")
     assert "d, joint 2" in exchanged.message
     assert "d, joint 1" in exchanged.message
 
@@ -160,7 +154,7 @@ def test_peaks_of_each_joint_stand_in_one_claim() -> None:
 def test_equal_rows_under_two_names_are_found(last: str, found: int) -> None:
     rows = row("r1", f"0.91 1.25 {last}", joint="1") + row("r2", "0.91 1.25 1.40", joint="2")
     study = study_of(paper([[0, 1, 2, 3], [0.5, 1, 2.5, 3]], rows, velocity=9))
-    said = said_of(study, judge_places, "r2", "TG108")
+    said = said_of(study, "r2", "TG108")
     assert ["r1 and r2 print the same 3 durations" in one.message for one in said] == [True] * found
 
 
@@ -171,21 +165,21 @@ def test_a_row_that_fits_another_joint_is_found() -> None:
     )
     named = entry("algorithms", id="x", name="x", kind="x")
     study = study_of(paper(TWO_JOINTS, rows, named, velocity=1.9))
-    (found,) = said_of(study, judge_places, "r2", "TG108")
+    (found,) = said_of(study, "r2", "TG108")
     assert "fit those of joint 1 within" in found.message
-    assert not said_of(study, judge_places, "r1", "TG108")
+    assert not said_of(study, "r1", "TG108")
 
 
 def test_distances_support_nothing() -> None:
     text = one_joint("0, 1", "1.9", "1.61", "within_limits")  # 63 % above
-    found = finding(text, judge_distances, "d", "TG302")
+    found = finding(text, "d", "TG302")
     assert found.verdict is ClaimVerdict.NOT_CHECKABLE
     assert "1.61 s (sum of the printed durations) is 62.6 to 63.7 % longer" in found.message
 
 
 def test_the_paper_s_own_units_are_spoken() -> None:
     text = paper([[0, 60]], row("d", "0.50"), curve=QUINTIC, angle="deg", velocity=110)
-    found = finding(text + sentence("s", "within_limits", "d"), judge_motions, "d", "TG201")
+    found = finding(text + sentence("s", "within_limits", "d"), "d", "TG201")
     assert "reaches 225 °/s, limit 110 °/s" in found.message
 
 

@@ -9,7 +9,6 @@ import pytest
 from support.findings import finding, study_of
 from support.made_up import Numbers, paper, peak, row
 from trajgap.compare.audits.rules.norms import _top, largest_norm
-from trajgap.compare.audits.rules.peaks import judge_peaks
 from trajgap.compare.documents import ClaimVerdict, Confidence
 from trajgap.problem import fit, rest_to_rest
 
@@ -43,16 +42,16 @@ def speed(value: str, **keys: str) -> str:
 )
 def test_a_printed_norm_accuses_nobody(curve: dict[str, Any], printed: str, verdict: str) -> None:
     """The repository prints norms over the joints; the largest joint alone has 6 to 20 % less."""
-    found = finding(arm(curve, printed), judge_peaks, "p", "TG203")
+    found = finding(arm(curve, printed), "p", "TG203")
     assert found.verdict == verdict
     assert ("the largest norm over the joints" in found.message) or verdict == "inconsistent"
 
 
 def test_the_room_that_coarse_digits_leave_is_said() -> None:
     """A duration printed as 1 may be 0.5 to 1.5 s: nearly any peak fits."""
-    coarse = finding(arm(QUINTIC, speed("2.958025"), "1 " * 7), judge_peaks, "p", "TG203")
+    coarse = finding(arm(QUINTIC, speed("2.958025"), "1 " * 7), "p", "TG203")
     assert "digits, which leaves 50 % either way." in coarse.message
-    sharp = finding(arm(QUINTIC, speed("2.4664")), judge_peaks, "p", "TG203")
+    sharp = finding(arm(QUINTIC, speed("2.4664")), "p", "TG203")
     assert sharp.message.endswith("digits.")
 
 
@@ -87,7 +86,7 @@ def test_the_largest_norm_is_that_of_a_dense_grid_and_never_below_it() -> None:
 def test_a_sampled_norm_is_not_called_equal() -> None:
     """Metrics of the natural cubic are sampled: 4.2253 beside a largest norm of 4.2398."""
     text = arm(NATURAL, peak("p", "d", "acceleration", "4.225276"))
-    found = finding(text, judge_peaks, "p", "TG203")
+    found = finding(text, "p", "TG203")
     assert found.verdict is ClaimVerdict.SUPPORTED
     assert "slightly below the largest norm over the joints, 4.23976" in found.message
     assert found.confidence is Confidence.COMPUTED
@@ -107,6 +106,6 @@ def test_what_a_slip_explains_is_named(
     """Degree 7 has its largest acceleration 84√5/25 of the way by the squared time, 7.5132."""
     parts = row("d", "1.00000"), peak("p", "d", "acceleration", value)
     text = paper([[0, 1]], *parts, curve={"family": "rest-to-rest", "degree": 7}, velocity=9)
-    found = finding(text, judge_peaks, "p", "TG203")
+    found = finding(text, "p", "TG203")
     assert (found.verdict, found.confidence) == (verdict, known)
     assert said in found.message

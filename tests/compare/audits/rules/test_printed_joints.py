@@ -9,9 +9,6 @@ import pytest
 from support.findings import finding
 from support.made_up import Numbers, entry, paper, sentence
 from support.papers.printing import block
-from trajgap.compare.audits.rules.printed_chain import judge_kinematics
-from trajgap.compare.audits.rules.printed_joints import judge_joints
-from trajgap.compare.audits.rules.replays import judge_replays
 from trajgap.compare.documents import ClaimVerdict, Severity
 from trajgap.nlp import Status, solve
 from trajgap.problem import CaseError, Limits, Problem, load_case, parse_case, three_five_three
@@ -45,7 +42,7 @@ def most(joint: str = "1", checks: str = "varies_most") -> str:
 )
 def test_the_joint_that_varies_most(other: str, joint: str, verdict: str) -> None:
     text = arm(most(joint), rows=("10.0 40.0", f"20.0 {other}"))
-    found = finding(text, judge_joints, "most", "TG110")
+    found = finding(text, "most", "TG110")
     assert found.verdict == verdict
     assert (found.severity is Severity.WARNING) == (verdict == "inconsistent")
     assert found.severity is not Severity.ERROR
@@ -53,7 +50,7 @@ def test_the_joint_that_varies_most(other: str, joint: str, verdict: str) -> Non
 
 @pytest.mark.parametrize("joint", ["1", "2"])
 def test_a_joint_that_varies_much_is_never_accused(joint: str) -> None:
-    found = finding(arm(most(joint, "varies_much")), judge_joints, "most", "TG110")
+    found = finding(arm(most(joint, "varies_much")), "most", "TG110")
     assert (found.verdict, found.severity) == (ClaimVerdict.NOT_CHECKABLE, Severity.INFO)
     assert "30.00" in found.message
     assert "25.00" in found.message
@@ -73,7 +70,7 @@ def test_joints_printed_in_columns_count_and_missing_ones_are_named(
     keys = {"id": "other", "where": "Table 3", "joint": "2", "unit": "deg", "values": values}
     column = entry("columns", **keys) if values else ""
     text = arm(most(), column, rows=("10.0 40.0",))
-    found = finding(text, judge_joints, "most", "TG110")
+    found = finding(text, "most", "TG110")
     assert found.verdict == verdict
     assert words in found.message
     assert ("Joint 2 is not printed" in found.message) == (values is None)
@@ -104,17 +101,17 @@ def placed(*above: str, kinematics: str = sentence("table", "kinematics")) -> st
     ],
 )
 def test_a_position_above_another(values: str, verdict: str, words: str) -> None:
-    found = finding(placed(*values.split()), judge_joints, "over", "TG602")
+    found = finding(placed(*values.split()), "over", "TG602")
     assert (found.verdict, found.severity) == (verdict, Severity.INFO)
     assert words in found.message
 
 
 def test_the_finding_on_the_chain_is_about_the_statement_that_claims_it() -> None:
     height = "0.50", "-0.30", "0.25"
-    found = finding(placed(*height), judge_kinematics, "table", "TG601")
+    found = finding(placed(*height), "table", "TG601")
     assert found.verdict is ClaimVerdict.INCONSISTENT  # a planar arm reaches no height
     silent = sentence("table", "none", not_checkable="no reason")
-    assert finding(placed(*height, kinematics=silent), judge_kinematics, None, "TG601")
+    assert finding(placed(*height, kinematics=silent), None, "TG601")
 
 
 def test_replays_of_two_algorithms_stand_beside_the_sentence_that_compares_them() -> None:
@@ -126,7 +123,7 @@ def test_replays_of_two_algorithms_stand_beside_the_sentence_that_compares_them(
     )  # fmt: skip
     sides = {"algorithm": "long", "against": "short", "not_checkable": "no data"}
     text = arm(*named, sentence("faster", "none", **sides))
-    found = finding(text, judge_replays, "faster", "TG401")
+    found = finding(text, "faster", "TG401")
     assert not found.decides
     assert found.verdict is ClaimVerdict.NOT_CHECKABLE
     said = "one run of the long is no longer than one of the short with probability 100 %"

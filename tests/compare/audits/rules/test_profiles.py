@@ -12,7 +12,6 @@ from scipy.optimize import linprog
 from support.findings import finding
 from support.made_up import QUINTIC, paper, total
 from trajgap.compare.audits.rules.profiles import (
-    judge_profiles,
     s_curve,
     shortest,
     shortest_straight,
@@ -129,7 +128,7 @@ def profiled(profile: str, value: str, rows: Any, curve: Any = QUINTIC, **more: 
 
 
 def judged(*asked: Any, **more: Any) -> Finding:
-    return finding(profiled(*asked, **more), judge_profiles, "t", "TG304")
+    return finding(profiled(*asked, **more), "t", "TG304")
 
 
 @pytest.mark.parametrize(

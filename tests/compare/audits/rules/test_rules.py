@@ -5,19 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import pytest
-from support.findings import Rule
+from support.findings import judged
 from support.studies import SEEDS, audited, changed, hurried
 from trajgap.compare.audits.case_audit import audit
 from trajgap.compare.audits.rules.condition_count import count_conditions, judge_counts
-from trajgap.compare.audits.rules.continuous_time import judge_motions
 from trajgap.compare.audits.rules.distances import judge_distances
-from trajgap.compare.audits.rules.improvements import judge_improvements
 from trajgap.compare.audits.rules.open_points import list_open_points
-from trajgap.compare.audits.rules.peaks import judge_peaks
-from trajgap.compare.audits.rules.printed_digits import judge_digits
-from trajgap.compare.audits.rules.printed_tables import judge_tables
 from trajgap.compare.audits.rules.replays import judge_replays
-from trajgap.compare.audits.rules.scaling_law import judge_scaling
 from trajgap.compare.audits.study import Study
 from trajgap.compare.documents import Basis, ClaimVerdict, Finding, Gap, Severity
 from trajgap.nlp import Evidence
@@ -36,19 +30,14 @@ OPTIMA = (
 )
 
 
-def of(found: Iterable[Finding], rule: str, claim: str | None = None) -> list[Finding]:
-    return [f for f in found if f.rule == rule and (claim is None or f.claim == claim)]
+def on(found: Iterable[Finding], rule: str, claim: str) -> list[Finding]:
+    return [f for f in found if (f.rule, f.claim) == (rule, claim)]
 
 
-RULES: dict[str, Rule] = {
-    "TG101": judge_digits,
-    "TG102": judge_digits,
-    "TG104": judge_tables,
-    "TG105": judge_tables,
-    "TG106": judge_digits,
-    "TG201": judge_motions,
-    "TG301": judge_scaling,
-}
+def of(study: Study, rule: str, claim: str | None = None) -> list[Finding]:
+    return [f for f in judged(study, rule) if claim is None or f.claim == claim]
+
+
 WRONG_SUM = ('total = "3.298"', 'total = "3.301"')
 NO_ROW = ('["1.044", "1.258", "1.225"]', '["1.047", "1.258", "1.225"]')
 OTHER_DIGIT = (f'"table-2"\n{JOINT_5}', f'"table-2"\n{JOINT_5.replace("467", "468")}')
@@ -88,7 +77,7 @@ ACCELERATED = (
 def test_a_rule_on_a_case_and_on_the_case_changed(
     case: str, swaps: tuple[Swap, ...], id_: str, claim: str | None, verdict: str
 ) -> None:
-    found = of(RULES[id_](changed(case, *swaps)), id_, claim)
+    found = of(changed(case, *swaps), id_, claim)
     assert {str(f.verdict) for f in found} == ({verdict} if verdict else set())
     assert all((f.severity is Severity.ERROR) == (verdict in AGAINST) for f in found)
 
@@ -98,12 +87,12 @@ def test_a_rule_on_a_case_and_on_the_case_changed(
 )
 def test_a_percentage_is_compared_as_an_interval(percent: str, verdict: str) -> None:
     study = changed(PUMA, ('percent = "10.9"', f'percent = "{percent}"'))
-    assert verdict in {f.verdict for f in of(judge_improvements(study), "TG103", "improvement")}
+    assert verdict in {f.verdict for f in of(study, "TG103", "improvement")}
 
 
 def test_a_total_that_fits_only_cut_off_digits_says_so() -> None:
     study = changed(PUMA, (f'{JOINT_5}\ntotal = "2.028"', f'{JOINT_5}\ntotal = "2.031"'))
-    (found,) = of(judge_digits(study), "TG101", "mnam-joint-5")
+    (found,) = of(study, "TG101", "mnam-joint-5")
     assert (found.verdict, found.severity) == (ClaimVerdict.SUPPORTED, Severity.WARNING)
     assert "cut off" in found.message
 
@@ -128,19 +117,19 @@ def test_eighteen_conditions_do_not_fit_fourteen_coefficients(
 
 
 def test_what_just_reaches_its_limit_is_said_to() -> None:
-    tight = {f.claim for f in of(judge_motions(changed(PUMA)), "TG204")}
+    tight = {f.claim for f in of(changed(PUMA), "TG204")}
     assert {f"mnam-joint-{j}" for j in (1, 3, 4, 5, 6)} <= tight
-    (digits,) = of(judge_digits(changed(IRB)), "TG106")
+    (digits,) = of(changed(IRB), "TG106")
     assert (digits.printed, digits.decides) == ("-1.0392, -0.5196", False)
-    (alike,) = of(judge_tables(changed(PUMA)), "TG104")
+    (alike,) = of(changed(PUMA), "TG104")
     assert "28" in alike.message
 
 
 def test_only_an_enclosure_breaks_and_only_under_its_reading() -> None:
-    found = of(judge_motions(changed(IRB)), "TG201", "durations-110")
+    found = of(changed(IRB), "TG201", "durations-110")
     verdicts = {f.reading: f.verdict for f in found}
     assert verdicts == {"waypoints-rad": "refuted", "waypoints-deg": "supported"}
-    law = of(judge_scaling(changed(IRB)), "TG301", "time-optimal")
+    law = of(changed(IRB), "TG301", "time-optimal")
     assert {f.reading for f in law} == set(verdicts), "it needs no solver and no reading"
 
 
@@ -157,7 +146,7 @@ algorithm = "constrained-pso"
 derivative = "velocity"
 value = "{value}"
 """
-    found = of(judge_peaks(changed(IRB, tail=claim)), "TG203")
+    found = of(changed(IRB, tail=claim), "TG203")
     assert {f.reading: f.verdict for f in found}["waypoints-rad"] == verdict
 
 
@@ -171,7 +160,7 @@ value = "{value}"
 def test_optimal_is_refuted_by_a_shorter_checked_motion_and_supported_by_its_digits(
     swaps: tuple[Swap, ...], verdict: ClaimVerdict, evidence: Evidence
 ) -> None:
-    found = of(judge_distances(changed(IRB, *swaps)), "TG302", "time-optimal")
+    found = of(changed(IRB, *swaps), "TG302", "time-optimal")
     (one,) = [f for f in found if f.reading == "waypoints-rad"]
     assert (one.verdict, one.evidence) == (verdict, evidence)
 
@@ -180,11 +169,11 @@ def test_optimal_is_refuted_by_a_shorter_checked_motion_and_supported_by_its_dig
 def test_a_claim_stands_beside_its_own_optimum_the_shared_one_and_the_procedure() -> None:
     study = changed(PUMA)
     found = [f for f in judge_distances(study) if f.reading == "durations-at-least-0.3"]
-    (shared,) = of(found, "TG303", "mnam-longest")
+    (shared,) = on(found, "TG303", "mnam-longest")
     assert isinstance(shared.gap, Gap)
     assert shared.gap.lowest == pytest.approx(3.5275 / shared.gap.reference.upper - 1, rel=1e-6)
-    assert any("longest per segment" in f.message for f in of(found, "TG302", "mnam-longest"))
-    (below,) = of(found, "TG302", "mnam-joint-5")
+    assert any("longest per segment" in f.message for f in on(found, "TG302", "mnam-longest"))
+    (below,) = on(found, "TG302", "mnam-joint-5")
     assert below.severity is Severity.INFO
     assert not any(f.decides for f in found if f.claim != "time-optimal")
 
@@ -208,7 +197,7 @@ def test_a_claim_stands_beside_its_own_optimum_the_shared_one_and_the_procedure(
 def test_a_total_below_the_best_known_one_refutes_nothing(
     swap: Swap, id_: str, claim: str, severity: Severity
 ) -> None:
-    found = of(judge_distances(changed(PUMA, swap)), id_, claim)
+    found = of(changed(PUMA, swap), id_, claim)
     assert {f.severity for f in found} == {severity}
     assert all(f.gap.highest < 0 for f in found)
     assert not any(f.verdict is ClaimVerdict.REFUTED for f in found)

@@ -10,7 +10,6 @@ import pytest
 from scipy.interpolate import CubicSpline
 from support.findings import audited_text, finding
 from support.made_up import claim, paper, row
-from trajgap.compare.audits.rules.values import judge_values
 from trajgap.compare.documents import ClaimVerdict
 from trajgap.problem import CaseError, parse_case
 
@@ -30,7 +29,7 @@ def made_up(derivative: str, rows: Sequence[list[float]] = (EXAM,), **keys: Any)
 def verdict_of(
     derivative: str, rows: Sequence[list[float]] = (EXAM,), **keys: Any
 ) -> ClaimVerdict | None:
-    return finding(made_up(derivative, rows, **keys), judge_values, "one", "TG211").verdict
+    return finding(made_up(derivative, rows, **keys), "one", "TG211").verdict
 
 
 @pytest.mark.parametrize("knot", range(4))
