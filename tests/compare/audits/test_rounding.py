@@ -11,12 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.rounding_boxes import MOVING_ENDS, rounded_problem
 from support.rounding_samples import boxes, contradiction, sampled_worst
-from trajgap.compare.audits.rounding import (
-    Place,
-    Point,
-    RoundingBox,
-    judge_rounding,
-)
+from trajgap.compare.audits.rounding import Place, Point, RoundingBox, judge_rounding
 from trajgap.compare.documents import Rounding
 from trajgap.nlp.enclosure import box_bound
 from trajgap.nlp.enclosure.balls import Ball

@@ -10,12 +10,7 @@ import pytest
 from support.b_splines import NATURAL, uniform
 from support.rounding_boxes import rounded_problem
 from support.rounding_samples import boxes, contradiction
-from trajgap.compare.audits.rounding import (
-    Place,
-    Point,
-    RoundingBox,
-    judge_rounding,
-)
+from trajgap.compare.audits.rounding import Place, Point, RoundingBox, judge_rounding
 from trajgap.compare.documents import Rounding
 from trajgap.nlp.enclosure import box_bound
 from trajgap.nlp.enclosure.balls import Ball

@@ -34,14 +34,7 @@ from trajgap.compare.pictures import jump_picture, motion_picture
 from trajgap.nlp import solve
 from trajgap.nlp.proofs.document import problem_document
 from trajgap.nlp.proofs.exact import exact_problem, printed_problem
-from trajgap.problem import (
-    Limits,
-    Problem,
-    TrajgapError,
-    check,
-    control_vertices,
-    cubic_spline,
-)
+from trajgap.problem import Limits, Problem, TrajgapError, check, control_vertices, cubic_spline
 from trajgap.problem.motions import MotionForm, motion_text, read_motion
 
 RULES = (

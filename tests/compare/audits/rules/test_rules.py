@@ -82,14 +82,6 @@ def test_a_rule_on_a_case_and_on_the_case_changed(
     assert all((f.severity is Severity.ERROR) == (verdict in AGAINST) for f in found)
 
 
-@pytest.mark.parametrize(
-    ("percent", "verdict"), [("10.9", "supported"), ("11", "supported"), ("11.9", "refuted")]
-)
-def test_a_percentage_is_compared_as_an_interval(percent: str, verdict: str) -> None:
-    study = changed(PUMA, ('percent = "10.9"', f'percent = "{percent}"'))
-    assert verdict in {f.verdict for f in of(study, "TG103", "improvement")}
-
-
 def test_a_total_that_fits_only_cut_off_digits_says_so() -> None:
     study = changed(PUMA, (f'{JOINT_5}\ntotal = "2.028"', f'{JOINT_5}\ntotal = "2.031"'))
     (found,) = of(study, "TG101", "mnam-joint-5")
@@ -131,23 +123,6 @@ def test_only_an_enclosure_breaks_and_only_under_its_reading() -> None:
     assert verdicts == {"waypoints-rad": "refuted", "waypoints-deg": "supported"}
     law = of(changed(IRB), "TG301", "time-optimal")
     assert {f.reading for f in law} == set(verdicts), "it needs no solver and no reading"
-
-
-@pytest.mark.parametrize(("value", "verdict"), [("119", "supported"), ("110", "inconsistent")])
-def test_a_printed_peak_is_compared_with_the_rebuilt_one(value: str, verdict: str) -> None:
-    claim = f"""
-[[claims]]
-id = "peak"
-quantity = "peak"
-where = "test"
-problem = "limit-110"
-joint = "5"
-algorithm = "constrained-pso"
-derivative = "velocity"
-value = "{value}"
-"""
-    found = of(changed(IRB, tail=claim), "TG203")
-    assert {f.reading: f.verdict for f in found}["waypoints-rad"] == verdict
 
 
 @pytest.mark.parametrize(
