@@ -1,14 +1,12 @@
-"""Made-up cases put to single rules, without what an audit computes beside them."""
+"""Made-up cases put to single rules, without what an audit computes beside them, and audited."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-
+from trajgap.compare.audits.case_audit import CaseAudit, audit_case
+from trajgap.compare.audits.rules import GROUPS
 from trajgap.compare.audits.study import Study
-from trajgap.compare.documents import Finding
+from trajgap.compare.documents import ClaimVerdict, Finding
 from trajgap.problem import parse_case
-
-Rule = Callable[[Study], Iterable[Finding]]
 
 
 def study_of(text: str) -> Study:
@@ -16,6 +14,28 @@ def study_of(text: str) -> Study:
     return Study(parse_case(text, "made-up.toml"), seeds=2, certify_seconds=0)
 
 
-def said_of(study: Study, rule: Rule, claim: str | None, id_: str) -> list[Finding]:
-    """What a rule finds on a claim under one id."""
-    return [f for f in rule(study) if f.claim == claim and f.rule == id_]
+def judged(study: Study, id_: str) -> list[Finding]:
+    """What is found under one id by the function that judges it, and no other."""
+    (group,) = (group for group in GROUPS if id_ in group.rules)
+    return [f for f in group.judge(study) if f.rule == id_]
+
+
+def said_of(study: Study, claim: str | None, id_: str) -> list[Finding]:
+    """What is found on a claim under one id."""
+    return [f for f in judged(study, id_) if f.claim == claim]
+
+
+def finding(text: str, claim: str | None, id_: str) -> Finding:
+    """The one thing that is found on a claim of a case file's text under one id."""
+    (found,) = said_of(study_of(text), claim, id_)
+    return found
+
+
+def audited_text(text: str) -> CaseAudit:
+    """The whole audit of a case file's text, with nothing certified."""
+    return audit_case(study_of(text))
+
+
+def verdicts(one: CaseAudit) -> dict[str, ClaimVerdict]:
+    """The verdict on each claim."""
+    return {judgement.claim: judgement.verdict for judgement in one.judgements}

@@ -1,229 +1,144 @@
-"""The line of a card on the optimum: whose total is compared with what, and what is counted."""
+"""Whose total stands beside the optimum: on the card, and where the way down starts."""
 
 from __future__ import annotations
 
-from pathlib import Path
+from dataclasses import replace
+from itertools import permutations
+from typing import Any
 
 import pytest
-from trajgap.compare.audits.card_optimum import _beside_profiles
+from support.checkout import ROOT
+from support.findings import audited_text, study_of, verdicts
+from support.made_up import CUBIC, algorithms, claim, entry, gain, paper, row, sentence, total
+from trajgap.compare.audits.card_optimum import _beside_profiles, optimum_line
 from trajgap.compare.audits.case_audit import audit_case
 from trajgap.compare.audits.study import Study
+from trajgap.compare.audits.waterfall import waterfalls
 from trajgap.compare.documents import ClaimVerdict
-from trajgap.problem import load_case, parse_case
+from trajgap.problem import load_case
 
-EXAMPLES = Path(__file__).parents[3] / "docs" / "examples"
-
-TWO = """
-format = 1
-id = "two"
-title = "Two joints"
-coupling = "{coupling}"
-[source]
-note = "Made up."
-[robot]
-name = "Two joints"
-joints = ["a", "b"]
-[units]
-position = "rad"
-velocity = "rad/s"
-time = "s"
-[waypoints]
-joint_rows = [[0, 2, 3], [0, 1, 3]]
-[limits]
-velocity = 1.5
-[interpolant]
-family = "rest-to-rest"
-degree = 3
-[[claims]]
-id = "one"
-quantity = "durations"
-where = "Table 1, row a"
-joint = "a"
-coupling = "per-joint"
-durations = ["2.200", "1.100"]
-total = "3.300"
-[[claims]]
-id = "other"
-quantity = "durations"
-where = "Table 1, row b"
-joint = "b"
-coupling = "per-joint"
-durations = ["1.100", "2.200"]
-total = "3.300"
-[[claims]]
-id = "longest"
-quantity = "maximum"
-where = "Table 1, last row"
-coupling = "shared"
-of = ["one", "other"]
-durations = ["2.200", "2.200"]
-total = "4.400"
-"""
+# A cubic from rest to rest over d in h peaks at 1.5 d/h.
+TWO_JOINTS = [[0, 2, 3], [0, 1, 3]]
 
 
-def line(text: str, **options: float) -> str:
-    case = (
-        load_case(EXAMPLES / text) if text.endswith(".toml") else parse_case(text, "made-up.toml")
-    )
-    return audit_case(Study(case, seeds=2, certify_seconds=0, **options)).card.optimum
-
-
-def test_a_total_of_joints_that_are_planned_alone_stands_beside_their_own_optima() -> None:
-    """A cubic from rest to rest peaks at 1.5 |Δq|/h: at 1.5 rad/s each joint needs 3 s, in 2 and
-    1 s or in 1 and 2 s, and the longest durations take 4 s, as all joints together do; up to
-    4.001 s while each joint stays within half a printed digit, 0.0005 s, of its own."""
-    said = line(TWO.format(coupling="per-joint"))
-    assert said.startswith("4.400 s is 10.0 % above 4.0000 to 4.0010 s, found at the joints' own ")
-    assert said.endswith(" optima.")
-    shared = line(TWO.format(coupling="shared"))
-    assert shared.startswith("4.400 s is 10.0 % above the ")
-    assert "joints' own" not in shared
+def line(*parts: str, rows: Any = TWO_JOINTS, coupling: str = "shared", velocity: Any = 1.5) -> str:
+    text = paper(rows, *parts, curve=CUBIC, head={"coupling": coupling}, velocity=velocity)
+    return audited_text(text).card.optimum
 
 
 @pytest.mark.parametrize(
-    ("times", "said"),
+    ("coupling", "said"),
+    [("per-joint", "4.0000 to 4.0010 s, found at the joints' own "), ("shared", "the ")],
+)
+def test_a_total_of_joints_that_are_planned_alone_stands_beside_their_own_optima(
+    coupling: str, said: str
+) -> None:
+    """At 1.5 rad/s each joint needs 3 s, in 2 and 1 s or in 1 and 2 s, and the longest durations
+    take 4 s, as all joints together do; up to 4.001 s while each joint stays within half a printed
+    digit, 0.0005 s, of its own."""
+    alone = {"coupling": "per-joint", "total": "3.300"}
+    last = {"durations": ["2.200", "2.200"], "total": "4.400", "coupling": "shared"}
+    found = line(
+        row("one", "2.200 1.100", joint="1", **alone),
+        row("other", "1.100 2.200", joint="2", **alone),
+        claim("longest", "maximum", of=["one", "other"], **last),
+        coupling=coupling,
+    )
+    assert found.startswith(f"4.400 s is 10.0 % above {said}")
+    assert ("joints' own" in found) == (coupling == "per-joint")
+
+
+@pytest.mark.parametrize(
+    ("times", "value", "said"),
     [
         # 1.5 rad/s · 2 s/1.5 = 2 rad: in 1.9 s the limit is broken, whatever the rounding.
-        ('["1.900", "2.200"]\ntotal = "4.100"', "4.100 s, which breaks a limit, is 2.5 % above "),
+        ("1.900 2.200", "4.100", "4.100 s, which breaks a limit, is 2.5 % above "),
         # The durations beside it break the limit; 4.4 s are not theirs.
-        ('["1.900", "2.200"]\ntotal = "4.400"', "4.400 s is 10.0 % above "),
-        ('["2.200", "2.200"]\ntotal = "4.400"', "4.400 s is 10.0 % above "),
-        ('["2.000", "2.000"]\ntotal = "4.000"', "4.000 s agrees with the "),
+        ("1.900 2.200", "4.400", "4.400 s is 10.0 % above "),
+        ("2.200 2.200", "4.400", "4.400 s is 10.0 % above "),
+        ("2.000 2.000", "4.000", "4.000 s agrees with the "),
     ],
 )
-def test_a_distance_stands_with_the_limit_that_its_motion_breaks(times: str, said: str) -> None:
-    text = TWO.format(coupling="shared").split("[[claims]]")[0]
-    claim = (
-        f'[[claims]]\nid = "all"\nquantity = "durations"\nwhere = "Table 1"\ndurations = {times}'
-    )
-    assert line(f"{text}{claim}\n").startswith(said)
+def test_a_distance_stands_with_the_limit_that_its_motion_breaks(
+    times: str, value: str, said: str
+) -> None:
+    assert line(row("all", times, total=value)).startswith(said)
 
 
-def test_a_total_that_was_cut_off_is_said_to_agree_if_it_was() -> None:
+@pytest.mark.parametrize(
+    ("value", "end"), [("4.002", "4.0027 s if digits were cut off."), ("4.003", "4.0027 s.")]
+)
+def test_a_total_that_was_cut_off_is_said_to_agree_if_it_was(value: str, end: str) -> None:
     """6/1.499 s are 4.00267 s, of which 4.002 s is cut off and 4.003 s rounded."""
-    text = TWO.format(coupling="shared").split("[[claims]]")[0].replace("= 1.5", "= 1.499")
-    claim = """[[claims]]
-id = "all"
-quantity = "durations"
-where = "Table 1"
-durations = ["2.001", "2.001"]
-"""
-    assert line(f'{text}{claim}total = "4.002"\n').endswith("4.0027 s if digits were cut off.")
-    assert line(f'{text}{claim}total = "4.003"\n').endswith("4.0027 s.")
+    assert line(row("all", "2.001 2.001", total=value), velocity=1.499).endswith(end)
 
 
 @pytest.mark.parametrize(
     ("example", "said"),
     [
         # Its curve stands in for one that a case file cannot name: its optimum is not the tests'.
-        (
-            "kdl-velocity-profiles.toml",
-            "All 4 printed times agree with their shortest trapezoidal profiles.",
-        ),
-        ("toppra-cubic-path.toml", "No printed total stands beside an optimum."),
-        (
-            "robotics1-2022-09-09.toml",
-            "Both printed times agree with their shortest trapezoidal profiles.",
-        ),
-        (
-            "robotics1-2017-07-11.toml",
-            "3 printed totals agree with their proven optima; elsewhere without limits no motion "
-            "is the shortest: there is no optimum to compare with.",
-        ),
+        ("kdl-velocity-profiles", "All 4 printed times agree with their shortest trapezoidal"),
+        ("toppra-cubic-path", "No printed total stands beside an optimum."),
+        ("robotics1-2022-09-09", "Both printed times agree with their shortest trapezoidal"),
+        ("robotics1-2017-07-11", "3 printed totals agree with their proven optima; elsewhere"),
     ],
 )
 def test_the_card_of_an_example_speaks_of_its_own_numbers(example: str, said: str) -> None:
-    assert line(example) == said
+    case = load_case(ROOT / "docs" / "examples" / f"{example}.toml")
+    study = Study(case, seeds=2, certify_seconds=0)
+    assert audit_case(study).card.optimum.startswith(said)
 
 
 @pytest.mark.parametrize(
     ("verdicts", "said"),
     [
-        (
-            "not checkable",
-            "Whether the printed time agrees with the shortest s-curve profile is open.",
-        ),
-        ("inconsistent", "The printed time does not agree with the shortest s-curve profile."),
-        (
-            "supported, refuted, not checkable",
-            "1 of 3 printed times agree with their shortest s-curve profiles; 1 is open.",
-        ),
+        ("not checkable", "shortest s-curve profile is open."),
+        ("inconsistent", "does not agree with the shortest s-curve profile."),
+        ("supported, refuted, not checkable", "1 of 3 printed times agree with"),
+        ("supported, refuted, not checkable", "; 1 is open."),
     ],
 )
 def test_a_time_that_was_not_judged_is_not_said_to_disagree(verdicts: str, said: str) -> None:
     words = [ClaimVerdict(word) for word in verdicts.split(", ")]
-    assert _beside_profiles(words, "s-curve") == said
+    assert said in _beside_profiles(words, "s-curve")
 
 
-NARROW = """
-format = 1
-id = "narrow"
-title = "Cubics from rest to rest"
-[source]
-note = "Made up."
-[robot]
-name = "One joint"
-joints = ["a"]
-[units]
-position = "rad"
-velocity = "rad/s"
-time = "s"
-[waypoints]
-joint_rows = [[{points}]]
-[limits]
-velocity = {limit}
-[interpolant]
-family = "rest-to-rest"
-degree = 3
-[[claims]]
-id = "all"
-quantity = "durations"
-where = "Table 1"
-durations = ["{time}"]
-"""
+OPTIMUM = "the proven optimum 2.0000 s"
+EXPLAINED = "at the printed digits, whose rounding may explain it."
 
 
 @pytest.mark.parametrize(
     ("points", "limit", "time", "said"),
     [
-        # A cubic over d in h peaks at 1.5 d/h: 2 rad at 1.5 rad/s take 2 s. Exact numbers: 4.06 %,
-        # 3.75 to 4.25 %, and 2.5 to 7.5 % from a bound a little below 2 s.
-        ("0, 2", "1.5", "2.0812", "2.0812 s is 4.1 % above the proven optimum 2.0000 s."),
-        ("0, 2", "1.5", "2.08", "2.08 s is at least 3.7 % above the proven optimum 2.0000 s."),
-        ("0, 2", "1.5", "1.9", "1.9 s is at least 2.4 % below the proven optimum 2.0000 s."),
+        # 2 rad at 1.5 rad/s take 2 s. Exact numbers: 4.06 %, 3.75 to 4.25 %, and 2.5 to 7.5 % from
+        # a bound a little below 2 s.
+        ([0, 2], 1.5, "2.0812", f"2.0812 s is 4.1 % above {OPTIMUM}."),
+        ([0, 2], 1.5, "2.08", f"2.08 s is at least 3.7 % above {OPTIMUM}."),
+        ([0, 2], 1.5, "1.9", f"1.9 s is at least 2.4 % below {OPTIMUM}."),
         # 1.45 to 1.55 rad/s and their like cut off, to 1.6: 2.069 to 1.875 s.
-        ("0, 2", '"1.5"', "2.100", "2.100 s is at least 1.4 % above the proven optimum 2.0000 s."),
-        ("0, 2", '"1.5"', "2.050", "2.050 s is 2.5 % above the proven optimum 2.0000 s at the "
-         "printed digits, whose rounding may explain it."),
-        ("0, 2", '"1.5"', "1.950", "1.950 s is 2.5 % below the proven optimum 2.0000 s at the "
-         "printed digits, whose rounding may explain it."),
-        ("0, 2", '"1.5"', "1.800", "1.800 s, which breaks a limit, is at least 3.9 % below the "
-         "proven optimum 2.0000 s."),
+        ([0, 2], "1.5", "2.100", f"2.100 s is at least 1.4 % above {OPTIMUM}."),
+        ([0, 2], "1.5", "2.050", f"2.050 s is 2.5 % above {OPTIMUM} {EXPLAINED}"),
+        ([0, 2], "1.5", "1.950", f"1.950 s is 2.5 % below {OPTIMUM} {EXPLAINED}"),
+        ([0, 2], "1.5", "1.800", "1.800 s, which breaks a limit, is at least 3.9 % below the "),
         # 1.8 to 2.2 rad, between digits that are cut off: 1.8 to 2.2 s.
-        ('"0.1", "2.1"', "1.5", "2.300", "2.300 s is at least 4.5 % above the proven optimum "
-         "2.0000 s."),
-        ('"0.1", "2.1"', "1.5", "2.150", "2.150 s is 7.5 % above the proven optimum 2.0000 s at "
-         "the printed digits, whose rounding may explain it."),
+        ("0.1 2.1", 1.5, "2.300", f"2.300 s is at least 4.5 % above {OPTIMUM}."),
+        ("0.1 2.1", 1.5, "2.150", f"2.150 s is 7.5 % above {OPTIMUM} {EXPLAINED}"),
     ],
-)  # fmt: skip
+)
 def test_a_distance_holds_for_every_value_that_rounds_to_the_digits(
-    points: str, limit: str, time: str, said: str
+    points: Any, limit: Any, time: str, said: str
 ) -> None:
-    assert line(NARROW.format(points=points, limit=limit, time=time)).startswith(said)
+    assert line(row("all", time), rows=[points], velocity=limit).startswith(said)
 
 
 def test_a_distance_that_two_totals_share_is_said_once() -> None:
     """2 rad take 2 s at 1.5 rad/s and 3 s at 1 rad/s; 2.1 s and 3.15 s are 5 % more."""
-    text = NARROW.format(points="0, 2", limit="1.5", time="2.100")
-    slow = text.partition("[[claims]]")[2].replace('"all"', '"slow"\nproblem = "b"')
-    text = (
-        text.replace('"all"', '"all"\nproblem = "a"')
-        + "[[claims]]"
-        + slow.replace("2.100", "3.150")
+    parts = row("all", "2.100", problem="a"), row("slow", "3.150", problem="b")
+    asked = (
+        entry("problems", id=one, limits={"velocity": limit})
+        for one, limit in (("a", 1.5), ("b", 1))
     )
-    for word, limit in (("a", 1.5), ("b", 1)):
-        text += f'[[problems]]\nid = "{word}"\nlimits = {{ velocity = {limit} }}\n'
-    assert line(text) == (
+    assert line(*parts, *asked, rows=[[0, 2]]) == (
         "2.100 s and 3.150 s are 5.0 % above the proven optima 2.0000 s and 3.0000 s."
     )
 
@@ -232,36 +147,109 @@ def test_a_distance_that_two_totals_share_is_said_once() -> None:
     ("other", "said"),
     [("", ""), ("2.000", ""), ("2.042", "2.1 % above"), ("1.959", "at least 2.0 % below")],
 )
-def test_a_sum_that_agrees_says_nothing_of_another_printed_total(other: str, said: str) -> None:
-    """The printed duration is the optimum, 2 s; a total elsewhere is 2.1 % above it, or below."""
-    text = NARROW.format(points="0, 2", limit="1.5", time="2.000") + (
-        '[[claims]]\nid = "best"\nquantity = "statement"\nwhere = "abstract"\n'
-        'checks = "optimal"\nof = ["all"]\n'
-    )
-    if other:
-        text += (
-            '[[claims]]\nid = "head"\nquantity = "total_time"\nwhere = "abstract"\nof = "all"\n'
-            f'value = "{other}"\n'
-        )
-    one = audit_case(Study(parse_case(text, "made-up.toml"), certify_seconds=0))
+@pytest.mark.parametrize("beside", [False, True])
+def test_a_sum_that_agrees_says_nothing_of_another_printed_total(
+    other: str, said: str, beside: bool
+) -> None:
+    """The durations are the optimum, 2 s; a total beside them or elsewhere is 2.1 % above it."""
+    parts = [row("all", "2.000", **({"total": other} if beside and other else {}))]
+    if other and not beside:
+        parts.append(total("head", other, of="all"))
+    parts.append(sentence("best", "optimal", "all"))
+    one = audited_text(paper([[0, 2]], *parts, curve=CUBIC, velocity=1.5))
     (best,) = [j for j in one.judgements if j.claim == "best"]
-    assert (best.verdict is ClaimVerdict.SUPPORTED) == (not said)
-    assert best.verdict is not ClaimVerdict.REFUTED
-    assert "Every printed total" not in best.why
+    assert best.verdict is (ClaimVerdict.NOT_CHECKABLE if said else ClaimVerdict.SUPPORTED)
+    assert "Every printed total" not in best.why or (beside and not said)
     assert ("contradict each other" in best.why) == bool(said)
-    if said:
+    if said and not beside:
         assert f"{other} s" in best.why
         assert f"{other} s is {said} the proven optimum" in one.card.optimum
 
 
-@pytest.mark.parametrize("total", ["2.042", "1.959"])
-def test_a_total_beside_a_sum_that_it_is_not_does_not_agree(total: str) -> None:
-    text = NARROW.format(points="0, 2", limit="1.5", time="2.000") + (
-        f'total = "{total}"\n'
-        '[[claims]]\nid = "best"\nquantity = "statement"\nwhere = "abstract"\n'
-        'checks = "optimal"\nof = ["all"]\n'
-    )
-    one = audit_case(Study(parse_case(text, "made-up.toml"), certify_seconds=0))
-    (best,) = [j for j in one.judgements if j.claim == "best"]
-    assert best.verdict is ClaimVerdict.NOT_CHECKABLE
-    assert "durations that add up to 2.000 s; these contradict each other" in best.why
+OWN, RIVAL, OTHER = row("own", "1.90"), row("rival", "2.50"), row("other", "2.20")
+NAMED = row("own", "1.90", algorithm="a") + row("rival", "2.50", algorithm="b")
+BEST = sentence("best", "optimal", "own")
+TOTALS = total("t", "1.90", of="own") + total("slow", "2.50", of="rival")
+"""A total of an algorithm stands for that algorithm's durations."""
+OF_ALGORITHMS = total("t", "1.90", algorithm="a") + total("slow", "2.50", algorithm="b")
+
+
+def asked(*parts: str) -> str:
+    """1 rad under 1 rad/s takes 15/8 s."""
+    return paper([[0, 1]], *parts, velocity=1)
+
+
+@pytest.mark.parametrize("rows", list(map("".join, permutations([OWN, RIVAL, OTHER]))))
+def test_what_is_called_optimal_is_found_wherever_it_stands(rows: str) -> None:
+    (found,) = waterfalls(study_of(asked(rows, BEST)))
+    assert found.claim == "own"
+    assert found.steps[0].time == 1.9
+
+
+@pytest.mark.parametrize(
+    ("parts", "claim"),
+    [
+        ((OWN, RIVAL, gain("rival", "own")), "own"),
+        ((RIVAL, OWN, gain("rival", "own")), "own"),
+        ((OWN, RIVAL, TOTALS, gain("slow", "t")), "own"),
+        ((RIVAL, OWN, TOTALS, gain("slow", "t")), "own"),
+        ((algorithms("a", "b"), NAMED, OF_ALGORITHMS, gain("slow", "t")), "own"),
+        # Of several without a word the last is taken.
+        ((OWN, RIVAL), "rival"),
+        ((OWN, row("rival", "2.50", state="before")), "own"),
+    ],
+)
+def test_a_rival_is_not_where_it_starts(parts: tuple[str, ...], claim: str) -> None:
+    assert [one.claim for one in waterfalls(study_of(asked(*parts)))] == [claim]
+
+
+def test_a_wrong_sum_breaks_no_limit() -> None:
+    """1.00 and 1.00 s keep the limit of 2; that they do not sum to 3.00 is another fault."""
+    for times, said in (
+        ("1.00 1.00", "The printed durations keep the limits."),
+        ("0.50 0.50", "The printed durations break a limit"),
+    ):
+        one = audited_text(paper([[0, 1, 2]], row("own", times, total="3.00"), velocity=2))
+        assert one.judgements[0].verdict is ClaimVerdict.REFUTED
+        assert one.card.limits.startswith(said)
+
+
+def test_a_named_method_has_a_total_of_its_own() -> None:
+    """A rival's 2.50 s is no other print of the paper's 1.90 s, nor its answer on the card."""
+    named, own = algorithms("a"), total("own", "1.90")
+    one = audited_text(asked(OWN, named, total("rival", "2.50", algorithm="a")))
+    assert set(verdicts(one).values()) == {"supported", "not checkable"}
+    assert one.card.optimum.startswith("1.90 s is ")
+    for rows in (
+        own + total("rival", "2.50", algorithm="a"),
+        total("rival", "1.88", algorithm="a") + own,
+        own + total("rival", "1.50", algorithm="a", objective="energy"),
+    ):
+        assert audited_text(asked(named, rows)).card.optimum.startswith("1.90 s is ")
+
+
+def test_a_total_of_another_aim_is_another_total() -> None:
+    """Two rows of one method, the second for energy: neither is a print of the other."""
+    time = total("time", "2.50", algorithm="a")
+    low = total("low", "2.90", algorithm="a", objective="energy")
+    by = {j.claim: j for j in audited_text(asked(algorithms("a"), OWN, time, low)).judgements}
+    assert "nothing in print can be set against it" in by["time"].why
+    assert "nothing in print can be set against it" in by["low"].why
+
+
+def test_what_only_cut_off_digits_keep_is_not_called_rounding() -> None:
+    """1.877 s just keep this limit: no value rounds to 1.87 and does, some that are cut off do."""
+    one = audited_text(paper([[0, 1]], row("own", "1.87"), velocity=1.875 / 1.877))
+    assert one.card.limits == "The printed durations keep the limits if digits were cut off."
+
+
+def test_a_total_within_a_proven_interval_neither_agrees_nor_differs() -> None:
+    """The optimum is 1.875 s; with a bound of 1.84 s nothing says where 1.86 s lies beside it."""
+    study = study_of(asked(row("own", "1.86")))
+    found = waterfalls(study)
+    wide = replace(study.optimum(*study.pairs[0]), lower_bound=1.84)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(study, "optimum", lambda *_: wide)
+        said = optimum_line(study, found, {}, False)
+    assert said.startswith("1.86 s")
+    assert said.endswith("is proven to hold the optimum, 1.8400 to 1.8750 s.")

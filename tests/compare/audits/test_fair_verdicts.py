@@ -6,81 +6,68 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from support.one_joint import HEAD, UNITS
+from support.findings import audited_text, verdicts
+from support.made_up import gain, paper, row, sentence, total
+from support.one_joint import UNITS, one_joint
 from trajgap.compare import audit
 from trajgap.compare.documents import Basis, ClaimVerdict, Scope, Severity
 from trajgap.nlp import Evidence, Status, solve
-from trajgap.problem import Limits, Problem, cubic_spline, load_case, parse_case
+from trajgap.problem import Limits, Problem, cubic_spline, load_case
+
+SUPPORTED, REFUTED, OPEN = (
+    ClaimVerdict.SUPPORTED,
+    ClaimVerdict.REFUTED,
+    ClaimVerdict.NOT_CHECKABLE,
+)
 
 
-def verdicts(points: str, limit: str, time: str, checks: str) -> dict[str, ClaimVerdict]:
-    text = HEAD.format(points=points, limit=limit, time=time, checks=checks)
-    one = audit(parse_case(text, "fair.toml"), seeds=2).cases[0]
-    assert not [f for f in one.findings if f.severity is Severity.ERROR]
-    return {j.claim: j.verdict for j in one.judgements}
-
-
-def test_an_optimum_of_waypoints_that_print_alike_is_not_refuted() -> None:
-    """7.125 s is exactly optimal from -0.4 to 3.4, which print as 0 and 3."""
-    found = verdicts('"0", "3"', "1", "7.125", "optimal")
-    assert found["s"] is ClaimVerdict.NOT_CHECKABLE
-
-
-def test_durations_with_digits_cut_off_break_nothing() -> None:
-    """The optimum 0.961736 s printed as 0.961."""
-    found = verdicts("0, 1", "1.9496", "0.961", "within_limits")
-    assert found == {"d": ClaimVerdict.SUPPORTED, "s": ClaimVerdict.SUPPORTED}
-
-
-def test_what_is_plainly_broken_is_still_refuted() -> None:
-    text = HEAD.format(points="0, 1", limit="1.9496", time="0.95", checks="within_limits")
-    one = audit(parse_case(text, "fair.toml"), seeds=2).cases[0]
-    assert {j.verdict for j in one.judgements} == {ClaimVerdict.REFUTED}
-    slow = HEAD.format(points="0, 1", limit="1.9496", time="1.2", checks="optimal")
-    one = audit(parse_case(slow, "fair.toml"), seeds=2).cases[0]
-    assert {j.claim: j.verdict for j in one.judgements}["s"] is ClaimVerdict.REFUTED
-
-
-OTHER = """
-[[claims]]
-id = "other"
-quantity = "durations"
-where = "Table 2"
-durations = ["0.5"]
-"""
+@pytest.mark.parametrize(
+    ("points", "limit", "time", "checks", "verdict"),
+    [
+        # 7.125 s is exactly optimal from -0.4 to 3.4, which print as 0 and 3.
+        ('"0", "3"', "1", "7.125", "optimal", OPEN),
+        # The optimum 0.961736 s with its digits cut off.
+        ("0, 1", "1.9496", "0.961", "within_limits", SUPPORTED),
+        # What is plainly broken is still refuted.
+        ("0, 1", "1.9496", "0.95", "within_limits", REFUTED),
+        ("0, 1", "1.9496", "1.2", "optimal", REFUTED),
+    ],
+)
+def test_digits_are_given_their_due_and_no_more(
+    points: str, limit: str, time: str, checks: str, verdict: ClaimVerdict
+) -> None:
+    one = audited_text(one_joint(points, limit, time, checks))
+    assert verdicts(one)["s"] is verdict
+    assert (verdicts(one)["d"] is REFUTED) == (time == "0.95")
+    assert any(f.severity is Severity.ERROR for f in one.findings) == (verdict is REFUTED)
 
 
 def test_durations_of_which_nothing_is_said_break_nothing() -> None:
     """Equal durations before an optimisation are no answer, and nobody says they keep a limit."""
-    text = HEAD.format(points="0, 1", limit="1.9496", time="0.962", checks="within_limits") + OTHER
-    one = audit(parse_case(text, "fair.toml"), seeds=2).cases[0]
+    text = one_joint("0, 1", "1.9496", "0.962", "within_limits", row("other", "0.5"))
+    one = audited_text(text)
     assert {f.severity for f in one.findings} == {Severity.INFO}
-    judged = {j.claim: j.verdict for j in one.judgements}
-    assert judged == dict.fromkeys(("d", "s"), ClaimVerdict.SUPPORTED) | {
-        "other": ClaimVerdict.NOT_CHECKABLE
-    }
+    assert verdicts(one) == {"d": SUPPORTED, "s": SUPPORTED, "other": OPEN}
     (beside,) = [f for f in one.findings if f.rule == "TG201" and f.claim == "other"]
     assert not beside.decides
     assert "A limit is broken" in beside.message
     assert beside.message.endswith("Nothing printed says that these durations keep the limits.")
-    named = text.replace('of = ["d"]', 'of = ["d", "other"]')
-    one = audit(parse_case(named, "fair.toml"), seeds=2).cases[0]
-    assert {j.claim: j.verdict for j in one.judgements}["other"] is ClaimVerdict.REFUTED
+    named = audited_text(text.replace('of = ["d"]', 'of = ["d", "other"]'))
+    assert verdicts(named)["other"] is REFUTED
 
 
 def test_a_percentage_of_a_refuted_total_says_why_it_is_not_checkable() -> None:
     """0.962 s beside a total of 0.99 s; 1.2 s is 17.5 % longer than that."""
-    text = HEAD.format(points="0, 1", limit="1.9496", time="0.962", checks="within_limits")
-    text = text.replace('["0.962"]', '["0.962"]\ntotal = "0.990"') + (
-        '[[claims]]\nid = "old"\nquantity = "total_time"\nwhere = "Table 3"\n'
-        'other_curve = "straight lines"\nvalue = "1.200"\n'
-        '[[claims]]\nid = "gain"\nquantity = "improvement"\nwhere = "abstract"\n'
-        'slower = "old"\nfaster = "d"\npercent = "17.5"\n'
+    parts = (
+        row("d", "0.962", total="0.990", where="Table 2"),
+        sentence("s", "within_limits", "d"),
+        total("old", "1.200", other_curve="straight lines"),
+        gain("old", "d", percent="17.5"),
     )
-    one = audit(parse_case(text, "fair.toml"), seeds=2).cases[0]
-    (gain,) = [j for j in one.judgements if j.claim == "gain"]
-    assert gain.verdict is ClaimVerdict.NOT_CHECKABLE
-    assert gain.why.startswith("It rests on what Table 2 prints, which is refuted. ")
+    one = audited_text(paper([[0, 1]], *parts, velocity=1.9496))
+    assert verdicts(one)["gain"] is OPEN
+    (why,) = [j.why for j in one.judgements if j.claim == "gain"]
+    assert why.startswith("It rests on what Table 2 prints, which is refuted. ")
 
 
 @pytest.mark.parametrize(
@@ -90,25 +77,20 @@ def test_a_percentage_of_a_refuted_total_says_why_it_is_not_checkable() -> None:
 def test_a_proof_is_an_error_only_where_every_reading_is_against_the_claim(
     time: str, severity: Severity, scope: Scope
 ) -> None:
-    text = HEAD.format(points="0, 1", limit="1.9496", time=time, checks="within_limits") + UNITS
-    one = audit(parse_case(text, "fair.toml"), seeds=2).cases[0]
-    against = [f for f in one.findings if f.verdict is ClaimVerdict.REFUTED]
+    one = audited_text(one_joint("0, 1", "1.9496", time, "within_limits", UNITS))
+    against = [f for f in one.findings if f.verdict is REFUTED]
     assert {f.claim for f in against} == {"d", "s"}
-    assert {f.severity for f in against} == {severity}
-    assert {f.scope for f in against} == {scope}
+    assert {(f.severity, f.scope) for f in against} == {(severity, scope)}
     assert one.errors == (1 if severity is Severity.ERROR else 0)
 
 
 def test_what_breaks_the_limits_is_not_optimal_within_them() -> None:
     """0.95 s is shorter than the shortest answer, 0.961736 s, and keeps no limit."""
-    text = HEAD.format(points="0, 1", limit="1.9496", time="0.95", checks="optimal")
-    one = audit(parse_case(text, "fair.toml"), seeds=2).cases[0]
+    one = audited_text(one_joint("0, 1", "1.9496", "0.95", "optimal"))
     (found,) = [f for f in one.findings if f.claim == "s"]
-    assert found.verdict is ClaimVerdict.REFUTED
+    assert found.verdict is REFUTED
     assert (found.basis, found.evidence) == (Basis.ENCLOSURE, Evidence.NONE)
-    assert found.message.startswith(
-        "Not an answer within the limits. Table 2: A limit is broken for every value"
-    )
+    assert found.message.startswith("Not an answer within the limits. Table 2: A limit is broken")
     beside = next(f for f in one.findings if f.rule == "TG302" and f.claim == "d")
     assert beside.severity is Severity.INFO
     assert beside.message.endswith("which keeps the limits; these durations do not.")
@@ -119,14 +101,14 @@ def test_the_order_of_two_totals_that_cannot_be_computed_supports_nothing() -> N
     alone = replace(whale, document=whale.document.model_copy(update={"families": ()}))
     one = audit(alone, seeds=2).cases[0]
     better = next(j for j in one.judgements if j.claim == "improvement")
-    assert better.verdict is ClaimVerdict.NOT_CHECKABLE
+    assert better.verdict is OPEN
     assert "13.08 and 11.71 s, in the order that is claimed" in better.why
 
 
 def test_a_selected_reading_does_not_speak_for_all() -> None:
     one = audit("irb460-pso-353", seeds=2, reading="waypoints-rad").cases[0]
     kept = next(j for j in one.judgements if j.claim == "limits-kept")
-    assert (kept.verdict, kept.scope) == (ClaimVerdict.REFUTED, Scope.SOME)
+    assert (kept.verdict, kept.scope) == (REFUTED, Scope.SOME)
 
 
 @pytest.mark.parametrize("seed", [0, 1, 2])

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from support.made_up import paper, row, sentence
 from trajgap.compare import audit
 from trajgap.compare.audits import intervals
 from trajgap.compare.audits.case_audit import CaseAudit
@@ -20,28 +21,14 @@ from trajgap.compare.pages.verdicts import problems_audited
 from trajgap.nlp import Evidence, Solution, Status, certificate, certify, printed_problem, solve
 from trajgap.problem import Case, parse_case
 
-TEXT = """
-format = 1
-id = "four-points"
-title = "one joint through four points"
-source = { year = 2024 }
-robot = { name = "arm", joints = ["1"] }
-units = { position = "rad", velocity = "rad/s", acceleration = "rad/s^2", time = "s" }
-waypoints = { where = "Table 1", joint_rows = [["0.13", "0.71", "-0.42", "0.37"]] }
-limits = { velocity = 2, acceleration = 5 }
-interpolant = { family = "3-5-3" }
-[[claims]]
-id = "d"
-quantity = "durations"
-where = "Table 2"
-durations = ["0.9", "1.4", "1.1"]
-[[claims]]
-id = "best"
-quantity = "statement"
-where = "abstract"
-checks = "optimal"
-of = ["d"]
-"""
+TEXT = paper(
+    ["0.13 0.71 -0.42 0.37"],
+    row("d", "0.9 1.4 1.1"),
+    sentence("best", "optimal", "d"),
+    curve={"family": "3-5-3"},
+    velocity=2,
+    acceleration=5,
+)
 
 
 def stated() -> Case:

@@ -1,4 +1,4 @@
-"""What an audit was made of: date, hashes, command and citation."""
+"""What an audit was made of, how a verdict is known, who was asked, and who typed the numbers."""
 
 import hashlib
 import re
@@ -6,12 +6,24 @@ from datetime import date
 
 import pytest
 from support.studies import source
+from trajgap.compare.audits.judging import judge
 from trajgap.compare.audits.provenance import commit, provenance, today
-from trajgap.compare.audits.stated import place, spoken
+from trajgap.compare.audits.stated import claim_text, place, spoken, stated_claims, stated_source
 from trajgap.compare.audits.study import Study
-from trajgap.compare.documents import Why
+from trajgap.compare.documents import (
+    UNDECIDED,
+    Basis,
+    ClaimVerdict,
+    Confidence,
+    Finding,
+    Judgement,
+    Why,
+    tally,
+)
+from trajgap.compare.pages.claims import answered
+from trajgap.nlp import Evidence
 from trajgap.nlp.proofs.document import shipped_folder
-from trajgap.problem import TrajgapError, load_case, parse_case
+from trajgap.problem import CaseError, TrajgapError, load_case, parse_case
 
 ID = "irb460-pso-353"
 
@@ -76,3 +88,103 @@ def test_claims_are_called_by_their_places():
     assert spoken(polish, "after (nine-segments) all, after that") == (
         "Table 4, row after optimisation all, after that"
     )
+
+
+READINGS = ("one", "two")
+
+
+def finding(verdict: ClaimVerdict, basis: Basis, reading: str | None, **more: object) -> Finding:
+    return Finding(
+        rule="TG201", verdict=verdict, basis=basis, claim="c", reading=reading, message="m", **more
+    )
+
+
+def under_both(verdict: ClaimVerdict, basis: Basis, **more: object) -> list[Finding]:
+    return [finding(verdict, basis, reading, **more) for reading in READINGS]
+
+
+def test_a_finding_is_known_by_what_it_rests_on() -> None:
+    held = ClaimVerdict.SUPPORTED
+    assert finding(held, Basis.DIGITS, None).confidence is Confidence.DIGITS
+    assert finding(held, Basis.IDENTITY, None).confidence is Confidence.DIGITS
+    assert finding(held, Basis.DIGITS, "one").confidence is Confidence.PROVEN
+    assert finding(held, Basis.CHECK, None).confidence is Confidence.PROVEN
+    best = finding(held, Basis.OPTIMUM, "one", evidence=Evidence.BEST_KNOWN)
+    assert best.confidence is Confidence.BEST_KNOWN
+    early = finding(held, Basis.OPTIMUM, "one", evidence=Evidence.UNCONVERGED)
+    assert early.confidence is Confidence.UNCONVERGED
+    judged = judge("c", [early], ("one",))
+    assert tally([judged]) == "Verdicts on 1 claim: 1 rests on a search that did not converge."
+    assert finding(held, Basis.REPLAY, None).confidence is Confidence.REPLAY
+    assert finding(ClaimVerdict.NOT_CHECKABLE, Basis.TEXT, None).confidence == UNDECIDED
+
+
+def test_one_finding_contradicts_and_all_of_them_support() -> None:
+    digits = finding(ClaimVerdict.SUPPORTED, Basis.DIGITS, None)
+    limits = under_both(ClaimVerdict.SUPPORTED, Basis.ENCLOSURE)
+    assert judge("c", [digits, *limits], READINGS).confidence is Confidence.PROVEN
+    against = finding(ClaimVerdict.REFUTED, Basis.DIGITS, None)
+    beside = under_both(ClaimVerdict.REFUTED, Basis.ENCLOSURE)
+    assert judge("c", [against, *beside], READINGS).confidence is Confidence.DIGITS
+    assert judge("c", [], READINGS).confidence == UNDECIDED
+
+
+def test_a_replay_alone_decides_nothing_and_the_tally_says_what_is_open() -> None:
+    replay = finding(ClaimVerdict.SUPPORTED, Basis.REPLAY, "one", decides=False)
+    alone = judge("c", [replay], READINGS)
+    assert alone.confidence == UNDECIDED
+    proven = judge("c", under_both(ClaimVerdict.REFUTED, Basis.OPTIMUM), READINGS)
+    both: list[Judgement] = [alone, proven, proven]
+    assert tally(both) == "Verdicts on 3 claims: 2 rest on proofs under a reading, 1 is open."
+    assert tally([]) == "No claims."
+
+
+ANSWER = 'answer = { sent = "2026-01-31", answered = "2026-02-14", outcome = "A slip in print." }'
+
+
+def asked(answer: str) -> str:
+    text = source(ID)
+    first = text.index("[[claims]]\n") + len("[[claims]]\n")
+    return f"{text[:first]}{answer}\n{text[first:]}"
+
+
+def test_an_answer_of_the_authors_is_carried_and_shown() -> None:
+    case = parse_case(asked(ANSWER), "asked.toml")
+    first, second, *_ = stated_claims(case)
+    shown = "Authors asked 2026-01-31, answered 2026-02-14: A slip in print."
+    assert answered(case.claims[0]) == shown
+    assert first.model_dump()["answer"] == {
+        "sent": "2026-01-31",
+        "answered": "2026-02-14",
+        "outcome": "A slip in print.",
+    }
+    assert second.model_dump()["answer_why"] == "the authors were not asked"
+    assert answered(case.claims[1]) == ""
+    waiting = parse_case(asked('answer = { sent = "2026-01-31" }'), "asked.toml")
+    assert answered(waiting.claims[0]) == "Authors asked 2026-01-31, no answer so far."
+
+
+def test_a_day_that_is_none_is_refused() -> None:
+    with pytest.raises(CaseError, match=r"'2026-02-30' is no day; write it as 2026-01-31"):
+        parse_case(asked('answer = { sent = "2026-02-30" }'), "asked.toml")
+
+
+def test_who_typed_the_numbers_stands_with_the_source() -> None:
+    stated = stated_source(parse_case(source(ID), f"{ID}.toml"))
+    assert stated.transcribed_by == "the authors of trajgap, from extracted text"
+    assert "nobody has compared them with the printed page" in str(stated.checked_by)
+    text = source(ID).replace("[transcription]", "[ignored]").split("[ignored]")
+    bare = text[0] + "[robot]" + text[1].split("[robot]", 1)[1]
+    unsaid = stated_source(parse_case(bare, "bare.toml")).model_dump()
+    assert unsaid["transcribed_by_why"] == "not said in the case file"
+
+
+def test_messages_call_things_by_their_names() -> None:
+    case = parse_case(source(ID), f"{ID}.toml")
+    algorithm, problem = case.algorithms[0], case.problems[0]
+    claim = case.claim("durations-80")
+    said = spoken(case, f"{algorithm.id} beats durations-80 ({problem.id}).")
+    assert said == f"The {algorithm.name} beats {place(claim)}."
+    assert spoken(case, "A time-optimal motion.") == "A time-optimal motion."
+    assert spoken(case, f"x ({problem.id})") == f"X ({problem.title})"
+    assert not any(one.id in claim_text(case, c) for c in case.claims for one in case.algorithms)

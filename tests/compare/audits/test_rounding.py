@@ -11,12 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.rounding_boxes import MOVING_ENDS, rounded_problem
 from support.rounding_samples import boxes, contradiction, sampled_worst
-from trajgap.compare.audits.rounding import (
-    Place,
-    Point,
-    RoundingBox,
-    judge_rounding,
-)
+from trajgap.compare.audits.rounding import Place, Point, RoundingBox, judge_rounding
 from trajgap.compare.documents import Rounding
 from trajgap.nlp.enclosure import box_bound
 from trajgap.nlp.enclosure.balls import Ball
@@ -32,8 +27,6 @@ from trajgap.problem import (
     three_five_three,
 )
 from trajgap.problem.cases.load import load_case
-
-# --- verdicts -------------------------------------------------------------------------------------
 
 FAMILIES = {
     "3-5-3": three_five_three(),
@@ -120,27 +113,31 @@ def test_several_places_share_a_proof():
     assert found.lower_bound_of_worst == pytest.approx(1.5 / 1.51, rel=1e-12)
 
 
+def printed(case, claim, reading, problem_id=None):
+    """A claim's problem, its durations and its way-points, as boxes."""
+    problem = case.problem(problem_id, reading)
+    low, high = case.waypoint_box(problem_id, reading)
+    if claim.joint and len(problem.joints) > 1:
+        column = problem.joints.index(claim.joint)
+        problem, low, high = problem.joint(column), low[:, [column]], high[:, [column]]
+    box = case.claim_durations(claim, reading)
+    h = RoundingBox(box.value, box.lower, box.upper)
+    return problem, h, RoundingBox(problem.waypoints, low, high)
+
+
 @pytest.mark.parametrize("reading", ["durations-at-least-0.3", "durations-positive"])
 def test_puma_table_3(reading):
     case = load_case("puma560-mnam-pso-353")
-    low, high = case.waypoint_box(reading_id=reading)
     verdicts = []
     for claim in case.table_claims("table-3"):
-        problem = case.problem(reading_id=reading)
-        box = case.claim_durations(claim, reading)
-        columns = list(range(6))
-        if claim.joint:
-            columns = [problem.joints.index(claim.joint)]
-            problem = problem.joint(columns[0])
-        h = RoundingBox(box.value, box.lower, box.upper)
-        q = RoundingBox(problem.waypoints, low[:, columns], high[:, columns])
+        problem, h, q = printed(case, claim, reading)
         verdict = judge_rounding(problem, h, q)
         assert contradiction(problem, h, q, verdict, 0) is None
         verdicts.append(verdict.verdict)
         if isinstance(verdict.exhibit, Point):
             # Not only in the box of floats: inside the printed interval itself.
-            for printed, at in zip(claim.durations, verdict.exhibit.durations, strict=True):
-                assert printed.interval.lower <= Fraction(float(at)) <= printed.interval.upper
+            for digits, at in zip(claim.durations, verdict.exhibit.durations, strict=True):
+                assert digits.interval.lower <= Fraction(float(at)) <= digits.interval.upper
             assert (verdict.exhibit.durations >= problem.duration_lower).all()
     # A plain check calls five of the six rows violated, by 0.03 to 0.04 %.
     kept, near = Rounding.KEEPS, Rounding.CONSISTENT
@@ -151,12 +148,10 @@ def test_palletiser():
     case = load_case("irb460-pso-353")
     verdicts = {}
     for limit in ("80", "110"):
-        box = case.claim_durations(case.claim(f"durations-{limit}"), "waypoints-rad")
-        problem = case.problem(f"limit-{limit}", "waypoints-rad")
-        h = RoundingBox(box.value, box.lower, box.upper)
-        q = RoundingBox(problem.waypoints, *case.waypoint_box(f"limit-{limit}", "waypoints-rad"))
-        verdicts[limit] = judge_rounding(problem, h, q)
-        assert contradiction(problem, h, q, verdicts[limit], 1) is None
+        claim = case.claim(f"durations-{limit}")
+        box = printed(case, claim, "waypoints-rad", f"limit-{limit}")
+        verdicts[limit] = judge_rounding(*box)
+        assert contradiction(*box, verdicts[limit], 1) is None
     assert verdicts["80"].verdict in (Rounding.KEEPS, Rounding.CONSISTENT)
     assert verdicts["110"].verdict is Rounding.BREAKS
     place = verdicts["110"].exhibit

@@ -13,12 +13,7 @@ from hypothesis import strategies as st
 from support.rounding_boxes import MOVING_ENDS, rounded_problem
 from trajgap.nlp.enclosure import balls as interval
 from trajgap.nlp.enclosure.balls import Ball, enclose_spline
-from trajgap.problem import (
-    Interpolant,
-    cubic_spline_virtual,
-    quintic_spline,
-    three_five_three,
-)
+from trajgap.problem import Interpolant, cubic_spline_virtual, quintic_spline, three_five_three
 from trajgap.problem.curves.condition import ConditionKind
 
 # --- enclosures against exact arithmetic ----------------------------------------------------------

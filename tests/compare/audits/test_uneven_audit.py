@@ -2,45 +2,18 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 import pytest
+from support.findings import audited_text, verdicts
+from support.made_up import paper, row, sentence
 from support.uneven import WAYPOINTS, mirrored, uneven_problem
-from trajgap.compare import audit
+from trajgap.compare.audits.case_audit import CaseAudit
 from trajgap.compare.audits.rounding import RoundingBox, judge_rounding
 from trajgap.compare.documents import ClaimVerdict, Rounding, Severity
 from trajgap.nlp import solve
-from trajgap.problem import Problem, check, evaluate, parse_case
-
-CASE = """
-format = 1
-id = "uneven"
-title = "Uneven"
-coupling = "shared"
-source = {{ year = 2020 }}
-robot = {{ name = "arm", joints = ["a", "b"] }}
-units = {{ position = "rad", velocity = "rad/s", acceleration = "rad/s^2", time = "s" }}
-interpolant = {{ family = "3-5-3" }}
-
-[waypoints]
-waypoint_rows = [[0.1, -0.4], [0.7, 0.3], [1.2, -0.5], [0.9, 0.2]]
-
-[limits]
-acceleration = [{first}, {second}]
-
-[[claims]]
-id = "d"
-quantity = "durations"
-where = "Table 1"
-durations = [{durations}]
-
-[[claims]]
-id = "s"
-quantity = "statement"
-where = "Section 1"
-text = "The motion keeps its limits."
-checks = "within_limits"
-of = ["d"]
-"""
+from trajgap.problem import Problem, check, evaluate
 
 
 @pytest.mark.parametrize("curve", ["3-5-3", "cubic", "stretched"])
@@ -68,42 +41,42 @@ def test_what_breaks_breaks_all_over_the_box(curve: str, share: float) -> None:
     assert (back.verdict, back.worst_at_print) == (found.verdict, found.worst_at_print)
 
 
-def judged(first: str, second: str, durations: str) -> tuple[dict[str, ClaimVerdict], int]:
-    text = CASE.format(first=first, second=second, durations=durations)
-    one = audit(parse_case(text, "uneven.toml"), seeds=2).cases[0]
-    errors = sum(f.severity is Severity.ERROR for f in one.findings)
-    return {j.claim: j.verdict for j in one.judgements}, errors
+TIMES = [1.1, 1.9, 1.4]
+
+
+def audited(accelerations: list[list[float]]) -> CaseAudit:
+    """Two joints that are said to keep limits whose sides differ."""
+    parts = row("d", TIMES), sentence("s", "within_limits", "d")
+    curve = {"family": "3-5-3"}
+    return audited_text(
+        paper(WAYPOINTS.T.tolist(), *parts, curve=curve, acceleration=accelerations)
+    )
 
 
 def test_claims_are_judged_by_the_side_that_counts() -> None:
     """Peaks by each side at fixed durations; limits a little above and below each of them."""
     curve = uneven_problem("3-5-3").curve
     free = Problem(WAYPOINTS, uneven_problem("3-5-3").limits, curve)
-    h = np.array([1.1, 1.9, 1.4])
+    h = np.array(TIMES)
     wanted = np.ones((2, 2, 3), dtype=bool)
     below, above = curve.batch_sides(free.waypoints, h[None], wanted)[:, 0, :, 1]
     assert not np.isclose(below, above, rtol=0.05).any()
-    loose = [f"[{-1.01 * b:.9f}, {1.01 * a:.9f}]" for b, a in zip(below, above, strict=True)]
-    printed = ", ".join(map(str, h))
-    verdicts, errors = judged(*loose, printed)
-    assert errors == 0
-    assert set(verdicts.values()) == {ClaimVerdict.SUPPORTED}
-    for joint in (0, 1):
-        for side in (0, 1):
-            tight = [[1.01 * below[j], 1.01 * above[j]] for j in (0, 1)]
-            tight[joint][side] *= 0.97
-            pairs = [f"[{-low:.9f}, {high:.9f}]" for low, high in tight]
-            verdicts, errors = judged(*pairs, printed)
-            assert errors > 0
-            assert set(verdicts.values()) == {ClaimVerdict.REFUTED}
+    sides = 1.01 * np.stack([-below, above], axis=1)
+    kept = audited(sides.tolist())
+    assert not any(f.severity is Severity.ERROR for f in kept.findings)
+    assert set(verdicts(kept).values()) == {ClaimVerdict.SUPPORTED}
+    for place in product((0, 1), repeat=2):
+        tight = sides.copy()
+        tight[place] *= 0.97
+        broken = audited(tight.tolist())
+        assert any(f.severity is Severity.ERROR for f in broken.findings)
+        assert set(verdicts(broken).values()) == {ClaimVerdict.REFUTED}
 
 
 def test_the_optimum_of_an_audit_is_that_of_both_sides() -> None:
-    text = CASE.format(first="[-3, 5]", second="[-6, 2.5]", durations="1.1, 1.9, 1.4")
-    case = parse_case(text, "uneven.toml")
-    one = audit(case, seeds=2).cases[0]
-    problem = case.problem("main", "as-printed")
+    one = audited([[-3, 5], [-6, 2.5]])
+    problem = one.case.problem("main", "as-printed")
     total = solve(problem).total_time
     assert total > solve(problem.hull).total_time * (1 + 1e-3)
     assert f"{total:.4f}" in str(one.card)
-    assert check(problem, [1.1, 1.9, 1.4]).stretch > 1.0
+    assert check(problem, TIMES).stretch > 1.0

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import pytest
 from support.families import examined
-from trajgap.compare.audits.instances.result import (
-    InstancesResult,
-)
+from trajgap.compare.audits.instances.result import InstancesResult
 
 
 @pytest.fixture(scope="module")

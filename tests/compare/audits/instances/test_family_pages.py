@@ -5,12 +5,14 @@ from __future__ import annotations
 import json
 import re
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 from support.checkout import ROOT
 from support.documents import SCHEMA, validator
-from support.families import SMALL, WHALE, small
+from support.families import SMALL, UNSOLVED, WHALE, small
+from support.findings import verdicts
 from trajgap.compare import audit
 from trajgap.compare.audits.case_audit import audit_case
 from trajgap.compare.audits.instances.drawn import printed_reduction
@@ -22,60 +24,45 @@ from trajgap.compare.audits.instances.result import (
 )
 from trajgap.compare.audits.rules.on_instances import judge_instances
 from trajgap.compare.audits.study import Study
-from trajgap.compare.documents import Effect, json_text
+from trajgap.compare.documents import ClaimVerdict, Effect, json_text
 from trajgap.compare.pages.markdown_text import markdown
 from trajgap.compare.pages.writer import case_page
 from trajgap.compare.pictures.drawing import svg
 from trajgap.compare.pictures.instances import instances_picture
 from trajgap.compare.sphinx import Results
-from trajgap.problem import (
-    CaseError,
-    load_case,
-    parse_case,
-)
+from trajgap.problem import CaseError, load_case, parse_case
 
 
 def test_findings_inform_and_decide_nothing() -> None:
     study = Study(small(), seeds=2, certify_seconds=0)
     found = list(judge_instances(study))
-    assert [(f.claim, f.reading) for f in found] == [
-        ("better", None), ("better", "as-printed"), ("better", "joined"), ("settles", None),
-    ]  # fmt: skip
+    readings = [("better", None), ("better", "as-printed"), ("better", "joined"), ("settles", None)]
+    assert [(f.claim, f.reading) for f in found] == readings
     for f in found:
-        assert (f.rule, str(f.severity), str(f.verdict)) == ("TG404", "info", "not checkable")
+        assert (f.rule, f.severity, f.verdict) == ("TG404", "info", "not checkable")
         assert not f.decides
         assert "refuted" not in f.message
-    assert "On 4 instances drawn from the robot's workspace, the reduction of " in found[0].message
-    assert "These are not the paper's instances, so they decide nothing" in found[0].message
-    assert "4 instances, at steps of 0.3, 0.9 rad, with 2 runs each" in found[1].message
-    assert "at the best known optima: median 0.0 % (0.0 to 0.0 %)." in found[2].message
-    assert "By iteration 10 of 12" in found[3].message
-    assert "% under “as-printed”, " in found[3].message
-    assert "95 % interval, instances resampled" in found[1].message
-    assert "Where 2.00 s is printed, the procedure" in found[1].message
-    # Readings are named and never counted.
-    assert not any(re.search(r"in \d+ of \d+ readings", f.message) for f in found)
-    one = audit_case(study)
-    verdicts = {j.claim: str(j.verdict) for j in one.judgements}
-    assert verdicts == {
-        "old-total": "not checkable", "new-total": "not checkable", "better": "not checkable",
-        "settles": "not checkable",
-    }  # fmt: skip
+        # Readings are named and never counted.
+        assert not re.search(r"in \d+ of \d+ readings", f.message)
+    for one, said in (
+        (0, "On 4 instances drawn from the robot's workspace, the reduction of "),
+        (0, "These are not the paper's instances, so they decide nothing"),
+        (1, "4 instances, at steps of 0.3, 0.9 rad, with 2 runs each"),
+        (1, "95 % interval, instances resampled"),
+        (1, "Where 2.00 s is printed, the procedure"),
+        (2, "at the best known optima: median 0.0 % (0.0 to 0.0 %)."),
+        (3, "By iteration 10 of 12"),
+        (3, "% under “as-printed”, "),
+    ):
+        assert said in found[one].message
+    words = verdicts(audit_case(study))
+    names = ("old-total", "new-total", "better", "settles")
+    assert words == dict.fromkeys(names, ClaimVerdict.NOT_CHECKABLE)
 
 
 def test_without_a_pair_of_answers_the_words_say_so() -> None:
-    found = list(
-        judge_instances(
-            Study(
-                small(
-                    ("upper = 8", "upper = 0.05"),
-                    ("position_initial = [0, 8]", "position_initial = [0, 0.05]"),
-                    ("instances = 2", "instances = 1"),
-                ),
-                seeds=2,
-            )
-        )
-    )
+    case = small(*UNSOLVED, ("instances = 2", "instances = 1"))
+    found = list(judge_instances(Study(case, seeds=2)))
     assert "unusual under “as-printed”, “quintic spline” (no pair of answers)" in found[0].message
     assert found[0].computed == "no pair of answers"
     assert "12 runs found nothing that keeps its limits" in found[1].message
@@ -186,11 +173,10 @@ def documented() -> str:
 DOCUMENTED = re.compile(r"^\| `([\w-]+)` \| (.*) \|$", re.MULTILINE)
 """A reading in the table of the documentation, and the keys of its medians."""
 KEYS = re.compile(r"`([^`|]+)\.median\\\|\.1%`")
-OBJECTIVES = ("death-penalty", "stretch")
-"""In the order of the table."""
 
 
-# --- the page of the documentation ----------------------------------------------------------------
+def shown(key: str) -> Any:
+    return Results(ROOT / "docs" / "results").value(key)
 
 
 def test_the_documented_digits_are_those_of_the_case_and_the_rule() -> None:
@@ -201,22 +187,21 @@ def test_the_documented_digits_are_those_of_the_case_and_the_rule() -> None:
     for side, name in ((claim.slower, "quintic"), (claim.faster, "b-spline")):
         total = study.case.claim(side)
         assert (total.problem, f"{total.value} s" in page) == (name, True)
-    shown = Results(ROOT / "docs" / "results")
     keys = [f"{WHALE}:families.0.printed_{end}" for end in ("lowest", "highest")]
     assert all(f"{{trajgap}}`{key}|.2%`" in page for key in keys)
-    assert [shown.value(key) for key in keys] == pytest.approx(printed_reduction(study, block))
+    assert [shown(key) for key in keys] == pytest.approx(printed_reduction(study, block))
     assert f"{100 * MIDDLE:g} %" in page
     assert [reading for reading, _ in DOCUMENTED.findall(page)] == list(block.readings)
 
 
 def test_the_documented_medians_are_keys_of_their_reading_effect_and_objective() -> None:
     page = documented()
-    shown = Results(ROOT / "docs" / "results")
-    effects = [(e, o) for e in ("both together", "algorithm alone") for o in OBJECTIVES]
+    objectives = ("death-penalty", "stretch")
+    effects = [(e, o) for e in ("both together", "algorithm alone") for o in objectives]
     rows = DOCUMENTED.findall(page)
     assert len(rows) == 5
     for reading, row in rows:
-        found = [shown.value(key) for key in KEYS.findall(row)]
+        found = [shown(key) for key in KEYS.findall(row)]
         assert {one["reading"] for one in found} == {reading}
         assert [(one["effect"], one["objective"]) for one in found[:4]] == effects
         assert found[4]["effect"] == "curve alone"
@@ -231,10 +216,9 @@ def test_the_documented_medians_are_those_of_the_shipped_family() -> None:
     columns.append((Effect.CURVE, 0))
     page = documented()
     rows = DOCUMENTED.findall(page)
-    shown = Results(ROOT / "docs" / "results")
     assert [reading for reading, _ in rows] == list(found.readings)
     for reading, row in rows:
-        printed = [100 * shown.value(f"{key}.median") for key in KEYS.findall(row)]
+        printed = [100 * shown(f"{key}.median") for key in KEYS.findall(row)]
         computed = [100 * distribution(found.reductions(reading, *c)).median for c in columns]
         assert printed == pytest.approx(computed, abs=0.0501)
         assert abs(computed[3]) < 3
@@ -255,16 +239,11 @@ def test_instances_are_resampled_and_not_pairs_of_runs(result: InstancesResult) 
     two = replace(result, samples=result.of(reading)[:2])
     ends = sorted(distribution(s.reductions(Effect.BOTH)).median for s in two.samples)
     assert two.median_interval(reading, Effect.BOTH) == pytest.approx(ends)
-    assert np.isnan(
-        replace(result, samples=result.of(reading)[:1]).median_interval(reading, Effect.BOTH)[0]
-    )
+    alone = replace(result, samples=result.of(reading)[:1])
+    assert np.isnan(alone.median_interval(reading, Effect.BOTH)[0])
     # The same runs twice on each instance tell nothing new.
-    doubled = replace(
-        result,
-        samples=tuple(
-            replace(s, totals=np.concatenate([s.totals, s.totals], axis=2)) for s in result.samples
-        ),
-    )
+    twice = (replace(s, totals=np.concatenate([s.totals] * 2, axis=2)) for s in result.samples)
+    doubled = replace(result, samples=tuple(twice))
     assert doubled.median_interval(reading, Effect.BOTH) == pytest.approx((low, high))
 
 

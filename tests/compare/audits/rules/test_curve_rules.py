@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 import pytest
 from support.b_splines import clamped, uniform, vertices_by_solving
+from support.findings import judged, said_of, study_of
+from support.made_up import claim, paper, readings
 from support.studies import changed, shipped, source
 from trajgap.compare.audits.rounding import RoundingBox, judge_rounding
 from trajgap.compare.audits.rules.continuous_time import judge_motions
@@ -22,7 +25,6 @@ from trajgap.nlp.enclosure.balls import Ball
 from trajgap.nlp.enclosure.uniform import centred_stretched, centred_timed
 from trajgap.problem import (
     CaseError,
-    Verdict,
     check,
     evaluate,
     extrema,
@@ -34,40 +36,28 @@ from trajgap.problem import (
 
 POLISH, WHALE = "irb1600-ga-cubic-bspline", "z1-woa-bspline"
 TIMES = ("stretched", "timed")
-CLAMPED = """family = "clamped-b-spline"
-degree = 3
-knots = "averaged-continued"
-end_orders = [1]
-parameters = "chord"
-time = "timed"
-"""
+STRETCHED = {"family": "uniform-cubic-b-spline", "time": "stretched"}
+CLAMPED = {
+    "family": "clamped-b-spline",
+    "degree": 3,
+    "knots": "averaged-continued",
+    "end_orders": [1],
+    "parameters": "chord",
+    "time": "timed",
+}
 
 
 def of(findings, rule: str, claim: str | None = None) -> list[Finding]:
     return [f for f in findings if f.rule == rule and (claim is None or f.claim == claim)]
 
 
-def vertex_case(block: str) -> str:
-    """Four way-points, their curve, and vertices that are those of no uniform cubic B-spline."""
-    return f"""
-format = 1
-id = "v"
-title = "T"
-source = {{ title = "S" }}
-robot = {{ name = "R", joints = ["1"] }}
-units = {{ position = "rad", velocity = "rad/s", time = "s" }}
-waypoints = {{ joint_rows = [["0.1", "1.2", "-0.4", "0.7"]] }}
-limits = {{ velocity = 3 }}
-
-[interpolant]
-{block}
-
-[[claims]]
-id = "vertices"
-quantity = "control_vertices"
-where = "Table 2"
-joint_rows = [["0.1", "0.2", "1.5", "-0.8", "0.6", "0.7"]]
-"""
+def vertices_on(curve: dict[str, Any], *more: str) -> list[Finding]:
+    """Of four way-points, and vertices that are those of no uniform cubic B-spline."""
+    printed = claim(
+        "v", "control_vertices", joint_rows=[["0.1", "0.2", "1.5", "-0.8", "0.6", "0.7"]]
+    )
+    text = paper(["0.1 1.2 -0.4 0.7"], printed, *more, curve=curve, velocity=3)
+    return judged(study_of(text), "TG205")
 
 
 # --- TG205 ----------------------------------------------------------------------------------------
@@ -75,7 +65,7 @@ joint_rows = [["0.1", "0.2", "1.5", "-0.8", "0.6", "0.7"]]
 
 def test_every_printed_control_vertex_is_inside_what_rounding_allows() -> None:
     study = shipped(POLISH)
-    (found,) = of(judge_vertices(study), "TG205")
+    (found,) = judged(study, "TG205")
     assert found.verdict is ClaimVerdict.SUPPORTED
     assert found.computed == "72 of 72 inside"
     every = vertices(study.case.claim("control-vertices"), study.case.statement())
@@ -91,7 +81,7 @@ def test_every_printed_control_vertex_is_inside_what_rounding_allows() -> None:
 
 
 @pytest.mark.parametrize(
-    ("digits_", "verdict", "severity"),
+    ("printed", "verdict", "severity"),
     [
         ("-2.1069", ClaimVerdict.SUPPORTED, Severity.INFO),
         ("-2.1068", ClaimVerdict.SUPPORTED, Severity.WARNING),
@@ -101,16 +91,15 @@ def test_every_printed_control_vertex_is_inside_what_rounding_allows() -> None:
     ],
 )
 def test_one_changed_digit_is_seen_where_neither_rounding_nor_cutting_explains_it(
-    digits_: str, verdict: ClaimVerdict, severity: Severity
+    printed: str, verdict: ClaimVerdict, severity: Severity
 ) -> None:
-    study = changed(POLISH, ('"-2.1070"', f'"{digits_}"'))
-    (found,) = of(judge_vertices(study), "TG205")
+    (found,) = judged(changed(POLISH, ('"-2.1070"', f'"{printed}"')), "TG205")
     assert (found.verdict, found.severity) == (verdict, severity)
     if severity is Severity.WARNING:
-        assert "(V2 of joint 2) follow from the printed way-points only if digits" in found.message
+        assert "(V2 of joint 2)" in found.message
     if verdict is ClaimVerdict.REFUTED:
         assert found.message.startswith("1 of 72 printed control vertices lie outside")
-        assert f"V2 of joint 2 printed {digits_}, allowed -2.107" in found.message
+        assert f"V2 of joint 2 printed {printed}, allowed -2.107" in found.message
 
 
 def test_vertices_of_waypoints_whose_digits_were_cut_off_accuse_nobody() -> None:
@@ -131,7 +120,7 @@ def test_vertices_of_waypoints_whose_digits_were_cut_off_accuse_nobody() -> None
         head, _, tail = text.partition("joint_rows = [\n")
         text = f"{head}joint-rows = {table}{tail[tail.index(chr(10) + ']') + 2 :]}"
     study = Study(parse_case(text.replace("joint-rows", "joint_rows"), "cut.toml"), seeds=2)
-    (found,) = of(judge_vertices(study), "TG205")
+    (found,) = judged(study, "TG205")
     assert (found.verdict, found.severity) == (ClaimVerdict.SUPPORTED, Severity.WARNING)
 
 
@@ -158,45 +147,26 @@ def test_control_vertices_are_counted(old: str, new: str, message: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("block", "verdict"),
+    ("curve", "verdict"),
     [
-        ('family = "3-5-3"', ClaimVerdict.NOT_CHECKABLE),
+        ({"family": "3-5-3"}, ClaimVerdict.NOT_CHECKABLE),
         (CLAMPED, ClaimVerdict.NOT_CHECKABLE),
-        ('family = "uniform-cubic-b-spline"\ntime = "stretched"', ClaimVerdict.REFUTED),
+        (STRETCHED, ClaimVerdict.REFUTED),
     ],
 )
 def test_vertices_of_another_curve_are_not_held_to_the_uniform_splines(
-    block: str, verdict: ClaimVerdict
+    curve: dict[str, Any], verdict: ClaimVerdict
 ) -> None:
     """A clamped spline has two vertices more than way-points as well, and other ones."""
-    (found,) = of(judge_vertices(Study(parse_case(vertex_case(block), "v.toml"))), "TG205")
+    (found,) = vertices_on(curve)
     assert found.verdict is verdict
     assert (found.severity is Severity.ERROR) is (verdict is ClaimVerdict.REFUTED)
-    assert ("(2) and (3)" in found.message) is False
-    if verdict is ClaimVerdict.NOT_CHECKABLE:
-        assert "uniform cubic B-spline" in found.message
-
-
-def test_vertices_are_judged_under_the_readings_of_their_curve_alone() -> None:
-    text = (
-        vertex_case('family = "uniform-cubic-b-spline"\ntime = "stretched"')
-        + """
-[[readings]]
-id = "uniform"
-why = "The text says uniform."
-default = true
-
-[[readings]]
-id = "other"
-why = "The title says 3-5-3."
-interpolant = { family = "3-5-3" }
-"""
-    )
-    found = of(judge_vertices(Study(parse_case(text, "v.toml"))), "TG205")
-    assert {f.reading: f.verdict for f in found} == {
-        "uniform": ClaimVerdict.REFUTED,
-        "other": ClaimVerdict.NOT_CHECKABLE,
-    }
+    # Under readings with several curves, each is judged by its own.
+    both = readings(uniform={"default": True}, other={"interpolant": curve})
+    words = {f.reading: f.verdict for f in vertices_on(STRETCHED, both)}
+    one = {None: ClaimVerdict.REFUTED}
+    apart = {"uniform": ClaimVerdict.REFUTED, "other": verdict}
+    assert words == (one if curve is STRETCHED else apart)
 
 
 # --- rounding boxes -------------------------------------------------------------------------------
@@ -288,25 +258,28 @@ def test_clamped_splines_are_kept_consistent_or_undecided() -> None:
 # --- jumps ----------------------------------------------------------------------------------------
 
 
-def test_jumps_are_named_apart_from_the_limits() -> None:
-    found = list(judge_motions(shipped(POLISH)))
-    jumping = of(found, "TG202", "after")
+@pytest.fixture(scope="module")
+def motions() -> list[Finding]:
+    return list(judge_motions(shipped(POLISH)))
+
+
+def test_jumps_are_named_apart_from_the_limits(motions: list[Finding]) -> None:
+    jumping = of(motions, "TG202", "after")
     assert {f.reading.rpartition("-")[2] for f in jumping} == {"stretched"}
     assert len(jumping) == 9
     assert not any(f.decides for f in jumping)
     assert all("velocity jumps 48 times" in f.message for f in jumping)
-    assert not of(found, "TG202", "before")
-    limits = {f.reading: f for f in of(found, "TG201", "after")}
+    assert not of(motions, "TG202", "before")
+    limits = {f.reading: f for f in of(motions, "TG201", "after")}
     kept = limits["angles-deg-v-rad-a-rad-stretched"]
     assert kept.verdict is ClaimVerdict.NOT_CHECKABLE
-    assert "keep every limit inside the segments, and the velocity jumps 48" in kept.message
-    statement = {f.reading: f for f in of(found, "TG201", "limits-kept")}
+    assert "inside the segments, and the velocity jumps 48" in kept.message
+    statement = {f.reading: f for f in of(motions, "TG201", "limits-kept")}
     assert "velocity jumps 48" in statement["angles-deg-v-rad-a-rad-stretched"].message
     assert limits["angles-deg-v-rad-a-rad-timed"].verdict is ClaimVerdict.SUPPORTED
-    refuted = [rid for rid, f in limits.items() if f.verdict is ClaimVerdict.REFUTED]
-    assert len(refuted) == 13
+    assert sum(f.verdict is ClaimVerdict.REFUTED for f in limits.values()) == 13
     # Nothing in the paper says that the equal durations before the optimisation keep them.
-    assert not any(f.decides for f in of(found, "TG201", "before"))
+    assert not any(f.decides for f in of(motions, "TG201", "before"))
 
 
 FEW = (
@@ -345,51 +318,39 @@ def test_the_printed_durations_are_optimal_under_no_reading(every: bool) -> None
         assert jumps == rid.endswith("stretched")
 
 
-def test_acceleration_said_to_jump_does_in_the_reading_that_stretches() -> None:
-    found = {
-        f.reading: f for f in of(judge_motions(shipped(POLISH)), "TG206", "acceleration-jumps")
-    }
+def test_acceleration_said_to_jump_does_in_the_reading_that_stretches(
+    motions: list[Finding],
+) -> None:
+    found = {f.reading: f for f in of(motions, "TG206", "acceleration-jumps")}
     assert len(found) == 19
-    for reading, finding in found.items():
+    for reading, one in found.items():
         jumps = reading.endswith("stretched")
-        expected = ClaimVerdict.SUPPORTED if jumps else ClaimVerdict.NOT_CHECKABLE
-        assert finding.verdict is expected
+        assert one.verdict == ("supported" if jumps else "not checkable")
     study = shipped(POLISH)
-    claim = study.case.claim("after")
     stretched = "angles-rad-v-rad-a-rad-stretched"
-    at = study.claim_check(claim, "nine-segments", stretched).jumps
+    at = study.claim_check(study.case.claim("after"), "nine-segments", stretched).jumps
     largest = max((j for j in at if j.order == 2 and j.joint == "2"), key=lambda j: abs(j.size))
     assert f"by {largest.size:.6g} rad/s²" in found[stretched].message
 
 
 def test_totals_and_the_saving_follow_from_the_digits() -> None:
     found = [*judge_digits(shipped(POLISH)), *judge_improvements(shipped(POLISH))]
-    assert {f.claim: f.verdict for f in found if f.rule in ("TG101", "TG103")} == dict.fromkeys(
-        ("before", "after", "improvement"), ClaimVerdict.SUPPORTED
-    )
-
-
-# --- no way-points --------------------------------------------------------------------------------
+    words = {f.claim: f.verdict for f in found if f.rule in ("TG101", "TG103")}
+    assert words == dict.fromkeys(("before", "after", "improvement"), ClaimVerdict.SUPPORTED)
 
 
 def test_a_case_without_waypoints_says_of_each_time_why_it_is_not_checkable() -> None:
     study = shipped(WHALE)
     assert not study.has_problems
     found = list(list_open_points(study))
-    for claim in ("b-spline-total", "quintic-total", "convergence"):
-        (finding,) = of(found, "TG501", claim)
-        assert finding.verdict is ClaimVerdict.NOT_CHECKABLE
-        assert (
-            "Without the way-points there is nothing to compute: the text gives" in finding.message
-        )
+    for name in ("b-spline-total", "quintic-total", "convergence"):
+        (one,) = of(found, "TG501", name)
+        assert one.verdict is ClaimVerdict.NOT_CHECKABLE
+        assert "Without the way-points there is nothing to compute" in one.message
     assert not of(found, "TG501", "improvement")
     assert not list(judge_vertices(study))
-    (improvement,) = of(judge_improvements(study), "TG103", "improvement")
+    (improvement,) = said_of(study, "improvement", "TG103")
     assert improvement.verdict is ClaimVerdict.NOT_CHECKABLE
-
-
-def test_a_case_with_problems_has_no_such_finding() -> None:
-    study = shipped(POLISH)
-    assert study.has_problems
-    assert not of(list_open_points(study), "TG501", "after")
-    assert check(study.case.problem(), np.full(9, 1.0)).verdict is Verdict.PASS
+    # A case with problems has no such finding.
+    assert shipped(POLISH).has_problems
+    assert not of(list_open_points(shipped(POLISH)), "TG501", "after")

@@ -1,4 +1,4 @@
-"""TG103 beside an enumeration of all that prints alike, for totals of one and two decimals."""
+"""TG103 beside an enumeration of all that prints alike, and what a claimed improvement may mean."""
 
 from __future__ import annotations
 
@@ -6,59 +6,28 @@ from fractions import Fraction
 from itertools import product
 
 import pytest
-from support.findings import said_of, study_of
+from support.findings import finding, said_of, study_of
+from support.made_up import algorithms, claim, gain, row, total
 from support.one_joint import one_joint
-from trajgap.compare.audits.rules.improvements import judge_improvements
+from trajgap.compare.audits.rules.printed_digits import span
 from trajgap.compare.documents import ClaimVerdict, Finding, Severity
+from trajgap.problem import Interval
 
-TAIL = """
-[[claims]]
-id = "slow"
-quantity = "total_time"
-where = "abstract"
-value = "{slow}"
-[[claims]]
-id = "fast"
-quantity = "total_time"
-where = "abstract"
-value = "{fast}"
-[[claims]]
-id = "gain"
-quantity = "improvement"
-where = "abstract"
-slower = "slow"
-faster = "fast"
-{stated}
-"""
+SHARES = {"slower": lambda a, b: 100 * (a - b) / a, "faster": lambda a, b: 100 * (a - b) / b}
+PAIRS = [("1.2", "0.8"), ("3.1", "2.9"), ("0.9", "0.8"), ("2.25", "2.10"), ("1.05", "0.95")]
+
+
+def judged(slow: str, fast: str, **stated: str) -> Finding:
+    """What is found on an improvement between two totals."""
+    tail = total("slow", slow) + total("fast", fast) + gain("slow", "fast", **stated)
+    text = one_joint("0, 1", "9", "0.99", "optimal", tail)
+    return finding(text, "gain", "TG103")
 
 
 def alike(text: str) -> list[Fraction]:
     """The ends and the middle of what rounds to the digits; ties round either way."""
     half = Fraction(1, 2 * 10 ** len(text.partition(".")[2]))
     return [Fraction(text) - half, Fraction(text), Fraction(text) + half]
-
-
-SHARES = {"slower": lambda a, b: 100 * (a - b) / a, "faster": lambda a, b: 100 * (a - b) / b}
-PAIRS = [("1.2", "0.8"), ("3.1", "2.9"), ("0.9", "0.8"), ("2.25", "2.10"), ("1.05", "0.95")]
-
-
-def judged(slow: str, fast: str, stated: str) -> tuple[ClaimVerdict, Severity]:
-    found = finding(slow, fast, stated)
-    return found.verdict, found.severity
-
-
-def finding(slow: str, fast: str, stated: str) -> Finding:
-    tail = TAIL.format(slow=slow, fast=fast, stated=stated)
-    study = study_of(one_joint("0, 1", "9", "0.99", "optimal", tail))
-    (found,) = said_of(study, judge_improvements, "gain", "TG103")
-    return found
-
-
-def fits(printed: str, true: list[Fraction]) -> bool:
-    """Whether some value between the enumerated ones rounds to the digits: a difference and a
-    share are monotone in each total, so that the enumerated ends are the ends."""
-    least, _, most = alike(printed)
-    return min(true) <= most and least <= max(true)
 
 
 def near(true: list[Fraction], places: int) -> list[str]:
@@ -69,6 +38,17 @@ def near(true: list[Fraction], places: int) -> list[str]:
     return [f"{float(k * unit):.{places}f}" for k in sorted(chosen) if k >= 0]
 
 
+def held(slow: str, fast: str, printed: str, true: list[Fraction], **stated: str) -> bool:
+    """Whether some value that rounds to the digits is true; a difference and a share are monotone
+    in each total, so that the enumerated ends are the ends."""
+    least, _, most = alike(printed)
+    fits = min(true) <= most and least <= max(true)
+    found = judged(slow, fast, **stated)
+    assert (found.severity is Severity.INFO) == fits, printed
+    assert found.verdict is ClaimVerdict.SUPPORTED or not fits
+    return fits
+
+
 @pytest.mark.parametrize(("slow", "fast"), PAIRS)
 @pytest.mark.parametrize("places", [0, 1])
 @pytest.mark.parametrize("base", SHARES)
@@ -76,14 +56,8 @@ def test_a_percentage_is_supported_where_some_rounding_gives_it(
     slow: str, fast: str, places: int, base: str
 ) -> None:
     true = [SHARES[base](a, b) for a, b in product(alike(slow), alike(fast))]
-    seen = set()
-    for printed in near(true, places):
-        verdict, severity = judged(slow, fast, f'percent = "{printed}"\nbase = "{base}"')
-        assert (severity is Severity.INFO) == fits(printed, true), printed
-        if fits(printed, true):
-            assert verdict is ClaimVerdict.SUPPORTED
-        seen.add(severity)
-    assert len(seen) > 1
+    tried = near(true, places)
+    assert len({held(slow, fast, one, true, percent=one, base=base) for one in tried}) > 1
 
 
 @pytest.mark.parametrize(("slow", "fast"), PAIRS)
@@ -93,29 +67,99 @@ def test_a_difference_is_supported_where_some_rounding_gives_it(
 ) -> None:
     true = [a - b for a, b in product(alike(slow), alike(fast))]
     for printed in near(true, places):
-        verdict, severity = judged(slow, fast, f'seconds = "{printed}"')
-        assert (severity is Severity.INFO) == fits(printed, true), printed
-        if fits(printed, true):
-            assert verdict is ClaimVerdict.SUPPORTED
-
-
-@pytest.mark.parametrize(
-    ("base", "percent", "other"),
-    [("slower", "50.0", "the shorter total"), ("faster", "33.3", "the longer total")],
-)
-def test_a_percentage_of_the_other_total_is_said_to_fit_that_one(
-    base: str, percent: str, other: str
-) -> None:
-    """3 s against 2 s: a third of 3 s, half of 2 s."""
-    found = finding("3.000", "2.000", f'percent = "{percent}"\nbase = "{base}"')
-    assert found.verdict is ClaimVerdict.REFUTED
-    assert found.message.endswith(f"As a share of {other} it would be {percent} %.")
-    far = finding("3.000", "2.000", f'percent = "41.0"\nbase = "{base}"')
-    assert "As a share of" not in far.message
+        held(slow, fast, printed, true, seconds=printed)
 
 
 def test_intervals_that_touch_meet() -> None:
     """1.2 − 0.8 is at most 0.5, the least that rounds to 1."""
-    assert judged("1.2", "0.8", 'seconds = "1"') == (ClaimVerdict.SUPPORTED, Severity.INFO)
     true = [a - b for a, b in product(alike("1.2"), alike("0.8"))]
     assert max(true) == min(alike("1")) == Fraction(1, 2)
+    assert held("1.2", "0.8", "1", true, seconds="1")
+
+
+@pytest.mark.parametrize(
+    ("slow", "fast", "percent", "base", "verdict", "other"),
+    [
+        # 2.80/2.70 − 1 = 3.70 %, and 1 − 2.70/2.80 = 3.57 %.
+        ("2.800", "2.700", "3.7", "", "supported", "longer"),
+        ("2.800", "2.700", "3.6", "", "supported", None),
+        ("2.800", "2.700", "3.7", "faster", "supported", None),
+        ("2.800", "2.700", "3.6", "slower", "supported", None),
+        ("2.800", "2.700", "4.5", "", "refuted", "shorter"),
+        # A stated base is the only one.
+        ("2.8000", "2.7000", "3.7", "slower", "refuted", None),
+        ("2.8000", "2.7000", "3.5", "faster", "refuted", None),
+        ("3.000", "2.000", "50.0", "slower", "refuted", "shorter"),
+        ("3.000", "2.000", "33.3", "faster", "refuted", "longer"),
+        ("3.000", "2.000", "41.0", "slower", "refuted", ""),
+        ("3.000", "2.000", "41.0", "faster", "refuted", ""),
+        # 1 − 3.85282/4 = 3.6795 %, cut off; 4/3.85282 − 1 = 3.8201 %.
+        ("4.00000", "3.85282", "3.67", "", "supported", "shorter"),
+    ],
+)
+def test_a_percentage_may_be_a_share_of_either_total(
+    slow: str, fast: str, percent: str, base: str, verdict: str, other: str | None
+) -> None:
+    found = judged(slow, fast, percent=percent, **({"base": base} if base else {}))
+    assert found.verdict == verdict
+    if other is not None:
+        said = f"As a share of the {other} total it would be"
+        assert found.message.count("As a share of") == bool(other)
+        assert (said in found.message) == bool(other)
+
+
+def test_an_interval_whose_ends_print_alike_is_one_number() -> None:
+    assert span(Interval(Fraction("7.771312"), Fraction("7.771314"))) == "7.77131"
+    assert span(Interval(Fraction("7.7712"), Fraction("7.7714"))) == "7.7712 to 7.7714"
+
+
+def test_an_improvement_below_the_last_digit_contradicts_nothing() -> None:
+    found = judged("2.80", "2.80")
+    assert (found.verdict, found.severity) == (ClaimVerdict.NOT_CHECKABLE, Severity.INFO)
+    assert "below 0.01 s" in found.message
+
+
+def longest(name: str, value: str = "2.5", **keys: str) -> str:
+    """A table with a total."""
+    return claim(name, "maximum", of=["d"], durations=[value], total=value, **keys)
+
+
+def test_one_table_does_not_say_how_two_totals_differ() -> None:
+    """1 - 3.528/3.961 is 10.93 %; a table that either total might stand in speaks against none."""
+    said = total("standard", "3.961"), total("improved", "3.528")
+    share = gain("standard", "improved", percent="10.9")
+    text = one_joint("0, 1", "9", "2.5", "within_limits", longest("longest"))
+    for other in ("", longest("other")):
+        found = finding(text + other + "".join(said) + share, "gain", "TG103")
+        assert (found.verdict, found.severity) == (ClaimVerdict.SUPPORTED, Severity.INFO)
+    # Each total has a table of its own, and these print the same number.
+    rival = total("standard", "3.961", algorithm="rival") + algorithms("rival")
+    apart = text + longest("other", algorithm="rival") + rival + said[1] + share
+    _, found = said_of(study_of(apart), "gain", "TG103")
+    assert (found.verdict, found.severity) == (ClaimVerdict.INCONSISTENT, Severity.ERROR)
+    # 3.961/3.528 − 1 is 12.27 %: tables that give either share contradict nothing.
+    text = one_joint("0, 1", "9", "2.5", "within_limits", longest("longest", "3.528"))
+    text += longest("other", "3.961", algorithm="rival") + rival + said[1]
+    for percent in ("10.9", "12.3"):
+        one = finding(text + gain("standard", "improved", percent=percent), "gain", "TG103")
+        assert one.verdict is ClaimVerdict.SUPPORTED
+
+
+@pytest.mark.parametrize(("percent", "follows"), [("27.1", True), ("25.0", False)])
+def test_a_percentage_of_whole_numbers_beside_totals_of_digits_cut_off_follows(
+    percent: str, follows: bool
+) -> None:
+    """2.5110 and 1.8315 s, whose parts are cut off and then added up: 27.06 % beside 27.89 %."""
+    parts = (0.9803, 0.8704, 0.6603), (0.6579, 0.6468, 0.5268)
+    slow, fast = (sum(each) for each in parts)
+    assert f"{100 * (1 - fast / slow):.1f}" == "27.1"
+    assert 100 * (1 - 1.815 / 2.51) > 27.6 > 100 * (1 - 1.82 / 2.52) - 0.2
+    tail = (
+        row("slow", "0.98 0.87 0.66", total="2.51", state="before")
+        + row("fast", "0.65 0.64 0.52", total="1.81")
+        + gain("slow", "fast", base="slower", percent=percent)
+    )
+    text = one_joint("0, 1, 2, 3", "9", "9", "within_limits", tail)
+    found = finding(text, "gain", "TG103")
+    assert (found.verdict is ClaimVerdict.SUPPORTED) == follows
+    assert (found.severity is Severity.ERROR) != follows

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import pytest
 from support.checkout import ROOT
+from support.findings import study_of
+from support.made_up import entry, paper, readings
 from trajgap.compare.audits.rules import GROUPS, RULES
 from trajgap.compare.audits.rules.printed_chain import judge_kinematics
 from trajgap.compare.audits.study import Study
 from trajgap.compare.documents import Basis, ClaimVerdict, Finding, Severity
 from trajgap.problem import CaseError
-from trajgap.problem.cases.load import load_case, parse_case
+from trajgap.problem.cases.load import load_case
 from trajgap.problem.printed import Printed
 
 ANGLES = {"a": [10.0, 60.5, -20.25, 55.0], "b": [20.0, 50.0, 120.0, 35.0]}
@@ -28,6 +32,10 @@ alpha = [90, 0, 0]
 """
 
 
+SLIDES = 'kinds = ["revolute", "prismatic", "revolute"]\nlower = [0, 0, 0]\nupper = [1, 1, 1]\n'
+Points = Sequence[Sequence[str]]
+
+
 def positions(third=0.0, elbow=(0.7, 0.4), up=1.0, unit=1000.0):
     """Positions of the end by hand: joint a turns the plane of joints c and b."""
     turn, bend = np.deg2rad(ANGLES["a"]), np.deg2rad(ANGLES["b"])
@@ -38,201 +46,140 @@ def positions(third=0.0, elbow=(0.7, 0.4), up=1.0, unit=1000.0):
     return [[f"{unit * x:.1f}" for x in point] for point in points]
 
 
-def case_text(points, table: str = TABLE, column: str = "", readings: str = "") -> str:
-    rows = [[f"{x:.2f}" for x in ANGLES[j]] for j in "ab"]
-    text = f"""
-format = 1
-id = "arm"
-title = "arm"
-[source]
-year = 2001
-[robot]
-name = "arm"
-joints = ["a", "b"]
-{table}
-[units]
-position = "deg"
-[waypoints]
-labels = ["A", "B", "C", "D"]
-joint_rows = {rows}
-[interpolant]
-family = "3-5-3"
-{readings}{column}
-"""
-    for i, point in enumerate(points):
-        text += f'[[cartesian]]\nid = "p{i}"\nwhere = "Table 2"\nunit = "mm"\nvalues = {point}\n'
-    return text
+THIRD = [12.0, -40.0, 5.5, 70.0]
+PLACES = positions(THIRD)
+EXACT = TABLE.replace('"0.700", "0.400"', "0.7, 0.4")
+UNSURE = 'alpha_signs = "uncertain"\n'
+MODIFIED = TABLE.replace('"standard"', '"modified"')
+ROWS = [[f"{x:.2f}" for x in ANGLES[j]] for j in "ab"]
+
+
+def column(values: Sequence[object] = THIRD, **keys: str) -> str:
+    return entry("columns", id="c", where="Table 1", joint="c", values=list(values), **keys)
+
+
+def case_text(points: Points, table: str = TABLE, *parts: str, **keys: Any) -> str:
+    """An arm that prints joints a and b, positions of its end, and parts that follow."""
+    placed = (
+        entry("cartesian", id=f"p{i}", where="Table 2", unit="mm", values=point)
+        for i, point in enumerate(points)
+    )
+    labels = {"labels": ["A", "B", "C", "D"]}
+    text = paper(ROWS, *parts, *placed, curve={"family": "3-5-3"}, waypoints=labels, **keys)
+    text = text.replace("[limits]\n", "").replace('joints = ["1", "2"]', 'joints = ["a", "b"]')
+    return text.replace("[units]", f"{table}\n[units]", 1)
 
 
 def findings(text: str) -> list[Finding]:
-    return list(judge_kinematics(Study(parse_case(text, "arm.toml"))))
+    return list(judge_kinematics(study_of(text)))
 
 
-def column(values) -> str:
-    return f'[[columns]]\nid = "c"\nwhere = "Table 1"\njoint = "c"\nvalues = {values}\n'
-
-
-def one(text: str) -> Finding:
-    (found,) = findings(text)
+def one(points: Points = PLACES, table: str = TABLE, *parts: str, **keys: Any) -> Finding:
+    (found,) = findings(case_text(points, table, *parts, **{"angle": "deg"} | keys))
     assert found.rule == "TG601"
     assert found.basis is Basis.KINEMATICS
-    assert found.severity is not Severity.ERROR
+    inconsistent = found.verdict is ClaimVerdict.INCONSISTENT
+    assert found.severity is (Severity.WARNING if inconsistent else Severity.INFO)
     return found
 
 
-def test_a_consistent_case_is_supported():
-    third = [12.0, -40.0, 5.5, 70.0]
-    found = one(case_text(positions(third), column=column([f"{x:.1f}" for x in third])))
-    assert found.verdict is ClaimVerdict.SUPPORTED
-    assert found.severity is Severity.INFO
-    assert found.message.startswith("The end meets every printed position within")
-    assert "The angles of joints a, c and b are read in deg." in found.message
+def higher(points: Points, place: int, at: int, by: float) -> Points:
+    moved = [list(point) for point in points]
+    moved[place][at] = f"{float(moved[place][at]) + by:.1f}"
+    return moved
 
 
-def test_joints_that_are_not_printed_take_what_fits():
-    found = one(case_text(positions([12.0, -40.0, 5.5, 70.0])))
-    assert found.verdict is ClaimVerdict.SUPPORTED
-    assert "joints a and b are read in deg; joint c may have any value." in found.message
+HANGING = positions(THIRD, up=-1.0)
+"""The arm hangs down: the twist's sign is the other one."""
+LOST = [[*HANGING[0][:2], HANGING[0][2].lstrip("-")], *HANGING[1:]]
+"""A minus sign that one coordinate lacks."""
+SLIGHTLY = positions(THIRD, elbow=(0.7004, 0.3996))
 
 
-def test_one_wrong_position_is_inconsistent():
-    points = positions([12.0, -40.0, 5.5, 70.0])
-    points[2][1] = f"{float(points[2][1]) + 30:.1f}"
-    found = one(case_text(points))
-    assert found.verdict is ClaimVerdict.INCONSISTENT
-    assert found.severity is Severity.WARNING
-    assert (
-        "The end then comes no nearer to the printed positions than p0 0.000, p1 0.000, p2 0.0"
-        in (found.message)
+@pytest.mark.parametrize(
+    ("points", "table", "third", "verdict", "said"),
+    [
+        (PLACES, TABLE, column(), "supported", "angles of joints a, c and b are read in deg."),
+        # A joint that is not printed takes what fits.
+        (PLACES, TABLE, "", "supported", "joint c may have any value."),
+        (higher(PLACES, 2, 1, 30), TABLE, "", "inconsistent", "p0 0.000, p1 0.000, p2 0.0"),
+        # Rounding of lengths is not held against a case.
+        (SLIGHTLY, TABLE, "", "supported", ""),
+        (SLIGHTLY, EXACT, column(), "inconsistent", ""),
+        (SLIGHTLY, TABLE, column(), "supported", ""),
+        # Signs that may be lost are tried.
+        (HANGING, TABLE, column(), "inconsistent", ""),
+        (HANGING, TABLE + UNSURE, column(), "not checkable", "With other signs of the twists"),
+        ([[x, y, "-900.0"] for x, y, _ in HANGING], TABLE + UNSURE, column(), "inconsistent",
+         "Whatever signs the twists, the angles and the positions have"),
+        (LOST, TABLE + UNSURE, column(), "not checkable",
+         "no printed position is shown to be out of reach"),
+        (LOST, TABLE, column(), "inconsistent", ""),
+        # Another admitted convention may fit.
+        (PLACES, MODIFIED, column(), "inconsistent", ""),
+        (PLACES, MODIFIED + 'other_conventions = ["standard"]\n', column(), "supported",
+         "(standard convention)"),
+        # Nothing to say, or not enough.
+        (positions(), "", "", "not checkable", "but no table of the robot."),
+        (positions(), TABLE + SLIDES, "", "not checkable",
+         "joint c slides, and its positions are not printed"),
+        (positions(), TABLE + SLIDES, column([1.0, 2.0, 3.0, 4.0]), "not checkable",
+         "the unit of joint c is not that of its kind in the robot's table"),
+    ],
+)  # fmt: skip
+def test_positions_are_held_against_angles(
+    points: Points, table: str, third: str, verdict: str, said: str
+) -> None:
+    found = one(points, table, third)
+    assert found.verdict == verdict
+    assert said in found.message
+    assert ("signs of the twists" in found.message) <= ("uncertain" in table)
+
+
+def test_positions_may_name_their_way_point() -> None:
+    for first, second, verdict in (("D", "B", "supported"), ("B", "D", "inconsistent")):
+        text = case_text([PLACES[3], PLACES[1]], TABLE, column(), angle="deg")
+        for k, label in enumerate((first, second)):
+            text = text.replace(f'id = "p{k}"', f'id = "p{k}"\nwaypoint = "{label}"')
+        (found,) = findings(text)
+        assert found.verdict == verdict
+
+
+OTHER = [[10.0, 20.0], [60.5, 50.0], [-20.25, 120.0], [55.0, 40.0]]
+THREE = {"waypoints": {"waypoint_rows": OTHER[:3]}, "interpolant": {"family": "cubic-spline"}}
+
+
+def test_problems_with_other_way_points_are_judged_apart() -> None:
+    ways = {"waypoints": {"waypoint_rows": OTHER}}
+    parts = (
+        entry("problems", id=k, **v) for k, v in (("same", {}), ("other", ways), ("again", {}))
     )
-    assert "signs of the twists" not in found.message
+    text = case_text(PLACES, TABLE, *parts, column(), angle="deg")
+    assert {f.problem: f.verdict for f in findings(text)} == {
+        "same": "supported", "other": "inconsistent"
+    }  # fmt: skip
 
 
-def test_rounding_is_not_held_against_a_case():
-    points = positions([12.0, -40.0, 5.5, 70.0], elbow=(0.7004, 0.3996))
-    assert one(case_text(points)).verdict is ClaimVerdict.SUPPORTED
-    exact = TABLE.replace('"0.700", "0.400"', "0.7, 0.4")
-    third = column([12, -40, 5.5, 70])
-    assert one(case_text(points, exact, third)).verdict is ClaimVerdict.INCONSISTENT
-    assert one(case_text(points, TABLE, third)).verdict is ClaimVerdict.SUPPORTED
+@pytest.mark.parametrize(
+    ("changes", "third", "verdict", "said"),
+    [
+        ({"units": {"position": "rad"}}, column(), "inconsistent", "are read in rad"),
+        (THREE, "", "not checkable", "the numbers of positions and way-points differ"),
+    ],
+)
+def test_each_reading_is_judged(changes: Any, third: str, verdict: str, said: str) -> None:
+    text = case_text(PLACES, TABLE, readings(plain={}, other=changes), third, angle="deg")
+    found = {f.reading: f for f in findings(text)}
+    assert (found["plain"].verdict, found["other"].verdict) == ("supported", verdict)
+    assert said in found["other"].message
 
 
-def test_each_reading_of_the_unit_is_judged():
-    readings = (
-        '[[readings]]\nid = "deg"\nwhy = "a"\n'
-        '[[readings]]\nid = "rad"\nwhy = "b"\nunits = { position = "rad" }\n'
-    )
-    third = [12.0, -40.0, 5.5, 70.0]
-    text = case_text(positions(third), readings=readings, column=column(third))
-    by_reading = {f.reading: f for f in findings(text)}
-    assert by_reading["deg"].verdict is ClaimVerdict.SUPPORTED
-    assert by_reading["rad"].verdict is ClaimVerdict.INCONSISTENT
-    assert "are read in rad" in by_reading["rad"].message
-
-
-def test_signs_that_may_be_lost_are_tried():
-    # The arm hangs down: the twist's sign is the other one.
-    points = positions([12.0, -40.0, 5.5, 70.0], up=-1.0)
-    third = column([12, -40, 5.5, 70])
-    certain = one(case_text(points, TABLE, third))
-    assert certain.verdict is ClaimVerdict.INCONSISTENT
-    found = one(case_text(points, TABLE + 'alpha_signs = "uncertain"\n', third))
-    assert found.verdict is ClaimVerdict.NOT_CHECKABLE
-    assert found.severity is Severity.INFO
-    assert "With other signs of the twists, which the text may have lost, the end meets" in (
-        found.message
-    )
-    wrong = [[x, y, "-900.0"] for x, y, _ in points]
-    neither = one(case_text(wrong, TABLE + 'alpha_signs = "uncertain"\n', third))
-    assert neither.verdict is ClaimVerdict.INCONSISTENT
-    assert "Whatever signs the twists, the angles and the positions have" in neither.message
-    # A minus sign that one coordinate lacks explains the distance, so that nothing is decided.
-    lost = [[*points[0][:2], str(points[0][2]).lstrip("-")], *points[1:]]
-    assert lost != points
-    unsigned = one(case_text(lost, TABLE + 'alpha_signs = "uncertain"\n', third))
-    assert unsigned.verdict is ClaimVerdict.NOT_CHECKABLE
-    assert (
-        "which the text may have lost, no printed position is shown to be out of reach"
-        in unsigned.message
-    )
-    assert one(case_text(lost, TABLE, third)).verdict is ClaimVerdict.INCONSISTENT
-
-
-def test_another_admitted_convention_may_fit():
-    third = column([12, -40, 5.5, 70])
-    modified = TABLE.replace('"standard"', '"modified"')
-    points = positions([12.0, -40.0, 5.5, 70.0])
-    assert one(case_text(points, modified, third)).verdict is ClaimVerdict.INCONSISTENT
-    both = modified + 'other_conventions = ["standard"]\n'
-    found = one(case_text(points, both, third))
-    assert found.verdict is ClaimVerdict.SUPPORTED
-    assert "(standard convention)" in found.message
-
-
-def test_positions_may_name_their_way_point():
-    third = [12.0, -40.0, 5.5, 70.0]
-    points = positions(third)
-    text = case_text([points[3], points[1]], column=column([f"{x:.1f}" for x in third]))
-    text = text.replace('id = "p0"', 'id = "p0"\nwaypoint = "D"').replace(
-        'id = "p1"', 'id = "p1"\nwaypoint = "B"'
-    )
-    assert one(text).verdict is ClaimVerdict.SUPPORTED
-    swapped = text.replace('"D"\nwhere', '"x"\nwhere').replace('"B"\nwhere', '"D"\nwhere')
-    swapped = swapped.replace('"x"\nwhere', '"B"\nwhere')
-    assert one(swapped).verdict is ClaimVerdict.INCONSISTENT
-
-
-def test_problems_with_other_way_points_are_judged_apart():
-    third = [12.0, -40.0, 5.5, 70.0]
-    rows = [[10.0, 20.0], [60.5, 50.0], [-20.25, 120.0], [55.0, 40.0]]
-    problems = (
-        '[[problems]]\nid = "same"\n'
-        f'[[problems]]\nid = "other"\nwaypoints = {{ waypoint_rows = {rows} }}\n'
-        '[[problems]]\nid = "again"\n'
-    )
-    text = case_text(positions(third), readings=problems, column=column(third))
-    by_problem = {f.problem: f.verdict for f in findings(text)}
-    assert by_problem == {
-        "same": ClaimVerdict.SUPPORTED,
-        "other": ClaimVerdict.INCONSISTENT,
-    }
-
-
-# Nothing to say, or not enough
-
-
-def test_without_positions_there_is_no_finding():
-    assert findings(case_text([])) == []
+def test_without_positions_there_is_no_finding() -> None:
+    assert findings(case_text([], angle="deg")) == []
     assert list(judge_kinematics(Study(load_case("puma560-mnam-pso-353")))) == []
 
 
-def test_without_a_table_it_is_not_checkable():
-    found = one(case_text(positions(), table=""))
-    assert found.verdict is ClaimVerdict.NOT_CHECKABLE
-    assert found.message == "Positions of the end are printed, but no table of the robot."
-
-
-def test_a_sliding_joint_that_is_not_printed_leaves_nothing_to_check():
-    table = (
-        TABLE
-        + 'kinds = ["revolute", "prismatic", "revolute"]\nlower = [0, 0, 0]\nupper = [1, 1, 1]\n'
-    )
-    found = one(case_text(positions(), table))
-    assert found.verdict is ClaimVerdict.NOT_CHECKABLE
-    assert "joint c slides, and its positions are not printed" in found.message
-
-
-def test_angles_of_a_joint_that_slides_are_not_taken_for_metres():
-    table = (
-        TABLE
-        + 'kinds = ["revolute", "prismatic", "revolute"]\nlower = [0, 0, 0]\nupper = [1, 1, 1]\n'
-    )
-    found = one(case_text(positions(), table, column([1.0, 2.0, 3.0, 4.0])))
-    assert found.verdict is ClaimVerdict.NOT_CHECKABLE
-    assert "the unit of joint c is not that of its kind in the robot's table" in found.message
-
-
-def test_a_column_has_a_unit_of_its_own_where_joints_have():
+def test_a_column_has_a_unit_of_its_own_where_joints_have() -> None:
     """The slide at the end of a SCARA arm, printed in a column."""
     table = """
 [robot.dh]
@@ -250,30 +197,13 @@ alpha = [0, 0, 0]
     x = 0.5 * np.cos(first) + 0.4 * np.cos(first + second)
     y = 0.5 * np.sin(first) + 0.4 * np.sin(first + second)
     points = np.stack([1000 * x, 1000 * y, 300 + drop], axis=1)
-    text = case_text(
-        [[f"{v:.1f}" for v in point] for point in points], table, column(drop.tolist())
-    )
-    text = text.replace('position = "deg"', 'position = ["deg", "deg"]')
+    shown = [[f"{v:.1f}" for v in point] for point in points]
+    units = {"position": ["deg", "deg"]}
     with pytest.raises(CaseError, match=r"columns\[0\].unit: is needed where units.position lists"):
-        one(text)
-    fits = one(text.replace('joint = "c"', 'joint = "c"\nunit = "mm"'))
-    assert fits.verdict is ClaimVerdict.SUPPORTED
-    assert one(text.replace('joint = "c"', 'joint = "c"\nunit = "cm"')).verdict is (
-        ClaimVerdict.INCONSISTENT
-    )
-
-
-def test_a_reading_with_other_way_points_is_not_checkable():
-    points = [[10.0, 20.0], [60.5, 50.0], [-20.25, 120.0]]
-    readings = (
-        '[[readings]]\nid = "four"\nwhy = "a"\n[[readings]]\nid = "three"\nwhy = "b"\n'
-        f'waypoints = {{ waypoint_rows = {points} }}\ninterpolant = {{ family = "cubic-spline" }}\n'
-    )
-    third = [12.0, -40.0, 5.5, 70.0]
-    by_reading = {f.reading: f for f in findings(case_text(positions(third), readings=readings))}
-    assert by_reading["four"].verdict is ClaimVerdict.SUPPORTED
-    assert by_reading["three"].verdict is ClaimVerdict.NOT_CHECKABLE
-    assert "the numbers of positions and way-points differ" in by_reading["three"].message
+        one(shown, table, column(drop.tolist()), units=units)
+    for unit, verdict in (("mm", "supported"), ("cm", "inconsistent")):
+        found = one(shown, table, column(drop.tolist(), unit=unit), units=units)
+        assert found.verdict == verdict
 
 
 # The palletiser

@@ -2,208 +2,128 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
-from support.findings import said_of, study_of
-from trajgap.compare.audits.rules.printed_chain import judge_kinematics
-from trajgap.compare.audits.rules.printed_joints import judge_joints
-from trajgap.compare.audits.rules.replays import judge_replays
+from support.findings import finding
+from support.made_up import Numbers, entry, paper, sentence
+from support.papers.printing import block
 from trajgap.compare.documents import ClaimVerdict, Severity
 from trajgap.nlp import Status, solve
 from trajgap.problem import CaseError, Limits, Problem, load_case, parse_case, three_five_three
 
-ARM = """
-format = 1
-id = "arm"
-title = "two links in a plane"
-[source]
-year = 2024
-[robot]
-name = "arm"
-joints = {joints}
-[robot.dh]
-convention = "standard"
-length_unit = "m"
-angle_unit = "deg"
-joints = ["1", "2"]
-d = [0, 0]
-a = [0.7, 0.4]
-alpha = [0, 0]
-[units]
-position = "deg"
-velocity = "deg/s"
-time = "s"
-[waypoints]
-labels = ["A", "B"]
-joint_rows = {rows}
-[limits]
-velocity = 90
-[interpolant]
-family = "rest-to-rest"
-degree = 5
-[[claims]]
-id = "most"
-quantity = "statement"
-where = "section 4"
-joint = "{joint}"
-checks = "varies_most"
-"""
-COLUMN = """
-[[columns]]
-id = "other"
-where = "Table 3"
-joint = "2"
-unit = "deg"
-values = [{values}]
-"""
-BOTH = '["1", "2"]', '[["10.0", "40.0"], ["20.0", "{}"]]'
+LINKS = {"joints": ["1", "2"], "d": [0, 0], "a": [0.7, 0.4], "alpha": [0, 0]}
+UNITS = {"convention": "standard", "length_unit": "m", "angle_unit": "deg"}
+TABLE = block("[robot.dh]", UNITS | LINKS)
+
+
+def arm(*parts: str, rows: tuple[Numbers, ...] = ("10.0 40.0", "20.0 45.0")) -> str:
+    """Two links in a plane, of which joints are printed."""
+    labels = {"labels": ["A", "B"]}
+    text = paper(rows, *parts, angle="deg", waypoints=labels, velocity=90)
+    return text.replace("[units]", f"{TABLE}\n[units]", 1)
+
+
+def most(joint: str = "1", checks: str = "varies_most") -> str:
+    return sentence("most", checks, joint=joint)
 
 
 @pytest.mark.parametrize(
     ("other", "joint", "verdict"),
     [
-        ("45.0", "1", ClaimVerdict.SUPPORTED),
-        ("45.0", "2", ClaimVerdict.INCONSISTENT),
-        ("55.0", "1", ClaimVerdict.INCONSISTENT),
-        ("50.0", "1", ClaimVerdict.NOT_CHECKABLE),  # equal within the rounding
-        ("50.1", "1", ClaimVerdict.NOT_CHECKABLE),
-        ("50.3", "1", ClaimVerdict.INCONSISTENT),  # 30.2 at least, beside 30.1 at most
+        ("45.0", "1", "supported"),
+        ("45.0", "2", "inconsistent"),
+        ("55.0", "1", "inconsistent"),
+        ("50.0", "1", "not checkable"),  # equal within the rounding
+        ("50.1", "1", "not checkable"),
+        ("50.3", "1", "inconsistent"),  # 30.2 at least, beside 30.1 at most
     ],
 )
-def test_the_joint_that_varies_most(other: str, joint: str, verdict: ClaimVerdict) -> None:
-    joints, rows = BOTH
-    study = study_of(ARM.format(joints=joints, rows=rows.format(other), joint=joint))
-    (found,) = said_of(study, judge_joints, "most", "TG110")
-    assert found.verdict is verdict
-    assert found.severity is (
-        Severity.WARNING if verdict is ClaimVerdict.INCONSISTENT else Severity.INFO
-    )
+def test_the_joint_that_varies_most(other: str, joint: str, verdict: str) -> None:
+    text = arm(most(joint), rows=("10.0 40.0", f"20.0 {other}"))
+    found = finding(text, "most", "TG110")
+    assert found.verdict == verdict
+    assert (found.severity is Severity.WARNING) == (verdict == "inconsistent")
+    assert found.severity is not Severity.ERROR
 
 
 @pytest.mark.parametrize("joint", ["1", "2"])
 def test_a_joint_that_varies_much_is_never_accused(joint: str) -> None:
-    joints, rows = BOTH
-    text = ARM.format(joints=joints, rows=rows.format("45.0"), joint=joint)
-    study = study_of(text.replace("varies_most", "varies_much"))
-    (found,) = said_of(study, judge_joints, "most", "TG110")
-    assert found.verdict is ClaimVerdict.NOT_CHECKABLE
-    assert found.severity is Severity.INFO
+    found = finding(arm(most(joint, "varies_much")), "most", "TG110")
+    assert (found.verdict, found.severity) == (ClaimVerdict.NOT_CHECKABLE, Severity.INFO)
     assert "30.00" in found.message
     assert "25.00" in found.message
-    assert "varies more" not in found.message
 
 
 @pytest.mark.parametrize(
-    ("column", "verdict", "words"),
+    ("values", "verdict", "words"),
     [
-        ("", ClaimVerdict.NOT_CHECKABLE, "beside no other joint in print"),
-        (COLUMN.format(values='"1.0", "9.0"'), ClaimVerdict.SUPPORTED, "8.00 of joint 2"),
-        (COLUMN.format(values='"1.0", "99.0"'), ClaimVerdict.INCONSISTENT, "Joint 2 varies more."),
+        (None, "not checkable", "beside no other joint in print"),
+        (["1.0", "9.0"], "supported", "8.00 of joint 2"),
+        (["1.0", "99.0"], "inconsistent", "Joint 2 varies more."),
     ],
 )
 def test_joints_printed_in_columns_count_and_missing_ones_are_named(
-    column: str, verdict: ClaimVerdict, words: str
+    values: list[str] | None, verdict: str, words: str
 ) -> None:
-    text = ARM.format(joints='["1"]', rows='[["10.0", "40.0"]]', joint="1") + column
-    (found,) = said_of(study_of(text), judge_joints, "most", "TG110")
-    assert found.verdict is verdict
+    keys = {"id": "other", "where": "Table 3", "joint": "2", "unit": "deg", "values": values}
+    column = entry("columns", **keys) if values else ""
+    text = arm(most(), column, rows=("10.0 40.0",))
+    found = finding(text, "most", "TG110")
+    assert found.verdict == verdict
     assert words in found.message
-    assert ("Joint 2 is not printed" in found.message) == (not column)
+    assert ("Joint 2 is not printed" in found.message) == (values is None)
 
 
-PLACES = """
-[[cartesian]]
-id = "p"
-where = "Table 2"
-label = "place"
-waypoint = "A"
-unit = "m"
-values = ["0.50", "-0.30", 0]
-[[cartesian]]
-id = "q"
-where = "Table 2"
-label = "above"
-waypoint = "B"
-unit = "m"
-values = [{values}]
-[[claims]]
-id = "over"
-quantity = "statement"
-where = "Table 2"
-checks = "above"
-positions = ["q", "p"]
-[[claims]]
-id = "table"
-quantity = "statement"
-where = "section 2"
-checks = "kinematics"
-"""
+def position(name: str, waypoint: str, *values: Any) -> str:
+    keys = {"label": name, "waypoint": waypoint, "unit": "m", "values": list(values)}
+    return entry("cartesian", id=name, where="Table 2", **keys)
 
 
-def placed(values: str) -> str:
-    joints, rows = BOTH
-    return ARM.format(joints=joints, rows=rows.format("45.0"), joint="1") + PLACES.format(
-        values=values
+def placed(*above: str, kinematics: str = sentence("table", "kinematics")) -> str:
+    return arm(
+        position("place", "A", "0.50", "-0.30", 0),
+        position("above", "B", *above),
+        sentence("over", "above", positions=["above", "place"]),
+        kinematics,
     )
 
 
 @pytest.mark.parametrize(
     ("values", "verdict", "words"),
     [
-        ('"0.50", "-0.30", "0.25"', ClaimVerdict.SUPPORTED, "0 m beside place and 0.25 m above"),
-        ('"0.50", "-0.30", "-0.25"', ClaimVerdict.NOT_CHECKABLE, "-0.25 m above"),
-        ('"0.50", "0.30", "0.25"', ClaimVerdict.NOT_CHECKABLE, "another sign of y it would be 0 m"),
-        ('"-0.50", "0.30", "0.25"', ClaimVerdict.NOT_CHECKABLE, "another sign of x and y"),
-        ('"0.90", "-0.30", "0.25"', ClaimVerdict.NOT_CHECKABLE, "stands 0.4 m beside place"),
+        ("0.50 -0.30 0.25", "supported", "0 m beside place and 0.25 m above"),
+        ("0.50 -0.30 -0.25", "not checkable", "-0.25 m above"),
+        ("0.50 0.30 0.25", "not checkable", "another sign of y it would be 0 m"),
+        ("-0.50 0.30 0.25", "not checkable", "another sign of x and y"),
+        ("0.90 -0.30 0.25", "not checkable", "stands 0.4 m beside place"),
     ],
 )
-def test_a_position_above_another(values: str, verdict: ClaimVerdict, words: str) -> None:
-    (found,) = said_of(study_of(placed(values)), judge_joints, "over", "TG602")
-    assert found.verdict is verdict
-    assert found.severity is Severity.INFO
+def test_a_position_above_another(values: str, verdict: str, words: str) -> None:
+    found = finding(placed(*values.split()), "over", "TG602")
+    assert (found.verdict, found.severity) == (verdict, Severity.INFO)
     assert words in found.message
 
 
 def test_the_finding_on_the_chain_is_about_the_statement_that_claims_it() -> None:
-    study = study_of(placed('"0.50", "-0.30", "0.25"'))
-    (found,) = said_of(study, judge_kinematics, "table", "TG601")
+    height = "0.50", "-0.30", "0.25"
+    found = finding(placed(*height), "table", "TG601")
     assert found.verdict is ClaimVerdict.INCONSISTENT  # a planar arm reaches no height
-    silent = placed('"0.50", "-0.30", "0.25"').replace('"kinematics"', '"none"')
-    silent += 'not_checkable = "no reason"\n'
-    (found,) = said_of(study_of(silent), judge_kinematics, None, "TG601")
-    assert found.claim is None
-
-
-TWO = """
-[[algorithms]]
-id = "{id}"
-name = "{id}"
-kind = "pso"
-[algorithms.settings]
-particles = 6
-iterations = {iterations}
-c1 = 2
-c2 = 2
-position_initial = [0.3, 3]
-velocity_initial = [-1, 1]
-"""
-AGAINST = """
-[[claims]]
-id = "faster"
-quantity = "statement"
-where = "abstract"
-algorithm = "long"
-against = "short"
-checks = "none"
-not_checkable = "no data"
-"""
+    silent = sentence("table", "none", not_checkable="no reason")
+    assert finding(placed(*height, kinematics=silent), None, "TG601")
 
 
 def test_replays_of_two_algorithms_stand_beside_the_sentence_that_compares_them() -> None:
-    joints, rows = BOTH
-    text = ARM.format(joints=joints, rows=rows.format("45.0"), joint="1")
-    text += TWO.format(id="long", iterations=30) + TWO.format(id="short", iterations=1) + AGAINST
-    (found,) = said_of(study_of(text), judge_replays, "faster", "TG401")
+    both = {"c1": 2, "c2": 2, "position_initial": [0.3, 3], "velocity_initial": [-1, 1]}
+    named = (
+        entry("algorithms", id=k, name=k, kind="pso",
+              settings={"particles": 6, "iterations": n} | both)
+        for k, n in (("long", 30), ("short", 1))
+    )  # fmt: skip
+    sides = {"algorithm": "long", "against": "short", "not_checkable": "no data"}
+    text = arm(*named, sentence("faster", "none", **sides))
+    found = finding(text, "faster", "TG401")
     assert not found.decides
     assert found.verdict is ClaimVerdict.NOT_CHECKABLE
     said = "one run of the long is no longer than one of the short with probability 100 %"
@@ -211,35 +131,39 @@ def test_replays_of_two_algorithms_stand_beside_the_sentence_that_compares_them(
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "message"),
+    ("said", "message"),
     [
-        ('joint = "1"\nchecks = "varies_most"', 'checks = "varies_much"',
-         "claims[0].joint: is missing; name the joint that is said to vary much"),
-        ('joint = "1"\nchecks = "varies_most"', 'checks = "varies_most"',
-         "claims[0].joint: is missing; name the joint that is said to vary most"),
-        ('positions = ["q", "p"]\n', "",
-         "claims[1].positions: names two positions, and goes with checks = \"above\" only"),
-        ('["q", "p"]', '["q", "r"]',
-         "claims[1].positions[1]: 'r' is not the id of any of the carte"),
-        ('checks = "kinematics"', 'checks = "none"\nnot_checkable = "x"\nagainst = "y"',
-         "claims[2].against: goes with algorithm; name the one that is compared with it"),
+        (
+            sentence("m", "varies_much"),
+            "joint: is missing; name the joint that is said to vary m",
+        ),
+        (
+            sentence("m", "varies_most"),
+            "joint: is missing; name the joint that is said to vary most",
+        ),
+        (
+            sentence("m", "above"),
+            'positions: names two positions, and goes with checks = "above" only',
+        ),
+        (
+            sentence("m", "above", positions=["p", "r"]),
+            "positions[1]: 'r' is not the id of any of the carte",
+        ),
+        (
+            sentence("m", "none", not_checkable="x", against="y"),
+            "against: goes with algorithm; name the one that is compared with it",
+        ),
     ],
-)  # fmt: skip
-def test_wrong_statements_are_refused(old: str, new: str, message: str) -> None:
-    text = placed('"0.50", "-0.30", "0.25"')
-    assert text.count(old) == 1
+)
+def test_wrong_statements_are_refused(said: str, message: str) -> None:
     with pytest.raises(CaseError) as caught:
-        parse_case(text.replace(old, new), "made-up.toml")
-    assert str(caught.value).startswith(f"made-up.toml: {message}")
+        parse_case(arm(position("p", "A", 1, 0, 0), said), "made-up.toml")
+    assert str(caught.value).startswith(f"made-up.toml: claims[0].{message}")
 
 
 def test_kinematics_without_positions_is_refused() -> None:
-    text = placed('"0.50", "-0.30", "0.25"')
-    start, end = text.index("[[cartesian]]"), text.index('[[claims]]\nid = "over"')
-    bare = text[:start] + text[text.index('[[claims]]\nid = "table"') :]
-    assert end > start
     with pytest.raises(CaseError, match=r"kinematics needs printed positions; add \[\[cartesian"):
-        parse_case(bare, "made-up.toml")
+        parse_case(arm(sentence("table", "kinematics")), "made-up.toml")
 
 
 @pytest.mark.parametrize(("unit", "total"), [(1.0, "77.68"), (np.pi / 180, "1.356")])

@@ -2,35 +2,26 @@
 
 from __future__ import annotations
 
+from math import inf
+from typing import Any
+
 import numpy as np
 import pytest
 from scipy.integrate import quad
 from scipy.optimize import linprog
-from support.findings import said_of, study_of
-from support.one_joint import one_joint
+from support.findings import finding
+from support.made_up import QUINTIC, paper, total
 from trajgap.compare.audits.rules.profiles import (
-    judge_profiles,
     s_curve,
     shortest,
     shortest_straight,
     sine_jerk,
     trapezoidal,
 )
-from trajgap.compare.documents import ClaimVerdict
+from trajgap.compare.documents import ClaimVerdict, Finding
 from trajgap.problem import CaseError, parse_case
 
 STEPS = 120
-CLAIM = """
-[[claims]]
-id = "t"
-quantity = "total_time"
-where = "Table 3"
-value = "{value}"
-other_curve = "blends"
-profile = "{profile}"
-"""
-LIMITS = "velocity = 2\nacceleration = 4\njerk = 20"
-UNITS = 'velocity = "rad/s"\nacceleration = "rad/s^2"\njerk = "rad/s^3"'
 
 
 def farthest(time: float, velocity: float, acceleration: float, jerk: float) -> float:
@@ -126,6 +117,20 @@ def test_joints_on_a_straight_line_share_one_time_law() -> None:
         assert shortest_straight(profile, np.array([[0.7]]), one) == pytest.approx(alone)
 
 
+CLAIM = {"other_curve": "blends"}
+"""A total of another curve than the file's own."""
+
+
+def profiled(profile: str, value: str, rows: Any, curve: Any = QUINTIC, **more: Any) -> str:
+    """A case file with the total of a profile: `path` of it, or limits of the joints."""
+    path = {"path": more.pop("path")} if "path" in more else {}
+    return paper(rows, total("t", value, profile=profile, **CLAIM | path), curve=curve, **more)
+
+
+def judged(*asked: Any, **more: Any) -> Finding:
+    return finding(profiled(*asked, **more), "t", "TG304")
+
+
 @pytest.mark.parametrize(
     ("profile", "value", "verdict"),
     [
@@ -144,122 +149,80 @@ def test_a_printed_total_of_a_profile_is_judged(
 
     With half sines a ramp of π/2 · 0.2 s.
     """
-    text = one_joint(
-        "0, 1", "2", "2.0", "within_limits", CLAIM.format(profile=profile, value=value)
-    )
-    text = text.replace('velocity = "rad/s"', UNITS).replace("velocity = 2\n", LIMITS + "\n")
-    (found,) = said_of(study_of(text), judge_profiles, "t", "TG304")
-    assert found.verdict is verdict
-    rounded = text.replace("[[0, 1]]", '[["0.00", "1.00"]]').replace('"1.018"', '"1.009"')
-    (found,) = said_of(study_of(rounded), judge_profiles, "t", "TG304")
+    limits = {"velocity": 2, "acceleration": 4, "jerk": 20}
+    assert judged(profile, value, [[0, 1]], **limits).verdict is verdict
+    # 1.009 s is within what way-points that are rounded leave.
+    rounded = judged(profile, value.replace("1.018", "1.009"), ["0.00 1.00"], **limits)
     wrong = (profile, value) in (("s-curve", "1.00"), ("sine-jerk", "1.220"))
-    assert (found.verdict is ClaimVerdict.SUPPORTED) == (not wrong)
+    assert (rounded.verdict is ClaimVerdict.SUPPORTED) == (not wrong)
 
 
-TWO = """
-format = 1
-id = "two"
-title = "Two joints"
-[source]
-title = "none"
-[robot]
-name = "arm"
-joints = ["a", "b"]
-[units]
-position = "rad"
-velocity = "rad/s"
-acceleration = "rad/s^2"
-time = "s"
-[waypoints]
-waypoint_rows = [[0, 0], [1, -3]]
-[limits]
-velocity = 2
-acceleration = [{acceleration}, 4]
-[interpolant]
-family = "rest-to-rest"
-degree = 3
-"""
+TWO = [[0, 1], [0, -3]]
+SLOW = {"velocity": 2, "acceleration": [1, 4]}
+STRAIGHT = {"path": "straight"}
 
 
 @pytest.mark.parametrize(
     ("path", "value", "verdict", "words"),
     [
-        ("", "2.00", ClaimVerdict.SUPPORTED, "as long as its slowest joint needs, takes 2 s"),
-        ('path = "straight"', "2.17", ClaimVerdict.SUPPORTED, "straight line in each segment, tak"),
-        ('path = "straight"', "2.00", ClaimVerdict.INCONSISTENT, "which is 7.69 % shorter"),
-        ("", "2.17", ClaimVerdict.NOT_CHECKABLE, "which fits where the joints stay on a straight"),
-        ("", "2.30", ClaimVerdict.INCONSISTENT, "which is 15.00 % longer"),
+        ({}, "2.00", "supported", "as long as its slowest joint needs, takes 2 s"),
+        (STRAIGHT, "2.17", "supported", "straight line in each segment, tak"),
+        (STRAIGHT, "2.00", "inconsistent", "which is 7.69 % shorter"),
+        ({}, "2.17", "not checkable", "which fits where the joints stay on a straight"),
+        ({}, "2.30", "inconsistent", "which is 15.00 % longer"),
     ],
 )
 def test_how_the_joints_go_together_is_said(
-    path: str, value: str, verdict: ClaimVerdict, words: str
+    path: dict[str, str], value: str, verdict: str, words: str
 ) -> None:
-    claim = CLAIM.format(profile="trapezoidal", value=value)
-    text = f"{TWO.format(acceleration=1)}{claim}{path}\n"
-    (found,) = said_of(study_of(text), judge_profiles, "t", "TG304")
-    assert found.verdict is verdict
+    found = judged("trapezoidal", value, TWO, **SLOW, **path)
+    assert found.verdict == verdict
     assert words in found.message
 
 
 @pytest.mark.parametrize(
-    ("left_out", "message"),
+    ("keys", "message"),
     [
-        (
-            'profile = "trapezoidal"\n',
-            r"claims\[0\].path: goes with profile; add it, or leave this",
-        ),
-        ('other_curve = "blends"\n', r"claims\[0\].profile: goes with other_curve; name the curve"),
+        (CLAIM | STRAIGHT, r"claims\[0\].path: goes with profile; add it, or leave this"),
+        ({"profile": "trapezoidal"}, r"claims\[0\].profile: goes with other_curve; name the curve"),
     ],
 )
-def test_what_a_profile_goes_with(left_out: str, message: str) -> None:
-    claim = CLAIM.format(profile="trapezoidal", value="2.00").replace(left_out, "")
+def test_what_a_profile_goes_with(keys: dict[str, str], message: str) -> None:
     with pytest.raises(CaseError, match=message):
-        parse_case(f'{TWO.format(acceleration=1)}{claim}path = "straight"\n', "two.toml")
+        parse_case(paper(TWO, total("t", "2.00", **keys), **SLOW), "two.toml")
 
 
 @pytest.mark.parametrize(
     ("ends", "verdict"),
     [
-        ("end_derivatives = [0.4]", ClaimVerdict.NOT_CHECKABLE),
-        ("finish_derivatives = [[0, 0.3]]", ClaimVerdict.NOT_CHECKABLE),
-        ('end_derivatives = ["0.00"]', ClaimVerdict.INCONSISTENT),
-        ("end_derivatives = [0]", ClaimVerdict.INCONSISTENT),
+        ({"end_derivatives": [0.4]}, ClaimVerdict.NOT_CHECKABLE),
+        ({"finish_derivatives": [[0, 0.3]]}, ClaimVerdict.NOT_CHECKABLE),
+        ({"end_derivatives": ["0.00"]}, ClaimVerdict.INCONSISTENT),
+        ({"end_derivatives": [0]}, ClaimVerdict.INCONSISTENT),
     ],
 )
 def test_a_profile_between_moving_ends_is_not_set_beside_one_from_rest_to_rest(
-    ends: str, verdict: ClaimVerdict
+    ends: dict[str, Any], verdict: ClaimVerdict
 ) -> None:
     """From rest 2 s; a motion that starts or ends at speed takes another time, here 1.85 s."""
-    moving = TWO.format(acceleration=1).replace(
-        'family = "rest-to-rest"\ndegree = 3',
-        f'family = "polynomials"\ndegrees = [3]\nend_orders = [1]\n{ends}',
-    )
-    claim = CLAIM.format(profile="trapezoidal", value="1.85")
-    (found,) = said_of(study_of(f"{moving}{claim}"), judge_profiles, "t", "TG304")
-    assert found.verdict is verdict
-    assert ("derivatives other than 0 at the ends" in found.message) == (
-        verdict is ClaimVerdict.NOT_CHECKABLE
-    )
+    curve = {"family": "polynomials", "degrees": [3], "end_orders": [1]} | ends
+    assert judged("trapezoidal", "1.85", TWO, curve, **SLOW).verdict is verdict
 
 
 @pytest.mark.parametrize(
     ("profile", "limits", "message"),
     [
-        ("sine-jerk", "", r'"sine-jerk" needs limits.jerk, and none is stated; add it, or leave '),
-        ("s-curve", "jerk = [9, inf]", r'"s-curve" needs limits.jerk, and none .* for joint b; '),
-        ("trapezoidal", "", None),
-        ("s-curve", "jerk = [9, 7]", None),
-        ("free", "", r'"trapezoidal" needs limits.acceleration, and none is stated; add it'),
+        ("sine-jerk", SLOW, r'"sine-jerk" needs limits.jerk, and none is stated; add it, or leave'),
+        ("s-curve", SLOW | {"jerk": [9, inf]}, r'"s-curve" needs limits.jerk, .* for joint 2; '),
+        ("trapezoidal", SLOW, None),
+        ("s-curve", SLOW | {"jerk": [9, 7]}, None),
+        ("trapezoidal", {"velocity": 2}, r'"trapezoidal" needs limits.acceleration, and none is'),
     ],
 )
 def test_a_profile_needs_the_limit_that_makes_it(
-    profile: str, limits: str, message: str | None
+    profile: str, limits: dict[str, Any], message: str | None
 ) -> None:
-    claim = CLAIM.format(profile=profile.replace("free", "trapezoidal"), value="2.00")
-    text = TWO.format(acceleration=1).replace("velocity = 2", f"velocity = 2\n{limits}")
-    text = text.replace('time = "s"', 'time = "s"\njerk = "rad/s^3"') + claim
-    if profile == "free":
-        text = text.replace("acceleration = [1, 4]\n", "")
+    text = profiled(profile, "2.00", TWO, **limits)
     if message is None:
         parse_case(text, "two.toml")
         return
@@ -268,9 +231,6 @@ def test_a_profile_needs_the_limit_that_makes_it(
 
 
 def test_a_joint_that_must_not_move_and_does_is_no_fault_of_the_total() -> None:
-    claim = CLAIM.format(profile="trapezoidal", value="2.00")
-    (found,) = said_of(
-        study_of(f"{TWO.format(acceleration=0)}{claim}"), judge_profiles, "t", "TG304"
-    )
+    found = judged("trapezoidal", "2.00", TWO, velocity=2, acceleration=[0, 4])
     assert found.verdict is ClaimVerdict.NOT_CHECKABLE
     assert "a joint moves whose limit is 0" in found.message

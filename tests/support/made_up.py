@@ -1,0 +1,89 @@
+"""Made-up case files, a line for each claim: what tests of single rules are tried on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from support.papers.printing import block
+
+QUINTIC = {"family": "rest-to-rest", "degree": 5}
+"""Peaks at 15 d/(8 h) for a way d in h."""
+CUBIC = {"family": "rest-to-rest", "degree": 3}
+"""Peaks at 3 d/(2 h)."""
+Numbers = str | Sequence[object]
+
+
+def _listed(given: Numbers) -> list[object]:
+    """Digits as printed, with spaces between them, or numbers that are meant exactly."""
+    return list(given.split() if isinstance(given, str) else given)
+
+
+def entry(table: str, /, **keys: Any) -> str:
+    """One more entry of a list of the file."""
+    return "\n" + block(f"[[{table}]]", keys) + "\n"
+
+
+def claim(name: str, quantity: str, **keys: Any) -> str:
+    return entry("claims", **{"id": name, "quantity": quantity, "where": name} | keys)
+
+
+def row(name: str, durations: Numbers, **keys: Any) -> str:
+    return claim(name, "durations", durations=_listed(durations), **keys)
+
+
+def total(name: str, value: object, **keys: Any) -> str:
+    return claim(name, "total_time", value=value, **keys)
+
+
+def gain(slower: str, faster: str, **keys: Any) -> str:
+    """A claimed improvement."""
+    return claim("gain", "improvement", slower=slower, faster=faster, **keys)
+
+
+def sentence(name: str, checks: str, *of: str, **keys: Any) -> str:
+    return claim(name, "statement", checks=checks, **({"of": list(of)} if of else {}) | keys)
+
+
+def peak(name: str, of: str, derivative: str, value: Numbers, **keys: Any) -> str:
+    """One number, or the numbers of all joints."""
+    number = {"value": value} if isinstance(value, str) else {"values": list(value)}
+    return claim(name, "peak", of=of, derivative=derivative, **number, **keys)
+
+
+def algorithms(*names: str) -> str:
+    return "".join(entry("algorithms", id=name, name=name) for name in names)
+
+
+def readings(**changes: Mapping[str, Any]) -> str:
+    """Readings by their ids, each with what it changes."""
+    return "".join(entry("readings", id=k, why=k, **change) for k, change in changes.items())
+
+
+def paper(
+    rows: Sequence[Numbers],
+    *parts: str,
+    curve: Mapping[str, Any] = QUINTIC,
+    angle: str = "rad",
+    units: Mapping[str, Any] | None = None,
+    waypoints: Mapping[str, Any] | None = None,
+    bounds: Mapping[str, Any] | None = None,
+    head: Mapping[str, Any] | None = None,
+    **limits: Any,
+) -> str:
+    """A case file of the way-points of each joint, and of the parts that follow."""
+    orders = ("velocity", "acceleration", "jerk")
+    powers = zip(orders, ("s", "s^2", "s^3"), strict=True)
+    own = {"position": angle, **{name: f"{angle}/{power}" for name, power in powers}, "time": "s"}
+    joints = [str(j + 1) for j in range(len(rows))]
+    blocks = [
+        block("", {"format": 1, "id": "made-up", "title": "made up"} | dict(head or {})),
+        block("[source]", {"year": 2024}),
+        block("[robot]", {"name": "arm", "joints": joints}),
+        block("[units]", own | dict(units or {})),
+        block("[waypoints]", {"joint_rows": [_listed(r) for r in rows]} | dict(waypoints or {})),
+        block("[limits]", limits),
+        block("[interpolant]", dict(curve)),
+        *([block("[durations]", dict(bounds))] if bounds else []),
+    ]
+    return "\n".join(blocks).strip() + "\n" + "".join(parts)
