@@ -20,24 +20,16 @@ from trajgap.problem import load_case, published_ids
 # --- what is printed ------------------------------------------------------------------------------
 
 
+COMMANDS = (
+    "cases", "show", "check", "solve", "verify", "audit", "explain", "bench", "study", "suite",
+    "new",
+)  # fmt: skip
+
+
 def test_help_documents_the_commands_and_the_exit_codes() -> None:
     done = program("--help")
-    assert done.returncode == 0
-    assert done.stderr == ""
-    for command in (
-        "cases",
-        "show",
-        "check",
-        "solve",
-        "verify",
-        "audit",
-        "explain",
-        "bench",
-        "study",
-        "suite",
-        "new",
-    ):
-        assert f"\n  {command} " in done.stdout
+    assert (done.returncode, done.stderr) == (0, "")
+    assert all(f"\n  {command} " in done.stdout for command in COMMANDS)
     assert "..." not in done.stdout.split("Commands:")[1]
     for line in ("0    done", "1    audit --strict", "2    bad input"):
         assert line in done.stdout
@@ -52,22 +44,7 @@ def test_help_imports_nothing_that_computes() -> None:
     assert done.stdout == "set()\n"
 
 
-@pytest.mark.parametrize(
-    "command",
-    [
-        "cases",
-        "show",
-        "check",
-        "solve",
-        "verify",
-        "audit",
-        "explain",
-        "bench",
-        "study",
-        "suite",
-        "new",
-    ],
-)
+@pytest.mark.parametrize("command", COMMANDS)
 def test_each_command_explains_itself(run: Run, command: str) -> None:
     code, out, err = run(command, "--help")
     assert (code, err) == (0, "")
@@ -112,12 +89,6 @@ def test_every_rule_is_explained_with_an_example(run: Run) -> None:
     assert all(rule.id in listed for rule in RULES)
 
 
-def test_what_cannot_be_explained_is_refused(run: Run) -> None:
-    said = "'TG311': is no rule and no word of the reports; did you mean 'TG301'?"
-    assert run("explain", "TG311") == (2, "", f"trajgap: {said}\n")
-    assert "`trajgap explain` lists all" in run("explain", "xylophone")[2]
-
-
 def test_a_crate_never_takes_the_place_of_a_file(
     run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -151,17 +122,9 @@ def test_cases(run: Run) -> None:
 def test_show(run: Run) -> None:
     code, out, err = run("show", PUMA)
     assert (code, err) == (0, "")
-    case = load_case(PUMA)
-    for word in (case.title, "durations-at-least-0.3 (default)", "0.961 1.258 1.078, total 3.298"):
-        assert word in out
-    plain = " ".join(out.split())
-    for claim in case.claims:
-        # By its id, which other commands ask for, once; and by what it says.
-        assert claim.id in out
-        assert claim.text[:20] in plain
-    asked = out[out.index("under “durations of at least 0.3 s”:") :]
-    for word in ("3-5-3 polynomials", "4 × 6", "velocity 6 rad/s; acceleration 8 rad/s^2"):
-        assert word in asked
+    # Claims by their ids, which other commands ask for, once; printed digits as they stand.
+    assert all(claim.id in out for claim in load_case(PUMA).claims)
+    assert "0.961 1.258 1.078, total 3.298" in out
     document = strict(run("show", PUMA, "--reading", "durations-positive", "--json")[1])
     assert_valid(document, "show")
     assert [r["id"] for r in document["readings"]] == ["durations-positive"]
@@ -265,18 +228,6 @@ def test_audit_writes_pages(run: Run, stand_in: dict[str, Any]) -> None:
     assert out.index("Under the default") < out.index("Durations of joint 5 under 80 °/s.")
     assert out.endswith(f"pages: {Path('trajgap-audit') / 'index.html'}\n")
     assert [p.name for p in Path("trajgap-audit").iterdir()] == ["index.html"]
-
-
-@pytest.mark.parametrize(
-    ("folder", "why"),
-    [("nowhere", "is no folder; name the one with your files"), (".", "holds no trajgap-certif")],
-)
-def test_certificates_that_are_not_there_are_refused_before_computing(
-    run: Run, folder: str, why: str
-) -> None:
-    code, out, err = run("audit", IRB, "--certificates", folder)
-    assert (code, out) == (2, "")
-    assert err.startswith(f"trajgap: {folder}: --certificates: {why}")
 
 
 @pytest.mark.usefixtures("pages")

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from support.command_line import START, Run, assert_refused, on_terminal
+from support.command_line import START, Run, on_terminal
 from support.small_studies import HEAD, STUDY
 
 SMALL = (
@@ -77,27 +77,6 @@ def test_failed_runs_are_run_again_when_asked(run: Run) -> None:
     code, out, _ = run("study", "few.toml", "--workers", "1", "--retry")
     assert code == 1
     assert out.splitlines()[0] == "few.sqlite: 4 runs done now, 4 were there"
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (("none.toml",), ("none.toml", "no such file")),
-        (("few.toml", "--store", "few.toml"), ("few.toml: --store: is the study file itself",)),
-        (("few.toml", "--store", "mine.toml"), ("mine.toml: is no store of trajgap",)),
-        (("few.toml", "--export", "a.txt"), ("a.txt: --export: has no known ending",)),
-        (("few.toml", "--export", "mine.csv"), ("mine.csv: --export: exists already",)),
-        (("few.toml", "--export", "a.csv", "--export", "a.csv"), ("is named twice",)),
-        (("few.toml", "--workers", "0"), ("workers",)),
-        (("few.toml", "--workers", "2", "--dask", "tcp://a:1"), ("--workers does not go with",)),
-        (("mine.toml",), ("mine.toml", "unknown key")),
-    ],
-)
-def test_bad_input_is_one_line(
-    run: Run, arguments: tuple[str, ...], words: tuple[str, ...]
-) -> None:
-    Path("mine.csv").touch()
-    assert_refused(run("study", *arguments), *words)
 
 
 def test_the_command_that_goes_on_still_exports(

@@ -104,6 +104,18 @@ def test_no_digit_is_cut_off_in_a_narrow_window(monkeypatch: pytest.MonkeyPatch)
         assert max(map(cell_len, text.splitlines())) == max(width, 4 + 2 + 8 + 2 + 16)
 
 
+def test_prose_shares_what_the_window_leaves() -> None:
+    """A narrow column of prose takes what it needs, one that would be cut off comes first."""
+    words, cut = "some words of prose " * 5, "c" * 50
+    rows = [("x" * 10, words, "short prose", cut)]
+    text = cli_output.rendered([cli_table.Columns(("firm", "~long", "~short", "…cut"), rows)])
+    # Tests have a window of 120 columns.
+    assert max(map(len, text.splitlines())) == 120
+    assert cut in text
+    assert "short prose" in text
+    assert text.count("some") == 5
+
+
 def test_nothing_from_a_file_steers_the_terminal(run: Run) -> None:
     Path("evil.toml").write_text(
         CASE.replace('"Mine"', '"[red]x\\u001b[31m\\u0007"'), encoding="utf-8"

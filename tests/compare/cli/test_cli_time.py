@@ -63,12 +63,6 @@ def test_the_limit_is_that_of_each_problem(run: Run, monkeypatch: pytest.MonkeyP
     assert len(asked) > 1
 
 
-def test_no_time_is_negative(run: Run) -> None:
-    code, _, err = run(*SHARED, "--time", "-1")
-    assert code == 2
-    assert "--time" in err
-
-
 def test_reading_a_file_is_part_of_the_time(run: Run) -> None:
     with Path("hole.json").open("wb") as file:
         file.truncate(MOST_BYTES // 2)  # takes no room on the disk

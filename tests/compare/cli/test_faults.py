@@ -6,7 +6,6 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -44,17 +43,6 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     yield
     signal.alarm(0)
     signal.signal(signal.SIGALRM, before)
-
-
-@pytest.fixture
-def no_computing(monkeypatch: pytest.MonkeyPatch) -> None:
-    def compute(*_: object, **__: object) -> None:
-        raise AssertionError("computes")
-
-    for name in ("solving.solve", "solving.solve_per_joint", "checking.check"):
-        monkeypatch.setattr(f"trajgap.compare.cli.{name}", compute)
-    monkeypatch.setattr("trajgap.compare.cli.certifying.certify", compute)
-    monkeypatch.setattr(import_module("trajgap.compare.audits.case_audit"), "audit", compute)
 
 
 READING = (

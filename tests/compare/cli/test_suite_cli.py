@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 from support.checkout import ROOT
-from support.command_line import Run, assert_refused, strict
+from support.command_line import Run, strict
 from support.documents import validator
 from trajgap.problem.suite import list_instances, load_instance, plain_text, suite_version
 
@@ -158,25 +158,6 @@ def test_pages_of_every_instance(run: Run, folder: Path) -> None:
         plain = (folder / "pages" / f"{one.name}.toml").read_text("utf-8")
         assert plain == plain_text(one)
     assert json.loads((folder / "pages" / "suite.json").read_text("utf-8"))["schema"] == "trajgap/1"
-
-
-def test_what_is_there_is_not_overwritten(run: Run, folder: Path) -> None:
-    (folder / "mine").mkdir()
-    (folder / "mine" / "letter.txt").write_text("dear", encoding="utf-8")
-    for command in ("export", "pages"):
-        assert_refused(run("suite", command, "mine"), "mine: FOLDER", "holds letter.txt")
-        assert_refused(run("suite", command, "mine.toml"), "is no folder; name a new one")
-    assert (folder / "mine" / "letter.txt").read_text("utf-8") == "dear"
-
-
-def test_a_folder_that_cannot_be_written_is_refused(run: Run) -> None:
-    assert_refused(run("suite", "export", "mine.toml/in"), "cannot be written")
-
-
-def test_unknown_words_are_refused(run: Run) -> None:
-    assert_refused(run("suite", "show", "353-puma"), "did you mean '353-puma560'?")
-    assert_refused(run("suite", "--curve", "spiral"), "no curve is called 'spiral'", "3-5-3")
-    assert_refused(run("show", "suite:nothing-like-it"), "`trajgap suite` lists them")
 
 
 def test_other_commands_take_an_instance(run: Run) -> None:
