@@ -101,7 +101,7 @@ def test_bits_for_a_resolution(span: tuple[float, float], resolution: float, bit
     assert record.step <= resolution * (1 + 1e-9)
 
 
-# --- improved --------------------------------------------------------------------------------------
+# --- improved -------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("q", [0.01, 0.2, 0.9])
