@@ -7,7 +7,6 @@ from support.two_joints import OPEN, PROBLEM, two_joints
 from trajgap.heuristics import (
     DeathPenalty,
     External,
-    Search,
     differential_evolution,
     dual_annealing,
     one_by_one,
@@ -18,8 +17,6 @@ from trajgap.heuristics.budget import Budgeted, BudgetSpent
 from trajgap.problem import (
     Limits,
     TrajgapError,
-    Verdict,
-    check,
 )
 
 SCIPY = (differential_evolution(), dual_annealing(iterations=40), shgo())
@@ -30,29 +27,6 @@ def drawing(objective, bounds, rng):
     """Random search in batches of seven, for ever."""
     while True:
         objective(rng.uniform(bounds.lower, bounds.upper, (7, bounds.lower.size)))
-
-
-@each_scipy
-@pytest.mark.parametrize("handling", ["death-penalty", "stretch"])
-def test_scipy_under_our_account(search: External, handling: str) -> None:
-    assert isinstance(search, Search)
-    found = run(search, PROBLEM, 4, objective=handling)
-    assert found.feasible
-    assert found.algorithm == search.kind
-    assert check(PROBLEM, found.durations).verdict is Verdict.PASS
-    assert found.reported_time == found.trace[-1] == found.durations.sum()
-    assert found.trace.size == search.iterations + 1
-    assert (found.trace[1:] <= found.trace[:-1]).all()
-    assert found.evaluations <= 30 * (search.iterations + 1)
-
-
-@each_scipy
-def test_same_seed_same_bits(search: External) -> None:
-    a, b, other = (run(search, PROBLEM, seed, 20) for seed in (7, 7, 8))
-    assert a.durations.tobytes() == b.durations.tobytes()
-    assert a.trace.tobytes() == b.trace.tobytes()
-    same = a.trace.tobytes() == other.trace.tobytes()
-    assert same == (search.kind == "shgo")
 
 
 def test_differential_evolution_is_scipys() -> None:

@@ -7,13 +7,9 @@ import pytest
 from support.two_joints import WITH_JERK, two_joints
 from trajgap.heuristics import (
     GA,
-    MNAMPSO,
     PSO,
     WOA,
-    ConstrainedPSO,
     DeathPenalty,
-    Handling,
-    ImprovedGA,
     ImprovedWOA,
     Stretch,
     run,
@@ -28,15 +24,6 @@ from trajgap.problem import (
     check,
     cubic_spline,
     quintic_spline,
-)
-
-LONG = Problem(
-    np.random.default_rng(31).uniform(-2, 2, (10, 3)),
-    Limits([2.0, 3.0, 2.5], [6.0, 5.0, 9.0]),
-    quintic_spline(9),
-    0.0,
-    6.0,
-    name="nine segments",
 )
 
 
@@ -127,36 +114,6 @@ def test_handlings_by_name() -> None:
     assert (stretch.shorten, rescale.shorten) == (False, True)
     with pytest.raises(TrajgapError, match=r"^objective: 'streched' is unknown; .*'stretch'"):
         run(PSO(), problem_with(), 0, 1, objective="streched")
-
-
-ALGORITHMS = (
-    PSO(),
-    MNAMPSO(),
-    ConstrainedPSO(position_rule="bounds", position_max=9.0),
-    WOA(),
-    ImprovedWOA(),
-    GA(position_range=(0.05, 5.0)),
-    ImprovedGA(position_range=(0.05, 5.0)),
-)
-
-
-@pytest.mark.parametrize("algorithm", ALGORITHMS, ids=lambda a: a.kind)
-@pytest.mark.parametrize("handling", ["stretch", "rescale"])
-@pytest.mark.parametrize("problem", [problem_with(), LONG], ids=["3", "9"])
-def test_the_account_is_that_of_the_decoded_durations(
-    algorithm: PSO, handling: str, problem: Problem
-) -> None:
-    found = run(algorithm, problem, 3, 60, objective=handling)
-    assert found.objective is Handling(handling)
-    judge = judge_of(problem, np.inf, handling)
-    np.testing.assert_array_equal(judge.decode(found.position[None])[0], found.durations)
-    assert found.reported_time == found.trace[-1] == found.durations.sum()
-    assert check(problem, found.durations).verdict is Verdict.PASS
-    assert (found.trace[1:] <= found.trace[:-1]).all()
-    penal = run(algorithm, problem, 3, 60)
-    assert found.evaluations == penal.evaluations
-    assert penal.objective is Handling.DEATH_PENALTY
-    np.testing.assert_array_equal(penal.position, penal.durations)
 
 
 @pytest.mark.parametrize(

@@ -67,13 +67,6 @@ def same_bits(a: Run, b: Run) -> None:
         assert repr(getattr(a, name)) == repr(getattr(b, name))
 
 
-@each_algorithm
-def test_same_seed_same_bits(algorithm: PSO) -> None:
-    same_bits(run(algorithm, PROBLEM, 7, 40), run(algorithm, PROBLEM, 7, 40))
-    other = run(algorithm, PROBLEM, 8, 40)
-    assert other.durations.tobytes() != run(algorithm, PROBLEM, 7, 40).durations.tobytes()
-
-
 @pytest.mark.parametrize(
     ("algorithm", "handling"),
     [
@@ -112,29 +105,6 @@ def test_the_random_stream_is_pinned() -> None:
     fitness = DeathPenalty(PROBLEM)(x)
     np.testing.assert_allclose(first.durations, x[fitness.argmin()], rtol=1e-15)
     assert first.evaluations == 30
-
-
-@each_algorithm
-@pytest.mark.parametrize("problem", [PROBLEM, JERKY, SPLINE], ids=["va", "vaj", "spline"])
-def test_trace_and_answer(algorithm: PSO, problem: Problem) -> None:
-    for seed in range(4):
-        found = run(algorithm, problem, seed)
-        assert found.trace.shape == (found.iterations + 1,) == (201,)
-        assert (found.trace[1:] <= found.trace[:-1]).all()
-        assert found.trace[-1] == found.reported_time == found.durations.sum()
-        assert found.feasible
-        assert check(problem, found.durations).verdict is Verdict.PASS
-        assert found.trace[-1] < found.trace[0] or algorithm.kind == "ga"  # it has no elite
-        mutants = 201 if algorithm.kind == "mnam-pso" else 0
-        assert found.evaluations == 201 * (32 if "ga" in algorithm.kind else 30) + mutants
-
-
-@each_algorithm
-def test_a_shorter_budget_is_named(algorithm: PSO) -> None:
-    found = run(algorithm, PROBLEM, 1, iterations=5)
-    assert found.iterations == found.settings.iterations == 5
-    assert found.trace.size == 6
-    assert algorithm.iterations == 200
 
 
 @pytest.mark.parametrize("judge", [DeathPenalty(PROBLEM), Stretch(PROBLEM)])
@@ -230,14 +200,6 @@ def test_answers_cannot_be_touched() -> None:
     back = pickle.loads(pickle.dumps(found))
     same_bits(found, back)
     assert not back.trace.flags.writeable
-
-
-def test_summary_fits_a_screen() -> None:
-    text = str(run(PSO(), PROBLEM, 4, 3))
-    assert text.startswith("pso on two joints, seed 4: ")
-    assert "3 iterations, 120 evaluations" in text
-    joint = run_per_joint(PSO(), PROBLEM, 4, 3).runs[1]
-    assert str(joint).startswith("pso on two joints, joint elbow, seed 4.1: ")
 
 
 @pytest.mark.parametrize("workers", [1, pytest.param(2, marks=pytest.mark.slow)])
