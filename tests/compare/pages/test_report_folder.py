@@ -1,15 +1,21 @@
-"""A report as a folder: the same every time, never over other files; Markdown of every block."""
+"""A report as a folder and as an RO-Crate: the same every time, never over other files."""
 
 import json
+import os
 import re
 import shutil
+import zipfile
 from dataclasses import replace
+from hashlib import sha256
 from pathlib import Path
 
 import pytest
+from rocrate.rocrate import ROCrate
 from support.checkout import ROOT
 from support.hostile import ID, hostile_case
+from support.studies import source
 from trajgap.compare import AuditReport, audit, write_report
+from trajgap.compare.pages import crate_of
 from trajgap.compare.pages.blocks import (
     Cell,
     Drawn,
@@ -20,10 +26,9 @@ from trajgap.compare.pages.blocks import (
     Terms,
 )
 from trajgap.compare.pages.markdown_text import markdown
-from trajgap.compare.pages.writer import MARK
+from trajgap.compare.pages.writer import MARK, report_files
 from trajgap.problem import TrajgapError
-
-# --- the same every time --------------------------------------------------------------------------
+from trajgap.verify import verify_certificate
 
 
 def content(folder: Path) -> dict[str, bytes]:
@@ -74,6 +79,7 @@ def refuses(report: AuditReport, out: Path, message: str) -> None:
         ("[1]", "audit.json"),
         ('{"schema": "other/1", "cases": []}', "audit.json"),
         ('{"schema": "trajgap/1", "cases": []}', "notes.txt"),
+        ("a pipe", "audit.json"),
     ],
 )
 def test_a_folder_with_other_files_is_left_alone(
@@ -82,7 +88,9 @@ def test_a_folder_with_other_files_is_left_alone(
     out = tmp_path / "mine"
     out.mkdir()
     (out / "notes.txt").write_text("mine", encoding="utf-8")
-    if mark is not None:
+    if mark == "a pipe":
+        os.mkfifo(out / MARK)
+    elif mark is not None:
         (out / MARK).write_text(mark, encoding="utf-8")
     before = content(out)
     refuses(NOTHING, out, f"{re.escape(named)} is not part of a trajgap report; name a new or an")
@@ -168,3 +176,67 @@ def test_what_is_null_alone_is_named_in_the_documents(folder: Path) -> None:
 
     walk(json.loads((folder / MARK).read_text(encoding="utf-8"))["cases"])
     assert {"claim", "problem", "printed"} <= alone <= set(re.findall(r"`([a-z]+)`", named))
+
+
+def quick_file(folder: Path) -> Path:
+    """The case with replays of three iterations, as a file."""
+    text = source(ID)
+    assert "{ iterations = 100 }" in text
+    file = folder / f"{ID}.toml"
+    file.write_text(text.replace("{ iterations = 100 }", "{ iterations = 3 }"), encoding="utf-8")
+    return file
+
+
+@pytest.fixture(scope="module")
+def quick(tmp_path_factory: pytest.TempPathFactory) -> AuditReport:
+    file = quick_file(tmp_path_factory.mktemp("case"))
+    return audit(file, seeds=2, certify_seconds=0, problem="limit-80", reading="waypoints-rad")
+
+
+@pytest.fixture(scope="module")
+def archive(quick: AuditReport, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    file = tmp_path_factory.mktemp("crate") / "audit.zip"
+    file.write_bytes(crate_of(quick))
+    return file
+
+
+@pytest.mark.slow
+def test_the_library_reads_back_what_went_in(quick: AuditReport, archive: Path) -> None:
+    found = ROCrate(archive)
+    (one,) = quick.cases
+    assert str(found.datePublished)[:10] == one.document.provenance.date
+    files = {entity.id: entity for entity in found.data_entities}
+    packed = zipfile.ZipFile(archive)
+    for name, entity in files.items():
+        assert sha256(packed.read(name)).hexdigest() == entity["sha256"], name
+    assert {*packed.namelist()} == {*files, "ro-crate-metadata.json"}
+    assert {f"report/{name}" for name in report_files(quick)} <= set(files)
+    case = packed.read(f"cases/{ID}.toml")
+    assert sha256(case).hexdigest() == one.case.sha256
+
+
+def test_a_crate_tells_what_was_made_from_what(quick: AuditReport, archive: Path) -> None:
+    found = ROCrate(archive)
+    action = found.get("#audit")
+    assert quick.cases[0].document.provenance.command == action["description"]
+    assert f"cases/{ID}.toml" in {entity.id for entity in action["object"]}
+    assert f"report/{ID}.json" in {entity.id for entity in action["result"]}
+    assert action["instrument"]["name"] == "trajgap"
+    pins = zipfile.ZipFile(archive).read("environment/requirements.txt").decode().split()
+    assert any(pin.startswith("numpy==") for pin in pins)
+
+
+def test_certificates_in_a_crate_prove_again(archive: Path) -> None:
+    packed = zipfile.ZipFile(archive)
+    names = [name for name in packed.namelist() if name.startswith("certificates/")]
+    assert names
+    for name in names:
+        assert verify_certificate(json.loads(packed.read(name))).proves, name
+
+
+def test_a_case_file_that_has_changed_is_refused(tmp_path: Path) -> None:
+    file = quick_file(tmp_path)
+    made = audit(file, seeds=2, certify_seconds=0, problem="limit-80", reading="waypoints-rad")
+    file.write_text(file.read_text("utf-8") + "\n# later\n", encoding="utf-8")
+    with pytest.raises(TrajgapError, match=r"has changed since the audit began; audit it again"):
+        crate_of(made)
