@@ -66,11 +66,3 @@ def test_a_plain_solve_keeps_nothing(run: Run, cache: Path) -> None:
     for more in ((), ("--no-cache",)):
         assert run("solve", "mine.toml", "--json", *more)[0] == 0
     assert not cache.exists()
-
-
-@pytest.mark.parametrize(("more", "wanted"), [((), True), (("--no-cache",), False)])
-def test_audit_passes_it_on(
-    run: Run, stand_in: dict[str, Any], more: tuple[str, ...], wanted: bool
-) -> None:
-    assert run("audit", "mine.toml", "--json", *more)[0] == 0
-    assert stand_in["cache"] is wanted
