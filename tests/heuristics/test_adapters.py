@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from scipy import optimize
-from support.two_joints import OPEN, PROBLEM, two_joints
+from support.two_joints import OPEN, PROBLEM
 from trajgap.heuristics import (
     DeathPenalty,
     External,
@@ -15,7 +15,6 @@ from trajgap.heuristics import (
 )
 from trajgap.heuristics.budget import Budgeted, BudgetSpent
 from trajgap.problem import (
-    Limits,
     TrajgapError,
 )
 
@@ -46,11 +45,6 @@ def test_differential_evolution_is_scipys() -> None:
     assert found.evaluations == sum(judged)
     np.testing.assert_array_equal(found.durations, result.x)
     assert found.reported_time == result.fun
-
-
-def test_differential_evolution_one_by_one() -> None:
-    search = differential_evolution(vectorized=False, updating="immediate", iterations=60)
-    assert run(search, PROBLEM, 1).feasible
 
 
 def test_any_callable_and_its_budget() -> None:
@@ -89,13 +83,6 @@ def test_a_search_cannot_swallow_the_end_of_its_budget() -> None:
                 continue
 
     assert run(External("stubborn", stubborn, iterations=3), PROBLEM, 0).evaluations == 120
-
-
-def test_nothing_feasible() -> None:
-    stuck = two_joints(Limits([6.0, 0.0]), duration_lower=0.1, duration_upper=3.0)
-    found = run(External("random", drawing, iterations=3), stuck, 0)
-    assert not found.feasible
-    assert np.isinf(found.trace).all()
 
 
 def test_one_by_one() -> None:
