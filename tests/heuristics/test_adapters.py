@@ -14,9 +14,7 @@ from trajgap.heuristics import (
     shgo,
 )
 from trajgap.heuristics.budget import Budgeted, BudgetSpent
-from trajgap.problem import (
-    TrajgapError,
-)
+from trajgap.problem import TrajgapError
 
 SCIPY = (differential_evolution(), dual_annealing(iterations=40), shgo())
 each_scipy = pytest.mark.parametrize("search", SCIPY, ids=lambda s: s.kind)

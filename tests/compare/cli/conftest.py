@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -68,4 +67,4 @@ def no_computing(monkeypatch: pytest.MonkeyPatch) -> None:
         "certifying.certify",
     ):
         monkeypatch.setattr(f"trajgap.compare.cli.{name}", compute)
-    monkeypatch.setattr(import_module("trajgap.compare.audits.case_audit"), "audit", compute)
+    monkeypatch.setattr(AUDITS, "audit", compute)

@@ -133,9 +133,7 @@ def test_show_says_what_holds_at_each_end(run: Run) -> None:
     text = CASE.replace('"3-5-3"', f'"cubic-spline", {ends}')
     Path("ends.toml").write_text(text, encoding="utf-8")
     out = " ".join(run("show", "ends.toml")[1].split())
-    assert (
-        "velocity given at the start, acceleration at the finish, acceleration 0 at" in out
-    )
+    assert "velocity given at the start, acceleration at the finish, acceleration 0 at" in out
 
 
 def test_check_judges_printed_digits(run: Run) -> None:

@@ -42,13 +42,7 @@ from trajgap.compare.pages import bench_picture, ends_picture, write_bench
 from trajgap.compare.pictures.drawing import SERIES
 from trajgap.heuristics import search_box
 from trajgap.nlp import solve
-from trajgap.problem import (
-    CaseError,
-    Limits,
-    Problem,
-    TrajgapError,
-    rest_to_rest,
-)
+from trajgap.problem import CaseError, Limits, Problem, TrajgapError, rest_to_rest
 
 WAYPOINTS = np.array([[0.3, -1.1], [1.9, -0.7], [1.2, 0.4], [1.5, 2.6]])
 LIMITS = Limits([1.7, 2.3], [2.9, 6.1])

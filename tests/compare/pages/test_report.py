@@ -20,11 +20,7 @@ from trajgap.compare.documents import (
     Keeping,
     qualified,
 )
-from trajgap.compare.pages.blocks import (
-    Claimed,
-    Page,
-    slug,
-)
+from trajgap.compare.pages.blocks import Claimed, Page, slug
 from trajgap.compare.pages.markdown_text import markdown, plain
 from trajgap.compare.pages.writer import case_page
 from trajgap.nlp import Evidence

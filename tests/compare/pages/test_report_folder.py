@@ -16,15 +16,7 @@ from support.hostile import ID, hostile_case
 from support.studies import source
 from trajgap.compare import AuditReport, audit, write_report
 from trajgap.compare.pages import crate_of
-from trajgap.compare.pages.blocks import (
-    Cell,
-    Drawn,
-    Grid,
-    Page,
-    Prose,
-    Section,
-    Terms,
-)
+from trajgap.compare.pages.blocks import Cell, Drawn, Grid, Page, Prose, Section, Terms
 from trajgap.compare.pages.markdown_text import markdown
 from trajgap.compare.pages.writer import MARK, report_files
 from trajgap.problem import TrajgapError

@@ -18,14 +18,7 @@ from trajgap.compare.pictures.labels import place_labels
 from trajgap.compare.pictures.polygon import polygon_picture
 from trajgap.compare.pictures.tent import TentScatter, tent_picture, tent_scatter
 from trajgap.heuristics.algorithms.tent import TentRule
-from trajgap.problem import (
-    Limits,
-    Printed,
-    Problem,
-    TrajgapError,
-    file_name,
-    three_five_three,
-)
+from trajgap.problem import Limits, Printed, Problem, TrajgapError, file_name, three_five_three
 from trajgap.problem.curves import control_vertices, uniform_cubic_b_spline
 from trajgap.problem.printed import Interval
 

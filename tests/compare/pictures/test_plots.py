@@ -24,14 +24,7 @@ from trajgap.compare.pictures.drawing import (
 )
 from trajgap.compare.pictures.motion import beyond, motion_picture
 from trajgap.compare.pictures.waterfall import waterfall_picture
-from trajgap.problem import (
-    Limits,
-    Problem,
-    TrajgapError,
-    check,
-    extrema,
-    fit,
-)
+from trajgap.problem import Limits, Problem, TrajgapError, check, extrema, fit
 from trajgap.problem.curves.uniform import TimedUniformBSpline
 
 SVG = "{http://www.w3.org/2000/svg}"

@@ -9,11 +9,7 @@ import numpy as np
 import pytest
 from support.scripted import OPEN, Script
 from trajgap.heuristics import GA, ImprovedGA
-from trajgap.heuristics.algorithms.genes import (
-    FitnessRule,
-    fitness_values,
-    roulette,
-)
+from trajgap.heuristics.algorithms.genes import FitnessRule, fitness_values, roulette
 from trajgap.heuristics.algorithms.improved_ga import (
     THIRD,
     concentration,
