@@ -197,22 +197,6 @@ def test_a_swarm_that_overflows_is_only_infeasible() -> None:
     assert run(wild, PROBLEM, 0).feasible
 
 
-@each_swarm
-def test_converges_on_a_shifted_unequal_bowl(algorithm: PSO) -> None:
-    centre, weight = np.array([1.3, 0.4, 1.5, 0.75]), np.array([1.0, 20.0, 3.0, 7.0])
-
-    def bowl(x: np.ndarray) -> np.ndarray:
-        return 0.3 + weight @ (x - centre).T ** 2
-
-    box = Bounds(np.full(4, 0.1), np.full(4, 2.5))
-    for seed in range(3):
-        rng = np.random.default_rng(seed)
-        *_, last = states(replace(algorithm, iterations=400), bowl, box, rng)
-        np.testing.assert_allclose(last.best, centre, atol=2e-3)
-        assert 0.3 <= last.best_fitness == pytest.approx(0.3, abs=1e-4)
-        assert last.best_fitness == pytest.approx(float(bowl(last.best[None])[0]), rel=1e-14)
-
-
 def test_joints_by_themselves() -> None:
     found = run_per_joint(PSO(), PROBLEM, 12, iterations=30)
     assert isinstance(found, JointRuns)

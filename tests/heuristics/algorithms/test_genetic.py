@@ -1,4 +1,4 @@
-"""Genetic algorithms: a generation by hand, and (12)–(15) of irb1600-ga-cubic-bspline.
+"""Genetic algorithms: fitness, wheel, lattice, and (12)–(15) of irb1600-ga-cubic-bspline.
 
 Every choice of every step: test_one_by_one.
 """
@@ -7,7 +7,6 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from support.scripted import OPEN, Script
 from trajgap.heuristics import GA, ImprovedGA
 from trajgap.heuristics.algorithms.genes import FitnessRule, fitness_values, roulette
 from trajgap.heuristics.algorithms.improved_ga import (
@@ -18,23 +17,8 @@ from trajgap.heuristics.algorithms.improved_ga import (
     rank_chances,
     schedule,
 )
-from trajgap.heuristics.algorithms.population import Population
 from trajgap.heuristics.hazards import rate_branches
 from trajgap.problem import TrajgapError
-
-X = np.array([[1.0, 1.0], [0.5, 1.5], [1.5, 2.5], [3.0, 1.0]])
-SMALL = GA(population=4, position_range=(0.0, 4.0))
-
-
-def total(x: np.ndarray) -> np.ndarray:
-    """Sum of the coordinates, infeasible where one is below 1/4."""
-    return np.where((x >= 0.25).all(axis=1), x.sum(axis=1), np.inf)
-
-
-def generation(positions: np.ndarray = X) -> Population:
-    totals = total(positions)
-    best = int(totals.argmin())
-    return Population(0, positions, totals, positions[best], float(totals[best]))
 
 
 def test_fitness_to_be_maximised() -> None:
@@ -59,24 +43,6 @@ def test_roulette_by_hand() -> None:
     np.testing.assert_array_equal(roulette(weights, draws), [0, 0, 2, 2, 3, 3])
     np.testing.assert_array_equal(roulette(np.zeros(4), np.array([0.0, 0.3, 0.6, 0.9])), range(4))
     assert roulette(np.full(10, 0.1), np.array([np.nextafter(1.0, 0.0)]))[0] == 9
-
-
-def test_a_generation_by_hand() -> None:
-    # f = 1/2, 1/2, 1/4, 1/4: the wheel is cut at 1/3, 2/3, 5/6. Parents 0, 1, 2, 0.
-    # Shuffled by the ranks of (0.5, 0.25, 1, 0.75): 1, 0, 0, 2.
-    # Pair (1, 0) mates with α = 0.25; pair (0, 2) does not.
-    # Gene 2 of child 1 is drawn anew at 0.125 of [0, 4], gene 1 of child 4 at 0.5.
-    numbers = Script(
-        [0.1, 0.5, 0.7, 0.2], [0.5, 0.25, 1.0, 0.75], [0.79, 0.81], [0.25, 0.5],
-        [0.9, 0.04, 0.9, 0.9, 0.9, 0.9, 0.04, 0.9], [0.0, 0.125, 0, 0, 0, 0, 0.5, 0],
-    )  # fmt: skip
-    after = SMALL.step(generation(), OPEN, numbers, total)
-    # 0.25 (0.5, 1.5) + 0.75 (1, 1) = (0.875, 1.125); 0.75 (0.5, 1.5) + 0.25 (1, 1)
-    expected = [[0.875, 0.5], [0.625, 1.375], [1.0, 1.0], [2.0, 2.5]]
-    np.testing.assert_array_equal(after.positions, expected)
-    np.testing.assert_array_equal(after.fitness, [1.375, 2.0, 2.0, 4.5])
-    np.testing.assert_array_equal(after.best, [0.875, 0.5])
-    assert (after.iteration, after.best_fitness, numbers.left) == (1, 1.375, [])
 
 
 def test_binary_lattice() -> None:
