@@ -89,37 +89,27 @@ def test_a_folder_with_other_files_is_left_alone(
     assert content(out) == before
 
 
-def test_own_files_among_the_pictures_are_noticed(folder: Path, tmp_path: Path) -> None:
-    shutil.copytree(folder, tmp_path / "audit")
-    (tmp_path / "audit" / "pictures" / "mine.png").write_bytes(b"x")
-    refuses(NOTHING, tmp_path / "audit", r"pictures/mine\.png is not part of a trajgap report")
-
-
-def test_a_file_or_link_in_its_place_is_left_alone(report: AuditReport, tmp_path: Path) -> None:
+def test_what_would_share_names_or_lie_over_files_is_refused(
+    folder: Path, report: AuditReport, tmp_path: Path
+) -> None:
     (tmp_path / "file").write_text("mine", encoding="utf-8")
-    refuses(report, tmp_path / "file", "what is there is not part of a trajgap report")
     (tmp_path / "target").mkdir()
     (tmp_path / "link").symlink_to(tmp_path / "target")
-    refuses(report, tmp_path / "link", "what is there is not part of a trajgap report")
-
-
-def test_a_place_that_cannot_be_written_is_said_in_one_line(tmp_path: Path) -> None:
-    (tmp_path / "file").write_text("mine", encoding="utf-8")
-    with pytest.raises(TrajgapError, match=r"cannot be written \(.+\); name another place"):
-        write_report(NOTHING, tmp_path / "file" / "audit")
-
-
-def test_cases_that_would_share_a_file_are_refused(report: AuditReport, tmp_path: Path) -> None:
-    twice = AuditReport(report.cases * 2)
-    refuses(twice, tmp_path / "out", f"two cases are called '{ID}'; give each an id of its own")
-
-
-@pytest.mark.parametrize("name", ["index", "audit", "glossary"])
-def test_a_case_cannot_take_the_name_of_another_page(
-    report: AuditReport, tmp_path: Path, name: str
-) -> None:
-    one = replace(report.cases[0], case=hostile_case(name))
-    refuses(AuditReport((one,)), tmp_path / "out", f"a case cannot be called '{name}'; rename it")
+    shutil.copytree(folder, tmp_path / "audit")
+    (tmp_path / "audit" / "pictures" / "mine.png").write_bytes(b"x")
+    named = [
+        (AuditReport((replace(report.cases[0], case=hostile_case(name)),)), name)
+        for name in ("index", "audit", "glossary")
+    ]
+    for made, place, said in (
+        (NOTHING, "audit", r"pictures/mine\.png is not part of a trajgap report"),
+        (report, "file", "what is there is not part of a trajgap report"),
+        (report, "link", "what is there is not part of a trajgap report"),
+        (NOTHING, "file/audit", r"cannot be written \(.+\); name another place"),
+        (AuditReport(report.cases * 2), "out", f"two cases are called '{ID}'; give each an id"),
+        *((one, "out", f"a case cannot be called '{name}'; rename it") for one, name in named),
+    ):
+        refuses(made, tmp_path / place, said)
 
 
 # --- Markdown -------------------------------------------------------------------------------------

@@ -60,15 +60,6 @@ def test_a_picture_does_not_depend_on_the_users_settings_or_on_earlier_pictures(
         assert matplotlib.rcParams["font.size"] == 20
 
 
-def test_no_date_no_library_version_and_no_address_to_fetch(pictures: dict[str, Picture]) -> None:
-    for picture in pictures.values():
-        document = svg(picture)
-        assert "metadata" not in document
-        assert "DOCTYPE" not in document
-        assert matplotlib.__version__ not in document
-        assert not re.search(r'(?:href|src)="(?!#)', document)
-
-
 def test_pyplot_is_never_loaded() -> None:
     modules = ["drawing", "motion", "totals_map", "searches", "waterfall"]
     program = "import sys\n" + "".join(f"import trajgap.compare.pictures.{m}\n" for m in modules)
