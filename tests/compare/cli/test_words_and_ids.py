@@ -92,7 +92,8 @@ COUNTS: list[tuple[str, dict[str, int]]] = [
     (
         f"audit {IRB} {AUDIT}",
         {**dict.fromkeys(IDS, 0), f"Where the time goes; {WORDS} step ": 1,
-         f"Where the time goes; {WORDS.replace('80', '110')} step ": 1},
+         f"Where the time goes; {WORDS.replace('80', '110')} step ": 1,
+         "TOPPRA on the path of the relaxed family: no acceleration is limited": 1},
     ),
     (
         "study few.toml --workers 1",
