@@ -138,7 +138,8 @@ def test_pages_of_every_instance(run: Run, folder: Path) -> None:
         assert f"{one.lower!r} s" in page
         assert one.case_sha256 in page or one.certificate is None
         assert f"{one.segments} segments between way-points, {one.joints} joints" in page
-        assert (f" It took {one.verify_seconds or 0:g} s here." in page) == (one.certificate is not None)
+        took = f" It took {one.verify_seconds or 0:g} s here."
+        assert (took in page) == (one.certificate is not None)
         assert one.hardness is not None
         assert page.count("evaluations end within 1 %") == len(one.hardness.baselines)
         assert len(page) < 40_000
